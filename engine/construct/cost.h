@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Costs: in which order vertices go (DESIGN.md, section 5).
+#pragma once
+
+#include <cstdint>
+
+namespace ptin {
+
+enum class CostModel : std::uint8_t {
+  kError,      ///< Class of the sample error, a quarter of an octave wide; then the smallest saturated box; then the key.
+  kRoi,        ///< Smallest saturated box (the paper's for point location).
+  kElevation,  ///< Smallest saturated height interval (the paper's for isolines), then box, then key.
+};
+
+}  // namespace ptin

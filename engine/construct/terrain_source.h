@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What every source of a terrain delivers: a frame (grid, heights, CRS) and samples on the grid.
+// Raster sources are in raster_source.h, point sources in point_source.h; LAS, OGR layers and TINs belong beside them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "engine/geometry/affine.h"
+#include "engine/geometry/height.h"
+
+namespace ptin {
+
+/// How grid positions and height codes relate to the world, and what was lost on the way to the grid.
+struct TerrainFrame {
+  AffineMap map;
+  HeightEncoding heights;
+  std::string crs_wkt;            ///< WKT2:2019 of the horizontal or compound CRS; empty when unknown.
+  bool vertical_crs_known = false;
+  bool geographic = false;        ///< Coordinates are degrees.
+  std::string horizontal_unit;    ///< "metre", "degree", "US survey foot", "unknown".
+  std::string vertical_unit;
+  double height_rounding = 0.0;   ///< Largest rounding of a height into its encoding, height's unit.
+  double height_quantum = 0.0;    ///< Smallest step between heights: `step` for int32; for float32 the decimal step found, or range / 2^16.
+  double min_height = 0.0, max_height = 0.0;  ///< Of all samples with a height; min > max when there is none.
+};
+
+/// Choices that decide what is read from a source.
+struct SourceOptions {
+  std::optional<double> nodata;      ///< Overrides the source's own.
+  std::optional<double> resolution;  ///< Points: grid unit in CRS units.
+  struct Bounds {
+    double min_x, min_y, max_x, max_y;
+  };
+  std::optional<Bounds> bbox;  ///< CRS units; samples outside are left out.
+  std::string a_srs;           ///< Overrides the CRS; anything GDAL understands.
+  std::string vertical_crs;    ///< Added as the vertical part, e.g. "EPSG:5773".
+};
+
+}  // namespace ptin

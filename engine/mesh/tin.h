@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The triangulated irregular network: triangles with neighbours over grid vertices.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/geometry/height.h"
+#include "engine/geometry/point.h"
+
+namespace ptin {
+
+/// Indices into the arrays of one Tin. 32 bits: one mesh in memory has fewer than 2^32 - 1 triangles; terrains have
+/// no such limit, since a tile or a refinement holds a part of one.
+using VertexId = std::uint32_t;
+using TriangleId = std::uint32_t;
+inline constexpr std::uint32_t kNone = UINT32_MAX;
+
+/// Surface triangles carry the terrain; void triangles cover the part of the domain without heights.
+enum class TriangleClass : std::uint8_t { kSurface = 0, kVoid = 1 };
+
+/// A vertex. `triangle` is one triangle around it; on the border it is the first of the counter-clockwise walk, the one
+/// whose clockwise neighbour around the vertex is missing (I6). A removed vertex has kNone.
+struct Vertex {
+  GridPoint position;
+  HeightBits height = 0;
+  TriangleId triangle = kNone;
+};
+
+/// A triangle: corners counter-clockwise; neighbour n[i] lies across the edge opposite to corner v[i]
+/// (from v[i+1] to v[i+2]) and is kNone at the border. A removed triangle has v[0] == kNone.
+struct Triangle {
+  VertexId v[3];
+  TriangleId n[3];
+};
+
+/// A triangulation of a simply connected domain: every point of it covered once, no crack, no overlap, no T-junction.
+/// Plain arrays; functions beside it (star.h, collapse.h, split.h) change it, validate.h states its invariants.
+/// A vertex whose bit `has_height` is 0 stands in void triangles only.
+struct Tin {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint8_t> has_height;  ///< Beside `vertices`: 1 when the vertex carries a height.
+  std::vector<Triangle> triangles;
+  std::vector<TriangleClass> classes;  ///< Beside `triangles`.
+
+  [[nodiscard]] GridPoint position(VertexId v) const noexcept { return vertices[v].position; }
+  [[nodiscard]] bool is_alive(TriangleId t) const noexcept { return triangles[t].v[0] != kNone; }
+  /// Number of vertices and triangles that are not removed. Cost: linear.
+  [[nodiscard]] std::size_t alive_vertices() const noexcept;
+  [[nodiscard]] std::size_t alive_triangles() const noexcept;
+};
+
+/// Place of vertex `v` (0, 1, 2) in triangle `t`. REQUIRES: it is a corner.
+[[nodiscard]] inline int corner_of(const Triangle& t, VertexId v) noexcept {
+  return t.v[0] == v ? 0 : (t.v[1] == v ? 1 : 2);
+}
+
+/// Place of neighbour `n` in triangle `t`. REQUIRES: it is a neighbour.
+[[nodiscard]] inline int side_of(const Triangle& t, TriangleId n) noexcept {
+  return t.n[0] == n ? 0 : (t.n[1] == n ? 1 : 2);
+}
+
+[[nodiscard]] inline constexpr int next_corner(int i) noexcept { return i == 2 ? 0 : i + 1; }
+[[nodiscard]] inline constexpr int previous_corner(int i) noexcept { return i == 0 ? 2 : i - 1; }
+
+}  // namespace ptin
