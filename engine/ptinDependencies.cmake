@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # The libraries that rooms stand on, found in one way by this project's build and by find_package(ptin).
-# Sets ptin_MISSING to what was not found when not REQUIRED by the caller's find_package calls.
 
 # A library without a CMake package of its own, as the imported target <target>.
 function(ptin_import_library target header library)
@@ -35,8 +34,5 @@ macro(ptin_find_dependencies)
     find_package(CGAL CONFIG REQUIRED)
     find_package(GDAL CONFIG REQUIRED)
     find_package(TBB CONFIG REQUIRED)
-    # CGAL asks every source that links it for -frounding-math. Its interval arithmetic needs that; our inner loops
-    # do not and are slower for it. So here it goes to the sources that include CGAL alone (see engine/construct).
-    set_property(TARGET CGAL::CGAL PROPERTY INTERFACE_COMPILE_OPTIONS "")
   endif()
 endmacro()
