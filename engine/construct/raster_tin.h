@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The full TIN of a window of a raster: every cell cut along one diagonal.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/geometry/height.h"
+#include "engine/geometry/point.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin {
+
+/// The diagonal that cuts a cell: from its lower left to its upper right corner, or from its lower
+/// right to its upper left one.
+enum class Diagonal : std::uint8_t { kRising = 0, kFalling = 1 };
+
+/// A cell's four corners, counter-clockwise from the lower left.
+struct RasterCell {
+  double code[4];  ///< Height codes; not looked at where `has_height` is 0.
+  std::uint8_t has_height[4];
+};
+
+/// The diagonal that cuts the cell whose lower left corner is the grid point `corner`. It depends
+/// on the cell alone, so tiles agree. In this order:
+///   1. the diagonal with fewer ends without a height (so that one void corner costs one triangle,
+///   not two);
+///   2. with four heights, the diagonal with the smaller difference between the codes at its ends;
+///   3. rising where x + y of `corner` is even, falling where it is odd.
+[[nodiscard]] Diagonal cell_diagonal(const RasterCell& cell, GridPoint corner) noexcept;
+
+/// The full TIN of a window of `width` x `height` samples whose lower left one is the grid point
+/// `origin`. A triangle is void when one of its corners has no height.
+/// @param heights   Row-major, row 0 in the south. Not looked at where `valid` is 0: those vertices
+/// get height 0.
+/// @param valid     Beside `heights`; 0 for a sample without a height.
+/// @return  Vertex ids row-major from the south, so that their order is that of their keys; the
+/// triangles of cell
+///          (i, j) are 2 * c and 2 * c + 1 with c = j * (width - 1) + i, the one at the cell's
+///          lower edge first.
+/// @throws Error  invalid_argument    width or height below 2, spans of another size, or a corner
+/// off the grid
+///                resource_exhausted  more triangles than a TriangleId counts
+/// Cost: linear; 67 bytes a sample. Threads: any number of calls at once.
+[[nodiscard]] Tin make_raster_tin(std::span<const HeightBits> heights,
+                                  std::span<const std::uint8_t> valid, std::int32_t width,
+                                  std::int32_t height, const HeightEncoding& encoding,
+                                  GridPoint origin);
+
+/// The lone samples of a window: those with a height that touch no surface triangle, because none
+/// of their cells has three corners with heights. Callers treat them as void; that changes the
+/// class of no triangle and makes no other sample lone.
+/// @return  Indices into `valid`, ascending. A sample on the window's border is judged by the cells
+/// inside the window:
+///          tiles pass a window with a margin of one sample and keep what lies inside.
+/// Cost: linear, one byte a sample read three times; nothing else where all is valid.
+[[nodiscard]] std::vector<std::uint64_t> find_lone_samples(std::span<const std::uint8_t> valid,
+                                                           std::int64_t width, std::int64_t height);
+
+}  // namespace ptin
