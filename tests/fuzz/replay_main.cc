@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Drives a fuzz target without libFuzzer: every file that is given, or lies in a folder that is given, then a bounded
-// number of seeded random mutations of them. Same arguments and files, same inputs.
+// Drives a fuzz target without libFuzzer: every file that is given, or lies in a folder that is
+// given, then a bounded number of seeded random mutations of them. Same arguments and files, same
+// inputs.
 //
 //   fuzz_NAME [-mutations N] [-seed S] [-max_len BYTES] FILE_OR_FOLDER...
 //
-// A failure is the target's own: a sanitizer's report or an uncaught exception. The input that was running then is
-// in the working folder as crash-input-NAME.
+// A failure is the target's own: a sanitizer's report or an uncaught exception. The input that was
+// running then is in the working folder as crash-input-NAME.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -83,7 +84,8 @@ std::vector<Bytes> read_corpus(const std::vector<fs::path>& inputs) {
   return corpus;
 }
 
-/// Changes an input in the ways that break readers: bits, bytes, extreme integers, cuts, repeats, splices.
+/// Changes an input in the ways that break readers: bits, bytes, extreme integers, cuts, repeats,
+/// splices.
 class Mutator {
  public:
   Mutator(std::uint64_t seed, std::size_t max_len, const std::vector<Bytes>& corpus)
@@ -130,14 +132,16 @@ class Mutator {
     }
   }
 
-  /// 0, all ones, a sign bit, one, or a small step from what stands there, in 1 to 8 little-endian bytes.
+  /// 0, all ones, a sign bit, one, or a small step from what stands there, in 1 to 8 little-endian
+  /// bytes.
   void overwrite_integer(Bytes& bytes, std::size_t at) {
     const std::size_t width = std::min(std::size_t{1} << below(4), bytes.size() - at);
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < width; ++i) {
       value |= std::uint64_t{bytes[at + i]} << (8 * i);
     }
-    const std::uint64_t choices[] = {0, ~std::uint64_t{0}, std::uint64_t{1} << (8 * width - 1), 1, value + 1, value - 1};
+    const std::uint64_t choices[] = {0, ~std::uint64_t{0}, std::uint64_t{1} << (8 * width - 1),
+                                     1, value + 1,         value - 1};
     value = choices[below(std::size(choices))];
     for (std::size_t i = 0; i < width; ++i) {
       bytes[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
@@ -169,7 +173,8 @@ class Mutator {
 void run(const Bytes& bytes, const fs::path& running) {
   {
     std::ofstream stream(running, std::ios::binary | std::ios::trunc);
-    stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    stream.write(reinterpret_cast<const char*>(bytes.data()),
+                 static_cast<std::streamsize>(bytes.size()));
   }
   LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
 }
@@ -191,7 +196,7 @@ int main(int argc, char** argv) {
     run(mutator.next(), running);
   }
   fs::remove(running);
-  std::cout << corpus.size() << " inputs replayed, " << options.mutations << " mutations of seed " << options.seed
-            << "\n";
+  std::cout << corpus.size() << " inputs replayed, " << options.mutations << " mutations of seed "
+            << options.seed << "\n";
   return 0;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Uses the installed headers and library as another project would: exit status 0 when they do what they say.
+// Uses the installed headers and library as another project would: exit status 0 when they do what
+// they say.
 #include <engine/error.h>
 #include <engine/geometry/orient.h>
 
