@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The removed samples that each triangle covers: short arrays in one pool.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/geometry/height.h"
+#include "engine/geometry/point.h"
+
+namespace ptin {
+
+/// A sample of the source that is no vertex any more. `depth` is its distance to the nearest sample of the other class in
+/// ground units, +infinity beyond the cut-off; negative for a sample without a height (DESIGN.md, section 3).
+struct Sample {
+  GridPoint position;
+  HeightBits height = 0;
+  float depth = 0.0F;
+};
+
+/// Where a triangle's samples are. Owned by the triangle; only SampleLists makes sense of it.
+struct SampleSlot {
+  std::uint32_t offset = 0;
+  std::uint32_t count = 0;
+};
+
+/// Arrays of samples whose capacities are powers of two, in one pool with a free list for each capacity.
+/// A list is taken at its final length and given back whole: a collapse takes the lists of the star and gives new ones to the
+/// fan. At most 2^32 - 1 samples in one pool (one tile).
+class SampleLists {
+ public:
+  /// A list of `count` samples, not initialised. Spans into the pool end with the next call.
+  [[nodiscard]] SampleSlot take(std::uint32_t count) {
+    if (count == 0) {
+      return {};
+    }
+    const auto capacity_log = static_cast<std::size_t>(std::bit_width(count - 1));
+    std::vector<std::uint32_t>& free = free_[capacity_log];
+    if (!free.empty()) {
+      const std::uint32_t offset = free.back();
+      free.pop_back();
+      return {offset, count};
+    }
+    const auto offset = static_cast<std::uint32_t>(pool_.size());
+    pool_.resize(pool_.size() + (std::size_t{1} << capacity_log));
+    return {offset, count};
+  }
+
+  void give_back(SampleSlot slot) {
+    if (slot.count != 0) {
+      free_[static_cast<std::size_t>(std::bit_width(slot.count - 1))].push_back(slot.offset);
+    }
+  }
+
+  [[nodiscard]] std::span<Sample> samples(SampleSlot slot) noexcept {
+    return {pool_.data() + slot.offset, slot.count};
+  }
+  [[nodiscard]] std::span<const Sample> samples(SampleSlot slot) const noexcept {
+    return {pool_.data() + slot.offset, slot.count};
+  }
+  [[nodiscard]] const Sample* data(SampleSlot slot) const noexcept { return pool_.data() + slot.offset; }
+
+  void reserve(std::size_t samples) { pool_.reserve(samples); }
+
+ private:
+  std::vector<Sample> pool_;
+  std::array<std::vector<std::uint32_t>, 33> free_;
+};
+
+}  // namespace ptin

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/simplify.h"
+
+#include <utility>
+#include <vector>
+
+#include "engine/check.h"
+#include "engine/construct/collapse_choice.h"
+#include "engine/construct/collapse_queue.h"
+#include "engine/construct/record_maker.h"
+
+namespace ptin {
+
+namespace {
+
+/// What the queue knows about a vertex.
+enum class QueueState : std::uint8_t {
+  kAbsent,  ///< No collapse was allowed when it was last measured, or it is locked or gone.
+  kClean,   ///< In the queue, with the measure of its star.
+  kStale,   ///< In the queue, but its star has changed since.
+};
+
+class Simplifier {
+ public:
+  Simplifier(Tile& tile, const FullSurface& full, const SimplifyOptions& options)
+      : tile_(tile), options_(options), maker_(tile, full) {}
+
+  void run();
+
+ private:
+  struct Evaluation {
+    CollapseChoice choice;
+    std::uint64_t priority = 0;
+  };
+  void fill_queue();
+  void check_in();
+  [[nodiscard]] Evaluation evaluate(VertexId u);
+  void take_top();
+  void collapse(VertexId u, std::size_t j);
+
+  Tile& tile_;
+  const SimplifyOptions& options_;
+  RecordMaker maker_;
+  CollapseChooser chooser_;
+  CollapseQueue queue_;
+  StarSamples star_;
+  std::vector<QueueState> state_;
+  std::vector<VertexId> target_;  ///< Of a clean vertex: the chosen w.
+  std::uint64_t left_ = 0;        ///< Vertices that are neither locked nor gone.
+  std::uint64_t collapsed_ = 0;
+  std::uint64_t steps_ = 0;
+};
+
+/// Looks at the stop token and reports, every few thousand steps.
+void Simplifier::check_in() {
+  if ((++steps_ & 0xfff) != 0) {
+    return;
+  }
+  if (options_.stop.stop_requested()) {
+    throw Error(ErrorCode::cancelled, "the build was cancelled");
+  }
+  if (options_.progress) {
+    options_.progress(collapsed_);
+  }
+}
+
+/// Measures the star of `u`, which stays in star_.
+Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
+  gather_star(tile_, u, star_);
+  Evaluation e;
+  e.choice = chooser_.choose(tile_, star_);
+  if (e.choice.j == CollapseChoice::kNoNeighbour) {
+    return e;
+  }
+  CollapseMeasure measure;
+  measure.error_quanta = e.choice.error / tile_.units.quantum_code;
+  measure.roi = saturated_box(tile_, star_.star);
+  if (options_.cost == CostModel::kElevation) {
+    const Interval heights = saturated_heights(tile_, star_.star);
+    measure.height_quanta = is_empty(heights) ? 0.0 : (heights.hi - heights.lo) / tile_.units.quantum_code;
+  }
+  e.priority = priority_of(options_.cost, measure);
+  return e;
+}
+
+void Simplifier::fill_queue() {
+  const std::size_t n = tile_.tin.vertices.size();
+  state_.assign(n, QueueState::kAbsent);
+  target_.assign(n, kNone);
+  std::vector<QueueEntry> entries;
+  entries.reserve(n);
+  for (VertexId v = 0; v < n; ++v) {
+    if (tile_.tin.vertices[v].triangle == kNone || tile_.vertex_state[v].locked) {
+      continue;
+    }
+    ++left_;
+    check_in();
+    const Evaluation e = evaluate(v);
+    if (e.choice.j != CollapseChoice::kNoNeighbour) {
+      entries.push_back({e.priority, v});
+      state_[v] = QueueState::kClean;
+      target_[v] = star_.star.link[e.choice.j];
+    }
+  }
+  queue_.assign(std::move(entries));
+}
+
+/// Collapses the centre of star_ and marks its link: those stars have changed.
+void Simplifier::collapse(VertexId u, std::size_t j) {
+  const auto degree = static_cast<std::uint16_t>(star_.star.degree());
+  const bool closed = star_.star.closed;
+  const VertexId w = star_.star.link[j];
+  const CollapseSite site = collapse_site(star_.star, j);
+  maker_.collapse_and_record(star_, j);
+  state_[u] = QueueState::kAbsent;
+  // w takes over the link but for itself and its two neighbours there (one at a border); those lose u and had w already.
+  std::vector<VertexState>& vertices = tile_.vertex_state;
+  vertices[w].degree = static_cast<std::uint16_t>(vertices[w].degree + degree - (closed ? 4 : 3));
+  if (site.left != kNone) {
+    --vertices[site.vl].degree;
+  }
+  if (site.right != kNone) {
+    --vertices[site.vr].degree;
+  }
+  for (const VertexId v : star_.star.link) {
+    if (state_[v] == QueueState::kClean) {
+      state_[v] = QueueState::kStale;
+    } else if (state_[v] == QueueState::kAbsent && !vertices[v].locked) {
+      state_[v] = QueueState::kStale;
+      queue_.push({0, v});  // measured at once: its priority is not known
+    }
+  }
+  --left_;
+  ++collapsed_;
+}
+
+void Simplifier::take_top() {
+  const QueueEntry top = queue_.top();
+  if (state_[top.vertex] == QueueState::kClean) {
+    queue_.pop();
+    gather_star(tile_, top.vertex, star_);
+    std::size_t j = 0;
+    while (star_.star.link[j] != target_[top.vertex]) {
+      ++j;
+      PTIN_DCHECK(j < star_.star.degree());
+    }
+    collapse(top.vertex, j);
+    return;
+  }
+  const Evaluation e = evaluate(top.vertex);
+  if (e.choice.j == CollapseChoice::kNoNeighbour) {
+    state_[top.vertex] = QueueState::kAbsent;
+    queue_.pop();
+    return;
+  }
+  const QueueEntry measured{e.priority, top.vertex};
+  queue_.replace_top(measured);
+  if (queue_.top() == measured) {
+    queue_.pop();
+    collapse(top.vertex, e.choice.j);
+    return;
+  }
+  state_[top.vertex] = QueueState::kClean;
+  target_[top.vertex] = star_.star.link[e.choice.j];
+}
+
+void Simplifier::run() {
+  fill_queue();
+  while (!queue_.empty() && left_ > options_.keep) {
+    check_in();
+    take_top();
+  }
+}
+
+}  // namespace
+
+void simplify(Tile& tile, const FullSurface& full, const SimplifyOptions& options) {
+  Simplifier(tile, full, options).run();
+}
+
+}  // namespace ptin

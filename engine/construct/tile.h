@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A tile under construction: a TIN, what its triangles carry, and the records that came off.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/construct/cost.h"
+#include "engine/construct/sample_lists.h"
+#include "engine/geometry/box.h"
+#include "engine/geometry/height.h"
+#include "engine/mesh/tin.h"
+#include "storage/record.h"
+
+namespace ptin {
+
+/// What a triangle carries upwards (saturation, DESIGN.md section 2): the attributes of the record that created it. The box is
+/// kept here because every evaluation of a collapse asks for it; the rest is read from the record.
+struct CarriedState {
+  GridBox roi;                   ///< Empty for a triangle of the full TIN.
+  std::uint32_t record = kNone;  ///< Index into Tile::records; kNone for a triangle of the full TIN.
+  SampleSlot samples;            ///< Removed samples inside this triangle.
+};
+
+/// Per-vertex facts of a tile.
+struct VertexState {
+  float depth = 0.0F;        ///< As Sample::depth.
+  std::uint16_t degree = 0;  ///< Neighbours in the mesh.
+  bool locked = false;       ///< On a seam: may be collapsed into, is not collapsed itself.
+};
+
+/// Constants of a build that measuring needs, in height codes.
+struct MeasureUnits {
+  HeightEncoding heights;
+  double quantum_code = 1.0;         ///< One height quantum, as a difference of codes.
+  double void_slope_code = 0.0;      ///< Height codes charged per ground unit of depth.
+  bool exact_codes = false;          ///< Codes are integers, so that residuals of small stars have no rounding.
+};
+
+/// A tile: everything that a collapse reads and changes. What is pushed up to a parent is the TIN, `carried` (with the records
+/// it points to) and the samples.
+struct Tile {
+  Tin tin;
+  std::vector<CarriedState> carried;      ///< Beside tin.triangles.
+  std::vector<VertexState> vertex_state;  ///< Beside tin.vertices.
+  SampleLists samples;
+  std::vector<VertexSplit> records;  ///< In the order of the collapses.
+  MeasureUnits units;
+  bool has_voids = false;  ///< Some triangle is void or some sample has no height.
+};
+
+/// Fills `carried` and `vertex_state` of a tile that holds the full TIN. Depths are +infinity where `depths` is empty.
+/// @param depths  Beside tin.vertices, unsigned; or empty.
+void start_tile(Tile& tile, const std::vector<float>& depths);
+
+}  // namespace ptin
