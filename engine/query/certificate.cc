@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/certificate.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace ptin {
+
+namespace {
+
+Certificate of_finest(const StoreFile& store) {
+  return {store.facts().base_error, store.facts().base_deviation, true};
+}
+
+void leave_out(double error, double deviation, Certificate& certificate) {
+  certificate.error = std::max(certificate.error, error);
+  certificate.deviation = std::max(certificate.deviation, deviation);
+  certificate.complete = false;
+}
+
+}  // namespace
+
+Certificate certify_below(const StoreFile& store, double bound) {
+  Certificate certificate = of_finest(store);
+  double below = -1.0;
+  for (const ErrorBin& bin : store.error_bins()) {
+    if (bin.records != 0 && below < bound) {
+      leave_out(std::min<double>(bin.upper, bound), bin.max_deviation, certificate);
+    }
+    below = bin.upper;
+  }
+  return certificate;
+}
+
+Certificate certify_applied(const StoreFile& store, std::span<const PendingSplit> splits) {
+  const std::span<const ErrorBin> bins = store.error_bins();
+  std::vector<std::uint64_t> applied(bins.size(), 0);
+  for (const PendingSplit& s : splits) {
+    const auto bin =
+        std::lower_bound(bins.begin(), bins.end(), s.error,
+                         [](const ErrorBin& b, float error) { return b.upper < error; });
+    if (bin != bins.end()) {
+      ++applied[static_cast<std::size_t>(bin - bins.begin())];
+    }
+  }
+  Certificate certificate = of_finest(store);
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    if (applied[i] < bins[i].records) {
+      leave_out(bins[i].upper, bins[i].max_deviation, certificate);
+    }
+  }
+  return certificate;
+}
+
+}  // namespace ptin

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Regions: in map units as a caller gives them, and on the grid as boxes and triangles are tested
+// against them.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "engine/geometry/affine.h"
+#include "engine/geometry/box.h"
+#include "engine/geometry/point.h"
+
+namespace ptin {
+
+/// Regions in map units, closed on all sides.
+struct Window {
+  double min_x, min_y, max_x, max_y;
+};
+struct Polygon {
+  /// Rings of at least three points, without a repeated last point (one is dropped). The interior
+  /// is what an odd number of rings surround (even-odd rule), so shells, holes and several parts
+  /// are told by nesting alone; borders belong to it.
+  std::vector<std::vector<MapPoint>> rings;
+};
+struct Segment {
+  MapPoint a, b;
+};
+using Region = std::variant<Window, MapPoint, Segment, Polygon>;
+
+/// A region on the grid, ready to be asked of boxes (records, pages, nodes) and of triangles.
+///
+/// Map coordinates become grid coordinates once, as doubles. All rounding errs outward, so a box or
+/// triangle that meets the region in real numbers is never lost: the region is widened by the error
+/// of that conversion (a few units in the last place of the map coordinates, 1e-9 grid units for
+/// UTM metres on a 1 m grid) and, for slanted edges, by that of the test (about 1e-6 grid units;
+/// more only for edges that reach far beyond the grid). So a vertex whose rounded map position lies
+/// on the region's border is inside.
+///
+/// Laws, for boxes on the grid (0 to kGridMax):
+///   monotone    contains(b, a) and meets(a) imply meets(b), in floating point too: an edge is
+///   tested by comparisons and by
+///               its line function at the extreme corners of the box, evaluated as nx * (x - ax) +
+///               ny * (y - ay) with constants that do not depend on the box, and each rounded
+///               operation is monotone in x and y
+///   consistent  meets(a, b, c) implies meets(their box): so a triangle that meets the region and
+///   is the fan of a record
+///               lies in a box that meets it (promise P1)
+/// Threads: immutable.
+class GridRegion {
+ public:
+  /// @throws Error invalid_argument  a coordinate is not finite or beyond 1e100 grid units; a
+  /// window is inverted; a polygon
+  ///                                 has no ring or one of fewer than three points
+  GridRegion(const Region& region, const AffineMap& map);
+
+  /// True when the closed box shares a point with the region. Exact for windows and points up to
+  /// the widening; for segments and polygons conservative by the widening. REQUIRES: `box` not
+  /// empty. Cost: a polygon's edges near the box.
+  [[nodiscard]] bool meets(const GridBox& box) const noexcept;
+
+  /// True when the closed triangle shares a point with the region, conservative by the widening.
+  /// REQUIRES: counter-clockwise.
+  [[nodiscard]] bool meets(GridPoint a, GridPoint b, GridPoint c) const noexcept;
+
+ private:
+  enum class Kind : std::uint8_t { kRectangle, kSegment, kPolygon };
+  enum class Side : std::uint8_t { kOutside, kInside, kBorder };
+
+  /// A position on the grid, and how far the true one may be away.
+  struct Spot {
+    double x, y, slack_x, slack_y;
+  };
+  /// A straight edge a -> b; (nx, ny) points to its right. Box and line function already widened.
+  struct Edge {
+    double ax, ay, bx, by;
+    double min_x, min_y, max_x, max_y;
+    double nx, ny;
+    double slack;  ///< Values of the line function up to this from 0 may belong to the edge.
+    double slack_x, slack_y;  ///< Of the two ends.
+  };
+
+  static Spot spot_of(MapPoint p, const AffineMap& map);
+  static double line(const Edge& e, double x, double y) noexcept {
+    return e.nx * (x - e.ax) + e.ny * (y - e.ay);
+  }
+  static bool touches(const Edge& e, const GridBox& box) noexcept;
+  static bool touches(const Edge& e, const GridPoint (&triangle)[3]) noexcept;
+
+  void set_rectangle(const Spot& low, const Spot& high);
+  void add_edge(const Spot& a, const Spot& b);
+  void add_ring(const std::vector<MapPoint>& ring, const AffineMap& map);
+  void sort_edges_into_slabs();
+  void count_slabs(std::size_t slabs);
+  [[nodiscard]] std::size_t slab_of(double y) const noexcept;
+  [[nodiscard]] Side side_of(GridPoint p) const noexcept;
+  [[nodiscard]] bool rectangle_meets(const GridPoint (&triangle)[3]) const noexcept;
+  template <typename Test>
+  [[nodiscard]] bool any_edge(const GridBox& box, const Test& test) const noexcept;
+
+  Kind kind_ = Kind::kRectangle;
+  double min_x_ = 0, min_y_ = 0, max_x_ = 0,
+         max_y_ = 0;  ///< Of the rectangle, or around all edges; widened.
+  std::vector<Edge> edges_;
+  /// Edges by horizontal slabs: those of slab i are slab_edges_[slab_begin_[i], slab_begin_[i +
+  /// 1]).
+  std::vector<std::uint32_t> slab_begin_, slab_edges_;
+  double slab_scale_ = 0;
+};
+
+}  // namespace ptin

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/retrieval.h"
+
+#include "engine/query/refinement.h"
+
+namespace ptin {
+
+namespace {
+
+PendingSplit pending_of(const VertexSplit& r, PageId page) noexcept {
+  return {key_of(r.u),  key_of(r.w), key_of(r.vl),
+          key_of(r.vr), r.height,    r.rank,
+          r.flags,      r.error,     static_cast<std::uint32_t>(index_of(page))};
+}
+
+}  // namespace
+
+std::uint64_t most_records(const StoreFile& store, std::span<const PageId> pages) {
+  std::uint64_t records = 0;
+  for (const PageId page : pages) {
+    records += store.page_info(page).records;
+  }
+  return records;
+}
+
+void read_pages(const StoreFile& store, std::span<const PageId> pages,
+                const AttributePredicate& predicate, QueryContext& context,
+                std::vector<PendingSplit>& out) {
+  store.pages().announce(pages, context.cost.io);
+  const HeightEncoding heights = store.facts().heights;
+  const std::size_t before = out.size();
+  std::vector<VertexSplit> records;
+  for (const PageId page : pages) {
+    context.check_stop();
+    records.clear();
+    store.read_records(page, records, context.cost.io);
+    context.cost.records_examined += records.size();
+    for (const VertexSplit& r : records) {
+      if (predicate.holds(attributes_of(r, heights))) {
+        out.push_back(pending_of(r, page));
+      }
+    }
+  }
+  context.cost.records_retrieved += out.size() - before;
+}
+
+std::vector<PendingSplit> retrieve(const RecordSource& source, const AttributePredicate& predicate,
+                                   std::uint64_t fixed_bytes, QueryContext& context) {
+  std::vector<PageId> pages;
+  source.index.search(predicate, pages, context.cost.io);
+  context.check_stop();
+  const std::uint64_t records = most_records(source.store, pages);
+  context.admit(fixed_bytes + refinement_bytes(records));
+  std::vector<PendingSplit> splits;
+  splits.reserve(records);
+  read_pages(source.store, pages, predicate, context, splits);
+  return splits;
+}
+
+}  // namespace ptin
