@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a record, a page and a node of the index are asked by: the arguments of a monotone predicate.
+// What a record, a page and a node of the index are asked by: the arguments of a monotone
+// predicate.
 #pragma once
 
 #include "engine/geometry/box.h"
@@ -10,16 +11,17 @@ namespace ptin {
 
 /// The saturated attributes of a record, or the union and maximum over a page or a subtree.
 struct Attributes {
-  GridBox roi;             ///< Region of influence, grid units, closed.
-  Interval heights;        ///< Height codes (geometry/height.h); empty where everything is void.
-  double error = 0.0;      ///< Certified error at samples, in the height's unit; may be +infinity.
-  double deviation = 0.0;  ///< Certified deviation at any point, in the height's unit; may be +infinity.
+  GridBox roi;         ///< Region of influence, grid units, closed.
+  Interval heights;    ///< Height codes (geometry/height.h); empty where everything is void.
+  double error = 0.0;  ///< Certified error at samples, in the height's unit; may be +infinity.
+  double deviation =
+      0.0;  ///< Certified deviation at any point, in the height's unit; may be +infinity.
   friend bool operator==(const Attributes&, const Attributes&) = default;
 };
 
-/// A monotone test: once true, it stays true when the arguments grow (DESIGN.md, section 2). The index asks it of
-/// nodes and pages, the refinement of records. Implementations are in engine/query/predicate.h.
-/// Threads: const, callable from several threads at once.
+/// A monotone test: once true, it stays true when the arguments grow (DESIGN.md, section 2). The
+/// index asks it of nodes and pages, the refinement of records. Implementations are in
+/// engine/query/predicate.h. Threads: const, callable from several threads at once.
 class AttributePredicate {
  public:
   AttributePredicate() = default;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The index: from a monotone predicate to the record pages that may hold a record for which it is true.
+// The index: from a monotone predicate to the record pages that may hold a record for which it is
+// true.
 #pragma once
 
 #include <vector>
@@ -11,9 +12,9 @@
 
 namespace ptin {
 
-/// The small concept behind both indexes: the packed R-tree (packed_rtree.h, the default) and libspatialindex's bulk-loaded
-/// disk R-tree (spatialindex_rtree.h).
-/// Threads: const, callable from several threads at once.
+/// The small concept behind both indexes: the packed R-tree (packed_rtree.h, the default) and
+/// libspatialindex's bulk-loaded disk R-tree (spatialindex_rtree.h). Threads: const, callable from
+/// several threads at once.
 class RecordIndex {
  public:
   RecordIndex() = default;
@@ -21,10 +22,12 @@ class RecordIndex {
   RecordIndex& operator=(const RecordIndex&) = delete;
   virtual ~RecordIndex() = default;
 
-  /// Pages whose attributes satisfy `predicate`, ascending, each once. Every page with a record that satisfies it is there;
-  /// no page is there whose own attributes (the union over its records) do not.
+  /// Pages whose attributes satisfy `predicate`, ascending, each once. Every page with a record
+  /// that satisfies it is there; no page is there whose own attributes (the union over its records)
+  /// do not.
   /// @throws Error corruption
-  virtual void search(const AttributePredicate& predicate, std::vector<PageId>& pages, IoCounters& counters) const = 0;
+  virtual void search(const AttributePredicate& predicate, std::vector<PageId>& pages,
+                      IoCounters& counters) const = 0;
 };
 
 }  // namespace ptin

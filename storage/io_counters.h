@@ -8,11 +8,11 @@
 namespace ptin {
 
 struct IoCounters {
-  std::uint64_t index_nodes = 0;      ///< Nodes of the index whose entries were examined.
-  std::uint64_t pages = 0;            ///< Record pages read.
-  std::uint64_t bytes_read = 0;       ///< Bytes of record pages and index nodes examined.
-  std::uint64_t pages_verified = 0;   ///< Pages whose checksum was computed in this query.
-  std::uint64_t ranges_announced = 0; ///< Coalesced ranges given to the kernel ahead of reading.
+  std::uint64_t index_nodes = 0;       ///< Nodes of the index whose entries were examined.
+  std::uint64_t pages = 0;             ///< Record pages read.
+  std::uint64_t bytes_read = 0;        ///< Bytes of record pages and index nodes examined.
+  std::uint64_t pages_verified = 0;    ///< Pages whose checksum was computed in this query.
+  std::uint64_t ranges_announced = 0;  ///< Coalesced ranges given to the kernel ahead of reading.
 };
 
 }  // namespace ptin

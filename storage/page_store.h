@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The page store: the one way to the record pages. Two models here (mapped, pread); bench adds io_uring.
+// The page store: the one way to the record pages. Two models here (mapped, pread); bench adds
+// io_uring.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +14,13 @@ namespace ptin {
 
 /// Number of a record page in its file, from 0. Never a byte offset.
 enum class PageId : std::uint64_t {};
-[[nodiscard]] constexpr std::uint64_t index_of(PageId id) noexcept { return static_cast<std::uint64_t>(id); }
+[[nodiscard]] constexpr std::uint64_t index_of(PageId id) noexcept {
+  return static_cast<std::uint64_t>(id);
+}
 
-/// Reads record pages. Every model verifies a page's checksum before its bytes are seen: `mapped` on first touch,
-/// `pread` on every read.
-/// Threads: all functions may be called at once on one store; counters belong to the caller.
+/// Reads record pages. Every model verifies a page's checksum before its bytes are seen: `mapped`
+/// on first touch, `pread` on every read. Threads: all functions may be called at once on one
+/// store; counters belong to the caller.
 class PageStore {
  public:
   PageStore() = default;
@@ -28,14 +31,18 @@ class PageStore {
   [[nodiscard]] virtual std::uint64_t page_count() const noexcept = 0;
   [[nodiscard]] virtual std::size_t page_bytes() const noexcept = 0;
 
-  /// Tells the kernel which pages are read next; coalesces near ones into ranges. `ids` ascend. A hint: never fails.
+  /// Tells the kernel which pages are read next; coalesces near ones into ranges. `ids` ascend. A
+  /// hint: never fails.
   virtual void announce(std::span<const PageId> ids, IoCounters& counters) const noexcept = 0;
 
-  /// Copies page `id` into `out` (page_bytes() long). The copy is what is checked, so bytes cannot change behind the check.
-  /// @throws Error corruption (checksum, id out of range, file cut or replaced while open), io_error
+  /// Copies page `id` into `out` (page_bytes() long). The copy is what is checked, so bytes cannot
+  /// change behind the check.
+  /// @throws Error corruption (checksum, id out of range, file cut or replaced while open),
+  /// io_error
   virtual void read(PageId id, std::span<std::byte> out, IoCounters& counters) const = 0;
 
-  /// Compares size, mtime and ctime with those at opening, and looks at the damage mark of a mapping that lost its file.
+  /// Compares size, mtime and ctime with those at opening, and looks at the damage mark of a
+  /// mapping that lost its file.
   /// @throws Error corruption when the file was replaced, cut short or written while open
   virtual void check_unchanged() const = 0;
 };

@@ -23,17 +23,19 @@ namespace ptin {
 struct StoreFacts {
   AffineMap map;
   HeightEncoding heights;
-  GridBox bounds;                   ///< Of the whole domain, grid units.
-  double min_height = 0.0;          ///< Of all samples, height's unit; min > max when all is void.
+  GridBox bounds;           ///< Of the whole domain, grid units.
+  double min_height = 0.0;  ///< Of all samples, height's unit; min > max when all is void.
   double max_height = 0.0;
-  double base_error = 0.0;          ///< Error of the file's finest TIN against its source (--max-error, rounding of heights).
+  double base_error = 0.0;  ///< Error of the file's finest TIN against its source (--max-error,
+                            ///< rounding of heights).
   double base_deviation = 0.0;
-  std::uint64_t source_samples = 0; ///< Samples with a height in the source.
+  std::uint64_t source_samples = 0;  ///< Samples with a height in the source.
   std::uint32_t page_bytes = 4096;
   friend bool operator==(const StoreFacts&, const StoreFacts&) = default;
 };
 
-/// T0: the coarsest TIN, as stored. Triangle corners are indices into `vertices`, counter-clockwise.
+/// T0: the coarsest TIN, as stored. Triangle corners are indices into `vertices`,
+/// counter-clockwise.
 struct CoarsestTin {
   struct V {
     GridPoint position;
@@ -49,7 +51,8 @@ struct CoarsestTin {
 };
 
 /// One bin of the table of errors: the records with error in (previous upper, upper].
-/// Bins ascend; the first has upper 0 (records of error exactly 0), the last may be +infinity. An eighth of an octave each.
+/// Bins ascend; the first has upper 0 (records of error exactly 0), the last may be +infinity. An
+/// eighth of an octave each.
 struct ErrorBin {
   float upper = 0.0F;
   float max_deviation = 0.0F;  ///< Largest deviation in this bin alone.
@@ -68,24 +71,30 @@ enum class PageAccess { kMapped, kPread };
 /// An open store. Immutable; shared by any number of queries and threads.
 class StoreFile {
  public:
-  /// Opens and checks: magic, version, size against the header, every section inside of the file, checksums of header,
-  /// tables, metadata, T0 and index; not of record pages (those are verified when first read, or by verify()).
-  /// Cost: a few reads at the front of the file; O(|T0|), whatever the number of records. Index nodes are checked when visited.
+  /// Opens and checks: magic, version, size against the header, every section inside of the file,
+  /// checksums of header, tables, metadata, T0 and index; not of record pages (those are verified
+  /// when first read, or by verify()). Cost: a few reads at the front of the file; O(|T0|),
+  /// whatever the number of records. Index nodes are checked when visited.
   /// @throws Error not_found, io_error, corruption, unsupported_version
-  static std::shared_ptr<const StoreFile> open(const std::string& path, PageAccess access = PageAccess::kMapped);
+  static std::shared_ptr<const StoreFile> open(const std::string& path,
+                                               PageAccess access = PageAccess::kMapped);
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
   virtual ~StoreFile() = default;
 
   [[nodiscard]] virtual const std::string& path() const noexcept = 0;
   [[nodiscard]] virtual const StoreFacts& facts() const noexcept = 0;
-  [[nodiscard]] virtual std::string_view metadata_json() const noexcept = 0;  ///< CRS, options, source, counts; UTF-8 JSON.
+  [[nodiscard]] virtual std::string_view metadata_json()
+      const noexcept = 0;  ///< CRS, options, source, counts; UTF-8 JSON.
   [[nodiscard]] virtual const CoarsestTin& t0() const noexcept = 0;
   [[nodiscard]] virtual std::uint64_t record_count() const noexcept = 0;
   [[nodiscard]] virtual std::uint16_t max_rank() const noexcept = 0;
   [[nodiscard]] virtual std::span<const ErrorBin> error_bins() const noexcept = 0;
   [[nodiscard]] virtual std::vector<SectionInfo> sections() const = 0;
   [[nodiscard]] virtual std::uint64_t file_bytes() const noexcept = 0;
+  /// Checksum of the header. The header holds the checksums of all sections, an index entry that of
+  /// what it describes: so this one number stands for the content of the file.
+  [[nodiscard]] virtual std::uint64_t fingerprint() const noexcept = 0;
   [[nodiscard]] virtual const RecordIndex& index() const noexcept = 0;  ///< The packed R-tree.
   [[nodiscard]] virtual const PageStore& pages() const noexcept = 0;
 
@@ -99,9 +108,18 @@ class StoreFile {
   /// @throws Error corruption
   [[nodiscard]] virtual PageInfo page_info(PageId id) const = 0;
 
-  /// Reads a page and decodes its records, appending to `out`. Checks each record against the page's descriptor.
+  /// Reads a page and decodes its records, appending to `out`. Checks each record against the
+  /// page's descriptor.
   /// @throws Error corruption, io_error
-  virtual void read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const = 0;
+  virtual void read_records(PageId id, std::vector<VertexSplit>& out,
+                            IoCounters& counters) const = 0;
+
+  /// As read_records(), for the records alone whose attributes satisfy `predicate`; the others are
+  /// not decoded, and not checked. Returns the number of records examined: all of the page.
+  /// @throws Error corruption, io_error
+  virtual std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
+                                      std::vector<VertexSplit>& out,
+                                      IoCounters& counters) const = 0;
 
  protected:
   StoreFile() = default;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Writes a .ptin file: records in, packed R-tree bulk-loaded over their pages, published whole or not at all.
+// Writes a .ptin file: records in, packed R-tree bulk-loaded over their pages, published whole or
+// not at all.
 #pragma once
 
 #include <cstdint>
@@ -13,30 +14,41 @@
 
 namespace ptin {
 
+class FileLayer;
+
 struct StoreWriterOptions {
-  bool overwrite = false;        ///< Replace an existing file; otherwise its existence is an invalid_argument.
-  std::uint32_t page_bytes = 4096;
+  bool overwrite =
+      false;  ///< Replace an existing file; otherwise its existence is an invalid_argument.
+  std::uint32_t page_bytes =
+      4096;  ///< Power of two from 4096 to 65536. StoreFacts::page_bytes is not looked at.
+  FileLayer* files =
+      nullptr;  ///< Through which to write; borrowed; null means the system. For tests.
 };
 
-/// Writes beside the target under a temporary name; publish() syncs and renames. Destroyed without publish(), it removes what
-/// it wrote: the target's name never shows a part.
-/// Segments arrive in any order of dependency; the file keeps the order of segments, and inside a segment orders records by
-/// error class (one octave, coarse first), wide before narrow, then along the Hilbert curve of the box centre, then by key.
-/// Memory: one segment, plus about one byte a record for descriptors and checksums (spilled to the temporary file's side).
+/// Writes beside the target under a temporary name; publish() syncs and renames. Destroyed without
+/// publish(), it removes what it wrote: the target's name never shows a part. Segments arrive in
+/// any order of dependency; the file keeps the order of segments, and inside a segment orders
+/// records by error class (one octave, coarse first), wide before narrow, then along the Hilbert
+/// curve of the box centre, then by key. Memory: one segment, plus about one byte a record for
+/// descriptors and checksums (spilled to the temporary file's side).
 class StoreWriter {
  public:
-  /// @throws Error invalid_argument (target exists and overwrite is off), io_error, not_found (no such folder)
-  static std::unique_ptr<StoreWriter> create(const std::string& path, const StoreWriterOptions& options);
+  /// @throws Error invalid_argument (target exists and overwrite is off), io_error, not_found (no
+  /// such folder)
+  static std::unique_ptr<StoreWriter> create(const std::string& path,
+                                             const StoreWriterOptions& options);
   StoreWriter(const StoreWriter&) = delete;
   StoreWriter& operator=(const StoreWriter&) = delete;
   virtual ~StoreWriter() = default;
 
-  /// Appends one segment. `records` is reordered in place.  @throws Error resource_exhausted (disk full), io_error
+  /// Appends one segment. `records` is reordered in place.  @throws Error resource_exhausted (disk
+  /// full), io_error
   virtual void add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) = 0;
 
   /// Writes T0, metadata, index and tables, syncs, renames onto the target, syncs the folder.
   /// @throws Error resource_exhausted, io_error
-  virtual void publish(const StoreFacts& facts, const CoarsestTin& t0, const std::string& metadata_json) = 0;
+  virtual void publish(const StoreFacts& facts, const CoarsestTin& t0,
+                       const std::string& metadata_json) = 0;
 
  protected:
   StoreWriter() = default;

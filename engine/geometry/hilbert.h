@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Position along the Hilbert curve: points that are near along the curve are near in the plane.
+#pragma once
+
+#include <cstdint>
+
+namespace ptin {
+
+/// Position of the cell (x, y) along the Hilbert curve of order 32. A bijection from pairs of
+/// 32-bit numbers to 64-bit ones; consecutive positions are cells that share a side. (0, 0) has
+/// position 0.
+[[nodiscard]] constexpr std::uint64_t hilbert_position(std::uint32_t x, std::uint32_t y) noexcept {
+  // One quadrant a step, from the largest: its place along the curve of four quadrants is appended,
+  // and the frame is turned to the one in which the rest of the curve is the standard one.
+  // `swapped` and `inverted` are all ones or zeros, so that the loop has no branch.
+  std::uint64_t position = 0;
+  std::uint32_t swapped = 0;
+  std::uint32_t inverted = 0;
+  for (int bit = 31; bit >= 0; --bit) {
+    const std::uint32_t exchanged = (x ^ y) & swapped;
+    const std::uint32_t qx = (((x ^ exchanged) ^ inverted) >> bit) & 1U;
+    const std::uint32_t qy = (((y ^ exchanged) ^ inverted) >> bit) & 1U;
+    position = (position << 2) | ((3U * qx) ^ qy);
+    // In the lower quadrants (qy == 0) the axes are exchanged; in the lower right one they are
+    // mirrored too.
+    const std::uint32_t lower = qy - 1U;
+    swapped ^= lower;
+    inverted ^= lower & (0U - qx);
+  }
+  return position;
+}
+
+}  // namespace ptin

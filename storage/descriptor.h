@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Descriptors: what an entry of the index says of a page or a subtree, made from records and joined
+// upwards.
+#pragma once
+
+#include <cstdint>
+
+#include "storage/layout.h"
+#include "storage/record.h"
+
+namespace ptin {
+
+/// The arguments of a predicate that an entry stands for. The entry must be sound (is_sound()).
+[[nodiscard]] inline Attributes attributes_of(const layout::NodeEntry& e,
+                                              const HeightEncoding& heights) noexcept {
+  return {{e.min_x, e.min_y, e.max_x, e.max_y},
+          {heights.code(e.height_lo), heights.code(e.height_hi)},
+          layout::to_float(e.error_max),
+          layout::to_float(e.deviation_max)};
+}
+
+/// True when no field of the entry is one that no writer writes: box on the grid and not empty,
+/// heights no NaN, errors not negative and in order. Says nothing of `kind_and_count`.
+[[nodiscard]] bool is_sound(const layout::NodeEntry& e, const HeightEncoding& heights) noexcept;
+
+/// True when the attributes of a record lie within those of its page.
+[[nodiscard]] inline bool covers(const layout::NodeEntry& page, const Interval& page_heights,
+                                 const VertexSplit& r, const Interval& heights) noexcept {
+  return page.min_x <= r.roi.min_x && page.min_y <= r.roi.min_y && r.roi.max_x <= page.max_x &&
+         r.roi.max_y <= page.max_y && r.error <= layout::to_float(page.error_max) &&
+         r.error >= layout::to_float(page.error_min) &&
+         r.deviation <= layout::to_float(page.deviation_max) &&
+         (heights.lo > heights.hi ||
+          (page_heights.lo <= heights.lo && heights.hi <= page_heights.hi));
+}
+
+/// The union and maximum over records or entries.
+class Descriptor {
+ public:
+  explicit Descriptor(const HeightEncoding& heights) : encoding_(heights) {}
+  void add(const VertexSplit& r) noexcept;
+  void add(const layout::NodeEntry& e) noexcept;
+  /// The entry; `kind_and_count` and `checksum` are left 0. An empty height interval has one form
+  /// only: the largest int32 down to the smallest, or +infinity down to -infinity. REQUIRES:
+  /// something was added.
+  [[nodiscard]] layout::NodeEntry entry() const noexcept;
+
+ private:
+  void add(const GridBox& box, const Interval& heights) noexcept;
+
+  HeightEncoding encoding_;
+  GridBox box_;
+  Interval heights_;
+  float error_max_ = 0.0F;
+  float error_min_ = layout::to_float(layout::kInfinityBits);
+  float deviation_max_ = 0.0F;
+};
+
+}  // namespace ptin

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/error_table.h"
+
+#include <algorithm>
+
+#include "storage/layout.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::uint32_t kBinStep =
+    1U << 20;  // a float has 23 mantissa bits; the upper three tell the bin
+
+}  // namespace
+
+float error_bin_upper(float error) noexcept {
+  const std::uint32_t bits = layout::to_bits(error);
+  return layout::to_float((bits + (kBinStep - 1)) & ~(kBinStep - 1));
+}
+
+void ErrorTable::add(const VertexSplit& r) {
+  const float upper = error_bin_upper(r.error);
+  ErrorBin& bin = bins_[layout::to_bits(upper)];
+  bin.upper = upper;
+  bin.max_deviation = std::max(bin.max_deviation, r.deviation);
+  ++bin.records;
+  bin.void_vertices += (r.flags & VertexSplit::kVertexVoid) != 0 ? 1 : 0;
+}
+
+std::vector<ErrorBin> ErrorTable::bins() const {
+  std::vector<ErrorBin> result;
+  result.reserve(bins_.size() + 1);
+  if (bins_.empty() || bins_.begin()->first != 0) {
+    result.push_back({});
+  }
+  for (const auto& [bits, bin] : bins_) {
+    result.push_back(bin);
+  }
+  return result;
+}
+
+}  // namespace ptin

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The table of errors: how many records fall into each eighth of an octave of error, and their
+// largest deviation.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "storage/record.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+/// Upper end of the bin that holds `error`: 0 for 0, otherwise the next float whose lower 20
+/// mantissa bits are zero (eight of them an octave); +infinity for +infinity. REQUIRES: error >= 0.
+[[nodiscard]] float error_bin_upper(float error) noexcept;
+
+/// Counts records into bins. Memory: one bin for each that is not empty, at most 2041.
+class ErrorTable {
+ public:
+  void add(const VertexSplit& r);
+  /// Bins that are not empty, and the one of error 0 in any case, ascending.
+  [[nodiscard]] std::vector<ErrorBin> bins() const;
+
+ private:
+  std::map<std::uint32_t, ErrorBin> bins_;  // by the bits of `upper`, which ascend with it
+};
+
+}  // namespace ptin

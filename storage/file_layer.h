@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The few system calls through which files are written, in one place that tests can make fail.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <sys/types.h>
+
+namespace ptin {
+
+/// The system's files. Every function returns 0 or the errno value; none throws.
+/// Threads: no state of its own; as safe as the calls it makes.
+class FileLayer {
+ public:
+  FileLayer() = default;
+  FileLayer(const FileLayer&) = delete;
+  FileLayer& operator=(const FileLayer&) = delete;
+  virtual ~FileLayer() = default;
+
+  /// The system itself.
+  [[nodiscard]] static FileLayer& system() noexcept;
+
+  /// Creates a file that must not exist yet, for reading and writing; `fd` is valid when 0 is
+  /// returned.
+  virtual int create(const std::string& path, int& fd) noexcept;
+  virtual int close(int fd) noexcept;
+  /// May write less than asked for, like pwrite(2).
+  virtual int write_at(int fd, std::span<const std::byte> bytes, std::uint64_t offset,
+                       std::size_t& written) noexcept;
+  /// May read less than asked for, like pread(2); 0 bytes at the end of the file.
+  virtual int read_at(int fd, std::span<std::byte> bytes, std::uint64_t offset,
+                      std::size_t& read) noexcept;
+  /// Reserves space, so that a full disk is known early. File systems that cannot do it answer
+  /// EOPNOTSUPP.
+  virtual int allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexcept;
+  virtual int sync(int fd) noexcept;
+  /// Puts `from` in the place of `to` in one step. With `replace` off an existing `to` is EEXIST.
+  virtual int rename(const std::string& from, const std::string& to, bool replace) noexcept;
+  virtual int unlink(const std::string& path) noexcept;
+  /// Makes the names in a folder durable.
+  virtual int sync_folder(const std::string& path) noexcept;
+};
+
+/// A file being written: closed when destroyed, removed too unless it was kept. Errors are
+/// ptin::Error and name the file.
+class ScratchFile {
+ public:
+  /// Creates `folder`/`.stem.N.tmp` with the first N that is free. With `nameless` on the name is
+  /// removed at once, so that nothing can be left behind.
+  /// @throws Error not_found (no such folder), io_error, resource_exhausted
+  ScratchFile(FileLayer& files, const std::string& folder, const std::string& stem, bool nameless);
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  ~ScratchFile();
+
+  void write_at(std::span<const std::byte> bytes, std::uint64_t offset);
+  void read_at(std::span<std::byte> bytes, std::uint64_t offset) const;
+  /// Copies a range of `from` to `offset` here, in pieces. The ranges must not overlap when both
+  /// are this file.
+  void copy_from(const ScratchFile& from, std::uint64_t from_offset, std::uint64_t bytes,
+                 std::uint64_t offset);
+  void reserve(std::uint64_t offset, std::uint64_t bytes);
+  /// Syncs, closes, renames onto `target`, syncs the folder. With `replace` off an existing target
+  /// is invalid_argument.
+  void publish_as(const std::string& target, bool replace);
+
+ private:
+  void close_and_remove() noexcept;
+
+  FileLayer& files_;
+  std::string folder_;
+  std::string path_;  ///< Empty once there is no name to remove.
+  std::string shown_;
+  int fd_ = -1;
+};
+
+}  // namespace ptin

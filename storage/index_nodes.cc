@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/index_nodes.h"
+
+#include <cstring>
+#include <span>
+
+#include "engine/error.h"
+#include "storage/checksum.h"
+
+namespace ptin {
+
+namespace {
+
+std::string name_of(const std::string& path, std::uint32_t level, std::uint64_t number) {
+  return path + ", index level " + std::to_string(level) + ", node " + std::to_string(number);
+}
+
+}  // namespace
+
+void IndexNodes::require_page(PageId page) const {
+  const std::uint64_t pages = place_.shape.children(0);
+  if (index_of(page) >= pages) [[unlikely]] {
+    throw Error(ErrorCode::corruption,
+                "page " + std::to_string(index_of(page)) + " was asked for, and there are " +
+                    std::to_string(pages),
+                path());
+  }
+}
+
+void IndexNodes::verify(const layout::IndexNode& node, std::uint32_t level, std::uint64_t number,
+                        std::uint64_t expected) const {
+  if (checksum_of_object(node) != expected) {
+    throw Error(ErrorCode::corruption,
+                "the node does not match the checksum that its parent holds; the file is damaged",
+                name_of(path(), level, number));
+  }
+  if (node.level != level || node.number != number ||
+      node.entries != place_.shape.entries(level, number)) {
+    throw Error(ErrorCode::corruption,
+                "the node says another place or number of entries than follows from its position",
+                name_of(path(), level, number));
+  }
+}
+
+layout::NodeEntry IndexNodes::descend_to(PageId page) const {
+  // Number of the node of each level on the way: the page's number, divided by the fan-out once a
+  // level.
+  std::array<std::uint64_t, IndexShape::kMaxLevels + 1> way{};
+  way[0] = index_of(page);
+  const std::uint32_t levels = place_.shape.levels();
+  for (std::uint32_t level = 0; level < levels; ++level) {
+    way[level + 1] = way[level] / layout::kFanOut;
+  }
+  layout::NodeEntry entry{};
+  entry.checksum = place_.root_checksum;
+  layout::IndexNode scratch;
+  for (std::uint32_t level = levels; level-- > 0;) {
+    const layout::IndexNode& n = node(level, way[level + 1], entry.checksum, scratch);
+    entry = n.entry[way[level] % layout::kFanOut];
+  }
+  return entry;
+}
+
+MappedIndexNodes::MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping,
+                                   const Place& place)
+    : IndexNodes(file, place), mapping_(mapping), verified_(place.shape.total_nodes()) {}
+
+const layout::IndexNode& MappedIndexNodes::node(std::uint32_t level, std::uint64_t number,
+                                                std::uint64_t expected, layout::IndexNode&) const {
+  const std::uint64_t position = place_.shape.position(level, number);
+  // Plain bytes at an address that is a multiple of 4096: what the file holds is the node.
+  const auto& mapped =
+      *reinterpret_cast<const layout::IndexNode*>(mapping_.at(offset_of(position)));
+  if (!verified_.test(position)) {
+    verify(mapped, level, number, expected);
+    mapping_.require_undamaged();
+    verified_.set(position);
+  }
+  return mapped;
+}
+
+layout::NodeEntry MappedIndexNodes::descriptor(PageId page) const {
+  require_page(page);
+  const std::uint64_t leaf = index_of(page) / layout::kFanOut;
+  const std::uint64_t position = place_.shape.position(0, leaf);
+  if (!verified_.test(position)) {
+    return descend_to(page);
+  }
+  const auto& mapped =
+      *reinterpret_cast<const layout::IndexNode*>(mapping_.at(offset_of(position)));
+  return mapped.entry[index_of(page) % layout::kFanOut];
+}
+
+PreadIndexNodes::PreadIndexNodes(const ReadOnlyFile& file, const Place& place)
+    : IndexNodes(file, place) {}
+
+const layout::IndexNode& PreadIndexNodes::node(std::uint32_t level, std::uint64_t number,
+                                               std::uint64_t expected,
+                                               layout::IndexNode& scratch) const {
+  const std::uint64_t position = place_.shape.position(level, number);
+  Slot& slot = slot_of(position);
+  {
+    const std::lock_guard lock(slot.lock);
+    if (slot.position == position) {
+      scratch = *slot.node;
+      return scratch;
+    }
+  }
+  file_.read_at(std::as_writable_bytes(std::span(&scratch, 1)), offset_of(position));
+  verify(scratch, level, number, expected);
+  const std::lock_guard lock(slot.lock);
+  if (!slot.node) {
+    slot.node = std::make_unique<layout::IndexNode>();
+  }
+  *slot.node = scratch;
+  slot.position = position;
+  return scratch;
+}
+
+layout::NodeEntry PreadIndexNodes::descriptor(PageId page) const {
+  require_page(page);
+  const std::uint64_t position = place_.shape.position(0, index_of(page) / layout::kFanOut);
+  Slot& slot = slot_of(position);
+  {
+    const std::lock_guard lock(slot.lock);
+    if (slot.position == position) {
+      return slot.node->entry[index_of(page) % layout::kFanOut];
+    }
+  }
+  return descend_to(page);
+}
+
+}  // namespace ptin

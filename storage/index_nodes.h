@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The nodes of the packed R-tree, read where they lie and verified on the way down from the root.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "storage/index_shape.h"
+#include "storage/io_counters.h"
+#include "storage/layout.h"
+#include "storage/mapped_file.h"
+#include "storage/page_store.h"
+#include "storage/read_only_file.h"
+#include "storage/touch_bits.h"
+
+namespace ptin {
+
+/// Each entry holds the checksum of what it describes and the section table that of the root: so a
+/// node is known to be what was written before its entries are used, and the header's checksum
+/// stands for the whole file. Threads: const functions may be called at once.
+class IndexNodes {
+ public:
+  struct Place {
+    IndexShape shape;
+    std::uint64_t offset = 0;  ///< Of the root in the file.
+    std::uint64_t root_checksum = 0;
+  };
+
+  IndexNodes(const IndexNodes&) = delete;
+  IndexNodes& operator=(const IndexNodes&) = delete;
+  virtual ~IndexNodes() = default;
+
+  [[nodiscard]] const IndexShape& shape() const noexcept { return place_.shape; }
+  [[nodiscard]] std::uint64_t root_checksum() const noexcept { return place_.root_checksum; }
+  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
+
+  /// A node whose bytes have the checksum `expected`: its parent's word. The result is `scratch` or
+  /// lies in the mapping. REQUIRES: level and number inside of the shape.
+  /// @throws Error corruption, io_error
+  [[nodiscard]] virtual const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
+                                                      std::uint64_t expected,
+                                                      layout::IndexNode& scratch) const = 0;
+
+  /// The descriptor of a page: a copy, not yet checked for sense. Cost: the path from the root when
+  /// its leaf is not verified (mapped) or not cached (pread), otherwise one copy.
+  /// @throws Error corruption (also: no such page), io_error
+  [[nodiscard]] virtual layout::NodeEntry descriptor(PageId page) const = 0;
+
+  /// @throws Error corruption  when a mapping lost its file while it was read
+  virtual void require_undamaged() const {}
+
+ protected:
+  IndexNodes(const ReadOnlyFile& file, const Place& place) : file_(file), place_(place) {}
+  void require_page(PageId page) const;
+  [[nodiscard]] std::uint64_t offset_of(std::uint64_t position) const noexcept {
+    return place_.offset + position * layout::kNodeBytes;
+  }
+  /// Compares checksum and place. @throws Error corruption
+  void verify(const layout::IndexNode& node, std::uint32_t level, std::uint64_t number,
+              std::uint64_t expected) const;
+  /// The entry of a page, found from the root.
+  [[nodiscard]] layout::NodeEntry descend_to(PageId page) const;
+
+  const ReadOnlyFile& file_;
+  Place place_;
+};
+
+/// Read in place. A node is verified when it is first touched.
+class MappedIndexNodes final : public IndexNodes {
+ public:
+  MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping, const Place& place);
+  [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
+                                              std::uint64_t expected,
+                                              layout::IndexNode& scratch) const override;
+  [[nodiscard]] layout::NodeEntry descriptor(PageId page) const override;
+  void require_undamaged() const override { mapping_.require_undamaged(); }
+
+ private:
+  const MappedFile& mapping_;
+  TouchBits verified_;
+};
+
+/// Read by pread and kept, verified, in a cache of at most 4 MiB.
+class PreadIndexNodes final : public IndexNodes {
+ public:
+  PreadIndexNodes(const ReadOnlyFile& file, const Place& place);
+  [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
+                                              std::uint64_t expected,
+                                              layout::IndexNode& scratch) const override;
+  [[nodiscard]] layout::NodeEntry descriptor(PageId page) const override;
+
+ private:
+  /// A node has one slot it can be in. The lock is held for a copy, never while reading from the
+  /// disk.
+  struct Slot {
+    std::mutex lock;
+    std::uint64_t position = UINT64_MAX;
+    std::unique_ptr<layout::IndexNode> node;
+  };
+  static constexpr std::size_t kSlots = 1024;
+  [[nodiscard]] Slot& slot_of(std::uint64_t position) const noexcept {
+    return slots_[position % kSlots];
+  }
+
+  mutable std::vector<Slot> slots_{kSlots};
+};
+
+}  // namespace ptin

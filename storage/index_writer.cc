@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/index_writer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/check.h"
+#include "storage/checksum.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::size_t kBufferedLeaves = 16;
+
+// The entry by which the level above describes a finished node.
+layout::NodeEntry describe(const layout::IndexNode& node, const HeightEncoding& heights) {
+  Descriptor all(heights);
+  for (std::uint32_t i = 0; i < node.entries; ++i) {
+    all.add(node.entry[i]);
+  }
+  layout::NodeEntry entry = all.entry();
+  entry.checksum = checksum_of_object(node);
+  return entry;
+}
+
+// Packs entries into the nodes of `level`.
+std::vector<layout::IndexNode> pack(const std::vector<layout::NodeEntry>& entries,
+                                    std::uint32_t level) {
+  std::vector<layout::IndexNode> nodes((entries.size() - 1) / layout::kFanOut + 1);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    layout::IndexNode& node = nodes[i / layout::kFanOut];
+    node.level = level;
+    node.number = i / layout::kFanOut;
+    node.entry[node.entries++] = entries[i];
+  }
+  return nodes;
+}
+
+}  // namespace
+
+IndexWriter::IndexWriter(FileLayer& files, std::string folder, std::string stem,
+                         const HeightEncoding& heights)
+    : files_(files), folder_(std::move(folder)), stem_(std::move(stem)), heights_(heights) {}
+
+void IndexWriter::add(const layout::NodeEntry& page) {
+  leaf_.entry[leaf_.entries++] = page;
+  ++pages_;
+  if (leaf_.entries == layout::kFanOut) {
+    finish_leaf();
+  }
+}
+
+void IndexWriter::finish_leaf() {
+  leaf_.number = parents_.size();
+  parents_.push_back(describe(leaf_, heights_));
+  buffer_.push_back(leaf_);
+  leaf_ = {};
+  if (buffer_.size() == kBufferedLeaves) {
+    if (!side_file_) {
+      side_file_ = std::make_unique<ScratchFile>(files_, folder_, stem_ + ".index", true);
+    }
+    side_file_->write_at(std::as_bytes(std::span(buffer_)), spilled_ * layout::kNodeBytes);
+    spilled_ += buffer_.size();
+    buffer_.clear();
+  }
+}
+
+std::uint64_t IndexWriter::write_to(ScratchFile& out, std::uint64_t offset) {
+  if (pages_ == 0) {
+    return 0;
+  }
+  if (leaf_.entries > 0) {
+    finish_leaf();
+  }
+  const IndexShape shape(pages_);
+  const auto place = [&](std::uint32_t level, std::uint64_t number) {
+    return offset + shape.position(level, number) * layout::kNodeBytes;
+  };
+  if (spilled_ > 0) {
+    out.copy_from(*side_file_, 0, spilled_ * layout::kNodeBytes, place(0, 0));
+  }
+  out.write_at(std::as_bytes(std::span(buffer_)), place(0, spilled_));
+  std::vector<layout::NodeEntry> entries = std::move(parents_);
+  for (std::uint32_t level = 1; level < shape.levels(); ++level) {
+    const std::vector<layout::IndexNode> nodes = pack(entries, level);
+    out.write_at(std::as_bytes(std::span(nodes)), place(level, 0));
+    entries.clear();
+    for (const layout::IndexNode& node : nodes) {
+      entries.push_back(describe(node, heights_));
+    }
+  }
+  PTIN_CHECK(entries.size() == 1);
+  return entries[0].checksum;
+}
+
+}  // namespace ptin

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The bytes of a .ptin file, structure by structure. FORMAT.md says what each field means; here are
+// their places. Every structure has a fixed size, no padding and no bit-field; floating-point
+// fields are kept as their bits.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace ptin::layout {
+
+static_assert(std::endian::native == std::endian::little,
+              "files are little-endian and read in place");
+
+/// As in PNG: a byte with the high bit, then CR LF and Ctrl-Z, so that a transfer as text is
+/// noticed at once.
+inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'T', 'I', 'N', 0x0D, 0x0A, 0x1A};
+inline constexpr std::uint16_t kMajorVersion = 1;
+inline constexpr std::uint16_t kMinorVersion = 0;
+
+inline constexpr std::uint32_t kMinPageBytes = 4096;
+inline constexpr std::uint32_t kMaxPageBytes = 65536;
+inline constexpr std::uint32_t kMaxSections = 64;
+
+/// The first bytes of a file.
+struct FileHeader {
+  std::array<std::uint8_t, 8> magic;           //   0
+  std::uint16_t major_version, minor_version;  //   8
+  std::uint32_t header_bytes;                  //  12  256 in version 1
+  std::uint64_t file_bytes;                    //  16
+  std::uint32_t page_bytes;                    //  24  power of two, 4096 to 65536
+  std::uint32_t section_count;                 //  28
+  std::uint64_t section_table_checksum;        //  32
+  std::uint64_t page_count;                    //  40
+  std::uint64_t first_page;                    //  48  the page that lies in slot 0
+  std::uint64_t record_count;                  //  56
+  std::uint32_t max_rank;                      //  64
+  std::uint32_t height_type;                   //  68
+  std::uint64_t height_step, height_offset;    //  72  double
+  std::uint64_t origin_x, origin_y;            //  88  double
+  std::uint64_t step_x, step_y;                // 104  double
+  std::array<std::int32_t, 4> bounds;          // 120  min x, min y, max x, max y
+  std::uint64_t min_height, max_height;        // 136  double
+  std::uint64_t base_error, base_deviation;    // 152  double
+  std::uint64_t source_samples;                // 168
+  std::array<std::uint8_t, 72> reserved;       // 176  zero
+  std::uint64_t header_checksum;               // 248  of bytes 0 to 247
+};
+static_assert(sizeof(FileHeader) == 256 && offsetof(FileHeader, section_table_checksum) == 32 &&
+              offsetof(FileHeader, max_rank) == 64 && offsetof(FileHeader, bounds) == 120 &&
+              offsetof(FileHeader, source_samples) == 168 &&
+              offsetof(FileHeader, header_checksum) == 248);
+
+enum class SectionKind : std::uint32_t {
+  kMetadata = 1,
+  kT0Vertices = 2,
+  kT0Triangles = 3,
+  kErrorTable = 4,
+  kIndex = 5,
+  kPages = 6,
+};
+
+/// One line of the section table, which follows the header.
+struct SectionEntry {
+  std::uint32_t kind, reserved;
+  std::uint64_t offset, bytes;
+  std::uint64_t checksum;  ///< Of the section; of the root node for kIndex; 0 for kPages.
+};
+static_assert(sizeof(SectionEntry) == 32 && offsetof(SectionEntry, offset) == 8);
+
+struct T0Vertex {
+  std::int32_t x, y;
+  std::uint32_t height, has_height;
+};
+static_assert(sizeof(T0Vertex) == 16);
+
+struct T0Triangle {
+  std::array<std::uint32_t, 3> v;
+  std::uint32_t is_void;
+};
+static_assert(sizeof(T0Triangle) == 16);
+
+struct ErrorBinEntry {
+  std::uint32_t upper, max_deviation;  ///< float
+  std::uint64_t records, void_vertices;
+};
+static_assert(sizeof(ErrorBinEntry) == 24);
+
+/// Describes a record page (in a leaf) or a node (above).
+struct NodeEntry {
+  std::int32_t min_x, min_y, max_x, max_y;  //  0
+  std::uint32_t height_lo, height_hi;       // 16  as HeightEncoding
+  std::uint32_t error_max, error_min;       // 24  float
+  std::uint32_t deviation_max;              // 32  float
+  std::uint32_t kind_and_count;  // 36  leaf: records, plus kWidePage for wide ones; above: 0
+  std::uint64_t checksum;        // 40  of the page or node described
+};
+static_assert(sizeof(NodeEntry) == 48 && offsetof(NodeEntry, height_lo) == 16 &&
+              offsetof(NodeEntry, checksum) == 40);
+
+inline constexpr std::uint32_t kWidePage = 1U << 16;
+
+inline constexpr std::size_t kNodeBytes = 4096;
+inline constexpr std::uint32_t kFanOut = 85;
+
+struct IndexNode {
+  std::uint32_t level;    ///< 0 for a leaf.
+  std::uint32_t entries;  ///< Used; the rest is zero.
+  std::uint64_t number;   ///< Within its level.
+  std::array<NodeEntry, kFanOut> entry;
+};
+static_assert(sizeof(IndexNode) == kNodeBytes && offsetof(IndexNode, entry) == 16);
+
+/// The part that both kinds of record begin with.
+struct RecordHead {
+  std::int32_t min_x, min_y, max_x, max_y;  //  0  roi
+  std::uint32_t height_lo, height_hi;       // 16
+  std::uint32_t error, deviation;           // 24  float
+  std::int32_t x, y;                        // 32  u
+  std::uint32_t height;                     // 40
+  std::uint16_t rank, flags;                // 44
+};
+static_assert(sizeof(RecordHead) == 48 && offsetof(RecordHead, x) == 32 &&
+              offsetof(RecordHead, rank) == 44);
+
+struct NarrowRecord {
+  RecordHead head;
+  std::array<std::int16_t, 6> reference;  ///< w, vl, vr as offsets (x, y) from u.
+  std::uint32_t spare;                    ///< Zero.
+};
+static_assert(sizeof(NarrowRecord) == 64 && offsetof(NarrowRecord, reference) == 48);
+
+struct WideRecord {
+  RecordHead head;
+  std::array<std::int32_t, 6> reference;
+};
+static_assert(sizeof(WideRecord) == 72 && offsetof(WideRecord, reference) == 48);
+
+template <class T>
+inline constexpr bool kIsPlainBytes = std::is_trivially_copyable_v<T>&&
+    std::is_standard_layout_v<T>&& std::has_unique_object_representations_v<T>;
+static_assert(kIsPlainBytes<FileHeader> && kIsPlainBytes<SectionEntry> && kIsPlainBytes<T0Vertex> &&
+              kIsPlainBytes<T0Triangle> && kIsPlainBytes<ErrorBinEntry> &&
+              kIsPlainBytes<NodeEntry> && kIsPlainBytes<IndexNode> && kIsPlainBytes<NarrowRecord> &&
+              kIsPlainBytes<WideRecord>);
+
+/// Bits of the largest float that is an error or a deviation: +infinity. Every NaN and every
+/// negative number, -0 too, has larger bits, so one unsigned comparison tells a valid value.
+inline constexpr std::uint32_t kInfinityBits = 0x7F800000U;
+
+[[nodiscard]] constexpr float to_float(std::uint32_t bits) noexcept {
+  return std::bit_cast<float>(bits);
+}
+[[nodiscard]] constexpr double to_double(std::uint64_t bits) noexcept {
+  return std::bit_cast<double>(bits);
+}
+/// Bits of a float; -0 becomes 0.
+[[nodiscard]] constexpr std::uint32_t to_bits(float v) noexcept {
+  return std::bit_cast<std::uint32_t>(v + 0.0F);
+}
+[[nodiscard]] constexpr std::uint64_t to_bits(double v) noexcept {
+  return std::bit_cast<std::uint64_t>(v);
+}
+
+}  // namespace ptin::layout

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where the record pages are. They are written before it is known how long the front of the file
+// is, and only as many of them as the front takes are moved, to the end: so the page in the first
+// slot need not be page 0.
+#pragma once
+
+#include <cstdint>
+
+#include "storage/page_store.h"
+
+namespace ptin {
+
+struct PageSlots {
+  std::uint64_t pages = 0;
+  std::uint64_t first_page = 0;  ///< The page in slot 0; below `pages`, or 0 when there is none.
+  std::uint64_t offset = 0;      ///< Of slot 0 in the file.
+  std::uint32_t page_bytes = 0;
+
+  /// REQUIRES: id < pages.
+  [[nodiscard]] std::uint64_t slot_of(PageId id) const noexcept {
+    const std::uint64_t i = index_of(id);
+    return i >= first_page ? i - first_page : i + (pages - first_page);
+  }
+  /// Byte offset of a page in the file. REQUIRES: id < pages.
+  [[nodiscard]] std::uint64_t offset_of(PageId id) const noexcept {
+    return offset + slot_of(id) * page_bytes;
+  }
+};
+
+}  // namespace ptin

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The two page stores of this room: mapped and pread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "storage/index_nodes.h"
+#include "storage/mapped_file.h"
+#include "storage/page_slots.h"
+#include "storage/page_store.h"
+#include "storage/read_only_file.h"
+#include "storage/touch_bits.h"
+
+namespace ptin {
+
+/// What both have in common: where a page lies, and the descriptor that holds its checksum.
+class DescribedPageStore : public PageStore {
+ public:
+  [[nodiscard]] std::uint64_t page_count() const noexcept final { return slots_.pages; }
+  [[nodiscard]] std::size_t page_bytes() const noexcept final { return slots_.page_bytes; }
+  void announce(std::span<const PageId> ids, IoCounters& counters) const noexcept final;
+  void read(PageId id, std::span<std::byte> out, IoCounters& counters) const final;
+
+  /// As read(), when the page's descriptor is at hand. REQUIRES: id < page_count(), out.size() ==
+  /// page_bytes().
+  virtual void read_described(PageId id, const layout::NodeEntry& descriptor,
+                              std::span<std::byte> out, IoCounters& counters) const = 0;
+
+ protected:
+  DescribedPageStore(const ReadOnlyFile& file, const PageSlots& slots, const IndexNodes& nodes)
+      : file_(file), slots_(slots), nodes_(nodes) {}
+  /// Starts reading a range of the file.
+  virtual void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept = 0;
+  /// @throws Error corruption
+  void verify(PageId id, const layout::NodeEntry& descriptor,
+              std::span<const std::byte> copy) const;
+
+  const ReadOnlyFile& file_;
+  PageSlots slots_;
+  const IndexNodes& nodes_;
+};
+
+/// Copies out of the mapping. The checksum is compared at the first touch of a page, on the copy;
+/// later copies are trusted as long as the file is unchanged.
+class MappedPageStore final : public DescribedPageStore {
+ public:
+  MappedPageStore(const ReadOnlyFile& file, const MappedFile& mapping, const PageSlots& slots,
+                  const IndexNodes& nodes)
+      : DescribedPageStore(file, slots, nodes), mapping_(mapping), verified_(slots.pages) {}
+  void read_described(PageId id, const layout::NodeEntry& descriptor, std::span<std::byte> out,
+                      IoCounters& counters) const override;
+  void check_unchanged() const override;
+
+ private:
+  void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept override {
+    mapping_.will_need(offset, bytes);
+  }
+
+  const MappedFile& mapping_;
+  TouchBits verified_;
+};
+
+/// Reads with pread; compares the checksum of every read.
+class PreadPageStore final : public DescribedPageStore {
+ public:
+  PreadPageStore(const ReadOnlyFile& file, const PageSlots& slots, const IndexNodes& nodes)
+      : DescribedPageStore(file, slots, nodes) {}
+  void read_described(PageId id, const layout::NodeEntry& descriptor, std::span<std::byte> out,
+                      IoCounters& counters) const override;
+  void check_unchanged() const override { file_.check_unchanged(); }
+
+ private:
+  void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept override;
+};
+
+}  // namespace ptin

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/read_only_file.h"
+
+#include <cerrno>
+
+#include <boost/interprocess/exceptions.hpp>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "engine/error.h"
+
+namespace ptin {
+
+namespace ip = boost::interprocess;
+
+namespace {
+
+// Looked at before opening, since opening a pipe would wait for its other end.
+void require_regular(const std::string& path) {
+  struct stat s {};
+  if (::stat(path.c_str(), &s) != 0) {
+    throw system_error(errno, "cannot open", path);
+  }
+  if (!S_ISREG(s.st_mode)) {
+    throw Error(ErrorCode::invalid_argument, "this is no regular file; a .ptin file is expected",
+                path);
+  }
+}
+
+ip::file_mapping opened(const std::string& path) {
+  require_regular(path);
+  try {
+    return {path.c_str(), ip::read_only};
+  } catch (const ip::interprocess_exception& e) {
+    throw system_error(e.get_native_error(), "cannot open", path);
+  }
+}
+
+}  // namespace
+
+ReadOnlyFile::ReadOnlyFile(const std::string& path) : path_(path), file_(opened(path)) {
+  ::fcntl(descriptor(), F_SETFD, FD_CLOEXEC);
+  seen_ = look();
+}
+
+int ReadOnlyFile::descriptor() const noexcept { return file_.get_mapping_handle().handle; }
+
+ReadOnlyFile::Seen ReadOnlyFile::look() const {
+  struct stat s {};
+  if (::fstat(descriptor(), &s) != 0) {
+    throw system_error(errno, "cannot look at the open file", path_);
+  }
+  return {static_cast<std::uint64_t>(s.st_size), s.st_mtim.tv_sec, s.st_mtim.tv_nsec,
+          s.st_ctim.tv_sec, s.st_ctim.tv_nsec};
+}
+
+void ReadOnlyFile::read_at(std::span<std::byte> out, std::uint64_t offset) const {
+  while (!out.empty()) {
+    const ssize_t n = ::pread(descriptor(), out.data(), out.size(), static_cast<off_t>(offset));
+    if (n < 0 && errno == EINTR) {
+      continue;
+    }
+    if (n < 0) {
+      throw system_error(errno, "cannot read at byte " + std::to_string(offset), path_);
+    }
+    if (n == 0) {
+      throw Error(ErrorCode::corruption,
+                  "the file ends at byte " + std::to_string(offset) + " and should go on for " +
+                      std::to_string(out.size()) + " more; it was cut short",
+                  path_);
+    }
+    out = out.subspan(static_cast<std::size_t>(n));
+    offset += static_cast<std::uint64_t>(n);
+  }
+}
+
+void ReadOnlyFile::check_unchanged() const {
+  if (!(look() == seen_)) {
+    throw Error(ErrorCode::corruption,
+                "the file was replaced, cut short or written to while it was open; open it again",
+                path_);
+  }
+}
+
+}  // namespace ptin

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A file opened for reading, and whether it is still the file that was opened.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <boost/interprocess/file_mapping.hpp>
+
+namespace ptin {
+
+/// Threads: const functions may be called at once.
+class ReadOnlyFile {
+ public:
+  /// @throws Error not_found, io_error, invalid_argument (no regular file)
+  explicit ReadOnlyFile(const std::string& path);
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return seen_.bytes; }
+  [[nodiscard]] int descriptor() const noexcept;
+  [[nodiscard]] const boost::interprocess::file_mapping& mapping() const noexcept { return file_; }
+
+  /// Fills `out` from `offset` on.
+  /// @throws Error io_error; corruption when the file ends before
+  void read_at(std::span<std::byte> out, std::uint64_t offset) const;
+
+  /// Compares size, modification and change time with those at opening.
+  /// What keeps all three (a write through a mapping made before, say) is not seen.
+  /// @throws Error corruption
+  void check_unchanged() const;
+
+ private:
+  struct Seen {
+    std::uint64_t bytes;
+    std::int64_t modified_s, modified_ns, changed_s, changed_ns;
+    friend bool operator==(const Seen&, const Seen&) = default;
+  };
+  [[nodiscard]] Seen look() const;
+
+  std::string path_;
+  boost::interprocess::file_mapping file_;
+  Seen seen_{};
+};
+
+}  // namespace ptin

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What happens when a mapped file loses bytes under its mapping: reading them raises SIGBUS.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace ptin {
+
+/// Installs a SIGBUS handler for the whole process, once; later calls do nothing. A library does
+/// not take a signal unasked: without this call such a read ends the process. The handler lays a
+/// page of zeros over the hole, marks the mapping as damaged (every read from that store fails from
+/// then on) and goes on; faults elsewhere are handed to the handler that was there before. A cut
+/// inside of a page raises no signal, the rest of that page reads as zeros:
+/// PageStore::check_unchanged() sees it.
+/// @throws Error io_error
+void install_sigbus_guard();
+
+/// One mapping under guard, from construction to destruction. Does nothing while no handler is
+/// installed.
+class GuardedMapping {
+ public:
+  GuardedMapping(const void* address, std::size_t bytes);
+  GuardedMapping(const GuardedMapping&) = delete;
+  GuardedMapping& operator=(const GuardedMapping&) = delete;
+  ~GuardedMapping();
+
+  /// True once a read of this mapping met a hole.
+  [[nodiscard]] bool is_damaged() const noexcept {
+    return range_->damaged.load(std::memory_order_acquire);
+  }
+
+  /// For the handler.
+  struct Range {
+    std::atomic<std::uintptr_t> begin{0};
+    std::atomic<std::uintptr_t> end{0};
+    std::atomic<bool> damaged{false};
+    std::atomic<bool> used{false};
+    Range* next = nullptr;  ///< Set before the range can be found, then never changed.
+  };
+
+ private:
+  Range* range_;
+};
+
+}  // namespace ptin

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/store_file.h"
+
+#include <optional>
+#include <utility>
+
+#include "engine/error.h"
+#include "storage/descriptor.h"
+#include "storage/index_nodes.h"
+#include "storage/mapped_file.h"
+#include "storage/packed_rtree.h"
+#include "storage/page_records.h"
+#include "storage/page_stores.h"
+#include "storage/store_front.h"
+
+namespace ptin {
+
+namespace {
+
+class StoreFileImpl final : public StoreFile {
+ public:
+  StoreFileImpl(const std::string& path, PageAccess access);
+
+  [[nodiscard]] const std::string& path() const noexcept override { return file_.path(); }
+  [[nodiscard]] const StoreFacts& facts() const noexcept override { return front_.facts; }
+  [[nodiscard]] std::string_view metadata_json() const noexcept override { return front_.metadata; }
+  [[nodiscard]] const CoarsestTin& t0() const noexcept override { return front_.t0; }
+  [[nodiscard]] std::uint64_t record_count() const noexcept override {
+    return front_.header.record_count;
+  }
+  [[nodiscard]] std::uint16_t max_rank() const noexcept override {
+    return static_cast<std::uint16_t>(front_.header.max_rank);
+  }
+  [[nodiscard]] std::span<const ErrorBin> error_bins() const noexcept override {
+    return front_.bins;
+  }
+  [[nodiscard]] std::vector<SectionInfo> sections() const override;
+  [[nodiscard]] std::uint64_t file_bytes() const noexcept override { return file_.bytes(); }
+  [[nodiscard]] std::uint64_t fingerprint() const noexcept override {
+    return front_.header.header_checksum;
+  }
+  [[nodiscard]] const RecordIndex& index() const noexcept override { return *index_; }
+  [[nodiscard]] const PageStore& pages() const noexcept override { return *pages_; }
+  [[nodiscard]] PageInfo page_info(PageId id) const override;
+  void read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const override;
+  std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
+                              std::vector<VertexSplit>& out, IoCounters& counters) const override;
+
+ private:
+  [[nodiscard]] DescribedPage described(PageId id) const;
+
+  ReadOnlyFile file_;
+  StoreFront front_;
+  std::optional<MappedFile> mapping_;
+  std::unique_ptr<IndexNodes> nodes_;
+  std::unique_ptr<DescribedPageStore> pages_;
+  std::unique_ptr<PackedRTree> index_;
+};
+
+StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access)
+    : file_(path), front_(read_front(file_)) {
+  const IndexNodes::Place place{front_.index, front_.index_offset, front_.root_checksum};
+  if (access == PageAccess::kMapped) {
+    mapping_.emplace(file_);
+    nodes_ = std::make_unique<MappedIndexNodes>(file_, *mapping_, place);
+    pages_ = std::make_unique<MappedPageStore>(file_, *mapping_, front_.slots, *nodes_);
+  } else {
+    nodes_ = std::make_unique<PreadIndexNodes>(file_, place);
+    pages_ = std::make_unique<PreadPageStore>(file_, front_.slots, *nodes_);
+  }
+  index_ = std::make_unique<PackedRTree>(*nodes_, front_.facts.heights);
+  // A file that changed while its front was read is not the one that was checked.
+  pages_->check_unchanged();
+}
+
+std::vector<SectionInfo> StoreFileImpl::sections() const {
+  std::vector<SectionInfo> result;
+  result.push_back({"header", 0, sizeof(layout::FileHeader)});
+  result.push_back({"section table", sizeof(layout::FileHeader),
+                    front_.sections.size() * sizeof(layout::SectionEntry)});
+  for (const layout::SectionEntry& s : front_.sections) {
+    result.push_back({name_of(static_cast<layout::SectionKind>(s.kind)), s.offset, s.bytes});
+  }
+  return result;
+}
+
+DescribedPage StoreFileImpl::described(PageId id) const {
+  return {file_.path(), id, nodes_->descriptor(id), front_.facts.heights, front_.slots.page_bytes};
+}
+
+StoreFile::PageInfo StoreFileImpl::page_info(PageId id) const {
+  const DescribedPage page = described(id);
+  nodes_->require_undamaged();
+  return {page.kind(), page.records(), attributes_of(page.descriptor(), front_.facts.heights),
+          layout::to_float(page.descriptor().error_min)};
+}
+
+void StoreFileImpl::read_records(PageId id, std::vector<VertexSplit>& out,
+                                 IoCounters& counters) const {
+  const DescribedPage page = described(id);
+  PageBuffer bytes;
+  pages_->read_described(id, page.descriptor(), bytes.of(page), counters);
+  page.decode(bytes.of(page), out);
+}
+
+std::uint32_t StoreFileImpl::read_matching(PageId id, const AttributePredicate& predicate,
+                                           std::vector<VertexSplit>& out,
+                                           IoCounters& counters) const {
+  const DescribedPage page = described(id);
+  PageBuffer bytes;
+  pages_->read_described(id, page.descriptor(), bytes.of(page), counters);
+  page.decode_matching(bytes.of(page), predicate, out);
+  return page.records();
+}
+
+}  // namespace
+
+std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access) {
+  return std::make_shared<const StoreFileImpl>(path, access);
+}
+
+}  // namespace ptin

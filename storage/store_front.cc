@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/store_front.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <span>
+
+#include "engine/error.h"
+#include "storage/checksum.h"
+#include "storage/error_table.h"
+#include "storage/facts.h"
+
+namespace ptin {
+
+namespace {
+
+using layout::FileHeader;
+using layout::SectionEntry;
+using layout::SectionKind;
+
+[[noreturn]] void damaged(const std::string& path, const std::string& message) {
+  throw Error(ErrorCode::corruption, message, path);
+}
+
+void require(bool condition, const std::string& path, const char* message) {
+  if (!condition) {
+    damaged(path, message);
+  }
+}
+
+FileHeader read_header(const ReadOnlyFile& file) {
+  const std::string& path = file.path();
+  FileHeader h;
+  require(file.bytes() >= sizeof h, path,
+          "the file is shorter than the header of a .ptin file; it is none, or cut short");
+  file.read_at(std::as_writable_bytes(std::span(&h, 1)), 0);
+  require(h.magic == layout::kMagic, path,
+          "the file does not begin like a .ptin file; it is none, or damaged");
+  if (h.major_version > layout::kMajorVersion) {
+    throw Error(ErrorCode::unsupported_version,
+                "the file has format version " + std::to_string(h.major_version) + "." +
+                    std::to_string(h.minor_version) +
+                    ", and this program reads up to major version " +
+                    std::to_string(layout::kMajorVersion) + "; take a newer program",
+                path);
+  }
+  const auto bytes = std::as_bytes(std::span(&h, 1)).first(offsetof(FileHeader, header_checksum));
+  require(h.header_checksum == checksum_of(bytes), path,
+          "the header does not match its checksum; the file is damaged");
+  return h;
+}
+
+void check_header(const FileHeader& h, const ReadOnlyFile& file) {
+  const std::string& path = file.path();
+  require(h.major_version == layout::kMajorVersion, path,
+          "the header has major version 0, which no program wrote");
+  require(h.header_bytes == sizeof h, path, "the header should say that it has 256 bytes");
+  if (h.file_bytes != file.bytes()) {
+    damaged(path, "the header says " + std::to_string(h.file_bytes) + " bytes, the file has " +
+                      std::to_string(file.bytes()) + "; it was cut short or added to");
+  }
+  require(std::has_single_bit(h.page_bytes) && h.page_bytes >= layout::kMinPageBytes &&
+              h.page_bytes <= layout::kMaxPageBytes,
+          path, "the page size must be a power of two from 4096 to 65536");
+  require(h.section_count <= layout::kMaxSections &&
+              sizeof h + h.section_count * sizeof(SectionEntry) <= h.file_bytes,
+          path, "the section table does not fit into the file");
+  require(h.page_count <= h.file_bytes / h.page_bytes, path,
+          "the file is too short for its number of pages");
+  require(h.first_page < std::max<std::uint64_t>(h.page_count, 1), path,
+          "the first page is none of the pages");
+  require(h.record_count >= h.page_count &&
+              h.record_count <= h.page_count * (h.page_bytes / kNarrowRecordBytes),
+          path, "the number of records does not go with the number of pages");
+  require(h.max_rank <= UINT16_MAX, path, "the largest rank is above 65535");
+  // Reserved bytes of a later minor version may mean something; ours are zero.
+  const bool zero =
+      std::all_of(h.reserved.begin(), h.reserved.end(), [](std::uint8_t b) { return b == 0; });
+  require(zero || h.minor_version > layout::kMinorVersion, path,
+          "reserved bytes of the header are not zero");
+  const char* fault = fault_in(facts_of(h));
+  require(fault == nullptr, path, fault);
+}
+
+std::vector<SectionEntry> read_table(const FileHeader& h, const ReadOnlyFile& file) {
+  const std::string& path = file.path();
+  std::vector<SectionEntry> table(h.section_count);
+  file.read_at(std::as_writable_bytes(std::span(table)), sizeof h);
+  require(checksum_of(std::as_bytes(std::span(table))) == h.section_table_checksum, path,
+          "the section table does not match its checksum; the file is damaged");
+  std::uint64_t end = sizeof h + table.size() * sizeof(SectionEntry);
+  for (const SectionEntry& s : table) {
+    require(s.reserved == 0 || h.minor_version > layout::kMinorVersion, path,
+            "a reserved field of a section is not 0");
+    require(s.offset % 8 == 0 && s.offset >= end && s.offset <= h.file_bytes &&
+                s.bytes <= h.file_bytes - s.offset,
+            path, "a section lies outside of the file, or sections overlap or do not ascend");
+    end = s.offset + s.bytes;
+  }
+  require(end == h.file_bytes, path, "the file does not end with its last section");
+  return table;
+}
+
+const SectionEntry& find(const std::vector<SectionEntry>& table, SectionKind kind,
+                         const std::string& path) {
+  const SectionEntry* found = nullptr;
+  for (const SectionEntry& s : table) {
+    if (s.kind == static_cast<std::uint32_t>(kind)) {
+      require(found == nullptr, path, "a section is there twice");
+      found = &s;
+    }
+  }
+  if (found == nullptr) {
+    damaged(path, std::string("the section \"") + name_of(kind) + "\" is missing");
+  }
+  return *found;
+}
+
+// A whole section as an array of T, its checksum compared.
+template <class T>
+std::vector<T> read_section(const std::vector<SectionEntry>& table, SectionKind kind,
+                            const ReadOnlyFile& file) {
+  const SectionEntry& s = find(table, kind, file.path());
+  if (s.bytes % sizeof(T) != 0) {
+    damaged(file.path(), std::string("the section \"") + name_of(kind) +
+                             "\" is no whole number of entries long");
+  }
+  std::vector<T> content(s.bytes / sizeof(T));
+  file.read_at(std::as_writable_bytes(std::span(content)), s.offset);
+  if (checksum_of(std::as_bytes(std::span(content))) != s.checksum) {
+    damaged(file.path(), std::string("the section \"") + name_of(kind) +
+                             "\" does not match its checksum; the file is damaged");
+  }
+  return content;
+}
+
+CoarsestTin read_t0(const std::vector<SectionEntry>& table, const StoreFacts& facts,
+                    const ReadOnlyFile& file) {
+  CoarsestTin t0;
+  for (const auto& v : read_section<layout::T0Vertex>(table, SectionKind::kT0Vertices, file)) {
+    t0.vertices.push_back({{v.x, v.y}, v.height, v.has_height});
+  }
+  for (const auto& t : read_section<layout::T0Triangle>(table, SectionKind::kT0Triangles, file)) {
+    t0.triangles.push_back({{t.v[0], t.v[1], t.v[2]}, t.is_void});
+  }
+  const char* fault = fault_in(t0, facts);
+  require(fault == nullptr, file.path(), fault);
+  return t0;
+}
+
+std::vector<ErrorBin> read_bins(const std::vector<SectionEntry>& table, const FileHeader& h,
+                                const ReadOnlyFile& file) {
+  const std::string& path = file.path();
+  std::vector<ErrorBin> bins;
+  std::uint64_t records = 0;
+  for (const auto& b : read_section<layout::ErrorBinEntry>(table, SectionKind::kErrorTable, file)) {
+    require(b.upper <= layout::kInfinityBits && b.max_deviation <= layout::kInfinityBits &&
+                layout::to_bits(error_bin_upper(layout::to_float(b.upper))) == b.upper,
+            path, "an error of the error table is no bound of a bin");
+    require(bins.empty() ? b.upper == 0 : layout::to_float(b.upper) > bins.back().upper, path,
+            "the error table does not ascend from 0");
+    require(b.void_vertices <= b.records && b.records <= h.record_count - records, path,
+            "the error table counts more records than there are");
+    records += b.records;
+    bins.push_back(
+        {layout::to_float(b.upper), layout::to_float(b.max_deviation), b.records, b.void_vertices});
+  }
+  require(!bins.empty() && records == h.record_count, path,
+          "the error table counts fewer records than there are");
+  return bins;
+}
+
+void place_index_and_pages(StoreFront& front, const std::string& path) {
+  const FileHeader& h = front.header;
+  const SectionEntry& index = find(front.sections, SectionKind::kIndex, path);
+  const SectionEntry& pages = find(front.sections, SectionKind::kPages, path);
+  front.index = IndexShape(h.page_count);
+  require(index.bytes == front.index.total_bytes(), path,
+          "the index has not the length that the number of pages asks for");
+  require(index.offset % layout::kNodeBytes == 0, path,
+          "the index does not begin at a multiple of 4096 bytes");
+  require(pages.bytes == h.page_count * h.page_bytes, path,
+          "the pages have not the length that their number asks for");
+  require(pages.offset % h.page_bytes == 0, path,
+          "the pages do not begin at a multiple of their size");
+  require(pages.checksum == 0, path,
+          "the checksum of the page section should be 0: each page has its own");
+  front.index_offset = index.offset;
+  front.root_checksum = index.checksum;
+  front.slots = {h.page_count, h.first_page, pages.offset, h.page_bytes};
+}
+
+}  // namespace
+
+const char* name_of(SectionKind kind) noexcept {
+  switch (kind) {
+    case SectionKind::kMetadata:
+      return "metadata";
+    case SectionKind::kT0Vertices:
+      return "t0 vertices";
+    case SectionKind::kT0Triangles:
+      return "t0 triangles";
+    case SectionKind::kErrorTable:
+      return "error table";
+    case SectionKind::kIndex:
+      return "index";
+    case SectionKind::kPages:
+      return "pages";
+  }
+  return "unknown";
+}
+
+const char* fault_in(const CoarsestTin& t0, const StoreFacts& facts) noexcept {
+  for (const CoarsestTin::V& v : t0.vertices) {
+    if (!contains(facts.bounds, v.position)) {
+      return "a vertex of T0 lies outside of the bounds";
+    }
+    if (v.has_height > 1 || (v.has_height == 1 && !std::isfinite(facts.heights.code(v.height)))) {
+      return "a vertex of T0 has a height that is no number";
+    }
+  }
+  for (const CoarsestTin::T& t : t0.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      if (t.v[i] >= t0.vertices.size() || t.v[i] == t.v[i == 2 ? 0 : i + 1]) {
+        return "a triangle of T0 has a corner that is no vertex, or has one twice";
+      }
+      if (t.is_void == 0 && t0.vertices[t.v[i]].has_height == 0) {
+        return "a surface triangle of T0 has a corner without a height";
+      }
+    }
+    if (t.is_void > 1) {
+      return "a triangle of T0 is neither surface (0) nor void (1)";
+    }
+  }
+  return nullptr;
+}
+
+StoreFront read_front(const ReadOnlyFile& file) {
+  StoreFront front{};
+  front.header = read_header(file);
+  check_header(front.header, file);
+  front.facts = facts_of(front.header);
+  front.sections = read_table(front.header, file);
+  place_index_and_pages(front, file.path());
+  const std::vector<char> metadata =
+      read_section<char>(front.sections, SectionKind::kMetadata, file);
+  front.metadata.assign(metadata.begin(), metadata.end());
+  front.t0 = read_t0(front.sections, front.facts, file);
+  front.bins = read_bins(front.sections, front.header, file);
+  return front;
+}
+
+}  // namespace ptin

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What is read and checked when a file is opened: header, section table, metadata, T0, table of
+// errors.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "storage/index_shape.h"
+#include "storage/layout.h"
+#include "storage/page_slots.h"
+#include "storage/read_only_file.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+struct StoreFront {
+  layout::FileHeader header;
+  std::vector<layout::SectionEntry>
+      sections;  ///< Ascending by offset; kinds of later minor versions too.
+  StoreFacts facts;
+  std::string metadata;
+  CoarsestTin t0;
+  std::vector<ErrorBin> bins;
+  PageSlots slots;
+  IndexShape index;
+  std::uint64_t index_offset = 0;
+  std::uint64_t root_checksum = 0;
+};
+
+/// Reads the front of a file and checks everything that FORMAT.md lists under "at opening".
+/// Cost: five reads, O(|T0|).
+/// @throws Error corruption, unsupported_version, io_error
+[[nodiscard]] StoreFront read_front(const ReadOnlyFile& file);
+
+/// What is wrong with a T0, as a sentence; null when nothing is: vertices within the bounds,
+/// heights finite numbers, corners in range and different, no surface triangle with a corner that
+/// has no height.
+[[nodiscard]] const char* fault_in(const CoarsestTin& t0, const StoreFacts& facts) noexcept;
+
+/// Name of a section as `info` shows it: "metadata", "t0 vertices", ..., "unknown".
+[[nodiscard]] const char* name_of(layout::SectionKind kind) noexcept;
+
+}  // namespace ptin

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/store_writer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <sys/stat.h>
+
+#include "engine/check.h"
+#include "engine/error.h"
+#include "storage/checksum.h"
+#include "storage/descriptor.h"
+#include "storage/error_table.h"
+#include "storage/facts.h"
+#include "storage/file_layer.h"
+#include "storage/index_writer.h"
+#include "storage/layout.h"
+#include "storage/page_slots.h"
+#include "storage/record_order.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::size_t kWriteBytes = std::size_t{1} << 20;
+
+constexpr std::uint64_t rounded_up(std::uint64_t bytes, std::uint64_t unit) {
+  return (bytes + unit - 1) / unit * unit;
+}
+
+void check_target(const std::string& path, const StoreWriterOptions& options) {
+  if (!std::has_single_bit(options.page_bytes) || options.page_bytes < layout::kMinPageBytes ||
+      options.page_bytes > layout::kMaxPageBytes) {
+    throw Error(ErrorCode::invalid_argument, "page_bytes must be a power of two from 4096 to 65536",
+                path);
+  }
+  struct stat target {};
+  if (::stat(path.c_str(), &target) != 0) {
+    if (errno != ENOENT) {
+      throw system_error(errno, "cannot look at the output file", path);
+    }
+    return;
+  }
+  if (!S_ISREG(target.st_mode)) {
+    throw Error(ErrorCode::invalid_argument, "the output exists and is no regular file", path);
+  }
+  if (!options.overwrite) {
+    throw Error(ErrorCode::invalid_argument, "the file exists; remove it, or ask for overwriting",
+                path);
+  }
+}
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+// Fills pages with records of one kind each, and hands each finished page and its descriptor on.
+class PagePacker {
+ public:
+  PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights)
+      : page_(page_bytes), heights_(heights), descriptor_(heights) {}
+
+  [[nodiscard]] bool takes(RecordKind kind) const {
+    return count_ == 0 || (kind == kind_ && (count_ + 1) * record_bytes(kind) <= page_.size());
+  }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+
+  void add(const VertexSplit& r, RecordKind kind) {
+    kind_ = kind;
+    const std::span<std::byte> place(page_.data() + count_ * record_bytes(kind),
+                                     record_bytes(kind));
+    encode_record(r, kind, place);
+    VertexSplit back;
+    // What a reader would refuse must not be written: better known now, beside its cause, than when
+    // it is read.
+    PTIN_CHECK(decode_record(place, kind, back));
+    PTIN_CHECK(!std::isnan(heights_.code(r.height)) && !std::isnan(heights_.code(r.height_lo)) &&
+               !std::isnan(heights_.code(r.height_hi)));
+    descriptor_.add(back);
+    ++count_;
+  }
+
+  // The bytes are valid until the next add().
+  std::span<const std::byte> finish(layout::NodeEntry& entry) {
+    const std::size_t used = count_ * record_bytes(kind_);
+    std::fill(page_.begin() + static_cast<std::ptrdiff_t>(used), page_.end(), std::byte{0});
+    entry = descriptor_.entry();
+    entry.kind_and_count =
+        static_cast<std::uint32_t>(count_) | (kind_ == RecordKind::kWide ? layout::kWidePage : 0U);
+    entry.checksum = checksum_of(page_);
+    count_ = 0;
+    descriptor_ = Descriptor(heights_);
+    return page_;
+  }
+
+ private:
+  std::vector<std::byte> page_;
+  HeightEncoding heights_;
+  Descriptor descriptor_;
+  RecordKind kind_ = RecordKind::kNarrow;
+  std::size_t count_ = 0;
+};
+
+// The sections before the index, laid out one after the other behind header and table.
+class Front {
+ public:
+  explicit Front(std::size_t sections)
+      : bytes_(sizeof(layout::FileHeader) + sections * sizeof(layout::SectionEntry)) {}
+
+  void add(layout::SectionKind kind, std::span<const std::byte> content) {
+    bytes_.resize(rounded_up(bytes_.size(), 8));
+    table_.push_back(
+        {static_cast<std::uint32_t>(kind), 0, bytes_.size(), content.size(), checksum_of(content)});
+    bytes_.insert(bytes_.end(), content.begin(), content.end());
+  }
+  [[nodiscard]] std::uint64_t add_outside(layout::SectionKind kind, std::uint64_t offset,
+                                          std::uint64_t bytes) {
+    table_.push_back({static_cast<std::uint32_t>(kind), 0, offset, bytes, 0});
+    return offset + bytes;
+  }
+  [[nodiscard]] std::uint64_t size() const { return bytes_.size(); }
+  [[nodiscard]] layout::SectionEntry& section(std::size_t i) { return table_[i]; }
+
+  // All bytes up to `end`, with the header and the table in their places.
+  std::span<const std::byte> finish(layout::FileHeader& header, std::uint64_t end) {
+    header.section_count = static_cast<std::uint32_t>(table_.size());
+    header.section_table_checksum = checksum_of(std::as_bytes(std::span(table_)));
+    header.header_checksum = checksum_of(
+        std::as_bytes(std::span(&header, 1)).first(offsetof(layout::FileHeader, header_checksum)));
+    std::memcpy(bytes_.data(), &header, sizeof header);
+    std::memcpy(bytes_.data() + sizeof header, table_.data(),
+                table_.size() * sizeof(layout::SectionEntry));
+    bytes_.resize(end);
+    return bytes_;
+  }
+
+ private:
+  std::vector<std::byte> bytes_;
+  std::vector<layout::SectionEntry> table_;
+};
+
+std::vector<layout::ErrorBinEntry> stored(const std::vector<ErrorBin>& bins) {
+  std::vector<layout::ErrorBinEntry> result;
+  for (const ErrorBin& b : bins) {
+    result.push_back(
+        {layout::to_bits(b.upper), layout::to_bits(b.max_deviation), b.records, b.void_vertices});
+  }
+  return result;
+}
+
+std::vector<layout::T0Vertex> stored(const std::vector<CoarsestTin::V>& vertices) {
+  std::vector<layout::T0Vertex> result;
+  for (const CoarsestTin::V& v : vertices) {
+    result.push_back({v.position.x, v.position.y, v.height, v.has_height});
+  }
+  return result;
+}
+
+std::vector<layout::T0Triangle> stored(const std::vector<CoarsestTin::T>& triangles) {
+  std::vector<layout::T0Triangle> result;
+  for (const CoarsestTin::T& t : triangles) {
+    result.push_back({{t.v[0], t.v[1], t.v[2]}, t.is_void});
+  }
+  return result;
+}
+
+class StoreWriterImpl final : public StoreWriter {
+ public:
+  StoreWriterImpl(const std::string& path, const StoreWriterOptions& options)
+      : path_(path),
+        options_(options),
+        files_(options.files != nullptr ? *options.files : FileLayer::system()),
+        folder_(folder_of(path)),
+        stem_(std::filesystem::path(path).filename().string()),
+        file_(files_, folder_, stem_, false) {
+    pending_.reserve(kWriteBytes);
+  }
+
+  void add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) override;
+  void publish(const StoreFacts& facts, const CoarsestTin& t0,
+               const std::string& metadata_json) override;
+
+ private:
+  void start(const HeightEncoding& heights);
+  void add(const VertexSplit& r);
+  void finish_page();
+  void flush();
+  PageSlots move_pages_behind(std::uint64_t front_bytes);
+
+  std::string path_;
+  StoreWriterOptions options_;
+  FileLayer& files_;
+  std::string folder_, stem_;
+  ScratchFile file_;
+  std::optional<HeightEncoding> heights_;
+  std::optional<PagePacker> page_;
+  std::optional<IndexWriter> index_;
+  ErrorTable errors_;
+  std::vector<std::byte> pending_;   // finished pages, not yet written
+  std::uint64_t written_bytes_ = 0;  // pages lie at the start of the file until publish()
+  std::uint64_t records_ = 0;
+  std::uint16_t max_rank_ = 0;
+  bool published_ = false;
+};
+
+void StoreWriterImpl::start(const HeightEncoding& heights) {
+  if (!heights_) {
+    heights_ = heights;
+    page_.emplace(options_.page_bytes, heights);
+    index_.emplace(files_, folder_, stem_, heights);
+  }
+  if (!(*heights_ == heights)) {
+    throw Error(ErrorCode::invalid_argument,
+                "all segments of a file, and its facts, need one height encoding", path_);
+  }
+}
+
+void StoreWriterImpl::add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) {
+  PTIN_CHECK(!published_);
+  start(heights);
+  order_segment(records);
+  for (const VertexSplit& r : records) {
+    add(r);
+  }
+  // A page of two segments would have the box of both.
+  if (!page_->empty()) {
+    finish_page();
+  }
+}
+
+void StoreWriterImpl::add(const VertexSplit& r) {
+  const RecordKind kind = kind_of(r);
+  if (!page_->takes(kind)) {
+    finish_page();
+  }
+  page_->add(r, kind);
+  errors_.add(r);
+  max_rank_ = std::max(max_rank_, r.rank);
+  ++records_;
+}
+
+void StoreWriterImpl::finish_page() {
+  layout::NodeEntry entry;
+  const std::span<const std::byte> bytes = page_->finish(entry);
+  index_->add(entry);
+  pending_.insert(pending_.end(), bytes.begin(), bytes.end());
+  if (pending_.size() >= kWriteBytes) {
+    flush();
+  }
+}
+
+void StoreWriterImpl::flush() {
+  file_.write_at(pending_, written_bytes_);
+  written_bytes_ += pending_.size();
+  pending_.clear();
+}
+
+// Makes room for the front: the pages that are in its way go to the end, which moves no more bytes
+// than the front has.
+PageSlots StoreWriterImpl::move_pages_behind(std::uint64_t front_bytes) {
+  const std::uint64_t pages_bytes = written_bytes_;
+  const std::uint64_t moved = std::min(front_bytes, pages_bytes);
+  file_.reserve(pages_bytes, front_bytes);
+  file_.copy_from(file_, 0, moved, std::max(front_bytes, pages_bytes));
+  const std::uint64_t pages = pages_bytes / options_.page_bytes;
+  const std::uint64_t front_pages = front_bytes / options_.page_bytes;
+  return {pages, front_pages < pages ? front_pages : 0, front_bytes, options_.page_bytes};
+}
+
+void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
+                              const std::string& metadata_json) {
+  PTIN_CHECK(!published_);
+  if (const char* fault = fault_in(facts)) {
+    throw Error(ErrorCode::invalid_argument, fault, path_);
+  }
+  start(facts.heights);
+  flush();
+  const IndexShape shape(index_->pages());
+  Front front(6);
+  const std::vector<layout::T0Vertex> vertices = stored(t0.vertices);
+  const std::vector<layout::T0Triangle> triangles = stored(t0.triangles);
+  const std::vector<layout::ErrorBinEntry> bins = stored(errors_.bins());
+  front.add(layout::SectionKind::kMetadata, std::as_bytes(std::span(metadata_json)));
+  front.add(layout::SectionKind::kT0Vertices, std::as_bytes(std::span(vertices)));
+  front.add(layout::SectionKind::kT0Triangles, std::as_bytes(std::span(triangles)));
+  front.add(layout::SectionKind::kErrorTable, std::as_bytes(std::span(bins)));
+  const std::uint64_t index_offset = rounded_up(front.size(), layout::kNodeBytes);
+  const std::uint64_t index_end =
+      front.add_outside(layout::SectionKind::kIndex, index_offset, shape.total_bytes());
+  const std::uint64_t front_bytes = rounded_up(index_end, options_.page_bytes);
+  layout::FileHeader header{};
+  header.file_bytes = front.add_outside(layout::SectionKind::kPages, front_bytes, written_bytes_);
+
+  const PageSlots slots = move_pages_behind(front_bytes);
+  front.section(4).checksum = index_->write_to(file_, index_offset);
+  const std::vector<std::byte> gap(front_bytes - index_end);
+  file_.write_at(gap, index_end);
+
+  header.magic = layout::kMagic;
+  header.major_version = layout::kMajorVersion;
+  header.minor_version = layout::kMinorVersion;
+  header.header_bytes = sizeof header;
+  header.page_bytes = options_.page_bytes;
+  header.page_count = slots.pages;
+  header.first_page = slots.first_page;
+  header.record_count = records_;
+  header.max_rank = max_rank_;
+  put_facts(facts, header);
+  file_.write_at(front.finish(header, index_offset), 0);
+  published_ = true;
+  file_.publish_as(path_, options_.overwrite);
+}
+
+}  // namespace
+
+std::unique_ptr<StoreWriter> StoreWriter::create(const std::string& path,
+                                                 const StoreWriterOptions& options) {
+  check_target(path, options);
+  return std::make_unique<StoreWriterImpl>(path, options);
+}
+
+}  // namespace ptin

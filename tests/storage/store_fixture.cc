@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/storage/store_fixture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <tuple>
+
+#include <unistd.h>
+
+#include "storage/checksum.h"
+#include "storage/index_shape.h"
+#include "storage/page_slots.h"
+
+namespace ptin::test {
+
+namespace fs = std::filesystem;
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "ptin-test-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) {
+    throw std::runtime_error("cannot make a temporary folder");
+  }
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+std::vector<std::string> TemporaryFolder::names() const {
+  std::vector<std::string> result;
+  for (const auto& e : fs::directory_iterator(path_)) {
+    result.push_back(e.path().filename().string());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+Bytes read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  Bytes bytes(fs::file_size(path));
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return bytes;
+}
+
+void write_file(const std::string& path, const Bytes& bytes) {
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  out.write(reinterpret_cast<const char*>(bytes.data()),
+            static_cast<std::streamsize>(bytes.size()));
+}
+
+std::vector<VertexSplit> StoreContent::all_records() const {
+  std::vector<VertexSplit> all;
+  for (const auto& s : segments) {
+    all.insert(all.end(), s.begin(), s.end());
+  }
+  return all;
+}
+
+StoreContent flat_square(std::int32_t side, HeightType type) {
+  StoreContent c;
+  c.facts.map = {500000.0, 4000000.0, 30.0, 30.0};
+  if (type == HeightType::int32) {
+    c.facts.heights = {HeightType::int32, 0.25, 100.0};
+  }
+  c.facts.bounds = {0, 0, side, side};
+  c.facts.min_height = -10.0;
+  c.facts.max_height = 4000.0;
+  c.facts.source_samples = 4;
+  const HeightBits height = c.facts.heights.bits(12.0);
+  c.t0.vertices = {{{0, 0}, height, 1},
+                   {{side, 0}, height, 1},
+                   {{side, side}, height, 1},
+                   {{0, side}, height, 1}};
+  c.t0.triangles = {{{0, 1, 2}, 0}, {{0, 2, 3}, 0}};
+  return c;
+}
+
+namespace {
+
+class RecordMaker {
+ public:
+  RecordMaker(const RandomRecords& options, const HeightEncoding& heights)
+      : options_(options), heights_(heights), random_(options.seed) {}
+
+  VertexSplit make() {
+    VertexSplit r;
+    do {
+      r.u = {coordinate(1, options_.side - 1), coordinate(1, options_.side - 1)};
+    } while (!seen_.insert(key_of(r.u)).second);
+    const auto reach = static_cast<std::int32_t>(std::exp2(real(0.0, std::log2(options_.side))));
+    r.w = near(r.u, reach);
+    r.vl = near(r.u, reach);
+    r.vr = near(r.u, reach);
+    r.roi = united(united(united(box_of(r.u), r.w), r.vl), r.vr);
+    r.roi = united(r.roi, near(r.u, reach));
+    fill_heights(r);
+    fill_errors(r);
+    r.rank = static_cast<std::uint16_t>(coordinate(0, 300));
+    return r;
+  }
+
+ private:
+  std::int32_t coordinate(std::int32_t lo, std::int32_t hi) {
+    return std::uniform_int_distribution<std::int32_t>(lo, hi)(random_);
+  }
+  double real(double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random_);
+  }
+
+  GridPoint near(GridPoint u, std::int32_t reach) {
+    for (;;) {
+      const GridPoint p{std::clamp(u.x + coordinate(-reach, reach), 0, options_.side),
+                        std::clamp(u.y + coordinate(-reach, reach), 0, options_.side)};
+      if (!(p == u)) {
+        return p;
+      }
+    }
+  }
+  HeightBits height(double h) { return heights_.bits(std::floor(h)); }
+
+  void fill_heights(VertexSplit& r) {
+    const double base = real(0.0, 3000.0);
+    r.height = height(base);
+    r.height_lo = height(base - real(0.0, 50.0));
+    r.height_hi = height(base + real(0.0, 50.0));
+    if (coordinate(0, 19) == 0) {
+      r.flags = VertexSplit::kVertexVoid | VertexSplit::kLeftVoid;
+      r.height = 0;
+      r.height_lo = height(1.0);  // empty: lo > hi
+      r.height_hi = height(0.0);
+    }
+  }
+  void fill_errors(VertexSplit& r) {
+    const int kind = coordinate(0, 19);
+    r.error = kind == 0   ? 0.0F
+              : kind == 1 ? std::numeric_limits<float>::infinity()
+                          : static_cast<float>(std::exp2(real(-6.0, 8.0)));
+    r.deviation = r.error * static_cast<float>(real(1.0, 1.5));
+  }
+
+  RandomRecords options_;
+  HeightEncoding heights_;
+  std::mt19937_64 random_;
+  std::set<VertexKey> seen_;
+};
+
+}  // namespace
+
+StoreContent random_content(const RandomRecords& options) {
+  StoreContent c = flat_square(options.side, options.type);
+  RecordMaker maker(options, c.facts.heights);
+  for (std::size_t s = 0; s < options.segments; ++s) {
+    auto& segment = c.segments.emplace_back();
+    for (std::size_t i = 0; i < options.records; ++i) {
+      segment.push_back(maker.make());
+    }
+  }
+  c.facts.source_samples = 4 + options.segments * options.records;
+  return c;
+}
+
+void write_store(const std::string& path, const StoreContent& content,
+                 const StoreWriterOptions& options) {
+  const auto writer = StoreWriter::create(path, options);
+  for (std::vector<VertexSplit> segment : content.segments) {
+    writer->add_segment(segment, content.facts.heights);
+  }
+  writer->publish(content.facts, content.t0, content.metadata);
+}
+
+std::vector<VertexSplit> read_all(const StoreFile& store) {
+  std::vector<VertexSplit> all;
+  IoCounters counters;
+  for (std::uint64_t i = 0; i < store.pages().page_count(); ++i) {
+    store.read_records(PageId{i}, all, counters);
+  }
+  return all;
+}
+
+void sort_by_key(std::vector<VertexSplit>& records) {
+  std::sort(records.begin(), records.end(), [](const VertexSplit& a, const VertexSplit& b) {
+    return std::tuple(a.rank, a.error, key_of(a.u)) < std::tuple(b.rank, b.error, key_of(b.u));
+  });
+}
+
+namespace {
+
+template <class T>
+T object_at(const Bytes& file, std::uint64_t offset) {
+  T object;
+  std::memcpy(&object, file.data() + offset, sizeof object);
+  return object;
+}
+
+template <class T>
+void set_object(Bytes& file, std::uint64_t offset, const T& object) {
+  std::memcpy(file.data() + offset, &object, sizeof object);
+}
+
+bool holds(const Bytes& file, std::uint64_t offset, std::uint64_t bytes) {
+  return offset <= file.size() && bytes <= file.size() - offset;
+}
+
+}  // namespace
+
+layout::FileHeader header_of(const Bytes& file) { return object_at<layout::FileHeader>(file, 0); }
+void set_header(Bytes& file, const layout::FileHeader& header) { set_object(file, 0, header); }
+
+std::vector<layout::SectionEntry> sections_of(const Bytes& file) {
+  std::vector<layout::SectionEntry> sections;
+  const std::uint32_t count = std::min(header_of(file).section_count, layout::kMaxSections);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint64_t offset = sizeof(layout::FileHeader) + i * sizeof(layout::SectionEntry);
+    if (holds(file, offset, sizeof(layout::SectionEntry))) {
+      sections.push_back(object_at<layout::SectionEntry>(file, offset));
+    }
+  }
+  return sections;
+}
+
+void set_sections(Bytes& file, const std::vector<layout::SectionEntry>& sections) {
+  std::memcpy(file.data() + sizeof(layout::FileHeader), sections.data(),
+              sections.size() * sizeof(layout::SectionEntry));
+}
+
+layout::SectionEntry section_of(const Bytes& file, layout::SectionKind kind) {
+  for (const auto& s : sections_of(file)) {
+    if (s.kind == static_cast<std::uint32_t>(kind)) {
+      return s;
+    }
+  }
+  return {};
+}
+
+namespace {
+
+// Pages into leaves, leaves into the level above, and so on. Returns the checksum of the root.
+std::uint64_t seal_index(Bytes& file, const layout::FileHeader& h) {
+  const auto index = section_of(file, layout::SectionKind::kIndex);
+  const auto pages = section_of(file, layout::SectionKind::kPages);
+  if (h.page_count == 0 || h.page_bytes == 0 || h.page_count > file.size() / h.page_bytes) {
+    return index.checksum;
+  }
+  const IndexShape shape(h.page_count);
+  if (!holds(file, index.offset, shape.total_bytes()) || h.first_page >= h.page_count) {
+    return index.checksum;
+  }
+  const PageSlots slots{h.page_count, h.first_page, pages.offset, h.page_bytes};
+  const auto node_offset = [&](std::uint32_t level, std::uint64_t number) {
+    return index.offset + shape.position(level, number) * layout::kNodeBytes;
+  };
+  for (std::uint32_t level = 0; level < shape.levels(); ++level) {
+    for (std::uint64_t child = 0; child < shape.children(level); ++child) {
+      const std::uint64_t offset =
+          level == 0 ? slots.offset_of(PageId{child}) : node_offset(level - 1, child);
+      const std::uint64_t bytes = level == 0 ? h.page_bytes : layout::kNodeBytes;
+      if (!holds(file, offset, bytes)) {
+        return index.checksum;
+      }
+      const std::uint64_t sum = checksum_of(std::span(file).subspan(offset, bytes));
+      const std::uint64_t place = node_offset(level, child / layout::kFanOut) +
+                                  offsetof(layout::IndexNode, entry) +
+                                  child % layout::kFanOut * sizeof(layout::NodeEntry) +
+                                  offsetof(layout::NodeEntry, checksum);
+      set_object(file, place, sum);
+    }
+  }
+  return checksum_of(
+      std::span(file).subspan(node_offset(shape.levels() - 1, 0), layout::kNodeBytes));
+}
+
+}  // namespace
+
+void seal(Bytes& file) {
+  if (file.size() < sizeof(layout::FileHeader)) {
+    return;
+  }
+  layout::FileHeader h = header_of(file);
+  std::vector<layout::SectionEntry> sections = sections_of(file);
+  for (auto& s : sections) {
+    if (s.kind == static_cast<std::uint32_t>(layout::SectionKind::kIndex)) {
+      s.checksum = seal_index(file, h);
+    } else if (s.kind != static_cast<std::uint32_t>(layout::SectionKind::kPages) &&
+               holds(file, s.offset, s.bytes)) {
+      s.checksum = checksum_of(std::span(file).subspan(s.offset, s.bytes));
+    }
+  }
+  set_sections(file, sections);
+  h.section_table_checksum = checksum_of(std::as_bytes(std::span(sections)));
+  h.header_checksum = checksum_of(
+      std::as_bytes(std::span(&h, 1)).first(offsetof(layout::FileHeader, header_checksum)));
+  set_header(file, h);
+}
+
+}  // namespace ptin::test

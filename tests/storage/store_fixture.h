@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Stores for tests: random records, a folder that goes away, and files damaged and sealed again.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "storage/layout.h"
+#include "storage/store_file.h"
+#include "storage/store_writer.h"
+
+namespace ptin::test {
+
+/// A folder of its own, removed with all it holds.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder();
+  [[nodiscard]] std::string path() const { return path_.string(); }
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+  [[nodiscard]] std::vector<std::string> names() const;  ///< Of what is in it, sorted.
+
+ private:
+  std::filesystem::path path_;
+};
+
+using Bytes = std::vector<std::byte>;
+[[nodiscard]] Bytes read_file(const std::string& path);
+void write_file(const std::string& path, const Bytes& bytes);
+
+/// What a store is made from.
+struct StoreContent {
+  StoreFacts facts;
+  CoarsestTin t0;
+  std::string metadata = R"({"source": "a test"})";
+  std::vector<std::vector<VertexSplit>> segments;
+
+  [[nodiscard]] std::vector<VertexSplit> all_records() const;
+};
+
+/// Two triangles over a square of `side` grid units and no record; heights as float32, or as int32
+/// in steps of 0.25.
+[[nodiscard]] StoreContent flat_square(std::int32_t side, HeightType type = HeightType::float32);
+
+struct RandomRecords {
+  std::uint64_t seed = 1;
+  std::size_t segments = 3;
+  std::size_t records = 1000;   ///< Of each segment.
+  std::int32_t side = 1 << 20;  ///< Of the square.
+  HeightType type = HeightType::float32;
+};
+/// Records that storage cannot tell from those of a terrain, with different u: small ones mostly, a
+/// few as wide as the square, errors over many octaves, some 0, some infinite; some void.
+[[nodiscard]] StoreContent random_content(const RandomRecords& options);
+
+/// Writes a store and publishes it.
+void write_store(const std::string& path, const StoreContent& content,
+                 const StoreWriterOptions& options = {});
+
+/// All records of a store, page by page.
+[[nodiscard]] std::vector<VertexSplit> read_all(const StoreFile& store);
+
+/// By rank, error and key, so that two lists can be compared.
+void sort_by_key(std::vector<VertexSplit>& records);
+
+[[nodiscard]] layout::FileHeader header_of(const Bytes& file);
+void set_header(Bytes& file, const layout::FileHeader& header);
+[[nodiscard]] std::vector<layout::SectionEntry> sections_of(const Bytes& file);
+void set_sections(Bytes& file, const std::vector<layout::SectionEntry>& sections);
+[[nodiscard]] layout::SectionEntry section_of(const Bytes& file, layout::SectionKind kind);
+
+/// Computes every checksum again, as far as the structure can be followed: pages, leaves, inner
+/// nodes, sections, table, header. What was changed before is then a lie that only a look at its
+/// meaning can find. Every byte pattern is safe to pass.
+void seal(Bytes& file);
+
+/// A predicate from a function.
+class FunctionPredicate final : public AttributePredicate {
+ public:
+  explicit FunctionPredicate(std::function<bool(const Attributes&)> f) : f_(std::move(f)) {}
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override { return f_(a); }
+
+ private:
+  std::function<bool(const Attributes&)> f_;
+};
+
+}  // namespace ptin::test
