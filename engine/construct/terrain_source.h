@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What every source of a terrain delivers: a frame (grid, heights, CRS) and samples on the grid.
-// Raster sources are in raster_source.h, point sources in point_source.h; LAS, OGR layers and TINs belong beside them.
+// Raster sources are in raster_source.h, point sources in point_source.h; LAS, OGR layers and TINs
+// belong beside them.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +14,22 @@
 
 namespace ptin {
 
-/// How grid positions and height codes relate to the world, and what was lost on the way to the grid.
+/// How grid positions and height codes relate to the world, and what was lost on the way to the
+/// grid.
 struct TerrainFrame {
   AffineMap map;
   HeightEncoding heights;
-  std::string crs_wkt;            ///< WKT2:2019 of the horizontal or compound CRS; empty when unknown.
+  std::string crs_wkt;  ///< WKT2:2019 of the horizontal or compound CRS; empty when unknown.
   bool vertical_crs_known = false;
-  bool geographic = false;        ///< Coordinates are degrees.
-  std::string horizontal_unit;    ///< "metre", "degree", "US survey foot", "unknown".
+  bool geographic = false;      ///< Coordinates are degrees.
+  std::string horizontal_unit;  ///< "metre", "degree", "US survey foot", "unknown".
   std::string vertical_unit;
-  double height_rounding = 0.0;   ///< Largest rounding of a height into its encoding, height's unit.
-  double height_quantum = 0.0;    ///< Smallest step between heights: `step` for int32; for float32 the decimal step found, or range / 2^16.
-  double min_height = 0.0, max_height = 0.0;  ///< Of all samples with a height; min > max when there is none.
+  double height_rounding = 0.0;  ///< Largest rounding of a height into its encoding, height's unit.
+  double height_quantum =
+      0.0;  ///< Smallest step between heights, > 0: `step` for int32; for float32 the decimal step
+            ///< found, else (rounded int32 too) range / 2^16.
+  double min_height = 0.0,
+         max_height = 0.0;  ///< Of all samples with a height; min > max when there is none.
 };
 
 /// Choices that decide what is read from a source.
