@@ -2,8 +2,12 @@
 #include "engine/query/certificate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
+
+#include "storage/error_table.h"
 
 namespace ptin {
 
@@ -11,6 +15,16 @@ namespace {
 
 Certificate of_finest(const StoreFile& store) {
   return {store.facts().base_error, store.facts().base_deviation, true};
+}
+
+/// The largest float that is not above `v`: no stored error lies between them. REQUIRES: v >= 0.
+float rounded_down(double v) {
+  if (v > std::numeric_limits<float>::max()) {
+    return v < std::numeric_limits<double>::infinity() ? std::numeric_limits<float>::max()
+                                                       : std::numeric_limits<float>::infinity();
+  }
+  const auto f = static_cast<float>(v);
+  return f > v ? std::nextafter(f, 0.0F) : f;
 }
 
 void leave_out(double error, double deviation, Certificate& certificate) {
@@ -23,12 +37,14 @@ void leave_out(double error, double deviation, Certificate& certificate) {
 
 Certificate certify_below(const StoreFile& store, double bound) {
   Certificate certificate = of_finest(store);
-  double below = -1.0;
+  if (!(bound >= 0)) {
+    return certificate;
+  }
+  const float last = error_bin_upper(rounded_down(bound));
   for (const ErrorBin& bin : store.error_bins()) {
-    if (bin.records != 0 && below < bound) {
+    if (bin.records != 0 && bin.upper <= last) {
       leave_out(std::min<double>(bin.upper, bound), bin.max_deviation, certificate);
     }
-    below = bin.upper;
   }
   return certificate;
 }

@@ -27,18 +27,14 @@ void read_pages(const StoreFile& store, std::span<const PageId> pages,
                 const AttributePredicate& predicate, QueryContext& context,
                 std::vector<PendingSplit>& out) {
   store.pages().announce(pages, context.cost.io);
-  const HeightEncoding heights = store.facts().heights;
   const std::size_t before = out.size();
   std::vector<VertexSplit> records;
   for (const PageId page : pages) {
     context.check_stop();
     records.clear();
-    store.read_records(page, records, context.cost.io);
-    context.cost.records_examined += records.size();
+    context.cost.records_examined += store.read_matching(page, predicate, records, context.cost.io);
     for (const VertexSplit& r : records) {
-      if (predicate.holds(attributes_of(r, heights))) {
-        out.push_back(pending_of(r, page));
-      }
+      out.push_back(pending_of(r, page));
     }
   }
   context.cost.records_retrieved += out.size() - before;
