@@ -2,38 +2,84 @@
 #include "engine/construct/collapse_choice.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
+#include "engine/check.h"
 #include "engine/construct/void_measure.h"
 #include "engine/mesh/collapse.h"
 
 namespace ptin {
 
-void CollapseChooser::collect(const Tile& tile, const StarSamples& s) {
+/// Screens every w by the residual of u, from the cross products of the link alone. With c(i, k) the cross product of link
+/// vertices i and k relative to u, the fan triangle (w, i, i + 1) has twice the area c(i, i + 1) + c(w, i) - c(w, i + 1), and u lies
+/// in it where c(w, i) >= 0 >= c(w, i + 1).
+void CollapseChooser::screen_all(const Tile& tile, const StarSamples& s) {
   const std::size_t degree = s.star.degree();
-  if (frames_.size() < degree) {
-    frames_.resize(degree);
-  }
-  candidates_.clear();
-  std::size_t used = 0;
-  const std::size_t step = s.star.closed ? 1 : degree - 1;  // at a border only the two ends
-  for (std::size_t j = 0; j < degree; j += step) {
-    if (make_fan(s, j, frames_[used])) {
-      const VertexId w = s.star.link[j];
-      candidates_.push_back({used, 0.0, key_of(tile.tin.position(w)),
-                             tile.vertex_state[w].degree + degree > kComfortableDegree + 4});
-      ++used;
+  crosses_.resize(degree * degree);
+  double* c = crosses_.data();
+  for (std::size_t i = 0; i < degree; ++i) {
+    c[i * degree + i] = 0.0;
+    for (std::size_t k = i + 1; k < degree; ++k) {
+      const double cross = s.link_x[i] * s.link_y[k] - s.link_y[i] * s.link_x[k];
+      c[i * degree + k] = cross;
+      c[k * degree + i] = -cross;
     }
   }
-  const auto comfortable = [](const Candidate& c) { return !c.crowded; };
-  if (std::any_of(candidates_.begin(), candidates_.end(), comfortable)) {
-    std::erase_if(candidates_, [](const Candidate& c) { return c.crowded; });
+  for (std::size_t w = 0; w < degree; ++w) {
+    const double* of_w = c + w * degree;
+    double screen = 0.0;
+    bool valid = true;
+    std::size_t i = w + 1 == degree ? 0 : w + 1;
+    for (std::size_t n = 2; n < degree; ++n) {
+      const std::size_t k = i + 1 == degree ? 0 : i + 1;
+      const double determinant = c[i * degree + k] + of_w[i] - of_w[k];
+      if (!(determinant > 0.0)) {
+        valid = false;
+        break;
+      }
+      if (of_w[i] >= 0.0 && of_w[k] <= 0.0) {
+        const double w_z = s.link_z[w];
+        const double numerator =
+            determinant * -w_z + ((s.link_z[i] - w_z) * of_w[k] - (s.link_z[k] - w_z) * of_w[i]);
+        screen = std::abs(numerator) * (1.0 / determinant);
+      }
+      i = k;
+    }
+    if (valid) {
+      candidates_.push_back({w, screen, key_of(tile.tin.position(s.star.link[w]))});
+    }
   }
 }
 
-CollapseChoice CollapseChooser::choose_on_surface(const Tile& tile, const StarSamples& s) {
-  for (Candidate& c : candidates_) {
-    c.screen = largest_residual(s, frames_[c.frame], 0, kSampleLanes, std::numeric_limits<double>::infinity());
+void CollapseChooser::leave_out_crowded(const Tile& tile, const StarSamples& s) {
+  const auto crowded = [&](const Candidate& c) {
+    return tile.vertex_state[s.star.link[c.j]].degree + s.star.degree() > kComfortableDegree + 4;
+  };
+  if (!std::all_of(candidates_.begin(), candidates_.end(), crowded)) {
+    std::erase_if(candidates_, crowded);
   }
+}
+
+void CollapseChooser::collect(const Tile& tile, const StarSamples& s) {
+  const std::size_t degree = s.star.degree();
+  candidates_.clear();
+  if (s.star.closed && !s.is_wide()) {
+    screen_all(tile, s);
+  } else {
+    const std::size_t step = s.star.closed ? 1 : degree - 1;  // at a border only the two ends
+    for (std::size_t j = 0; j < degree; j += step) {
+      if (make_fan(s, j, fan_)) {
+        candidates_.push_back({j, 0.0, key_of(tile.tin.position(s.star.link[j]))});
+      }
+    }
+  }
+  if (candidates_.size() > 1) {
+    leave_out_crowded(tile, s);
+  }
+}
+
+CollapseChoice CollapseChooser::choose_on_surface(const Tile& tile, StarSamples& s) {
   std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
     return a.screen != b.screen ? a.screen < b.screen : a.key < b.key;
   });
@@ -43,21 +89,23 @@ CollapseChoice CollapseChooser::choose_on_surface(const Tile& tile, const StarSa
     if (c.screen > best_error) {
       break;
     }
-    double error = c.screen;
-    if (s.x.size() > kSampleLanes) {
-      error = std::max(error, largest_residual(s, frames_[c.frame], kSampleLanes, s.x.size(), best_error));
-    }
+    PTIN_CHECK(make_fan(s, c.j, fan_));
+    const double error = largest_residual(s, fan_, 0, s.x.size(), best_error);
     if (error < best_error || (error == best_error && (best == nullptr || c.key < best->key))) {
       best = &c;
       best_error = error;
+      std::swap(fan_, best_fan_);
     }
   }
   const double bound = residual_bound(s, tile.units);
   double error = scaled_up(best_error) + bound;
-  if (bound > 0.0 && best_error <= bound && all_residuals_zero(tile, s, frames_[best->frame])) {
-    error = 0.0;
+  if (bound > 0.0 && best_error <= bound) {
+    gather_sources(tile, s);
+    if (all_residuals_zero(tile, s, best_fan_)) {
+      error = 0.0;
+    }
   }
-  return {frames_[best->frame].j, error};
+  return {best->j, error};
 }
 
 CollapseChoice CollapseChooser::choose_with_voids(const Tile& tile, const StarSamples& s) {
@@ -67,21 +115,22 @@ CollapseChoice CollapseChooser::choose_with_voids(const Tile& tile, const StarSa
   for (const Candidate& c : candidates_) {
     double error = 0.0;
     if (!s.void_only) {
-      const VoidMeasure measure = measure_with_voids(tile, s, frames_[c.frame], nullptr);
+      PTIN_CHECK(make_fan(s, c.j, fan_));
+      const VoidMeasure measure = measure_with_voids(tile, s, fan_, nullptr);
       if (!measure.allowed) {
         continue;
       }
       error = scaled_up(measure.error) + bound;
     }
     if (best.j == CollapseChoice::kNoNeighbour || error < best.error || (error == best.error && c.key < best_key)) {
-      best = {frames_[c.frame].j, error};
+      best = {c.j, error};
       best_key = c.key;
     }
   }
   return best;
 }
 
-CollapseChoice CollapseChooser::choose(const Tile& tile, const StarSamples& s) {
+CollapseChoice CollapseChooser::choose(const Tile& tile, StarSamples& s) {
   collect(tile, s);
   if (candidates_.empty()) {
     return {};

@@ -24,23 +24,26 @@ struct CollapseChoice {
 /// there is no other. Scratch buffers are kept between calls; one chooser a thread.
 class CollapseChooser {
  public:
-  /// Cost: for most stars one full pass over the samples (for the winner) and one block of lanes for each other candidate, since
-  /// candidates are tried in the order of a screen and given up once they exceed the best.
-  [[nodiscard]] CollapseChoice choose(const Tile& tile, const StarSamples& s);
+  /// Cost: the square of the degree for the screen (the residual of u alone), which orders the candidates and leaves the worse ones
+  /// unmeasured; then for most stars one pass over the samples for the winner, and a few lanes for one or two others, which are given up
+  /// once they exceed the best.
+  [[nodiscard]] CollapseChoice choose(const Tile& tile, StarSamples& s);
 
  private:
   struct Candidate {
-    std::size_t frame;  ///< Index into frames_.
-    double screen;      ///< Its largest residual in the first block of lanes.
+    std::size_t j;
+    double screen;  ///< |residual| of u, a lower bound of the error; 0 where it is not known.
     VertexKey key;
-    bool crowded;
   };
-  [[nodiscard]] CollapseChoice choose_on_surface(const Tile& tile, const StarSamples& s);
-  [[nodiscard]] CollapseChoice choose_with_voids(const Tile& tile, const StarSamples& s);
   void collect(const Tile& tile, const StarSamples& s);
+  void screen_all(const Tile& tile, const StarSamples& s);
+  void leave_out_crowded(const Tile& tile, const StarSamples& s);
+  [[nodiscard]] CollapseChoice choose_on_surface(const Tile& tile, StarSamples& s);
+  [[nodiscard]] CollapseChoice choose_with_voids(const Tile& tile, const StarSamples& s);
 
-  std::vector<FanFrame> frames_;
   std::vector<Candidate> candidates_;
+  std::vector<double> crosses_;  ///< crosses_[i * degree + k]: cross product of link i and link k, relative to u.
+  FanFrame fan_, best_fan_;
 };
 
 }  // namespace ptin

@@ -9,10 +9,6 @@ namespace ptin {
 
 namespace {
 
-/// Above this, products of coordinates are not exact in doubles and go through 64-bit integers: differences of coordinates
-/// below 2^26 have products below 2^52, whose difference is an integer below 2^53.
-constexpr double kExactRadius = 0x1p25;
-
 std::int64_t cross_exact(double ax, double ay, double bx, double by) noexcept {
   return static_cast<std::int64_t>(ax) * static_cast<std::int64_t>(by) -
          static_cast<std::int64_t>(ay) * static_cast<std::int64_t>(bx);
@@ -37,6 +33,14 @@ using Lanes = double __attribute__((vector_size(kSampleLanes * sizeof(double))))
 
 void load(Lanes& lanes, const double* from) noexcept { __builtin_memcpy(&lanes, from, sizeof lanes); }
 void store(double* to, const Lanes& lanes) noexcept { __builtin_memcpy(to, &lanes, sizeof lanes); }
+
+using LaneIndices = long long __attribute__((vector_size(kSampleLanes * sizeof(long long))));
+
+inline double largest_lane(Lanes v) noexcept {
+  const Lanes other = __builtin_shuffle(v, LaneIndices{2, 3, 0, 1});
+  v = v > other ? v : other;
+  return v[0] > v[1] ? v[0] : v[1];
+}
 
 /// The loops below are the same for narrow coordinates; wide ones are rare (triangles more than 2^25 grid units across) and
 /// take the scalar loop.
@@ -64,15 +68,12 @@ double largest_residual_narrow(const double* x, const double* y, const double* z
       const Lanes after = sx[i + 1] * qy - sy[i + 1] * qx;
       Lanes r = (det[i] * qz + (sz[i] * after - sz[i + 1] * before)) * inv[i];
       r = r < 0.0 ? -r : r;
-      r = (before >= 0.0) & (after <= 0.0) ? r : Lanes{};
+      const Lanes within = -after < before ? -after : before;  // not negative inside of the triangle
+      r = within < 0.0 ? block : r;
       block = r > block ? r : block;
       before = after;
     }
-    double lanes[kSampleLanes];
-    __builtin_memcpy(lanes, &block, sizeof block);
-    for (const double r : lanes) {
-      worst = r > worst ? r : worst;
-    }
+    worst = std::max(worst, largest_lane(block));
     if (worst > stop_above) {
       break;
     }
@@ -99,10 +100,10 @@ void assign_narrow(const double* x, const double* y, const double* z, std::size_
       const Lanes after = fan.spoke_x[i + 1] * qy - fan.spoke_y[i + 1] * qx;
       Lanes r = (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) * fan.inverse[i];
       r = r < 0.0 ? -r : r;
-      const auto inside = (before >= 0.0) & (after <= 0.0);
+      const Lanes within = -after < before ? -after : before;
       const Lanes number = Lanes{} + static_cast<double>(i);
-      worst = inside ? r : worst;
-      found = inside ? number : found;
+      worst = within < 0.0 ? worst : r;
+      found = within < 0.0 ? found : number;
       before = after;
     }
     store(triangle + k, found);
@@ -132,7 +133,7 @@ double residual_wide(const StarSamples& s, const FanFrame& fan, std::size_t k, d
 bool along_the_border(const StarSamples& s, std::size_t j) noexcept {
   const std::size_t last = s.link_x.size() - 1;
   return (j == 0 || j == last) && s.star.triangles.size() >= 2 &&
-         cross(s.link_x[0], s.link_y[0], s.link_x[last], s.link_y[last], s.largest_xy > kExactRadius) == 0.0;
+         cross(s.link_x[0], s.link_y[0], s.link_x[last], s.link_y[last], s.is_wide()) == 0.0;
 }
 
 /// Codes of a star as integers of one scale, so that 128 bits hold any residual times twice an area.
@@ -164,7 +165,7 @@ bool make_fan(const StarSamples& s, std::size_t j, FanFrame& fan) {
   if (!s.star.closed && !along_the_border(s, j)) {
     return false;
   }
-  const bool wide = s.largest_xy > kExactRadius;
+  const bool wide = s.is_wide();
   fan.j = j;
   fan.w_x = s.link_x[j];
   fan.w_y = s.link_y[j];
@@ -197,7 +198,7 @@ bool make_fan(const StarSamples& s, std::size_t j, FanFrame& fan) {
 
 double largest_residual(const StarSamples& s, const FanFrame& fan, std::size_t begin, std::size_t end,
                         double stop_above) noexcept {
-  if (s.largest_xy <= kExactRadius) {
+  if (!s.is_wide()) {
     return largest_residual_narrow(s.x.data(), s.y.data(), s.z.data(), fan, begin, end, stop_above);
   }
   double worst = 0.0;
@@ -212,7 +213,7 @@ void assign_samples(const StarSamples& s, const FanFrame& fan, std::vector<doubl
                     std::vector<double>& residual) {
   triangle.resize(s.x.size());
   residual.resize(s.x.size());
-  if (s.largest_xy <= kExactRadius) {
+  if (!s.is_wide()) {
     assign_narrow(s.x.data(), s.y.data(), s.z.data(), s.x.size(), fan, triangle.data(), residual.data());
     return;
   }

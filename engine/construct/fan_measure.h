@@ -15,9 +15,9 @@ namespace ptin {
 struct FanFrame {
   std::size_t j = 0;  ///< w is link[j] of the star.
   double w_x = 0.0, w_y = 0.0, w_z = 0.0;             ///< w relative to u.
-  std::vector<double> spoke_x, spoke_y, spoke_z;      ///< One more than triangles.
-  std::vector<double> determinant, inverse;           ///< Twice the area of each triangle, and its inverse.
-  std::vector<std::uint32_t> star_triangle;           ///< Index in the star of the triangle that each replaces.
+  std::vector<double> spoke_x, spoke_y, spoke_z;  ///< One more than triangles.
+  std::vector<double> determinant, inverse;       ///< Twice the area of each triangle, and its inverse.
+  std::vector<std::uint32_t> star_triangle;       ///< Index in the star of the triangle that each replaces.
 
   [[nodiscard]] std::size_t triangles() const noexcept { return determinant.size(); }
 };

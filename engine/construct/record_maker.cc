@@ -181,8 +181,9 @@ void RecordMaker::hand_over_samples(const StarSamples& s) {
   }
 }
 
-void RecordMaker::collapse_and_record(const StarSamples& s, std::size_t j) {
+void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {
   PTIN_CHECK(make_fan(s, j, fan_));
+  gather_sources(tile_, s);
   const OwnPart own = measure(s);
   const CollapseSite site = collapse_site(s.star, j);
   const VertexSplit record = make_record(s, own, site);

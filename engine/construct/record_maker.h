@@ -36,7 +36,7 @@ class RecordMaker {
   /// Collapses the centre of `s` into link[j]: appends the record (DESIGN.md, section 2: own part, and the union and maximum of what the
   /// star carries), hands the samples of the star to the fan, and changes the mesh.
   /// @throws Error resource_exhausted when the rank would exceed 65 535
-  void collapse_and_record(const StarSamples& s, std::size_t j);
+  void collapse_and_record(StarSamples& s, std::size_t j);
 
  private:
   struct OwnPart {

@@ -9,48 +9,6 @@ namespace ptin {
 
 namespace {
 
-void gather_link(const Tile& tile, GridPoint origin, double origin_code, StarSamples& out) {
-  const std::size_t degree = out.star.degree();
-  out.link_x.resize(degree);
-  out.link_y.resize(degree);
-  out.link_z.resize(degree);
-  for (std::size_t i = 0; i < degree; ++i) {
-    const Vertex& v = tile.tin.vertices[out.star.link[i]];
-    out.link_x[i] = static_cast<double>(v.position.x) - origin.x;
-    out.link_y[i] = static_cast<double>(v.position.y) - origin.y;
-    out.largest_xy = std::max({out.largest_xy, std::abs(out.link_x[i]), std::abs(out.link_y[i])});
-    out.link_z[i] = tile.tin.has_height[out.star.link[i]] != 0 ? tile.units.heights.code(v.height) - origin_code : 0.0;
-    out.largest_z = std::max(out.largest_z, std::abs(out.link_z[i]));
-  }
-}
-
-/// The first sample of each list comes first of all: it is the worst one of its triangle, so the first block of lanes is a
-/// good screen for the choice of w.
-void gather_sources(const Tile& tile, VertexId u, StarSamples& out) {
-  const Vertex& vertex = tile.tin.vertices[u];
-  out.source.clear();
-  out.source.push_back({vertex.position, vertex.height, tile.vertex_state[u].depth});
-  std::size_t total = 1;
-  for (const TriangleId t : out.star.triangles) {
-    const SampleSlot slot = tile.carried[t].samples;
-    if (slot.count != 0) {
-      out.source.push_back(*tile.samples.data(slot));
-      total += slot.count;
-    }
-  }
-  if (total == out.source.size()) {
-    return;
-  }
-  out.source.reserve(total);
-  for (const TriangleId t : out.star.triangles) {
-    const SampleSlot slot = tile.carried[t].samples;
-    if (slot.count > 1) {
-      const Sample* samples = tile.samples.data(slot);
-      out.source.insert(out.source.end(), samples + 1, samples + slot.count);
-    }
-  }
-}
-
 template <HeightType type>
 double code_of(HeightBits bits) noexcept {
   return type == HeightType::int32 ? static_cast<double>(std::bit_cast<std::int32_t>(bits))
@@ -58,24 +16,93 @@ double code_of(HeightBits bits) noexcept {
 }
 
 template <HeightType type>
-void spread(GridPoint origin, double origin_code, StarSamples& out) {
-  const std::size_t n = out.source.size();
-  const std::size_t padded = (n + kSampleLanes - 1) / kSampleLanes * kSampleLanes;
+void gather_link(const Tile& tile, GridPoint origin, double origin_code, StarSamples& out) {
+  const std::size_t degree = out.star.degree();
+  out.link_x.resize(degree);
+  out.link_y.resize(degree);
+  out.link_z.resize(degree);
+  double largest_xy = 0.0;
+  double largest_z = 0.0;
+  for (std::size_t i = 0; i < degree; ++i) {
+    const Vertex& v = tile.tin.vertices[out.star.link[i]];
+    const bool has_height = !tile.has_voids || tile.tin.has_height[out.star.link[i]] != 0;
+    const auto x = static_cast<double>(v.position.x - origin.x);
+    const auto y = static_cast<double>(v.position.y - origin.y);
+    const double z = has_height ? code_of<type>(v.height) - origin_code : 0.0;
+    out.link_x[i] = x;
+    out.link_y[i] = y;
+    out.link_z[i] = z;
+    largest_xy = std::max({largest_xy, std::abs(x), std::abs(y)});
+    largest_z = std::max(largest_z, std::abs(z));
+  }
+  out.largest_xy = largest_xy;
+  out.largest_z = largest_z;
+}
+
+/// Lays samples out one after the other; heights of samples without one are 0 (those with depth below 0).
+template <HeightType type>
+class Layout {
+ public:
+  Layout(GridPoint origin, double origin_code, StarSamples& out)
+      : origin_(origin), origin_code_(origin_code), x_(out.x.data()), y_(out.y.data()), z_(out.z.data()) {}
+  void add(const Sample& s) noexcept {
+    const double z = s.depth < 0.0F ? 0.0 : code_of<type>(s.height) - origin_code_;
+    x_[n_] = static_cast<double>(s.position.x - origin_.x);
+    y_[n_] = static_cast<double>(s.position.y - origin_.y);
+    z_[n_] = z;
+    largest_ = std::max(largest_, std::abs(z));
+    ++n_;
+  }
+  void pad() noexcept {  // with u itself
+    for (; n_ % kSampleLanes != 0; ++n_) {
+      x_[n_] = y_[n_] = z_[n_] = 0.0;
+    }
+  }
+  [[nodiscard]] double largest() const noexcept { return largest_; }
+
+ private:
+  GridPoint origin_;
+  double origin_code_;
+  double *x_, *y_, *z_;
+  std::size_t n_ = 0;
+  double largest_ = 0.0;
+};
+
+/// u, then the first sample of each list (the worst one of its triangle, so that the first lanes are a good screen for the
+/// choice of w), then the others.
+template <class Add>
+void for_each_sample(const Tile& tile, const StarSamples& s, const Add& add) {
+  const Vertex& u = tile.tin.vertices[s.star.center];
+  add(Sample{u.position, u.height, tile.vertex_state[s.star.center].depth});
+  for (const TriangleId t : s.star.triangles) {
+    if (const SampleSlot slot = tile.carried[t].samples; slot.count != 0) {
+      add(*tile.samples.data(slot));
+    }
+  }
+  for (const TriangleId t : s.star.triangles) {
+    const SampleSlot slot = tile.carried[t].samples;
+    const Sample* samples = tile.samples.data(slot);
+    for (std::uint32_t i = 1; i < slot.count; ++i) {
+      add(samples[i]);
+    }
+  }
+}
+
+template <HeightType type>
+void gather_samples(const Tile& tile, GridPoint origin, double origin_code, StarSamples& out) {
+  std::size_t count = 1;
+  for (const TriangleId t : out.star.triangles) {
+    count += tile.carried[t].samples.count;
+  }
+  const std::size_t padded = (count + kSampleLanes - 1) / kSampleLanes * kSampleLanes;
+  out.count = count;
   out.x.resize(padded);
   out.y.resize(padded);
   out.z.resize(padded);
-  double largest = out.largest_z;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Sample& s = out.source[i];
-    out.x[i] = static_cast<double>(s.position.x - origin.x);
-    out.y[i] = static_cast<double>(s.position.y - origin.y);
-    out.z[i] = s.depth < 0.0F ? 0.0 : code_of<type>(s.height) - origin_code;
-    largest = std::max(largest, std::abs(out.z[i]));
-  }
-  for (std::size_t i = n; i < padded; ++i) {
-    out.x[i] = out.y[i] = out.z[i] = 0.0;  // u itself once more
-  }
-  out.largest_z = largest;
+  Layout<type> layout(origin, origin_code, out);
+  for_each_sample(tile, out, [&](const Sample& s) { layout.add(s); });
+  layout.pad();
+  out.largest_z = std::max(out.largest_z, layout.largest());
 }
 
 void classify(const Tile& tile, StarSamples& out) {
@@ -84,6 +111,7 @@ void classify(const Tile& tile, StarSamples& out) {
   if (!tile.has_voids) {
     return;
   }
+  gather_sources(tile, out);
   std::size_t voids = 0;
   for (const TriangleId t : out.star.triangles) {
     voids += tile.tin.classes[t] == TriangleClass::kVoid ? 1 : 0;
@@ -111,20 +139,24 @@ double origin_code_of(const Tile& tile, const Star& star) {
 
 }  // namespace
 
+void gather_sources(const Tile& tile, StarSamples& out) {
+  out.source.clear();
+  out.source.reserve(out.count);
+  for_each_sample(tile, out, [&](const Sample& s) { out.source.push_back(s); });
+}
+
 void gather_star(const Tile& tile, VertexId u, StarSamples& out) {
   walk_star(tile.tin, u, out.star);
   const GridPoint origin = tile.tin.vertices[u].position;
   const double origin_code = origin_code_of(tile, out.star);
-  out.largest_xy = 0.0;
-  out.largest_z = 0.0;
-  gather_link(tile, origin, origin_code, out);
-  gather_sources(tile, u, out);
-  classify(tile, out);
   if (tile.units.heights.type == HeightType::int32) {
-    spread<HeightType::int32>(origin, origin_code, out);
+    gather_link<HeightType::int32>(tile, origin, origin_code, out);
+    gather_samples<HeightType::int32>(tile, origin, origin_code, out);
   } else {
-    spread<HeightType::float32>(origin, origin_code, out);
+    gather_link<HeightType::float32>(tile, origin, origin_code, out);
+    gather_samples<HeightType::float32>(tile, origin, origin_code, out);
   }
+  classify(tile, out);
 }
 
 }  // namespace ptin
