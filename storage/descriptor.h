@@ -20,20 +20,18 @@ namespace ptin {
           layout::to_float(e.deviation_max)};
 }
 
+/// The arguments of a predicate that a record stands for, from its first bytes alone. Not checked.
+[[nodiscard]] inline Attributes attributes_of(const layout::RecordHead& h,
+                                              const HeightEncoding& heights) noexcept {
+  return {{h.min_x, h.min_y, h.max_x, h.max_y},
+          {heights.code(h.height_lo), heights.code(h.height_hi)},
+          layout::to_float(h.error),
+          layout::to_float(h.deviation)};
+}
+
 /// True when no field of the entry is one that no writer writes: box on the grid and not empty,
 /// heights no NaN, errors not negative and in order. Says nothing of `kind_and_count`.
 [[nodiscard]] bool is_sound(const layout::NodeEntry& e, const HeightEncoding& heights) noexcept;
-
-/// True when the attributes of a record lie within those of its page.
-[[nodiscard]] inline bool covers(const layout::NodeEntry& page, const Interval& page_heights,
-                                 const VertexSplit& r, const Interval& heights) noexcept {
-  return page.min_x <= r.roi.min_x && page.min_y <= r.roi.min_y && r.roi.max_x <= page.max_x &&
-         r.roi.max_y <= page.max_y && r.error <= layout::to_float(page.error_max) &&
-         r.error >= layout::to_float(page.error_min) &&
-         r.deviation <= layout::to_float(page.deviation_max) &&
-         (heights.lo > heights.hi ||
-          (page_heights.lo <= heights.lo && heights.hi <= page_heights.hi));
-}
 
 /// The union and maximum over records or entries.
 class Descriptor {

@@ -1,12 +1,79 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "storage/page_records.h"
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 
 #include "engine/error.h"
+#include "storage/lanes_internal.h"
 
 namespace ptin {
+
+namespace {
+
+using lanes::Int4;
+
+// The lanes of Int4 as numbers of the type in which heights are stored. Errors are not negative: so
+// as floats and as their bits they have the same order.
+template <class Code>
+using Lanes = std::conditional_t<std::is_same_v<Code, float>, lanes::Float4, Int4>;
+
+// What a page's descriptor admits. `Code` is the type in which heights are stored.
+template <class Code>
+class Bounds {
+ public:
+  explicit Bounds(const layout::NodeEntry& e) : box_(lanes::load<Int4>(&e.min_x)) {
+    const auto lowest = std::bit_cast<std::uint32_t>(least_code());
+    const auto highest = std::bit_cast<std::uint32_t>(most_code());
+    const std::array<std::uint32_t, 4> least{e.height_lo, lowest, e.error_min, 0};
+    const std::array<std::uint32_t, 4> most{highest, e.height_hi, e.error_max, e.deviation_max};
+    least_ = std::bit_cast<Lanes<Code>>(least);
+    most_ = std::bit_cast<Lanes<Code>>(most);
+  }
+
+  [[nodiscard]] bool excludes(const VertexSplit& r) const {
+    const auto roi = lanes::load<Int4>(&r.roi.min_x);
+    const Int4 minima{-1, -1, 0, 0};
+    const Int4 outside = ((roi < box_) & minima) | ((roi > box_) & ~minima);
+    const auto values = lanes::load<Lanes<Code>>(&r.height_lo);
+    // Asked so that a NaN is not within.
+    const Int4 within = (values >= least_) & (values <= most_);
+    // An empty interval of heights (lo > hi) lies in any other.
+    const std::int32_t is_empty = values[0] > values[1] ? -1 : 0;
+    const Int4 excused{is_empty, is_empty, 0, 0};
+    const auto height = std::bit_cast<Code>(r.height);
+    return lanes::any(outside | ~(within | excused)) || !(height == height);
+  }
+
+ private:
+  static constexpr Code least_code() {
+    using Limits = std::numeric_limits<Code>;
+    return Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
+  }
+  static constexpr Code most_code() {
+    using Limits = std::numeric_limits<Code>;
+    return Limits::has_infinity ? Limits::infinity() : Limits::max();
+  }
+
+  Int4 box_;
+  Lanes<Code> least_, most_;
+};
+
+template <class Code>
+std::size_t first_excluded(const Bounds<Code>& bounds, std::span<const VertexSplit> records) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (bounds.excludes(records[i])) [[unlikely]] {
+      return i;
+    }
+  }
+  return records.size();
+}
+
+}  // namespace
 
 DescribedPage::DescribedPage(const std::string& path, PageId id,
                              const layout::NodeEntry& descriptor, const HeightEncoding& heights,
@@ -22,61 +89,45 @@ DescribedPage::DescribedPage(const std::string& path, PageId id,
   }
 }
 
-void DescribedPage::report(std::uint32_t record) const {
+void DescribedPage::report(std::size_t record) const {
   throw Error(ErrorCode::corruption,
               "record " + std::to_string(record) +
                   " holds values that no program wrote, or that its page's descriptor excludes",
               path_ + ", page " + std::to_string(index_of(id_)));
 }
 
-bool DescribedPage::decode_one(const std::byte* in, RecordKind kind, const Interval& page_heights,
-                               VertexSplit& r) const {
-  if (!decode_record({in, record_bytes(kind)}, kind, r)) {
-    return false;
+void DescribedPage::decode(std::span<const std::byte> bytes, std::vector<VertexSplit>& out) const {
+  const std::size_t before = out.size();
+  out.resize(before + records());
+  const std::span<VertexSplit> decoded(out.data() + before, records());
+  std::size_t sound = decode_records(bytes, kind(), decoded);
+  sound = std::min(sound, admitted(decoded.first(sound)));
+  if (sound < decoded.size()) [[unlikely]] {
+    out.resize(before);
+    report(sound);
   }
-  const Interval heights{heights_.code(r.height_lo), heights_.code(r.height_hi)};
-  return covers(descriptor_, page_heights, r, heights) && !std::isnan(heights.lo) &&
-         !std::isnan(heights.hi) && !std::isnan(heights_.code(r.height));
 }
 
-void DescribedPage::decode(std::span<const std::byte> bytes, std::vector<VertexSplit>& out) const {
-  const Interval page_heights{heights_.code(descriptor_.height_lo),
-                              heights_.code(descriptor_.height_hi)};
-  const RecordKind record_kind = kind();
-  const std::size_t step = record_bytes(record_kind);
-  const std::size_t before = out.size();
-  const std::uint32_t count = records();
-  out.resize(before + count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (!decode_one(bytes.data() + i * step, record_kind, page_heights, out[before + i]))
-        [[unlikely]] {
-      out.resize(before);
-      report(i);
-    }
-  }
+std::size_t DescribedPage::admitted(std::span<const VertexSplit> records) const noexcept {
+  return heights_.type == HeightType::int32
+             ? first_excluded(Bounds<std::int32_t>(descriptor_), records)
+             : first_excluded(Bounds<float>(descriptor_), records);
 }
 
 void DescribedPage::decode_matching(std::span<const std::byte> bytes,
                                     const AttributePredicate& predicate,
                                     std::vector<VertexSplit>& out) const {
-  const Interval page_heights{heights_.code(descriptor_.height_lo),
-                              heights_.code(descriptor_.height_hi)};
-  const RecordKind record_kind = kind();
-  const std::size_t step = record_bytes(record_kind);
+  const std::size_t step = record_bytes(kind());
   const std::size_t before = out.size();
-  const std::uint32_t count = records();
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < records(); ++i) {
+    const std::span<const std::byte> in = bytes.subspan(i * step, step);
     layout::RecordHead head;
-    std::memcpy(&head, bytes.data() + i * step, sizeof head);
-    const Attributes attributes{{head.min_x, head.min_y, head.max_x, head.max_y},
-                                {heights_.code(head.height_lo), heights_.code(head.height_hi)},
-                                layout::to_float(head.error),
-                                layout::to_float(head.deviation)};
-    if (!predicate.holds(attributes)) {
+    std::memcpy(&head, in.data(), sizeof head);
+    if (!predicate.holds(attributes_of(head, heights_))) {
       continue;
     }
     VertexSplit& r = out.emplace_back();
-    if (!decode_one(bytes.data() + i * step, record_kind, page_heights, r)) [[unlikely]] {
+    if (!decode_record(in, kind(), r) || admitted({&r, 1}) == 0) [[unlikely]] {
       out.resize(before);
       report(i);
     }

