@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/error_status.h"
+
+#include <exception>
+#include <new>
+
+namespace ptin::tools {
+
+ErrorStatus status_of(ErrorCode code) noexcept {
+  switch (code) {
+    case ErrorCode::invalid_argument:
+      return {2, 400};
+    case ErrorCode::not_found:
+      return {3, 404};
+    case ErrorCode::corruption:
+      return {4, 500};
+    case ErrorCode::unsupported_version:
+      return {5, 500};
+    case ErrorCode::io_error:
+      return {6, 503};
+    case ErrorCode::resource_exhausted:
+      return {7, 503};
+    case ErrorCode::cancelled:
+      return {8, 503};
+    case ErrorCode::internal:
+      return {70, 500};
+  }
+  return {70, 500};
+}
+
+Error current_error() noexcept {
+  try {
+    throw;
+  } catch (const Error& error) {
+    return error;
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::resource_exhausted,
+            "the system gives no more memory; ask for less (a window, a larger --error) or close "
+            "other programs"};
+  } catch (const std::exception& error) {
+    return {ErrorCode::internal, std::string("a fault of this program: ") + error.what()};
+  } catch (...) {
+    return {ErrorCode::internal, "a fault of this program: an unknown exception"};
+  }
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// glTF 2.0 binary. Positions are float32, so they stand around a local origin, the middle of the
+// mesh: coordinates of millions of metres would jitter. The origin is in `extras` of the node (x,
+// y, z of the CRS, as doubles), not in its translation, because several programs add that in
+// float32 again. glTF is y-up: (x, y, z) becomes (x, z, -y). Degrees become metres on the way (a
+// metre a unit, as glTF says), at the latitude of the origin; `extras.scale` has the factors: crs =
+// origin + local / scale.
+#include <cmath>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/error.h"
+#include "tools/formats/mesh_writer.h"
+
+namespace ptin::tools {
+
+namespace {
+
+using Vec3f = std::array<float, 3>;
+
+/// Where the local frame stands, and how many local units an x, y, z unit is long.
+struct LocalFrame {
+  std::array<double, 3> origin{};
+  std::array<double, 3> scale{1.0, 1.0, 1.0};
+
+  [[nodiscard]] Vec3f to_local(const std::array<double, 3>& p) const {
+    return {static_cast<float>((p[0] - origin[0]) * scale[0]),
+            static_cast<float>((p[2] - origin[2]) * scale[2]),
+            static_cast<float>((origin[1] - p[1]) * scale[1])};
+  }
+};
+
+LocalFrame frame_of(const Mesh& mesh) {
+  LocalFrame frame;
+  if (mesh.vertices.empty()) return frame;
+  std::array<double, 3> low = mesh.vertices[0];
+  std::array<double, 3> high = low;
+  for (const auto& vertex : mesh.vertices) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], vertex[i]);
+      high[i] = std::max(high[i], vertex[i]);
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) frame.origin[i] = low[i] + (high[i] - low[i]) / 2;
+  if (mesh.geographic) {
+    constexpr double kMetresPerDegree = 111'319.490'793;  // of the equator, WGS 84
+    frame.scale = {kMetresPerDegree * std::cos(frame.origin[1] * std::numbers::pi / 180.0),
+                   kMetresPerDegree, 1.0};
+  }
+  return frame;
+}
+
+/// Area-weighted vertex normals, so that viewers shade smoothly.
+std::vector<Vec3f> normals_of(const std::vector<Vec3f>& points, const Mesh& mesh) {
+  std::vector<Vec3f> normals(points.size(), Vec3f{0, 0, 0});
+  for (const auto& t : mesh.triangles) {
+    const Vec3f& a = points[t[0]];
+    const Vec3f& b = points[t[1]];
+    const Vec3f& c = points[t[2]];
+    const Vec3f u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const Vec3f v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    const Vec3f n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    for (const std::uint32_t corner : t) {
+      for (std::size_t i = 0; i < 3; ++i) normals[corner][i] += n[i];
+    }
+  }
+  for (Vec3f& n : normals) {
+    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    n = length > 0 ? Vec3f{n[0] / length, n[1] / length, n[2] / length} : Vec3f{0, 1, 0};
+  }
+  return normals;
+}
+
+nlohmann::json extent_of(const std::vector<Vec3f>& points, bool upper) {
+  Vec3f extent = points[0];
+  for (const Vec3f& p : points) {
+    for (std::size_t i = 0; i < 3; ++i)
+      extent[i] = upper ? std::max(extent[i], p[i]) : std::min(extent[i], p[i]);
+  }
+  return {extent[0], extent[1], extent[2]};
+}
+
+nlohmann::json scene_of(const Mesh& mesh, const LocalFrame& frame) {
+  nlohmann::json extras = {
+      {"origin", frame.origin}, {"scale", frame.scale}, {"axes", "x east, y up, z south"}};
+  if (!mesh.crs.empty()) extras["crs"] = mesh.crs;
+  if (!mesh.vertical_crs.empty()) extras["vertical_crs"] = mesh.vertical_crs;
+  nlohmann::json json;
+  json["asset"] = {{"version", "2.0"}, {"generator", "ptin"}};
+  json["scene"] = 0;
+  json["scenes"] = {{{"nodes", {0}}}};
+  json["nodes"] = {{{"name", "terrain"}, {"extras", extras}}};
+  return json;
+}
+
+/// Adds mesh, material, accessors and buffer views: positions, normals, indices, in this order.
+void describe_buffers(nlohmann::json& json, const std::vector<Vec3f>& points, std::size_t indices) {
+  const std::size_t bytes = points.size() * sizeof(Vec3f);
+  const std::size_t index_bytes = indices * sizeof(std::uint32_t);
+  json["nodes"][0]["mesh"] = 0;
+  json["materials"] = {{{"pbrMetallicRoughness",
+                         {{"baseColorFactor", {0.72, 0.7, 0.62, 1.0}},
+                          {"metallicFactor", 0.0},
+                          {"roughnessFactor", 1.0}}},
+                        {"doubleSided", true}}};
+  json["meshes"] = {{{"primitives",
+                      {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}},
+                        {"indices", 2},
+                        {"material", 0},
+                        {"mode", 4}}}}}};
+  json["accessors"] = {
+      {{"bufferView", 0},
+       {"componentType", 5126},
+       {"count", points.size()},
+       {"type", "VEC3"},
+       {"min", extent_of(points, false)},
+       {"max", extent_of(points, true)}},
+      {{"bufferView", 1}, {"componentType", 5126}, {"count", points.size()}, {"type", "VEC3"}},
+      {{"bufferView", 2}, {"componentType", 5125}, {"count", indices}, {"type", "SCALAR"}}};
+  json["bufferViews"] = {
+      {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", bytes}, {"target", 34962}},
+      {{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", bytes}, {"target", 34962}},
+      {{"buffer", 0}, {"byteOffset", 2 * bytes}, {"byteLength", index_bytes}, {"target", 34963}}};
+  json["buffers"] = {{{"byteLength", 2 * bytes + index_bytes}}};
+}
+
+void write_chunk_header(OutputFile& out, std::uint64_t bytes, std::uint32_t type) {
+  out.write_value(static_cast<std::uint32_t>(bytes));
+  out.write_value(type);
+}
+
+}  // namespace
+
+void write_glb(const Mesh& mesh, OutputFile& out) {
+  const LocalFrame frame = frame_of(mesh);
+  std::vector<Vec3f> points;
+  points.reserve(mesh.vertices.size());
+  for (const auto& vertex : mesh.vertices) points.push_back(frame.to_local(vertex));
+  const std::vector<Vec3f> normals = normals_of(points, mesh);
+
+  nlohmann::json json = scene_of(mesh, frame);
+  if (!mesh.triangles.empty())
+    describe_buffers(json, points, mesh.triangles.size() * 3);  // glTF has no empty buffers
+  std::string text = json.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::uint64_t binary =
+      mesh.triangles.empty()
+          ? 0
+          : points.size() * 2 * sizeof(Vec3f) + mesh.triangles.size() * 3 * sizeof(std::uint32_t);
+  const std::uint64_t total = 12 + 8 + text.size() + (binary > 0 ? 8 + binary : 0);
+  if (total > UINT32_MAX) {
+    throw Error(ErrorCode::invalid_argument,
+                "GLB holds at most 4 GiB; write .ply, or ask for a window or an error");
+  }
+  out.write("glTF");
+  out.write_value(std::uint32_t{2});
+  out.write_value(static_cast<std::uint32_t>(total));
+  write_chunk_header(out, text.size(), 0x4E4F534A);
+  out.write(text);
+  if (binary == 0) return;
+  write_chunk_header(out, binary, 0x004E4942);
+  out.write(points.data(), points.size() * sizeof(Vec3f));
+  out.write(normals.data(), normals.size() * sizeof(Vec3f));
+  out.write(mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]));
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A mesh on its way out: plain triangles over indexed vertices in map coordinates.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ptin::tools {
+
+/// What a format writer writes. Surface triangles only: void ones are left out before.
+struct Mesh {
+  std::vector<std::array<double, 3>>
+      vertices;  ///< x, y in the CRS's units, z in the height's unit.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Counter-clockwise seen from above.
+  std::string
+      crs;  ///< "EPSG:32611" where the CRS has a code, else WKT2 on one line; empty when unknown.
+  std::string vertical_crs;  ///< Likewise; empty when unknown.
+  bool geographic = false;   ///< x, y are degrees.
+};
+
+}  // namespace ptin::tools

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/formats/mesh_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+
+#include "engine/error.h"
+
+namespace ptin::tools {
+
+namespace {
+
+constexpr std::array<MeshFormat, 4> kFormats = {{
+    {"ply", "PLY, binary, double coordinates (QGIS, Blender, MeshLab)", write_ply},
+    {"obj", "Wavefront OBJ, text", write_obj},
+    {"2dm", "SMS 2DM, text (QGIS, hydraulic models)", write_2dm},
+    {"glb", "glTF 2.0 binary, around a local origin (viewers, Blender, web)", write_glb},
+}};
+
+std::string lower_extension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+}  // namespace
+
+std::span<const MeshFormat> mesh_formats() noexcept { return kFormats; }
+
+const MeshFormat& mesh_format_of(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  std::string known;
+  for (const MeshFormat& format : kFormats) {
+    if (format.extension == extension) return format;
+    known.append(known.empty() ? "." : ", .").append(format.extension);
+  }
+  std::string what = "the name has no extension";
+  if (!extension.empty()) what = std::string("unknown extension .").append(extension);
+  throw Error(ErrorCode::invalid_argument, what.append("; known are ").append(known), path);
+}
+
+void write_mesh(const Mesh& mesh, const std::string& path, bool overwrite) {
+  const MeshFormat& format = mesh_format_of(path);
+  OutputFile out(path, overwrite);
+  format.write(mesh, out);
+  out.publish();
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Writing meshes: one writer a format, chosen by the extension of the file's name.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "tools/formats/mesh.h"
+#include "tools/output_file.h"
+
+namespace ptin::tools {
+
+/// A mesh format: its extension and how to write it.
+struct MeshFormat {
+  std::string_view extension;    ///< Lower case, without the dot.
+  std::string_view description;  ///< For --help and error messages.
+  void (*write)(const Mesh& mesh, OutputFile& out);
+};
+
+/// Every known format.
+[[nodiscard]] std::span<const MeshFormat> mesh_formats() noexcept;
+
+/// The format of `path` by its extension, in any case.
+/// @throws Error invalid_argument  unknown or no extension; lists the known ones
+[[nodiscard]] const MeshFormat& mesh_format_of(const std::string& path);
+
+/// Writes `mesh` to `path` in its format, whole or not at all.
+/// @throws Error  as mesh_format_of and OutputFile; invalid_argument when the format cannot hold
+/// the mesh
+void write_mesh(const Mesh& mesh, const std::string& path, bool overwrite);
+
+// The writers. Each documents its own conventions.
+void write_ply(const Mesh& mesh, OutputFile& out);
+void write_obj(const Mesh& mesh, OutputFile& out);
+void write_2dm(const Mesh& mesh, OutputFile& out);
+void write_glb(const Mesh& mesh, OutputFile& out);
+
+}  // namespace ptin::tools

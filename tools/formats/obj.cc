@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Wavefront OBJ: map coordinates as they are (x east, y north, z up), every digit that a double
+// needs, indices from 1.
+#include "tools/formats/mesh_writer.h"
+#include "tools/formats/number_text.h"
+
+namespace ptin::tools {
+
+void write_obj(const Mesh& mesh, OutputFile& out) {
+  std::string line = "# written by ptin; x east, y north, z up\n";
+  if (!mesh.crs.empty()) line += "# crs: " + mesh.crs + "\n";
+  if (!mesh.vertical_crs.empty()) line += "# vertical_crs: " + mesh.vertical_crs + "\n";
+  out.write(line);
+  for (const auto& vertex : mesh.vertices) {
+    line = "v";
+    for (const double coordinate : vertex) {
+      line += ' ';
+      append_number(line, coordinate);
+    }
+    out.write(line += '\n');
+  }
+  for (const auto& triangle : mesh.triangles) {
+    line = "f";
+    for (const std::uint32_t vertex : triangle) {
+      line += ' ';
+      append_number(line, std::uint64_t{vertex} + 1);
+    }
+    out.write(line += '\n');
+  }
+}
+
+}  // namespace ptin::tools

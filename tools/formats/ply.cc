@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// PLY as QGIS (MDAL), Blender and MeshLab read it: binary little-endian; vertices x y z in lower
+// case, as doubles; faces as a list `vertex_indices` of int behind a uchar count, first property of
+// the face. MDAL takes `comment crs: ...` for the CRS; every header line has a word, since it
+// splits them without looking.
+#include <cstring>
+
+#include "engine/error.h"
+#include "tools/formats/mesh_writer.h"
+
+namespace ptin::tools {
+
+namespace {
+
+std::string header_of(const Mesh& mesh) {
+  std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by ptin\n";
+  if (!mesh.crs.empty()) text += "comment crs: " + mesh.crs + "\n";
+  if (!mesh.vertical_crs.empty()) text += "comment vertical_crs: " + mesh.vertical_crs + "\n";
+  text += "element vertex " + std::to_string(mesh.vertices.size()) + "\n";
+  text += "property double x\nproperty double y\nproperty double z\n";
+  text += "element face " + std::to_string(mesh.triangles.size()) + "\n";
+  text += "property list uchar int vertex_indices\nend_header\n";
+  return text;
+}
+
+}  // namespace
+
+void write_ply(const Mesh& mesh, OutputFile& out) {
+  if (mesh.vertices.size() > INT32_MAX) {
+    throw Error(ErrorCode::invalid_argument,
+                "PLY holds at most 2^31 - 1 vertices; ask for a window or an error");
+  }
+  out.write(header_of(mesh));
+  for (const auto& vertex : mesh.vertices) out.write_value(vertex);
+  for (const auto& triangle : mesh.triangles) {
+    char face[1 + 3 * sizeof(std::uint32_t)];
+    face[0] = 3;
+    std::memcpy(face + 1, triangle.data(), 3 * sizeof(std::uint32_t));
+    out.write(face, sizeof face);
+  }
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// An output file that is complete or absent.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ptin::tools {
+
+/// Throws Error invalid_argument when `path` exists and `overwrite` is off (or is a folder),
+/// not_found when its folder does not exist. Called before the work, so that nobody waits for an
+/// answer that cannot be kept.
+void check_output(const std::string& path, bool overwrite);
+
+/// Writes beside the target under a temporary name; publish() syncs and renames. Destroyed without
+/// publish(), it removes what it wrote: the target's name never shows a part.
+class OutputFile {
+ public:
+  /// @throws Error  as check_output; io_error when the folder is not writable
+  OutputFile(std::string path, bool overwrite);
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  ~OutputFile();
+
+  /// Appends; buffered.  @throws Error resource_exhausted (disk full), io_error
+  void write(const void* data, std::size_t bytes);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Appends the bytes of a trivially copyable value, as this (little-endian) machine holds them.
+  template <typename T>
+  void write_value(const T& value) {
+    write(&value, sizeof value);
+  }
+
+  /// Makes the file appear under its name.  @throws Error resource_exhausted, io_error;
+  /// invalid_argument when the target appeared meanwhile and `overwrite` is off
+  void publish();
+
+ private:
+  void flush();
+
+  std::string path_;
+  std::string temporary_;
+  bool overwrite_;
+  int fd_ = -1;
+  std::vector<char> buffer_;
+};
+
+}  // namespace ptin::tools

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin build: from a source to a .ptin file, with a report.
+#include "engine/construct/build.h"
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "tools/error_status.h"
+#include "tools/output_file.h"
+#include "tools/progress.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct BuildCommand {
+  std::vector<std::string> inputs;
+  std::string output;
+  std::string cost = "error";
+  std::vector<double> bbox;
+  BuildOptions options;
+  bool overwrite = false;
+};
+
+CostModel cost_of(const std::string& name) {
+  if (name == "roi") return CostModel::kRoi;
+  return name == "elevation" ? CostModel::kElevation : CostModel::kError;
+}
+
+void check_command(BuildCommand& command) {
+  BuildOptions& options = command.options;
+  options.cost = cost_of(command.cost);
+  if (!command.bbox.empty())
+    options.bbox = {command.bbox[0], command.bbox[1], command.bbox[2], command.bbox[3]};
+  if (!(options.max_error >= 0)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--max-error must be a number >= 0, in the height's unit");
+  }
+  if (!(options.void_slope >= 0) || std::isinf(options.void_slope)) {
+    throw Error(ErrorCode::invalid_argument, "--void-slope must be a finite number >= 0");
+  }
+  if (options.resolution && !(*options.resolution > 0)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--resolution must be a number > 0, in the CRS's unit");
+  }
+  if (options.bbox) {
+    const auto& b = *options.bbox;
+    if (!(b[0] < b[2] && b[1] < b[3])) {
+      throw Error(ErrorCode::invalid_argument,
+                  "--bbox is inverted or empty; its order is XMIN YMIN XMAX YMAX");
+    }
+  }
+  check_output(command.output, command.overwrite);
+}
+
+nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
+  return {{"output", command.output},
+          {"samples", r.source_samples},
+          {"void_samples", r.void_samples},
+          {"lone_samples", r.lone_samples},
+          {"merged_points", r.merged_points},
+          {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
+          {"height_rounding", r.height_rounding},
+          {"vertices", r.vertices},
+          {"records", r.records},
+          {"t0_vertices", r.t0_vertices},
+          {"rank", r.max_rank},
+          {"bytes", r.file_bytes},
+          {"seconds", r.seconds}};
+}
+
+double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
+
+void print_report(const BuildCommand& command, const BuildReport& r) {
+  const char* out = command.output.c_str();
+  std::printf("%s: %s\n", out, human_bytes(r.file_bytes).c_str());
+  std::printf("  samples    %s with a height, %s void\n", grouped(r.source_samples).c_str(),
+              grouped(r.void_samples).c_str());
+  if (r.lone_samples > 0) {
+    std::printf("  lone       %s samples touch no triangle and are treated as void\n",
+                grouped(r.lone_samples).c_str());
+  }
+  if (r.merged_points > 0) {
+    std::printf("  merged     %s points fell together (largest shift %s in plan, %s in height)\n",
+                grouped(r.merged_points).c_str(), short_number(r.largest_shift_plan).c_str(),
+                short_number(r.largest_shift_height).c_str());
+  }
+  if (r.height_rounding > 0)
+    std::printf("  rounding   heights by at most %s\n", short_number(r.height_rounding).c_str());
+  std::printf("  vertices   %s in the full TIN: %s in T0, %s in records\n",
+              grouped(r.vertices).c_str(), grouped(r.t0_vertices).c_str(),
+              grouped(r.records).c_str());
+  std::printf("  rank       %u\n", unsigned{r.max_rank});
+  std::printf(
+      "  size       %.1f bytes a vertex\n",
+      ratio(static_cast<double>(r.file_bytes), static_cast<double>(r.t0_vertices + r.records)));
+  std::printf("  speed      %s vertices/s, %.2f s\n",
+              grouped(static_cast<std::uint64_t>(ratio(static_cast<double>(r.vertices), r.seconds)))
+                  .c_str(),
+              r.seconds);
+  std::printf("next: ptin info %s\n      ptin render %s -o picture.png\n", out, out);
+  std::printf("      ptin verify %s --against %s\n", out, command.inputs.front().c_str());
+}
+
+int run_build(BuildCommand& command, const Context& context) {
+  check_command(command);
+  BuildReport report;
+  {
+    Progress progress(Progress::style_for(context.quiet, stderr));
+    BuildResources resources;
+    resources.overwrite = command.overwrite;
+    resources.stop = context.stop;
+    resources.progress = [&progress](const char* stage, std::uint64_t done, std::uint64_t total) {
+      progress.report(stage, done, total);
+    };
+    report = build(command.inputs, command.output, command.options, resources);
+    progress.finish();
+  }
+  if (context.json) {
+    print_json(report_json(command, report));
+  } else if (!context.quiet) {
+    print_report(command, report);
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+Action declare_build(CLI::App& app, Context& context) {
+  const auto command = std::make_shared<BuildCommand>();
+  BuildOptions& options = command->options;
+  app.add_option("INPUT", command->inputs,
+                 "A raster that GDAL reads, several of one grid, or points as CSV or XYZ text")
+      ->required();
+  app.add_option("-o,--output", command->output, "The .ptin file to write")
+      ->type_name("FILE")
+      ->required();
+  app.add_option("--cost", command->cost,
+                 "In which order vertices go: error (default, for levels of detail), roi (point\n"
+                 "location) or elevation (isolines)")
+      ->check(CLI::IsMember({"error", "roi", "elevation"}));
+  app.add_option("--max-error", options.max_error,
+                 "Leave out detail below this error, in the height's unit")
+      ->type_name("E");
+  app.add_option("--nodata", options.nodata, "This height means void; overrides the source's")
+      ->type_name("V");
+  app.add_option("--resolution", options.resolution, "Points: the grid unit, in CRS units")
+      ->type_name("R");
+  app.add_option("--bbox", command->bbox, "Leave out samples outside of this box, in CRS units")
+      ->expected(4)
+      ->type_name("XMIN YMIN XMAX YMAX");
+  app.add_option("--a-srs,--a_srs", options.a_srs,
+                 "The CRS; overrides the source's (EPSG code, WKT, PROJ string)")
+      ->type_name("CRS");
+  app.add_option("--vertical-crs", options.vertical_crs, "The vertical CRS, as EPSG:5773")
+      ->type_name("CRS");
+  app.add_option("--void-slope", options.void_slope,
+                 "Error charged for each ground unit that a void's border moves")
+      ->type_name("S")
+      ->capture_default_str();
+  app.add_flag("--overwrite", command->overwrite, "Replace an existing output");
+  add_common_options(app, context, true);
+  return [command, &context] { return run_build(*command, context); };
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/cli.h"
+
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/error_status.h"
+
+namespace ptin::tools {
+
+namespace {
+
+constexpr std::array<Command, 6> kCommands = {{
+    {"build", "Build a .ptin file from a raster or from points",
+     "Examples:\n"
+     "  ptin build dem.tif -o dem.ptin\n"
+     "  ptin build north.vrt -o north.ptin --max-error 5 --vertical-crs EPSG:5773\n"
+     "  ptin build points.csv -o points.ptin --a-srs EPSG:2154 --resolution 0.01\n",
+     declare_build},
+    {"info", "Tell what a .ptin file holds",
+     "Examples:\n"
+     "  ptin info dem.ptin\n"
+     "  ptin info dem.ptin --json | jq .vertices_at_tolerance\n",
+     declare_info},
+    {"verify", "Check a .ptin file: checksums, structure, and its errors against the source",
+     "Exit status 0 when everything holds, 1 with the first faults listed when not.\n\n"
+     "Examples:\n"
+     "  ptin verify dem.ptin\n"
+     "  ptin verify dem.ptin --against dem.tif\n"
+     "  ptin verify dem.ptin --against dem.tif --tolerance 0 5 20\n",
+     declare_verify},
+    {"refine", "Write a TIN that is as fine as asked exactly where asked",
+     "Without a region the whole terrain is refined. With a region the result covers the whole "
+     "terrain, coarse outside\n"
+     "of the region; --clip keeps the triangles that meet it, --cut cuts them at its border.\n"
+     "Without --error and --vertices the result is exact: every triangle of the full TIN in the "
+     "region.\n\n"
+     "Examples:\n"
+     "  ptin refine dem.ptin --window 385000 3790000 390000 3795000 --clip -o valley.ply\n"
+     "  ptin refine dem.ptin --polygon parish.geojson --cut --error 2 -o parish.glb\n"
+     "  ptin refine dem.ptin --vertices 50000 -o small.obj --stats\n"
+     "  ptin refine dem.ptin --point 387500 3792500 --clip -o triangle.2dm\n",
+     declare_refine},
+    {"render", "Draw shaded relief, triangles or pages as a PNG",
+     "Examples:\n"
+     "  ptin render dem.ptin -o dem.png\n"
+     "  ptin render dem.ptin --error 20 --wireframe -o coarse.png\n"
+     "  ptin render dem.ptin --window 385000 3790000 390000 3795000 --pages --size 1600 1200 -o "
+     "pages.png\n",
+     declare_render},
+    {"completion", "Print a completion script for a shell",
+     "Example:\n"
+     "  ptin completion bash > ~/.local/share/bash-completion/completions/ptin\n",
+     declare_completion},
+}};
+
+constexpr const char* kExitStatuses =
+    "Exit status: 0 done; 1 negative answer (verify); 2 wrong use or input; 3 not found; 4 damaged "
+    "file;\n"
+    "5 file of a newer version; 6 input/output error; 7 out of memory or disk; 8 cancelled; 70 a "
+    "fault of ours.\n";
+
+/// What CLI11 has to say about wrong use, with the way to the help.
+int report_wrong_use(const CLI::App& app, const CLI::ParseError& error, bool json) {
+  std::string name;
+  for (const CLI::App* sub : app.get_subcommands()) name = sub->get_name();
+  std::string message = error.what();
+  for (char& c : message) {
+    if (c == '\n') c = ' ';
+  }
+  message.append("; see ptin ").append(name).append(name.empty() ? "--help" : " --help");
+  report_error({ErrorCode::invalid_argument, message}, json);
+  return status_of(ErrorCode::invalid_argument).exit;
+}
+
+}  // namespace
+
+std::span<const Command> commands() noexcept { return kCommands; }
+
+void add_common_options(CLI::App& app, Context& context, bool has_quiet) {
+  app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
+  if (has_quiet) app.add_flag("-q,--quiet", context.quiet, "No progress and no report");
+}
+
+CommandLine make_command_line(Context& context) {
+  CommandLine line;
+  line.app = std::make_unique<CLI::App>(
+      "Progressive TINs on disk: terrains larger than memory, refined exactly where asked", "ptin");
+  line.app->set_version_flag("--version", std::string("ptin ").append(PTIN_VERSION));
+  line.app->set_help_flag("-h,--help", "Print help and exit");
+  line.app->require_subcommand(1);
+  line.app->footer(std::string("`ptin SUBCOMMAND --help` tells more and gives examples.\n\n")
+                       .append(kExitStatuses));
+  for (const Command& command : kCommands) {
+    CLI::App* sub = line.app->add_subcommand(command.name, command.summary);
+    sub->footer(command.examples);
+    line.actions.push_back(command.declare(*sub, context));
+  }
+  return line;
+}
+
+int run_command_line(int argc, const char* const* argv, Context& context) {
+  const CommandLine line = make_command_line(context);
+  for (int i = 1; i < argc; ++i)
+    context.json = context.json || std::string_view(argv[i]) == "--json";
+  const bool json = context.json;
+  try {
+    line.app->parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    return line.app->exit(success);
+  } catch (const CLI::ParseError& error) {
+    return report_wrong_use(*line.app, error, json);
+  }
+  for (std::size_t i = 0; i < kCommands.size(); ++i) {
+    if (line.app->got_subcommand(kCommands[i].name)) return line.actions[i]();
+  }
+  return status_of(ErrorCode::internal).exit;
+}
+
+void report_error(const Error& error, bool json) {
+  if (json) {
+    nlohmann::json body = {{"code", to_string(error.code())}, {"message", error.message()}};
+    if (!error.context().empty()) body["context"] = error.context();
+    const nlohmann::json answer = {{"error", body}};
+    std::fprintf(stderr, "%s\n",
+                 answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  } else {
+    std::fprintf(stderr, "ptin: %s\n", error.what());
+  }
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The command line: parsing, help, and errors as text or JSON.
+#pragma once
+
+#include <memory>
+
+#include "engine/error.h"
+#include "tools/ptin/command.h"
+
+namespace ptin::tools {
+
+/// The parser of the whole program, and the action of the subcommand that it found.
+struct CommandLine {
+  std::unique_ptr<CLI::App> app;
+  std::vector<Action> actions;  ///< Beside commands().
+};
+[[nodiscard]] CommandLine make_command_line(Context& context);
+
+/// Parses and runs. --help and --version return 0, wrong use returns 2 after one sentence on
+/// stderr.
+/// @throws Error  what the subcommand throws
+int run_command_line(int argc, const char* const* argv, Context& context);
+
+/// Writes an error to stderr: `ptin: context: message`, or {"error": {"code", "message",
+/// "context"}}.
+void report_error(const Error& error, bool json);
+
+}  // namespace ptin::tools

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a subcommand is: one file each, one row each in the table of commands.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <stop_token>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace ptin::tools {
+
+/// What every subcommand is given.
+struct Context {
+  std::stop_token stop;  ///< Fires on SIGINT and SIGTERM.
+  bool json = false;     ///< --json: the answer on stdout and an error on stderr as JSON.
+  bool quiet = false;    ///< -q: no progress, no report.
+};
+
+/// Runs a parsed subcommand; returns the exit status.  @throws Error
+using Action = std::function<int()>;
+
+struct Command {
+  const char* name;
+  const char* summary;   ///< One line.
+  const char* examples;  ///< Ends --help.
+  /// Declares options on `app` and returns what to run after parsing. `context` outlives both.
+  Action (*declare)(CLI::App& app, Context& context);
+};
+
+/// Every subcommand, in the order of --help. From it come parsing, help and completion.
+[[nodiscard]] std::span<const Command> commands() noexcept;
+
+Action declare_build(CLI::App& app, Context& context);
+Action declare_info(CLI::App& app, Context& context);
+Action declare_verify(CLI::App& app, Context& context);
+Action declare_refine(CLI::App& app, Context& context);
+Action declare_render(CLI::App& app, Context& context);
+Action declare_completion(CLI::App& app, Context& context);
+
+/// Declares --json (and -q where there is something to silence).
+void add_common_options(CLI::App& app, Context& context, bool has_quiet);
+
+}  // namespace ptin::tools

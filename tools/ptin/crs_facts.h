@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a WKT text says about a CRS, in the words that people and other programs use.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "storage/store_file.h"
+
+namespace ptin::tools {
+
+struct CrsFacts {
+  std::string wkt;            ///< WKT2 on one line; empty when unknown.
+  std::string name;           ///< Of the horizontal part.
+  std::string code;           ///< "EPSG:32611" of the horizontal part; empty when it has none.
+  std::string vertical_name;  ///< Empty when the vertical CRS is unknown.
+  std::string vertical_code;
+  bool geographic = false;
+  std::string horizontal_unit = "unknown";
+  std::string vertical_unit = "unknown";
+
+  /// The short form for file headers: the code where there is one, else the WKT.
+  [[nodiscard]] std::string horizontal_text() const { return code.empty() ? wkt : code; }
+  [[nodiscard]] std::string vertical_text() const {
+    return vertical_code.empty() ? vertical_name : vertical_code;
+  }
+};
+
+/// The facts of a WKT text. One that GDAL does not understand gives facts with the text alone.
+[[nodiscard]] CrsFacts crs_facts(const std::string& wkt);
+
+/// The metadata of a store as JSON.  @throws Error corruption when it is none
+[[nodiscard]] nlohmann::json metadata_of(const StoreFile& store);
+
+/// The facts of a store's CRS; units from the metadata where the WKT says nothing.
+[[nodiscard]] CrsFacts crs_facts(const StoreFile& store);
+
+}  // namespace ptin::tools

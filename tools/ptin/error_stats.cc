@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/error_stats.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace ptin::tools {
+
+std::uint64_t vertices_at(const StoreFile& store, double tolerance) {
+  std::uint64_t count = store.t0().vertices.size();
+  for (const ErrorBin& bin : store.error_bins()) {
+    if (bin.upper > tolerance) count += bin.records;
+  }
+  return count;
+}
+
+double error_quantile(const StoreFile& store, double share) {
+  const double wanted = share * static_cast<double>(store.record_count());
+  double below = 0.0;
+  for (const ErrorBin& bin : store.error_bins()) {
+    below += static_cast<double>(bin.records);
+    if (bin.records > 0 && below >= wanted) return bin.upper;
+  }
+  return 0.0;
+}
+
+double largest_finite_error(const StoreFile& store) {
+  double largest = 0.0;
+  for (const ErrorBin& bin : store.error_bins()) {
+    if (bin.records > 0 && std::isfinite(bin.upper))
+      largest = std::max(largest, static_cast<double>(bin.upper));
+  }
+  return largest;
+}
+
+std::vector<double> round_tolerances(const StoreFile& store, std::size_t count) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const ErrorBin& bin : store.error_bins()) {
+    if (bin.records > 0 && bin.upper > 0)
+      smallest = std::min(smallest, static_cast<double>(bin.upper));
+  }
+  const double largest = largest_finite_error(store);
+  std::vector<double> tolerances;
+  if (!(largest > 0)) return tolerances;
+  // Powers of ten as decimal text would read them, so that 0.1 is 0.1.
+  for (int decade = static_cast<int>(std::ceil(std::log10(largest))); decade >= -12; --decade) {
+    for (const double digit : {5.0, 2.0, 1.0}) {
+      const double value =
+          decade >= 0 ? digit * std::pow(10.0, decade) : digit / std::pow(10.0, -decade);
+      if (value > largest) continue;
+      if (value < smallest / 2 || tolerances.size() >= count) {
+        std::reverse(tolerances.begin(), tolerances.end());
+        return tolerances;
+      }
+      tolerances.push_back(value);
+    }
+  }
+  std::reverse(tolerances.begin(), tolerances.end());
+  return tolerances;
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Numbers as people read them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace ptin::tools {
+
+/// 1234567 -> "1,234,567".
+[[nodiscard]] std::string grouped(std::uint64_t n);
+/// Bytes as "3.2 MiB"; below 1024 "512 bytes".
+[[nodiscard]] std::string human_bytes(std::uint64_t bytes);
+/// Six significant digits without trailing zeros; "inf" when infinite.
+[[nodiscard]] std::string short_number(double value);
+/// A size in bytes from "512M", "2G", "4096": suffixes K, M, G, T are powers of 1024.
+/// @throws Error invalid_argument
+[[nodiscard]] std::uint64_t parse_bytes(const std::string& text);
+
+}  // namespace ptin::tools

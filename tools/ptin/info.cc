@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin info: what a file holds, without reading its record pages.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "storage/index_shape.h"
+#include "tools/error_status.h"
+#include "tools/ptin/crs_facts.h"
+#include "tools/ptin/error_stats.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+
+namespace ptin::tools {
+
+namespace {
+
+constexpr double kQuantiles[] = {0.5, 0.9, 0.99, 0.999, 1.0};
+
+nlohmann::json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+nlohmann::json text_or_null(const std::string& text) {
+  return text.empty() ? nlohmann::json() : nlohmann::json(text);
+}
+
+nlohmann::json crs_json(const CrsFacts& crs) {
+  return {{"wkt", text_or_null(crs.wkt)},
+          {"name", text_or_null(crs.name)},
+          {"code", text_or_null(crs.code)},
+          {"vertical_known", !crs.vertical_name.empty()},
+          {"vertical_name", text_or_null(crs.vertical_name)},
+          {"vertical_code", text_or_null(crs.vertical_code)},
+          {"geographic", crs.geographic}};
+}
+
+nlohmann::json bounds_json(const StoreFacts& facts) {
+  const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
+  const MapPoint high = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
+  return {{"min_x", low.x}, {"min_y", low.y}, {"max_x", high.x}, {"max_y", high.y}};
+}
+
+nlohmann::json heights_json(const StoreFacts& facts) {
+  if (facts.min_height > facts.max_height) return nullptr;  // all void
+  return {{"min", facts.min_height},
+          {"max", facts.max_height},
+          {"stored_as", facts.heights.type == HeightType::int32 ? "int32" : "float32"},
+          {"step", facts.heights.step},
+          {"offset", facts.heights.offset}};
+}
+
+nlohmann::json tree_json(const StoreFile& store) {
+  const IndexShape shape(store.pages().page_count());
+  nlohmann::json levels = nlohmann::json::array();
+  for (std::uint32_t level = shape.levels(); level-- > 0;) levels.push_back(shape.nodes(level));
+  return {{"page_bytes", store.pages().page_bytes()},
+          {"pages", store.pages().page_count()},
+          {"fan_out", layout::kFanOut},
+          {"nodes_of_levels", levels}};
+}
+
+nlohmann::json errors_json(const StoreFile& store, const char* key) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const double share : kQuantiles) {
+    rows.push_back({{"share", share}, {key, number_or_null(error_quantile(store, share))}});
+  }
+  return rows;
+}
+
+nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
+  const StoreFacts& facts = store.facts();
+  const nlohmann::json metadata = metadata_of(store);
+  nlohmann::json sections = nlohmann::json::array();
+  for (const SectionInfo& s : store.sections()) {
+    sections.push_back({{"name", s.name}, {"offset", s.offset}, {"bytes", s.bytes}});
+  }
+  nlohmann::json levels = nlohmann::json::array();
+  for (const double tolerance : round_tolerances(store, 12)) {
+    levels.push_back({{"tolerance", tolerance}, {"vertices", vertices_at(store, tolerance)}});
+  }
+  std::uint64_t void_vertices = 0;
+  for (const ErrorBin& bin : store.error_bins()) void_vertices += bin.void_vertices;
+  for (const auto& v : store.t0().vertices) void_vertices += v.has_height == 0;
+  return {{"file", store.path()},
+          {"bytes", store.file_bytes()},
+          {"crs", crs_json(crs)},
+          {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+          {"bounds", bounds_json(facts)},
+          {"grid",
+           {{"origin", {facts.map.origin_x, facts.map.origin_y}},
+            {"step", {facts.map.step_x, facts.map.step_y}}}},
+          {"heights", heights_json(facts)},
+          {"source_samples", facts.source_samples},
+          {"vertices", store.t0().vertices.size() + store.record_count()},
+          {"void_vertices", void_vertices},
+          {"records", store.record_count()},
+          {"t0_vertices", store.t0().vertices.size()},
+          {"t0_triangles", store.t0().triangles.size()},
+          {"rank", store.max_rank()},
+          {"base_error", facts.base_error},
+          {"base_deviation", facts.base_deviation},
+          {"error_quantiles", errors_json(store, "error")},
+          {"vertices_at_tolerance", levels},
+          {"tree", tree_json(store)},
+          {"sections", sections},
+          {"metadata", metadata}};
+}
+
+/// Metadata beyond what has a line of its own, flattened to "key value" lines.
+void print_metadata(const nlohmann::json& object, const std::string& prefix) {
+  for (const auto& [key, value] : object.items()) {
+    if (key == "crs" || key == "crs_wkt" || value.is_null()) continue;
+    const std::string name = prefix.empty() ? key : prefix + "." + key;
+    if (value.is_object()) {
+      print_metadata(value, name);
+    } else {
+      const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+      if (!text.empty()) std::printf("  %-28s %s\n", name.c_str(), text.c_str());
+    }
+  }
+}
+
+void print_place(const StoreFile& store, const CrsFacts& crs) {
+  const StoreFacts& facts = store.facts();
+  const std::string name = crs.wkt.empty() ? "unknown; build with --a-srs to state it" : crs.name;
+  std::printf("CRS        %s%s\n", name.c_str(),
+              crs.code.empty() ? "" : (" (" + crs.code + ")").c_str());
+  if (crs.vertical_name.empty()) {
+    std::printf("vertical   unknown; build with --vertical-crs to state it\n");
+  } else {
+    std::printf("vertical   %s%s\n", crs.vertical_name.c_str(),
+                crs.vertical_code.empty() ? "" : (" (" + crs.vertical_code + ")").c_str());
+  }
+  const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
+  const MapPoint high = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
+  std::printf("bounds     %.10g %.10g %.10g %.10g (%s)\n", low.x, low.y, high.x, high.y,
+              crs.horizontal_unit.c_str());
+  if (facts.min_height > facts.max_height) {
+    std::printf("heights    none: all void\n");
+  } else {
+    std::printf("heights    %s to %s (%s)\n", short_number(facts.min_height).c_str(),
+                short_number(facts.max_height).c_str(), crs.vertical_unit.c_str());
+  }
+}
+
+void print_counts(const StoreFile& store) {
+  const StoreFacts& facts = store.facts();
+  const std::uint64_t vertices = store.t0().vertices.size() + store.record_count();
+  std::printf("samples    %s\n", grouped(facts.source_samples).c_str());
+  std::printf(
+      "vertices   %s: %s in T0, %s in records; %.1f bytes each\n", grouped(vertices).c_str(),
+      grouped(store.t0().vertices.size()).c_str(), grouped(store.record_count()).c_str(),
+      vertices > 0 ? static_cast<double>(store.file_bytes()) / static_cast<double>(vertices) : 0.0);
+  if (facts.base_error > 0) {
+    std::printf(
+        "base       error %s at samples, deviation %s anywhere: the finest TIN in this file\n",
+        short_number(facts.base_error).c_str(), short_number(facts.base_deviation).c_str());
+  }
+  std::printf("rank       %u\n", unsigned{store.max_rank()});
+  const IndexShape shape(store.pages().page_count());
+  std::printf("tree       %s pages of %s under %s nodes in %u levels\n",
+              grouped(store.pages().page_count()).c_str(),
+              human_bytes(store.pages().page_bytes()).c_str(), grouped(shape.total_nodes()).c_str(),
+              shape.levels());
+}
+
+void print_errors(const StoreFile& store) {
+  std::printf("errors    ");
+  for (const double share : kQuantiles) {
+    std::printf(" %g %%: %s%s", share * 100, short_number(error_quantile(store, share)).c_str(),
+                share < 1 ? "," : "\n");
+  }
+  const std::vector<double> tolerances = round_tolerances(store, 12);
+  if (!tolerances.empty()) std::printf("vertices needed at a tolerance\n");
+  const double all = static_cast<double>(store.t0().vertices.size() + store.record_count());
+  for (const double tolerance : tolerances) {
+    const std::uint64_t n = vertices_at(store, tolerance);
+    std::printf("  %8s  %14s  %5.1f %%\n", short_number(tolerance).c_str(), grouped(n).c_str(),
+                100.0 * static_cast<double>(n) / all);
+  }
+}
+
+void print_info(const StoreFile& store, const CrsFacts& crs) {
+  std::printf("file       %s, %s\n", store.path().c_str(), human_bytes(store.file_bytes()).c_str());
+  print_place(store, crs);
+  print_counts(store);
+  print_errors(store);
+  std::printf("sections\n");
+  for (const SectionInfo& s : store.sections()) {
+    std::printf("  %-14s %16s bytes at %s\n", s.name.c_str(), grouped(s.bytes).c_str(),
+                grouped(s.offset).c_str());
+  }
+  std::printf("built with\n");
+  print_metadata(metadata_of(store), "");
+}
+
+}  // namespace
+
+Action declare_info(CLI::App& app, Context& context) {
+  const auto options = std::make_shared<TerrainOptions>();
+  add_terrain_options(app, *options, false);
+  add_common_options(app, context, false);
+  return [options, &context] {
+    const auto store =
+        StoreFile::open(options->file, options->no_mmap ? PageAccess::kPread : PageAccess::kMapped);
+    const CrsFacts crs = crs_facts(*store);
+    context.json ? print_json(info_json(*store, crs)) : print_info(*store, crs);
+    return kExitDone;
+  };
+}
+
+}  // namespace ptin::tools

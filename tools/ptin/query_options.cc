@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/query_options.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "engine/error.h"
+#include "storage/sigbus_guard.h"
+#include "tools/region/region_input.h"
+
+#if __has_include("storage/spatialindex_rtree.h")
+#include "storage/spatialindex_rtree.h"
+#endif
+
+namespace ptin::tools {
+
+void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index) {
+  app.add_option("FILE", options.file, "The .ptin file")->required();
+  app.add_flag("--no-mmap", options.no_mmap,
+               "Read with pread instead of mapping the file (network file systems)");
+  if (!has_index) return;
+  app.add_option("--index", options.index, "Which index finds the pages; the answer is the same")
+      ->check(CLI::IsMember({"packed", "spatialindex"}))
+      ->capture_default_str();
+}
+
+ProgressiveTin open_terrain(const TerrainOptions& options) {
+  if (!options.no_mmap) install_sigbus_guard();
+  ProgressiveTin terrain = ProgressiveTin::open(
+      options.file, {options.no_mmap ? PageAccess::kPread : PageAccess::kMapped});
+  if (options.index == "spatialindex") {
+#if __has_include("storage/spatialindex_rtree.h")
+    terrain.use_index(open_spatialindex(terrain.store()));
+#else
+    throw Error(ErrorCode::invalid_argument,
+                "this build has no libspatialindex; leave --index out");
+#endif
+  }
+  return terrain;
+}
+
+void add_region_options(CLI::App& app, RegionOptions& options, bool window_only) {
+  auto* window =
+      app.add_option("--window", options.window, "A window in map units: xmin ymin xmax ymax")
+          ->expected(4)
+          ->type_name("XMIN YMIN XMAX YMAX");
+  if (window_only) return;
+  auto* polygon =
+      app.add_option("--polygon", options.polygon, "A polygon: WKT, or a file that holds it")
+          ->type_name("WKT_OR_FILE")
+          ->excludes(window);
+  app.add_option("--point", options.point, "A point in map units")
+      ->expected(2)
+      ->type_name("X Y")
+      ->excludes(window)
+      ->excludes(polygon);
+}
+
+std::optional<Region> region_of(const RegionOptions& options, const std::string& crs_wkt) {
+  for (const std::vector<double>* numbers : {&options.window, &options.point}) {
+    for (const double n : *numbers) {
+      if (!std::isfinite(n))
+        throw Error(ErrorCode::invalid_argument, "a region's coordinates must be finite numbers");
+    }
+  }
+  if (!options.window.empty()) {
+    const auto& w = options.window;
+    if (w[0] > w[2] || w[1] > w[3]) {
+      throw Error(ErrorCode::invalid_argument,
+                  "the window is inverted; its order is XMIN YMIN XMAX YMAX with XMIN <= XMAX and "
+                  "YMIN <= YMAX",
+                  "--window");
+    }
+    return Window{w[0], w[1], w[2], w[3]};
+  }
+  if (!options.polygon.empty()) return read_polygon(options.polygon, crs_wkt);
+  if (!options.point.empty()) return MapPoint{options.point[0], options.point[1]};
+  return std::nullopt;
+}
+
+nlohmann::json cost_json(const QueryCost& cost) {
+  return {{"records_retrieved", cost.records_retrieved},
+          {"records_examined", cost.records_examined},
+          {"records_applied", cost.records_applied},
+          {"index_nodes", cost.io.index_nodes},
+          {"pages", cost.io.pages},
+          {"bytes_read", cost.io.bytes_read},
+          {"seconds", cost.seconds}};
+}
+
+void print_json(const nlohmann::json& json) {
+  const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::fprintf(stdout, "%s\n", text.c_str());
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin refine: one question to the store, one mesh file.
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "tools/error_status.h"
+#include "tools/formats/mesh_writer.h"
+#include "tools/ptin/crs_facts.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+#include "tools/region/cut.h"
+#include "tools/region/tin_mesh.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct RefineOptions {
+  TerrainOptions terrain;
+  RegionOptions region;
+  std::optional<double> error;
+  std::optional<std::uint64_t> vertices;
+  bool clip = false;
+  bool cut = false;
+  std::string memory;
+  std::string output;
+  bool stats = false;
+  bool overwrite = false;
+};
+
+void check_options(const RefineOptions& options) {
+  if ((options.clip || options.cut) && !options.region.given()) {
+    throw Error(ErrorCode::invalid_argument,
+                "--clip and --cut need a region; add --window or --polygon");
+  }
+  if (options.cut && !options.region.point.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "--cut needs an area; a point has none (--clip keeps its triangle)");
+  }
+  if (options.error && !(*options.error >= 0)) {
+    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
+  }
+  static_cast<void>(mesh_format_of(options.output));
+  check_output(options.output, options.overwrite);
+}
+
+nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
+                         const CrsFacts& crs) {
+  return {{"output", options.output},
+          {"vertices", refined.vertices},
+          {"void_vertices", refined.void_vertices},
+          {"triangles", refined.triangles},
+          {"t0_vertices", refined.t0_vertices},
+          {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
+          {"certified_error", refined.certified_error},
+          {"certified_deviation", refined.certified_deviation},
+          {"exact", refined.exact},
+          {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+          {"cost", cost_json(refined.cost)}};
+}
+
+void print_stats(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh) {
+  const QueryCost& cost = refined.cost;
+  std::printf("%s: %s vertices, %s triangles written\n", options.output.c_str(),
+              grouped(mesh.vertices.size()).c_str(), grouped(mesh.triangles.size()).c_str());
+  std::printf("  mesh       %s vertices (%s without a height), %s triangles; T0 has %s vertices\n",
+              grouped(refined.vertices).c_str(), grouped(refined.void_vertices).c_str(),
+              grouped(refined.triangles).c_str(), grouped(refined.t0_vertices).c_str());
+  std::printf("  certified  %s at every sample%s, %s at any point%s\n",
+              short_number(refined.certified_error).c_str(),
+              options.region.given() ? " of the region" : "",
+              short_number(refined.certified_deviation).c_str(), refined.exact ? "; exact" : "");
+  std::printf(
+      "  cost       %s records retrieved of %s examined, %s applied; %s index nodes, %s pages, %s, "
+      "%.3f s\n",
+      grouped(cost.records_retrieved).c_str(), grouped(cost.records_examined).c_str(),
+      grouped(cost.records_applied).c_str(), grouped(cost.io.index_nodes).c_str(),
+      grouped(cost.io.pages).c_str(), human_bytes(cost.io.bytes_read).c_str(), cost.seconds);
+}
+
+int run_refine(const RefineOptions& options, const Context& context) {
+  check_options(options);
+  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const CrsFacts crs = crs_facts(terrain.store());
+  RefineRequest request;
+  request.region = region_of(options.region, crs.wkt);
+  request.tolerance = options.error;
+  request.vertices = options.vertices;
+  request.form = options.clip ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
+  request.stop = context.stop;
+  if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
+  const RefinedTin refined = terrain.refine(request);
+
+  const StoreFacts& facts = terrain.store().facts();
+  Mesh mesh =
+      options.cut ? cut_to_region(refined, facts, *request.region) : surface_mesh(refined, facts);
+  mesh.crs = crs.horizontal_text();
+  mesh.vertical_crs = crs.vertical_text();
+  mesh.geographic = crs.geographic;
+  write_mesh(mesh, options.output, options.overwrite);
+  if (mesh.triangles.empty() && !context.quiet) {
+    std::fprintf(stderr, "ptin: warning: the region holds no surface; %s has no triangle\n",
+                 options.output.c_str());
+  }
+  if (context.json) {
+    print_json(answer_of(options, refined, mesh, crs));
+  } else if (options.stats) {
+    print_stats(options, refined, mesh);
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+Action declare_refine(CLI::App& app, Context& context) {
+  const auto options = std::make_shared<RefineOptions>();
+  add_terrain_options(app, options->terrain, true);
+  add_region_options(app, options->region);
+  auto* error =
+      app.add_option("--error", options->error, "Certified error allowed, in the height's unit")
+          ->type_name("E");
+  app.add_option("--vertices", options->vertices,
+                 "Exactly this many vertices, the most important ones")
+      ->type_name("N")
+      ->excludes(error);
+  auto* clip =
+      app.add_flag("--clip", options->clip, "Keep only the triangles that meet the region, whole");
+  app.add_flag("--cut", options->cut, "Cut the triangles at the border of the region")
+      ->excludes(clip);
+  std::string formats;
+  for (const MeshFormat& format : mesh_formats()) {
+    formats.append(formats.empty() ? "." : ", .").append(format.extension);
+  }
+  app.add_option("-o,--output", options->output,
+                 "The mesh to write; its extension chooses the format: " + formats)
+      ->type_name("OUT")
+      ->required();
+  app.add_flag("--stats", options->stats, "Print what the answer is and what it cost");
+  app.add_option("--memory", options->memory,
+                 "Memory that the answer may take, as 512M or 2G (default 4G)")
+      ->type_name("SIZE");
+  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
+  add_common_options(app, context, true);
+  return [options, &context] { return run_refine(*options, context); };
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin render: a picture of the TIN.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "tools/error_status.h"
+#include "tools/output_file.h"
+#include "tools/ptin/crs_facts.h"
+#include "tools/ptin/error_stats.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+#include "tools/render/overlay.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct RenderOptions {
+  TerrainOptions terrain;
+  RegionOptions region;
+  std::optional<double> error;
+  std::vector<int> size;
+  bool wireframe = false;
+  bool pages = false;
+  bool no_legend = false;
+  std::string output;
+  bool overwrite = false;
+};
+
+void check_options(const RenderOptions& options) {
+  const std::string& path = options.output;
+  if (path.size() < 4 || (!path.ends_with(".png") && !path.ends_with(".PNG"))) {
+    throw Error(ErrorCode::invalid_argument, "unknown extension; known is .png", path);
+  }
+  if (options.error && !(*options.error >= 0)) {
+    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
+  }
+  check_output(path, options.overwrite);
+}
+
+Window whole_window(const StoreFacts& facts) {
+  const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
+  const MapPoint high = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
+  return {low.x, low.y, high.x, high.y};
+}
+
+/// The part of the window that lies in the terrain, as a share of the terrain's area.
+double share_of(const Window& w, const Window& whole) {
+  const double width = std::min(w.max_x, whole.max_x) - std::max(w.min_x, whole.min_x);
+  const double height = std::min(w.max_y, whole.max_y) - std::max(w.min_y, whole.min_y);
+  if (width <= 0 || height <= 0) return 0.0;
+  return width * height / ((whole.max_x - whole.min_x) * (whole.max_y - whole.min_y));
+}
+
+/// None (the full TIN) where it has at most a few vertices a pixel; else the smallest round
+/// tolerance that does.
+std::optional<double> tolerance_for(const StoreFile& store, double share, const View& view) {
+  const double budget = std::max(300'000.0, 2.0 * view.width * view.height);
+  const auto vertices = static_cast<double>(store.t0().vertices.size() + store.record_count());
+  if (share * vertices <= budget) return std::nullopt;
+  const std::vector<double> tolerances = round_tolerances(store, 60);
+  for (const double tolerance : tolerances) {
+    if (share * static_cast<double>(vertices_at(store, tolerance)) <= budget) return tolerance;
+  }
+  return tolerances.empty() ? 0.0 : tolerances.back();
+}
+
+std::string unit_of(const CrsFacts& crs) {
+  const std::string& unit = crs.geographic ? std::string("metre") : crs.horizontal_unit;
+  if (unit == "metre" || unit == "m" || unit == "meter") return "m";
+  return unit.find("foot") != std::string::npos || unit.find("feet") != std::string::npos ? "ft"
+                                                                                          : "";
+}
+
+int run_render(const RenderOptions& options, const Context& context) {
+  check_options(options);
+  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const StoreFile& store = terrain.store();
+  const CrsFacts crs = crs_facts(store);
+  const std::optional<Region> region = region_of(options.region, crs.wkt);
+  const Window whole = whole_window(store.facts());
+  const Window window = region ? std::get<Window>(*region) : whole;
+  const bool sized = !options.size.empty();
+  const View view =
+      make_view(window, crs.geographic, sized ? options.size[0] : 0, sized ? options.size[1] : 0);
+
+  RefineRequest request;
+  request.region = region;
+  request.tolerance =
+      options.error ? options.error : tolerance_for(store, share_of(window, whole), view);
+  request.form = ResultForm::kMeetingRegion;
+  request.page_of_triangle = options.pages;
+  request.stop = context.stop;
+  const RefinedTin refined = terrain.refine(request);
+
+  constexpr int kSupersampling = 2;
+  const TerrainRaster raster =
+      rasterize(refined, store.facts(), supersampled(view, kSupersampling));
+  const ReliefStyle style = choose_style(raster, view, options.pages);
+  Image image = draw_relief(raster, view, kSupersampling, style);
+  if (options.wireframe) draw_wireframe(image, refined, store.facts(), view);
+  if (!options.no_legend) draw_legend(image, view, style, unit_of(crs));
+  write_png(image, options.output, options.overwrite);
+
+  const nlohmann::json answer = {
+      {"output", options.output},
+      {"width", view.width},
+      {"height", view.height},
+      {"tolerance", request.tolerance ? nlohmann::json(*request.tolerance) : nlohmann::json()},
+      {"vertices", refined.vertices},
+      {"triangles", refined.triangles},
+      {"certified_error", refined.certified_error},
+      {"exaggeration", style.exaggeration},
+      {"cost", cost_json(refined.cost)}};
+  if (context.json) {
+    print_json(answer);
+  } else if (!context.quiet) {
+    const std::string level =
+        request.tolerance ? "within " + short_number(refined.certified_error) : "the full TIN";
+    std::printf("%s: %d x %d pixels, %s triangles, %s; slopes shaded %s times\n",
+                options.output.c_str(), view.width, view.height, grouped(refined.triangles).c_str(),
+                level.c_str(), short_number(style.exaggeration).c_str());
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+Action declare_render(CLI::App& app, Context& context) {
+  const auto options = std::make_shared<RenderOptions>();
+  add_terrain_options(app, options->terrain, false);
+  add_region_options(app, options->region, true);
+  app.add_option(
+         "--error", options->error,
+         "Certified error allowed, in the height's unit (default: as fine as the pixels can show)")
+      ->type_name("E");
+  app.add_option("--size", options->size, "Pixels (default: the longer side has 1200)")
+      ->expected(2)
+      ->type_name("W H");
+  app.add_flag("--wireframe", options->wireframe, "Draw the triangles");
+  app.add_flag("--pages", options->pages, "Colour triangles by the page that each came from");
+  app.add_flag("--no-legend", options->no_legend, "No scale bar and no height colours");
+  app.add_option("-o,--output", options->output, "The .png file to write")
+      ->type_name("OUT.png")
+      ->required();
+  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
+  add_common_options(app, context, true);
+  return [options, &context] { return run_render(*options, context); };
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/stop_on_signals.h"
+
+#include <csignal>
+#include <thread>
+
+#include <pthread.h>
+
+namespace ptin::tools {
+
+namespace {
+
+/// Waits for signals on a thread of its own: there a stop may be requested safely, unlike in a
+/// handler.
+void wait_for_signals(sigset_t signals, std::stop_source stop) {
+  int signal = 0;
+  sigwait(&signals, &signal);
+  stop.request_stop();
+  sigwait(&signals, &signal);
+  std::signal(signal, SIG_DFL);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  raise(signal);
+}
+
+}  // namespace
+
+std::stop_token stop_on_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // threads started later inherit this
+  const std::stop_source stop;
+  std::thread(wait_for_signals, signals, stop).detach();
+  return stop.get_token();
+}
+
+}  // namespace ptin::tools

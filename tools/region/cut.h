@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `refine --cut`: triangles cut at the border of a region.
+#pragma once
+
+#include "engine/query/progressive_tin.h"
+#include "storage/store_file.h"
+#include "tools/formats/mesh.h"
+
+namespace ptin::tools {
+
+/// The part of `refined` inside `region` (a window or a polygon): its surface triangles, cut at the
+/// region's border.
+///
+/// The border is inserted into the mesh as a chain of edges: triangles are split at the region's
+/// corners, edges where the border crosses them. So neighbours share every cut point, and there is
+/// no crack and no T-junction. A cut point of an edge of the TIN is computed from the ends of that
+/// edge in a fixed order (on a window's side: from its coordinate alone), so two windows that share
+/// a side get the same bits there. Heights are interpolated linearly.
+///
+/// Positions are decided exactly on a lattice of 2^-22 grid units to which corners and cut points
+/// are snapped; the coordinates of the region's corners, and those of cut points across a window's
+/// side, are the caller's own. A cut closer to a vertex than the lattice can tell goes through that
+/// vertex. REQUIRES: `refined` holds every triangle that meets the region.
+/// @throws Error invalid_argument  the region is a point or a segment, or a polygon reaches beyond
+/// 2^38 grid units Cost: triangles near the border, and linear for the result.
+[[nodiscard]] Mesh cut_to_region(const RefinedTin& refined, const StoreFacts& facts,
+                                 const Region& region);
+
+}  // namespace ptin::tools

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What is drawn over the relief: the edges of the triangles, and a legend.
+#pragma once
+
+#include <string>
+
+#include "tools/render/image.h"
+#include "tools/render/relief.h"
+#include "tools/render/view.h"
+
+namespace ptin::tools {
+
+/// A straight line one pixel wide, anti-aliased, of the given opacity (0 to 1).
+void draw_line(Image& image, double x0, double y0, double x1, double y1, const Colour& colour,
+               double opacity);
+
+/// Every edge of the TIN once. Opacity falls where edges are closer than a few pixels, so that
+/// dense parts stay legible.
+void draw_wireframe(Image& image, const RefinedTin& refined, const StoreFacts& facts,
+                    const View& view);
+
+/// A scale bar and, when colours tell heights, the colours with their lowest and highest height; in
+/// the lower left corner.
+/// @param unit  Of lengths and heights: "m", "ft", or "" when unknown.
+void draw_legend(Image& image, const View& view, const ReliefStyle& style, const std::string& unit);
+
+}  // namespace ptin::tools

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// From triangles to a grid of heights, classes and pages.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/query/progressive_tin.h"
+#include "tools/render/view.h"
+
+namespace ptin::tools {
+
+enum class PixelClass : std::uint8_t { kOutside, kSurface, kVoid };
+
+/// What lies under the middle of each pixel.
+struct TerrainRaster {
+  int width = 0;
+  int height = 0;
+  std::vector<float> heights;  ///< Where kSurface.
+  std::vector<PixelClass> classes;
+  std::vector<std::uint32_t> pages;  ///< Filled when the TIN tells the pages of its triangles.
+
+  [[nodiscard]] std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
+};
+
+/// Scans every triangle of `refined` over the pixels of `view`. A pixel whose middle lies on an
+/// edge belongs to one of its two triangles. Cost: triangles plus pixels.
+[[nodiscard]] TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts,
+                                      const View& view);
+
+}  // namespace ptin::tools

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/render/relief.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/mesh/tin.h"
+
+namespace ptin::tools {
+
+namespace {
+
+constexpr Colour kBackground{255, 255, 255};
+constexpr Colour kVoidColour{228, 228, 230};
+constexpr Colour kHatchColour{202, 202, 206};
+constexpr Colour kWater{158, 190, 212};
+
+struct Stop {
+  float at;
+  Colour colour;
+};
+constexpr std::array<Stop, 8> kRamp = {{{0.00F, {104, 150, 116}},
+                                        {0.12F, {143, 177, 124}},
+                                        {0.28F, {193, 204, 146}},
+                                        {0.45F, {226, 213, 162}},
+                                        {0.62F, {208, 176, 131}},
+                                        {0.78F, {178, 141, 115}},
+                                        {0.90F, {190, 174, 168}},
+                                        {1.00F, {250, 250, 250}}}};
+
+struct Slope {
+  double x = 0.0;  ///< Rise to the east.
+  double y = 0.0;  ///< Rise to the south.
+};
+
+/// Horn's slope at a pixel: weighted differences of its eight neighbours. A neighbour without a
+/// height counts as the pixel.
+Slope slope_at(const TerrainRaster& r, int x, int y, double ground_per_pixel) {
+  const float centre = r.heights[r.place(x, y)];
+  double z[3][3];
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const int px = std::clamp(x + dx, 0, r.width - 1);
+      const int py = std::clamp(y + dy, 0, r.height - 1);
+      const std::size_t place = r.place(px, py);
+      z[dy + 1][dx + 1] = r.classes[place] == PixelClass::kSurface ? r.heights[place] : centre;
+    }
+  }
+  const double run = 8.0 * ground_per_pixel;
+  return {((z[0][2] + 2 * z[1][2] + z[2][2]) - (z[0][0] + 2 * z[1][0] + z[2][0])) / run,
+          ((z[2][0] + 2 * z[2][1] + z[2][2]) - (z[0][0] + 2 * z[0][1] + z[0][2])) / run};
+}
+
+/// Cosine of the angle between the surface's normal and the light from the north-west, 45 degrees
+/// high.
+double light_on(const Slope& slope, double exaggeration) {
+  const double dx = slope.x * exaggeration;
+  const double dy = slope.y * exaggeration;
+  // Normal (-dx, -dy, 1); to the light: west (-1/2), north (-1/2 of rows to the south), up
+  // sqrt(1/2).
+  return (0.5 * dx + 0.5 * dy + std::sqrt(0.5)) / std::sqrt(dx * dx + dy * dy + 1.0);
+}
+
+/// A colour for each page, neighbours in number far apart in hue.
+Colour page_colour(std::uint32_t page) {
+  if (page == kNone) return {214, 214, 214};
+  const double hue = std::fmod(page * 0.618033988749895, 1.0) * 6.0;
+  const float value = page % 3 == 0 ? 225.0F : (page % 3 == 1 ? 245.0F : 200.0F);
+  constexpr float kPale = 0.42F;
+  Colour colour{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double distance =
+        std::abs(std::fmod(hue + 6.0 - 2.0 * static_cast<double>(i) + 3.0, 6.0) - 3.0);
+    const float strength = static_cast<float>(std::clamp(2.0 - distance, 0.0, 1.0));
+    colour[i] = value * (kPale + (1.0F - kPale) * strength);
+  }
+  return colour;
+}
+
+Colour pixel_colour(const TerrainRaster& raster, int x, int y, double ground_per_pixel, int factor,
+                    const ReliefStyle& style) {
+  const std::size_t place = raster.place(x, y);
+  if (raster.classes[place] == PixelClass::kOutside) return kBackground;
+  if (raster.classes[place] == PixelClass::kVoid) {
+    return (x + y) / factor % 9 == 0 ? kHatchColour : kVoidColour;
+  }
+  const Slope slope = slope_at(raster, x, y, ground_per_pixel);
+  const float height = raster.heights[place];
+  const bool is_water = height == 0.0F && slope.x == 0.0 && slope.y == 0.0 && style.high > 0.0F;
+  Colour colour = style.by_page ? page_colour(raster.pages[place]) : height_colour(height, style);
+  if (is_water && !style.by_page) return kWater;
+  const double light = std::max(0.0, light_on(slope, style.exaggeration));
+  // Flat ground keeps its colour; shades are a little blue, lights go towards white.
+  const double flat = std::sqrt(0.5);
+  if (light < flat) {
+    const auto dark = static_cast<float>(1.0 - light / flat);
+    return mixed(colour, {colour[0] * 0.16F, colour[1] * 0.18F, colour[2] * 0.30F}, dark * 0.95F);
+  }
+  return mixed(colour, {255, 253, 244}, static_cast<float>((light - flat) / (1.0 - flat) * 0.55));
+}
+
+}  // namespace
+
+ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_page) {
+  ReliefStyle style;
+  style.by_page = by_page;
+  std::vector<float> heights;
+  double squares = 0.0;
+  const int step = std::max(1, std::max(raster.width, raster.height) / 600);
+  const double ground = view.ground_per_pixel() * view.width / raster.width;
+  for (int y = 0; y < raster.height; y += step) {
+    for (int x = 0; x < raster.width; x += step) {
+      if (raster.classes[raster.place(x, y)] != PixelClass::kSurface) continue;
+      const Slope slope = slope_at(raster, x, y, ground);
+      if (slope.x == 0.0 && slope.y == 0.0) continue;
+      heights.push_back(raster.heights[raster.place(x, y)]);
+      squares += slope.x * slope.x + slope.y * slope.y;
+    }
+  }
+  if (heights.empty()) return style;
+  std::sort(heights.begin(), heights.end());
+  style.low = heights[heights.size() / 200];
+  style.high = heights[heights.size() - 1 - heights.size() / 500];
+  constexpr double kPleasantSlope = 0.38;  // as in the mountains
+  const double slope = std::sqrt(squares / static_cast<double>(heights.size()));
+  style.exaggeration = slope > 0 ? std::clamp(kPleasantSlope / slope, 1.0, 12.0) : 1.0;
+  return style;
+}
+
+Colour height_colour(float height, const ReliefStyle& style) {
+  const float range = style.high - style.low;
+  const float share = range > 0 ? std::clamp((height - style.low) / range, 0.0F, 1.0F) : 0.3F;
+  std::size_t i = 1;
+  while (i + 1 < kRamp.size() && share > kRamp[i].at) ++i;
+  return mixed(kRamp[i - 1].colour, kRamp[i].colour,
+               (share - kRamp[i - 1].at) / (kRamp[i].at - kRamp[i - 1].at));
+}
+
+Image draw_relief(const TerrainRaster& raster, const View& view, int factor,
+                  const ReliefStyle& style) {
+  Image image(view.width, view.height, kBackground);
+  const double ground = view.ground_per_pixel() / factor;
+  const float share = 1.0F / static_cast<float>(factor * factor);
+  for (int y = 0; y < view.height; ++y) {
+    for (int x = 0; x < view.width; ++x) {
+      Colour sum{0, 0, 0};
+      for (int k = 0; k < factor * factor; ++k) {
+        const Colour c = pixel_colour(raster, x * factor + k % factor, y * factor + k / factor,
+                                      ground, factor, style);
+        for (std::size_t i = 0; i < 3; ++i) sum[i] += c[i] * share;
+      }
+      image.at(x, y) = sum;
+    }
+  }
+  return image;
+}
+
+}  // namespace ptin::tools

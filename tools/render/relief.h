@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Shaded relief: light from the north-west, 45 degrees high, over colours by height or by page.
+#pragma once
+
+#include "tools/render/image.h"
+#include "tools/render/rasterize.h"
+#include "tools/render/view.h"
+
+namespace ptin::tools {
+
+/// How heights become colours and slopes become shades; chosen from what is visible.
+struct ReliefStyle {
+  float low = 0.0F;   ///< Height of the lowest colour.
+  float high = 1.0F;  ///< Height of the highest colour.
+  double exaggeration =
+      1.0;  ///< Of heights, for the shading alone; more than 1 where the terrain is flat.
+  bool by_page = false;  ///< Colours tell the page that a triangle came from.
+};
+
+/// A style for what `raster` shows.
+[[nodiscard]] ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_page);
+
+/// The colour of a height, unshaded.
+[[nodiscard]] Colour height_colour(float height, const ReliefStyle& style);
+
+/// Draws `raster` (of supersampled(view, factor)) into an image of `view`. Voids are light grey and
+/// hatched, water (flat at height 0) is blue, what lies outside of the terrain is white.
+[[nodiscard]] Image draw_relief(const TerrainRaster& raster, const View& view, int factor,
+                                const ReliefStyle& style);
+
+}  // namespace ptin::tools

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/render/view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/error.h"
+
+namespace ptin::tools {
+
+View make_view(const Window& window, bool geographic, int width, int height) {
+  View view;
+  view.window = window;
+  const double map_width = window.max_x - window.min_x;
+  const double map_height = window.max_y - window.min_y;
+  if (!(map_width > 0 && map_height > 0) || std::isinf(map_width) || std::isinf(map_height)) {
+    throw Error(ErrorCode::invalid_argument,
+                "the window to draw has no area; give one with XMIN < XMAX and YMIN < YMAX");
+  }
+  if (geographic) {
+    constexpr double kMetresPerDegree = 111'319.490'793;
+    const double middle = (window.min_y + window.max_y) / 2 * std::numbers::pi / 180.0;
+    view.ground_y = kMetresPerDegree;
+    view.ground_x = kMetresPerDegree * std::max(0.01, std::cos(middle));
+  }
+  const double ground_width = map_width * view.ground_x;
+  const double ground_height = map_height * view.ground_y;
+  if (width == 0 && height == 0) {
+    constexpr double kLongerSide = 1200.0;
+    const double pixels = kLongerSide / std::max(ground_width, ground_height);
+    width = std::max(64, static_cast<int>(std::lround(ground_width * pixels)));
+    height = std::max(64, static_cast<int>(std::lround(ground_height * pixels)));
+  }
+  if (width < 1 || height < 1 || width > 32768 || height > 32768) {
+    throw Error(ErrorCode::invalid_argument, "the picture's sides must be from 1 to 32768 pixels",
+                "--size");
+  }
+  view.width = width;
+  view.height = height;
+  const double pixels = std::min(width / ground_width, height / ground_height);
+  view.scale_x = pixels * view.ground_x;
+  view.scale_y = pixels * view.ground_y;
+  view.left = (width - ground_width * pixels) / 2;
+  view.top = (height - ground_height * pixels) / 2;
+  return view;
+}
+
+View supersampled(const View& view, int factor) {
+  View fine = view;
+  fine.width *= factor;
+  fine.height *= factor;
+  fine.scale_x *= factor;
+  fine.scale_y *= factor;
+  fine.left *= factor;
+  fine.top *= factor;
+  return fine;
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a picture shows: a window of the map on a rectangle of pixels, with the right aspect.
+#pragma once
+
+#include "engine/query/region.h"
+
+namespace ptin::tools {
+
+/// Pixel (0, 0) is the upper left one; its centre is at (0.5, 0.5).
+struct View {
+  Window window{};  ///< Map units; shown whole, centred.
+  int width = 0;    ///< Pixels.
+  int height = 0;
+  double ground_x = 1.0;  ///< Ground units (those of heights, as far as known) in a map unit.
+  double ground_y = 1.0;
+  double scale_x = 1.0;  ///< Pixels in a map unit.
+  double scale_y = 1.0;
+  double left = 0.0;  ///< Pixels beside and above the window.
+  double top = 0.0;
+
+  [[nodiscard]] double pixel_x(double map_x) const {
+    return left + (map_x - window.min_x) * scale_x;
+  }
+  [[nodiscard]] double pixel_y(double map_y) const {
+    return top + (window.max_y - map_y) * scale_y;
+  }
+  /// Ground units across a pixel; the same in x and y.
+  [[nodiscard]] double ground_per_pixel() const { return ground_x / scale_x; }
+};
+
+/// A view of `window`. Width and height 0: the longer side has 1200 pixels and the picture the
+/// window's own aspect. Degrees are shown as they are long on the ground at the middle of the
+/// window.
+/// @throws Error invalid_argument  the window has no area; a side is negative or above 32768
+[[nodiscard]] View make_view(const Window& window, bool geographic, int width, int height);
+
+/// The same view with `factor` times the pixels in each direction.
+[[nodiscard]] View supersampled(const View& view, int factor);
+
+}  // namespace ptin::tools
