@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/verify.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/error.h"
+#include "storage/checksum.h"
+#include "storage/descriptor.h"
+#include "storage/error_table.h"
+#include "storage/page_records.h"
+#include "storage/store_front.h"
+#include "storage/unique_keys.h"
+#include "storage/verify_t0.h"
+
+namespace ptin {
+
+namespace {
+
+struct EnoughFaults {};  // thrown by report(), caught by verify_store()
+
+class Verifier {
+ public:
+  Verifier(const std::string& path, const VerifyOptions& options, const std::stop_token& stop,
+           const VerifyProgress& progress, VerifyReport& report)
+      : file_(path), options_(options), stop_(stop), progress_(progress), report_(report) {}
+
+  void run();
+
+ private:
+  void report(std::string what, std::string where);
+  void look_at_sections();
+  void look_for_zeros(std::uint64_t begin, std::uint64_t end, const std::string& where);
+  void look_at_tree();
+  // Looks at a node and all below it; returns the union over its entries, none when the node is
+  // damaged.
+  std::optional<layout::NodeEntry> look_at_node(std::uint32_t level, std::uint64_t number,
+                                                std::uint64_t checksum);
+  void look_at_entry(std::uint32_t level, const layout::NodeEntry& entry, std::uint64_t child,
+                     const std::string& where);
+  std::optional<layout::NodeEntry> look_at_page(PageId id, const layout::NodeEntry& descriptor);
+  bool read_page(PageId id, const layout::NodeEntry& descriptor);
+  void count(const std::vector<VertexSplit>& records);
+  void compare_totals();
+  bool same(const layout::NodeEntry& a, const layout::NodeEntry& b) const;
+
+  ReadOnlyFile file_;
+  const VerifyOptions& options_;
+  const std::stop_token& stop_;
+  const VerifyProgress& progress_;
+  VerifyReport& report_;
+
+  StoreFront front_;
+  std::optional<UniqueKeys> keys_;
+  std::uint64_t pass_ = 0;
+  std::uint64_t pages_done_ = 0;
+  ErrorTable errors_;
+  std::uint32_t max_rank_ = 0;
+  bool all_seen_ = true;  // no page was left out because of damage
+  std::vector<std::byte> page_;
+  std::vector<VertexSplit> records_;
+};
+
+std::string page_name(PageId id) { return "page " + std::to_string(index_of(id)); }
+
+void Verifier::report(std::string what, std::string where) {
+  if (report_.faults.size() >= options_.max_faults) {
+    report_.stopped_early = true;
+    throw EnoughFaults{};
+  }
+  report_.faults.push_back({std::move(what), std::move(where)});
+}
+
+void Verifier::run() {
+  try {
+    front_ = read_front(file_);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::corruption) {
+      throw;
+    }
+    // Without header and tables nothing else can be found.
+    report(e.message(), "front of the file");
+    return;
+  }
+  page_.resize(front_.facts.page_bytes);
+  look_at_sections();
+  for (const std::string& fault : faults_of_cover(front_.t0, front_.facts.bounds)) {
+    report(fault, "T0");
+  }
+  const std::uint64_t vertices = front_.header.record_count + front_.t0.vertices.size();
+  keys_.emplace(front_.facts.bounds, vertices, options_.memory_bytes);
+  report_.key_passes = keys_->passes();
+  for (pass_ = 0; pass_ < keys_->passes(); ++pass_) {
+    keys_->begin(pass_);
+    for (const CoarsestTin::V& v : front_.t0.vertices) {
+      keys_->add(v.position);
+    }
+    look_at_tree();
+    keys_->end();
+  }
+  compare_totals();
+  file_.check_unchanged();
+}
+
+// Everything before the index and the pages: gaps, metadata, and sections of later minor versions.
+void Verifier::look_at_sections() {
+  if (!nlohmann::json::accept(front_.metadata)) {
+    report("the metadata is not JSON", "section \"metadata\"");
+  }
+  std::uint64_t end =
+      sizeof(layout::FileHeader) + front_.sections.size() * sizeof(layout::SectionEntry);
+  for (const layout::SectionEntry& s : front_.sections) {
+    look_for_zeros(end, s.offset, "gap before byte " + std::to_string(s.offset));
+    end = s.offset + s.bytes;
+    const bool is_known =
+        s.kind >= 1 && s.kind <= static_cast<std::uint32_t>(layout::SectionKind::kPages);
+    if (is_known) {
+      continue;
+    }
+    std::vector<std::byte> content(s.bytes);
+    file_.read_at(content, s.offset);
+    if (checksum_of(content) != s.checksum) {
+      report("the section does not match its checksum",
+             "section of kind " + std::to_string(s.kind));
+    }
+  }
+}
+
+void Verifier::look_for_zeros(std::uint64_t begin, std::uint64_t end, const std::string& where) {
+  std::vector<std::byte> bytes(std::size_t{1} << 16);
+  while (begin < end) {
+    const std::span<std::byte> part(
+        bytes.data(), static_cast<std::size_t>(std::min<std::uint64_t>(end - begin, bytes.size())));
+    file_.read_at(part, begin);
+    if (std::any_of(part.begin(), part.end(), [](std::byte b) { return b != std::byte{0}; })) {
+      report("unused bytes are not zero", where);
+      return;
+    }
+    begin += part.size();
+  }
+}
+
+void Verifier::look_at_tree() {
+  if (front_.index.levels() > 0) {
+    static_cast<void>(look_at_node(front_.index.levels() - 1, 0, front_.root_checksum));
+  } else if (front_.root_checksum != 0) {
+    report("the checksum of an index without nodes should be 0", "section \"index\"");
+  }
+}
+
+std::optional<layout::NodeEntry> Verifier::look_at_node(std::uint32_t level, std::uint64_t number,
+                                                        std::uint64_t checksum) {
+  const std::string where =
+      "index level " + std::to_string(level) + ", node " + std::to_string(number);
+  layout::IndexNode node;
+  file_.read_at(std::as_writable_bytes(std::span(&node, 1)),
+                front_.index_offset + front_.index.position(level, number) * layout::kNodeBytes);
+  const std::uint32_t entries = front_.index.entries(level, number);
+  const bool is_damaged = checksum_of_object(node) != checksum;
+  if (is_damaged || node.level != level || node.number != number || node.entries != entries) {
+    all_seen_ = false;
+    if (pass_ == 0) {
+      report(
+          is_damaged
+              ? "the node does not match the checksum that its parent holds; what lies below "
+                "cannot be looked at"
+              : "the node says another place or number of entries than follows from its position",
+          where);
+    }
+    return std::nullopt;
+  }
+  report_.index_nodes += pass_ == 0 ? 1 : 0;
+  const auto unused =
+      std::as_bytes(std::span(node.entry)).subspan(entries * sizeof(layout::NodeEntry));
+  if (pass_ == 0 &&
+      std::any_of(unused.begin(), unused.end(), [](std::byte b) { return b != std::byte{0}; })) {
+    report("unused entries are not zero", where);
+  }
+  Descriptor all(front_.facts.heights);
+  for (std::uint32_t i = 0; i < entries; ++i) {
+    look_at_entry(level, node.entry[i], number * layout::kFanOut + i,
+                  where + ", entry " + std::to_string(i));
+    all.add(node.entry[i]);
+  }
+  return all.entry();
+}
+
+void Verifier::look_at_entry(std::uint32_t level, const layout::NodeEntry& entry,
+                             std::uint64_t child, const std::string& where) {
+  if (!is_sound(entry, front_.facts.heights) || (level > 0 && entry.kind_and_count != 0)) {
+    all_seen_ = false;
+    if (pass_ == 0) {
+      report("the entry holds values that no program wrote", where);
+    }
+    return;
+  }
+  const std::optional<layout::NodeEntry> found =
+      level == 0 ? look_at_page(PageId{child}, entry)
+                 : look_at_node(level - 1, child, entry.checksum);
+  if (pass_ == 0 && found && !same(*found, entry)) {
+    report("the entry is not the union of what it describes", where);
+  }
+}
+
+std::optional<layout::NodeEntry> Verifier::look_at_page(PageId id,
+                                                        const layout::NodeEntry& descriptor) {
+  if (stop_.stop_requested()) {
+    throw Error(ErrorCode::cancelled, "verification was cancelled", file_.path());
+  }
+  const bool is_read = read_page(id, descriptor);
+  ++pages_done_;
+  if (progress_ && pages_done_ % 4096 == 0) {
+    progress_(pages_done_, front_.header.page_count * keys_->passes());
+  }
+  if (!is_read) {
+    all_seen_ = false;
+    return std::nullopt;
+  }
+  for (const VertexSplit& r : records_) {
+    keys_->add(r.u);
+  }
+  if (pass_ > 0) {
+    return std::nullopt;
+  }
+  ++report_.pages;
+  count(records_);
+  Descriptor all(front_.facts.heights);
+  for (const VertexSplit& r : records_) {
+    all.add(r);
+  }
+  return all.entry();
+}
+
+// Fills `records_`. Reports damage, in the first pass.
+bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
+  records_.clear();
+  try {
+    const DescribedPage page(file_.path(), id, descriptor, front_.facts.heights,
+                             front_.facts.page_bytes);
+    file_.read_at(page_, front_.slots.offset_of(id));
+    if (checksum_of(page_) != descriptor.checksum) {
+      if (pass_ == 0) {
+        report("the page does not match the checksum in its descriptor", page_name(id));
+      }
+      return false;
+    }
+    const auto tail = std::span(page_).subspan(page.records() * record_bytes(page.kind()));
+    if (pass_ == 0 &&
+        std::any_of(tail.begin(), tail.end(), [](std::byte b) { return b != std::byte{0}; })) {
+      report("the bytes behind the last record are not zero", page_name(id));
+    }
+    page.decode(page_, records_);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::corruption) {
+      throw;
+    }
+    if (pass_ == 0) {
+      report(e.message(), page_name(id));
+    }
+    return false;
+  }
+  return true;
+}
+
+void Verifier::count(const std::vector<VertexSplit>& records) {
+  report_.records += records.size();
+  for (const VertexSplit& r : records) {
+    errors_.add(r);
+    max_rank_ = std::max<std::uint32_t>(max_rank_, r.rank);
+    if (!contains(front_.facts.bounds, r.roi)) {
+      report("a region of influence reaches out of the bounds",
+             "record of (" + std::to_string(r.u.x) + ", " + std::to_string(r.u.y) + ")");
+    }
+  }
+}
+
+void Verifier::compare_totals() {
+  for (const VertexKey key : keys_->twice()) {
+    const GridPoint p = point_of(key);
+    report("the vertex comes twice", "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")");
+  }
+  if (!all_seen_) {
+    return;  // sums over a part say nothing
+  }
+  if (report_.records != front_.header.record_count) {
+    report("the header says " + std::to_string(front_.header.record_count) +
+               " records, the pages hold " + std::to_string(report_.records),
+           "header");
+  }
+  if (max_rank_ != front_.header.max_rank) {
+    report("the header says that the largest rank is " + std::to_string(front_.header.max_rank) +
+               ", it is " + std::to_string(max_rank_),
+           "header");
+  }
+  const std::vector<ErrorBin> bins = errors_.bins();
+  const bool equal = std::equal(bins.begin(), bins.end(), front_.bins.begin(), front_.bins.end(),
+                                [](const ErrorBin& a, const ErrorBin& b) {
+                                  return a.upper == b.upper && a.max_deviation == b.max_deviation &&
+                                         a.records == b.records &&
+                                         a.void_vertices == b.void_vertices;
+                                });
+  if (!equal) {
+    report("the table is not that of the records", "section \"error table\"");
+  }
+}
+
+bool Verifier::same(const layout::NodeEntry& a, const layout::NodeEntry& b) const {
+  const Attributes x = attributes_of(a, front_.facts.heights);
+  const Attributes y = attributes_of(b, front_.facts.heights);
+  return x == y && a.error_min == b.error_min;
+}
+
+}  // namespace
+
+VerifyReport verify_store(const std::string& path, const VerifyOptions& options,
+                          const std::stop_token& stop, const VerifyProgress& progress) {
+  VerifyReport report;
+  Verifier verifier(path, options, stop, progress, report);
+  try {
+    verifier.run();
+  } catch (const EnoughFaults&) {
+    // The report says so.
+  }
+  return report;
+}
+
+}  // namespace ptin

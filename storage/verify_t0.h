@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Whether the triangles of a T0 cover a convex domain exactly once.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "storage/store_file.h"
+
+namespace ptin {
+
+/// Sentences that say what is wrong; none when T0 is a triangulation of a convex domain whose box
+/// is `bounds`. REQUIRES: fault_in(t0, facts) is null (store_front.h). Cost: O(n log n).
+[[nodiscard]] std::vector<std::string> faults_of_cover(const CoarsestTin& t0,
+                                                       const GridBox& bounds);
+
+}  // namespace ptin
