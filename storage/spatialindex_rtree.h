@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The second model of RecordIndex: libspatialindex's disk R-tree, bulk-loaded beside the file on
+// demand.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "storage/index.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+struct SpatialIndexOptions {
+  /// The tree is in BASE.dat and BASE.idx. Empty: the store's path with ".sidx" behind it.
+  std::string base;
+  /// Where the bulk loader's external sorter writes when it needs more than `memory_bytes`. Empty:
+  /// the folder of `base`.
+  std::string temporary_folder;
+  std::uint64_t memory_bytes = std::uint64_t{256} << 20;
+};
+
+/// Boxes of four dimensions (x, y, height codes, [0, error]) of the record pages, in an R-tree
+/// packed by sort-tile-recursive. A query strategy evaluates the predicate on node boxes, with an
+/// infinite deviation, which is no dimension of the tree; what a leaf holds is asked exactly, by
+/// the page's descriptor. So the answers are those of the packed R-tree.
+///
+/// The tree is built when it is not there or is of another store (its first page holds the store's
+/// fingerprint). It is a cache: written under temporary names and renamed, but not synced; its own
+/// bytes carry no checksums, and libspatialindex trusts them. Remove the two files when in doubt.
+///
+/// Threads: searches take turns, since libspatialindex reads through one stream.
+class SpatialIndexRTree final : public RecordIndex {
+ public:
+  /// @throws Error io_error, resource_exhausted, not_found (no such folder); corruption (of the
+  /// store)
+  static std::unique_ptr<SpatialIndexRTree> open(std::shared_ptr<const StoreFile> store,
+                                                 const SpatialIndexOptions& options = {});
+  ~SpatialIndexRTree() override;
+
+  /// As RecordIndex::search.  @throws Error corruption, io_error
+  void search(const AttributePredicate& predicate, std::vector<PageId>& pages,
+              IoCounters& counters) const override;
+
+  /// Whether open() had to build the tree.
+  [[nodiscard]] bool was_built() const noexcept;
+
+ private:
+  struct Tree;
+  explicit SpatialIndexRTree(std::unique_ptr<Tree> tree);
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace ptin
