@@ -64,7 +64,8 @@ void CollapseChooser::leave_out_crowded(const Tile& tile, const StarSamples& s) 
 void CollapseChooser::collect(const Tile& tile, const StarSamples& s) {
   const std::size_t degree = s.star.degree();
   candidates_.clear();
-  if (s.star.closed && !s.is_wide()) {
+  screened_ = s.star.closed && !s.is_wide();
+  if (screened_) {
     screen_all(tile, s);
   } else {
     const std::size_t step = s.star.closed ? 1 : degree - 1;  // at a border only the two ends
@@ -79,33 +80,49 @@ void CollapseChooser::collect(const Tile& tile, const StarSamples& s) {
   }
 }
 
+/// Moves the candidate with the least (screen, key) of those from `first` on to place `first`.
+void CollapseChooser::select_next(std::size_t first) {
+  std::size_t least = first;
+  for (std::size_t i = first + 1; i < candidates_.size(); ++i) {
+    const Candidate& a = candidates_[i];
+    const Candidate& b = candidates_[least];
+    if (a.screen < b.screen || (a.screen == b.screen && a.key < b.key)) {
+      least = i;
+    }
+  }
+  std::swap(candidates_[first], candidates_[least]);
+}
+
 CollapseChoice CollapseChooser::choose_on_surface(const Tile& tile, StarSamples& s) {
-  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-    return a.screen != b.screen ? a.screen < b.screen : a.key < b.key;
-  });
-  const Candidate* best = nullptr;
+  Candidate best{CollapseChoice::kNoNeighbour, 0.0, kNoVertexKey};
   double best_error = std::numeric_limits<double>::infinity();
-  for (const Candidate& c : candidates_) {
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    select_next(i);
+    const Candidate& c = candidates_[i];
     if (c.screen > best_error) {
+      break;
+    }
+    if (s.count == 1 && screened_) {  // u is the only sample: the screen is the error, and the first the best
+      best = c;
+      best_error = c.screen;
       break;
     }
     PTIN_CHECK(make_fan(s, c.j, fan_));
     const double error = largest_residual(s, fan_, 0, s.x.size(), best_error);
-    if (error < best_error || (error == best_error && (best == nullptr || c.key < best->key))) {
-      best = &c;
+    if (error < best_error || (error == best_error && c.key < best.key)) {
+      best = c;
       best_error = error;
-      std::swap(fan_, best_fan_);
     }
   }
   const double bound = residual_bound(s, tile.units);
   double error = scaled_up(best_error) + bound;
   if (bound > 0.0 && best_error <= bound) {
     gather_sources(tile, s);
-    if (all_residuals_zero(tile, s, best_fan_)) {
+    if (make_fan(s, best.j, fan_) && all_residuals_zero(tile, s, fan_)) {
       error = 0.0;
     }
   }
-  return {best->j, error};
+  return {best.j, error};
 }
 
 CollapseChoice CollapseChooser::choose_with_voids(const Tile& tile, const StarSamples& s) {

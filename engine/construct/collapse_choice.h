@@ -38,12 +38,14 @@ class CollapseChooser {
   void collect(const Tile& tile, const StarSamples& s);
   void screen_all(const Tile& tile, const StarSamples& s);
   void leave_out_crowded(const Tile& tile, const StarSamples& s);
+  void select_next(std::size_t first);
   [[nodiscard]] CollapseChoice choose_on_surface(const Tile& tile, StarSamples& s);
   [[nodiscard]] CollapseChoice choose_with_voids(const Tile& tile, const StarSamples& s);
 
   std::vector<Candidate> candidates_;
   std::vector<double> crosses_;  ///< crosses_[i * degree + k]: cross product of link i and link k, relative to u.
-  FanFrame fan_, best_fan_;
+  bool screened_ = false;        ///< Whether the candidates' screens are known.
+  FanFrame fan_;
 };
 
 }  // namespace ptin

@@ -10,11 +10,18 @@ namespace ptin {
 
 namespace {
 
-constexpr std::size_t kArity = 4;  // four children share a cache line: half the levels of a binary heap
+constexpr std::uint64_t kLastClass = (std::uint64_t{1} << kClassBits) - 1;
+constexpr int kClassShift = 64 - kClassBits;
+constexpr int kBoxBits = 32;
+constexpr int kNeighbourhoodBits = kClassShift - kBoxBits;  // two coordinates of 11 bits
+constexpr std::uint64_t kVerticesANeighbourhood = 4096;
 
 std::uint64_t clamped32(std::int64_t v) noexcept {
   return static_cast<std::uint64_t>(std::clamp<std::int64_t>(v, 0, UINT32_MAX));
 }
+
+/// Any heap order with the least entry in front.
+constexpr auto kLater = [](const QueueEntry& a, const QueueEntry& b) { return b < a; };
 
 }  // namespace
 
@@ -35,75 +42,75 @@ std::uint32_t error_class(double error_quanta) noexcept {
   return 1 + 4 * static_cast<std::uint32_t>(exponent - 1) + part;
 }
 
-std::uint64_t priority_of(CostModel cost, const CollapseMeasure& measure) noexcept {
+PriorityScale::PriorityScale(CostModel cost, const GridBox& bounds, std::uint64_t vertices) noexcept
+    : cost_(cost), origin_{bounds.min_x, bounds.min_y} {
+  const double area = (static_cast<double>(bounds.max_x) - bounds.min_x + 1.0) *
+                      (static_cast<double>(bounds.max_y) - bounds.min_y + 1.0);
+  const double side_squared = area / static_cast<double>(std::max<std::uint64_t>(vertices, 1)) *
+                              static_cast<double>(kVerticesANeighbourhood);
+  while (shift_ < 30 && std::ldexp(1.0, 2 * shift_ + 2) <= side_squared) {
+    ++shift_;
+  }
+}
+
+std::uint64_t PriorityScale::neighbourhood(GridPoint p, std::uint32_t error_class) const noexcept {
+  const int shift = std::min(shift_ + static_cast<int>(error_class / 8), 31);
+  constexpr std::uint64_t kMax = (std::uint64_t{1} << (kNeighbourhoodBits / 2)) - 1;
+  const auto x = std::min(static_cast<std::uint64_t>(std::int64_t{p.x} - origin_.x) >> shift, kMax);
+  const auto y = std::min(static_cast<std::uint64_t>(std::int64_t{p.y} - origin_.y) >> shift, kMax);
+  return (y << (kNeighbourhoodBits / 2)) | x;
+}
+
+std::uint64_t PriorityScale::operator()(const CollapseMeasure& measure) const noexcept {
   const std::uint64_t box = clamped32(half_perimeter(measure.roi));
-  switch (cost) {
-    case CostModel::kError:
-      return (std::uint64_t{error_class(measure.error_quanta)} << 32) | box;
+  switch (cost_) {
+    case CostModel::kError: {
+      const std::uint32_t c = error_class(measure.error_quanta);
+      if (c >= kLastClass) {
+        return (kLastClass << kClassShift) | box;
+      }
+      return (std::uint64_t{c} << kClassShift) | (neighbourhood(measure.vertex, c) << kBoxBits) | box;
+    }
     case CostModel::kRoi:
-      return box;
+      return (static_cast<std::uint64_t>(std::bit_width(box)) << kClassShift) | box;
     case CostModel::kElevation:
       // The bits of a float that is not negative grow with it.
-      return (std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(measure.height_quanta))} << 32) | box;
+      return (std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(measure.height_quanta))} << kBoxBits) | box;
   }
   return 0;
 }
 
-void CollapseQueue::assign(std::vector<QueueEntry> entries) {
-  heap_ = std::move(entries);
-  if (heap_.size() < 2) {
+void CollapseQueue::push(const QueueEntry& entry) {
+  const std::size_t c = entry.priority >> kClassShift;
+  if (c > present_) {
+    waiting_[c].push_back(entry);
     return;
   }
-  for (std::size_t i = (heap_.size() - 2) / kArity + 1; i-- > 0;) {
-    sift_down(i, QueueEntry(heap_[i]));
-  }
+  late_.push_back(entry);
+  std::push_heap(late_.begin(), late_.end(), kLater);
 }
 
-void CollapseQueue::push(const QueueEntry& entry) {
-  std::size_t hole = heap_.size();
-  heap_.push_back(entry);
-  while (hole > 0) {
-    const std::size_t parent = (hole - 1) / kArity;
-    if (!(entry < heap_[parent])) {
-      break;
+bool CollapseQueue::empty() {
+  while (next_ == run_.size() && late_.empty()) {
+    if (present_ == kLastClass) {
+      return true;
     }
-    heap_[hole] = heap_[parent];
-    hole = parent;
+    ++present_;
+    run_ = std::move(waiting_[present_]);
+    waiting_[present_] = {};
+    next_ = 0;
+    std::sort(run_.begin(), run_.end());
   }
-  heap_[hole] = entry;
+  return false;
 }
 
 void CollapseQueue::pop() {
-  const QueueEntry last = heap_.back();
-  heap_.pop_back();
-  if (!heap_.empty()) {
-    sift_down(0, last);
+  if (&top() == late_.data()) {
+    std::pop_heap(late_.begin(), late_.end(), kLater);
+    late_.pop_back();
+  } else {
+    ++next_;
   }
-}
-
-void CollapseQueue::replace_top(const QueueEntry& entry) { sift_down(0, entry); }
-
-void CollapseQueue::sift_down(std::size_t hole, const QueueEntry& entry) {
-  const std::size_t n = heap_.size();
-  while (true) {
-    const std::size_t first = hole * kArity + 1;
-    if (first >= n) {
-      break;
-    }
-    std::size_t least = first;
-    const std::size_t end = std::min(first + kArity, n);
-    for (std::size_t c = first + 1; c < end; ++c) {
-      if (heap_[c] < heap_[least]) {
-        least = c;
-      }
-    }
-    if (!(heap_[least] < entry)) {
-      break;
-    }
-    heap_[hole] = heap_[least];
-    hole = least;
-  }
-  heap_[hole] = entry;
 }
 
 }  // namespace ptin

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Which vertex goes next: the priority of each cost, and a heap over it.
+// Which vertex goes next: the priority of each cost, and a queue over it.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <vector>
 
 #include "engine/construct/cost.h"
 #include "engine/geometry/box.h"
-#include "engine/geometry/interval.h"
+#include "engine/geometry/point.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin {
@@ -23,6 +24,7 @@ struct QueueEntry {
 
 /// What a priority is made from.
 struct CollapseMeasure {
+  GridPoint vertex;
   double error_quanta = 0.0;   ///< Error of the collapse's own samples, in height quanta; may be +infinity.
   double height_quanta = 0.0;  ///< Length of the saturated height interval, in height quanta.
   GridBox roi;                 ///< Saturated box.
@@ -32,25 +34,52 @@ struct CollapseMeasure {
 /// Exact on every machine: exponent and three comparisons, no logarithm.
 [[nodiscard]] std::uint32_t error_class(double error_quanta) noexcept;
 
-/// Priority of a collapse: `error`: (class, half-perimeter); `roi`: half-perimeter; `elevation`: (interval, half-perimeter).
-[[nodiscard]] std::uint64_t priority_of(CostModel cost, const CollapseMeasure& measure) noexcept;
-
-/// A binary heap of vertices, least entry first. A vertex is in it at most once; the caller sees to that.
-class CollapseQueue {
+/// Turns measures into priorities of 64 bits, the highest ten of which are a class.
+///   error:     error class, neighbourhood, half-perimeter of the box
+///   roi:       half-perimeter (its class is its octave)
+///   elevation: height interval, half-perimeter
+/// Neighbourhoods are squares of the plane, about 4096 vertices of the full TIN large, twice as wide every second octave of error. Within a
+/// class one is finished before the next begins: the same work in another order, which keeps the mesh that is worked on in the processor's
+/// caches (bench/README.md has the figures). The last class, infinite error, has one neighbourhood.
+class PriorityScale {
  public:
-  void reserve(std::size_t n) { heap_.reserve(n); }
-  /// Replaces the contents. Cost: linear.
-  void assign(std::vector<QueueEntry> entries);
-  void push(const QueueEntry& entry);
-  [[nodiscard]] bool empty() const noexcept { return heap_.empty(); }
-  [[nodiscard]] const QueueEntry& top() const noexcept { return heap_.front(); }
-  void pop();
-  /// pop() and push(entry) in one descent.
-  void replace_top(const QueueEntry& entry);
+  /// @param bounds    Of all vertices.
+  /// @param vertices  Their number.
+  PriorityScale(CostModel cost, const GridBox& bounds, std::uint64_t vertices) noexcept;
+  [[nodiscard]] std::uint64_t operator()(const CollapseMeasure& measure) const noexcept;
 
  private:
-  void sift_down(std::size_t hole, const QueueEntry& entry);
-  std::vector<QueueEntry> heap_;
+  [[nodiscard]] std::uint64_t neighbourhood(GridPoint p, std::uint32_t error_class) const noexcept;
+  CostModel cost_;
+  GridPoint origin_;
+  int shift_ = 0;  ///< log2 of the side of a neighbourhood of class 0, grid units.
+};
+
+/// Number of classes, the highest bits of a priority.
+inline constexpr int kClassBits = 10;
+
+/// Vertices, least entry first. A vertex is in it at most once; the caller sees to that.
+///
+/// Entries of later classes wait unsorted; a class is sorted when its turn comes, and what arrives meanwhile for it (or for an earlier one)
+/// goes through a small heap. So most entries cost one append and one sort in sequence instead of a walk through a large heap.
+class CollapseQueue {
+ public:
+  void push(const QueueEntry& entry);
+  /// Sorts the next class when the present one is used up. Amortised cost: logarithmic.
+  [[nodiscard]] bool empty();
+  /// REQUIRES: empty() was just asked and false.
+  [[nodiscard]] const QueueEntry& top() const noexcept {
+    return late_.empty() || (next_ < run_.size() && run_[next_] < late_.front()) ? run_[next_] : late_.front();
+  }
+  /// REQUIRES: as top().
+  void pop();
+
+ private:
+  std::vector<QueueEntry> run_;   ///< The present class, ascending, from next_.
+  std::size_t next_ = 0;
+  std::vector<QueueEntry> late_;  ///< Heap.
+  std::size_t present_ = 0;       ///< Class of run_; classes below are used up.
+  std::array<std::vector<QueueEntry>, std::size_t{1} << kClassBits> waiting_;
 };
 
 }  // namespace ptin

@@ -23,7 +23,7 @@ enum class QueueState : std::uint8_t {
 class Simplifier {
  public:
   Simplifier(Tile& tile, const FullSurface& full, const SimplifyOptions& options)
-      : tile_(tile), options_(options), maker_(tile, full) {}
+      : tile_(tile), options_(options), maker_(tile, full), scale_(scale_of(tile, options.cost)) {}
 
   void run();
 
@@ -32,6 +32,7 @@ class Simplifier {
     CollapseChoice choice;
     std::uint64_t priority = 0;
   };
+  [[nodiscard]] static PriorityScale scale_of(const Tile& tile, CostModel cost);
   void fill_queue();
   void check_in();
   [[nodiscard]] Evaluation evaluate(VertexId u);
@@ -42,6 +43,7 @@ class Simplifier {
   const SimplifyOptions& options_;
   RecordMaker maker_;
   CollapseChooser chooser_;
+  PriorityScale scale_;
   CollapseQueue queue_;
   StarSamples star_;
   std::vector<QueueState> state_;
@@ -50,6 +52,18 @@ class Simplifier {
   std::uint64_t collapsed_ = 0;
   std::uint64_t steps_ = 0;
 };
+
+PriorityScale Simplifier::scale_of(const Tile& tile, CostModel cost) {
+  GridBox bounds;
+  std::uint64_t alive = 0;
+  for (const Vertex& v : tile.tin.vertices) {
+    if (v.triangle != kNone) {
+      bounds = united(bounds, v.position);
+      ++alive;
+    }
+  }
+  return {cost, bounds, alive};
+}
 
 /// Looks at the stop token and reports, every few thousand steps.
 void Simplifier::check_in() {
@@ -73,13 +87,14 @@ Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
     return e;
   }
   CollapseMeasure measure;
+  measure.vertex = tile_.tin.position(u);
   measure.error_quanta = e.choice.error / tile_.units.quantum_code;
   measure.roi = saturated_box(tile_, star_.star);
   if (options_.cost == CostModel::kElevation) {
     const Interval heights = saturated_heights(tile_, star_.star);
     measure.height_quanta = is_empty(heights) ? 0.0 : (heights.hi - heights.lo) / tile_.units.quantum_code;
   }
-  e.priority = priority_of(options_.cost, measure);
+  e.priority = scale_(measure);
   return e;
 }
 
@@ -87,8 +102,6 @@ void Simplifier::fill_queue() {
   const std::size_t n = tile_.tin.vertices.size();
   state_.assign(n, QueueState::kAbsent);
   target_.assign(n, kNone);
-  std::vector<QueueEntry> entries;
-  entries.reserve(n);
   for (VertexId v = 0; v < n; ++v) {
     if (tile_.tin.vertices[v].triangle == kNone || tile_.vertex_state[v].locked) {
       continue;
@@ -97,12 +110,11 @@ void Simplifier::fill_queue() {
     check_in();
     const Evaluation e = evaluate(v);
     if (e.choice.j != CollapseChoice::kNoNeighbour) {
-      entries.push_back({e.priority, v});
+      queue_.push({e.priority, v});
       state_[v] = QueueState::kClean;
       target_[v] = star_.star.link[e.choice.j];
     }
   }
-  queue_.assign(std::move(entries));
 }
 
 /// Collapses the centre of star_ and marks its link: those stars have changed.
@@ -136,8 +148,8 @@ void Simplifier::collapse(VertexId u, std::size_t j) {
 
 void Simplifier::take_top() {
   const QueueEntry top = queue_.top();
+  queue_.pop();
   if (state_[top.vertex] == QueueState::kClean) {
-    queue_.pop();
     gather_star(tile_, top.vertex, star_);
     std::size_t j = 0;
     while (star_.star.link[j] != target_[top.vertex]) {
@@ -150,16 +162,14 @@ void Simplifier::take_top() {
   const Evaluation e = evaluate(top.vertex);
   if (e.choice.j == CollapseChoice::kNoNeighbour) {
     state_[top.vertex] = QueueState::kAbsent;
-    queue_.pop();
     return;
   }
   const QueueEntry measured{e.priority, top.vertex};
-  queue_.replace_top(measured);
-  if (queue_.top() == measured) {
-    queue_.pop();
+  if (queue_.empty() || measured < queue_.top()) {
     collapse(top.vertex, e.choice.j);
     return;
   }
+  queue_.push(measured);
   state_[top.vertex] = QueueState::kClean;
   target_[top.vertex] = star_.star.link[e.choice.j];
 }
