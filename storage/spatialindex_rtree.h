@@ -16,10 +16,10 @@ namespace ptin {
 
 struct SpatialIndexOptions {
   /// The tree is in BASE.dat and BASE.idx. Empty: the store's path with ".sidx" behind it.
-  std::string base;
+  std::string base = {};
   /// Where the bulk loader's external sorter writes when it needs more than `memory_bytes`. Empty:
   /// the folder of `base`.
-  std::string temporary_folder;
+  std::string temporary_folder = {};
   std::uint64_t memory_bytes = std::uint64_t{256} << 20;
 };
 

@@ -14,10 +14,6 @@
 
 #include <unistd.h>
 
-#include "storage/checksum.h"
-#include "storage/index_shape.h"
-#include "storage/page_slots.h"
-
 namespace ptin::test {
 
 namespace fs = std::filesystem;
@@ -190,115 +186,6 @@ void sort_by_key(std::vector<VertexSplit>& records) {
   std::sort(records.begin(), records.end(), [](const VertexSplit& a, const VertexSplit& b) {
     return std::tuple(a.rank, a.error, key_of(a.u)) < std::tuple(b.rank, b.error, key_of(b.u));
   });
-}
-
-namespace {
-
-template <class T>
-T object_at(const Bytes& file, std::uint64_t offset) {
-  T object;
-  std::memcpy(&object, file.data() + offset, sizeof object);
-  return object;
-}
-
-template <class T>
-void set_object(Bytes& file, std::uint64_t offset, const T& object) {
-  std::memcpy(file.data() + offset, &object, sizeof object);
-}
-
-bool holds(const Bytes& file, std::uint64_t offset, std::uint64_t bytes) {
-  return offset <= file.size() && bytes <= file.size() - offset;
-}
-
-}  // namespace
-
-layout::FileHeader header_of(const Bytes& file) { return object_at<layout::FileHeader>(file, 0); }
-void set_header(Bytes& file, const layout::FileHeader& header) { set_object(file, 0, header); }
-
-std::vector<layout::SectionEntry> sections_of(const Bytes& file) {
-  std::vector<layout::SectionEntry> sections;
-  const std::uint32_t count = std::min(header_of(file).section_count, layout::kMaxSections);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint64_t offset = sizeof(layout::FileHeader) + i * sizeof(layout::SectionEntry);
-    if (holds(file, offset, sizeof(layout::SectionEntry))) {
-      sections.push_back(object_at<layout::SectionEntry>(file, offset));
-    }
-  }
-  return sections;
-}
-
-void set_sections(Bytes& file, const std::vector<layout::SectionEntry>& sections) {
-  std::memcpy(file.data() + sizeof(layout::FileHeader), sections.data(),
-              sections.size() * sizeof(layout::SectionEntry));
-}
-
-layout::SectionEntry section_of(const Bytes& file, layout::SectionKind kind) {
-  for (const auto& s : sections_of(file)) {
-    if (s.kind == static_cast<std::uint32_t>(kind)) {
-      return s;
-    }
-  }
-  return {};
-}
-
-namespace {
-
-// Pages into leaves, leaves into the level above, and so on. Returns the checksum of the root.
-std::uint64_t seal_index(Bytes& file, const layout::FileHeader& h) {
-  const auto index = section_of(file, layout::SectionKind::kIndex);
-  const auto pages = section_of(file, layout::SectionKind::kPages);
-  if (h.page_count == 0 || h.page_bytes == 0 || h.page_count > file.size() / h.page_bytes) {
-    return index.checksum;
-  }
-  const IndexShape shape(h.page_count);
-  if (!holds(file, index.offset, shape.total_bytes()) || h.first_page >= h.page_count) {
-    return index.checksum;
-  }
-  const PageSlots slots{h.page_count, h.first_page, pages.offset, h.page_bytes};
-  const auto node_offset = [&](std::uint32_t level, std::uint64_t number) {
-    return index.offset + shape.position(level, number) * layout::kNodeBytes;
-  };
-  for (std::uint32_t level = 0; level < shape.levels(); ++level) {
-    for (std::uint64_t child = 0; child < shape.children(level); ++child) {
-      const std::uint64_t offset =
-          level == 0 ? slots.offset_of(PageId{child}) : node_offset(level - 1, child);
-      const std::uint64_t bytes = level == 0 ? h.page_bytes : layout::kNodeBytes;
-      if (!holds(file, offset, bytes)) {
-        return index.checksum;
-      }
-      const std::uint64_t sum = checksum_of(std::span(file).subspan(offset, bytes));
-      const std::uint64_t place = node_offset(level, child / layout::kFanOut) +
-                                  offsetof(layout::IndexNode, entry) +
-                                  child % layout::kFanOut * sizeof(layout::NodeEntry) +
-                                  offsetof(layout::NodeEntry, checksum);
-      set_object(file, place, sum);
-    }
-  }
-  return checksum_of(
-      std::span(file).subspan(node_offset(shape.levels() - 1, 0), layout::kNodeBytes));
-}
-
-}  // namespace
-
-void seal(Bytes& file) {
-  if (file.size() < sizeof(layout::FileHeader)) {
-    return;
-  }
-  layout::FileHeader h = header_of(file);
-  std::vector<layout::SectionEntry> sections = sections_of(file);
-  for (auto& s : sections) {
-    if (s.kind == static_cast<std::uint32_t>(layout::SectionKind::kIndex)) {
-      s.checksum = seal_index(file, h);
-    } else if (s.kind != static_cast<std::uint32_t>(layout::SectionKind::kPages) &&
-               holds(file, s.offset, s.bytes)) {
-      s.checksum = checksum_of(std::span(file).subspan(s.offset, s.bytes));
-    }
-  }
-  set_sections(file, sections);
-  h.section_table_checksum = checksum_of(std::as_bytes(std::span(sections)));
-  h.header_checksum = checksum_of(
-      std::as_bytes(std::span(&h, 1)).first(offsetof(layout::FileHeader, header_checksum)));
-  set_header(file, h);
 }
 
 }  // namespace ptin::test

@@ -15,6 +15,7 @@
 #include "storage/layout.h"
 #include "storage/store_file.h"
 #include "storage/store_writer.h"
+#include "tests/storage/seal.h"
 
 namespace ptin::test {
 
@@ -33,7 +34,6 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-using Bytes = std::vector<std::byte>;
 [[nodiscard]] Bytes read_file(const std::string& path);
 void write_file(const std::string& path, const Bytes& bytes);
 
@@ -71,17 +71,6 @@ void write_store(const std::string& path, const StoreContent& content,
 
 /// By rank, error and key, so that two lists can be compared.
 void sort_by_key(std::vector<VertexSplit>& records);
-
-[[nodiscard]] layout::FileHeader header_of(const Bytes& file);
-void set_header(Bytes& file, const layout::FileHeader& header);
-[[nodiscard]] std::vector<layout::SectionEntry> sections_of(const Bytes& file);
-void set_sections(Bytes& file, const std::vector<layout::SectionEntry>& sections);
-[[nodiscard]] layout::SectionEntry section_of(const Bytes& file, layout::SectionKind kind);
-
-/// Computes every checksum again, as far as the structure can be followed: pages, leaves, inner
-/// nodes, sections, table, header. What was changed before is then a lie that only a look at its
-/// meaning can find. Every byte pattern is safe to pass.
-void seal(Bytes& file);
 
 /// A predicate from a function.
 class FunctionPredicate final : public AttributePredicate {

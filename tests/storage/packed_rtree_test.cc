@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/packed_rtree.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/error.h"
+#include "storage/index_shape.h"
+#include "storage/page_slots.h"
+#include "storage/spatialindex_rtree.h"
+#include "tests/storage/store_fixture.h"
+
+namespace ptin::test {
+namespace {
+
+// One store for all cases of a process: more than one leaf, wide and narrow pages, voids.
+struct Shared {
+  TemporaryFolder folder;
+  std::shared_ptr<const StoreFile> mapped, pread;
+  std::unique_ptr<SpatialIndexRTree> second;
+
+  explicit Shared(HeightType type) {
+    RandomRecords options;
+    options.segments = 8;
+    options.records = 3000;
+    options.type = type;
+    write_store(folder.file("a.ptin"), random_content(options));
+    mapped = StoreFile::open(folder.file("a.ptin"), PageAccess::kMapped);
+    pread = StoreFile::open(folder.file("a.ptin"), PageAccess::kPread);
+    second = SpatialIndexRTree::open(mapped);
+  }
+};
+
+const Shared& shared(HeightType type) {
+  static const Shared floats(HeightType::float32);
+  static const Shared integers(HeightType::int32);
+  return type == HeightType::float32 ? floats : integers;
+}
+
+std::vector<PageId> brute_force(const StoreFile& store, const AttributePredicate& predicate) {
+  std::vector<PageId> pages;
+  for (std::uint64_t i = 0; i < store.pages().page_count(); ++i) {
+    if (predicate.holds(store.page_info(PageId{i}).attributes)) {
+      pages.push_back(PageId{i});
+    }
+  }
+  return pages;
+}
+
+std::vector<PageId> search(const RecordIndex& index, const AttributePredicate& predicate) {
+  std::vector<PageId> pages;
+  IoCounters counters;
+  index.search(predicate, pages, counters);
+  return pages;
+}
+
+// Monotone: window, height, error and deviation, each of which may be left out.
+FunctionPredicate any_predicate(const StoreFile& store) {
+  const std::int32_t side = store.facts().bounds.max_x;
+  const auto within = [&] { return *rc::gen::inRange(0, side + 1); };
+  GridBox window = united(box_of({within(), within()}), GridPoint{within(), within()});
+  if (*rc::gen::arbitrary<bool>()) {
+    window = store.facts().bounds;
+  }
+  const bool asks_height = *rc::gen::arbitrary<bool>();
+  const double height = *rc::gen::inRange(-100, 13000);
+  const bool asks_error = *rc::gen::arbitrary<bool>();
+  const bool asks_deviation = *rc::gen::arbitrary<bool>();
+  const double error =
+      *rc::gen::element(0.0, 0.1, 1.0, 30.0, 250.0, 1e30, std::numeric_limits<double>::infinity());
+  return FunctionPredicate([=](const Attributes& a) {
+    return meets(a.roi, window) && (!asks_height || contains(a.heights, height)) &&
+           (!asks_error || a.error > error) && (!asks_deviation || a.deviation > error);
+  });
+}
+
+RC_GTEST_PROP(PackedRTree, FindsThePagesThatBruteForceFinds, ()) {
+  const Shared& s = shared(*rc::gen::element(HeightType::float32, HeightType::int32));
+  const FunctionPredicate predicate = any_predicate(*s.mapped);
+  const std::vector<PageId> expected = brute_force(*s.mapped, predicate);
+  RC_ASSERT(search(s.mapped->index(), predicate) == expected);
+  RC_ASSERT(search(s.pread->index(), predicate) == expected);
+}
+
+RC_GTEST_PROP(SpatialIndexRTree, FindsThePagesThatThePackedRTreeFinds, ()) {
+  const Shared& s = shared(*rc::gen::element(HeightType::float32, HeightType::int32));
+  const FunctionPredicate predicate = any_predicate(*s.mapped);
+  RC_ASSERT(search(*s.second, predicate) == search(s.mapped->index(), predicate));
+}
+
+RC_GTEST_PROP(PackedRTree, MissesNoRecord, ()) {
+  const Shared& s = shared(HeightType::float32);
+  const FunctionPredicate predicate = any_predicate(*s.mapped);
+  std::vector<VertexSplit> found;
+  IoCounters counters;
+  for (const PageId id : search(s.mapped->index(), predicate)) {
+    s.mapped->read_matching(id, predicate, found, counters);
+  }
+  std::size_t expected = 0;
+  for (const VertexSplit& r : read_all(*s.mapped)) {
+    expected += predicate.holds(attributes_of(r, s.mapped->facts().heights)) ? 1 : 0;
+  }
+  RC_ASSERT(found.size() == expected);
+}
+
+TEST(PackedRTree, CountsWhatItReads) {
+  const Shared& s = shared(HeightType::float32);
+  const FunctionPredicate all([](const Attributes&) { return true; });
+  const FunctionPredicate none([](const Attributes&) { return false; });
+  std::vector<PageId> pages;
+  IoCounters counters;
+  s.mapped->index().search(none, pages, counters);
+  EXPECT_EQ(counters.index_nodes, 1U);
+  EXPECT_TRUE(pages.empty());
+  counters = {};
+  s.mapped->index().search(all, pages, counters);
+  EXPECT_EQ(counters.index_nodes, IndexShape(s.mapped->pages().page_count()).total_nodes());
+  EXPECT_EQ(counters.bytes_read, counters.index_nodes * 4096);
+  EXPECT_EQ(pages.size(), s.mapped->pages().page_count());
+}
+
+TEST(SpatialIndexRTree, IsBuiltOnceAndAgainForAnotherStore) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.ptin");
+  write_store(path, random_content({.seed = 1}));
+  const auto first = StoreFile::open(path);
+  EXPECT_TRUE(SpatialIndexRTree::open(first)->was_built());
+  EXPECT_FALSE(SpatialIndexRTree::open(first)->was_built());
+  write_store(path, random_content({.seed = 2}), {.overwrite = true});
+  const auto second = StoreFile::open(path);
+  EXPECT_TRUE(SpatialIndexRTree::open(second)->was_built());
+  EXPECT_EQ(folder.names(),
+            (std::vector<std::string>{"a.ptin", "a.ptin.sidx.dat", "a.ptin.sidx.idx"}));
+}
+
+TEST(SpatialIndexRTree, SortsWithLittleMemoryInTheGivenFolderAndLeavesNothingThere) {
+  const TemporaryFolder folder, scratch;
+  const std::string path = folder.file("a.ptin");
+  RandomRecords options;
+  options.segments = 70;
+  options.records = 6400;
+  options.side = 30000;
+  write_store(path, random_content(options));
+  const auto store = StoreFile::open(path);
+  ASSERT_GT(store->pages().page_count(), 64U * 64U) << "so many that the sorter has to spill";
+  const auto before = std::filesystem::current_path();
+  const auto index = SpatialIndexRTree::open(
+      store, {.base = folder.file("b"), .temporary_folder = scratch.path(), .memory_bytes = 1});
+  EXPECT_EQ(std::filesystem::current_path(), before);
+  EXPECT_TRUE(scratch.names().empty());
+  const FunctionPredicate predicate([](const Attributes& a) {
+    return a.error > 20.0 && meets(a.roi, {100, 100, 5000, 5000});
+  });
+  EXPECT_EQ(search(*index, predicate), search(store->index(), predicate));
+}
+
+TEST(SpatialIndexRTree, AnswersForAStoreWithoutPages) {
+  const TemporaryFolder folder;
+  write_store(folder.file("a.ptin"), flat_square(10));
+  const auto store = StoreFile::open(folder.file("a.ptin"));
+  const FunctionPredicate all([](const Attributes&) { return true; });
+  EXPECT_TRUE(search(store->index(), all).empty());
+  EXPECT_TRUE(search(*SpatialIndexRTree::open(store), all).empty());
+}
+
+TEST(SpatialIndexRTree, SaysWhichFolderIsMissing) {
+  const TemporaryFolder folder;
+  write_store(folder.file("a.ptin"), random_content({}));
+  const auto store = StoreFile::open(folder.file("a.ptin"));
+  try {
+    SpatialIndexRTree::open(store, {.base = folder.file("no/such/base")});
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::not_found);
+  }
+}
+
+// --- Places ---
+
+TEST(IndexShape, HoldsCountsBeyond32Bits) {
+  const std::uint64_t pages = std::uint64_t{1} << 52;
+  const IndexShape shape(pages);
+  EXPECT_EQ(shape.levels(), 9U);
+  EXPECT_EQ(shape.nodes(shape.levels() - 1), 1U);
+  EXPECT_EQ(shape.nodes(0), (pages + 84) / 85);
+  EXPECT_EQ(shape.entries(0, shape.nodes(0) - 1), pages - (shape.nodes(0) - 1) * 85);
+  std::uint64_t expected = 0;
+  for (std::uint32_t level = shape.levels(); level-- > 0;) {
+    EXPECT_EQ(shape.position(level, 0), expected);
+    expected += shape.nodes(level);
+  }
+  EXPECT_EQ(shape.total_nodes(), expected);
+}
+
+RC_GTEST_PROP(IndexShape, EveryChildHasOneParentEntry, ()) {
+  const auto pages = *rc::gen::inRange<std::uint64_t>(1, 2'000'000);
+  const IndexShape shape(pages);
+  for (std::uint32_t level = 0; level < shape.levels(); ++level) {
+    const std::uint64_t last = shape.nodes(level) - 1;
+    RC_ASSERT(shape.entries(level, last) >= 1U);
+    RC_ASSERT(last * layout::kFanOut + shape.entries(level, last) == shape.children(level));
+  }
+}
+
+TEST(PageSlots, PutEachPageIntoOneSlotBeyond32Bits) {
+  const std::uint64_t pages = (std::uint64_t{1} << 40) + 3;
+  const PageSlots slots{pages, 1000, 4096000, 4096};
+  EXPECT_EQ(slots.slot_of(PageId{1000}), 0U);
+  EXPECT_EQ(slots.slot_of(PageId{pages - 1}), pages - 1001);
+  EXPECT_EQ(slots.slot_of(PageId{0}), pages - 1000);
+  EXPECT_EQ(slots.slot_of(PageId{999}), pages - 1);
+  EXPECT_EQ(slots.offset_of(PageId{999}), 4096000 + (pages - 1) * 4096);
+}
+
+}  // namespace
+}  // namespace ptin::test

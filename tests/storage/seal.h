@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Changing a stored file and sealing it again: every checksum right, so that only a look at what
+// the bytes mean can find the lie. Headers only: fuzz targets use it too.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "storage/checksum.h"
+#include "storage/index_shape.h"
+#include "storage/layout.h"
+#include "storage/page_slots.h"
+
+namespace ptin::test {
+
+using Bytes = std::vector<std::byte>;
+
+template <class T>
+inline T object_at(const Bytes& file, std::uint64_t offset) {
+  T object;
+  std::memcpy(&object, file.data() + offset, sizeof object);
+  return object;
+}
+
+template <class T>
+inline void set_object(Bytes& file, std::uint64_t offset, const T& object) {
+  std::memcpy(file.data() + offset, &object, sizeof object);
+}
+
+inline bool holds(const Bytes& file, std::uint64_t offset, std::uint64_t bytes) {
+  return offset <= file.size() && bytes <= file.size() - offset;
+}
+
+inline layout::FileHeader header_of(const Bytes& file) {
+  return object_at<layout::FileHeader>(file, 0);
+}
+inline void set_header(Bytes& file, const layout::FileHeader& header) {
+  set_object(file, 0, header);
+}
+
+inline std::vector<layout::SectionEntry> sections_of(const Bytes& file) {
+  std::vector<layout::SectionEntry> sections;
+  const std::uint32_t count = std::min(header_of(file).section_count, layout::kMaxSections);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint64_t offset = sizeof(layout::FileHeader) + i * sizeof(layout::SectionEntry);
+    if (holds(file, offset, sizeof(layout::SectionEntry))) {
+      sections.push_back(object_at<layout::SectionEntry>(file, offset));
+    }
+  }
+  return sections;
+}
+
+inline void set_sections(Bytes& file, const std::vector<layout::SectionEntry>& sections) {
+  std::memcpy(file.data() + sizeof(layout::FileHeader), sections.data(),
+              sections.size() * sizeof(layout::SectionEntry));
+}
+
+inline layout::SectionEntry section_of(const Bytes& file, layout::SectionKind kind) {
+  for (const auto& s : sections_of(file)) {
+    if (s.kind == static_cast<std::uint32_t>(kind)) {
+      return s;
+    }
+  }
+  return {};
+}
+
+// Pages into leaves, leaves into the level above, and so on. Returns the checksum of the root.
+inline std::uint64_t seal_index(Bytes& file, const layout::FileHeader& h) {
+  const auto index = section_of(file, layout::SectionKind::kIndex);
+  const auto pages = section_of(file, layout::SectionKind::kPages);
+  if (h.page_count == 0 || h.page_bytes == 0 || h.page_count > file.size() / h.page_bytes) {
+    return index.checksum;
+  }
+  const IndexShape shape(h.page_count);
+  if (!holds(file, index.offset, shape.total_bytes()) || h.first_page >= h.page_count) {
+    return index.checksum;
+  }
+  const PageSlots slots{h.page_count, h.first_page, pages.offset, h.page_bytes};
+  const auto node_offset = [&](std::uint32_t level, std::uint64_t number) {
+    return index.offset + shape.position(level, number) * layout::kNodeBytes;
+  };
+  for (std::uint32_t level = 0; level < shape.levels(); ++level) {
+    for (std::uint64_t child = 0; child < shape.children(level); ++child) {
+      const std::uint64_t offset =
+          level == 0 ? slots.offset_of(PageId{child}) : node_offset(level - 1, child);
+      const std::uint64_t bytes = level == 0 ? h.page_bytes : layout::kNodeBytes;
+      if (!holds(file, offset, bytes)) {
+        return index.checksum;
+      }
+      const std::uint64_t sum = checksum_of(std::span(file).subspan(offset, bytes));
+      const std::uint64_t place = node_offset(level, child / layout::kFanOut) +
+                                  offsetof(layout::IndexNode, entry) +
+                                  child % layout::kFanOut * sizeof(layout::NodeEntry) +
+                                  offsetof(layout::NodeEntry, checksum);
+      set_object(file, place, sum);
+    }
+  }
+  return checksum_of(
+      std::span(file).subspan(node_offset(shape.levels() - 1, 0), layout::kNodeBytes));
+}
+
+/// Computes every checksum again, as far as the structure can be followed: pages, leaves, inner
+/// nodes, sections, table, header. Every byte pattern is safe to pass.
+inline void seal(Bytes& file) {
+  if (file.size() < sizeof(layout::FileHeader)) {
+    return;
+  }
+  layout::FileHeader h = header_of(file);
+  std::vector<layout::SectionEntry> sections = sections_of(file);
+  for (auto& s : sections) {
+    if (s.kind == static_cast<std::uint32_t>(layout::SectionKind::kIndex)) {
+      s.checksum = seal_index(file, h);
+    } else if (s.kind != static_cast<std::uint32_t>(layout::SectionKind::kPages) &&
+               holds(file, s.offset, s.bytes)) {
+      s.checksum = checksum_of(std::span(file).subspan(s.offset, s.bytes));
+    }
+  }
+  set_sections(file, sections);
+  h.section_table_checksum = checksum_of(std::as_bytes(std::span(sections)));
+  h.header_checksum = checksum_of(
+      std::as_bytes(std::span(&h, 1)).first(offsetof(layout::FileHeader, header_checksum)));
+  set_header(file, h);
+}
+
+}  // namespace ptin::test
