@@ -32,16 +32,21 @@ struct TerrainFrame {
          max_height = 0.0;  ///< Of all samples with a height; min > max when there is none.
 };
 
+/// The height of points that fall together on one grid position.
+enum class PointMerge : std::uint8_t { kMean, kLowest, kHighest };
+
 /// Choices that decide what is read from a source.
 struct SourceOptions {
-  std::optional<double> nodata;      ///< Overrides the source's own.
+  std::optional<double>
+      nodata;  ///< Overrides the source's own. Points of this height are left out.
   std::optional<double> resolution;  ///< Points: grid unit in CRS units.
   struct Bounds {
     double min_x, min_y, max_x, max_y;
   };
-  std::optional<Bounds> bbox;  ///< CRS units; samples outside are left out.
-  std::string a_srs;           ///< Overrides the CRS; anything GDAL understands.
-  std::string vertical_crs;    ///< Added as the vertical part, e.g. "EPSG:5773".
+  std::optional<Bounds> bbox;            ///< CRS units; samples outside are left out.
+  std::string a_srs;                     ///< Overrides the CRS; anything GDAL understands.
+  std::string vertical_crs;              ///< Added as the vertical part, e.g. "EPSG:5773".
+  PointMerge merge = PointMerge::kMean;  ///< Points.
 };
 
 }  // namespace ptin

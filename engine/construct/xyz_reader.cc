@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/xyz_reader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <span>
+#include <utility>
+
+#include <cpl_conv.h>
+#include <cpl_vsi.h>
+
+#include "engine/construct/gdal_session_internal.h"
+#include "engine/error.h"
+
+namespace ptin {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kLongestLine = std::size_t{1} << 16;
+constexpr int kMostDigits = 18;  // 10^18 - 1 fits in 63 bits
+
+constexpr std::array<const char*, 3> kRoles = {"x", "y", "z"};
+constexpr std::array<std::string_view, 7> kNamesOfX = {"x",         "easting", "east", "e",
+                                                       "longitude", "lon",     "long"};
+constexpr std::array<std::string_view, 6> kNamesOfY = {"y", "northing", "north",
+                                                       "n", "latitude", "lat"};
+constexpr std::array<std::string_view, 7> kNamesOfZ = {"z",    "height",   "h",  "elevation",
+                                                       "elev", "altitude", "alt"};
+
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) {
+    text.remove_prefix(1);
+  }
+  while (!text.empty() && is_space(text.back())) {
+    text.remove_suffix(1);
+  }
+  return text;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+/// At most 40 characters of a field, with others than printable ones replaced, for messages.
+std::string shown(std::string_view field) {
+  std::string text(field.substr(0, 40));
+  for (char& c : text) {
+    c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  }
+  return "'" + text + (field.size() > 40 ? "...'" : "'");
+}
+
+/// Digits gathered into a mantissa; those beyond the 18th are rounded away, half away from zero.
+struct Digits {
+  std::int64_t mantissa = 0;
+  int count = 0;     ///< Significant digits in the mantissa.
+  int decimals = 0;  ///< Digits of the mantissa behind the point.
+  int dropped = 0;   ///< Digits before the point that found no room.
+  int first_dropped = -1;
+  bool any = false;
+
+  void add(char c, bool behind_point) {
+    any = true;
+    if (count < kMostDigits) {
+      mantissa = mantissa * 10 + (c - '0');
+      count += mantissa != 0 ? 1 : 0;
+      decimals += behind_point ? 1 : 0;
+      return;
+    }
+    first_dropped = first_dropped < 0 ? c - '0' : first_dropped;
+    dropped += behind_point ? 0 : 1;
+  }
+};
+
+/// Reads an exponent into `exponent`, clamped far beyond what any number here can have.
+bool parse_exponent(std::string_view text, int& exponent) {
+  bool negative = false;
+  if (!text.empty() && (text[0] == '+' || text[0] == '-')) {
+    negative = text[0] == '-';
+    text.remove_prefix(1);
+  }
+  if (text.empty() || !std::all_of(text.begin(), text.end(), is_digit)) {
+    return false;
+  }
+  int value = 0;
+  for (const char c : text) {
+    value = std::min(value * 10 + (c - '0'), 100000);
+  }
+  exponent = negative ? -value : value;
+  return true;
+}
+
+/// Brings mantissa / 10^decimals to 0 <= decimals <= 18 without trailing zeros behind the point.
+/// False when it is 10^18 or more.
+bool normalise(std::int64_t& mantissa, std::int64_t& decimals) {
+  for (; decimals < 0 && mantissa != 0; ++decimals) {
+    if (mantissa >= 100'000'000'000'000'000) {
+      return false;
+    }
+    mantissa *= 10;
+  }
+  for (; decimals > kMostDigits && mantissa != 0; --decimals) {
+    mantissa = mantissa / 10 + (decimals == kMostDigits + 1 && mantissa % 10 >= 5 ? 1 : 0);
+  }
+  for (; decimals > 0 && mantissa % 10 == 0 && mantissa != 0; --decimals) {
+    mantissa /= 10;
+  }
+  decimals = mantissa == 0 ? 0 : decimals;
+  return true;
+}
+
+NumberKind parse_word(std::string_view text) {
+  const std::string word = lower_case(text);
+  if (word == "nan") {
+    return NumberKind::kNotANumber;
+  }
+  return word == "inf" || word == "infinity" ? NumberKind::kInfinite : NumberKind::kNoNumber;
+}
+
+template <std::size_t N>
+std::size_t find_column(const std::vector<std::string>& names,
+                        const std::array<std::string_view, N>& wanted) {
+  for (const std::string_view name : wanted) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) {
+      return static_cast<std::size_t>(found - names.begin());
+    }
+  }
+  return names.size();
+}
+
+}  // namespace
+
+double to_double(Decimal d) noexcept {
+  static constexpr std::array<double, 19> kPowers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,
+                                                     1e7,  1e8,  1e9,  1e10, 1e11, 1e12, 1e13,
+                                                     1e14, 1e15, 1e16, 1e17, 1e18};
+  return static_cast<double>(d.mantissa) / kPowers[static_cast<std::size_t>(d.decimals)];
+}
+
+NumberKind parse_number(std::string_view text, Decimal& value) noexcept {
+  bool negative = false;
+  std::size_t i = 0;
+  if (i < text.size() && (text[i] == '+' || text[i] == '-')) {
+    negative = text[i++] == '-';
+  }
+  Digits digits;
+  bool behind_point = false;
+  for (; i < text.size() && (is_digit(text[i]) || (text[i] == '.' && !behind_point)); ++i) {
+    if (text[i] == '.') {
+      behind_point = true;
+    } else {
+      digits.add(text[i], behind_point);
+    }
+  }
+  if (!digits.any) {
+    return parse_word(text.substr(std::min(i, text.size())));
+  }
+  int exponent = 0;
+  if (i < text.size()) {
+    const bool has_exponent = text[i] == 'e' || text[i] == 'E';
+    if (!has_exponent || !parse_exponent(text.substr(i + 1), exponent)) {
+      return NumberKind::kNoNumber;
+    }
+  }
+  std::int64_t mantissa = digits.mantissa + (digits.first_dropped >= 5 ? 1 : 0);
+  std::int64_t decimals = std::int64_t{digits.decimals} - digits.dropped - exponent;
+  if (!normalise(mantissa, decimals)) {
+    return NumberKind::kTooLarge;
+  }
+  value = {negative ? -mantissa : mantissa, static_cast<std::int32_t>(decimals)};
+  return NumberKind::kNumber;
+}
+
+struct XyzReader::File {
+  VSILFILE* handle = nullptr;
+  bool packed = false;
+  ~File() {
+    if (handle != nullptr) {
+      const GdalSession session;
+      VSIFCloseL(handle);
+    }
+  }
+};
+
+XyzReader::XyzReader(std::string path) : path_(std::move(path)), file_(std::make_unique<File>()) {
+  const GdalSession session;
+  file_->packed = path_.ends_with(".gz");
+  errno = 0;
+  file_->handle = VSIFOpenL(((file_->packed ? "/vsigzip/" : "") + path_).c_str(), "rb");
+  if (file_->handle == nullptr) {
+    VSIStatBufL status;
+    if (VSIStatL(path_.c_str(), &status) != 0) {
+      throw Error(ErrorCode::not_found, "there is no such file of points", path_);
+    }
+    throw errno != 0 ? system_error(errno, "cannot open", path_)
+                     : Error(ErrorCode::io_error, session.explain("cannot open"), path_);
+  }
+  buffer_.reserve(kBufferBytes + kLongestLine);
+}
+
+XyzReader::XyzReader(std::string name, std::string text)
+    : path_(std::move(name)),
+      file_(std::make_unique<File>()),
+      buffer_(std::move(text)),
+      at_end_(true) {}
+
+XyzReader::~XyzReader() = default;
+
+void XyzReader::refuse(const std::string& sentence) const {
+  throw Error(ErrorCode::invalid_argument, sentence, path_ + ":" + std::to_string(line_));
+}
+
+/// Keeps what is left in the buffer and reads on behind it.
+void XyzReader::fill() {
+  buffer_.erase(0, begin_);
+  begin_ = 0;
+  const std::size_t kept = buffer_.size();
+  buffer_.resize(kept + kBufferBytes);
+  const GdalSession session;
+  // No notes about the unpacked size beside a file that is not ours.
+  const CPLConfigOptionSetter no_notes("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false);
+  const std::size_t got = VSIFReadL(buffer_.data() + kept, 1, kBufferBytes, file_->handle);
+  buffer_.resize(kept + got);
+  if (session.failed()) {
+    throw Error(ErrorCode::io_error,
+                session.explain("cannot read on behind line " + std::to_string(line_) +
+                                "; the file may be damaged or cut short"),
+                path_);
+  }
+  at_end_ = got == 0;
+}
+
+bool XyzReader::next_line(std::string_view& line) {
+  for (;;) {
+    const std::size_t left = buffer_.size() - begin_;
+    const char* from = buffer_.data() + begin_;
+    const auto* end = static_cast<const char*>(left == 0 ? nullptr : std::memchr(from, '\n', left));
+    const std::size_t length = end == nullptr ? left : static_cast<std::size_t>(end - from);
+    if (length > kLongestLine) {
+      ++line_;
+      refuse("a line is longer than 64 KiB; this does not look like points as text");
+    }
+    if (end == nullptr && !at_end_) {
+      fill();
+      continue;
+    }
+    if (left == 0) {
+      return false;
+    }
+    ++line_;
+    line = {from, length};
+    begin_ += length + (end == nullptr ? 0 : 1);
+    bytes_read_ += file_->packed ? 0 : length + 1;
+    return true;
+  }
+}
+
+void XyzReader::split(std::string_view line) {
+  fields_.clear();
+  if (separator_ != ' ') {
+    for (;;) {
+      const std::size_t end = line.find(separator_);
+      fields_.push_back(trimmed(line.substr(0, end)));
+      if (end == std::string_view::npos) {
+        return;
+      }
+      line.remove_prefix(end + 1);
+    }
+  }
+  for (std::size_t i = 0; i < line.size();) {
+    std::size_t end = i;
+    while (end < line.size() && !is_space(line[end])) {
+      ++end;
+    }
+    if (end > i) {
+      fields_.push_back(line.substr(i, end - i));
+    }
+    i = end + 1;
+  }
+}
+
+/// Looks at the first line: separator, number of fields, header.
+void XyzReader::begin(std::string_view line) {
+  separator_ = line.find(';') != std::string_view::npos   ? ';'
+               : line.find(',') != std::string_view::npos ? ','
+                                                          : ' ';
+  split(line);
+  field_count_ = fields_.size();
+  Decimal ignored;
+  header_ = parse_number(fields_[0], ignored) == NumberKind::kNoNumber;
+  if (header_) {
+    find_columns();
+  } else if (field_count_ < 3) {
+    refuse("there are " + std::to_string(field_count_) +
+           " fields in the first line, where x, y and z are expected");
+  }
+}
+
+void XyzReader::find_columns() {
+  std::vector<std::string> names;
+  for (std::string_view field : fields_) {
+    if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
+      field = trimmed(field.substr(1, field.size() - 2));
+    }
+    names.push_back(lower_case(field));
+  }
+  columns_ = {find_column(names, kNamesOfX), find_column(names, kNamesOfY),
+              find_column(names, kNamesOfZ)};
+  for (std::size_t role = 0; role < 3; ++role) {
+    if (columns_[role] == names.size()) {
+      refuse(std::string("the first line is taken for a header, since ") + shown(fields_[0]) +
+             " is no number, but names no column for " + kRoles[role] +
+             "; columns are named x, y, z or easting, northing, height or lon, lat, elevation");
+    }
+  }
+}
+
+Decimal XyzReader::number(int role) const {
+  const std::string_view field = fields_[columns_[static_cast<std::size_t>(role)]];
+  const std::string name = kRoles[static_cast<std::size_t>(role)];
+  Decimal value;
+  switch (parse_number(field, value)) {
+    case NumberKind::kNumber:
+      return value;
+    case NumberKind::kNotANumber:
+      refuse("the " + name + " of this point is NaN; leave points without a height out");
+    case NumberKind::kInfinite:
+      refuse("the " + name + " of this point is infinite");
+    case NumberKind::kTooLarge:
+      refuse("the " + name + " of this point, " + shown(field) + ", is 10^18 or more");
+    case NumberKind::kNoNumber:
+      break;
+  }
+  refuse("the " + name + " of this point, " + shown(field) +
+         ", is no number; numbers are written with a decimal point, as in -12.5");
+}
+
+bool XyzReader::next(XyzPoint& point) {
+  std::string_view line;
+  while (next_line(line)) {
+    if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) {  // a byte order mark
+      line.remove_prefix(3);
+    }
+    line = trimmed(line);
+    if (line.empty() || line.front() == '#') {
+      continue;
+    }
+    if (separator_ == '\0') {
+      begin(line);
+      if (header_) {
+        continue;
+      }
+    } else {
+      split(line);
+    }
+    if (fields_.size() != field_count_) {
+      refuse("there are " + std::to_string(fields_.size()) + " fields where the first line has " +
+             std::to_string(field_count_));
+    }
+    point = {number(0), number(1), number(2)};
+    return true;
+  }
+  return false;
+}
+
+}  // namespace ptin
