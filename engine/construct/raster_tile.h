@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A tile that starts from a window of a raster.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "engine/construct/full_surface.h"
+#include "engine/construct/raster_source.h"
+#include "engine/construct/tile.h"
+
+namespace ptin {
+
+/// A tile with the full TIN of a window, and the full surface under it.
+struct StartedTile {
+  Tile tile;
+  std::unique_ptr<FullSurface> full;
+  std::uint64_t lone_samples = 0;  ///< Samples that touch no surface triangle; treated as void.
+};
+
+/// A window of samples, grid orientation.
+struct SampleRange {
+  std::int64_t x0 = 0, y0 = 0, width = 0, height = 0;
+};
+
+/// Constants of measuring for a terrain. @param void_slope  Height charged per ground unit of depth.
+[[nodiscard]] MeasureUnits measure_units(const TerrainFrame& frame, double void_slope);
+
+/// Reads `window` (with a margin of the depth's cut-off around it where there is more), turns lone samples into voids and
+/// triangulates. Tiles get the same depths and classes as the whole.
+/// @throws Error as RasterSource::read, resource_exhausted
+/// Cost: linear. Memory: about 200 bytes a sample.
+[[nodiscard]] StartedTile start_raster_tile(const RasterSource& source, const SampleRange& window, const MeasureUnits& units);
+
+}  // namespace ptin

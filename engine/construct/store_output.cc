@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/store_output.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/construct/rounding.h"
+
+namespace ptin {
+
+namespace {
+
+const char* name_of(CostModel cost) {
+  switch (cost) {
+    case CostModel::kError:
+      return "error";
+    case CostModel::kRoi:
+      return "roi";
+    case CostModel::kElevation:
+      return "elevation";
+  }
+  return "error";
+}
+
+GridBox bounds_of(const Tin& tin) {
+  GridBox bounds;
+  for (const Vertex& v : tin.vertices) {
+    if (v.triangle != kNone) {
+      bounds = united(bounds, v.position);
+    }
+  }
+  return bounds;
+}
+
+template <class T>
+nlohmann::json value_or_null(const std::optional<T>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+}
+
+nlohmann::json options_json(const BuildOptions& o) {
+  nlohmann::json json{{"cost", name_of(o.cost)},
+                      {"max_error", o.max_error},
+                      {"nodata", value_or_null(o.nodata)},
+                      {"resolution", value_or_null(o.resolution)},
+                      {"bbox", value_or_null(o.bbox)},
+                      {"void_slope", o.void_slope}};
+  if (!o.a_srs.empty()) {
+    json["a_srs"] = o.a_srs;
+  }
+  if (!o.vertical_crs.empty()) {
+    json["vertical_crs"] = o.vertical_crs;
+  }
+  return json;
+}
+
+nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildReport& r) {
+  nlohmann::json files = nlohmann::json::array();
+  for (const std::string& input : inputs) {
+    files.push_back(std::filesystem::path(input).filename().string());
+  }
+  return {{"files", files},
+          {"samples", r.source_samples},
+          {"void_samples", r.void_samples},
+          {"lone_samples", r.lone_samples},
+          {"merged_points", r.merged_points},
+          {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
+          {"height_rounding", r.height_rounding}};
+}
+
+}  // namespace
+
+CoarsestTin coarsest_tin(const Tin& tin) {
+  CoarsestTin t0;
+  std::vector<std::uint32_t> place(tin.vertices.size(), kNone);
+  for (VertexId v = 0; v < tin.vertices.size(); ++v) {
+    if (tin.vertices[v].triangle != kNone) {
+      place[v] = static_cast<std::uint32_t>(t0.vertices.size());
+      const bool has_height = tin.has_height[v] != 0;
+      t0.vertices.push_back({tin.position(v), has_height ? tin.vertices[v].height : 0, has_height ? 1U : 0U});
+    }
+  }
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (tin.is_alive(t)) {
+      const Triangle& triangle = tin.triangles[t];
+      t0.triangles.push_back({{place[triangle.v[0]], place[triangle.v[1]], place[triangle.v[2]]},
+                              tin.classes[t] == TriangleClass::kVoid ? 1U : 0U});
+    }
+  }
+  return t0;
+}
+
+StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite, const TerrainFrame& frame)
+    : path_(path),
+      options_(options),
+      frame_(frame),
+      base_error_(frame.height_rounding),
+      base_deviation_(frame.height_rounding) {
+  StoreWriterOptions writer_options;
+  writer_options.overwrite = overwrite;
+  writer_options.page_bytes = options.page_bytes;
+  writer_ = StoreWriter::create(path, writer_options);
+}
+
+void StoreOutput::add_segment(std::span<VertexSplit> records) {
+  if (frame_.height_rounding > 0.0) {
+    for (VertexSplit& r : records) {
+      r.error = rounded_up(static_cast<double>(r.error) + frame_.height_rounding);
+      r.deviation = rounded_up(static_cast<double>(r.deviation) + frame_.height_rounding);
+    }
+  }
+  if (options_.max_error > 0.0) {
+    // The records kept are those of the monotone predicate error > max_error: closed under dependency.
+    const auto dropped = std::partition(records.begin(), records.end(), [this](const VertexSplit& r) {
+      return static_cast<double>(r.error) > options_.max_error;
+    });
+    for (auto r = dropped; r != records.end(); ++r) {
+      base_error_ = std::max(base_error_, static_cast<double>(r->error));
+      base_deviation_ = std::max(base_deviation_, static_cast<double>(r->deviation));
+    }
+    records = records.first(static_cast<std::size_t>(dropped - records.begin()));
+  }
+  for (const VertexSplit& r : records) {
+    max_rank_ = std::max(max_rank_, r.rank);
+  }
+  records_ += records.size();
+  writer_->add_segment(records, frame_.heights);
+}
+
+void StoreOutput::publish(const Tin& t0, const std::vector<std::string>& inputs, BuildReport& report) {
+  const CoarsestTin coarsest = coarsest_tin(t0);
+  StoreFacts facts;
+  facts.map = frame_.map;
+  facts.heights = frame_.heights;
+  facts.bounds = bounds_of(t0);
+  facts.min_height = frame_.min_height;
+  facts.max_height = frame_.max_height;
+  facts.base_error = base_error_;
+  facts.base_deviation = base_deviation_;
+  facts.source_samples = report.source_samples;
+  facts.page_bytes = options_.page_bytes;
+  const nlohmann::json metadata{
+      {"crs", {{"wkt", frame_.crs_wkt}, {"vertical_known", frame_.vertical_crs_known}}},
+      {"units", {{"horizontal", frame_.horizontal_unit}, {"height", frame_.vertical_unit}}},
+      {"height_quantum", frame_.height_quantum},
+      {"options", options_json(options_)},
+      {"source", source_json(inputs, report)}};
+  writer_->publish(facts, coarsest, metadata.dump());
+  report.records = records_;
+  report.t0_vertices = coarsest.vertices.size();
+  report.max_rank = max_rank_;
+  report.file_bytes = std::filesystem::file_size(path_);
+}
+
+}  // namespace ptin

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// From finished segments and T0 to a published store.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "engine/construct/build.h"
+#include "engine/construct/terrain_source.h"
+#include "engine/mesh/tin.h"
+#include "storage/store_writer.h"
+
+namespace ptin {
+
+/// Takes segments of records with their final attributes, leaves out the finest detail (BuildOptions::max_error), adds the rounding of
+/// heights, and publishes. Destroyed before publish(), it leaves nothing behind.
+class StoreOutput {
+ public:
+  /// @throws Error as StoreWriter::create
+  StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite, const TerrainFrame& frame);
+
+  /// One segment; reordered in place.  @throws Error as StoreWriter::add_segment
+  void add_segment(std::span<VertexSplit> records);
+
+  /// @param t0       The coarsest TIN: the alive part of a mesh in which nothing more collapses.
+  /// @param inputs   Names for the metadata; their folders are left out, so that the bytes do not depend on them.
+  /// @param report   Counts for the metadata; receives records, t0_vertices, max_rank, file_bytes.
+  /// @throws Error as StoreWriter::publish
+  void publish(const Tin& t0, const std::vector<std::string>& inputs, BuildReport& report);
+
+ private:
+  std::string path_;
+  BuildOptions options_;
+  TerrainFrame frame_;
+  std::unique_ptr<StoreWriter> writer_;
+  double base_error_ = 0.0;
+  double base_deviation_ = 0.0;
+  std::uint64_t records_ = 0;
+  std::uint16_t max_rank_ = 0;
+};
+
+/// The alive part of a mesh as the store keeps it, in the order of the vertices.
+[[nodiscard]] CoarsestTin coarsest_tin(const Tin& tin);
+
+}  // namespace ptin
