@@ -7,12 +7,22 @@ namespace ptin {
 
 namespace {
 
+// Places in a triangle, without branches: which corner it is cannot be predicted. REQUIRES as
+// corner_of() and side_of().
+int place_of(const std::uint32_t (&ids)[3], std::uint32_t id) noexcept {
+  return static_cast<int>(ids[1] == id) + 2 * static_cast<int>(ids[2] == id);
+}
+constexpr std::uint8_t kNext[3] = {1, 2, 0};
+constexpr std::uint8_t kPrevious[3] = {2, 0, 1};
+
+constexpr Triangle kRemoved{{kNone, kNone, kNone}, {kNone, kNone, kNone}};
+
 /// The fan of a split: triangles of w from vl counter-clockwise round to vr.
 struct Fan {
   TriangleId first = kNone, last = kNone;
   TriangleId outer_left = kNone, outer_right = kNone;  ///< Beyond the edges (w, vl) and (vr, w).
   bool holds_triangle_of_w = false;
-  bool found = false;
+  bool fits = false;
 };
 
 bool turns_left(const Tin& tin, VertexId a, VertexId b, VertexId c) {
@@ -21,124 +31,147 @@ bool turns_left(const Tin& tin, VertexId a, VertexId b, VertexId c) {
 
 /// First triangle of w whose next corner is `vl`, or kNone.
 TriangleId find_first(const Tin& tin, VertexId w, VertexId vl) {
+  const Triangle* const triangles = tin.triangles.data();
   const TriangleId start = tin.vertices[w].triangle;
   TriangleId t = start;
   do {
-    const Triangle& triangle = tin.triangles[t];
-    const int c = corner_of(triangle, w);
-    if (triangle.v[next_corner(c)] == vl) {
+    const Triangle& triangle = triangles[t];
+    const int next = kNext[place_of(triangle.v, w)];
+    if (triangle.v[next] == vl) {
       return t;
     }
-    t = triangle.n[next_corner(c)];
+    t = triangle.n[next];
   } while (t != kNone && t != start);
   return kNone;
 }
 
-/// Walks the fan and checks that it stays valid with u in w's place.
-Fan find_fan(const Tin& tin, const SplitSite& site) {
+/// Puts `now` in the place of `was` from triangle `t` counter-clockwise up to and with `last`.
+void replace_corner(Tin& tin, TriangleId t, TriangleId last, VertexId was, VertexId now) {
+  while (true) {
+    Triangle& triangle = tin.triangles[t];
+    const int c = place_of(triangle.v, was);
+    triangle.v[c] = now;
+    if (t == last) {
+      return;
+    }
+    t = triangle.n[kNext[c]];
+  }
+}
+
+/// Walks the fan and puts u in w's place, as long as each triangle stays counter-clockwise. When it
+/// does not fit, the triangles from `first` to `last` are those that were changed.
+Fan move_fan(Tin& tin, const SplitSite& site) {
   Fan fan;
   fan.first = find_first(tin, site.w, site.vl);
   if (fan.first == kNone) {
     return fan;
   }
-  {
-    const Triangle& triangle = tin.triangles[fan.first];
-    fan.outer_left = triangle.n[previous_corner(corner_of(triangle, site.w))];
-  }
+  Triangle* const triangles = tin.triangles.data();
+  const Vertex* const vertices = tin.vertices.data();
+  const GridPoint u = vertices[site.u].position;
+  const TriangleId known = vertices[site.w].triangle;
+  fan.outer_left = triangles[fan.first].n[kPrevious[place_of(triangles[fan.first].v, site.w)]];
+  GridPoint a = vertices[site.vl].position;
   TriangleId t = fan.first;
   do {
-    const Triangle& triangle = tin.triangles[t];
-    const int c = corner_of(triangle, site.w);
-    const VertexId a = triangle.v[next_corner(c)];
-    const VertexId b = triangle.v[previous_corner(c)];
-    if (!turns_left(tin, site.u, a, b)) {
+    Triangle& triangle = triangles[t];
+    const int c = place_of(triangle.v, site.w);
+    const VertexId end = triangle.v[kPrevious[c]];
+    const GridPoint b = vertices[end].position;
+    if (orient(u, a, b) <= 0) {
       return fan;
     }
-    fan.holds_triangle_of_w |= tin.vertices[site.w].triangle == t;
+    a = b;
+    triangle.v[c] = site.u;
+    fan.holds_triangle_of_w |= known == t;
     fan.last = t;
-    t = triangle.n[next_corner(c)];
-    if (b == site.vr) {
+    t = triangle.n[kNext[c]];
+    if (end == site.vr) {
       fan.outer_right = t;
-      fan.found = true;
+      fan.fits = true;
       return fan;
     }
   } while (t != kNone && t != fan.first);
   return fan;
 }
 
-/// The sides of the split: new triangles strictly counter-clockwise, missing ones flat and on the border.
+/// The sides of the split: new triangles strictly counter-clockwise, missing ones flat and on the
+/// border.
 bool sides_fit(const Tin& tin, const SplitSite& s, const Fan& fan) {
-  const bool left = s.has_left ? turns_left(tin, s.u, s.w, s.vl)
-                               : fan.outer_left == kNone && orient(tin.position(s.vl), tin.position(s.u),
-                                                                   tin.position(s.w)) == 0;
-  const bool right = s.has_right ? turns_left(tin, s.u, s.vr, s.w)
-                                 : fan.outer_right == kNone && orient(tin.position(s.w), tin.position(s.u),
-                                                                      tin.position(s.vr)) == 0;
+  const bool left = s.has_left
+                        ? turns_left(tin, s.u, s.w, s.vl)
+                        : fan.outer_left == kNone &&
+                              orient(tin.position(s.vl), tin.position(s.u), tin.position(s.w)) == 0;
+  const bool right =
+      s.has_right ? turns_left(tin, s.u, s.vr, s.w)
+                  : fan.outer_right == kNone &&
+                        orient(tin.position(s.w), tin.position(s.u), tin.position(s.vr)) == 0;
   return left && right && (s.has_left || s.has_right);
 }
 
-TriangleId append(Tin& tin, const Triangle& triangle, TriangleClass c) {
-  const auto id = static_cast<TriangleId>(tin.triangles.size());
-  tin.triangles.push_back(triangle);
-  tin.classes.push_back(c);
+TriangleId put(Tin& tin, TriangleId id, const Triangle& triangle, TriangleClass c) {
+  tin.triangles[id] = triangle;
+  tin.classes[id] = c;
   return id;
 }
 
 void replace_neighbour(Tin& tin, TriangleId t, TriangleId was, TriangleId now) {
   if (t != kNone) {
     Triangle& triangle = tin.triangles[t];
-    triangle.n[side_of(triangle, was)] = now;
-  }
-}
-
-/// Puts u in w's place in every triangle of the fan.
-void move_fan(Tin& tin, const SplitSite& site, const Fan& fan) {
-  TriangleId t = fan.first;
-  while (true) {
-    Triangle& triangle = tin.triangles[t];
-    const int c = corner_of(triangle, site.w);
-    triangle.v[c] = site.u;
-    if (t == fan.last) {
-      return;
-    }
-    t = triangle.n[next_corner(c)];
+    triangle.n[place_of(triangle.n, was)] = now;
   }
 }
 
 }  // namespace
 
-SplitResult split(Tin& tin, const SplitSite& site) {
-  const Fan fan = find_fan(tin, site);
-  if (!fan.found || !sides_fit(tin, site, fan)) {
+SplitResult split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId right) {
+  const Fan fan = move_fan(tin, site);
+  if (!fan.fits || !sides_fit(tin, site, fan)) [[unlikely]] {
+    if (fan.last != kNone) {
+      replace_corner(tin, fan.first, fan.last, site.u, site.w);
+    }
     return {};
   }
-  move_fan(tin, site, fan);
   SplitResult result;
   result.applied = true;
   if (site.has_left) {
-    result.left = append(
-        tin, {{site.u, site.w, site.vl}, {fan.outer_left, fan.first, kNone}}, site.left_class);
+    result.left = put(tin, left, {{site.u, site.w, site.vl}, {fan.outer_left, fan.first, kNone}},
+                      site.left_class);
     replace_neighbour(tin, fan.outer_left, fan.first, result.left);
   }
   Triangle& first = tin.triangles[fan.first];
-  first.n[previous_corner(corner_of(first, site.u))] = result.left;
+  first.n[kPrevious[place_of(first.v, site.u)]] = result.left;
   if (site.has_right) {
-    result.right = append(
-        tin, {{site.u, site.vr, site.w}, {fan.outer_right, result.left, fan.last}}, site.right_class);
+    result.right =
+        put(tin, right, {{site.u, site.vr, site.w}, {fan.outer_right, result.left, fan.last}},
+            site.right_class);
     replace_neighbour(tin, fan.outer_right, fan.last, result.right);
   }
   if (result.left != kNone) {
     tin.triangles[result.left].n[2] = result.right;
   }
   Triangle& last = tin.triangles[fan.last];
-  last.n[next_corner(corner_of(last, site.u))] = result.right;
+  last.n[kNext[place_of(last.v, site.u)]] = result.right;
 
   tin.vertices[site.u].triangle = site.has_right ? fan.first : result.left;
-  if (fan.holds_triangle_of_w) {
-    tin.vertices[site.w].triangle = site.has_left ? result.left : result.right;
-  }
+  const TriangleId of_w = site.has_left ? result.left : result.right;
+  TriangleId& known = tin.vertices[site.w].triangle;
+  known = fan.holds_triangle_of_w ? of_w : known;
   if (site.has_right && fan.outer_right == kNone) {
     tin.vertices[site.vr].triangle = result.right;  // the border edge (vr, w) now begins there
+  }
+  return result;
+}
+
+SplitResult split(Tin& tin, const SplitSite& site) {
+  const auto before = static_cast<TriangleId>(tin.triangles.size());
+  const TriangleId right = before + (site.has_left ? 1 : 0);
+  tin.triangles.resize(right + (site.has_right ? 1 : 0), kRemoved);
+  tin.classes.resize(tin.triangles.size(), TriangleClass::kSurface);
+  const SplitResult result = split_into(tin, site, before, right);
+  if (!result.applied) {
+    tin.triangles.resize(before);
+    tin.classes.resize(before);
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/geometry/point.h"
+#include "engine/query/large_array.h"
 
 namespace ptin {
 
@@ -30,7 +31,9 @@ class KeyTable {
     if (wanted <= slots_.size()) {
       return;
     }
-    std::vector<Slot> old(wanted);
+    std::vector<Slot> old;
+    reserve_large(old, wanted);
+    old.resize(wanted);
     old.swap(slots_);
     shift_ = 64 - std::countr_zero(wanted);
     for (const Slot& slot : old) {

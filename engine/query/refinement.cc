@@ -7,6 +7,7 @@
 #include "engine/error.h"
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
+#include "engine/query/large_array.h"
 
 namespace ptin {
 
@@ -19,7 +20,7 @@ constexpr std::size_t kStopInterval = 4096;  // Splits between two looks at the 
 /// 4).
 class RankOrder {
  public:
-  explicit RankOrder(std::span<const PendingSplit> splits, std::uint32_t first) {
+  explicit RankOrder(std::span<const PendingSplit> splits) {
     for (const PendingSplit& s : splits) {
       largest_ = std::max(largest_, s.rank);
     }
@@ -27,7 +28,6 @@ class RankOrder {
     for (const PendingSplit& s : splits) {
       ++next_[largest_ - s.rank + 1];
     }
-    next_[0] = first;
     for (std::size_t i = 1; i < next_.size(); ++i) {
       next_[i] += next_[i - 1];
     }
@@ -64,6 +64,13 @@ SplitSite site_of(VertexId u, VertexId w, VertexId vl, VertexId vr, std::uint32_
           class_of(VertexSplit::kRightVoid)};
 }
 
+/// New triangles of a split: one at a border, otherwise two. A record that has neither is refused
+/// by split().
+std::uint32_t triangles_of(std::uint32_t flags) noexcept {
+  return ((flags & VertexSplit::kNoLeft) == 0 ? 1 : 0) +
+         ((flags & VertexSplit::kNoRight) == 0 ? 1 : 0);
+}
+
 bool has_heights(const Tin& tin, VertexId a, VertexId b, VertexId c) noexcept {
   return (tin.has_height[a] & tin.has_height[b] & tin.has_height[c]) != 0;
 }
@@ -83,12 +90,57 @@ bool classes_fit(const Tin& tin, const SplitSite& s, const SplitResult& made) {
   return left && right;
 }
 
-void fetch_triangle(const Tin& tin, VertexId w) noexcept {
-  const TriangleId t = tin.vertices[w].triangle;
-  if (t != kNone) {
-    __builtin_prefetch(&tin.triangles[t]);
+/// Fetches ahead of the splits what they will touch: one step along the star of w at a time, so
+/// that no step waits for memory. Looks at the mesh as it is now; what changes until the split
+/// comes costs a miss and nothing else.
+class StarFetcher {
+ public:
+  explicit StarFetcher(const Tin& tin) : tin_(tin) {}
+
+  /// Distances in splits at which the steps are taken.
+  static constexpr std::size_t kVertex = 24, kTriangle = 16, kNeighbours = 10, kBeyond = 5;
+
+  void fetch_vertices(VertexId w, VertexId vl, VertexId vr) const noexcept {
+    __builtin_prefetch(&tin_.vertices[w]);
+    __builtin_prefetch(&tin_.vertices[vl]);
+    __builtin_prefetch(&tin_.vertices[vr]);
   }
-}
+  void fetch_triangle(VertexId w) const noexcept { fetch(tin_.vertices[w].triangle); }
+  void fetch_neighbours(VertexId w) const noexcept {
+    const TriangleId t = tin_.vertices[w].triangle;
+    if (t != kNone) {
+      fetch_around(tin_.triangles[t], w);
+    }
+  }
+  void fetch_beyond(VertexId w) const noexcept {
+    const TriangleId t = tin_.vertices[w].triangle;
+    if (t != kNone) {
+      const Triangle& triangle = tin_.triangles[t];
+      const int c = corner_of(triangle, w);
+      for (const TriangleId n : {triangle.n[next_corner(c)], triangle.n[previous_corner(c)]}) {
+        if (n != kNone) {
+          fetch_around(tin_.triangles[n], w);
+        }
+      }
+    }
+  }
+
+ private:
+  void fetch(TriangleId t) const noexcept {
+    if (t != kNone) {
+      __builtin_prefetch(&tin_.triangles[t], 1);
+    }
+  }
+  void fetch_around(const Triangle& triangle, VertexId w) const noexcept {
+    const int c = corner_of(triangle, w);
+    fetch(triangle.n[next_corner(c)]);
+    fetch(triangle.n[previous_corner(c)]);
+    __builtin_prefetch(&tin_.vertices[triangle.v[next_corner(c)]]);
+    __builtin_prefetch(&tin_.vertices[triangle.v[previous_corner(c)]]);
+  }
+
+  const Tin& tin_;
+};
 
 }  // namespace
 
@@ -112,49 +164,60 @@ Refinement::Refinement(const Tin& t0, bool track_pages) : tin_(t0), track_pages_
 }
 
 void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& context) {
-  reserve(splits.size(), context);
-  const auto first = static_cast<VertexId>(tin_.vertices.size());
+  const auto first_vertex = static_cast<VertexId>(tin_.vertices.size());
+  const auto first_triangle = static_cast<TriangleId>(tin_.triangles.size());
+  reserve(splits, context);
   add_vertices(splits, context);
-  const std::vector<Resolved> resolved = resolve(splits, context);
+  const std::vector<Resolved> resolved = resolve(splits, first_vertex, first_triangle, context);
+  const StarFetcher fetcher(tin_);
   for (std::size_t i = 0; i < resolved.size(); ++i) {
     if (i % kStopInterval == 0) {
       context.check_stop();
     }
-    if (i + kLookAhead < resolved.size()) {
-      __builtin_prefetch(&tin_.vertices[resolved[i + kLookAhead].w]);
-      fetch_triangle(tin_, resolved[i + kLookAhead / 2].w);
+    if (resolved.size() - i > StarFetcher::kVertex) {
+      const Resolved& r = resolved[i + StarFetcher::kVertex];
+      fetcher.fetch_vertices(r.w, r.vl, r.vr);
+      fetcher.fetch_triangle(resolved[i + StarFetcher::kTriangle].w);
+      fetcher.fetch_neighbours(resolved[i + StarFetcher::kNeighbours].w);
+      fetcher.fetch_beyond(resolved[i + StarFetcher::kBeyond].w);
     }
-    apply_one(static_cast<VertexId>(first + i), resolved[i], splits, context);
+    apply_one(resolved[i], splits, context);
   }
   context.cost.records_applied += resolved.size();
 }
 
-void Refinement::reserve(std::size_t splits, const QueryContext& context) {
-  const std::size_t vertices = tin_.vertices.size() + splits;
-  const std::size_t triangles = tin_.triangles.size() + 2 * splits;
-  if (triangles >= kNone) {
+/// Makes room for exactly the vertices and triangles to come; triangles stay removed until their
+/// split is made.
+void Refinement::reserve(std::span<const PendingSplit> splits, const QueryContext& context) {
+  std::uint64_t triangles = tin_.triangles.size();
+  for (const PendingSplit& s : splits) {
+    triangles += triangles_of(s.flags);
+  }
+  const std::size_t vertices = tin_.vertices.size() + splits.size();
+  if (triangles >= kNone || vertices >= kNone) {
     throw Error(ErrorCode::resource_exhausted,
                 "the answer has more triangles than one mesh can number (2^32 - 1): ask for less, "
                 "or use export",
                 context.file());
   }
-  tin_.vertices.reserve(vertices);
-  tin_.has_height.reserve(vertices);
-  tin_.triangles.reserve(triangles);
-  tin_.classes.reserve(triangles);
+  reserve_large(tin_.vertices, vertices);
+  reserve_large(tin_.triangles, triangles);
+  tin_.vertices.resize(vertices);
+  tin_.has_height.resize(vertices);
+  tin_.triangles.resize(triangles, {{kNone, kNone, kNone}, {kNone, kNone, kNone}});
+  tin_.classes.resize(triangles);
   ids_.reserve(vertices);
+  if (track_pages_) {
+    vertex_pages_.resize(vertices, kNone);
+    triangle_pages_.resize(triangles, kNone);
+  }
 }
 
-/// Gives every new vertex its place in the sorted order as its index, so that neighbours in that
-/// order lie near in memory.
+/// Vertices and triangles keep the order of the file, along its Hilbert curves: so what lies near
+/// in the terrain mostly lies near in memory, whatever its rank.
 void Refinement::add_vertices(std::span<const PendingSplit> splits, const QueryContext& context) {
-  RankOrder order(splits, static_cast<std::uint32_t>(tin_.vertices.size()));
-  tin_.vertices.resize(tin_.vertices.size() + splits.size());
-  tin_.has_height.resize(tin_.vertices.size());
-  if (track_pages_) {
-    vertex_pages_.resize(tin_.vertices.size());
-  }
-  for (std::size_t i = 0; i < splits.size(); ++i) {
+  auto u = static_cast<VertexId>(tin_.vertices.size() - splits.size());
+  for (std::size_t i = 0; i < splits.size(); ++i, ++u) {
     if (i % kStopInterval == 0) {
       context.check_stop();
     }
@@ -162,25 +225,29 @@ void Refinement::add_vertices(std::span<const PendingSplit> splits, const QueryC
       ids_.prefetch(splits[i + kLookAhead].u);
     }
     const PendingSplit& s = splits[i];
-    const VertexId u = order.take(s.rank);
     if (!ids_.insert(s.u, u)) {
       throw_refused(s, "its vertex is in the mesh already", context);
     }
     tin_.vertices[u] = {point_of(s.u), s.height, kNone};
+    tin_.has_height[u] = (s.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0;
     if (track_pages_) {
       vertex_pages_[u] = s.page;
     }
-    tin_.has_height[u] = (s.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0;
   }
 }
 
-/// All references of all splits at once, in the order of the file, before the first split is made:
-/// look-ups do not wait for one another. A reference to a vertex that comes later in the order is
-/// found here and refused by apply_one().
+/// The splits in order of falling rank. All references are looked up here, in the order of the file
+/// and before the first split is made, so that look-ups do not wait for one another. A reference to
+/// a vertex that comes later in the order is found here and refused by apply_one().
 std::vector<Refinement::Resolved> Refinement::resolve(std::span<const PendingSplit> splits,
+                                                      VertexId first_vertex,
+                                                      TriangleId first_triangle,
                                                       const QueryContext& context) const {
-  RankOrder order(splits, 0);
-  std::vector<Resolved> resolved(splits.size());
+  RankOrder order(splits);
+  std::vector<Resolved> resolved;
+  reserve_large(resolved, splits.size());
+  resolved.resize(splits.size());
+  Resolved r{first_vertex, 0, 0, 0, first_triangle, 0};
   for (std::size_t i = 0; i < splits.size(); ++i) {
     if (i % kStopInterval == 0) {
       context.check_stop();
@@ -192,34 +259,34 @@ std::vector<Refinement::Resolved> Refinement::resolve(std::span<const PendingSpl
       ids_.prefetch(ahead.vr);
     }
     const PendingSplit& s = splits[i];
-    const Resolved r{ids_.find(s.w), ids_.find(s.vl), ids_.find(s.vr), s.flags};
+    r.w = ids_.find(s.w), r.vl = ids_.find(s.vl), r.vr = ids_.find(s.vr), r.flags = s.flags;
     if (r.w == KeyTable::kAbsent || r.vl == KeyTable::kAbsent || r.vr == KeyTable::kAbsent) {
       throw_refused(s, "it names a vertex that no retrieved record makes", context);
     }
     resolved[order.take(s.rank)] = r;
+    ++r.u;
+    r.triangle += triangles_of(s.flags);
   }
   return resolved;
 }
 
-void Refinement::apply_one(VertexId u, const Resolved& s, std::span<const PendingSplit> splits,
+void Refinement::apply_one(const Resolved& s, std::span<const PendingSplit> splits,
                            const QueryContext& context) {
-  const SplitSite site = site_of(u, s.w, s.vl, s.vr, s.flags);
+  const SplitSite site = site_of(s.u, s.w, s.vl, s.vr, s.flags);
   const bool w_is_there = tin_.vertices[s.w].triangle != kNone;
-  const SplitResult made = w_is_there ? split(tin_, site) : SplitResult{};
+  const TriangleId right = s.triangle + (site.has_left ? 1 : 0);
+  const SplitResult made = w_is_there ? split_into(tin_, site, s.triangle, right) : SplitResult{};
   if (!made.applied || !classes_fit(tin_, site, made)) [[unlikely]] {
-    const VertexKey key = key_of(tin_.position(u));
-    const auto refused = std::find_if(splits.begin(), splits.end(),
-                                      [&](const PendingSplit& p) { return p.u == key; });
-    throw_refused(*refused,
+    const PendingSplit& refused = splits[splits.size() - (tin_.vertices.size() - s.u)];
+    throw_refused(refused,
                   made.applied ? "its classes do not fit its heights" : "it does not fit the mesh",
                   context);
   }
   if (track_pages_) {
-    triangle_pages_.resize(tin_.triangles.size());
     Star star;
-    walk_star(tin_, u, star);
+    walk_star(tin_, s.u, star);
     for (const TriangleId t : star.triangles) {
-      triangle_pages_[t] = vertex_pages_[u];
+      triangle_pages_[t] = vertex_pages_[s.u];
     }
   }
 }

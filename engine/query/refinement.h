@@ -33,8 +33,7 @@ class Refinement {
   /// `splits` (the theorem), but its numbering does.
   /// @throws Error corruption  a vertex comes twice, or a record does not find its w, vl, vr and
   /// fan; names page and vertex.
-  ///                           The mesh is valid then, but not all splits are applied: throw the
-  ///                           refinement away.
+  ///                           Throw the refinement away then.
   ///               resource_exhausted  more triangles than 32 bits number
   ///               cancelled
   /// Cost: O(k + largest rank) expected time and memory for k splits of bounded degree.
@@ -52,16 +51,18 @@ class Refinement {
   }
 
  private:
-  /// A split whose references are local indices; its u is known by its place in the order.
+  /// A split in local indices. `triangle` is the place of its first new triangle.
   struct Resolved {
-    VertexId w, vl, vr;
+    VertexId u, w, vl, vr;
+    TriangleId triangle;
     std::uint32_t flags;
   };
-  void reserve(std::size_t splits, const QueryContext& context);
+  void reserve(std::span<const PendingSplit> splits, const QueryContext& context);
   void add_vertices(std::span<const PendingSplit> splits, const QueryContext& context);
   [[nodiscard]] std::vector<Resolved> resolve(std::span<const PendingSplit> splits,
+                                              VertexId first_vertex, TriangleId first_triangle,
                                               const QueryContext& context) const;
-  void apply_one(VertexId u, const Resolved& split, std::span<const PendingSplit> splits,
+  void apply_one(const Resolved& split, std::span<const PendingSplit> splits,
                  const QueryContext& context);
 
   Tin tin_;

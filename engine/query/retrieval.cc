@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/retrieval.h"
 
+#include "engine/query/large_array.h"
 #include "engine/query/refinement.h"
 
 namespace ptin {
@@ -48,7 +49,7 @@ std::vector<PendingSplit> retrieve(const RecordSource& source, const AttributePr
   const std::uint64_t records = most_records(source.store, pages);
   context.admit(fixed_bytes + refinement_bytes(records));
   std::vector<PendingSplit> splits;
-  splits.reserve(records);
+  reserve_large(splits, records);
   read_pages(source.store, pages, predicate, context, splits);
   return splits;
 }
