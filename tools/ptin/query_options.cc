@@ -6,11 +6,8 @@
 
 #include "engine/error.h"
 #include "storage/sigbus_guard.h"
-#include "tools/region/region_input.h"
-
-#if __has_include("storage/spatialindex_rtree.h")
 #include "storage/spatialindex_rtree.h"
-#endif
+#include "tools/region/region_input.h"
 
 namespace ptin::tools {
 
@@ -22,19 +19,20 @@ void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index)
   app.add_option("--index", options.index, "Which index finds the pages; the answer is the same")
       ->check(CLI::IsMember({"packed", "spatialindex"}))
       ->capture_default_str();
+  app.add_option("--tmp", options.temporary_folder,
+                 "Folder for temporary files of --index spatialindex (default: beside FILE)")
+      ->type_name("DIR");
 }
 
 ProgressiveTin open_terrain(const TerrainOptions& options) {
   if (!options.no_mmap) install_sigbus_guard();
-  ProgressiveTin terrain = ProgressiveTin::open(
-      options.file, {options.no_mmap ? PageAccess::kPread : PageAccess::kMapped});
+  const auto store =
+      StoreFile::open(options.file, options.no_mmap ? PageAccess::kPread : PageAccess::kMapped);
+  ProgressiveTin terrain(store);
   if (options.index == "spatialindex") {
-#if __has_include("storage/spatialindex_rtree.h")
-    terrain.use_index(open_spatialindex(terrain.store()));
-#else
-    throw Error(ErrorCode::invalid_argument,
-                "this build has no libspatialindex; leave --index out");
-#endif
+    SpatialIndexOptions index;
+    index.temporary_folder = options.temporary_folder;
+    terrain.use_index(SpatialIndexRTree::open(store, index));
   }
   return terrain;
 }

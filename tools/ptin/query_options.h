@@ -16,10 +16,11 @@
 
 namespace ptin::tools {
 
-/// FILE, --no-mmap and --index.
+/// FILE, --no-mmap, --index and --tmp.
 struct TerrainOptions {
   std::string file;
   std::string index = "packed";
+  std::string temporary_folder;
   bool no_mmap = false;
 };
 void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index);

@@ -2,6 +2,7 @@
 //
 // ptin render: a picture of the TIN.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -74,6 +75,12 @@ std::string unit_of(const CrsFacts& crs) {
                                                                                           : "";
 }
 
+/// Pixels between samples, as far as the grid tells.
+int reach_for(const StoreFacts& facts, const View& view) {
+  const double spacing = std::max(facts.map.step_x * view.scale_x, facts.map.step_y * view.scale_y);
+  return static_cast<int>(std::clamp(std::round(spacing), 1.0, 12.0));
+}
+
 int run_render(const RenderOptions& options, const Context& context) {
   check_options(options);
   const ProgressiveTin terrain = open_terrain(options.terrain);
@@ -98,7 +105,9 @@ int run_render(const RenderOptions& options, const Context& context) {
   constexpr int kSupersampling = 2;
   const TerrainRaster raster =
       rasterize(refined, store.facts(), supersampled(view, kSupersampling));
-  const ReliefStyle style = choose_style(raster, view, options.pages);
+  const ReliefStyle style = choose_style(
+      raster, view, options.pages,
+      options.wireframe || options.pages ? 1 : reach_for(store.facts(), view) * kSupersampling);
   Image image = draw_relief(raster, view, kSupersampling, style);
   if (options.wireframe) draw_wireframe(image, refined, store.facts(), view);
   if (!options.no_legend) draw_legend(image, view, style, unit_of(crs));

@@ -1,7 +1,234 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ptin/command.h"
+//
+// ptin verify: every checksum and rule of the file, every triangle of the full TIN, and with
+// --against every sample of the source. Damage is an answer (exit status 1), not an error.
+#include "storage/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "engine/mesh/validate.h"
+#include "tools/error_status.h"
+#include "tools/progress.h"
+#include "tools/ptin/error_stats.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+#include "tools/ptin/verify_against.h"
+
 namespace ptin::tools {
-Action declare_verify(CLI::App&, Context&) {
-  return [] { return 1; };
+
+namespace {
+
+struct VerifyCommand {
+  TerrainOptions terrain;
+  std::vector<std::string> against;
+  std::vector<double> tolerances;
+  std::size_t faults = 20;
+};
+
+/// What was found; faults of all three parts in one list.
+struct Findings {
+  VerifyReport store;
+  std::uint64_t windows = 0;  ///< Refined and validated.
+  std::vector<VerifyFault> faults;
+  std::uint64_t fault_count = 0;
+  std::optional<AgainstReport> against;
+};
+
+/// Squares of the terrain that hold about a million records each.
+std::vector<Window> squares_of(const StoreFile& store) {
+  constexpr double kRecords = 1e6;
+  const auto side =
+      static_cast<int>(std::ceil(std::sqrt(static_cast<double>(store.record_count()) / kRecords)));
+  const int n = std::max(1, side);
+  const GridBox& b = store.facts().bounds;
+  std::vector<Window> squares;
+  const auto share = [n](std::int32_t low, std::int32_t high, int i) {
+    return low + (static_cast<double>(high) - low) * i / n;
+  };
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const MapPoint low =
+          store.facts().map.to_map(share(b.min_x, b.max_x, i), share(b.min_y, b.max_y, j));
+      const MapPoint high =
+          store.facts().map.to_map(share(b.min_x, b.max_x, i + 1), share(b.min_y, b.max_y, j + 1));
+      squares.push_back({low.x, low.y, high.x, high.y});
+    }
+  }
+  return squares;
 }
+
+/// Applies every record, square by square, and validates what comes out.
+void verify_refinement(const ProgressiveTin& terrain, const Context& context, Progress& progress,
+                       Findings& findings) {
+  const std::vector<Window> squares = squares_of(terrain.store());
+  for (const Window& square : squares) {
+    progress.report("refinement", findings.windows++, squares.size());
+    RefineRequest request;
+    if (squares.size() > 1) request.region = square;
+    request.stop = context.stop;
+    try {
+      const std::string broken = validate(terrain.refine(request).tin);
+      if (broken.empty()) continue;
+      findings.faults.push_back({broken, "the full TIN"});
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::corruption) throw;
+      findings.faults.push_back({error.message(), error.context()});
+    }
+  }
+}
+
+/// The full TIN, tolerance 0, and round tolerances at which about 30, 10, 3 and 1 % of the vertices
+/// are left.
+std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
+                                                 const StoreFile& store) {
+  std::vector<std::optional<double>> tolerances{std::nullopt};
+  if (!command.tolerances.empty()) {
+    tolerances.insert(tolerances.end(), command.tolerances.begin(), command.tolerances.end());
+    return tolerances;
+  }
+  tolerances.emplace_back(0.0);
+  const double all = static_cast<double>(store.t0().vertices.size() + store.record_count());
+  for (const double share : {0.3, 0.1, 0.03, 0.01}) {
+    for (const double tolerance : round_tolerances(store, 60)) {
+      if (static_cast<double>(vertices_at(store, tolerance)) > share * all) continue;
+      if (tolerance > tolerances.back().value_or(0.0)) tolerances.emplace_back(tolerance);
+      break;
+    }
+  }
+  return tolerances;
+}
+
+void verify_source(const VerifyCommand& command, const ProgressiveTin& terrain,
+                   const Context& context, Progress& progress, Findings& findings) {
+  const std::unique_ptr<SourceSamples> source = open_samples(command.against, terrain.store());
+  AgainstOptions options;
+  options.tolerances = tolerances_of(command, terrain.store());
+  options.listed_faults = command.faults;
+  options.stop = context.stop;
+  options.progress = [&progress](std::uint64_t done, std::uint64_t total) {
+    progress.report("samples", done, total);
+  };
+  findings.against = verify_against(terrain, *source, options);
+  findings.fault_count += findings.against->fault_count - findings.against->faults.size();
+  for (const std::string& what : findings.against->faults)
+    findings.faults.push_back({what, command.against.front()});
+}
+
+Findings verify(const VerifyCommand& command, const Context& context) {
+  Findings findings;
+  Progress progress(Progress::style_for(context.quiet, stderr));
+  VerifyOptions options;
+  options.max_faults = std::max<std::size_t>(1, command.faults);
+  findings.store = verify_store(
+      command.terrain.file, options, context.stop,
+      [&](std::uint64_t done, std::uint64_t total) { progress.report("pages", done, total); });
+  findings.faults = findings.store.faults;
+  if (findings.store.is_sound()) {  // what is damaged already is not asked further
+    const ProgressiveTin terrain = open_terrain(command.terrain);
+    verify_refinement(terrain, context, progress, findings);
+    if (!command.against.empty()) verify_source(command, terrain, context, progress, findings);
+  }
+  findings.fault_count += findings.faults.size();
+  progress.finish();
+  return findings;
+}
+
+nlohmann::json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+nlohmann::json findings_json(const VerifyCommand& command, const Findings& f) {
+  nlohmann::json faults = nlohmann::json::array();
+  for (const VerifyFault& fault : f.faults)
+    faults.push_back({{"what", fault.what}, {"where", fault.where}});
+  nlohmann::json json = {{"file", command.terrain.file},
+                         {"sound", f.fault_count == 0},
+                         {"fault_count", f.fault_count},
+                         {"stopped_early", f.store.stopped_early},
+                         {"faults", faults},
+                         {"pages", f.store.pages},
+                         {"records", f.store.records},
+                         {"index_nodes", f.store.index_nodes}};
+  if (!f.against) return json;
+  nlohmann::json checks = nlohmann::json::array();
+  for (const ToleranceCheck& c : f.against->checks) {
+    checks.push_back({{"tolerance", c.tolerance ? nlohmann::json(*c.tolerance) : nlohmann::json()},
+                      {"certified_error", c.certified_error},
+                      {"worst_error", c.worst_error},
+                      {"certified_deviation", number_or_null(c.certified_deviation)},
+                      {"worst_deviation", c.worst_deviation},
+                      {"samples", c.samples},
+                      {"void_samples", c.void_samples},
+                      {"reclassified", c.reclassified},
+                      {"faults", c.faults}});
+  }
+  json["against"] = {{"inputs", command.against}, {"checks", checks}};
+  return json;
+}
+
+void print_checks(const AgainstReport& report) {
+  std::printf(
+      "  tolerance  certified  worst at samples  certified anywhere  worst at random points  "
+      "reclassified\n");
+  for (const ToleranceCheck& c : report.checks) {
+    std::printf("  %9s  %9s  %16s  %18s  %22s  %12s\n",
+                c.tolerance ? short_number(*c.tolerance).c_str() : "none",
+                short_number(c.certified_error).c_str(), short_number(c.worst_error).c_str(),
+                short_number(c.certified_deviation).c_str(),
+                c.tolerance ? short_number(c.worst_deviation).c_str() : "-",
+                grouped(c.reclassified).c_str());
+  }
+}
+
+void print_findings(const VerifyCommand& command, const Findings& f) {
+  std::printf("%s: %s\n", command.terrain.file.c_str(),
+              f.fault_count == 0 ? "sound" : "DAMAGED or wrong");
+  std::printf("  %s pages, %s records, %s index nodes; %s windows of the full TIN valid\n",
+              grouped(f.store.pages).c_str(), grouped(f.store.records).c_str(),
+              grouped(f.store.index_nodes).c_str(), grouped(f.windows).c_str());
+  if (f.against && !f.against->checks.empty()) {
+    std::printf("against %s: %s samples with a height, %s void\n", command.against.front().c_str(),
+                grouped(f.against->checks.front().samples).c_str(),
+                grouped(f.against->checks.front().void_samples).c_str());
+    print_checks(*f.against);
+  }
+  if (f.fault_count == 0) return;
+  std::printf("%s%s faults; the first:\n", grouped(f.fault_count).c_str(),
+              f.store.stopped_early ? " or more" : "");
+  for (const VerifyFault& fault : f.faults) {
+    std::printf("  %s%s%s\n", fault.where.c_str(), fault.where.empty() ? "" : ": ",
+                fault.what.c_str());
+  }
+}
+
+}  // namespace
+
+Action declare_verify(CLI::App& app, Context& context) {
+  const auto command = std::make_shared<VerifyCommand>();
+  add_terrain_options(app, command->terrain, false);
+  app.add_option("--against", command->against,
+                 "The source: certified errors are checked at each of its samples")
+      ->type_name("INPUT");
+  app.add_option("--tolerance", command->tolerances,
+                 "Tolerances to check against the source (default: 0 and four more)")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("E");
+  app.add_option("--faults", command->faults, "List at most this many faults")
+      ->capture_default_str()
+      ->type_name("N");
+  add_common_options(app, context, true);
+  return [command, &context] {
+    const Findings findings = verify(*command, context);
+    if (context.json) {
+      print_json(findings_json(*command, findings));
+    } else if (!context.quiet || findings.fault_count > 0) {
+      print_findings(*command, findings);
+    }
+    return findings.fault_count == 0 ? kExitDone : kExitNegative;
+  };
+}
+
 }  // namespace ptin::tools

@@ -34,20 +34,20 @@ struct Slope {
   double y = 0.0;  ///< Rise to the south.
 };
 
-/// Horn's slope at a pixel: weighted differences of its eight neighbours. A neighbour without a
-/// height counts as the pixel.
-Slope slope_at(const TerrainRaster& r, int x, int y, double ground_per_pixel) {
+/// Horn's slope at a pixel: weighted differences of eight pixels around it, `reach` away. One
+/// without a height counts as the pixel.
+Slope slope_at(const TerrainRaster& r, int x, int y, double ground_per_pixel, int reach) {
   const float centre = r.heights[r.place(x, y)];
   double z[3][3];
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
-      const int px = std::clamp(x + dx, 0, r.width - 1);
-      const int py = std::clamp(y + dy, 0, r.height - 1);
+      const int px = std::clamp(x + dx * reach, 0, r.width - 1);
+      const int py = std::clamp(y + dy * reach, 0, r.height - 1);
       const std::size_t place = r.place(px, py);
       z[dy + 1][dx + 1] = r.classes[place] == PixelClass::kSurface ? r.heights[place] : centre;
     }
   }
-  const double run = 8.0 * ground_per_pixel;
+  const double run = 8.0 * reach * ground_per_pixel;
   return {((z[0][2] + 2 * z[1][2] + z[2][2]) - (z[0][0] + 2 * z[1][0] + z[2][0])) / run,
           ((z[2][0] + 2 * z[2][1] + z[2][2]) - (z[0][0] + 2 * z[0][1] + z[0][2])) / run};
 }
@@ -85,7 +85,7 @@ Colour pixel_colour(const TerrainRaster& raster, int x, int y, double ground_per
   if (raster.classes[place] == PixelClass::kVoid) {
     return (x + y) / factor % 9 == 0 ? kHatchColour : kVoidColour;
   }
-  const Slope slope = slope_at(raster, x, y, ground_per_pixel);
+  const Slope slope = slope_at(raster, x, y, ground_per_pixel, style.reach);
   const float height = raster.heights[place];
   const bool is_water = height == 0.0F && slope.x == 0.0 && slope.y == 0.0 && style.high > 0.0F;
   Colour colour = style.by_page ? page_colour(raster.pages[place]) : height_colour(height, style);
@@ -102,8 +102,9 @@ Colour pixel_colour(const TerrainRaster& raster, int x, int y, double ground_per
 
 }  // namespace
 
-ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_page) {
+ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_page, int reach) {
   ReliefStyle style;
+  style.reach = reach;
   style.by_page = by_page;
   std::vector<float> heights;
   double squares = 0.0;
@@ -112,7 +113,7 @@ ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_
   for (int y = 0; y < raster.height; y += step) {
     for (int x = 0; x < raster.width; x += step) {
       if (raster.classes[raster.place(x, y)] != PixelClass::kSurface) continue;
-      const Slope slope = slope_at(raster, x, y, ground);
+      const Slope slope = slope_at(raster, x, y, ground, style.reach);
       if (slope.x == 0.0 && slope.y == 0.0) continue;
       heights.push_back(raster.heights[raster.place(x, y)]);
       squares += slope.x * slope.x + slope.y * slope.y;

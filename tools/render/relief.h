@@ -16,10 +16,15 @@ struct ReliefStyle {
   double exaggeration =
       1.0;  ///< Of heights, for the shading alone; more than 1 where the terrain is flat.
   bool by_page = false;  ///< Colours tell the page that a triangle came from.
+  /// Slopes are taken over this many pixels of the raster to each side: about the spacing of
+  /// samples, so that single facets of a dense TIN do not show. 1 shows every facet.
+  int reach = 1;
 };
 
 /// A style for what `raster` shows.
-[[nodiscard]] ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_page);
+/// @param reach  ReliefStyle::reach; 1 shows every facet.
+[[nodiscard]] ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_page,
+                                       int reach);
 
 /// The colour of a height, unshaded.
 [[nodiscard]] Colour height_colour(float height, const ReliefStyle& style);

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Rasters for `verify --against`.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <gdal_priv.h>
+
+#include "engine/error.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/source_samples.h"
+
+namespace ptin::tools {
+
+namespace {
+
+/// One file, and where its pixels are on the grid: x = first_x + column, y = first_y + direction *
+/// row.
+struct RasterFile {
+  std::string path;
+  std::unique_ptr<GDALDataset> data;
+  std::int64_t first_x = 0;
+  std::int64_t first_y = 0;
+  int direction = -1;
+  int columns = 0;
+  int rows = 0;
+  double scale = 1.0;
+  double offset = 0.0;
+
+  [[nodiscard]] std::int64_t low_y() const { return direction < 0 ? first_y - rows + 1 : first_y; }
+};
+
+class RasterSamples final : public SourceSamples {
+ public:
+  RasterSamples(std::vector<RasterFile> files, const StoreFile& store)
+      : files_(std::move(files)), choices_(choices_of(store)) {
+    for (RasterFile& file : files_) place(file, store.facts());
+    compare_extent(store.facts().bounds);
+  }
+
+  [[nodiscard]] const std::vector<std::string>& misfits() const noexcept override {
+    return misfits_;
+  }
+  [[nodiscard]] SampleWindow read(const GridBox& box) override;
+
+ private:
+  void place(RasterFile& file, const StoreFacts& facts);
+  void compare_extent(const GridBox& bounds);
+  void read_file(RasterFile& file, SampleWindow& window) const;
+
+  std::vector<RasterFile> files_;
+  SampleChoices choices_;
+  std::vector<std::string> misfits_;
+};
+
+/// Where the middle of the first pixel, and the next, lie on the grid.
+void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
+  std::array<double, 6> t{0, 1, 0, 0, 0, -1};
+  if (file.data->GetGeoTransform(t.data()) != CE_None) t = {-0.5, 1, 0, file.rows - 0.5, 0, -1};
+  file.direction = t[5] < 0 ? -1 : 1;
+  const auto grid = [&](int column, int row) {
+    return facts.map.to_grid({t[0] + (column + 0.5) * t[1], t[3] + (row + 0.5) * t[5]});
+  };
+  const MapPoint first = grid(0, 0);
+  const MapPoint last = grid(file.columns - 1, file.rows - 1);
+  file.first_x = std::llround(first.x);
+  file.first_y = std::llround(first.y);
+  const auto expected_x = static_cast<double>(file.first_x + file.columns - 1);
+  const auto expected_y =
+      static_cast<double>(file.first_y + std::int64_t{file.direction} * (file.rows - 1));
+  const double off = std::max({std::abs(first.x - static_cast<double>(file.first_x)),
+                               std::abs(first.y - static_cast<double>(file.first_y)),
+                               std::abs(last.x - expected_x), std::abs(last.y - expected_y)});
+  if (t[2] != 0 || t[4] != 0 || off > 0.02) {
+    misfits_.push_back(
+        file.path +
+        ": its samples do not stand on the grid of the terrain; they are off by up to " +
+        short_number(off) + " grid units");
+  }
+}
+
+void RasterSamples::compare_extent(const GridBox& bounds) {
+  std::int64_t low_x = INT64_MAX;
+  std::int64_t low_y = INT64_MAX;
+  std::int64_t high_x = INT64_MIN;
+  std::int64_t high_y = INT64_MIN;
+  for (const RasterFile& file : files_) {
+    low_x = std::min(low_x, file.first_x);
+    low_y = std::min(low_y, file.low_y());
+    high_x = std::max(high_x, file.first_x + file.columns - 1);
+    high_y = std::max(high_y, file.low_y() + file.rows - 1);
+  }
+  const bool same = low_x == bounds.min_x && low_y == bounds.min_y && high_x == bounds.max_x &&
+                    high_y == bounds.max_y;
+  const bool covers = low_x <= bounds.min_x && low_y <= bounds.min_y && high_x >= bounds.max_x &&
+                      high_y >= bounds.max_y;
+  if (same || (choices_.bbox && covers)) return;
+  const auto box = [](std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t d) {
+    return std::to_string(a) + " " + std::to_string(b) + " to " + std::to_string(c) + " " +
+           std::to_string(d);
+  };
+  misfits_.push_back("the source covers grid points " + box(low_x, low_y, high_x, high_y) +
+                     ", the terrain " +
+                     box(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y));
+}
+
+SampleWindow RasterSamples::read(const GridBox& box) {
+  SampleWindow window;
+  window.box = box;
+  window.is_grid = true;
+  for (std::int32_t y = box.min_y; y <= box.max_y; ++y) {
+    for (std::int32_t x = box.min_x; x <= box.max_x; ++x)
+      window.samples.push_back({x, y, 0.0, true});
+  }
+  for (RasterFile& file : files_) read_file(file, window);
+  return window;
+}
+
+void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
+  const GridBox& box = window.box;
+  const std::int64_t low_x = std::max<std::int64_t>(box.min_x, file.first_x);
+  const std::int64_t high_x = std::min<std::int64_t>(box.max_x, file.first_x + file.columns - 1);
+  const std::int64_t low_y = std::max<std::int64_t>(box.min_y, file.low_y());
+  const std::int64_t high_y = std::min<std::int64_t>(box.max_y, file.low_y() + file.rows - 1);
+  if (low_x > high_x || low_y > high_y) return;
+  const int width = static_cast<int>(high_x - low_x + 1);
+  const int height = static_cast<int>(high_y - low_y + 1);
+  const int column = static_cast<int>(low_x - file.first_x);
+  const int row =
+      static_cast<int>(file.direction < 0 ? file.first_y - high_y : low_y - file.first_y);
+  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  std::vector<double> values(count);
+  std::vector<std::uint8_t> mask(count, 255);
+  GDALRasterBand& band = *file.data->GetRasterBand(1);
+  CPLErr status = band.RasterIO(GF_Read, column, row, width, height, values.data(), width, height,
+                                GDT_Float64, 0, 0, nullptr);
+  // A nodata value given at the build takes the place of the band's own; a mask band stays.
+  if (status == CE_None && !(choices_.nodata && (band.GetMaskFlags() & GMF_NODATA) != 0)) {
+    status = band.GetMaskBand()->RasterIO(GF_Read, column, row, width, height, mask.data(), width,
+                                          height, GDT_Byte, 0, 0, nullptr);
+  }
+  if (status != CE_None)
+    throw Error(ErrorCode::io_error, "GDAL cannot read its samples", file.path);
+  const bool is_float = band.GetRasterDataType() == GDT_Float32;
+  const std::size_t stride = static_cast<std::size_t>(box.max_x - box.min_x) + 1;
+  for (int j = 0; j < height; ++j) {
+    const std::int64_t y = file.direction < 0 ? high_y - j : low_y + j;
+    for (int i = 0; i < width; ++i) {
+      const std::size_t from = static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
+                               static_cast<std::size_t>(i);
+      const double value = values[from];
+      const bool is_nodata =
+          choices_.nodata &&
+          (value == *choices_.nodata ||
+           (is_float && static_cast<float>(value) == static_cast<float>(*choices_.nodata)));
+      if (mask[from] == 0 || std::isnan(value) || is_nodata) continue;
+      Sample& sample = window.samples[static_cast<std::size_t>(y - box.min_y) * stride +
+                                      static_cast<std::size_t>(low_x + i - box.min_x)];
+      sample.height = file.offset + file.scale * value;
+      sample.is_void = false;
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<SourceSamples> open_raster_samples(const std::vector<std::string>& paths,
+                                                   const StoreFile& store) {
+  std::vector<RasterFile> files;
+  for (const std::string& path : paths) {
+    RasterFile file;
+    file.path = path;
+    file.data.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr,
+                                      nullptr, nullptr));
+    // GDAL's XYZ driver reads some point files as rasters; text is left to the reader of points.
+    if (!file.data || file.data->GetRasterCount() < 1 || EQUAL(file.data->GetDriverName(), "XYZ"))
+      return nullptr;
+    GDALRasterBand& band = *file.data->GetRasterBand(1);
+    file.columns = band.GetXSize();
+    file.rows = band.GetYSize();
+    file.scale = band.GetScale(nullptr);
+    file.offset = band.GetOffset(nullptr);
+    files.push_back(std::move(file));
+  }
+  return std::make_unique<RasterSamples>(std::move(files), store);
+}
+
+}  // namespace ptin::tools

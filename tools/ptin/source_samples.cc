@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/source_samples.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "engine/error.h"
+#include "tools/ptin/crs_facts.h"
+
+namespace ptin::tools {
+
+SampleChoices choices_of(const StoreFile& store) {
+  const nlohmann::json metadata = metadata_of(store);
+  const auto it = metadata.find("options");
+  const nlohmann::json options =
+      it != metadata.end() && it->is_object() ? *it : nlohmann::json::object();
+  SampleChoices choices;
+  if (const auto nodata = options.find("nodata"); nodata != options.end() && nodata->is_number()) {
+    choices.nodata = nodata->get<double>();
+  }
+  if (const auto slope = options.find("void_slope"); slope != options.end() && slope->is_number()) {
+    choices.void_slope = slope->get<double>();
+  }
+  if (const auto bbox = options.find("bbox");
+      bbox != options.end() && bbox->is_array() && bbox->size() == 4) {
+    choices.bbox = store.facts().bounds;
+  }
+  return choices;
+}
+
+std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
+                                            const StoreFile& store) {
+  for (const std::string& path : paths) {
+    if (path.rfind("/vsi", 0) != 0 && !std::filesystem::exists(path)) {
+      throw Error(ErrorCode::not_found, "no such file", path);
+    }
+  }
+  std::unique_ptr<SourceSamples> samples = open_raster_samples(paths, store);
+  return samples ? std::move(samples) : open_point_samples(paths, store);
+}
+
+}  // namespace ptin::tools

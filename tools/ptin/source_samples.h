@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The samples of a source on a terrain's grid, for `verify --against`: read with GDAL and a text
+// reader of its own, so that nothing is shared with the builder that is being verified.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/geometry/box.h"
+#include "storage/store_file.h"
+
+namespace ptin::tools {
+
+/// Choices of the build that decide which samples there are; from the metadata of the store.
+struct SampleChoices {
+  std::optional<double> nodata;
+  std::optional<GridBox> bbox;  ///< Samples outside were left out.
+  double void_slope = 0.1;
+};
+[[nodiscard]] SampleChoices choices_of(const StoreFile& store);
+
+struct Sample {
+  std::int32_t x = 0;  ///< Grid.
+  std::int32_t y = 0;
+  double height = 0.0;  ///< Height's unit.
+  bool is_void = false;
+  bool is_lone = false;  ///< Void because it touches no surface triangle, though it has a height.
+};
+
+/// The samples of a box, row-major where they form a full grid.
+struct SampleWindow {
+  GridBox box;
+  std::vector<Sample> samples;
+  bool is_grid = false;  ///< One sample at each grid point of `box`, row 0 in the south.
+};
+
+class SourceSamples {
+ public:
+  SourceSamples() = default;
+  SourceSamples(const SourceSamples&) = delete;
+  SourceSamples& operator=(const SourceSamples&) = delete;
+  virtual ~SourceSamples() = default;
+
+  /// Samples in the closed box; grid points outside of every file are void.  @throws Error io_error
+  [[nodiscard]] virtual SampleWindow read(const GridBox& box) = 0;
+  /// Everything wrong with the source as a whole: other grid, other extent. Empty when it fits the
+  /// store.
+  [[nodiscard]] virtual const std::vector<std::string>& misfits() const noexcept = 0;
+};
+
+/// Opens rasters, or points as text.
+/// @throws Error not_found, invalid_argument
+[[nodiscard]] std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
+                                                          const StoreFile& store);
+
+/// The two kinds; open_samples() chooses. A raster is null when GDAL does not know the file as one.
+[[nodiscard]] std::unique_ptr<SourceSamples> open_raster_samples(
+    const std::vector<std::string>& paths, const StoreFile& store);
+[[nodiscard]] std::unique_ptr<SourceSamples> open_point_samples(
+    const std::vector<std::string>& paths, const StoreFile& store);
+
+}  // namespace ptin::tools
