@@ -24,6 +24,7 @@
 #include "storage/layout.h"
 #include "storage/page_slots.h"
 #include "storage/record_order.h"
+#include "storage/store_front.h"
 
 namespace ptin {
 
@@ -279,6 +280,9 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
                               const std::string& metadata_json) {
   PTIN_CHECK(!published_);
   if (const char* fault = fault_in(facts)) {
+    throw Error(ErrorCode::invalid_argument, fault, path_);
+  }
+  if (const char* fault = fault_in(t0, facts)) {
     throw Error(ErrorCode::invalid_argument, fault, path_);
   }
   start(facts.heights);

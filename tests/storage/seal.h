@@ -56,8 +56,9 @@ inline std::vector<layout::SectionEntry> sections_of(const Bytes& file) {
 }
 
 inline void set_sections(Bytes& file, const std::vector<layout::SectionEntry>& sections) {
-  std::memcpy(file.data() + sizeof(layout::FileHeader), sections.data(),
-              sections.size() * sizeof(layout::SectionEntry));
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    set_object(file, sizeof(layout::FileHeader) + i * sizeof(layout::SectionEntry), sections[i]);
+  }
 }
 
 inline layout::SectionEntry section_of(const Bytes& file, layout::SectionKind kind) {

@@ -18,8 +18,11 @@ namespace ptin::test {
 
 namespace fs = std::filesystem;
 
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "ptin-test-XXXXXX").string();
+TemporaryFolder::TemporaryFolder(Size size) {
+  const fs::path memory = "/dev/shm";
+  const bool in_memory = size == Size::kSmall && ::access(memory.c_str(), W_OK) == 0;
+  std::string name =
+      ((in_memory ? memory : fs::temp_directory_path()) / "ptin-test-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
     throw std::runtime_error("cannot make a temporary folder");
   }

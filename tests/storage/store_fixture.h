@@ -19,10 +19,12 @@
 
 namespace ptin::test {
 
-/// A folder of its own, removed with all it holds.
+/// A folder of its own, removed with all it holds. `small` ones are in memory where the system has
+/// a place for that: a disk takes minutes for what some tests do to one file.
 class TemporaryFolder {
  public:
-  TemporaryFolder();
+  enum class Size { kAny, kSmall };
+  explicit TemporaryFolder(Size size = Size::kAny);
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   ~TemporaryFolder();

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/storage/failing_files.h"
+
+#include <cerrno>
+#include <filesystem>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "storage/store_writer.h"
+
+namespace ptin::test {
+
+void expect_old_or_new(const StoreContent& new_content) {
+  const TemporaryFolder folder(TemporaryFolder::Size::kSmall);
+  const std::string path = folder.file("a.ptin");
+  const StoreContent old_content = random_content({.seed = 1, .segments = 1, .records = 5});
+  write_store(path, new_content);
+  const Bytes new_bytes = read_file(path);
+  write_store(path, old_content, {.overwrite = true});
+  const Bytes old_bytes = read_file(path);
+  FailingFiles counting(0, 0, false);
+  write_store(folder.file("b"), new_content, {.overwrite = true, .files = &counting});
+  std::filesystem::remove(folder.file("b"));
+  ASSERT_GT(counting.calls(), 8);
+
+  int kept = 0, replaced = 0;
+  for (const bool for_good : {false, true}) {
+    for (int nth = 1; nth <= counting.calls(); ++nth) {
+      for (const int failure : {ENOSPC, EIO}) {
+        FailingFiles files(nth, failure, for_good);
+        const auto code =
+            code_of([&] { write_store(path, new_content, {.overwrite = true, .files = &files}); });
+        const Bytes found = read_file(path);
+        ASSERT_EQ(folder.names(), std::vector<std::string>{"a.ptin"}) << "call " << nth;
+        if (found == old_bytes) {
+          ASSERT_TRUE(code.has_value()) << "call " << nth << " failed and nothing was said";
+          ASSERT_EQ(*code, failure == ENOSPC ? ErrorCode::resource_exhausted : ErrorCode::io_error);
+          ++kept;
+        } else {
+          // Without an error only where the failure does not matter.
+          ASSERT_TRUE(found == new_bytes) << "call " << nth;
+          write_store(path, old_content, {.overwrite = true});
+          ++replaced;
+        }
+      }
+    }
+  }
+  EXPECT_GT(kept, replaced);
+  EXPECT_GT(replaced, 0) << "the folder's sync comes after the rename";
+}
+
+}  // namespace ptin::test

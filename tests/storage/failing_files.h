@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A file layer that fails, and what must hold when it does.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/error.h"
+#include "storage/file_layer.h"
+#include "tests/storage/store_fixture.h"
+
+namespace ptin::test {
+
+/// The code of the Error that `work` throws; none when it throws nothing.
+inline std::optional<ErrorCode> code_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& e) {
+    return e.code();
+  }
+  return std::nullopt;
+}
+
+/// Fails the n-th call; with `for_good`, all that follow too, but for those that clean up.
+class FailingFiles final : public FileLayer {
+ public:
+  FailingFiles(int nth, int failure, bool for_good)
+      : nth_(nth), failure_(failure), for_good_(for_good) {}
+
+  [[nodiscard]] int calls() const { return calls_; }
+
+  int create(const std::string& path, int& fd) noexcept override {
+    return fails() ? failure_ : FileLayer::create(path, fd);
+  }
+  int close(int fd) noexcept override {
+    const int result = FileLayer::close(fd);
+    return fails() ? failure_ : result;
+  }
+  int write_at(int fd, std::span<const std::byte> bytes, std::uint64_t offset,
+               std::size_t& written) noexcept override {
+    if (fails()) {
+      // What a full disk does: a part is written, then the error comes.
+      static_cast<void>(FileLayer::write_at(fd, bytes.first(bytes.size() / 2), offset, written));
+      written = 0;
+      return failure_;
+    }
+    return FileLayer::write_at(fd, bytes, offset, written);
+  }
+  int read_at(int fd, std::span<std::byte> bytes, std::uint64_t offset,
+              std::size_t& read) noexcept override {
+    return fails() ? failure_ : FileLayer::read_at(fd, bytes, offset, read);
+  }
+  int allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexcept override {
+    return fails() ? failure_ : FileLayer::allocate(fd, offset, bytes);
+  }
+  int sync(int fd) noexcept override { return fails() ? failure_ : FileLayer::sync(fd); }
+  int rename(const std::string& from, const std::string& to, bool replace) noexcept override {
+    return fails() ? failure_ : FileLayer::rename(from, to, replace);
+  }
+  int unlink(const std::string& path) noexcept override {
+    return calls_ < nth_ && fails() ? failure_ : FileLayer::unlink(path);
+  }
+  int sync_folder(const std::string& path) noexcept override {
+    return fails() ? failure_ : FileLayer::sync_folder(path);
+  }
+
+ private:
+  bool fails() noexcept {
+    ++calls_;
+    return for_good_ ? calls_ >= nth_ : calls_ == nth_;
+  }
+  int nth_, failure_;
+  bool for_good_;
+  int calls_ = 0;
+};
+
+/// Publishes `content` over an older file, with each call of the file layer failing in turn: the
+/// result is the old file or the new one, and no other file.
+void expect_old_or_new(const StoreContent& content);
+
+}  // namespace ptin::test

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a reader must reject when a file is opened (FORMAT.md, "A reader must reject"), and that no
+// damage of a small file goes unseen.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "engine/error.h"
+#include "storage/store_file.h"
+#include "storage/verify.h"
+#include "tests/storage/store_fixture.h"
+
+namespace ptin::test {
+namespace {
+
+using layout::FileHeader;
+using layout::SectionEntry;
+using layout::SectionKind;
+
+class StoreOpen : public testing::Test {
+ protected:
+  StoreOpen() {
+    write_store(path_, random_content({.seed = 7, .segments = 2, .records = 70}));
+    bytes_ = read_file(path_);
+  }
+
+  // The code that opening fails with; none when it succeeds.
+  std::optional<ErrorCode> code_of(const Bytes& bytes) {
+    write_file(path_, bytes);
+    return code_of_file();
+  }
+  std::optional<ErrorCode> code_of_file() {
+    try {
+      StoreFile::open(path_);
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(path_), std::string::npos)
+          << "should name the file: " << e.what();
+      return e.code();
+    }
+    return std::nullopt;
+  }
+
+  void expect_corruption(const char* name, const Bytes& bytes) {
+    EXPECT_EQ(code_of(bytes), ErrorCode::corruption) << name;
+    // Damage that opening finds, verify reports as a fault.
+    EXPECT_FALSE(verify_store(path_).is_sound()) << name;
+  }
+
+  void expect_header_rejected(const char* name, const std::function<void(FileHeader&)>& change) {
+    Bytes bytes = bytes_;
+    FileHeader header = header_of(bytes);
+    change(header);
+    set_header(bytes, header);
+    seal(bytes);
+    expect_corruption(name, bytes);
+  }
+
+  void expect_sections_rejected(const char* name,
+                                const std::function<void(std::vector<SectionEntry>&)>& change) {
+    Bytes bytes = bytes_;
+    std::vector<SectionEntry> sections = sections_of(bytes);
+    change(sections);
+    set_sections(bytes, sections);
+    seal(bytes);
+    expect_corruption(name, bytes);
+  }
+
+  template <class T>
+  void expect_entry_rejected(const char* name, SectionKind kind, std::size_t index,
+                             const std::function<void(T&)>& change) {
+    Bytes bytes = bytes_;
+    const std::uint64_t at = section_of(bytes, kind).offset + index * sizeof(T);
+    T entry = object_at<T>(bytes, at);
+    change(entry);
+    set_object(bytes, at, entry);
+    seal(bytes);
+    expect_corruption(name, bytes);
+  }
+
+  TemporaryFolder folder_{TemporaryFolder::Size::kSmall};
+  std::string path_ = folder_.file("a.ptin");
+  Bytes bytes_;
+};
+
+TEST_F(StoreOpen, AcceptsWhatIsSealedAgain) {
+  Bytes bytes = bytes_;
+  seal(bytes);
+  EXPECT_EQ(bytes, bytes_);
+  EXPECT_EQ(code_of(bytes), std::nullopt);
+}
+
+TEST_F(StoreOpen, SaysThatAFileIsNotThere) {
+  try {
+    StoreFile::open(folder_.file("none.ptin"));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::not_found);
+  }
+}
+
+TEST_F(StoreOpen, RefusesAFolderAndAPipe) {
+  const std::string pipe = folder_.file("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {folder_.path(), pipe}) {
+    try {
+      StoreFile::open(path);
+      FAIL();
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
+    }
+  }
+}
+
+TEST_F(StoreOpen, RefusesWhatIsNoStore) {
+  expect_corruption("empty", {});
+  expect_corruption("text", Bytes(5000, std::byte{'a'}));
+  Bytes magic = bytes_;
+  magic[0] = std::byte{0};
+  expect_corruption("magic", magic);
+}
+
+TEST_F(StoreOpen, RefusesANewerMajorVersionWhateverTheRestIs) {
+  Bytes bytes = bytes_;
+  FileHeader header = header_of(bytes);
+  header.major_version = 2;
+  header.header_bytes = 512;
+  header.header_checksum = 99;
+  set_header(bytes, header);
+  EXPECT_EQ(code_of(bytes), ErrorCode::unsupported_version);
+  EXPECT_THROW(static_cast<void>(verify_store(path_)), Error);
+}
+
+TEST_F(StoreOpen, IgnoresSectionsOfANewerMinorVersion) {
+  Bytes bytes = bytes_;
+  FileHeader header = header_of(bytes);
+  header.minor_version = 1;
+  header.reserved[0] = 1;
+  // The table has no room for a seventh line without moving everything, and a reader need not have
+  // seven: the new section takes the place of nothing, behind the pages.
+  const std::vector<SectionEntry> sections = sections_of(bytes);
+  ASSERT_EQ(sections.size(), 6U);
+  const std::uint64_t gap_begin = sizeof(FileHeader) + 7 * sizeof(SectionEntry);
+  // Moves the sections before the index by one line of the table; there is room before the index.
+  std::vector<SectionEntry> moved = sections;
+  Bytes changed = bytes;
+  const std::uint64_t index = moved[4].offset;
+  std::fill(changed.begin() + sizeof(FileHeader),
+            changed.begin() + static_cast<std::ptrdiff_t>(index), std::byte{0});
+  std::uint64_t at = gap_begin;
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(moved[i].offset), moved[i].bytes,
+                changed.begin() + static_cast<std::ptrdiff_t>(at));
+    moved[i].offset = at;
+    at = (at + moved[i].bytes + 7) / 8 * 8;
+  }
+  ASSERT_LE(at, index);
+  moved.push_back({99, 1, changed.size(), 16, 0});
+  changed.resize(changed.size() + 16, std::byte{7});
+  header.section_count = 7;
+  header.file_bytes = changed.size();
+  set_header(changed, header);
+  set_sections(changed, moved);
+  seal(changed);
+  EXPECT_EQ(code_of(changed), std::nullopt);
+  EXPECT_TRUE(verify_store(path_).is_sound());
+  EXPECT_EQ(read_all(*StoreFile::open(path_)).size(), 140U);
+  changed.back() = std::byte{8};
+  write_file(path_, changed);
+  EXPECT_FALSE(verify_store(path_).is_sound()) << "but its checksum is looked at";
+}
+
+TEST_F(StoreOpen, RejectsEveryTruncation) {
+  // Every length of the front, and of the pages one in 37.
+  const std::size_t front = section_of(bytes_, SectionKind::kPages).offset;
+  for (std::size_t length = bytes_.size(); length > 0;) {
+    length -= length > front ? std::min<std::size_t>(length - front, 37) : 1;
+    std::filesystem::resize_file(path_, length);
+    ASSERT_EQ(code_of_file(), ErrorCode::corruption) << length;
+  }
+  Bytes longer = bytes_;
+  longer.push_back(std::byte{0});
+  EXPECT_EQ(code_of(longer), ErrorCode::corruption);
+}
+
+TEST_F(StoreOpen, NoFlippedByteGoesUnseen) {
+  write_store(path_, random_content({.seed = 3, .segments = 1, .records = 3}), {.overwrite = true});
+  const Bytes sound = read_file(path_);
+  ASSERT_TRUE(verify_store(path_).is_sound());
+  std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
+  const auto put = [&](std::size_t at, std::byte value) {
+    file.seekp(static_cast<std::streamoff>(at));
+    file.put(static_cast<char>(value));
+    file.flush();
+  };
+  for (std::size_t i = 0; i < sound.size(); ++i) {
+    put(i, sound[i] ^ std::byte{0x20});
+    bool is_found = false;
+    try {
+      is_found = !verify_store(path_).is_sound();
+    } catch (const Error& e) {
+      is_found = e.code() == ErrorCode::unsupported_version;
+    }
+    ASSERT_TRUE(is_found) << "byte " << i;
+    put(i, sound[i]);
+  }
+  EXPECT_TRUE(verify_store(path_).is_sound());
+}
+
+TEST_F(StoreOpen, RejectsHeadersThatNoProgramWrote) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  expect_header_rejected("major version 0", [](FileHeader& h) { h.major_version = 0; });
+  expect_header_rejected("header length", [](FileHeader& h) { h.header_bytes = 255; });
+  expect_header_rejected("file too short", [](FileHeader& h) { h.file_bytes += 1; });
+  expect_header_rejected("file too long", [](FileHeader& h) { h.file_bytes -= 1; });
+  for (const std::uint32_t bytes : {0U, 1U, 512U, 4095U, 4097U, 12288U, 131072U, 0x80000000U}) {
+    expect_header_rejected("page size", [=](FileHeader& h) { h.page_bytes = bytes; });
+  }
+  for (const std::uint32_t count : {0U, 5U, 65U, UINT32_MAX}) {
+    expect_header_rejected("sections", [=](FileHeader& h) { h.section_count = count; });
+  }
+  for (const std::uint64_t pages :
+       {std::uint64_t{0}, std::uint64_t{2}, std::uint64_t{1} << 52, UINT64_MAX}) {
+    expect_header_rejected("pages", [=](FileHeader& h) { h.page_count = pages; });
+  }
+  expect_header_rejected("first page", [](FileHeader& h) { h.first_page = h.page_count; });
+  expect_header_rejected("first page", [](FileHeader& h) { h.first_page = UINT64_MAX; });
+  for (const std::uint64_t records :
+       {std::uint64_t{0}, std::uint64_t{139}, std::uint64_t{141}, UINT64_MAX}) {
+    expect_header_rejected("records", [=](FileHeader& h) { h.record_count = records; });
+  }
+  expect_header_rejected("rank", [](FileHeader& h) { h.max_rank = 65536; });
+  expect_header_rejected("height type", [](FileHeader& h) { h.height_type = 2; });
+  for (const double v : {0.0, -1.0, nan, infinity}) {
+    expect_header_rejected("height step",
+                           [=](FileHeader& h) { h.height_step = layout::to_bits(v); });
+    expect_header_rejected("step x", [=](FileHeader& h) { h.step_x = layout::to_bits(v); });
+    expect_header_rejected("step y", [=](FileHeader& h) { h.step_y = layout::to_bits(v); });
+  }
+  for (const double v : {nan, infinity}) {
+    expect_header_rejected("height offset",
+                           [=](FileHeader& h) { h.height_offset = layout::to_bits(v); });
+    expect_header_rejected("origin x", [=](FileHeader& h) { h.origin_x = layout::to_bits(v); });
+    expect_header_rejected("origin y", [=](FileHeader& h) { h.origin_y = layout::to_bits(v); });
+  }
+  expect_header_rejected("float step", [](FileHeader& h) { h.height_step = layout::to_bits(2.0); });
+  expect_header_rejected("bounds off the grid", [](FileHeader& h) { h.bounds[0] = -1; });
+  expect_header_rejected("bounds off the grid", [](FileHeader& h) { h.bounds[2] = kGridMax + 1; });
+  expect_header_rejected("empty bounds", [](FileHeader& h) { h.bounds[1] = h.bounds[3] + 1; });
+  expect_header_rejected("min height", [=](FileHeader& h) { h.min_height = layout::to_bits(nan); });
+  expect_header_rejected("max height", [=](FileHeader& h) { h.max_height = layout::to_bits(nan); });
+  for (const double v : {-1.0, nan}) {
+    expect_header_rejected("base error", [=](FileHeader& h) { h.base_error = layout::to_bits(v); });
+    expect_header_rejected("base deviation",
+                           [=](FileHeader& h) { h.base_deviation = layout::to_bits(v); });
+  }
+  expect_header_rejected("reserved", [](FileHeader& h) { h.reserved[71] = 1; });
+}
+
+TEST_F(StoreOpen, RejectsSectionTablesThatNoProgramWrote) {
+  using Table = std::vector<SectionEntry>;
+  for (std::size_t i = 0; i < 6; ++i) {
+    expect_sections_rejected("reserved", [=](Table& t) { t[i].reserved = 1; });
+    expect_sections_rejected("missing", [=](Table& t) { t[i].kind = 77; });
+    expect_sections_rejected("twice", [=](Table& t) { t[i].kind = t[(i + 1) % 6].kind; });
+    for (const std::uint64_t offset :
+         {std::uint64_t{0}, std::uint64_t{8}, UINT64_MAX, UINT64_MAX - 7}) {
+      expect_sections_rejected("offset", [=](Table& t) { t[i].offset = offset; });
+    }
+    expect_sections_rejected("unaligned", [=](Table& t) { t[i].offset += 1; });
+    expect_sections_rejected("too far", [=](Table& t) { t[i].offset += 1 << 30; });
+    expect_sections_rejected("endless", [=](Table& t) { t[i].bytes = UINT64_MAX; });
+    if (i > 0) {
+      expect_sections_rejected("odd length", [=](Table& t) { t[i].bytes -= 1; });
+    }
+  }
+  expect_sections_rejected("order", [](Table& t) { std::swap(t[0], t[1]); });
+  expect_sections_rejected("index unaligned", [](Table& t) { t[4].offset -= 8; });
+  expect_sections_rejected("page checksum", [](Table& t) { t[5].checksum = 1; });
+  Bytes ends_early = bytes_;
+  ends_early.resize(ends_early.size() + 8);
+  FileHeader header = header_of(ends_early);
+  header.file_bytes = ends_early.size();
+  set_header(ends_early, header);
+  seal(ends_early);
+  expect_corruption("bytes behind the last section", ends_early);
+}
+
+TEST_F(StoreOpen, RejectsChecksumsThatDoNotMatch) {
+  const auto flipped = [&](std::uint64_t at) {
+    Bytes bytes = bytes_;
+    bytes[at] ^= std::byte{1};
+    return bytes;
+  };
+  expect_corruption("header", flipped(56));
+  expect_corruption("table", flipped(sizeof(FileHeader) + 9));
+  expect_corruption("metadata", flipped(section_of(bytes_, SectionKind::kMetadata).offset));
+  expect_corruption("vertices", flipped(section_of(bytes_, SectionKind::kT0Vertices).offset));
+  expect_corruption("triangles", flipped(section_of(bytes_, SectionKind::kT0Triangles).offset));
+  expect_corruption("errors", flipped(section_of(bytes_, SectionKind::kErrorTable).offset + 8));
+}
+
+TEST_F(StoreOpen, RejectsT0ThatCannotBeOne) {
+  using V = layout::T0Vertex;
+  using T = layout::T0Triangle;
+  const auto vertex = [&](const char* name, const std::function<void(V&)>& change) {
+    expect_entry_rejected<V>(name, SectionKind::kT0Vertices, 2, change);
+  };
+  const auto triangle = [&](const char* name, const std::function<void(T&)>& change) {
+    expect_entry_rejected<T>(name, SectionKind::kT0Triangles, 1, change);
+  };
+  vertex("outside of the bounds", [](V& v) { v.x = -1; });
+  vertex("outside of the bounds", [](V& v) { v.y = INT32_MAX; });
+  vertex("has_height", [](V& v) { v.has_height = 2; });
+  vertex("height", [](V& v) { v.height = 0x7FC00000; });
+  vertex("surface without height", [](V& v) { v.has_height = 0; });
+  triangle("corner", [](T& t) { t.v[0] = 4; });
+  triangle("corner", [](T& t) { t.v[2] = UINT32_MAX; });
+  triangle("corner twice", [](T& t) { t.v[1] = t.v[0]; });
+  triangle("class", [](T& t) { t.is_void = 2; });
+}
+
+TEST_F(StoreOpen, RejectsErrorTablesThatCannotBeOne) {
+  using B = layout::ErrorBinEntry;
+  const auto bin = [&](const char* name, std::size_t index, const std::function<void(B&)>& change) {
+    expect_entry_rejected<B>(name, SectionKind::kErrorTable, index, change);
+  };
+  bin("first bin", 0, [](B& b) { b.upper = 1U << 20; });
+  bin("no bound of a bin", 1, [](B& b) { b.upper += 1; });
+  bin("not ascending", 1, [](B& b) { b.upper = 0; });
+  bin("no number", 1, [](B& b) { b.upper = 0x7FC00000; });
+  bin("deviation", 1, [](B& b) { b.max_deviation = 0x80000001; });
+  bin("fewer records", 1, [](B& b) {
+    b.records = 0;
+    b.void_vertices = 0;
+  });
+  bin("more records", 1, [](B& b) { b.records = UINT64_MAX; });
+  bin("more voids than records", 1, [](B& b) { b.void_vertices = b.records + 1; });
+}
+
+}  // namespace
+}  // namespace ptin::test

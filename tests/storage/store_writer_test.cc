@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/store_writer.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "storage/record_order.h"
+#include "storage/verify.h"
+#include "tests/storage/failing_files.h"
+#include "tests/storage/store_fixture.h"
+
+namespace ptin::test {
+namespace {
+
+TEST(StoreWriter, GivesTheSameBytesForTheSameRecordsInAnyOrderInsideOfASegment) {
+  const TemporaryFolder folder;
+  StoreContent content = random_content({.segments = 3, .records = 5000});
+  write_store(folder.file("a"), content);
+  for (auto& segment : content.segments) {
+    std::reverse(segment.begin(), segment.end());
+  }
+  write_store(folder.file("b"), content);
+  EXPECT_EQ(read_file(folder.file("a")), read_file(folder.file("b")));
+}
+
+TEST(StoreWriter, OrdersASegmentByOctaveThenKindAndStartsItOnAPageOfItsOwn) {
+  const TemporaryFolder folder;
+  const StoreContent content = random_content({.segments = 3, .records = 1000});
+  write_store(folder.file("a"), content);
+  const auto store = StoreFile::open(folder.file("a"));
+  std::vector<VertexSplit> expected;
+  for (std::vector<VertexSplit> segment : content.segments) {
+    order_segment(segment);
+    for (std::size_t i = 1; i < segment.size(); ++i) {
+      const auto octave = [](const VertexSplit& r) { return layout::to_bits(r.error) >> 23; };
+      ASSERT_GE(octave(segment[i - 1]), octave(segment[i]));
+      if (octave(segment[i - 1]) == octave(segment[i])) {
+        ASSERT_GE(kind_of(segment[i - 1]), kind_of(segment[i]));
+      }
+    }
+    expected.insert(expected.end(), segment.begin(), segment.end());
+  }
+  EXPECT_EQ(read_all(*store), expected);
+}
+
+TEST(StoreWriter, FillsPagesOfEachSizeWithAsManyRecordsAsFit) {
+  const TemporaryFolder folder;
+  RandomRecords options;
+  options.segments = 1;
+  options.records = 5000;
+  for (const std::uint32_t page_bytes : {4096U, 8192U, 16384U, 65536U}) {
+    for (const bool narrow : {true, false}) {
+      options.side = narrow ? 30000 : 1 << 29;
+      StoreContent content = random_content(options);
+      if (!narrow) {
+        for (VertexSplit& r : content.segments[0]) {
+          r.w = {r.u.x < options.side / 2 ? options.side : 0, r.u.y};
+          r.roi = united(r.roi, r.w);
+          r.error = 1.0F;
+        }
+      }
+      StoreWriterOptions writer;
+      writer.overwrite = true;
+      writer.page_bytes = page_bytes;
+      write_store(folder.file("a"), content, writer);
+      const auto store = StoreFile::open(folder.file("a"));
+      EXPECT_EQ(store->facts().page_bytes, page_bytes);
+      const std::size_t fit = page_bytes / (narrow ? kNarrowRecordBytes : kWideRecordBytes);
+      EXPECT_EQ(store->pages().page_count(), (options.records + fit - 1) / fit);
+      EXPECT_EQ(store->page_info(PageId{0}).records, fit);
+      EXPECT_EQ(store->page_info(PageId{0}).kind, narrow ? RecordKind::kNarrow : RecordKind::kWide);
+      EXPECT_TRUE(verify_store(folder.file("a")).is_sound());
+    }
+  }
+  EXPECT_EQ(4096 / kNarrowRecordBytes, 64U);
+  EXPECT_EQ(4096 / kWideRecordBytes, 56U);
+}
+
+TEST(StoreWriter, TakesAtMost80BytesARecordOnALargeFile) {
+  const TemporaryFolder folder;
+  RandomRecords options;
+  options.segments = 1;
+  options.records = 100000;
+  write_store(folder.file("a"), random_content(options));
+  EXPECT_LT(std::filesystem::file_size(folder.file("a")), 80U * options.records);
+}
+
+TEST(StoreWriter, KeepsALongIndexInASideFile) {
+  const TemporaryFolder folder;
+  RandomRecords options;
+  options.segments = 4;
+  options.records = 40000;  // 2600 pages: 31 leaves, and 16 are kept in memory
+  const StoreContent content = random_content(options);
+  write_store(folder.file("a.ptin"), content);
+  EXPECT_TRUE(verify_store(folder.file("a.ptin")).is_sound());
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.ptin"});
+}
+
+TEST(StoreWriter, RefusesAnExistingTargetAndKeepsIt) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.ptin");
+  write_file(path, Bytes(3));
+  EXPECT_EQ(code_of([&] { StoreWriter::create(path, {}); }), ErrorCode::invalid_argument);
+  EXPECT_EQ(read_file(path), Bytes(3));
+  write_store(path, flat_square(10), {.overwrite = true});
+  EXPECT_EQ(StoreFile::open(path)->record_count(), 0U);
+}
+
+TEST(StoreWriter, RefusesATargetThatAppearsWhileItWrites) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.ptin");
+  const StoreContent content = flat_square(10);
+  auto writer = StoreWriter::create(path, {});
+  write_file(path, Bytes(3));
+  EXPECT_EQ(code_of([&] { writer->publish(content.facts, content.t0, content.metadata); }),
+            ErrorCode::invalid_argument);
+  writer.reset();
+  EXPECT_EQ(read_file(path), Bytes(3));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.ptin"});
+}
+
+TEST(StoreWriter, RefusesAFolderAsTargetAndAMissingFolder) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(code_of([&] { StoreWriter::create(folder.path(), {.overwrite = true}); }),
+            ErrorCode::invalid_argument);
+  EXPECT_EQ(code_of([&] { StoreWriter::create(folder.file("no/a.ptin"), {}); }),
+            ErrorCode::not_found);
+}
+
+TEST(StoreWriter, SaysThatAFolderCannotBeWritten) {
+  if (::geteuid() == 0) {
+    GTEST_SKIP() << "permissions do not bind root";
+  }
+  const TemporaryFolder folder;
+  ::chmod(folder.path().c_str(), 0500);
+  EXPECT_EQ(code_of([&] { StoreWriter::create(folder.file("a.ptin"), {}); }), ErrorCode::io_error);
+  ::chmod(folder.path().c_str(), 0700);
+}
+
+TEST(StoreWriter, LeavesNothingWhenItIsNotPublished) {
+  const TemporaryFolder folder;
+  {
+    StoreContent content = random_content({});
+    const auto writer = StoreWriter::create(folder.file("a.ptin"), {});
+    writer->add_segment(content.segments[0], content.facts.heights);
+    EXPECT_EQ(folder.names().size(), 1U);
+  }
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(StoreWriter, RefusesFactsAndPageSizesThatAReaderWouldRefuse) {
+  const TemporaryFolder folder;
+  for (const std::uint32_t bytes : {0U, 2048U, 5000U, 131072U}) {
+    StoreWriterOptions options;
+    options.page_bytes = bytes;
+    EXPECT_EQ(code_of([&] { StoreWriter::create(folder.file("a"), options); }),
+              ErrorCode::invalid_argument);
+  }
+  StoreContent content = flat_square(10);
+  content.facts.map.step_x = -1.0;
+  EXPECT_EQ(code_of([&] { write_store(folder.file("a"), content); }), ErrorCode::invalid_argument);
+  content = flat_square(10);
+  content.t0.triangles[0].v[0] = 9;
+  EXPECT_EQ(code_of([&] { write_store(folder.file("a"), content); }), ErrorCode::invalid_argument);
+  content = random_content({.segments = 1, .records = 1});
+  const auto writer = StoreWriter::create(folder.file("a"), {});
+  writer->add_segment(content.segments[0], content.facts.heights);
+  EXPECT_EQ(code_of([&] {
+              writer->add_segment(content.segments[0], {HeightType::int32, 1.0, 0.0});
+            }),
+            ErrorCode::invalid_argument);
+}
+
+TEST(StoreWriter, TakesRecordsThatCannotBeReadBackForAFaultOfTheProgram) {
+  const TemporaryFolder folder;
+  StoreContent content = random_content({.segments = 1, .records = 1});
+  content.segments[0][0].w = content.segments[0][0].u;
+  EXPECT_EQ(code_of([&] { write_store(folder.file("a"), content); }), ErrorCode::internal);
+  content = random_content({.segments = 1, .records = 1});
+  content.segments[0][0].height_lo = layout::to_bits(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(code_of([&] { write_store(folder.file("a"), content); }), ErrorCode::internal);
+  EXPECT_TRUE(folder.names().empty());
+}
+
+// --- Faults ---
+
+TEST(StoreWriterFaults, LeaveTheOldFileOrTheNewOneAndNothingElse) {
+  expect_old_or_new(random_content({.seed = 2, .segments = 2, .records = 700}));
+}
+
+TEST(StoreWriterFaults, AFullDiskIsResourceExhaustedAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const std::string disk = folder.file("disk");
+  std::filesystem::create_directory(disk);
+  if (::mount("none", disk.c_str(), "tmpfs", 0, "size=4m") != 0) {
+    GTEST_SKIP() << "mounting a small tmpfs is not allowed here";
+  }
+  const auto code = code_of(
+      [&] { write_store(disk + "/a.ptin", random_content({.segments = 2, .records = 52000})); });
+  const bool is_empty = std::filesystem::is_empty(disk);
+  ::umount(disk.c_str());
+  EXPECT_EQ(code, ErrorCode::resource_exhausted);
+  EXPECT_TRUE(is_empty);
+}
+
+}  // namespace
+}  // namespace ptin::test

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/verify.h"
+
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "engine/error.h"
+#include "storage/index_shape.h"
+#include "tests/storage/store_fixture.h"
+
+namespace ptin::test {
+namespace {
+
+using layout::SectionKind;
+
+class Verify : public testing::Test {
+ protected:
+  void write(const StoreContent& content) { write_store(path_, content, {.overwrite = true}); }
+
+  // Changes the sound file's bytes, seals it, and gives the faults.
+  VerifyReport after(const std::function<void(Bytes&)>& change, const VerifyOptions& options = {}) {
+    Bytes bytes = read_file(path_);
+    change(bytes);
+    seal(bytes);
+    write_file(folder_.file("b.ptin"), bytes);
+    return verify_store(folder_.file("b.ptin"), options);
+  }
+
+  static bool tells(const VerifyReport& report, const std::string& what) {
+    for (const VerifyFault& f : report.faults) {
+      if (f.what.find(what) != std::string::npos) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  TemporaryFolder folder_{TemporaryFolder::Size::kSmall};
+  std::string path_ = folder_.file("a.ptin");
+};
+
+std::uint64_t leaf_entry(const Bytes& file, std::uint64_t page) {
+  const IndexShape shape(header_of(file).page_count);
+  return section_of(file, SectionKind::kIndex).offset +
+         shape.position(0, page / layout::kFanOut) * layout::kNodeBytes + 16 +
+         page % layout::kFanOut * 48;
+}
+
+std::uint64_t page_offset(const Bytes& file, std::uint64_t page) {
+  const auto h = header_of(file);
+  return PageSlots{h.page_count, h.first_page, section_of(file, SectionKind::kPages).offset,
+                   h.page_bytes}
+      .offset_of(PageId{page});
+}
+
+TEST_F(Verify, FindsNothingInASoundStore) {
+  for (const HeightType type : {HeightType::float32, HeightType::int32}) {
+    for (const std::size_t records : {0U, 1U, 100U, 9000U}) {
+      write(random_content({.segments = 2, .records = records, .type = type}));
+      const VerifyReport report = verify_store(path_);
+      EXPECT_TRUE(report.is_sound()) << report.faults[0].what << " " << report.faults[0].where;
+      EXPECT_EQ(report.records, 2 * records);
+      EXPECT_EQ(report.pages, StoreFile::open(path_)->pages().page_count());
+      EXPECT_EQ(report.index_nodes, IndexShape(report.pages).total_nodes());
+    }
+  }
+}
+
+TEST_F(Verify, NamesTheDamagedPageAndGoesOn) {
+  write(random_content({.segments = 1, .records = 2000}));
+  Bytes bytes = read_file(path_);
+  bytes[page_offset(bytes, 3) + 100] ^= std::byte{1};
+  bytes[page_offset(bytes, 9) + 100] ^= std::byte{1};
+  write_file(path_, bytes);
+  const VerifyReport report = verify_store(path_);
+  ASSERT_EQ(report.faults.size(), 2U);
+  EXPECT_EQ(report.faults[0].where, "page 3");
+  EXPECT_EQ(report.faults[1].where, "page 9");
+}
+
+TEST_F(Verify, NamesTheDamagedNode) {
+  write(random_content({.segments = 2, .records = 6000}));
+  Bytes bytes = read_file(path_);
+  bytes[leaf_entry(bytes, 90)] ^= std::byte{1};
+  write_file(path_, bytes);
+  const VerifyReport report = verify_store(path_);
+  ASSERT_EQ(report.faults.size(), 1U);
+  EXPECT_EQ(report.faults[0].where, "index level 0, node 1");
+}
+
+TEST_F(Verify, StopsAtTheLargestNumberOfFaults) {
+  write(random_content({.segments = 1, .records = 2000}));
+  Bytes bytes = read_file(path_);
+  for (std::uint64_t page = 0; page < 20; ++page) {
+    bytes[page_offset(bytes, page) + 100] ^= std::byte{1};
+  }
+  write_file(path_, bytes);
+  VerifyOptions options;
+  options.max_faults = 5;
+  const VerifyReport report = verify_store(path_, options);
+  EXPECT_EQ(report.faults.size(), 5U);
+  EXPECT_TRUE(report.stopped_early);
+}
+
+TEST_F(Verify, ComparesEachDescriptorWithItsRecords) {
+  write(random_content({.segments = 1, .records = 12000, .side = 1 << 16}));
+  const auto expect_told = [&](const char* name,
+                               const std::function<void(layout::NodeEntry&)>& change) {
+    const VerifyReport report = after([&](Bytes& bytes) {
+      const std::uint64_t at = leaf_entry(bytes, 100);
+      auto entry = object_at<layout::NodeEntry>(bytes, at);
+      change(entry);
+      set_object(bytes, at, entry);
+    });
+    EXPECT_FALSE(report.is_sound()) << name;
+  };
+  expect_told("larger box", [](auto& e) { e.max_x += 1; });
+  expect_told("smaller box", [](auto& e) { e.min_y += 1; });
+  expect_told("off the grid", [](auto& e) { e.min_x = -1; });
+  expect_told("height", [](auto& e) { e.height_lo ^= 1; });
+  expect_told("height no number", [](auto& e) { e.height_hi = 0x7FC00000; });
+  expect_told("error", [](auto& e) { e.error_max += 1; });
+  expect_told("error no number", [](auto& e) { e.error_max = 0x7FC00000; });
+  expect_told("error order", [](auto& e) { e.error_min = e.error_max + 1; });
+  expect_told("least error", [](auto& e) { e.error_min = 1; });
+  expect_told("deviation", [](auto& e) { e.deviation_max += 1; });
+  expect_told("kind", [](auto& e) { e.kind_and_count ^= layout::kWidePage; });
+  expect_told("no record", [](auto& e) { e.kind_and_count = 0; });
+  expect_told("too many records", [](auto& e) { e.kind_and_count = 65; });
+  expect_told("unknown kind", [](auto& e) { e.kind_and_count |= 1U << 20; });
+  expect_told("fewer records", [](auto& e) { e.kind_and_count -= 1; });
+}
+
+TEST_F(Verify, ComparesInnerEntriesWithWhatIsBelow) {
+  write(random_content({.segments = 1, .records = 12000}));
+  const auto root_entry = [](const Bytes& b) {
+    return section_of(b, SectionKind::kIndex).offset + 16;
+  };
+  EXPECT_TRUE(tells(after([&](Bytes& b) {
+                      auto e = object_at<layout::NodeEntry>(b, root_entry(b));
+                      e.max_x -= 1;
+                      set_object(b, root_entry(b), e);
+                    }),
+                    "union"));
+  EXPECT_TRUE(tells(after([&](Bytes& b) {
+                      auto e = object_at<layout::NodeEntry>(b, root_entry(b));
+                      e.kind_and_count = 1;
+                      set_object(b, root_entry(b), e);
+                    }),
+                    "values that no program wrote"));
+  const auto root = [](const Bytes& b) { return section_of(b, SectionKind::kIndex).offset; };
+  for (const std::size_t field : {0U, 4U, 8U}) {
+    EXPECT_TRUE(
+        tells(after([&](Bytes& b) { b[root(b) + field] ^= std::byte{1}; }), "another place"))
+        << field;
+  }
+  EXPECT_TRUE(tells(after([&](Bytes& b) { b[root(b) + 4095] = std::byte{1}; }), "unused entries"));
+}
+
+TEST_F(Verify, FindsRecordsThatCannotBe) {
+  write(random_content({.segments = 1, .records = 100}));
+  EXPECT_TRUE(tells(after([](Bytes& b) { b[page_offset(b, 0) + 47] = std::byte{1}; }), "record 0"))
+      << "flags";
+  EXPECT_TRUE(tells(after([](Bytes& b) {
+                      const std::uint64_t last = header_of(b).page_count - 1;
+                      b[page_offset(b, last) + 4095] = std::byte{1};
+                    }),
+                    "behind the last record"));
+}
+
+TEST_F(Verify, FindsGapsThatAreNotZero) {
+  write(random_content({.segments = 1, .records = 100}));
+  EXPECT_TRUE(tells(
+      after([](Bytes& b) { b[section_of(b, SectionKind::kIndex).offset - 1] = std::byte{1}; }),
+      "unused bytes"));
+}
+
+TEST_F(Verify, FindsMetadataThatIsNotJson) {
+  StoreContent content = flat_square(10);
+  content.metadata = "{\"a\":";
+  write(content);
+  EXPECT_TRUE(tells(verify_store(path_), "not JSON"));
+}
+
+TEST_F(Verify, FindsTotalsThatDoNotAddUp) {
+  write(random_content({.segments = 1, .records = 100}));
+  EXPECT_TRUE(tells(after([](Bytes& b) {
+                      auto h = header_of(b);
+                      h.max_rank += 1;
+                      set_header(b, h);
+                    }),
+                    "largest rank"));
+  EXPECT_TRUE(tells(after([](Bytes& b) {
+                      const std::uint64_t at = section_of(b, SectionKind::kErrorTable).offset;
+                      b[at + 4] ^= std::byte{1};
+                    }),
+                    "the table is not"));
+}
+
+TEST_F(Verify, FindsAVertexThatComesTwice) {
+  // By one bit a position in the small square, by sorting parts in the large one.
+  for (const std::int32_t side : {1000, 1 << 20}) {
+    StoreContent content = random_content({.segments = 2, .records = 500, .side = side});
+    content.segments[1][7] = content.segments[0][3];
+    write(content);
+    VerifyOptions options;
+    options.memory_bytes = side == 1000 ? std::uint64_t{1} << 20 : 1;
+    EXPECT_TRUE(tells(verify_store(path_, options), "comes twice")) << side;
+  }
+}
+
+TEST_F(Verify, ComparesKeysInSeveralPassesWhenMemoryIsShort) {
+  write(random_content({.segments = 2, .records = 5000}));
+  VerifyOptions options;
+  options.memory_bytes = 1;
+  std::uint64_t done = 0;
+  const VerifyReport report = verify_store(
+      path_, options, {}, [&](std::uint64_t d, std::uint64_t total) { done = d <= total ? d : 0; });
+  EXPECT_TRUE(report.is_sound());
+  EXPECT_GT(report.key_passes, 5U);
+  EXPECT_EQ(report.records, 10000U);
+}
+
+TEST_F(Verify, FindsAVertexOfT0AmongTheRecords) {
+  StoreContent content = random_content({.segments = 1, .records = 10, .side = 1000});
+  VertexSplit& r = content.segments[0][0];
+  r.u = {0, 0};
+  r.w = {1, 0};
+  r.vl = {0, 1};
+  r.vr = {1, 1};
+  r.roi = {0, 0, 1, 1};
+  write(content);
+  EXPECT_TRUE(tells(verify_store(path_), "comes twice"));
+}
+
+TEST_F(Verify, FindsT0ThatDoesNotCoverItsDomain) {
+  const auto told = [&](const std::function<void(StoreContent&)>& change, const std::string& what) {
+    StoreContent content = flat_square(100);
+    change(content);
+    write(content);
+    return tells(verify_store(path_), what);
+  };
+  EXPECT_TRUE(told([](auto& c) { std::swap(c.t0.triangles[0].v[0], c.t0.triangles[0].v[1]); },
+                   "counter-clockwise"));
+  EXPECT_TRUE(told([](auto& c) { c.t0.triangles.pop_back(); }, "stands in no triangle"));
+  EXPECT_TRUE(told([](auto& c) { c.t0.triangles.push_back(c.t0.triangles[0]); }, "same edge"));
+  EXPECT_TRUE(told([](auto& c) { c.t0.triangles.clear(); }, "no triangle"));
+  EXPECT_TRUE(told([](auto& c) { c.facts.bounds.max_x += 1; }, "bounds of the header"));
+  EXPECT_TRUE(told(
+      [](auto& c) {
+        // Not convex: a corner pulled in.
+        c.t0.vertices[2].position = {40, 40};
+        c.t0.triangles = {{{0, 1, 2}, 0}, {{0, 2, 3}, 0}};
+      },
+      "convex"));
+  EXPECT_TRUE(told(
+      [](auto& c) {
+        // Two squares that do not touch.
+        const HeightBits h = c.t0.vertices[0].height;
+        c.t0.vertices = {{{0, 0}, h, 1},     {{9, 0}, h, 1},    {{0, 9}, h, 1},
+                         {{100, 100}, h, 1}, {{90, 100}, h, 1}, {{100, 90}, h, 1}};
+        c.t0.triangles = {{{0, 1, 2}, 0}, {{3, 4, 5}, 0}};
+      },
+      "border"));
+}
+
+TEST_F(Verify, StopsWhenAsked) {
+  write(random_content({}));
+  std::stop_source source;
+  source.request_stop();
+  try {
+    static_cast<void>(verify_store(path_, {}, source.get_token()));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::cancelled);
+  }
+}
+
+}  // namespace
+}  // namespace ptin::test
