@@ -11,8 +11,12 @@ namespace ptin {
 
 namespace {
 
-std::string at_triangle(const char* what, TriangleId t) { return what + (" triangle " + std::to_string(t)); }
-std::string at_vertex(const char* what, VertexId v) { return what + (" vertex " + std::to_string(v)); }
+std::string at_triangle(const char* what, TriangleId t) {
+  return what + (" triangle " + std::to_string(t));
+}
+std::string at_vertex(const char* what, VertexId v) {
+  return what + (" vertex " + std::to_string(v));
+}
 
 std::string check_orientation(const Tin& tin) {
   if (tin.has_height.size() != tin.vertices.size() || tin.classes.size() != tin.triangles.size()) {
@@ -21,7 +25,8 @@ std::string check_orientation(const Tin& tin) {
   std::unordered_set<VertexKey> keys;
   for (const Vertex& v : tin.vertices) {
     if (v.triangle != kNone && !keys.insert(key_of(v.position)).second) {
-      return "I1: two vertices at " + std::to_string(v.position.x) + " " + std::to_string(v.position.y);
+      return "I1: two vertices at " + std::to_string(v.position.x) + " " +
+             std::to_string(v.position.y);
     }
   }
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
@@ -30,11 +35,13 @@ std::string check_orientation(const Tin& tin) {
     }
     const Triangle& triangle = tin.triangles[t];
     for (const VertexId v : triangle.v) {
-      if (v >= tin.vertices.size() || tin.vertices[v].triangle == kNone || !on_grid(tin.position(v))) {
+      if (v >= tin.vertices.size() || tin.vertices[v].triangle == kNone ||
+          !on_grid(tin.position(v))) {
         return at_triangle("I1: a corner is not an alive vertex on the grid:", t);
       }
     }
-    if (orient(tin.position(triangle.v[0]), tin.position(triangle.v[1]), tin.position(triangle.v[2])) <= 0) {
+    if (orient(tin.position(triangle.v[0]), tin.position(triangle.v[1]),
+               tin.position(triangle.v[2])) <= 0) {
       return at_triangle("I1: not counter-clockwise:", t);
     }
   }
@@ -92,6 +99,30 @@ std::string collect_border(const Tin& tin, std::vector<VertexId>& next, std::siz
   return {};
 }
 
+/// True for directions in [0, 180) degrees.
+bool points_up(GridPoint a, GridPoint b) { return b.y > a.y || (b.y == a.y && b.x > a.x); }
+
+/// The border turns left or goes straight on everywhere, and round once. A mesh of
+/// counter-clockwise triangles maps its disk onto the plane without folds, so inside of such a
+/// border every point is covered as often as the border winds: once.
+std::string check_convex(const Tin& tin, const std::vector<VertexId>& next, VertexId start) {
+  int rounds = 0;
+  VertexId v = start;
+  do {
+    const GridPoint a = tin.position(v);
+    const GridPoint b = tin.position(next[v]);
+    const GridPoint c = tin.position(next[next[v]]);
+    const bool straight_back = orient(a, b, c) == 0 && points_up(a, b) != points_up(b, c);
+    if (orient(a, b, c) < 0 || straight_back) {
+      return at_vertex("I4: the domain is not convex at", next[v]);
+    }
+    rounds += !points_up(a, b) && points_up(b, c) ? 1 : 0;
+    v = next[v];
+  } while (v != start);
+  return rounds == 1 ? std::string()
+                     : "I4: the border goes round " + std::to_string(rounds) + " times";
+}
+
 std::string check_border_and_cover(const Tin& tin) {
   std::vector<VertexId> next;
   std::size_t edges = 0;
@@ -117,6 +148,9 @@ std::string check_border_and_cover(const Tin& tin) {
   }
   if (walked != edges) {
     return "I4: the border has more than one piece";
+  }
+  if (std::string fault = check_convex(tin, next, start); !fault.empty()) {
+    return fault;
   }
   if (border_area != twice_area(tin)) {
     return "I3: the areas of the triangles do not add up to the domain's";
@@ -189,7 +223,8 @@ std::int64_t twice_area(const Tin& tin) {
 }
 
 std::string validate(const Tin& tin) {
-  for (const auto check : {check_orientation, check_neighbours, check_border_and_cover, check_classes, check_vertices}) {
+  for (const auto check : {check_orientation, check_neighbours, check_border_and_cover,
+                           check_classes, check_vertices}) {
     if (std::string fault = check(tin); !fault.empty()) {
       return fault;
     }

@@ -15,7 +15,7 @@ namespace ptin {
 ///   I2 neighbours   symmetric, across the same two vertices
 ///   I3 one cover    connected, and V - E + F = 1: a disk; the sum of the areas equals the area inside of the border,
 ///                   so with I1 every point is covered once
-///   I4 border       one closed chain, counter-clockwise round the domain
+///   I4 border       one closed chain, counter-clockwise round the domain, once; the domain is convex
 ///   I5 classes      a surface triangle has three vertices with heights
 ///   I6 vertices     every vertex's triangle holds it; on the border it is the first of the counter-clockwise walk;
 ///                   the walk visits every triangle that holds the vertex
