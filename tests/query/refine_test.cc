@@ -207,7 +207,9 @@ Tin without_lone_samples(Tin full) {
   std::vector<std::uint8_t> touched(full.vertices.size(), 0);
   for (TriangleId t = 0; t < full.triangles.size(); ++t) {
     for (const VertexId v : full.triangles[t].v) {
-      touched[v] |= full.classes[t] == TriangleClass::kSurface ? 1 : 0;
+      if (full.classes[t] == TriangleClass::kSurface) {
+        touched[v] = 1;
+      }
     }
   }
   for (VertexId v = 0; v < touched.size(); ++v) {
