@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The bytes of format 1.0 are fixed: the golden file is written as it was, is read as it was, and
+// is the worked example of FORMAT.md.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "storage/error_table.h"
+#include "storage/store_file.h"
+#include "storage/verify.h"
+#include "tests/storage/two_records.h"
+
+namespace ptin::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// This file's folder, from where the golden file and FORMAT.md are found.
+fs::path here() { return fs::path(__FILE__).parent_path(); }
+std::string golden() { return (here() / "golden" / "two_records_v1.0.ptin").string(); }
+
+TEST(Format, WritesTheGoldenFileByteForByte) {
+  const TemporaryFolder folder;
+  write_store(folder.file("a.ptin"), two_records());
+  EXPECT_EQ(read_file(folder.file("a.ptin")), read_file(golden()));
+}
+
+TEST(Format, ReadsTheGoldenFile) {
+  ASSERT_TRUE(verify_store(golden()).is_sound());
+  const StoreContent content = two_records();
+  for (const PageAccess access : {PageAccess::kMapped, PageAccess::kPread}) {
+    const auto store = StoreFile::open(golden(), access);
+    EXPECT_EQ(store->facts(), content.facts);
+    EXPECT_EQ(read_all(*store), content.segments[0]);
+    EXPECT_EQ(store->max_rank(), 1);
+    EXPECT_EQ(store->metadata_json(), "{}");
+    ASSERT_EQ(store->t0().vertices.size(), 4U);
+    EXPECT_EQ(store->t0().vertices[2].position, (GridPoint{8, 8}));
+    EXPECT_EQ(store->t0().triangles.size(), 2U);
+    ASSERT_EQ(store->error_bins().size(), 3U);
+    EXPECT_EQ(store->error_bins()[1].upper, 1.25F);
+    EXPECT_EQ(store->error_bins()[2].max_deviation, 4.0F);
+    std::vector<std::string> names;
+    for (const SectionInfo& s : store->sections()) {
+      names.push_back(s.name);
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"header", "section table", "metadata", "t0 vertices",
+                                               "t0 triangles", "error table", "index", "pages"}));
+  }
+}
+
+// Lines "00000100  01 00 ...": sixteen bytes at most. Lines of zeros are left out.
+TEST(Format, TheWorkedExampleOfTheDocumentIsTheGoldenFile) {
+  const Bytes file = read_file(golden());
+  std::ifstream document(here() / ".." / ".." / "storage" / "FORMAT.md");
+  ASSERT_TRUE(document);
+  Bytes described(file.size());
+  std::size_t lines = 0;
+  for (std::string line; std::getline(document, line);) {
+    const bool is_dump = line.size() > 11 && line.find_first_not_of("0123456789abcdef") == 8 &&
+                         line.compare(8, 2, "  ") == 0;
+    if (!is_dump) {
+      continue;
+    }
+    ++lines;
+    std::size_t at = std::stoul(line.substr(0, 8), nullptr, 16);
+    std::istringstream bytes(line.substr(10, 48));
+    for (unsigned value = 0; bytes >> std::hex >> value; ++at) {
+      ASSERT_LT(at, described.size());
+      described[at] = static_cast<std::byte>(value);
+    }
+  }
+  EXPECT_GT(lines, 30U);
+  const auto differ = std::mismatch(file.begin(), file.end(), described.begin());
+  EXPECT_TRUE(differ.first == file.end()) << "at byte " << differ.first - file.begin();
+}
+
+TEST(ErrorTable, HasEightBinsAnOctave) {
+  EXPECT_EQ(error_bin_upper(0.0F), 0.0F);
+  EXPECT_EQ(error_bin_upper(1.0F), 1.0F);
+  EXPECT_EQ(error_bin_upper(1.0001F), 1.125F);
+  EXPECT_EQ(error_bin_upper(1.125F), 1.125F);
+  EXPECT_EQ(error_bin_upper(1.9F), 2.0F);
+  EXPECT_EQ(error_bin_upper(std::numeric_limits<float>::infinity()),
+            std::numeric_limits<float>::infinity());
+  EXPECT_GT(error_bin_upper(std::numeric_limits<float>::denorm_min()), 0.0F);
+}
+
+// Run with --gtest_also_run_disabled_tests after a change of the format on purpose.
+TEST(Format, DISABLED_WritesTheGoldenFileAgain) {
+  fs::create_directories(fs::path(golden()).parent_path());
+  write_store(golden(), two_records(), {.overwrite = true});
+}
+
+}  // namespace
+}  // namespace ptin::test
