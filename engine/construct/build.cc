@@ -45,10 +45,10 @@ auto stage(const BuildResources& resources, const char* name) {
   };
 }
 
-OpenedTerrain open_raster(const std::vector<std::string>& inputs, const BuildOptions& options, const BuildResources& resources,
-                          BuildReport& report) {
-  const RasterSource source =
-      RasterSource::open(inputs, source_options(options), resources.stop, stage(resources, "reading"));
+OpenedTerrain open_raster(const std::vector<std::string>& inputs, const BuildOptions& options,
+                          const BuildResources& resources, BuildReport& report) {
+  const RasterSource source = RasterSource::open(inputs, source_options(options), resources.stop,
+                                                 stage(resources, "reading"));
   OpenedTerrain terrain;
   terrain.frame = source.frame();
   terrain.started = start_raster_tile(source, {0, 0, source.width(), source.height()},
@@ -59,9 +59,10 @@ OpenedTerrain open_raster(const std::vector<std::string>& inputs, const BuildOpt
   return terrain;
 }
 
-OpenedTerrain open_points(const std::vector<std::string>& inputs, const BuildOptions& options, const BuildResources& resources,
-                          BuildReport& report) {
-  const PointSet points = read_points(inputs, source_options(options), resources.stop, stage(resources, "reading"));
+OpenedTerrain open_points(const std::vector<std::string>& inputs, const BuildOptions& options,
+                          const BuildResources& resources, BuildReport& report) {
+  const PointSet points =
+      read_points(inputs, source_options(options), resources.stop, stage(resources, "reading"));
   OpenedTerrain terrain;
   terrain.frame = points.frame;
   Tile& tile = terrain.started.tile;
@@ -76,22 +77,25 @@ OpenedTerrain open_points(const std::vector<std::string>& inputs, const BuildOpt
   return terrain;
 }
 
-OpenedTerrain open_terrain(const std::vector<std::string>& inputs, const BuildOptions& options, const BuildResources& resources,
-                           BuildReport& report) {
+OpenedTerrain open_terrain(const std::vector<std::string>& inputs, const BuildOptions& options,
+                           const BuildResources& resources, BuildReport& report) {
   if (inputs.empty()) {
-    throw Error(ErrorCode::invalid_argument, "no input; name a raster that GDAL reads, or points as CSV or XYZ text");
+    throw Error(ErrorCode::invalid_argument,
+                "no input; name a raster that GDAL reads, or points as CSV or XYZ text");
   }
   const auto points = std::count_if(inputs.begin(), inputs.end(), is_point_file);
   if (points != 0 && static_cast<std::size_t>(points) != inputs.size()) {
-    throw Error(ErrorCode::invalid_argument, "rasters and point files together; build from one kind at a time");
+    throw Error(ErrorCode::invalid_argument,
+                "rasters and point files together; build from one kind at a time");
   }
-  return points != 0 ? open_points(inputs, options, resources, report) : open_raster(inputs, options, resources, report);
+  return points != 0 ? open_points(inputs, options, resources, report)
+                     : open_raster(inputs, options, resources, report);
 }
 
 }  // namespace
 
-BuildReport build(const std::vector<std::string>& inputs, const std::string& output, const BuildOptions& options,
-                  const BuildResources& resources) {
+BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
+                  const BuildOptions& options, const BuildResources& resources) {
   const auto begin = std::chrono::steady_clock::now();
   BuildReport report;
   OpenedTerrain terrain = open_terrain(inputs, options, resources, report);
@@ -105,7 +109,9 @@ BuildReport build(const std::vector<std::string>& inputs, const std::string& out
   simplify_options.cost = options.cost;
   simplify_options.stop = resources.stop;
   const auto report_collapses = stage(resources, "collapsing");
-  simplify_options.progress = [&](std::uint64_t collapsed) { report_collapses(collapsed, report.vertices); };
+  simplify_options.progress = [&](std::uint64_t collapsed) {
+    report_collapses(collapsed, report.vertices);
+  };
   simplify(tile, *terrain.started.full, simplify_options);
   terrain.started.full.reset();
   stage(resources, "writing")(0, 1);

@@ -18,13 +18,15 @@ namespace ptin {
 /// Everything that decides the bytes of the file, and nothing else does.
 struct BuildOptions {
   CostModel cost = CostModel::kError;
-  double max_error = 0.0;             ///< Leave out records with error <= this (height's unit); 0 keeps all.
-  std::optional<double> nodata;       ///< Overrides the source's.
-  std::optional<double> resolution;   ///< Points: grid unit in CRS units.
-  std::optional<std::array<double, 4>> bbox;  ///< xmin ymin xmax ymax in CRS units; samples outside are left out.
-  std::string a_srs;                  ///< Overrides the source's CRS (anything GDAL understands); "" keeps it.
-  std::string vertical_crs;           ///< "" keeps what the source declares, if anything.
-  double void_slope = 0.1;            ///< Height error charged per ground unit of depth of a sample in the wrong class.
+  double max_error = 0.0;  ///< Leave out records with error <= this (height's unit); 0 keeps all.
+  std::optional<double> nodata;      ///< Overrides the source's.
+  std::optional<double> resolution;  ///< Points: grid unit in CRS units.
+  std::optional<std::array<double, 4>>
+      bbox;           ///< xmin ymin xmax ymax in CRS units; samples outside are left out.
+  std::string a_srs;  ///< Overrides the source's CRS (anything GDAL understands); "" keeps it.
+  std::string vertical_crs;  ///< "" keeps what the source declares, if anything.
+  double void_slope =
+      0.1;  ///< Height error charged per ground unit of depth of a sample in the wrong class.
   std::uint32_t page_bytes = 4096;
 };
 
@@ -32,19 +34,20 @@ struct BuildOptions {
 struct BuildResources {
   bool overwrite = false;
   std::stop_token stop;
-  /// Called from the building thread, at most a few times a second: stage name, done and total in its units.
+  /// Called from the building thread, at most a few times a second: stage name, done and total in
+  /// its units.
   std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
 };
 
 struct BuildReport {
-  std::uint64_t source_samples = 0;   ///< Samples with a height.
+  std::uint64_t source_samples = 0;  ///< Samples with a height.
   std::uint64_t void_samples = 0;
-  std::uint64_t lone_samples = 0;     ///< Samples that touch no surface triangle, treated as void.
-  std::uint64_t merged_points = 0;    ///< Points that fell together after snapping.
+  std::uint64_t lone_samples = 0;   ///< Samples that touch no surface triangle, treated as void.
+  std::uint64_t merged_points = 0;  ///< Points that fell together after snapping.
   double largest_shift_plan = 0.0, largest_shift_height = 0.0;
   double height_rounding = 0.0;
-  std::uint64_t vertices = 0;         ///< Of the full TIN.
-  std::uint64_t records = 0;          ///< Written.
+  std::uint64_t vertices = 0;  ///< Of the full TIN.
+  std::uint64_t records = 0;   ///< Written.
   std::uint64_t t0_vertices = 0;
   std::uint16_t max_rank = 0;
   std::uint64_t file_bytes = 0;
@@ -52,8 +55,9 @@ struct BuildReport {
 };
 
 /// Builds `output` from `inputs` (one raster or several of one grid; or point files).
-/// @throws Error invalid_argument, not_found, io_error, resource_exhausted, cancelled; nothing is left behind.
-BuildReport build(const std::vector<std::string>& inputs, const std::string& output, const BuildOptions& options,
-                  const BuildResources& resources);
+/// @throws Error invalid_argument, not_found, io_error, resource_exhausted, cancelled; nothing is
+/// left behind.
+BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
+                  const BuildOptions& options, const BuildResources& resources);
 
 }  // namespace ptin

@@ -11,9 +11,10 @@
 
 namespace ptin {
 
-/// Screens every w by the residual of u, from the cross products of the link alone. With c(i, k) the cross product of link
-/// vertices i and k relative to u, the fan triangle (w, i, i + 1) has twice the area c(i, i + 1) + c(w, i) - c(w, i + 1), and u lies
-/// in it where c(w, i) >= 0 >= c(w, i + 1).
+/// Screens every w by the residual of u, from the cross products of the link alone. With c(i, k)
+/// the cross product of link vertices i and k relative to u, the fan triangle (w, i, i + 1) has
+/// twice the area c(i, i + 1) + c(w, i) - c(w, i + 1), and u lies in it where c(w, i) >= 0 >= c(w,
+/// i + 1).
 void CollapseChooser::screen_all(const Tile& tile, const StarSamples& s) {
   const std::size_t degree = s.star.degree();
   crosses_.resize(degree * degree);
@@ -102,10 +103,18 @@ CollapseChoice CollapseChooser::choose_on_surface(const Tile& tile, StarSamples&
     if (c.screen > best_error) {
       break;
     }
-    if (s.count == 1 && screened_) {  // u is the only sample: the screen is the error, and the first the best
+    if (s.count == 1 &&
+        screened_) {  // u is the only sample: the screen is the error, and the first the best
       best = c;
       best_error = c.screen;
       break;
+    }
+    if (s.flat) {
+      if (best_error != 0.0 || c.key < best.key) {
+        best = c;
+        best_error = 0.0;
+      }
+      continue;
     }
     PTIN_CHECK(make_fan(s, c.j, fan_));
     const double error = largest_residual(s, fan_, 0, s.x.size(), best_error);
@@ -139,7 +148,8 @@ CollapseChoice CollapseChooser::choose_with_voids(const Tile& tile, const StarSa
       }
       error = scaled_up(measure.error) + bound;
     }
-    if (best.j == CollapseChoice::kNoNeighbour || error < best.error || (error == best.error && c.key < best_key)) {
+    if (best.j == CollapseChoice::kNoNeighbour || error < best.error ||
+        (error == best.error && c.key < best_key)) {
       best = {c.j, error};
       best_key = c.key;
     }

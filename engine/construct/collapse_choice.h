@@ -17,16 +17,19 @@ namespace ptin {
 struct CollapseChoice {
   static constexpr std::size_t kNoNeighbour = std::numeric_limits<std::size_t>::max();
   std::size_t j = kNoNeighbour;  ///< w is link[j]; kNoNeighbour when no collapse is allowed.
-  double error = 0.0;            ///< Largest error of a sample in the fan, height codes, rounded up; may be +infinity.
+  double error =
+      0.0;  ///< Largest error of a sample in the fan, height codes, rounded up; may be +infinity.
 };
 
-/// Finds the best w of a star: least error, then smallest key; one of more than kComfortableDegree neighbours only when
-/// there is no other. Scratch buffers are kept between calls; one chooser a thread.
+/// Finds the best w of a star: least error, then smallest key; one of more than kComfortableDegree
+/// neighbours only when there is no other. Scratch buffers are kept between calls; one chooser a
+/// thread.
 class CollapseChooser {
  public:
-  /// Cost: the square of the degree for the screen (the residual of u alone), which orders the candidates and leaves the worse ones
-  /// unmeasured; then for most stars one pass over the samples for the winner, and a few lanes for one or two others, which are given up
-  /// once they exceed the best.
+  /// Cost: the square of the degree for the screen (the residual of u alone), which orders the
+  /// candidates and leaves the worse ones unmeasured; then for most stars one pass over the samples
+  /// for the winner, and a few lanes for one or two others, which are given up once they exceed the
+  /// best.
   [[nodiscard]] CollapseChoice choose(const Tile& tile, StarSamples& s);
 
  private:
@@ -43,8 +46,9 @@ class CollapseChooser {
   [[nodiscard]] CollapseChoice choose_with_voids(const Tile& tile, const StarSamples& s);
 
   std::vector<Candidate> candidates_;
-  std::vector<double> crosses_;  ///< crosses_[i * degree + k]: cross product of link i and link k, relative to u.
-  bool screened_ = false;        ///< Whether the candidates' screens are known.
+  std::vector<double>
+      crosses_;  ///< crosses_[i * degree + k]: cross product of link i and link k, relative to u.
+  bool screened_ = false;  ///< Whether the candidates' screens are known.
   FanFrame fan_;
 };
 

@@ -12,12 +12,14 @@ namespace {
 
 constexpr std::uint64_t kLastClass = (std::uint64_t{1} << kClassBits) - 1;
 constexpr int kClassShift = 64 - kClassBits;
-constexpr int kBoxBits = 32;
-constexpr int kNeighbourhoodBits = kClassShift - kBoxBits;  // two coordinates of 11 bits
+// error: class 10, octave 5, neighbourhood 2 x 9, half-perimeter 31 bits.
+constexpr int kBoxBits = 31;
+constexpr int kSideBits = 9;
+constexpr int kOctaveShift = kBoxBits + 2 * kSideBits;
 constexpr std::uint64_t kVerticesANeighbourhood = 4096;
 
-std::uint64_t clamped32(std::int64_t v) noexcept {
-  return static_cast<std::uint64_t>(std::clamp<std::int64_t>(v, 0, UINT32_MAX));
+std::uint64_t clamped(std::int64_t v) noexcept {
+  return static_cast<std::uint64_t>(std::clamp<std::int64_t>(v, 0, INT32_MAX));
 }
 
 /// Any heap order with the least entry in front.
@@ -53,29 +55,31 @@ PriorityScale::PriorityScale(CostModel cost, const GridBox& bounds, std::uint64_
   }
 }
 
-std::uint64_t PriorityScale::neighbourhood(GridPoint p, std::uint32_t error_class) const noexcept {
-  const int shift = std::min(shift_ + static_cast<int>(error_class / 8), 31);
-  constexpr std::uint64_t kMax = (std::uint64_t{1} << (kNeighbourhoodBits / 2)) - 1;
+std::uint64_t PriorityScale::neighbourhood(GridPoint p, int octave) const noexcept {
+  const int shift = std::min(std::max(shift_, octave + 3), 31);
+  constexpr std::uint64_t kMax = (std::uint64_t{1} << kSideBits) - 1;
   const auto x = std::min(static_cast<std::uint64_t>(std::int64_t{p.x} - origin_.x) >> shift, kMax);
   const auto y = std::min(static_cast<std::uint64_t>(std::int64_t{p.y} - origin_.y) >> shift, kMax);
-  return (y << (kNeighbourhoodBits / 2)) | x;
+  return (y << kSideBits) | x;
 }
 
 std::uint64_t PriorityScale::operator()(const CollapseMeasure& measure) const noexcept {
-  const std::uint64_t box = clamped32(half_perimeter(measure.roi));
+  const std::uint64_t box = clamped(half_perimeter(measure.roi));
+  const int octave = std::bit_width(box) - (box == 0 ? 0 : 1);
   switch (cost_) {
     case CostModel::kError: {
-      const std::uint32_t c = error_class(measure.error_quanta);
-      if (c >= kLastClass) {
-        return (kLastClass << kClassShift) | box;
-      }
-      return (std::uint64_t{c} << kClassShift) | (neighbourhood(measure.vertex, c) << kBoxBits) | box;
+      const std::uint64_t c =
+          std::min<std::uint64_t>(error_class(measure.error_quanta), kLastClass);
+      return (c << kClassShift) | (static_cast<std::uint64_t>(octave) << kOctaveShift) |
+             (neighbourhood(measure.vertex, octave) << kBoxBits) | box;
     }
     case CostModel::kRoi:
-      return (static_cast<std::uint64_t>(std::bit_width(box)) << kClassShift) | box;
+      return (static_cast<std::uint64_t>(octave) << kClassShift) | box;
     case CostModel::kElevation:
       // The bits of a float that is not negative grow with it.
-      return (std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(measure.height_quanta))} << kBoxBits) | box;
+      return (std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(measure.height_quanta))}
+              << 32) |
+             box;
   }
   return 0;
 }

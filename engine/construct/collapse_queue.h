@@ -15,7 +15,8 @@
 
 namespace ptin {
 
-/// A vertex in the queue; smaller goes first. Ties end with the vertex id, whose order is that of the keys.
+/// A vertex in the queue; smaller goes first. Ties end with the vertex id, whose order is that of
+/// the keys.
 struct QueueEntry {
   std::uint64_t priority = 0;
   VertexId vertex = kNone;
@@ -25,22 +26,26 @@ struct QueueEntry {
 /// What a priority is made from.
 struct CollapseMeasure {
   GridPoint vertex;
-  double error_quanta = 0.0;   ///< Error of the collapse's own samples, in height quanta; may be +infinity.
+  double error_quanta =
+      0.0;  ///< Error of the collapse's own samples, in height quanta; may be +infinity.
   double height_quanta = 0.0;  ///< Length of the saturated height interval, in height quanta.
   GridBox roi;                 ///< Saturated box.
 };
 
-/// Class of an error: 0 below one height quantum, then one class for each quarter of an octave (DESIGN.md, section 5).
-/// Exact on every machine: exponent and three comparisons, no logarithm.
+/// Class of an error: 0 below one height quantum, then one class for each quarter of an octave
+/// (DESIGN.md, section 5). Exact on every machine: exponent and three comparisons, no logarithm.
 [[nodiscard]] std::uint32_t error_class(double error_quanta) noexcept;
 
 /// Turns measures into priorities of 64 bits, the highest ten of which are a class.
-///   error:     error class, neighbourhood, half-perimeter of the box
+///   error:     error class, octave of the box's half-perimeter, neighbourhood, half-perimeter
 ///   roi:       half-perimeter (its class is its octave)
 ///   elevation: height interval, half-perimeter
-/// Neighbourhoods are squares of the plane, about 4096 vertices of the full TIN large, twice as wide every second octave of error. Within a
-/// class one is finished before the next begins: the same work in another order, which keeps the mesh that is worked on in the processor's
-/// caches (bench/README.md has the figures). The last class, infinite error, has one neighbourhood.
+/// Neighbourhoods are squares of the plane, about 4096 vertices of the full TIN large, or 16 boxes
+/// where boxes have grown. Within class and octave one is finished before the next begins: nearly
+/// the order by box alone, but the mesh that is worked on stays in the processor's caches
+/// (bench/README.md has the figures). The octave comes first, because a class can be large (on a
+/// lake everything is of class 0) and a neighbourhood finished to the end would leave huge
+/// triangles beside small ones.
 class PriorityScale {
  public:
   /// @param bounds    Of all vertices.
@@ -49,10 +54,10 @@ class PriorityScale {
   [[nodiscard]] std::uint64_t operator()(const CollapseMeasure& measure) const noexcept;
 
  private:
-  [[nodiscard]] std::uint64_t neighbourhood(GridPoint p, std::uint32_t error_class) const noexcept;
+  [[nodiscard]] std::uint64_t neighbourhood(GridPoint p, int octave) const noexcept;
   CostModel cost_;
   GridPoint origin_;
-  int shift_ = 0;  ///< log2 of the side of a neighbourhood of class 0, grid units.
+  int shift_ = 0;  ///< log2 of the side of the smallest neighbourhoods, grid units.
 };
 
 /// Number of classes, the highest bits of a priority.
@@ -60,8 +65,9 @@ inline constexpr int kClassBits = 10;
 
 /// Vertices, least entry first. A vertex is in it at most once; the caller sees to that.
 ///
-/// Entries of later classes wait unsorted; a class is sorted when its turn comes, and what arrives meanwhile for it (or for an earlier one)
-/// goes through a small heap. So most entries cost one append and one sort in sequence instead of a walk through a large heap.
+/// Entries of later classes wait unsorted; a class is sorted when its turn comes, and what arrives
+/// meanwhile for it (or for an earlier one) goes through a small heap. So most entries cost one
+/// append and one sort in sequence instead of a walk through a large heap.
 class CollapseQueue {
  public:
   void push(const QueueEntry& entry);
@@ -69,13 +75,14 @@ class CollapseQueue {
   [[nodiscard]] bool empty();
   /// REQUIRES: empty() was just asked and false.
   [[nodiscard]] const QueueEntry& top() const noexcept {
-    return late_.empty() || (next_ < run_.size() && run_[next_] < late_.front()) ? run_[next_] : late_.front();
+    return late_.empty() || (next_ < run_.size() && run_[next_] < late_.front()) ? run_[next_]
+                                                                                 : late_.front();
   }
   /// REQUIRES: as top().
   void pop();
 
  private:
-  std::vector<QueueEntry> run_;   ///< The present class, ascending, from next_.
+  std::vector<QueueEntry> run_;  ///< The present class, ascending, from next_.
   std::size_t next_ = 0;
   std::vector<QueueEntry> late_;  ///< Heap.
   std::size_t present_ = 0;       ///< Class of run_; classes below are used up.

@@ -22,7 +22,8 @@ double cross(double ax, double ay, double bx, double by, bool wide) noexcept {
   return wide ? cross_wide(ax, ay, bx, by) : ax * by - ay * bx;
 }
 
-// Function versions are chosen once by the loader; sanitizers run before it may, so they get the plain one.
+// Function versions are chosen once by the loader; sanitizers run before it may, so they get the
+// plain one.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__x86_64__)
 #define PTIN_VERSIONS
 #else
@@ -31,7 +32,9 @@ double cross(double ax, double ay, double bx, double by, bool wide) noexcept {
 
 using Lanes = double __attribute__((vector_size(kSampleLanes * sizeof(double))));
 
-void load(Lanes& lanes, const double* from) noexcept { __builtin_memcpy(&lanes, from, sizeof lanes); }
+void load(Lanes& lanes, const double* from) noexcept {
+  __builtin_memcpy(&lanes, from, sizeof lanes);
+}
 void store(double* to, const Lanes& lanes) noexcept { __builtin_memcpy(to, &lanes, sizeof lanes); }
 
 using LaneIndices = long long __attribute__((vector_size(kSampleLanes * sizeof(long long))));
@@ -42,11 +45,12 @@ inline double largest_lane(Lanes v) noexcept {
   return v[0] > v[1] ? v[0] : v[1];
 }
 
-/// The loops below are the same for narrow coordinates; wide ones are rare (triangles more than 2^25 grid units across) and
-/// take the scalar loop.
+/// The loops below are the same for narrow coordinates; wide ones are rare (triangles more than
+/// 2^25 grid units across) and take the scalar loop.
 PTIN_VERSIONS
-double largest_residual_narrow(const double* x, const double* y, const double* z, const FanFrame& fan, std::size_t begin,
-                               std::size_t end, double stop_above) noexcept {
+double largest_residual_narrow(const double* x, const double* y, const double* z,
+                               const FanFrame& fan, std::size_t begin, std::size_t end,
+                               double stop_above) noexcept {
   const std::size_t triangles = fan.determinant.size();
   const double* sx = fan.spoke_x.data();
   const double* sy = fan.spoke_y.data();
@@ -68,7 +72,8 @@ double largest_residual_narrow(const double* x, const double* y, const double* z
       const Lanes after = sx[i + 1] * qy - sy[i + 1] * qx;
       Lanes r = (det[i] * qz + (sz[i] * after - sz[i + 1] * before)) * inv[i];
       r = r < 0.0 ? -r : r;
-      const Lanes within = -after < before ? -after : before;  // not negative inside of the triangle
+      const Lanes within =
+          -after < before ? -after : before;  // not negative inside of the triangle
       r = within < 0.0 ? block : r;
       block = r > block ? r : block;
       before = after;
@@ -82,8 +87,8 @@ double largest_residual_narrow(const double* x, const double* y, const double* z
 }
 
 PTIN_VERSIONS
-void assign_narrow(const double* x, const double* y, const double* z, std::size_t end, const FanFrame& fan,
-                   double* triangle, double* residual) noexcept {
+void assign_narrow(const double* x, const double* y, const double* z, std::size_t end,
+                   const FanFrame& fan, double* triangle, double* residual) noexcept {
   const std::size_t triangles = fan.determinant.size();
   for (std::size_t k = 0; k < end; k += kSampleLanes) {
     Lanes qx, qy, qz;
@@ -98,7 +103,8 @@ void assign_narrow(const double* x, const double* y, const double* z, std::size_
     Lanes before = fan.spoke_x[0] * qy - fan.spoke_y[0] * qx;
     for (std::size_t i = 0; i < triangles; ++i) {
       const Lanes after = fan.spoke_x[i + 1] * qy - fan.spoke_y[i + 1] * qx;
-      Lanes r = (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) * fan.inverse[i];
+      Lanes r = (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
+                fan.inverse[i];
       r = r < 0.0 ? -r : r;
       const Lanes within = -after < before ? -after : before;
       const Lanes number = Lanes{} + static_cast<double>(i);
@@ -112,7 +118,8 @@ void assign_narrow(const double* x, const double* y, const double* z, std::size_
 }
 
 /// The plain form, for wide coordinates: sample k's triangle and residual.
-double residual_wide(const StarSamples& s, const FanFrame& fan, std::size_t k, double& found) noexcept {
+double residual_wide(const StarSamples& s, const FanFrame& fan, std::size_t k,
+                     double& found) noexcept {
   const double qx = s.x[k] - fan.w_x;
   const double qy = s.y[k] - fan.w_y;
   const double qz = s.z[k] - fan.w_z;
@@ -121,7 +128,8 @@ double residual_wide(const StarSamples& s, const FanFrame& fan, std::size_t k, d
     const double after = cross_wide(fan.spoke_x[i + 1], fan.spoke_y[i + 1], qx, qy);
     if (before >= 0.0 && after <= 0.0) {
       found = static_cast<double>(i);
-      return std::abs(fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
+      return std::abs(fan.determinant[i] * qz +
+                      (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
              fan.inverse[i];
     }
     before = after;
@@ -136,14 +144,16 @@ bool along_the_border(const StarSamples& s, std::size_t j) noexcept {
          cross(s.link_x[0], s.link_y[0], s.link_x[last], s.link_y[last], s.is_wide()) == 0.0;
 }
 
-/// Codes of a star as integers of one scale, so that 128 bits hold any residual times twice an area.
+/// Codes of a star as integers of one scale, so that 128 bits hold any residual times twice an
+/// area.
 class IntegerCodes {
  public:
   void look_at(double code) noexcept {
     if (code != 0.0) {
       int exponent = 0;
       auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(code, &exponent), 53));
-      const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa < 0 ? -mantissa : mantissa));
+      const int zeros =
+          std::countr_zero(static_cast<std::uint64_t>(mantissa < 0 ? -mantissa : mantissa));
       highest_ = std::max(highest_, exponent);
       lowest_ = std::min(lowest_, exponent - 53 + zeros);
     }
@@ -184,7 +194,8 @@ bool make_fan(const StarSamples& s, std::size_t j, FanFrame& fan) {
     fan.spoke_y[i] = s.link_y[k] - fan.w_y;
     fan.spoke_z[i] = s.link_z[k] - fan.w_z;
     if (i > 0) {
-      const double det = cross(fan.spoke_x[i - 1], fan.spoke_y[i - 1], fan.spoke_x[i], fan.spoke_y[i], wide);
+      const double det =
+          cross(fan.spoke_x[i - 1], fan.spoke_y[i - 1], fan.spoke_x[i], fan.spoke_y[i], wide);
       if (!(det > 0.0)) {
         return false;
       }
@@ -196,8 +207,8 @@ bool make_fan(const StarSamples& s, std::size_t j, FanFrame& fan) {
   return true;
 }
 
-double largest_residual(const StarSamples& s, const FanFrame& fan, std::size_t begin, std::size_t end,
-                        double stop_above) noexcept {
+double largest_residual(const StarSamples& s, const FanFrame& fan, std::size_t begin,
+                        std::size_t end, double stop_above) noexcept {
   if (!s.is_wide()) {
     return largest_residual_narrow(s.x.data(), s.y.data(), s.z.data(), fan, begin, end, stop_above);
   }
@@ -214,7 +225,8 @@ void assign_samples(const StarSamples& s, const FanFrame& fan, std::vector<doubl
   triangle.resize(s.x.size());
   residual.resize(s.x.size());
   if (!s.is_wide()) {
-    assign_narrow(s.x.data(), s.y.data(), s.z.data(), s.x.size(), fan, triangle.data(), residual.data());
+    assign_narrow(s.x.data(), s.y.data(), s.z.data(), s.x.size(), fan, triangle.data(),
+                  residual.data());
     return;
   }
   for (std::size_t k = 0; k < s.x.size(); ++k) {
@@ -234,7 +246,8 @@ bool all_residuals_zero(const Tile& tile, const StarSamples& s, const FanFrame& 
   __extension__ using Wide = __int128;
   const HeightEncoding& heights = tile.units.heights;
   const auto link_code = [&](std::size_t spoke) {
-    return heights.code(tile.tin.vertices[s.star.link[(fan.j + 1 + spoke) % s.star.link.size()]].height);
+    return heights.code(
+        tile.tin.vertices[s.star.link[(fan.j + 1 + spoke) % s.star.link.size()]].height);
   };
   const double w_code = heights.code(tile.tin.vertices[s.star.link[fan.j]].height);
   IntegerCodes integer;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The full surface, asked along the edges of fans: the deviation of a piecewise planar surface from another is largest at a
-// vertex of their overlay (DESIGN.md, section 5).
+// The full surface, asked along the edges of fans: the deviation of a piecewise planar surface from
+// another is largest at a vertex of their overlay (DESIGN.md, section 5).
 #pragma once
 
 #include <cstdint>
@@ -28,18 +28,20 @@ class FullSurface {
   FullSurface& operator=(const FullSurface&) = delete;
   virtual ~FullSurface() = default;
 
-  /// A bound on the vertical distance between the straight edge a-b and the full surface along it, taken at its crossings with
-  /// edges of the full TIN that have surface beside them; height codes. Tight up to rounding; 0 where all heights are equal.
-  /// Cost: the number of crossings.
+  /// A bound on the vertical distance between the straight edge a-b and the full surface along it,
+  /// taken at its crossings with edges of the full TIN that have surface beside them; height codes.
+  /// Tight up to rounding; 0 where all heights are equal. Cost: the number of crossings.
   [[nodiscard]] virtual double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const = 0;
 };
 
-/// Collects gaps at crossings and bounds their rounding: all terms are differences from one reference height, of at most Z; a crossing
-/// takes fewer than 16 roundings of 2^-53 relative to 2 Z.
+/// Collects gaps at crossings and bounds their rounding: all terms are differences from one
+/// reference height, of at most Z; a crossing takes fewer than 16 roundings of 2^-53 relative to 2
+/// Z.
 class GapMaximum {
  public:
   explicit GapMaximum(double reference) noexcept : reference_(reference) {}
-  /// A crossing: full surface between codes p and q at fraction f, edge height `e` relative to the reference.
+  /// A crossing: full surface between codes p and q at fraction f, edge height `e` relative to the
+  /// reference.
   void add(double p, double q, double f, double e) noexcept {
     const double low = p - reference_;
     const double rise = q - p;

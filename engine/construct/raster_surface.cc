@@ -8,12 +8,15 @@ namespace ptin {
 
 namespace {
 
-/// floor(i * numerator / denominator) and its remainder for i = 1, 2, ..., without divisions in the loop.
+/// floor(i * numerator / denominator) and its remainder for i = 1, 2, ..., without divisions in the
+/// loop.
 class Stepper {
  public:
   /// REQUIRES: denominator > 0.
   Stepper(std::int64_t numerator, std::int64_t denominator) noexcept
-      : denominator_(denominator), quotient_step_(numerator / denominator), remainder_step_(numerator % denominator) {
+      : denominator_(denominator),
+        quotient_step_(numerator / denominator),
+        remainder_step_(numerator % denominator) {
     if (remainder_step_ < 0) {
       remainder_step_ += denominator;
       --quotient_step_;
@@ -48,8 +51,9 @@ struct RasterSurface::Line {
   double rise;
 };
 
-RasterSurface::RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid, std::int32_t width,
-                             std::int32_t height, const HeightEncoding& encoding, GridPoint origin)
+RasterSurface::RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid,
+                             std::int32_t width, std::int32_t height,
+                             const HeightEncoding& encoding, GridPoint origin)
     : heights_(std::move(heights)),
       valid_(std::move(valid)),
       width_(width),
@@ -62,7 +66,8 @@ bool RasterSurface::rises(std::int64_t x, std::int64_t y) const noexcept {
   const std::size_t d = at(x, y + 1);
   const RasterCell cell{{code(a), code(a + 1), code(d + 1), code(d)},
                         {valid_[a], valid_[a + 1], valid_[d + 1], valid_[d]}};
-  const GridPoint corner{static_cast<std::int32_t>(origin_.x + x), static_cast<std::int32_t>(origin_.y + y)};
+  const GridPoint corner{static_cast<std::int32_t>(origin_.x + x),
+                         static_cast<std::int32_t>(origin_.y + y)};
   return cell_diagonal(cell, corner) == Diagonal::kRising;
 }
 
@@ -75,7 +80,8 @@ void RasterSurface::cross_columns(const Line& l, GapMaximum& gap) const {
     y.step();
     const std::size_t p = at(l.x + sign(l.dx) * i, l.y + y.floor());
     const std::size_t q = y.remainder() == 0 ? p : p + static_cast<std::size_t>(width_);
-    add(p, q, static_cast<double>(y.remainder()) * inverse, l.rise * (static_cast<double>(i) * inverse), gap);
+    add(p, q, static_cast<double>(y.remainder()) * inverse,
+        l.rise * (static_cast<double>(i) * inverse), gap);
   }
 }
 
@@ -88,7 +94,8 @@ void RasterSurface::cross_rows(const Line& l, GapMaximum& gap) const {
     x.step();
     const std::size_t p = at(l.x + x.floor(), l.y + sign(l.dy) * i);
     const std::size_t q = x.remainder() == 0 ? p : p + 1;
-    add(p, q, static_cast<double>(x.remainder()) * inverse, l.rise * (static_cast<double>(i) * inverse), gap);
+    add(p, q, static_cast<double>(x.remainder()) * inverse,
+        l.rise * (static_cast<double>(i) * inverse), gap);
   }
 }
 
@@ -125,18 +132,21 @@ void RasterSurface::cross_falling(const Line& l, GapMaximum& gap) const {
       continue;
     }
     const std::int64_t column = l.x + x.floor();
-    const std::int64_t row = (l.y + l.x) + sign(d) * i - column - 1;  // the diagonal's lower right end is (column + 1, row)
+    const std::int64_t row = (l.y + l.x) + sign(d) * i - column -
+                             1;  // the diagonal's lower right end is (column + 1, row)
     if (!rises(column, row)) {
       const std::size_t upper_left = at(column, row + 1);
-      add(upper_left, upper_left + 1 - static_cast<std::size_t>(width_), static_cast<double>(x.remainder()) * inverse,
-          l.rise * (static_cast<double>(i) * inverse), gap);
+      add(upper_left, upper_left + 1 - static_cast<std::size_t>(width_),
+          static_cast<double>(x.remainder()) * inverse, l.rise * (static_cast<double>(i) * inverse),
+          gap);
     }
   }
 }
 
 double RasterSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
   const Line line{std::int64_t{a.position.x} - origin_.x, std::int64_t{a.position.y} - origin_.y,
-                  std::int64_t{b.position.x} - a.position.x, std::int64_t{b.position.y} - a.position.y, b.code - a.code};
+                  std::int64_t{b.position.x} - a.position.x,
+                  std::int64_t{b.position.y} - a.position.y, b.code - a.code};
   GapMaximum gap(a.code);
   cross_columns(line, gap);
   cross_rows(line, gap);

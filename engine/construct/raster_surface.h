@@ -13,15 +13,17 @@ namespace ptin {
 class RasterSurface final : public FullSurface {
  public:
   /// Takes the samples over. Layout as make_raster_tin().
-  RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid, std::int32_t width, std::int32_t height,
-                const HeightEncoding& encoding, GridPoint origin);
+  RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid,
+                std::int32_t width, std::int32_t height, const HeightEncoding& encoding,
+                GridPoint origin);
 
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
 
  private:
   struct Line;
   [[nodiscard]] std::size_t at(std::int64_t x, std::int64_t y) const noexcept {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
   }
   [[nodiscard]] double code(std::size_t i) const noexcept { return encoding_.code(heights_[i]); }
   [[nodiscard]] bool rises(std::int64_t x, std::int64_t y) const noexcept;

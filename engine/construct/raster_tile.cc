@@ -29,7 +29,8 @@ SampleRange with_margin(const RasterSource& source, const SampleRange& window) {
 }
 
 template <class T>
-std::vector<T> cut_out(const std::vector<T>& from, const SampleRange& outer, const SampleRange& inner) {
+std::vector<T> cut_out(const std::vector<T>& from, const SampleRange& outer,
+                       const SampleRange& inner) {
   if (outer.width == inner.width && outer.height == inner.height) {
     return from;
   }
@@ -41,12 +42,15 @@ std::vector<T> cut_out(const std::vector<T>& from, const SampleRange& outer, con
   return part;
 }
 
-std::vector<float> depths_of(const RasterSource& source, const std::vector<std::uint8_t>& valid, const SampleRange& outer,
-                             const SampleRange& inner) {
+std::vector<float> depths_of(const RasterSource& source, const std::vector<std::uint8_t>& valid,
+                             const SampleRange& outer, const SampleRange& inner) {
   std::vector<float> depths(static_cast<std::size_t>(inner.width * inner.height));
   const GroundMetric metric(source.frame());
-  void_depth({valid, outer.width, outer.height, inner.x0 - outer.x0, inner.y0 - outer.y0, inner.width, inner.height},
-             [&](std::int64_t y) { return metric.at(static_cast<double>(outer.y0 + y)); }, kVoidDepthCutOff, depths);
+  void_depth(
+      {valid, outer.width, outer.height, inner.x0 - outer.x0, inner.y0 - outer.y0, inner.width,
+       inner.height},
+      [&](std::int64_t y) { return metric.at(static_cast<double>(outer.y0 + y)); },
+      kVoidDepthCutOff, depths);
   return depths;
 }
 
@@ -57,11 +61,13 @@ MeasureUnits measure_units(const TerrainFrame& frame, double void_slope) {
   units.heights = frame.heights;
   units.quantum_code = frame.height_quantum / frame.heights.step;
   units.void_slope_code = void_slope / frame.heights.step;
-  units.exact_codes = frame.heights.type == HeightType::int32 || std::floor(frame.height_quantum) == frame.height_quantum;
+  units.exact_codes = frame.heights.type == HeightType::int32 ||
+                      std::floor(frame.height_quantum) == frame.height_quantum;
   return units;
 }
 
-StartedTile start_raster_tile(const RasterSource& source, const SampleRange& window, const MeasureUnits& units) {
+StartedTile start_raster_tile(const RasterSource& source, const SampleRange& window,
+                              const MeasureUnits& units) {
   StartedTile started;
   const SampleRange outer = with_margin(source, window);
   const auto samples = static_cast<std::size_t>(outer.width * outer.height);
@@ -80,13 +86,15 @@ StartedTile start_raster_tile(const RasterSource& source, const SampleRange& win
     heights = cut_out(heights, outer, window);
     valid = cut_out(valid, outer, window);
   }
-  const GridPoint origin{static_cast<std::int32_t>(window.x0), static_cast<std::int32_t>(window.y0)};
+  const GridPoint origin{static_cast<std::int32_t>(window.x0),
+                         static_cast<std::int32_t>(window.y0)};
   const auto width = static_cast<std::int32_t>(window.width);
   const auto height = static_cast<std::int32_t>(window.height);
   started.tile.units = units;
   started.tile.tin = make_raster_tin(heights, valid, width, height, units.heights, origin);
   start_tile(started.tile, depths);
-  started.full = std::make_unique<RasterSurface>(std::move(heights), std::move(valid), width, height, units.heights, origin);
+  started.full = std::make_unique<RasterSurface>(std::move(heights), std::move(valid), width,
+                                                 height, units.heights, origin);
   return started;
 }
 

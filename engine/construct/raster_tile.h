@@ -24,13 +24,15 @@ struct SampleRange {
   std::int64_t x0 = 0, y0 = 0, width = 0, height = 0;
 };
 
-/// Constants of measuring for a terrain. @param void_slope  Height charged per ground unit of depth.
+/// Constants of measuring for a terrain. @param void_slope  Height charged per ground unit of
+/// depth.
 [[nodiscard]] MeasureUnits measure_units(const TerrainFrame& frame, double void_slope);
 
-/// Reads `window` (with a margin of the depth's cut-off around it where there is more), turns lone samples into voids and
-/// triangulates. Tiles get the same depths and classes as the whole.
+/// Reads `window` (with a margin of the depth's cut-off around it where there is more), turns lone
+/// samples into voids and triangulates. Tiles get the same depths and classes as the whole.
 /// @throws Error as RasterSource::read, resource_exhausted
 /// Cost: linear. Memory: about 200 bytes a sample.
-[[nodiscard]] StartedTile start_raster_tile(const RasterSource& source, const SampleRange& window, const MeasureUnits& units);
+[[nodiscard]] StartedTile start_raster_tile(const RasterSource& source, const SampleRange& window,
+                                            const MeasureUnits& units);
 
 }  // namespace ptin

@@ -8,6 +8,7 @@
 
 #include "engine/check.h"
 #include "engine/construct/rounding.h"
+#include "engine/construct/saturation.h"
 #include "engine/construct/void_measure.h"
 
 namespace ptin {
@@ -27,9 +28,13 @@ std::pair<HeightBits, HeightBits> bits_of(const Interval& codes, const HeightEnc
 }
 
 std::uint16_t flags_of(const Tin& tin, const CollapseSite& site) {
-  const auto is_void = [&](TriangleId t) { return t != kNone && tin.classes[t] == TriangleClass::kVoid; };
+  const auto is_void = [&](TriangleId t) {
+    return t != kNone && tin.classes[t] == TriangleClass::kVoid;
+  };
   unsigned flags = 0;
-  const auto set_when = [&](bool condition, VertexSplit::Flag flag) { flags |= condition ? unsigned{flag} : 0U; };
+  const auto set_when = [&](bool condition, VertexSplit::Flag flag) {
+    flags |= condition ? unsigned{flag} : 0U;
+  };
   set_when(is_void(site.left), VertexSplit::kLeftVoid);
   set_when(is_void(site.right), VertexSplit::kRightVoid);
   set_when(site.left == kNone, VertexSplit::kNoLeft);
@@ -40,37 +45,8 @@ std::uint16_t flags_of(const Tin& tin, const CollapseSite& site) {
 
 }  // namespace
 
-GridBox saturated_box(const Tile& tile, const Star& star) noexcept {
-  GridBox box = box_of(tile.tin.position(star.center));
-  for (const VertexId v : star.link) {
-    box = united(box, tile.tin.position(v));
-  }
-  for (const TriangleId t : star.triangles) {
-    box = united(box, tile.carried[t].roi);
-  }
-  return box;
-}
-
-Interval saturated_heights(const Tile& tile, const Star& star) noexcept {
-  Interval heights;
-  const HeightEncoding& encoding = tile.units.heights;
-  const auto add_vertex = [&](VertexId v) {
-    if (tile.tin.has_height[v] != 0) {
-      heights = united(heights, encoding.code(tile.tin.vertices[v].height));
-    }
-  };
-  add_vertex(star.center);
-  std::for_each(star.link.begin(), star.link.end(), add_vertex);
-  for (const TriangleId t : star.triangles) {
-    if (const std::uint32_t r = tile.carried[t].record; r != kNone) {
-      const VertexSplit& record = tile.records[r];
-      heights = united(heights, {encoding.code(record.height_lo), encoding.code(record.height_hi)});
-    }
-  }
-  return heights;
-}
-
-/// Fills triangle_ and residual_; returns the collapse's own error and the deviation at samples, in codes.
+/// Fills triangle_ and residual_; returns the collapse's own error and the deviation at samples, in
+/// codes.
 RecordMaker::OwnPart RecordMaker::measure(const StarSamples& s) {
   if (s.void_only) {
     (void)measure_with_voids(tile_, s, fan_, &triangle_);
@@ -92,13 +68,15 @@ RecordMaker::OwnPart RecordMaker::measure(const StarSamples& s) {
   return {error, error};
 }
 
-/// Largest gap along the new inner edges that have surface on one side at least; link edges are covered by what the star carries.
+/// Largest gap along the new inner edges that have surface on one side at least; link edges are
+/// covered by what the star carries.
 double RecordMaker::spoke_deviation(const StarSamples& s) const {
   double worst = 0.0;
   const Star& star = s.star;
   const auto end_of = [&](std::size_t link) {
     const VertexId v = star.link[link];
-    return EdgeEnd{v, tile_.tin.position(v), tile_.units.heights.code(tile_.tin.vertices[v].height)};
+    return EdgeEnd{v, tile_.tin.position(v),
+                   tile_.units.heights.code(tile_.tin.vertices[v].height)};
   };
   const auto is_surface = [&](std::size_t i) {
     return tile_.tin.classes[star.triangles[fan_.star_triangle[i]]] == TriangleClass::kSurface;
@@ -112,7 +90,8 @@ double RecordMaker::spoke_deviation(const StarSamples& s) const {
   return worst;
 }
 
-VertexSplit RecordMaker::make_record(const StarSamples& s, const OwnPart& own, const CollapseSite& site) const {
+VertexSplit RecordMaker::make_record(const StarSamples& s, const OwnPart& own,
+                                     const CollapseSite& site) const {
   const Tin& tin = tile_.tin;
   const double step = tile_.units.heights.step;
   double error = own.error * step;
@@ -135,7 +114,8 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const OwnPart& own, c
   }
   if (rank > UINT16_MAX) {
     throw Error(ErrorCode::resource_exhausted,
-                "a chain of more than 65 535 collapses depends on each other; build with the cost 'error' or 'roi', or smaller tiles");
+                "a chain of more than 65 535 collapses depends on each other; build with the cost "
+                "'error' or 'roi', or smaller tiles");
   }
   r.rank = static_cast<std::uint16_t>(rank);
   r.u = tin.position(site.u);
@@ -143,7 +123,8 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const OwnPart& own, c
   r.vl = tin.position(site.vl);
   r.vr = tin.position(site.vr);
   r.roi = saturated_box(tile_, s.star);
-  std::tie(r.height_lo, r.height_hi) = bits_of(saturated_heights(tile_, s.star), tile_.units.heights);
+  std::tie(r.height_lo, r.height_hi) =
+      bits_of(saturated_heights(tile_, s.star), tile_.units.heights);
   r.flags = flags_of(tin, site);
   if (tin.has_height[site.u] != 0) {
     r.height = tin.vertices[site.u].height;
@@ -151,7 +132,8 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const OwnPart& own, c
   return r;
 }
 
-/// The worst sample of each fan triangle comes first in its list: the next choice of w screens by it.
+/// The worst sample of each fan triangle comes first in its list: the next choice of w screens by
+/// it.
 void RecordMaker::hand_over_samples(const StarSamples& s) {
   for (const TriangleId t : s.star.triangles) {
     tile_.samples.give_back(tile_.carried[t].samples);
@@ -164,7 +146,9 @@ void RecordMaker::hand_over_samples(const StarSamples& s) {
     ++counts_[static_cast<std::size_t>(triangle_[k])];
   }
   for (std::size_t i = 0; i < fan_.triangles(); ++i) {
-    tile_.carried[fan_ids_[i]].samples = tile_.samples.take(counts_[i]);
+    CarriedState& carried = tile_.carried[fan_ids_[i]];
+    carried.samples = tile_.samples.take(counts_[i]);
+    carried.holds_heights = carried.holds_voids = false;
     counts_[i] = 0;
   }
   for (std::size_t k = 0; k < n; ++k) {
@@ -172,6 +156,8 @@ void RecordMaker::hand_over_samples(const StarSamples& s) {
     const std::span<Sample> list = tile_.samples.samples(tile_.carried[fan_ids_[i]].samples);
     const std::uint32_t place = counts_[i]++;
     list[place] = s.source[k];
+    CarriedState& carried = tile_.carried[fan_ids_[i]];
+    (s.source[k].depth < 0.0F ? carried.holds_voids : carried.holds_heights) = true;
     if (place == 0) {
       worst_[i] = residual_[k];
     } else if (residual_[k] > worst_[i]) {
@@ -183,6 +169,9 @@ void RecordMaker::hand_over_samples(const StarSamples& s) {
 
 void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {
   PTIN_CHECK(make_fan(s, j, fan_));
+  if (s.count == 0) {
+    gather_samples(tile_, s);
+  }
   gather_sources(tile_, s);
   const OwnPart own = measure(s);
   const CollapseSite site = collapse_site(s.star, j);

@@ -13,28 +13,14 @@
 
 namespace ptin {
 
-/// Half-way attributes of a collapse, in height codes.
-struct Saturation {
-  GridBox roi;
-  Interval heights;        ///< Codes.
-  double error = 0.0;      ///< The height's unit, as records hold it.
-  double deviation = 0.0;
-  std::uint32_t rank = 0;
-};
-
-/// Box of P(u) and of everything that depends on this collapse. Cost: the degree.
-[[nodiscard]] GridBox saturated_box(const Tile& tile, const Star& star) noexcept;
-
-/// Heights of u, P(u) and of everything below. Cost: the degree, and a record a triangle.
-[[nodiscard]] Interval saturated_heights(const Tile& tile, const Star& star) noexcept;
-
 /// One a thread; keeps scratch buffers.
 class RecordMaker {
  public:
   RecordMaker(Tile& tile, const FullSurface& full) : tile_(tile), full_(full) {}
 
-  /// Collapses the centre of `s` into link[j]: appends the record (DESIGN.md, section 2: own part, and the union and maximum of what the
-  /// star carries), hands the samples of the star to the fan, and changes the mesh.
+  /// Collapses the centre of `s` into link[j]: appends the record (DESIGN.md, section 2: own part,
+  /// and the union and maximum of what the star carries), hands the samples of the star to the fan,
+  /// and changes the mesh.
   /// @throws Error resource_exhausted when the rank would exceed 65 535
   void collapse_and_record(StarSamples& s, std::size_t j);
 
@@ -45,14 +31,15 @@ class RecordMaker {
   };
   [[nodiscard]] OwnPart measure(const StarSamples& s);
   [[nodiscard]] double spoke_deviation(const StarSamples& s) const;
-  [[nodiscard]] VertexSplit make_record(const StarSamples& s, const OwnPart& own, const CollapseSite& site) const;
+  [[nodiscard]] VertexSplit make_record(const StarSamples& s, const OwnPart& own,
+                                        const CollapseSite& site) const;
   void hand_over_samples(const StarSamples& s);
 
   Tile& tile_;
   const FullSurface& full_;
   FanFrame fan_;
   std::vector<double> triangle_, residual_;  ///< Of each sample, padded.
-  std::vector<double> worst_;                 ///< Of each fan triangle.
+  std::vector<double> worst_;                ///< Of each fan triangle.
   std::vector<std::uint32_t> counts_;
   std::vector<TriangleId> fan_ids_;
 };

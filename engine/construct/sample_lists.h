@@ -14,8 +14,9 @@
 
 namespace ptin {
 
-/// A sample of the source that is no vertex any more. `depth` is its distance to the nearest sample of the other class in
-/// ground units, +infinity beyond the cut-off; negative for a sample without a height (DESIGN.md, section 3).
+/// A sample of the source that is no vertex any more. `depth` is its distance to the nearest sample
+/// of the other class in ground units, +infinity beyond the cut-off; negative for a sample without
+/// a height (DESIGN.md, section 3).
 struct Sample {
   GridPoint position;
   HeightBits height = 0;
@@ -28,9 +29,9 @@ struct SampleSlot {
   std::uint32_t count = 0;
 };
 
-/// Arrays of samples whose capacities are powers of two, in one pool with a free list for each capacity.
-/// A list is taken at its final length and given back whole: a collapse takes the lists of the star and gives new ones to the
-/// fan. At most 2^32 - 1 samples in one pool (one tile).
+/// Arrays of samples whose capacities are powers of two, in one pool with a free list for each
+/// capacity. A list is taken at its final length and given back whole: a collapse takes the lists
+/// of the star and gives new ones to the fan. At most 2^32 - 1 samples in one pool (one tile).
 class SampleLists {
  public:
   /// A list of `count` samples, not initialised. Spans into the pool end with the next call.
@@ -62,7 +63,9 @@ class SampleLists {
   [[nodiscard]] std::span<const Sample> samples(SampleSlot slot) const noexcept {
     return {pool_.data() + slot.offset, slot.count};
   }
-  [[nodiscard]] const Sample* data(SampleSlot slot) const noexcept { return pool_.data() + slot.offset; }
+  [[nodiscard]] const Sample* data(SampleSlot slot) const noexcept {
+    return pool_.data() + slot.offset;
+  }
 
   void reserve(std::size_t samples) { pool_.reserve(samples); }
 

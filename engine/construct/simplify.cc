@@ -8,6 +8,7 @@
 #include "engine/construct/collapse_choice.h"
 #include "engine/construct/collapse_queue.h"
 #include "engine/construct/record_maker.h"
+#include "engine/construct/saturation.h"
 
 namespace ptin {
 
@@ -92,7 +93,8 @@ Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
   measure.roi = saturated_box(tile_, star_.star);
   if (options_.cost == CostModel::kElevation) {
     const Interval heights = saturated_heights(tile_, star_.star);
-    measure.height_quanta = is_empty(heights) ? 0.0 : (heights.hi - heights.lo) / tile_.units.quantum_code;
+    measure.height_quanta =
+        is_empty(heights) ? 0.0 : (heights.hi - heights.lo) / tile_.units.quantum_code;
   }
   e.priority = scale_(measure);
   return e;
@@ -125,7 +127,8 @@ void Simplifier::collapse(VertexId u, std::size_t j) {
   const CollapseSite site = collapse_site(star_.star, j);
   maker_.collapse_and_record(star_, j);
   state_[u] = QueueState::kAbsent;
-  // w takes over the link but for itself and its two neighbours there (one at a border); those lose u and had w already.
+  // w takes over the link but for itself and its two neighbours there (one at a border); those lose
+  // u and had w already.
   std::vector<VertexState>& vertices = tile_.vertex_state;
   vertices[w].degree = static_cast<std::uint16_t>(vertices[w].degree + degree - (closed ? 4 : 3));
   if (site.left != kNone) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Takes the vertices of a tile off, one half-edge collapse after the other, and writes a record for each.
+// Takes the vertices of a tile off, one half-edge collapse after the other, and writes a record for
+// each.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +16,19 @@ namespace ptin {
 
 struct SimplifyOptions {
   CostModel cost = CostModel::kError;
-  std::uint64_t keep = 0;  ///< Stop when this many vertices that are not locked are left; 0 goes on while a collapse is allowed.
+  std::uint64_t keep = 0;  ///< Stop when this many vertices that are not locked are left; 0 goes on
+                           ///< while a collapse is allowed.
   std::stop_token stop;
-  std::function<void(std::uint64_t collapsed)> progress;  ///< Called every few thousand collapses; may be empty.
+  std::function<void(std::uint64_t collapsed)>
+      progress;  ///< Called every few thousand collapses; may be empty.
 };
 
-/// Collapses vertices in the order of the cost until options.keep is reached or no collapse is allowed; appends a saturated record for
-/// each to tile.records and moves the samples of the star to the fan. Locked vertices stay.
+/// Collapses vertices in the order of the cost until options.keep is reached or no collapse is
+/// allowed; appends a saturated record for each to tile.records and moves the samples of the star
+/// to the fan. Locked vertices stay.
 ///
-/// An entry of the queue may be older than its star: it is measured again when it reaches the top (lazy evaluation), since
-/// errors and boxes mostly grow.
+/// An entry of the queue may be older than its star: it is measured again when it reaches the top
+/// (lazy evaluation), since errors and boxes mostly grow.
 /// @param full  The full surface under the tile, for deviations.
 /// @throws Error cancelled, resource_exhausted (rank above 65 535)
 /// Deterministic. Cost: about n log n residuals for n samples. One thread.

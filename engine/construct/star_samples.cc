@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/construct/saturation.h"
+
 namespace ptin {
 
 namespace {
@@ -39,12 +41,17 @@ void gather_link(const Tile& tile, GridPoint origin, double origin_code, StarSam
   out.largest_z = largest_z;
 }
 
-/// Lays samples out one after the other; heights of samples without one are 0 (those with depth below 0).
+/// Lays samples out one after the other; heights of samples without one are 0 (those with depth
+/// below 0).
 template <HeightType type>
 class Layout {
  public:
   Layout(GridPoint origin, double origin_code, StarSamples& out)
-      : origin_(origin), origin_code_(origin_code), x_(out.x.data()), y_(out.y.data()), z_(out.z.data()) {}
+      : origin_(origin),
+        origin_code_(origin_code),
+        x_(out.x.data()),
+        y_(out.y.data()),
+        z_(out.z.data()) {}
   void add(const Sample& s) noexcept {
     const double z = s.depth < 0.0F ? 0.0 : code_of<type>(s.height) - origin_code_;
     x_[n_] = static_cast<double>(s.position.x - origin_.x);
@@ -68,8 +75,8 @@ class Layout {
   double largest_ = 0.0;
 };
 
-/// u, then the first sample of each list (the worst one of its triangle, so that the first lanes are a good screen for the
-/// choice of w), then the others.
+/// u, then the first sample of each list (the worst one of its triangle, so that the first lanes
+/// are a good screen for the choice of w), then the others.
 template <class Add>
 void for_each_sample(const Tile& tile, const StarSamples& s, const Add& add) {
   const Vertex& u = tile.tin.vertices[s.star.center];
@@ -89,7 +96,7 @@ void for_each_sample(const Tile& tile, const StarSamples& s, const Add& add) {
 }
 
 template <HeightType type>
-void gather_samples(const Tile& tile, GridPoint origin, double origin_code, StarSamples& out) {
+void lay_out_samples(const Tile& tile, GridPoint origin, double origin_code, StarSamples& out) {
   std::size_t count = 1;
   for (const TriangleId t : out.star.triangles) {
     count += tile.carried[t].samples.count;
@@ -105,23 +112,35 @@ void gather_samples(const Tile& tile, GridPoint origin, double origin_code, Star
   out.largest_z = std::max(out.largest_z, layout.largest());
 }
 
+/// Whether all heights in and around the star are those of u: the link's are (largest_z is 0), and
+/// so are those that the star's triangles cover.
+bool is_flat(const Tile& tile, const StarSamples& s) {
+  if (!s.surface_only || s.largest_z != 0.0) {
+    return false;
+  }
+  const Interval heights = saturated_heights(tile, s.star);
+  return heights.lo == heights.hi;
+}
+
 void classify(const Tile& tile, StarSamples& out) {
   out.surface_only = true;
   out.void_only = false;
-  if (!tile.has_voids) {
-    return;
+  if (tile.has_voids) {
+    bool void_triangles = false;
+    bool surface_triangles = false;
+    bool heights = tile.tin.has_height[out.star.center] != 0;
+    bool voids = !heights;
+    for (const TriangleId t : out.star.triangles) {
+      const bool is_void = tile.tin.classes[t] == TriangleClass::kVoid;
+      void_triangles |= is_void;
+      surface_triangles |= !is_void;
+      heights |= tile.carried[t].holds_heights;
+      voids |= tile.carried[t].holds_voids;
+    }
+    out.surface_only = !void_triangles && !voids;
+    out.void_only = !surface_triangles && !heights;
   }
-  gather_sources(tile, out);
-  std::size_t voids = 0;
-  for (const TriangleId t : out.star.triangles) {
-    voids += tile.tin.classes[t] == TriangleClass::kVoid ? 1 : 0;
-  }
-  std::size_t without_height = 0;
-  for (const Sample& s : out.source) {
-    without_height += s.depth < 0.0F ? 1 : 0;
-  }
-  out.surface_only = voids == 0 && without_height == 0;
-  out.void_only = voids == out.star.triangles.size() && without_height == out.source.size();
+  out.flat = is_flat(tile, out);
 }
 
 /// Heights are taken relative to u's; where u has none, to that of some link vertex.
@@ -145,18 +164,33 @@ void gather_sources(const Tile& tile, StarSamples& out) {
   for_each_sample(tile, out, [&](const Sample& s) { out.source.push_back(s); });
 }
 
+void gather_samples(const Tile& tile, StarSamples& out) {
+  const GridPoint origin = tile.tin.vertices[out.star.center].position;
+  const double origin_code = origin_code_of(tile, out.star);
+  if (tile.units.heights.type == HeightType::int32) {
+    lay_out_samples<HeightType::int32>(tile, origin, origin_code, out);
+  } else {
+    lay_out_samples<HeightType::float32>(tile, origin, origin_code, out);
+  }
+}
+
 void gather_star(const Tile& tile, VertexId u, StarSamples& out) {
   walk_star(tile.tin, u, out.star);
   const GridPoint origin = tile.tin.vertices[u].position;
   const double origin_code = origin_code_of(tile, out.star);
   if (tile.units.heights.type == HeightType::int32) {
     gather_link<HeightType::int32>(tile, origin, origin_code, out);
-    gather_samples<HeightType::int32>(tile, origin, origin_code, out);
   } else {
     gather_link<HeightType::float32>(tile, origin, origin_code, out);
-    gather_samples<HeightType::float32>(tile, origin, origin_code, out);
   }
   classify(tile, out);
+  out.count = 0;
+  if (!out.flat && !out.void_only) {
+    gather_samples(tile, out);
+    if (!out.surface_only) {
+      gather_sources(tile, out);
+    }
+  }
 }
 
 }  // namespace ptin

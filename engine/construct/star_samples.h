@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A star laid out for measuring: link and samples relative to the vertex that would go, coordinate by coordinate.
+// A star laid out for measuring: link and samples relative to the vertex that would go, coordinate
+// by coordinate.
 #pragma once
 
 #include <cstddef>
@@ -11,30 +12,42 @@
 
 namespace ptin {
 
-/// Samples are padded to a multiple of this with copies of u, so that the measuring loops have no tail.
+/// Samples are padded to a multiple of this with copies of u, so that the measuring loops have no
+/// tail.
 inline constexpr std::size_t kSampleLanes = 4;
 
-/// Above this, products of coordinates are not exact in doubles and go through 64-bit integers: differences of coordinates
-/// below 2^26 have products below 2^52, whose difference is an integer below 2^53.
+/// Above this, products of coordinates are not exact in doubles and go through 64-bit integers:
+/// differences of coordinates below 2^26 have products below 2^52, whose difference is an integer
+/// below 2^53.
 inline constexpr double kExactRadius = 0x1p25;
 
-/// The star of u, relative to u: positions as exact doubles, heights as differences of codes. Buffers are used again.
+/// The star of u, relative to u: positions as exact doubles, heights as differences of codes.
+/// Buffers are used again.
 struct StarSamples {
   Star star;
   std::vector<double> link_x, link_y, link_z;
-  std::vector<double> x, y, z;  ///< Samples: u first, then the first of every triangle's list, then the others; padded.
-  std::size_t count = 0;        ///< Samples, without the padding.
-  std::vector<Sample> source;   ///< The same samples as stored; filled by gather_sources() and where the tile has voids.
-  double largest_xy = 0.0;      ///< Largest |coordinate| of the link.
-  double largest_z = 0.0;       ///< Largest |height difference| of link and samples that have heights.
-  bool surface_only = true;     ///< No void triangle in the star and no sample without height in it.
-  bool void_only = false;       ///< Only void triangles, and no sample with a height in them, u included.
+  std::vector<double> x, y,
+      z;  ///< Samples: u first, then the first of every triangle's list, then the others; padded.
+  std::size_t count = 0;       ///< Samples, without the padding.
+  std::vector<Sample> source;  ///< The same samples as stored; filled by gather_sources(), and
+                               ///< where surface and void meet.
+  double largest_xy = 0.0;     ///< Largest |coordinate| of the link.
+  double largest_z = 0.0;    ///< Largest |height difference| of link and samples that have heights.
+  bool surface_only = true;  ///< No void triangle in the star and no sample without height in it.
+  bool void_only =
+      false;          ///< Only void triangles, and no sample with a height in them, u included.
+  bool flat = false;  ///< surface_only, and every height is the same: no residual whatever the fan.
 
   [[nodiscard]] bool is_wide() const noexcept { return largest_xy > kExactRadius; }
 };
 
-/// Gathers the star of `u`. Cost: its degree and its samples.
+/// Gathers the star of `u`: link and flags, and the samples where a residual can differ from 0: not
+/// where the star is void_only or flat. So lakes, seas and voids, whose triangles cover many
+/// samples, cost no more than others. Cost: its degree and its samples.
 void gather_star(const Tile& tile, VertexId u, StarSamples& out);
+
+/// Gathers the samples of a star where gather_star() left them out.
+void gather_samples(const Tile& tile, StarSamples& out);
 
 /// Fills `source` of a gathered star, in the order of its samples.
 void gather_sources(const Tile& tile, StarSamples& out);

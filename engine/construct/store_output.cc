@@ -40,12 +40,10 @@ nlohmann::json value_or_null(const std::optional<T>& value) {
 }
 
 nlohmann::json options_json(const BuildOptions& o) {
-  nlohmann::json json{{"cost", name_of(o.cost)},
-                      {"max_error", o.max_error},
-                      {"nodata", value_or_null(o.nodata)},
-                      {"resolution", value_or_null(o.resolution)},
-                      {"bbox", value_or_null(o.bbox)},
-                      {"void_slope", o.void_slope}};
+  nlohmann::json json{
+      {"cost", name_of(o.cost)},           {"max_error", o.max_error},
+      {"nodata", value_or_null(o.nodata)}, {"resolution", value_or_null(o.resolution)},
+      {"bbox", value_or_null(o.bbox)},     {"void_slope", o.void_slope}};
   if (!o.a_srs.empty()) {
     json["a_srs"] = o.a_srs;
   }
@@ -78,7 +76,8 @@ CoarsestTin coarsest_tin(const Tin& tin) {
     if (tin.vertices[v].triangle != kNone) {
       place[v] = static_cast<std::uint32_t>(t0.vertices.size());
       const bool has_height = tin.has_height[v] != 0;
-      t0.vertices.push_back({tin.position(v), has_height ? tin.vertices[v].height : 0, has_height ? 1U : 0U});
+      t0.vertices.push_back(
+          {tin.position(v), has_height ? tin.vertices[v].height : 0, has_height ? 1U : 0U});
     }
   }
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
@@ -91,7 +90,8 @@ CoarsestTin coarsest_tin(const Tin& tin) {
   return t0;
 }
 
-StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite, const TerrainFrame& frame)
+StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
+                         const TerrainFrame& frame)
     : path_(path),
       options_(options),
       frame_(frame),
@@ -111,10 +111,11 @@ void StoreOutput::add_segment(std::span<VertexSplit> records) {
     }
   }
   if (options_.max_error > 0.0) {
-    // The records kept are those of the monotone predicate error > max_error: closed under dependency.
-    const auto dropped = std::partition(records.begin(), records.end(), [this](const VertexSplit& r) {
-      return static_cast<double>(r.error) > options_.max_error;
-    });
+    // The records kept are those of the monotone predicate error > max_error: closed under
+    // dependency.
+    const auto dropped = std::partition(
+        records.begin(), records.end(),
+        [this](const VertexSplit& r) { return static_cast<double>(r.error) > options_.max_error; });
     for (auto r = dropped; r != records.end(); ++r) {
       base_error_ = std::max(base_error_, static_cast<double>(r->error));
       base_deviation_ = std::max(base_deviation_, static_cast<double>(r->deviation));
@@ -128,7 +129,8 @@ void StoreOutput::add_segment(std::span<VertexSplit> records) {
   writer_->add_segment(records, frame_.heights);
 }
 
-void StoreOutput::publish(const Tin& t0, const std::vector<std::string>& inputs, BuildReport& report) {
+void StoreOutput::publish(const Tin& t0, const std::vector<std::string>& inputs,
+                          BuildReport& report) {
   const CoarsestTin coarsest = coarsest_tin(t0);
   StoreFacts facts;
   facts.map = frame_.map;

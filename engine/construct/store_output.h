@@ -15,18 +15,21 @@
 
 namespace ptin {
 
-/// Takes segments of records with their final attributes, leaves out the finest detail (BuildOptions::max_error), adds the rounding of
-/// heights, and publishes. Destroyed before publish(), it leaves nothing behind.
+/// Takes segments of records with their final attributes, leaves out the finest detail
+/// (BuildOptions::max_error), adds the rounding of heights, and publishes. Destroyed before
+/// publish(), it leaves nothing behind.
 class StoreOutput {
  public:
   /// @throws Error as StoreWriter::create
-  StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite, const TerrainFrame& frame);
+  StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
+              const TerrainFrame& frame);
 
   /// One segment; reordered in place.  @throws Error as StoreWriter::add_segment
   void add_segment(std::span<VertexSplit> records);
 
   /// @param t0       The coarsest TIN: the alive part of a mesh in which nothing more collapses.
-  /// @param inputs   Names for the metadata; their folders are left out, so that the bytes do not depend on them.
+  /// @param inputs   Names for the metadata; their folders are left out, so that the bytes do not
+  /// depend on them.
   /// @param report   Counts for the metadata; receives records, t0_vertices, max_rank, file_bytes.
   /// @throws Error as StoreWriter::publish
   void publish(const Tin& t0, const std::vector<std::string>& inputs, BuildReport& report);

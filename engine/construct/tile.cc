@@ -13,7 +13,8 @@ void start_tile(Tile& tile, const std::vector<float>& depths) {
   for (const Triangle& triangle : tin.triangles) {
     for (int i = 0; i < 3; ++i) {
       ++tile.vertex_state[triangle.v[i]].degree;
-      if (triangle.n[i] == kNone) {  // a border edge adds the neighbour that no further triangle counts
+      if (triangle.n[i] ==
+          kNone) {  // a border edge adds the neighbour that no further triangle counts
         ++tile.vertex_state[triangle.v[previous_corner(i)]].degree;
       }
     }

@@ -15,12 +15,16 @@
 
 namespace ptin {
 
-/// What a triangle carries upwards (saturation, DESIGN.md section 2): the attributes of the record that created it. The box is
-/// kept here because every evaluation of a collapse asks for it; the rest is read from the record.
+/// What a triangle carries upwards (saturation, DESIGN.md section 2): the attributes of the record
+/// that created it. The box is kept here because every evaluation of a collapse asks for it; the
+/// rest is read from the record.
 struct CarriedState {
-  GridBox roi;                   ///< Empty for a triangle of the full TIN.
-  std::uint32_t record = kNone;  ///< Index into Tile::records; kNone for a triangle of the full TIN.
-  SampleSlot samples;            ///< Removed samples inside this triangle.
+  GridBox roi;  ///< Empty for a triangle of the full TIN.
+  std::uint32_t record =
+      kNone;                   ///< Index into Tile::records; kNone for a triangle of the full TIN.
+  SampleSlot samples;          ///< Removed samples inside this triangle.
+  bool holds_heights = false;  ///< Some of them have a height ...
+  bool holds_voids = false;    ///< ... and some have none.
 };
 
 /// Per-vertex facts of a tile.
@@ -33,13 +37,14 @@ struct VertexState {
 /// Constants of a build that measuring needs, in height codes.
 struct MeasureUnits {
   HeightEncoding heights;
-  double quantum_code = 1.0;         ///< One height quantum, as a difference of codes.
-  double void_slope_code = 0.0;      ///< Height codes charged per ground unit of depth.
-  bool exact_codes = false;          ///< Codes are integers, so that residuals of small stars have no rounding.
+  double quantum_code = 1.0;     ///< One height quantum, as a difference of codes.
+  double void_slope_code = 0.0;  ///< Height codes charged per ground unit of depth.
+  bool exact_codes =
+      false;  ///< Codes are integers, so that residuals of small stars have no rounding.
 };
 
-/// A tile: everything that a collapse reads and changes. What is pushed up to a parent is the TIN, `carried` (with the records
-/// it points to) and the samples.
+/// A tile: everything that a collapse reads and changes. What is pushed up to a parent is the TIN,
+/// `carried` (with the records it points to) and the samples.
 struct Tile {
   Tin tin;
   std::vector<CarriedState> carried;      ///< Beside tin.triangles.
@@ -50,7 +55,8 @@ struct Tile {
   bool has_voids = false;  ///< Some triangle is void or some sample has no height.
 };
 
-/// Fills `carried` and `vertex_state` of a tile that holds the full TIN. Depths are +infinity where `depths` is empty.
+/// Fills `carried` and `vertex_state` of a tile that holds the full TIN. Depths are +infinity where
+/// `depths` is empty.
 /// @param depths  Beside tin.vertices, unsigned; or empty.
 void start_tile(Tile& tile, const std::vector<float>& depths);
 

@@ -8,14 +8,16 @@
 
 namespace ptin {
 
-/// Where the walk stands: at a vertex that the edge passes through, or about to cross an edge of the full TIN.
+/// Where the walk stands: at a vertex that the edge passes through, or about to cross an edge of
+/// the full TIN.
 struct TinSurface::Step {
-  VertexId vertex = kNone;        ///< The vertex that the edge passes through, or kNone.
-  TriangleId triangle = kNone;    ///< Otherwise: the triangle to leave ...
-  int side = 0;                   ///< ... across this side.
+  VertexId vertex = kNone;      ///< The vertex that the edge passes through, or kNone.
+  TriangleId triangle = kNone;  ///< Otherwise: the triangle to leave ...
+  int side = 0;                 ///< ... across this side.
 };
 
-/// From vertex `v` on the segment: the triangle around it into which the segment runs, or the neighbour that it runs through.
+/// From vertex `v` on the segment: the triangle around it into which the segment runs, or the
+/// neighbour that it runs through.
 TinSurface::Step TinSurface::leave_vertex(VertexId v, GridPoint from, GridPoint to) const {
   const TriangleId start = full_.vertices[v].triangle;
   const auto ahead = [&](VertexId n) {
@@ -23,7 +25,8 @@ TinSurface::Step TinSurface::leave_vertex(VertexId v, GridPoint from, GridPoint 
     const std::int64_t dx = std::int64_t{to.x} - from.x;
     const std::int64_t dy = std::int64_t{to.y} - from.y;
     const GridPoint o = full_.position(v);
-    const auto along = dx * (std::int64_t{p.x} - o.x) + dy * (std::int64_t{p.y} - o.y);  // below 2^61, as orient()
+    const auto along =
+        dx * (std::int64_t{p.x} - o.x) + dy * (std::int64_t{p.y} - o.y);  // below 2^61, as orient()
     return along > 0;
   };
   TriangleId t = start;
@@ -58,8 +61,8 @@ TinSurface::Step TinSurface::cross_edge(const Step& step, GridPoint from, GridPo
   if (apex == 0) {
     return {triangle.v[entry], kNone, 0};
   }
-  // Seen along the segment, corner next(entry) lies to the left and previous(entry) to the right; it leaves across the side
-  // between the apex and the corner on the other hand.
+  // Seen along the segment, corner next(entry) lies to the left and previous(entry) to the right;
+  // it leaves across the side between the apex and the corner on the other hand.
   return {kNone, t, apex > 0 ? next_corner(entry) : previous_corner(entry)};
 }
 

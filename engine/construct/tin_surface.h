@@ -18,7 +18,9 @@ class TinSurface final : public FullSurface {
   struct Step;
   [[nodiscard]] Step leave_vertex(VertexId v, GridPoint from, GridPoint to) const;
   [[nodiscard]] Step cross_edge(const Step& step, GridPoint from, GridPoint to) const;
-  [[nodiscard]] double code(VertexId v) const noexcept { return encoding_.code(full_.vertices[v].height); }
+  [[nodiscard]] double code(VertexId v) const noexcept {
+    return encoding_.code(full_.vertices[v].height);
+  }
   [[nodiscard]] bool is_surface(TriangleId t) const noexcept {
     return t != kNone && full_.classes[t] == TriangleClass::kSurface;
   }

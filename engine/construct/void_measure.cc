@@ -19,10 +19,10 @@ std::int64_t cross(double ax, double ay, double bx, double by) noexcept {
 
 /// Where a sample lies in the fan.
 struct Place {
-  std::size_t surface = kNone;      ///< A surface triangle that holds it (closed), if any.
-  std::size_t any = 0;              ///< Some triangle that holds it.
-  bool in_open_surface = false;     ///< Inside of a surface triangle, on no edge.
-  double residual = 0.0;            ///< To `surface`.
+  std::size_t surface = kNone;   ///< A surface triangle that holds it (closed), if any.
+  std::size_t any = 0;           ///< Some triangle that holds it.
+  bool in_open_surface = false;  ///< Inside of a surface triangle, on no edge.
+  double residual = 0.0;         ///< To `surface`.
 };
 
 Place locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::size_t k) {
@@ -36,12 +36,12 @@ Place locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::s
       place.any = i;
       if (!is_void(tile, s, fan.star_triangle[i])) {
         place.surface = i;
-        const double link_side =
-            fan.determinant[i] - static_cast<double>(before) + static_cast<double>(after);  // 0 on the link edge
+        const double link_side = fan.determinant[i] - static_cast<double>(before) +
+                                 static_cast<double>(after);  // 0 on the link edge
         place.in_open_surface = before > 0 && after < 0 && link_side > 0.0;
-        const double numerator =
-            fan.determinant[i] * (s.z[k] - fan.w_z) +
-            (fan.spoke_z[i] * static_cast<double>(after) - fan.spoke_z[i + 1] * static_cast<double>(before));
+        const double numerator = fan.determinant[i] * (s.z[k] - fan.w_z) +
+                                 (fan.spoke_z[i] * static_cast<double>(after) -
+                                  fan.spoke_z[i + 1] * static_cast<double>(before));
         place.residual = std::abs(numerator) * fan.inverse[i];
       }
     }
@@ -65,7 +65,9 @@ bool had_surface(const Tile& tile, const StarSamples& s, std::size_t k) {
 /// The same after it: w touches the whole fan, any other the fan triangles beside its spoke.
 bool keeps_surface(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::size_t k) {
   const std::size_t degree = s.star.degree();
-  const auto surface = [&](std::size_t i) { return i < fan.triangles() && !is_void(tile, s, fan.star_triangle[i]); };
+  const auto surface = [&](std::size_t i) {
+    return i < fan.triangles() && !is_void(tile, s, fan.star_triangle[i]);
+  };
   if (k == fan.j) {
     for (std::size_t i = 0; i < fan.triangles(); ++i) {
       if (surface(i)) {
@@ -98,7 +100,8 @@ VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const Fan
     const Sample& sample = s.source[k];
     const Place place = locate(tile, s, fan, k);
     if (triangle != nullptr) {
-      (*triangle)[k] = static_cast<double>(place.surface != kNone && sample.depth >= 0.0F ? place.surface : place.any);
+      (*triangle)[k] = static_cast<double>(
+          place.surface != kNone && sample.depth >= 0.0F ? place.surface : place.any);
     }
     if (sample.depth < 0.0F) {
       if (place.in_open_surface) {

@@ -19,16 +19,19 @@ struct VoidMeasure {
   double deviation = 0.0;  ///< Largest residual alone.
 };
 
-/// Measures every sample of the star, and the link vertices that would lose their last surface triangle of this star.
+/// Measures every sample of the star, and the link vertices that would lose their last surface
+/// triangle of this star.
 ///
-/// A sample with a height is right in a closed surface triangle, one without is right outside of every open one; a wrong one is charged
-/// depth * slope (DESIGN.md, section 3). A sample on a spoke goes to the side of its own class. One on the link stays with the fan, even
-/// when the triangle beyond is of its class: so a sample is always in a triangle that replaced its former one, and whichever records
-/// a refinement applies, the charge is in a record that it can see. (Handing samples over the link loses this: the triangle beyond
-/// may be finer in another refinement, and void there.) For the same reason a link vertex is charged when it loses all its surface triangles
-/// of this star, whatever is beyond.
+/// A sample with a height is right in a closed surface triangle, one without is right outside of
+/// every open one; a wrong one is charged depth * slope (DESIGN.md, section 3). A sample on a spoke
+/// goes to the side of its own class. One on the link stays with the fan, even when the triangle
+/// beyond is of its class: so a sample is always in a triangle that replaced its former one, and
+/// whichever records a refinement applies, the charge is in a record that it can see. (Handing
+/// samples over the link loses this: the triangle beyond may be finer in another refinement, and
+/// void there.) For the same reason a link vertex is charged when it loses all its surface
+/// triangles of this star, whatever is beyond.
 /// @param triangle  Filled with the fan triangle of each sample (as assign_samples()); may be null.
-[[nodiscard]] VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const FanFrame& fan,
-                                             std::vector<double>* triangle);
+[[nodiscard]] VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s,
+                                             const FanFrame& fan, std::vector<double>* triangle);
 
 }  // namespace ptin
