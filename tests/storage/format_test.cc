@@ -90,10 +90,55 @@ TEST(ErrorTable, HasEightBinsAnOctave) {
   EXPECT_GT(error_bin_upper(std::numeric_limits<float>::denorm_min()), 0.0F);
 }
 
-// Run with --gtest_also_run_disabled_tests after a change of the format on purpose.
-TEST(Format, DISABLED_WritesTheGoldenFileAgain) {
+// Run with --gtest_also_run_disabled_tests after a change of the format on purpose: the golden
+// file, and the seeds of the fuzz targets (tests/fuzz).
+TEST(Format, DISABLED_WritesTheGoldenFileAndTheFuzzSeedsAgain) {
   fs::create_directories(fs::path(golden()).parent_path());
   write_store(golden(), two_records(), {.overwrite = true});
+
+  const fs::path corpus = here() / ".." / "fuzz" / "corpus";
+  const auto seed = [&](const char* target, const char* name, Bytes head, const Bytes& bytes) {
+    fs::create_directories(corpus / target);
+    head.insert(head.end(), bytes.begin(), bytes.end());
+    write_file((corpus / target / name).string(), head);
+  };
+  const Bytes file = read_file(golden());
+  seed("store_open", "two_records", {std::byte{0}}, file);
+  seed("store_open", "two_records_sealed", {std::byte{1}}, file);
+
+  const TemporaryFolder folder;
+  StoreContent none = two_records();
+  none.segments.clear();
+  write_store(folder.file("none"), none);
+  seed("store_open", "no_records", {std::byte{1}}, read_file(folder.file("none")));
+  seed("record_page", "narrow_int32", {std::byte{0}, std::byte{0}, std::byte{2}},
+       Bytes(file.begin() + 8192, file.begin() + 8192 + 128));
+
+  // Wide records of a large square, and a tree of two levels over them.
+  StoreContent wide = random_content({.seed = 4, .segments = 1, .records = 5000});
+  write_store(folder.file("wide"), wide);
+  const auto store = StoreFile::open(folder.file("wide"));
+  const Bytes large = read_file(folder.file("wide"));
+  const auto index = section_of(large, layout::SectionKind::kIndex);
+  const auto at = [&](std::uint64_t offset, std::uint64_t bytes) {
+    return Bytes(large.begin() + static_cast<std::ptrdiff_t>(offset),
+                 large.begin() + static_cast<std::ptrdiff_t>(offset + bytes));
+  };
+  const std::uint64_t pages = store->pages().page_count();
+  seed("packed_rtree", "two_levels",
+       {static_cast<std::byte>((pages - 1) & 0xFFU), static_cast<std::byte>((pages - 1) >> 8)},
+       at(index.offset, std::min<std::uint64_t>(index.bytes, 12288)));
+  seed("packed_rtree", "one_leaf", {std::byte{84}, std::byte{0}}, at(index.offset + 4096, 4096));
+  std::vector<std::byte> page(4096);
+  IoCounters counters;
+  for (std::uint64_t i = 0; i < pages; ++i) {
+    if (store->page_info(PageId{i}).kind == RecordKind::kWide) {
+      const auto records = static_cast<std::byte>(store->page_info(PageId{i}).records);
+      store->pages().read(PageId{i}, page, counters);
+      seed("record_page", "wide_float32", {std::byte{1}, std::byte{1}, records}, page);
+      break;
+    }
+  }
 }
 
 }  // namespace

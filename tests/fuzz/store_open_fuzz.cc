@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Any bytes as a store: opened both ways, searched, read and verified. Nothing may escape but an
+// Error. The first byte says whether checksums are computed again: with them, changes reach what
+// lies behind.
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "engine/error.h"
+#include "storage/store_file.h"
+#include "storage/verify.h"
+#include "tests/storage/seal.h"
+
+namespace {
+
+using namespace ptin;
+
+class LargeErrors final : public AttributePredicate {
+ public:
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
+    return a.error > 1.0 && a.roi.max_x > 100;
+  }
+};
+
+void use(const std::string& path, PageAccess access) {
+  const auto store = StoreFile::open(path, access);
+  IoCounters counters;
+  std::vector<PageId> pages;
+  std::vector<VertexSplit> records;
+  try {
+    store->index().search(LargeErrors(), pages, counters);
+  } catch (const Error&) {
+  }
+  store->pages().announce(pages, counters);
+  for (std::uint64_t i = 0; i < store->pages().page_count() && i < 200; ++i) {
+    try {
+      records.clear();
+      store->read_records(PageId{i}, records, counters);
+      store->read_matching(PageId{i}, LargeErrors(), records, counters);
+    } catch (const Error&) {
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) {
+    return 0;
+  }
+  const auto* bytes = reinterpret_cast<const std::byte*>(data);
+  ptin::test::Bytes file(bytes + 1, bytes + size);
+  if (data[0] % 2 == 1) {
+    ptin::test::seal(file);
+  }
+  const int fd = ::memfd_create("store", MFD_CLOEXEC);
+  if (fd < 0 || ::write(fd, file.data(), file.size()) != static_cast<ssize_t>(file.size())) {
+    return 0;
+  }
+  const std::string path = "/proc/self/fd/" + std::to_string(fd);
+  for (const ptin::PageAccess access : {ptin::PageAccess::kMapped, ptin::PageAccess::kPread}) {
+    try {
+      use(path, access);
+    } catch (const ptin::Error&) {
+    }
+  }
+  try {
+    ptin::VerifyOptions options;
+    options.memory_bytes = 1 << 20;
+    static_cast<void>(ptin::verify_store(path, options));
+  } catch (const ptin::Error&) {
+  }
+  ::close(fd);
+  return 0;
+}
