@@ -42,9 +42,15 @@ std::string to_wkt2(const OGRSpatialReference& srs) {
 
 std::string unit_of_metres(double metres) {
   const auto is = [&](double m) { return std::abs(metres - m) <= 1e-9 * m; };
-  if (is(1.0)) return "metre";
-  if (is(0.3048)) return "foot";
-  if (is(1200.0 / 3937.0)) return "US survey foot";
+  if (is(1.0)) {
+    return "metre";
+  }
+  if (is(0.3048)) {
+    return "foot";
+  }
+  if (is(1200.0 / 3937.0)) {
+    return "US survey foot";
+  }
   return "unknown";
 }
 

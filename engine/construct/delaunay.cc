@@ -67,7 +67,7 @@ Delaunay triangulate(std::span<const GridPoint> positions, const std::stop_token
                          CGAL::make_property_map(std::as_const(points))));
   Delaunay delaunay;
   Delaunay::Face_handle hint;
-  constexpr std::size_t kBetweenStops = 4096;
+  static constexpr std::size_t kBetweenStops = 4096;
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i % kBetweenStops == 0 && stop.stop_requested()) {
       throw Error(ErrorCode::cancelled, "the triangulation was cancelled");
@@ -144,7 +144,7 @@ void link_vertices(Tin& tin) {
 }  // namespace
 
 Tin make_delaunay_tin(std::span<const GridPoint> positions, std::span<const HeightBits> heights,
-                      std::stop_token stop) {
+                      const std::stop_token& stop) {
   check(positions, heights);
   const Delaunay delaunay = triangulate(positions, stop);
   if (delaunay.dimension() < 2) {

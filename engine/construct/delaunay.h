@@ -35,6 +35,7 @@ namespace ptin {
 /// Cost: O(n log n) expected, about 0.6 us and 250 bytes a point while it runs.
 /// Threads: any number of calls at once.
 [[nodiscard]] Tin make_delaunay_tin(std::span<const GridPoint> positions,
-                                    std::span<const HeightBits> heights, std::stop_token stop = {});
+                                    std::span<const HeightBits> heights,
+                                    const std::stop_token& stop = {});
 
 }  // namespace ptin

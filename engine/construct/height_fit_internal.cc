@@ -25,7 +25,7 @@ double tolerance(HeightScan::Given given, double height, double step) {
 
 /// The nearest whole number, ties to even, of |v| < 2^51. Faster than nearbyint, which is a call.
 double nearest_integer(double v) {
-  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52: the sum has no bits below 1
+  static constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52: the sum has no bits below 1
   return (v + kShift) - kShift;
 }
 

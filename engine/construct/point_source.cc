@@ -119,7 +119,7 @@ class StepCounter {
 
   /// Beyond 2^62 in either direction is given as that: far beyond the grid.
   [[nodiscard]] std::int64_t steps(Decimal value) const {
-    constexpr std::int64_t kFar = std::int64_t{1} << 62;
+    static constexpr std::int64_t kFar = std::int64_t{1} << 62;
     if (resolution_) {
       const double steps = std::round(to_double(value) / *resolution_);
       return std::abs(steps) < 9007199254740992.0 ? static_cast<std::int64_t>(steps)
@@ -314,7 +314,7 @@ bool is_point_file(const std::string& path) {
 }
 
 PointSet read_points(const std::vector<std::string>& paths, const SourceOptions& options,
-                     std::stop_token stop, const Progress& progress) {
+                     const std::stop_token& stop, const Progress& progress) {
   const std::string context = paths.empty() ? "" : paths[0];
   PointSet set;
   set_crs(set.frame, resolve_crs("", options.a_srs, options.vertical_crs));

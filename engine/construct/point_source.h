@@ -53,7 +53,8 @@ struct PointSet {
 ///                cancelled            `stop` fired
 /// Cost: O(n log n), about 0.5 us a point; 64 bytes a point while it runs.
 [[nodiscard]] PointSet read_points(
-    const std::vector<std::string>& paths, const SourceOptions& options, std::stop_token stop = {},
+    const std::vector<std::string>& paths, const SourceOptions& options,
+    const std::stop_token& stop = {},
     const std::function<void(std::uint64_t done, std::uint64_t total)>& progress = {});
 
 }  // namespace ptin

@@ -25,7 +25,7 @@ namespace {
 
 GDALDatasetUniquePtr open_dataset(const std::string& path) {
   const GdalSession session;
-  constexpr unsigned kFlags = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
+  static constexpr unsigned kFlags = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
   GDALDatasetUniquePtr data(GDALDataset::Open(path.c_str(), kFlags));
   if (data != nullptr) {
     return data;
@@ -179,9 +179,9 @@ std::pair<T, T> nodata_range(std::optional<double> nodata) {
                       value <= std::numeric_limits<T>::max() && value == std::trunc(value);
     return fits ? std::pair<T, T>{static_cast<T>(value), static_cast<T>(value)} : none;
   } else {
-    constexpr double kHuge = 1e30;
+    static constexpr double kHuge = 1e30;
     const auto clamped = [](double v) {
-      constexpr double kLargest = static_cast<double>(std::numeric_limits<T>::max());
+      static constexpr double kLargest = static_cast<double>(std::numeric_limits<T>::max());
       return static_cast<T>(std::clamp(v, -kLargest, kLargest));
     };
     if (std::isinf(value)) {
@@ -206,7 +206,7 @@ bool find_valid(std::span<const T> values, std::span<std::uint8_t> valid,
     const T v = values[i];
     bool is_value = !(low <= v && v <= high);
     if constexpr (!std::is_integral_v<T>) {
-      is_value = is_value && v == v;
+      is_value = is_value && !std::isnan(v);
       const double height = shape.offset + shape.scale * static_cast<double>(v);
       all_heights = all_heights && (!is_value || std::abs(height) <= double{FLT_MAX});
     }

@@ -49,8 +49,8 @@ class RasterPart {
   ///                invalid_argument  not a raster, no band or several, complex, rotated, too
   ///                large, ...
   RasterPart(std::string path, std::optional<double> nodata_override);
-  /// A copy is closed, and reads with a descriptor of its own.
-  explicit RasterPart(const RasterPart& other);
+  /// The same part, closed: it reads with a descriptor of its own.
+  [[nodiscard]] RasterPart closed_copy() const { return RasterPart(*this); }
   ~RasterPart();
   RasterPart(RasterPart&&) noexcept;
   RasterPart& operator=(RasterPart&&) noexcept;
@@ -73,6 +73,7 @@ class RasterPart {
 
  private:
   struct Bands;
+  RasterPart(const RasterPart& other);
   void open();
 
   std::string path_;

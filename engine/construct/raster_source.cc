@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <mutex>
+#include <string_view>
 #include <utility>
 
 #include "engine/construct/crs.h"
@@ -37,11 +38,27 @@ struct PlacedPart {
   throw Error(ErrorCode::invalid_argument, sentence, context);
 }
 
+/// One name for each unit, as the CRS would give it.
 std::string normal_unit(const std::string& unit) {
-  if (unit.empty()) return "unknown";
-  if (unit == "m" || unit == "meter" || unit == "meters" || unit == "metres") return "metre";
-  if (unit == "ft" || unit == "feet") return "foot";
-  if (unit == "us-ft" || unit == "ftUS" || unit == "US survey feet") return "US survey foot";
+  if (unit.empty()) {
+    return "unknown";
+  }
+  static constexpr std::array<std::array<std::string_view, 2>, 9> kNames = {{
+      {"m", "metre"},
+      {"meter", "metre"},
+      {"meters", "metre"},
+      {"metres", "metre"},
+      {"ft", "foot"},
+      {"feet", "foot"},
+      {"us-ft", "US survey foot"},
+      {"ftUS", "US survey foot"},
+      {"US survey feet", "US survey foot"},
+  }};
+  for (const auto& [alias, name] : kNames) {
+    if (unit == alias) {
+      return std::string(name);
+    }
+  }
   return unit;
 }
 
@@ -213,7 +230,7 @@ void RasterSource::Impl::check_size() const {
 }
 
 RasterSource RasterSource::open(const std::vector<std::string>& paths, const SourceOptions& options,
-                                std::stop_token stop, const Progress& progress) {
+                                const std::stop_token& stop, const Progress& progress) {
   auto impl = std::make_unique<Impl>();
   impl->open_parts(paths, options);
   if (options.bbox) {
@@ -239,7 +256,7 @@ RasterSource RasterSource::duplicate() const {
   copy->scale = impl_->scale;
   copy->offset = impl_->offset;
   for (const PlacedPart& p : impl_->parts) {
-    copy->parts.push_back({RasterPart(p.part), p.x, p.y});
+    copy->parts.push_back({p.part.closed_copy(), p.x, p.y});
   }
   return RasterSource(std::move(copy));
 }
@@ -262,7 +279,7 @@ SampleWindow RasterSource::Impl::scan_step() const {
 
 template <class T>
 void RasterSource::Impl::scan_as(const std::stop_token& stop, const Progress& progress) {
-  constexpr bool kWhole = std::is_integral_v<T>;
+  static constexpr bool kWhole = std::is_integral_v<T>;
   HeightScan heights(std::is_same_v<T, float> ? HeightScan::Given::kFloat32
                                               : HeightScan::Given::kFloat64);
   T low = std::numeric_limits<T>::max(), high = std::numeric_limits<T>::lowest();

@@ -47,7 +47,8 @@ class RasterSource {
   /// Cost: one reading of all files. Memory: a few MiB, and GDAL's block cache, which is the
   /// caller's to set.
   [[nodiscard]] static RasterSource open(const std::vector<std::string>& paths,
-                                         const SourceOptions& options, std::stop_token stop = {},
+                                         const SourceOptions& options,
+                                         const std::stop_token& stop = {},
                                          const Progress& progress = {});
 
   RasterSource(RasterSource&&) noexcept;

@@ -110,7 +110,7 @@ void add_vertices(Tin& tin, const Window& w, std::int32_t y, const DiagonalRow& 
   for (std::int32_t x = 0; x < w.width; ++x) {
     const std::size_t i = w.at(x, y);
     const auto ux = static_cast<std::uint32_t>(x);
-    TriangleId t;
+    TriangleId t = kNone;
     if (x == 0 && y > 0) {  // the border lies to the south: walk from there
       t = western(row_above - cells, below[0]);
     } else if (top) {  // to the west

@@ -165,7 +165,7 @@ class RowTransform {
       }
       const std::int64_t squared = weights.x * apart * apart + nearest->squared;
       if (squared <= weights.limit) {
-        constexpr double kUnit = 1.0 / static_cast<double>(RowWeights::kOne);
+        static constexpr double kUnit = 1.0 / static_cast<double>(RowWeights::kOne);
         depth[x - mask_.inner_x] =
             static_cast<float>(weights.step * std::sqrt(static_cast<double>(squared) * kUnit));
       }
@@ -223,7 +223,7 @@ void void_depth(const MaskWindow& mask, const GroundStepOfRow& step_of_row, int 
     return &mask.valid[static_cast<std::size_t>(y) * width];
   };
   const auto inner_rows = static_cast<std::size_t>(mask.inner_height);
-  constexpr std::uint16_t kNone16 = 0xFFFF;
+  static constexpr std::uint16_t kNone16 = 0xFFFF;
 
   // Southwards, keeping the counts of the inner rows; then northwards, finishing row by row.
   std::vector<std::uint16_t> to_north(width * inner_rows);

@@ -604,6 +604,28 @@ TEST(RasterSource, JoinsSeveralRastersOfOneGrid) {
   EXPECT_EQ(heights_of(turned)[7], 3) << "the last one with a height wins";
 }
 
+TEST(RasterSource, JoinsMoreFilesThanItKeepsOpen) {
+  std::vector<std::string> paths;
+  Heights expected;
+  for (int i = 0; i < 100; ++i) {
+    Made made = small();
+    made.name = "/vsimem/column_" + std::to_string(i) + ".tif";
+    made.columns = 1;
+    made.rows = 2;
+    made.values = {double(i), double(1000 + i)};
+    made.geotransform = {100.0 + 10 * i, 10, 0, 230, 0, -10};
+    paths.push_back(write(made));
+    expected.push_back(1000 + i);
+  }
+  for (int i = 0; i < 100; ++i) {
+    expected.push_back(i);
+  }
+  const RasterSource source = RasterSource::open(paths, {});
+  expect_heights(source, expected);
+  expect_heights(source, expected);
+  expect_heights(source.duplicate(), expected);
+}
+
 TEST(RasterSource, RefusesToJoinRastersOfDifferentGrids) {
   Made first = small(), second = small();
   first.name = "/vsimem/first.tif";
@@ -659,6 +681,22 @@ TEST(RasterSource, ReportsItsProgressToTheEnd) {
 
 // ---------------------------------------------------------------------------------------------------
 // Real terrains.
+
+std::string test_data(const std::string& name) {
+  return (std::filesystem::path(PTIN_TEST_DATA) / name).string();
+}
+
+TEST(RasterSourceOnRealTerrain, ReadsTheTerrainsOfThisFolder) {
+  const RasterSource mountains = RasterSource::open({test_data("mountains_257.tif")}, {});
+  EXPECT_EQ(mountains.valid_samples(), 257U * 257U);
+  EXPECT_EQ(mountains.frame().min_height, 633);
+  EXPECT_EQ(mountains.frame().max_height, 1576);
+  EXPECT_EQ(mountains.frame().map.step_x, 30);
+  const RasterSource coast = RasterSource::open({test_data("coast_257.tif")}, {});
+  EXPECT_EQ(coast.valid_samples(), 42642U);
+  EXPECT_EQ(coast.void_samples(), 257U * 257U - 42642U);
+  EXPECT_TRUE(coast.frame().geographic);
+}
 
 std::string shared_data(const std::string& name) {
   return (std::filesystem::path(PTIN_SHARED_DATA) / name).string();
