@@ -29,18 +29,34 @@ bool turns_left(const Tin& tin, VertexId a, VertexId b, VertexId c) {
   return orient(tin.position(a), tin.position(b), tin.position(c)) > 0;
 }
 
+/// What lies around corner w of a triangle. All six numbers are loaded at once and the right ones
+/// selected, so that a walk waits for one load a triangle and for no branch.
+struct Around {
+  VertexId next, previous;  ///< The other corners, counter-clockwise.
+  TriangleId turn;          ///< The next triangle around w, counter-clockwise.
+};
+Around around(const Triangle& t, VertexId w) noexcept {
+  const bool is_1 = t.v[1] == w;
+  const bool is_2 = t.v[2] == w;
+  const auto select = [=](std::uint32_t if_0, std::uint32_t if_1, std::uint32_t if_2) {
+    const std::uint32_t other = is_1 ? if_1 : if_2;
+    return is_1 || is_2 ? other : if_0;
+  };
+  return {select(t.v[1], t.v[2], t.v[0]), select(t.v[2], t.v[0], t.v[1]),
+          select(t.n[1], t.n[2], t.n[0])};
+}
+
 /// First triangle of w whose next corner is `vl`, or kNone.
 TriangleId find_first(const Tin& tin, VertexId w, VertexId vl) {
   const Triangle* const triangles = tin.triangles.data();
   const TriangleId start = tin.vertices[w].triangle;
   TriangleId t = start;
   do {
-    const Triangle& triangle = triangles[t];
-    const int next = kNext[place_of(triangle.v, w)];
-    if (triangle.v[next] == vl) {
+    const Around here = around(triangles[t], w);
+    if (here.next == vl) {
       return t;
     }
-    t = triangle.n[next];
+    t = here.turn;
   } while (t != kNone && t != start);
   return kNone;
 }
@@ -75,18 +91,17 @@ Fan move_fan(Tin& tin, const SplitSite& site) {
   TriangleId t = fan.first;
   do {
     Triangle& triangle = triangles[t];
-    const int c = place_of(triangle.v, site.w);
-    const VertexId end = triangle.v[kPrevious[c]];
-    const GridPoint b = vertices[end].position;
+    const Around here = around(triangle, site.w);
+    const GridPoint b = vertices[here.previous].position;
     if (orient(u, a, b) <= 0) {
       return fan;
     }
     a = b;
-    triangle.v[c] = site.u;
+    triangle.v[place_of(triangle.v, site.w)] = site.u;
     fan.holds_triangle_of_w |= known == t;
     fan.last = t;
-    t = triangle.n[kNext[c]];
-    if (end == site.vr) {
+    t = here.turn;
+    if (here.previous == site.vr) {
       fan.outer_right = t;
       fan.fits = true;
       return fan;

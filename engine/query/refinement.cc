@@ -109,34 +109,37 @@ class StarFetcher {
   void fetch_neighbours(VertexId w) const noexcept {
     const TriangleId t = tin_.vertices[w].triangle;
     if (t != kNone) {
-      fetch_around(tin_.triangles[t], w);
+      fetch_around(tin_.triangles[t]);
     }
   }
   void fetch_beyond(VertexId w) const noexcept {
     const TriangleId t = tin_.vertices[w].triangle;
-    if (t != kNone) {
-      const Triangle& triangle = tin_.triangles[t];
-      const int c = corner_of(triangle, w);
-      for (const TriangleId n : {triangle.n[next_corner(c)], triangle.n[previous_corner(c)]}) {
-        if (n != kNone) {
-          fetch_around(tin_.triangles[n], w);
-        }
+    if (t == kNone) {
+      return;
+    }
+    const Triangle& triangle = tin_.triangles[t];
+    const int c = static_cast<int>(triangle.v[1] == w) + 2 * static_cast<int>(triangle.v[2] == w);
+    for (int side = 0; side < 3; ++side) {
+      const TriangleId n = triangle.n[side];
+      if (side != c && n != kNone) {
+        fetch_around(tin_.triangles[n]);
       }
     }
   }
 
  private:
-  void fetch(TriangleId t) const noexcept {
-    if (t != kNone) {
-      __builtin_prefetch(&tin_.triangles[t], 1);
+  // Fetches what w has no part in too: finding out would cost more.
+  void fetch_around(const Triangle& triangle) const noexcept {
+    for (const TriangleId n : triangle.n) {
+      fetch(n);
+    }
+    for (const VertexId v : triangle.v) {
+      __builtin_prefetch(&tin_.vertices[v]);
     }
   }
-  void fetch_around(const Triangle& triangle, VertexId w) const noexcept {
-    const int c = corner_of(triangle, w);
-    fetch(triangle.n[next_corner(c)]);
-    fetch(triangle.n[previous_corner(c)]);
-    __builtin_prefetch(&tin_.vertices[triangle.v[next_corner(c)]]);
-    __builtin_prefetch(&tin_.vertices[triangle.v[previous_corner(c)]]);
+  void fetch(TriangleId t) const noexcept {
+    // kNone is fetched from triangle 0's line.
+    __builtin_prefetch(&tin_.triangles[t == kNone ? 0 : t], 1);
   }
 
   const Tin& tin_;
