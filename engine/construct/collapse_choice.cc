@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/check.h"
+#include "engine/construct/sample_blocks.h"
 #include "engine/construct/void_measure.h"
 #include "engine/mesh/collapse.h"
 
@@ -117,7 +118,10 @@ CollapseChoice CollapseChooser::choose_on_surface(const Tile& tile, StarSamples&
       continue;
     }
     PTIN_CHECK(make_fan(s, c.j, fan_));
-    const double error = largest_residual(s, fan_, 0, s.x.size(), best_error);
+    double error = largest_residual(s, fan_, 0, s.x.size(), best_error);
+    if (!s.blocks.empty() && error <= best_error) {
+      error = std::max(error, straddling_residual(s, fan_));
+    }
     if (error < best_error || (error == best_error && c.key < best.key)) {
       best = c;
       best_error = error;
@@ -142,7 +146,7 @@ CollapseChoice CollapseChooser::choose_with_voids(const Tile& tile, const StarSa
     double error = 0.0;
     if (!s.void_only) {
       PTIN_CHECK(make_fan(s, c.j, fan_));
-      const VoidMeasure measure = measure_with_voids(tile, s, fan_, nullptr);
+      const VoidMeasure measure = measure_with_voids(tile, s, fan_);
       if (!measure.allowed) {
         continue;
       }

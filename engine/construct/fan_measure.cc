@@ -9,11 +9,6 @@ namespace ptin {
 
 namespace {
 
-std::int64_t cross_exact(double ax, double ay, double bx, double by) noexcept {
-  return static_cast<std::int64_t>(ax) * static_cast<std::int64_t>(by) -
-         static_cast<std::int64_t>(ay) * static_cast<std::int64_t>(bx);
-}
-
 double cross_wide(double ax, double ay, double bx, double by) noexcept {
   return static_cast<double>(cross_exact(ax, ay, bx, by));
 }
@@ -244,6 +239,9 @@ double residual_bound(const StarSamples& s, const MeasureUnits& units) noexcept 
 
 bool all_residuals_zero(const Tile& tile, const StarSamples& s, const FanFrame& fan) {
   __extension__ using Wide = __int128;
+  if (!s.blocks.empty()) {
+    return false;
+  }
   const HeightEncoding& heights = tile.units.heights;
   const auto link_code = [&](std::size_t spoke) {
     return heights.code(

@@ -24,6 +24,12 @@ struct FanFrame {
   [[nodiscard]] std::size_t triangles() const noexcept { return determinant.size(); }
 };
 
+/// The cross product of two vectors with integer coordinates below 2^31, exactly.
+[[nodiscard]] inline std::int64_t cross_exact(double ax, double ay, double bx, double by) noexcept {
+  return static_cast<std::int64_t>(ax) * static_cast<std::int64_t>(by) -
+         static_cast<std::int64_t>(ay) * static_cast<std::int64_t>(bx);
+}
+
 /// Builds the frame of the fan from link[j]. Returns false when the collapse is not allowed: a fan
 /// triangle would not be strictly counter-clockwise, or u is on the border and w is not a collinear
 /// neighbour along it. (The same rule as can_collapse().)

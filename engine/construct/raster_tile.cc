@@ -91,6 +91,7 @@ StartedTile start_raster_tile(const RasterSource& source, const SampleRange& win
   const auto width = static_cast<std::int32_t>(window.width);
   const auto height = static_cast<std::int32_t>(window.height);
   started.tile.units = units;
+  started.tile.samples_fill_grid = true;
   started.tile.tin = make_raster_tin(heights, valid, width, height, units.heights, origin);
   start_tile(started.tile, depths);
   started.full = std::make_unique<RasterSurface>(std::move(heights), std::move(valid), width,

@@ -2,12 +2,14 @@
 #include "engine/construct/record_maker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
 
 #include "engine/check.h"
 #include "engine/construct/rounding.h"
+#include "engine/construct/sample_blocks.h"
 #include "engine/construct/saturation.h"
 #include "engine/construct/void_measure.h"
 
@@ -25,6 +27,14 @@ std::pair<HeightBits, HeightBits> bits_of(const Interval& codes, const HeightEnc
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return {heights.bits(kInfinity), heights.bits(-kInfinity)};
+}
+
+bool is_mostly_alike(const std::vector<Sample>& list) {
+  std::size_t alike = 0;
+  for (std::size_t k = 1; k < list.size(); ++k) {
+    alike += list[k].height == list[k - 1].height ? 1 : 0;
+  }
+  return alike > list.size() / 2;
 }
 
 std::uint16_t flags_of(const Tin& tin, const CollapseSite& site) {
@@ -48,19 +58,23 @@ std::uint16_t flags_of(const Tin& tin, const CollapseSite& site) {
 /// Fills triangle_ and residual_; returns the collapse's own error and the deviation at samples, in
 /// codes.
 RecordMaker::OwnPart RecordMaker::measure(const StarSamples& s) {
-  if (s.void_only) {
-    (void)measure_with_voids(tile_, s, fan_, &triangle_);
-    residual_.assign(triangle_.size(), 0.0);
+  assign_samples(s, fan_, triangle_, residual_);
+  if (s.void_only || s.flat) {
     return {};
   }
   const double bound = residual_bound(s, tile_.units);
   if (!s.surface_only) {
-    const VoidMeasure voids = measure_with_voids(tile_, s, fan_, &triangle_);
-    residual_.assign(triangle_.size(), 0.0);
+    for (std::size_t k = 0; k < s.source.size(); ++k) {
+      triangle_[k] = static_cast<double>(
+          triangle_of_sample(tile_, s, fan_, s.x[k], s.y[k], s.source[k].depth >= 0.0F));
+    }
+    const VoidMeasure voids = measure_with_voids(tile_, s, fan_);
     return {scaled_up(voids.error) + bound, scaled_up(voids.deviation) + bound};
   }
-  assign_samples(s, fan_, triangle_, residual_);
-  const double worst = *std::max_element(residual_.begin(), residual_.end());
+  double worst = *std::max_element(residual_.begin(), residual_.end());
+  if (!s.blocks.empty()) {
+    worst = std::max(worst, straddling_residual(s, fan_));
+  }
   double error = scaled_up(worst) + bound;
   if (bound > 0.0 && worst <= bound && all_residuals_zero(tile_, s, fan_)) {
     error = 0.0;
@@ -132,39 +146,71 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const OwnPart& own,
   return r;
 }
 
-/// The worst sample of each fan triangle comes first in its list: the next choice of w screens by
-/// it.
+/// Hands every element to the fan triangle that it lies in; blocks across a spoke are taken apart.
 void RecordMaker::hand_over_samples(const StarSamples& s) {
   for (const TriangleId t : s.star.triangles) {
     tile_.samples.give_back(tile_.carried[t].samples);
     tile_.carried[t].samples = {};
   }
-  const std::size_t n = s.source.size();
-  counts_.assign(fan_.triangles(), 0);
-  worst_.assign(fan_.triangles(), 0.0);
-  for (std::size_t k = 0; k < n; ++k) {
-    ++counts_[static_cast<std::size_t>(triangle_[k])];
-  }
+  lists_.resize(std::max(lists_.size(), fan_.triangles()));
   for (std::size_t i = 0; i < fan_.triangles(); ++i) {
-    CarriedState& carried = tile_.carried[fan_ids_[i]];
-    carried.samples = tile_.samples.take(counts_[i]);
-    carried.holds_heights = carried.holds_voids = false;
-    counts_[i] = 0;
+    lists_[i].samples.clear();
   }
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto i = static_cast<std::size_t>(triangle_[k]);
-    const std::span<Sample> list = tile_.samples.samples(tile_.carried[fan_ids_[i]].samples);
-    const std::uint32_t place = counts_[i]++;
-    list[place] = s.source[k];
-    CarriedState& carried = tile_.carried[fan_ids_[i]];
-    (s.source[k].depth < 0.0F ? carried.holds_voids : carried.holds_heights) = true;
-    if (place == 0) {
-      worst_[i] = residual_[k];
-    } else if (residual_[k] > worst_[i]) {
-      worst_[i] = residual_[k];
-      std::swap(list[0], list[place]);
+  for (std::size_t k = 0; k < s.source.size(); ++k) {
+    if (s.source[k].side_log == 0) {
+      lists_[static_cast<std::size_t>(triangle_[k])].add(s.source[k], residual_[k]);
     }
   }
+  for (const SampleBlock& b : s.blocks) {
+    hand_over_block(s, s.source[b.source]);
+  }
+  for (std::size_t i = 0; i < fan_.triangles(); ++i) {
+    store_list(i);
+  }
+}
+
+void RecordMaker::hand_over_block(const StarSamples& s, const Sample& block) {
+  const GridPoint u = tile_.tin.position(s.star.center);
+  const double x = static_cast<double>(block.position.x) - u.x;
+  const double y = static_cast<double>(block.position.y) - u.y;
+  if (block.side_log == 0) {
+    lists_[triangle_of_sample(tile_, s, fan_, x, y, block.depth >= 0.0F)].add(block, 0.0);
+    return;
+  }
+  const auto reach = static_cast<double>((std::int64_t{1} << block.side_log) - 1);
+  const std::size_t i = triangle_of_box(fan_, x, y, x + reach, y + reach);
+  if (i < fan_.triangles()) {
+    lists_[i].add(block, 0.0);
+    return;
+  }
+  const std::int32_t half = std::int32_t{1} << (block.side_log - 1);
+  for (const GridPoint offset : {GridPoint{0, 0}, {half, 0}, {0, half}, {half, half}}) {
+    Sample quarter = block;
+    quarter.position = {block.position.x + offset.x, block.position.y + offset.y};
+    --quarter.side_log;
+    hand_over_block(s, quarter);
+  }
+}
+
+/// Long lists become blocks where that pays: where they hold more samples than the triangle is
+/// long, so that there is an inside, and most are like the one before.
+void RecordMaker::store_list(std::size_t i) {
+  std::vector<Sample>& list = lists_[i].samples;
+  CarriedState& carried = tile_.carried[fan_ids_[i]];
+  carried.holds_voids =
+      tile_.has_voids &&
+      std::any_of(list.begin(), list.end(), [](const Sample& a) { return a.depth < 0.0F; });
+  carried.holds_heights =
+      !tile_.has_voids ||
+      std::any_of(list.begin(), list.end(), [](const Sample& a) { return !(a.depth < 0.0F); });
+  const double length = std::abs(fan_.spoke_x[i]) + std::abs(fan_.spoke_y[i]) +
+                        std::abs(fan_.spoke_x[i + 1]) + std::abs(fan_.spoke_y[i + 1]);
+  if (tile_.samples_fill_grid && static_cast<double>(list.size()) > 2.0 * length + 64.0 &&
+      is_mostly_alike(list)) {
+    join_into_blocks(list);
+  }
+  carried.samples = tile_.samples.take(static_cast<std::uint32_t>(list.size()));
+  std::copy(list.begin(), list.end(), tile_.samples.samples(carried.samples).begin());
 }
 
 void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {

@@ -3,6 +3,7 @@
 // Makes the saturated record of a collapse and carries it out.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "engine/construct/fan_measure.h"
@@ -25,6 +26,21 @@ class RecordMaker {
   void collapse_and_record(StarSamples& s, std::size_t j);
 
  private:
+  /// The samples of one fan triangle; the worst comes first, since the next choice of w screens by
+  /// it.
+  struct FanList {
+    std::vector<Sample> samples;
+    double worst = 0.0;
+    void add(const Sample& sample, double residual) {
+      samples.push_back(sample);
+      if (samples.size() == 1) {
+        worst = residual;
+      } else if (residual > worst) {
+        worst = residual;
+        std::swap(samples.front(), samples.back());
+      }
+    }
+  };
   struct OwnPart {
     double error = 0.0;
     double deviation = 0.0;
@@ -34,13 +50,14 @@ class RecordMaker {
   [[nodiscard]] VertexSplit make_record(const StarSamples& s, const OwnPart& own,
                                         const CollapseSite& site) const;
   void hand_over_samples(const StarSamples& s);
+  void hand_over_block(const StarSamples& s, const Sample& block);
+  void store_list(std::size_t i);
 
   Tile& tile_;
   const FullSurface& full_;
   FanFrame fan_;
   std::vector<double> triangle_, residual_;  ///< Of each sample, padded.
-  std::vector<double> worst_;                ///< Of each fan triangle.
-  std::vector<std::uint32_t> counts_;
+  std::vector<FanList> lists_;               ///< One for each fan triangle.
   std::vector<TriangleId> fan_ids_;
 };
 

@@ -14,13 +14,19 @@
 
 namespace ptin {
 
-/// A sample of the source that is no vertex any more. `depth` is its distance to the nearest sample
-/// of the other class in ground units, +infinity beyond the cut-off; negative for a sample without
-/// a height (DESIGN.md, section 3).
+/// A sample of the source that is no vertex any more, or a square block of them: 2^side_log by
+/// 2^side_log samples of a raster with one height, or all without one; `position` is its
+/// south-western sample, a multiple of its side. Lakes, seas and voids are blocks: a triangle over
+/// a million samples lists about as many elements as its border is long (sample_blocks.h).
+///
+/// `depth` is the distance to the nearest sample of the other class in ground units, +infinity
+/// beyond the cut-off; negative for samples without a height (DESIGN.md, section 3); of a block,
+/// the farthest from 0.
 struct Sample {
   GridPoint position;
   HeightBits height = 0;
   float depth = 0.0F;
+  std::uint32_t side_log = 0;
 };
 
 /// Where a triangle's samples are. Owned by the triangle; only SampleLists makes sense of it.

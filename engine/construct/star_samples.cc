@@ -49,27 +49,54 @@ class Layout {
   Layout(GridPoint origin, double origin_code, StarSamples& out)
       : origin_(origin),
         origin_code_(origin_code),
+        out_(out),
         x_(out.x.data()),
         y_(out.y.data()),
-        z_(out.z.data()) {}
-  void add(const Sample& s) noexcept {
+        z_(out.z.data()) {
+    out.blocks.clear();
+  }
+  void add(const Sample& s) {
     const double z = s.depth < 0.0F ? 0.0 : code_of<type>(s.height) - origin_code_;
     x_[n_] = static_cast<double>(s.position.x - origin_.x);
     y_[n_] = static_cast<double>(s.position.y - origin_.y);
     z_[n_] = z;
     largest_ = std::max(largest_, std::abs(z));
+    if (s.side_log != 0) [[unlikely]] {
+      const auto reach = static_cast<double>((std::int64_t{1} << s.side_log) - 1);
+      out_.blocks.push_back({x_[n_], y_[n_], x_[n_] + reach, y_[n_] + reach, z, s.depth,
+                             static_cast<std::uint32_t>(n_), 0});
+    }
     ++n_;
   }
-  void pad() noexcept {  // with u itself
-    for (; n_ % kSampleLanes != 0; ++n_) {
-      x_[n_] = y_[n_] = z_[n_] = 0.0;
+  /// The further corners of blocks, then padding with u itself.
+  void finish() {
+    const std::size_t total = n_ + 3 * out_.blocks.size();
+    const std::size_t padded = (total + kSampleLanes - 1) / kSampleLanes * kSampleLanes;
+    out_.x.resize(padded);
+    out_.y.resize(padded);
+    out_.z.resize(padded);
+    for (SampleBlock& b : out_.blocks) {
+      b.corners = static_cast<std::uint32_t>(n_);
+      put(b.x1, b.y0, b.z);
+      put(b.x1, b.y1, b.z);
+      put(b.x0, b.y1, b.z);
+    }
+    while (n_ < padded) {
+      put(0.0, 0.0, 0.0);
     }
   }
   [[nodiscard]] double largest() const noexcept { return largest_; }
 
  private:
+  void put(double x, double y, double z) {
+    out_.x[n_] = x;
+    out_.y[n_] = y;
+    out_.z[n_] = z;
+    ++n_;
+  }
   GridPoint origin_;
   double origin_code_;
+  StarSamples& out_;
   double *x_, *y_, *z_;
   std::size_t n_ = 0;
   double largest_ = 0.0;
@@ -80,7 +107,7 @@ class Layout {
 template <class Add>
 void for_each_sample(const Tile& tile, const StarSamples& s, const Add& add) {
   const Vertex& u = tile.tin.vertices[s.star.center];
-  add(Sample{u.position, u.height, tile.vertex_state[s.star.center].depth});
+  add(Sample{u.position, u.height, tile.vertex_state[s.star.center].depth, 0});
   for (const TriangleId t : s.star.triangles) {
     if (const SampleSlot slot = tile.carried[t].samples; slot.count != 0) {
       add(*tile.samples.data(slot));
@@ -101,14 +128,13 @@ void lay_out_samples(const Tile& tile, GridPoint origin, double origin_code, Sta
   for (const TriangleId t : out.star.triangles) {
     count += tile.carried[t].samples.count;
   }
-  const std::size_t padded = (count + kSampleLanes - 1) / kSampleLanes * kSampleLanes;
   out.count = count;
-  out.x.resize(padded);
-  out.y.resize(padded);
-  out.z.resize(padded);
+  out.x.resize(count);
+  out.y.resize(count);
+  out.z.resize(count);
   Layout<type> layout(origin, origin_code, out);
   for_each_sample(tile, out, [&](const Sample& s) { layout.add(s); });
-  layout.pad();
+  layout.finish();
   out.largest_z = std::max(out.largest_z, layout.largest());
 }
 
@@ -185,6 +211,7 @@ void gather_star(const Tile& tile, VertexId u, StarSamples& out) {
   }
   classify(tile, out);
   out.count = 0;
+  out.blocks.clear();
   if (!out.flat && !out.void_only) {
     gather_samples(tile, out);
     if (!out.surface_only) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "engine/construct/tile.h"
@@ -21,17 +22,27 @@ inline constexpr std::size_t kSampleLanes = 4;
 /// below 2^53.
 inline constexpr double kExactRadius = 0x1p25;
 
+/// A block of samples (sample_lists.h), relative to u: its outermost samples.
+struct SampleBlock {
+  double x0, y0, x1, y1, z;
+  float depth;
+  std::uint32_t source;   ///< Index of its element, and of its south-western corner as a sample.
+  std::uint32_t corners;  ///< Where its other three corners begin among the samples.
+};
+
 /// The star of u, relative to u: positions as exact doubles, heights as differences of codes.
 /// Buffers are used again.
 struct StarSamples {
   Star star;
   std::vector<double> link_x, link_y, link_z;
-  std::vector<double> x, y,
-      z;  ///< Samples: u first, then the first of every triangle's list, then the others; padded.
-  std::size_t count = 0;       ///< Samples, without the padding.
-  std::vector<Sample> source;  ///< The same samples as stored; filled by gather_sources(), and
-                               ///< where surface and void meet.
-  double largest_xy = 0.0;     ///< Largest |coordinate| of the link.
+  /// Samples: u first, then the first of every triangle's list, then the others, then the further
+  /// corners of blocks; padded.
+  std::vector<double> x, y, z;
+  std::size_t count = 0;  ///< Elements of the lists and u, without further corners and padding.
+  std::vector<SampleBlock> blocks;
+  /// The same elements as stored; filled by gather_sources(), and where surface and void meet.
+  std::vector<Sample> source;
+  double largest_xy = 0.0;   ///< Largest |coordinate| of the link.
   double largest_z = 0.0;    ///< Largest |height difference| of link and samples that have heights.
   bool surface_only = true;  ///< No void triangle in the star and no sample without height in it.
   bool void_only =

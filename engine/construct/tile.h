@@ -52,6 +52,8 @@ struct Tile {
   SampleLists samples;
   std::vector<VertexSplit> records;  ///< In the order of the collapses.
   MeasureUnits units;
+  /// Every grid position inside is a sample: rasters. Then samples join into blocks.
+  bool samples_fill_grid = false;
   bool has_voids = false;  ///< Some triangle is void or some sample has no height.
 };
 

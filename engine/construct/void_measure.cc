@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/construct/sample_blocks.h"
+
 namespace ptin {
 
 namespace {
@@ -12,36 +14,34 @@ bool is_void(const Tile& tile, const StarSamples& s, std::size_t star_triangle) 
   return tile.tin.classes[s.star.triangles[star_triangle]] == TriangleClass::kVoid;
 }
 
-std::int64_t cross(double ax, double ay, double bx, double by) noexcept {
-  return static_cast<std::int64_t>(ax) * static_cast<std::int64_t>(by) -
-         static_cast<std::int64_t>(ay) * static_cast<std::int64_t>(bx);
-}
-
 /// Where a sample lies in the fan.
 struct Place {
   std::size_t surface = kNone;   ///< A surface triangle that holds it (closed), if any.
-  std::size_t any = 0;           ///< Some triangle that holds it.
+  std::size_t any = kNone;       ///< Some triangle that holds it; a void one if any.
   bool in_open_surface = false;  ///< Inside of a surface triangle, on no edge.
   double residual = 0.0;         ///< To `surface`.
 };
 
-Place locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::size_t k) {
+Place locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, double x, double y,
+             double z) {
   Place place;
-  const double qx = s.x[k] - fan.w_x;
-  const double qy = s.y[k] - fan.w_y;
-  std::int64_t before = cross(fan.spoke_x[0], fan.spoke_y[0], qx, qy);
+  const double qx = x - fan.w_x;
+  const double qy = y - fan.w_y;
+  std::int64_t before = cross_exact(fan.spoke_x[0], fan.spoke_y[0], qx, qy);
   for (std::size_t i = 0; i < fan.triangles(); ++i) {
-    const std::int64_t after = cross(fan.spoke_x[i + 1], fan.spoke_y[i + 1], qx, qy);
+    const std::int64_t after = cross_exact(fan.spoke_x[i + 1], fan.spoke_y[i + 1], qx, qy);
     if (before >= 0 && after <= 0) {
-      place.any = i;
-      if (!is_void(tile, s, fan.star_triangle[i])) {
+      if (is_void(tile, s, fan.star_triangle[i])) {
+        place.any = i;
+      } else {
+        place.any = place.any == kNone ? i : place.any;
         place.surface = i;
         const double link_side = fan.determinant[i] - static_cast<double>(before) +
                                  static_cast<double>(after);  // 0 on the link edge
         place.in_open_surface = before > 0 && after < 0 && link_side > 0.0;
-        const double numerator = fan.determinant[i] * (s.z[k] - fan.w_z) +
-                                 (fan.spoke_z[i] * static_cast<double>(after) -
-                                  fan.spoke_z[i + 1] * static_cast<double>(before));
+        const double numerator =
+            fan.determinant[i] * (z - fan.w_z) + (fan.spoke_z[i] * static_cast<double>(after) -
+                                                  fan.spoke_z[i + 1] * static_cast<double>(before));
         place.residual = std::abs(numerator) * fan.inverse[i];
       }
     }
@@ -52,6 +52,61 @@ Place locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::s
 
 double charge(const Tile& tile, float depth) noexcept {
   return static_cast<double>(std::abs(depth)) * tile.units.void_slope_code;
+}
+
+/// Charges one sample at its place.
+void measure_sample(const Tile& tile, const Place& place, float depth, VoidMeasure& measure) {
+  if (depth < 0.0F) {
+    if (place.in_open_surface) {
+      measure.error = std::max(measure.error, charge(tile, depth));
+    }
+  } else if (place.surface != kNone) {
+    measure.error = std::max(measure.error, place.residual);
+    measure.deviation = std::max(measure.deviation, place.residual);
+  } else {
+    measure.error = std::max(measure.error, charge(tile, depth));
+  }
+}
+
+/// Charges a block: each corner as a sample; and where the corners are in different triangles, the
+/// classes between.
+void measure_block(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                   const SampleBlock& b, VoidMeasure& measure) {
+  std::size_t first = fan.triangles();
+  std::size_t last = 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const Place place = locate(tile, s, fan, corner == 0 || corner == 3 ? b.x0 : b.x1,
+                               corner < 2 ? b.y0 : b.y1, b.z);
+    measure_sample(tile, place, b.depth, measure);
+    first = std::min(first, place.any);
+    last = std::max(last, place.any);
+  }
+  for (std::size_t i = first; i <= last && first != last; ++i) {
+    const bool is_wrong = is_void(tile, s, fan.star_triangle[i]) == (b.depth >= 0.0F);
+    if (is_wrong) {
+      measure.error = std::max(measure.error, charge(tile, b.depth));
+    }
+  }
+}
+
+void measure_samples(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                     VoidMeasure& measure) {
+  for (std::size_t k = 0; k < s.source.size(); ++k) {
+    if (s.source[k].side_log == 0) {
+      const Place place = locate(tile, s, fan, s.x[k], s.y[k], s.z[k]);
+      measure_sample(tile, place, s.source[k].depth, measure);
+    }
+  }
+  bool data_blocks = false;
+  for (const SampleBlock& b : s.blocks) {
+    measure_block(tile, s, fan, b, measure);
+    data_blocks |= b.depth >= 0.0F;
+  }
+  if (data_blocks) {
+    const double straddling = straddling_residual(s, fan);
+    measure.error = std::max(measure.error, straddling);
+    measure.deviation = std::max(measure.deviation, straddling);
+  }
 }
 
 /// True when link vertex `k` touches a surface triangle of the star, before the collapse.
@@ -82,12 +137,8 @@ bool keeps_surface(const Tile& tile, const StarSamples& s, const FanFrame& fan, 
 
 }  // namespace
 
-VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const FanFrame& fan,
-                               std::vector<double>* triangle) {
+VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const FanFrame& fan) {
   VoidMeasure measure;
-  if (triangle != nullptr) {
-    triangle->assign(s.x.size(), 0.0);
-  }
   if (tile.tin.has_height[s.star.link[fan.j]] == 0) {
     for (const std::uint32_t t : fan.star_triangle) {
       if (!is_void(tile, s, t)) {
@@ -96,24 +147,7 @@ VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const Fan
     }
   }
   measure.allowed = true;
-  for (std::size_t k = 0; k < s.source.size(); ++k) {
-    const Sample& sample = s.source[k];
-    const Place place = locate(tile, s, fan, k);
-    if (triangle != nullptr) {
-      (*triangle)[k] = static_cast<double>(
-          place.surface != kNone && sample.depth >= 0.0F ? place.surface : place.any);
-    }
-    if (sample.depth < 0.0F) {
-      if (place.in_open_surface) {
-        measure.error = std::max(measure.error, charge(tile, sample.depth));
-      }
-    } else if (place.surface != kNone) {
-      measure.error = std::max(measure.error, place.residual);
-      measure.deviation = std::max(measure.deviation, place.residual);
-    } else {
-      measure.error = std::max(measure.error, charge(tile, sample.depth));
-    }
-  }
+  measure_samples(tile, s, fan, measure);
   for (std::size_t k = 0; k < s.star.degree(); ++k) {
     const VertexId v = s.star.link[k];
     if (tile.tin.has_height[v] != 0 && had_surface(tile, s, k) && !keeps_surface(tile, s, fan, k)) {
@@ -121,6 +155,12 @@ VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const Fan
     }
   }
   return measure;
+}
+
+std::size_t triangle_of_sample(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                               double x, double y, bool has_height) {
+  const Place place = locate(tile, s, fan, x, y, 0.0);
+  return has_height && place.surface != kNone ? place.surface : place.any;
 }
 
 }  // namespace ptin

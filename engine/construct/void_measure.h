@@ -30,8 +30,16 @@ struct VoidMeasure {
 /// samples over the link loses this: the triangle beyond may be finer in another refinement, and
 /// void there.) For the same reason a link vertex is charged when it loses all its surface
 /// triangles of this star, whatever is beyond.
-/// @param triangle  Filled with the fan triangle of each sample (as assign_samples()); may be null.
+/// A block is measured at its corners; one that lies across a spoke may be in every fan triangle
+/// between those of its corners: it is charged where any of them is of the wrong class, and its
+/// residuals are bounded along the spokes. REQUIRES: gather_sources() was called.
 [[nodiscard]] VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s,
-                                             const FanFrame& fan, std::vector<double>* triangle);
+                                             const FanFrame& fan);
+
+/// The fan triangle that a sample at (x, y), relative to u, goes to: one of its own class where it
+/// lies on a spoke. Cost: the degree.
+[[nodiscard]] std::size_t triangle_of_sample(const Tile& tile, const StarSamples& s,
+                                             const FanFrame& fan, double x, double y,
+                                             bool has_height);
 
 }  // namespace ptin
