@@ -32,7 +32,7 @@ namespace ptin {
 /// the grid
 ///                resource_exhausted  more points than one mesh in memory counts
 ///                cancelled           `stop` fired
-/// Cost: O(n log n) expected, about 0.6 us and 250 bytes a point while it runs.
+/// Cost: O(n log n) expected, about 1.4 us and 250 bytes a point while it runs.
 /// Threads: any number of calls at once.
 [[nodiscard]] Tin make_delaunay_tin(std::span<const GridPoint> positions,
                                     std::span<const HeightBits> heights,

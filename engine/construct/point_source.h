@@ -51,7 +51,7 @@ struct PointSet {
 ///                                     extent of more than 2^30 grid units (the message names a
 ///                                     resolution)
 ///                cancelled            `stop` fired
-/// Cost: O(n log n), about 0.5 us a point; 64 bytes a point while it runs.
+/// Cost: O(n log n), about 0.4 us a point; 80 bytes a point while it runs.
 [[nodiscard]] PointSet read_points(
     const std::vector<std::string>& paths, const SourceOptions& options,
     const std::stop_token& stop = {},
