@@ -3,7 +3,6 @@
 // A flat hash table from vertex keys to local vertex indices.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,8 +23,8 @@ class KeyTable {
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-  /// Makes room for `capacity` keys in all, so that inserting up to that many never rehashes. Cost:
-  /// linear when it grows.
+  /// Makes room for `capacity` keys, fewer than 2^31, in all, so that inserting up to that many
+  /// never rehashes. Cost: linear when it grows.
   void reserve(std::size_t capacity) {
     const std::size_t wanted = slots_for(capacity);
     if (wanted <= slots_.size()) {
@@ -35,7 +34,6 @@ class KeyTable {
     reserve_large(old, wanted);
     old.resize(wanted);
     old.swap(slots_);
-    shift_ = 64 - std::countr_zero(wanted);
     for (const Slot& slot : old) {
       if (slot.key != kNoVertexKey) {
         slots_[place(slot.key)] = slot;
@@ -76,23 +74,23 @@ class KeyTable {
   };
 
   [[nodiscard]] static std::size_t slots_for(std::size_t capacity) noexcept {
-    return std::bit_ceil(2 * capacity + 2);
+    return capacity + capacity * 3 / 5 + 2;
   }
   [[nodiscard]] std::size_t home(VertexKey key) const noexcept {
     constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15u;  // 2^64 / phi, odd
-    return ((key ^ (key >> 27)) * kGoldenRatio) >> shift_;
+    const std::uint64_t hash = ((key ^ (key >> 27)) * kGoldenRatio) >> 32;
+    return (hash * slots_.size()) >> 32;
   }
   /// The slot of `key`, or the free one where it would go. Ends because the table is never full.
   [[nodiscard]] std::size_t place(VertexKey key) const noexcept {
     std::size_t i = home(key);
     while (slots_[i].key != key && slots_[i].key != kNoVertexKey) {
-      i = (i + 1) & (slots_.size() - 1);
+      i = i + 1 == slots_.size() ? 0 : i + 1;
     }
     return i;
   }
 
   std::vector<Slot> slots_;
-  int shift_ = 63;
   std::size_t size_ = 0;
 };
 
