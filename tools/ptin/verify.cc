@@ -81,7 +81,7 @@ void verify_refinement(const ProgressiveTin& terrain, const Context& context, Pr
 }
 
 /// The full TIN, tolerance 0, and round tolerances at which about 30, 10, 3 and 1 % of the vertices
-/// are left.
+/// that tolerance 0 takes are left.
 std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
                                                  const StoreFile& store) {
   std::vector<std::optional<double>> tolerances{std::nullopt};
@@ -90,7 +90,7 @@ std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
     return tolerances;
   }
   tolerances.emplace_back(0.0);
-  const double all = static_cast<double>(store.t0().vertices.size() + store.record_count());
+  const double all = static_cast<double>(vertices_at(store, 0.0));  // flat parts are no measure
   for (const double share : {0.3, 0.1, 0.03, 0.01}) {
     for (const double tolerance : round_tolerances(store, 60)) {
       if (static_cast<double>(vertices_at(store, tolerance)) > share * all) continue;

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Bad input: the documented exit status, one clear sentence, and nothing left behind.
+#include <csignal>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using testing::make_raster;
+using testing::Outcome;
+using testing::RasterRecipe;
+using testing::read_file;
+using testing::run_ptin;
+using testing::test_data;
+using testing::TestFolder;
+using testing::write_file;
+
+/// One sentence on stderr with `words` in it, nothing on stdout, and the folder as it was.
+void expect_refusal(const Outcome& outcome, int status, const std::string& words) {
+  EXPECT_EQ(outcome.status, status) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(testing::lines_in(outcome.err), 1U) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("ptin: ")) << outcome.err;
+  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+}
+
+/// Builds `input` and expects a refusal that leaves nothing but the input.
+void expect_no_build(const TestFolder& folder, const std::string& input, int status,
+                     const std::string& words, std::vector<std::string> extra = {}) {
+  const auto before = folder.names();
+  std::vector<std::string> arguments{"build", input, "-o", folder.file("out.ptin"), "-q"};
+  arguments.insert(arguments.end(), extra.begin(), extra.end());
+  expect_refusal(run_ptin(arguments), status, words);
+  EXPECT_EQ(folder.names(), before);
+}
+
+std::string small_store(const TestFolder& folder) {
+  make_raster(folder.file("hills.tif"), {});
+  EXPECT_EQ(
+      run_ptin({"build", folder.file("hills.tif"), "-o", folder.file("hills.ptin"), "-q"}).status,
+      0);
+  return folder.file("hills.ptin");
+}
+
+TEST(CliBadUse, IsStatus2WithOneSentence) {
+  expect_refusal(run_ptin({}), 2, "--help");
+  expect_refusal(run_ptin({"frobnicate"}), 2, "--help");
+  expect_refusal(run_ptin({"build"}), 2, "ptin build --help");
+  expect_refusal(run_ptin({"refine", "a.ptin", "--window", "1", "2", "3", "-o", "x.ply"}), 2,
+                 "--window");
+  expect_refusal(run_ptin({"refine", "a.ptin", "--error", "soft", "-o", "x.ply"}), 2, "--error");
+  expect_refusal(run_ptin({"refine", "a.ptin", "--error", "1", "--vertices", "9", "-o", "x.ply"}),
+                 2, "--vertices");
+  expect_refusal(run_ptin({"refine", "a.ptin", "--clip", "--cut", "-o", "x.ply"}), 2, "--cut");
+}
+
+TEST(CliBadUse, IsJsonWhenAskedFor) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", "none.ptin", "--json"},
+        {"build", "--json"},
+        {"info", "--json", "--frobnicate"}}) {
+    const Outcome outcome = run_ptin(arguments);
+    const auto error = nlohmann::json::parse(outcome.err, nullptr, false);
+    ASSERT_TRUE(error.is_object()) << outcome.err;
+    EXPECT_TRUE(error.at("error").at("code").is_string());
+    EXPECT_FALSE(error.at("error").at("message").get<std::string>().empty());
+    EXPECT_EQ(outcome.status, error.at("error").at("code") == "not_found" ? 3 : 2);
+  }
+}
+
+TEST(CliBadInput, MissingFile) {
+  const TestFolder folder;
+  expect_no_build(folder, folder.file("none.tif"), 3, "none.tif");
+  expect_refusal(run_ptin({"info", folder.file("none.ptin")}), 3, "none.ptin");
+  expect_refusal(run_ptin({"refine", folder.file("none.ptin"), "-o", folder.file("a.ply")}), 3,
+                 "none.ptin");
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(CliBadInput, NeitherRasterNorPoints) {
+  const TestFolder folder;
+  write_file(folder.file("prose.tif"), "It was a dark and stormy night.\n");
+  expect_no_build(folder, folder.file("prose.tif"), 2, "prose.tif");
+  write_file(folder.file("prose.csv"), "It was a dark and stormy night.\n");
+  expect_no_build(folder, folder.file("prose.csv"), 2, "prose.csv");
+  write_file(folder.file("empty.csv"), "");
+  expect_no_build(folder, folder.file("empty.csv"), 2, "empty.csv");
+  write_file(folder.file("strange.xyzzy"), "\x01\x02\x03");
+  expect_no_build(folder, folder.file("strange.xyzzy"), 2, "strange.xyzzy");
+}
+
+TEST(CliBadInput, PointsThatMakeNoTriangle) {
+  const TestFolder folder;
+  write_file(folder.file("two.csv"), "0,0,1\n1,1,2\n");
+  expect_no_build(folder, folder.file("two.csv"), 2, "two.csv");
+  write_file(folder.file("line.csv"), "0,0,1\n1,1,2\n2,2,3\n3,3,3\n");
+  expect_no_build(folder, folder.file("line.csv"), 2, "line.csv");
+  write_file(folder.file("nan.csv"), "0,0,1\n1,0,nan\n2,2,3\n");
+  expect_no_build(folder, folder.file("nan.csv"), 2, "nan.csv");
+  write_file(folder.file("inf.csv"), "0,0,1\n1,0,inf\n2,2,3\n");
+  expect_no_build(folder, folder.file("inf.csv"), 2, "inf.csv");
+}
+
+TEST(CliBadInput, RastersThatAreNoTerrain) {
+  const TestFolder folder;
+  RasterRecipe row;
+  row.width = 1;
+  make_raster(folder.file("column.tif"), row);
+  expect_no_build(folder, folder.file("column.tif"), 2, "column.tif");
+  RasterRecipe infinite;
+  infinite.value = [](int x, int y) {
+    return x == 3 && y == 4 ? std::numeric_limits<double>::infinity() : 1.0;
+  };
+  make_raster(folder.file("infinite.tif"), infinite);
+  expect_no_build(folder, folder.file("infinite.tif"), 2, "infinite.tif");
+  make_raster(folder.file("hills.tif"), {});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "bounds", {"--bbox", "1", "1", "2", "2"});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "--max-error", {"--max-error", "-1"});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "EPSG:999999", {"--a-srs", "EPSG:999999"});
+}
+
+TEST(CliBadInput, OutputThatCannotBe) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const std::string before = read_file(store);
+  expect_refusal(run_ptin({"build", folder.file("hills.tif"), "-o", store, "-q"}), 2,
+                 "--overwrite");
+  EXPECT_EQ(read_file(store), before);
+  EXPECT_EQ(run_ptin({"build", folder.file("hills.tif"), "-o", store, "-q", "--overwrite"}).status,
+            0);
+  expect_refusal(run_ptin({"refine", store, "-o", folder.file("a.stl")}), 2,
+                 ".ply, .obj, .2dm, .glb");
+  expect_refusal(run_ptin({"render", store, "-o", folder.file("a.jpg")}), 2, ".png");
+  write_file(folder.file("a.ply"), "mine");
+  expect_refusal(run_ptin({"refine", store, "-o", folder.file("a.ply")}), 2, "--overwrite");
+  EXPECT_EQ(read_file(folder.file("a.ply")), "mine");
+  expect_refusal(run_ptin({"refine", store, "-o", folder.file("none/a.ply")}), 3, "none");
+  const std::vector<std::string> left = {"a.ply", "hills.ptin", "hills.tif"};
+  EXPECT_EQ(folder.names(), left);
+}
+
+TEST(CliBadInput, FolderWithoutWritePermission) {
+  if (geteuid() == 0) GTEST_SKIP() << "the superuser may write everywhere";
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  std::filesystem::create_directory(folder.file("locked"));
+  chmod(folder.file("locked").c_str(), 0500);
+  expect_refusal(run_ptin({"refine", store, "-o", folder.file("locked/a.ply")}), 6, "locked");
+  expect_refusal(
+      run_ptin({"build", folder.file("hills.tif"), "-o", folder.file("locked/a.ptin"), "-q"}), 6,
+      "locked");
+}
+
+TEST(CliBadInput, QuestionsOutOfContract) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const std::string out = folder.file("a.ply");
+  expect_refusal(run_ptin({"refine", store, "--window", "5", "5", "1", "9", "-o", out}), 2,
+                 "inverted");
+  expect_refusal(run_ptin({"refine", store, "--window", "nan", "5", "6", "9", "-o", out}), 2,
+                 "finite");
+  expect_refusal(run_ptin({"refine", store, "--error", "-1", "-o", out}), 2, "--error");
+  expect_refusal(run_ptin({"refine", store, "--vertices", "1", "-o", out}), 2, "vertices");
+  expect_refusal(run_ptin({"refine", store, "--clip", "-o", out}), 2, "region");
+  expect_refusal(run_ptin({"refine", store, "--point", "1", "2", "--cut", "-o", out}), 2, "--cut");
+  expect_refusal(run_ptin({"refine", store, "--polygon", "POLYGON((1 2", "-o", out}), 2, "WKT");
+  expect_refusal(run_ptin({"refine", store, "--polygon", folder.file("none.wkt"), "-o", out}), 3,
+                 "none.wkt");
+  expect_refusal(run_ptin({"refine", store, "--memory", "4K", "-o", out}), 7, "limit");
+  expect_refusal(run_ptin({"refine", store, "--memory", "much", "-o", out}), 2, "512M");
+  expect_refusal(
+      run_ptin({"render", store, "--window", "1", "1", "1", "5", "-o", folder.file("a.png")}), 2,
+      "area");
+  const std::vector<std::string> left = {"hills.ptin", "hills.tif"};
+  EXPECT_EQ(folder.names(), left);
+}
+
+TEST(CliBadInput, WindowBesideTheTerrainGivesAnEmptyMeshAndAWarning) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const Outcome outcome = run_ptin(
+      {"refine", store, "--window", "1", "1", "2", "2", "--clip", "-o", folder.file("a.ply")});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("warning"), std::string::npos);
+}
+
+TEST(CliBadInput, DamagedStores) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const std::string sound = read_file(store);
+  const std::string bad = folder.file("bad.ptin");
+  const auto refine = [&] { return run_ptin({"refine", bad, "-o", folder.file("a.ply")}); };
+  write_file(bad, sound.substr(0, sound.size() / 2));
+  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
+  expect_refusal(refine(), 4, "bad.ptin");
+  EXPECT_EQ(run_ptin({"verify", bad, "-q"}).status, 1);
+  write_file(bad, "");
+  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
+  write_file(bad, "POINTS ARE NOT A STORE, WHATEVER THEIR NAME SAYS");
+  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
+  std::string flipped = sound;
+  flipped[flipped.size() - 2000] = static_cast<char>(flipped[flipped.size() - 2000] ^ 0x10);
+  write_file(bad, flipped);
+  EXPECT_EQ(run_ptin({"info", bad}).status, 0) << "info reads no record page";
+  expect_refusal(refine(), 4, "page");
+  const Outcome verified = run_ptin({"verify", bad, "-q"});
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_NE(verified.out.find("page"), std::string::npos) << verified.out;
+  const std::vector<std::string> left = {"bad.ptin", "hills.ptin", "hills.tif"};
+  EXPECT_EQ(folder.names(), left);
+}
+
+TEST(CliBadInput, StoreOfANewerVersion) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  std::string newer = read_file(store);
+  newer[8] = 2;  // major version
+  write_file(folder.file("newer.ptin"), newer);
+  expect_refusal(run_ptin({"info", folder.file("newer.ptin")}), 5, "version");
+  expect_refusal(run_ptin({"verify", folder.file("newer.ptin"), "-q"}), 5, "version");
+}
+
+/// A file system of 1 MiB; unmounted at the end. `mounted` is false where that is not permitted.
+struct SmallDisk {
+  explicit SmallDisk(std::string at) : path(std::move(at)) {
+    std::filesystem::create_directory(path);
+    mounted = mount("tmpfs", path.c_str(), "tmpfs", 0, "size=1m") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted) umount(path.c_str());
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  std::string path;
+  bool mounted = false;
+};
+
+TEST(CliBadInput, FullDisk) {
+  const TestFolder folder;
+  const SmallDisk disk(folder.file("disk"));
+  if (!disk.mounted) GTEST_SKIP() << "a tmpfs cannot be mounted here";
+  const std::string store = folder.file("m.ptin");
+  ASSERT_EQ(run_ptin({"build", test_data("mountains_257.tif"), "-o", store, "-q"}).status, 0);
+  expect_refusal(
+      run_ptin({"build", test_data("mountains_257.tif"), "-o", disk.path + "/m.ptin", "-q"}), 7,
+      "m.ptin");
+  EXPECT_TRUE(std::filesystem::is_empty(disk.path));
+  for (const char* name : {"/a.ply", "/a.obj", "/a.2dm", "/a.glb"}) {
+    expect_refusal(run_ptin({"refine", store, "-o", disk.path + name}), 7, name);
+    EXPECT_TRUE(std::filesystem::is_empty(disk.path)) << name;
+  }
+  expect_refusal(
+      run_ptin({"render", store, "--size", "2000", "2000", "-o", disk.path + "/a.png", "-q"}), 7,
+      "a.png");
+  EXPECT_TRUE(std::filesystem::is_empty(disk.path));
+}
+
+TEST(CliSignals, StopABuildTidily) {
+  const TestFolder folder;
+  RasterRecipe large;
+  large.width = large.height = 1500;
+  make_raster(folder.file("large.tif"), large);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const Outcome outcome =
+        run_ptin({"build", folder.file("large.tif"), "-o", folder.file("large.ptin"), "-q"}, signal,
+                 std::chrono::milliseconds(700));
+    expect_refusal(outcome, 8, "");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"large.tif"});
+  }
+}
+
+}  // namespace
+}  // namespace ptin::tools

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The program end to end, on small real terrains.
+#include <algorithm>
+#include <map>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/mesh_reader.h"
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using nlohmann::json;
+using testing::Outcome;
+using testing::read_file;
+using testing::ReadMesh;
+using testing::run_ptin;
+using testing::test_data;
+using testing::TestFolder;
+
+/// Builds tests/data/`name` into `folder`; returns the path.
+std::string built(const TestFolder& folder, const std::string& name) {
+  const std::string path = folder.file(name + ".ptin");
+  const Outcome outcome = run_ptin({"build", test_data(name), "-o", path, "-q"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out + outcome.err, "");
+  return path;
+}
+
+json answer_of(const std::vector<std::string>& arguments) {
+  const Outcome outcome = run_ptin(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return json::parse(outcome.out, nullptr, false);
+}
+
+TEST(Cli, HelpAndVersionAreNoErrors) {
+  EXPECT_EQ(run_ptin({"--help"}).status, 0);
+  EXPECT_TRUE(run_ptin({"--version"}).out.starts_with("ptin "));
+  for (const char* command : {"build", "info", "verify", "refine", "render", "completion"}) {
+    const Outcome help = run_ptin({command, "--help"});
+    EXPECT_EQ(help.status, 0);
+    EXPECT_NE(help.out.find("Example"), std::string::npos)
+        << command << " --help ends with examples";
+  }
+}
+
+TEST(Cli, CompletionKnowsEverySubcommandAndOption) {
+  const Outcome outcome = run_ptin({"completion", "bash"});
+  EXPECT_EQ(outcome.status, 0);
+  for (const char* word :
+       {"build", "verify", "--max-error", "--against", "--polygon", "--wireframe"}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  }
+}
+
+TEST(Cli, BuildReportsWhatItMade) {
+  const TestFolder folder;
+  const json report = answer_of(
+      {"build", test_data("mountains_257.tif"), "-o", folder.file("m.ptin"), "--json", "-q"});
+  EXPECT_EQ(report.at("samples"), 257 * 257);
+  EXPECT_EQ(report.at("vertices"), 257 * 257);
+  EXPECT_EQ(report.at("t0_vertices").get<int>() + report.at("records").get<int>(), 257 * 257);
+  EXPECT_EQ(report.at("bytes"), std::filesystem::file_size(folder.file("m.ptin")));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"m.ptin"});
+}
+
+TEST(Cli, BuildSaysWhatToDoNext) {
+  const TestFolder folder;
+  const Outcome outcome =
+      run_ptin({"build", test_data("ground_points.csv"), "-o", folder.file("g.ptin")});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.out.find("next: ptin info"), std::string::npos);
+  EXPECT_NE(outcome.err.find("100 - done."), std::string::npos);
+}
+
+TEST(Cli, BuildIsDeterministic) {
+  const TestFolder folder;
+  for (const char* name : {"a.ptin", "b.ptin"}) {
+    ASSERT_EQ(run_ptin({"build", test_data("coast_257.tif"), "-o", folder.file(name), "-q"}).status,
+              0);
+  }
+  EXPECT_EQ(read_file(folder.file("a.ptin")), read_file(folder.file("b.ptin")));
+}
+
+TEST(Cli, BuildWithMaxErrorIsSmallerAndSaysSo) {
+  const TestFolder folder;
+  const std::string file = folder.file("m.ptin");
+  ASSERT_EQ(
+      run_ptin({"build", test_data("mountains_257.tif"), "-o", file, "--max-error", "10", "-q"})
+          .status,
+      0);
+  const json info = answer_of({"info", file, "--json"});
+  EXPECT_GT(info.at("base_error"), 0.0);
+  EXPECT_LE(info.at("base_error"), 10.0);
+  EXPECT_LT(info.at("vertices"), 257 * 257 / 8);
+  EXPECT_EQ(run_ptin({"verify", file, "--against", test_data("mountains_257.tif"), "-q"}).status,
+            0);
+}
+
+TEST(Cli, InfoHasTheDocumentedNames) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  const json info = answer_of({"info", file, "--json"});
+  EXPECT_EQ(info.at("crs").at("code"), "EPSG:4326");
+  EXPECT_EQ(info.at("crs").at("vertical_known"), false);
+  EXPECT_EQ(info.at("units").at("horizontal"), "degree");
+  EXPECT_EQ(info.at("t0_vertices").get<std::uint64_t>() + info.at("records").get<std::uint64_t>(),
+            info.at("vertices"));
+  std::uint64_t bytes = 0;
+  for (const json& section : info.at("sections")) {
+    EXPECT_TRUE(section.at("name").is_string());
+    bytes = std::max(bytes, section.at("offset").get<std::uint64_t>() +
+                                section.at("bytes").get<std::uint64_t>());
+  }
+  EXPECT_EQ(bytes, info.at("bytes"));
+  for (const char* name :
+       {"bounds", "heights", "rank", "base_error", "base_deviation", "error_quantiles",
+        "vertices_at_tolerance", "tree", "metadata", "source_samples"}) {
+    EXPECT_TRUE(info.contains(name)) << name;
+  }
+  const Outcome text = run_ptin({"info", file});
+  EXPECT_NE(text.out.find("vertical   unknown"), std::string::npos);
+}
+
+TEST(Cli, InfoNamesTheVerticalCrs) {
+  const TestFolder folder;
+  const std::string file = folder.file("m.ptin");
+  ASSERT_EQ(run_ptin({"build", test_data("mountains_257.tif"), "-o", file, "--vertical-crs",
+                      "EPSG:5773", "-q"})
+                .status,
+            0);
+  const json info = answer_of({"info", file, "--json"});
+  EXPECT_EQ(info.at("crs").at("code"), "EPSG:32611");
+  EXPECT_EQ(info.at("crs").at("vertical_code"), "EPSG:5773");
+  EXPECT_EQ(info.at("units").at("height"), "metre");
+}
+
+/// Bounds of the mountains, from their info.
+std::array<double, 4> bounds_of(const std::string& file) {
+  const json b = answer_of({"info", file, "--json"}).at("bounds");
+  return {b.at("min_x"), b.at("min_y"), b.at("max_x"), b.at("max_y")};
+}
+
+std::vector<std::string> window_arguments(const std::array<double, 4>& b, double low, double high) {
+  std::vector<std::string> words{"--window"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double share = i < 2 ? low : high;
+    words.push_back(std::to_string(b[i % 2] + (b[i % 2 + 2] - b[i % 2]) * share));
+  }
+  return words;
+}
+
+ReadMesh read_mesh(const std::string& path) {
+  const std::string content = read_file(path);
+  if (path.ends_with(".ply")) return testing::read_ply(content);
+  if (path.ends_with(".obj")) return testing::read_obj(content);
+  return path.ends_with(".2dm") ? testing::read_2dm(content) : testing::read_glb(content);
+}
+
+double plan_area(const ReadMesh& mesh) {
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const auto &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    area += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+  }
+  return area;
+}
+
+TEST(Cli, RefineWritesTheSameMeshInEveryFormat) {
+  const TestFolder folder;
+  const std::string file = built(folder, "mountains_257.tif");
+  for (const char* name : {"a.ply", "a.obj", "a.2dm", "a.glb"}) {
+    const Outcome outcome =
+        run_ptin({"refine", file, "--vertices", "2000", "-o", folder.file(name), "--stats"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("records retrieved"), std::string::npos);
+    const ReadMesh mesh = read_mesh(folder.file(name));
+    EXPECT_EQ(mesh.vertices.size(), 2000U) << name;
+    EXPECT_GT(mesh.triangles.size(), 3000U) << name;
+  }
+  const ReadMesh ply = read_mesh(folder.file("a.ply"));
+  EXPECT_EQ(ply.vertices, read_mesh(folder.file("a.obj")).vertices);
+  EXPECT_EQ(ply.vertices, read_mesh(folder.file("a.2dm")).vertices);
+  EXPECT_EQ(ply.triangles, read_mesh(folder.file("a.glb")).triangles);
+  EXPECT_NEAR(plan_area(ply), 7680.0 * 7680.0, 1e-3);
+  EXPECT_NE(std::find(ply.header.begin(), ply.header.end(), "comment crs: EPSG:32611"),
+            ply.header.end());
+}
+
+TEST(Cli, RefineLeavesVoidsOut) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  const json answer =
+      answer_of({"refine", file, "--error", "5", "-o", folder.file("a.ply"), "--json"});
+  EXPECT_GT(answer.at("triangles"), answer.at("written").at("triangles"));
+  EXPECT_LE(answer.at("certified_error"), 5.0);
+  for (const char* name :
+       {"records_retrieved", "records_applied", "index_nodes", "pages", "bytes_read", "seconds"}) {
+    EXPECT_TRUE(answer.at("cost").contains(name)) << name;
+  }
+}
+
+TEST(Cli, ClipKeepsWholeTrianglesAndCutCutsThem) {
+  const TestFolder folder;
+  const std::string file = built(folder, "mountains_257.tif");
+  const auto bounds = bounds_of(file);
+  std::vector<std::string> arguments{"refine", file, "--error",
+                                     "5",      "-o", folder.file("whole.ply")};
+  const auto window = window_arguments(bounds, 0.31, 0.62);
+  arguments.insert(arguments.end(), window.begin(), window.end());
+  ASSERT_EQ(run_ptin(arguments).status, 0);
+  arguments.push_back("--clip");
+  arguments[5] = folder.file("clip.ply");
+  ASSERT_EQ(run_ptin(arguments).status, 0);
+  arguments.back() = "--cut";
+  arguments[5] = folder.file("cut.ply");
+  ASSERT_EQ(run_ptin(arguments).status, 0);
+  const double side = 7680.0 * 0.31;
+  const double cut = plan_area(read_mesh(folder.file("cut.ply")));
+  const double clip = plan_area(read_mesh(folder.file("clip.ply")));
+  EXPECT_NEAR(cut, side * side, 1.0);
+  EXPECT_GT(clip, cut);
+  EXPECT_LT(clip, 2 * cut);
+  EXPECT_NEAR(plan_area(read_mesh(folder.file("whole.ply"))), 7680.0 * 7680.0, 1e-3);
+}
+
+TEST(Cli, RefineTakesPolygonsAsWktAndFromFiles) {
+  const TestFolder folder;
+  const std::string file = built(folder, "mountains_257.tif");
+  const auto b = bounds_of(file);
+  char wkt[200];
+  std::snprintf(wkt, sizeof wkt, "POLYGON((%f %f, %f %f, %f %f, %f %f))", b[0] + 1000, b[1] + 1000,
+                b[0] + 3000, b[1] + 1000, b[0] + 3000, b[1] + 3000, b[0] + 1000, b[1] + 1000);
+  testing::write_file(folder.file("p.wkt"), wkt);
+  testing::write_file(folder.file("p.csv"), std::string("id,WKT\n1,\"") + wkt + "\"\n");
+  for (const std::string& polygon :
+       {std::string(wkt), folder.file("p.wkt"), folder.file("p.csv")}) {
+    const Outcome outcome = run_ptin(
+        {"refine", file, "--polygon", polygon, "--cut", "-o", folder.file("a.ply"), "--overwrite"});
+    ASSERT_EQ(outcome.status, 0) << polygon << outcome.err;
+    EXPECT_NEAR(plan_area(read_mesh(folder.file("a.ply"))), 2e6, 1.0) << polygon;
+  }
+}
+
+TEST(Cli, RefineAtAPointGivesItsTriangle) {
+  const TestFolder folder;
+  const std::string file = built(folder, "mountains_257.tif");
+  const auto b = bounds_of(file);
+  const json answer =
+      answer_of({"refine", file, "--point", std::to_string(b[0] + 1234.5),
+                 std::to_string(b[1] + 2347.8), "--clip", "-o", folder.file("a.obj"), "--json"});
+  EXPECT_EQ(answer.at("written").at("triangles"), 1);
+  EXPECT_EQ(answer.at("exact"), true);
+}
+
+TEST(Cli, RefineAnswersTheSameByEveryIndexAndReader) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  const auto window = window_arguments(bounds_of(file), 0.2, 0.5);
+  std::vector<std::string> contents;
+  for (const std::vector<std::string>& extra : {std::vector<std::string>{},
+                                                {"--no-mmap"},
+                                                {"--index", "spatialindex"},
+                                                {"--index", "packed", "--no-mmap"}}) {
+    std::vector<std::string> arguments{
+        "refine", file, "--error", "2", "-o", folder.file("a.ply"), "--overwrite"};
+    arguments.insert(arguments.end(), window.begin(), window.end());
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const Outcome outcome = run_ptin(arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    contents.push_back(read_file(folder.file("a.ply")));
+    EXPECT_EQ(contents.back(), contents.front());
+  }
+}
+
+TEST(Cli, RenderDrawsEveryKindOfPicture) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  EXPECT_EQ(run_ptin({"render", file, "-o", folder.file("a.png")}).status, 0);
+  EXPECT_EQ(run_ptin({"render", file, "--error", "10", "--wireframe", "--size", "300", "200", "-o",
+                      folder.file("b.png")})
+                .status,
+            0);
+  const json answer = answer_of(
+      {"render", file, "--pages", "--size", "200", "200", "-o", folder.file("c.png"), "--json"});
+  EXPECT_EQ(answer.at("width"), 200);
+  for (const char* name : {"a.png", "b.png", "c.png"}) {
+    const std::string content = read_file(folder.file(name));
+    EXPECT_EQ(content.substr(1, 3), "PNG");
+    EXPECT_GT(content.size(), 5000U) << name << " shows something";
+  }
+}
+
+}  // namespace
+}  // namespace ptin::tools

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/tools/program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include <fcntl.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace ptin::tools::testing {
+
+TestFolder::TestFolder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "ptin_test_XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  path_ = pattern;
+}
+
+TestFolder::~TestFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::vector<std::string> TestFolder::names() const {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(path_))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Outcome run_ptin(const std::vector<std::string>& arguments, std::optional<int> signal,
+                 std::chrono::milliseconds after) {
+  const TestFolder folder;
+  const std::string out = folder.file("out");
+  const std::string err = folder.file("err");
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
+  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT, 0600);
+  std::vector<char*> argv{const_cast<char*>(PTIN_PROGRAM)};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  pid_t child = 0;
+  const int spawned = posix_spawn(&child, PTIN_PROGRAM, &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (spawned != 0) throw std::runtime_error("cannot run " PTIN_PROGRAM);
+  if (signal) {
+    std::this_thread::sleep_for(after);
+    kill(child, *signal);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  Outcome outcome;
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.out = read_file(out);
+  outcome.err = read_file(err);
+  return outcome;
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream content;
+  content << in.rdbuf();
+  return content.str();
+}
+
+void write_file(const std::string& path, const std::string& content) {
+  std::ofstream(path, std::ios::binary) << content;
+}
+
+std::size_t lines_in(const std::string& text) {
+  std::istringstream in(text);
+  std::string line;
+  std::size_t count = 0;
+  while (std::getline(in, line)) count += !line.empty();
+  return count;
+}
+
+void make_raster(const std::string& path, const RasterRecipe& r) {
+  GDALAllRegister();
+  const std::unique_ptr<GDALDataset> data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      path.c_str(), r.width, r.height, 1, GDT_Float32, nullptr));
+  double transform[6] = {r.west, r.pixel, 0, r.north, 0, -r.pixel};
+  data->SetGeoTransform(transform);
+  OGRSpatialReference srs;
+  srs.importFromEPSG(r.epsg);
+  data->SetSpatialRef(&srs);
+  GDALRasterBand& band = *data->GetRasterBand(1);
+  if (r.nodata) band.SetNoDataValue(*r.nodata);
+  std::vector<double> row(static_cast<std::size_t>(r.width));
+  for (int y = 0; y < r.height; ++y) {
+    for (int x = 0; x < r.width; ++x)
+      row[static_cast<std::size_t>(x)] = r.value ? r.value(x, y) : hills(x, y);
+    if (band.RasterIO(GF_Write, 0, y, r.width, 1, row.data(), r.width, 1, GDT_Float64, 0, 0,
+                      nullptr) != CE_None) {
+      throw std::runtime_error("cannot write " + path);
+    }
+  }
+}
+
+double hills(int column, int row) {
+  return std::round(500.0 * (2.0 + std::sin(column * 0.21) * std::cos(row * 0.17) +
+                             0.3 * std::sin(column * 0.73 + row * 0.41))) /
+         10.0;
+}
+
+std::string test_data(const std::string& name) {
+  return std::string(PTIN_TEST_DATA "/").append(name);
+}
+
+}  // namespace ptin::tools::testing

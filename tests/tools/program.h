@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Runs the built program and looks at what it says, returns and leaves behind.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ptin::tools::testing {
+
+/// A folder of one test; removed with everything in it.
+class TestFolder {
+ public:
+  TestFolder();
+  TestFolder(const TestFolder&) = delete;
+  TestFolder& operator=(const TestFolder&) = delete;
+  ~TestFolder();
+
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Names in the folder, sorted.
+  [[nodiscard]] std::vector<std::string> names() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct Outcome {
+  int status = -1;  ///< Exit status; 128 + signal when a signal ended it.
+  std::string out;
+  std::string err;
+};
+
+/// Runs `ptin ARGUMENTS`. With `signal`, sends it `after` the start.
+Outcome run_ptin(const std::vector<std::string>& arguments,
+                 std::optional<int> signal = std::nullopt,
+                 std::chrono::milliseconds after = std::chrono::milliseconds(0));
+
+[[nodiscard]] std::string read_file(const std::string& path);
+void write_file(const std::string& path, const std::string& content);
+/// Number of lines that are not empty.
+[[nodiscard]] std::size_t lines_in(const std::string& text);
+
+/// A raster to build from.
+struct RasterRecipe {
+  int width = 33;
+  int height = 33;
+  std::function<double(int column, int row)> value;
+  std::optional<double> nodata;
+  double west = 500000.0;
+  double north = 4000000.0;
+  double pixel = 30.0;
+  int epsg = 32611;
+};
+/// Writes it as a Float32 GeoTIFF.
+void make_raster(const std::string& path, const RasterRecipe& recipe);
+/// Hills: smooth, no two alike, about 100 m high.
+[[nodiscard]] double hills(int column, int row);
+
+/// A small real terrain of tests/data.
+[[nodiscard]] std::string test_data(const std::string& name);
+
+}  // namespace ptin::tools::testing

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+
+#include "engine/error.h"
+#include "tests/tools/program.h"
+#include "tools/render/overlay.h"
+
+namespace ptin::tools {
+namespace {
+
+TEST(MakeView, KeepsTheAspectOfTheGround) {
+  const View view = make_view({0, 0, 200, 100}, false, 0, 0);
+  EXPECT_EQ(view.width, 1200);
+  EXPECT_EQ(view.height, 600);
+  const View north = make_view({10, 59.5, 11, 60.5}, true, 0, 0);
+  EXPECT_EQ(north.height, 1200);
+  EXPECT_NEAR(north.width, 600, 1);  // a degree of longitude is half as long at 60 degrees
+}
+
+TEST(MakeView, CentresTheWindowInAGivenSize) {
+  const View view = make_view({0, 0, 100, 100}, false, 400, 200);
+  EXPECT_DOUBLE_EQ(view.pixel_x(0), 100);
+  EXPECT_DOUBLE_EQ(view.pixel_x(100), 300);
+  EXPECT_DOUBLE_EQ(view.pixel_y(100), 0);
+  EXPECT_DOUBLE_EQ(view.pixel_y(0), 200);
+}
+
+TEST(MakeView, RefusesWhatHasNoArea) {
+  EXPECT_THROW(static_cast<void>(make_view({0, 0, 0, 100}, false, 0, 0)), Error);
+  EXPECT_THROW(static_cast<void>(make_view({0, 0, 1, 1}, false, -1, 5)), Error);
+}
+
+/// One square of two triangles on a slope that rises to the east; the eastern one void when asked.
+RefinedTin slope(StoreFacts& facts, bool half_void) {
+  facts.map = {0, 0, 1, 1};
+  facts.heights = {HeightType::float32, 1.0, 0.0};
+  facts.bounds = {0, 0, 10, 10};
+  RefinedTin refined;
+  Tin& tin = refined.tin;
+  for (const GridPoint p : {GridPoint{0, 0}, {10, 0}, {10, 10}, {0, 10}}) {
+    tin.vertices.push_back({p, facts.heights.bits(p.x), 0});
+    tin.has_height.push_back(1);
+  }
+  tin.triangles = {{{0, 1, 2}, {kNone, 1, kNone}}, {{0, 2, 3}, {kNone, kNone, 0}}};
+  tin.classes = {half_void ? TriangleClass::kVoid : TriangleClass::kSurface,
+                 TriangleClass::kSurface};
+  return refined;
+}
+
+TEST(Rasterize, FillsEveryPixelOnceWithTheHeightOfItsMiddle) {
+  StoreFacts facts;
+  const RefinedTin refined = slope(facts, false);
+  const TerrainRaster raster =
+      rasterize(refined, facts, make_view({-5, -5, 15, 15}, false, 40, 40));
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const bool inside = x >= 10 && x < 30 && y >= 10 && y < 30;
+      ASSERT_EQ(raster.classes[raster.place(x, y)],
+                inside ? PixelClass::kSurface : PixelClass::kOutside);
+      if (inside) {
+        ASSERT_NEAR(raster.heights[raster.place(x, y)], (x + 0.5 - 10) / 2, 1e-5);
+      }
+    }
+  }
+}
+
+TEST(DrawRelief, IsDarkAwayFromTheLightAndGreyInVoids) {
+  StoreFacts facts;
+  const View view = make_view({0, 0, 10, 10}, false, 50, 50);
+  const auto brightness = [&](const RefinedTin& refined, int x, int y) {
+    const TerrainRaster raster = rasterize(refined, facts, supersampled(view, 2));
+    Image image = draw_relief(raster, view, 2, choose_style(raster, view, false, 1));
+    const Colour& c = image.at(x, y);
+    return c[0] + c[1] + c[2];
+  };
+  RefinedTin towards = slope(facts, false);  // rises to the east: looks west, to the light
+  RefinedTin away = slope(facts, false);
+  for (Vertex& v : away.tin.vertices) v.height = facts.heights.bits(10 - v.position.x);
+  EXPECT_GT(brightness(towards, 25, 25), brightness(away, 25, 25) + 60);
+  const TerrainRaster raster = rasterize(slope(facts, true), facts, view);
+  EXPECT_EQ(raster.classes[raster.place(40, 40)], PixelClass::kVoid);
+  EXPECT_EQ(raster.classes[raster.place(5, 5)], PixelClass::kSurface);
+}
+
+TEST(DrawLine, IsOnePixelWideInSum) {
+  for (const double y1 : {10.0, 14.0, 30.0}) {
+    Image image(40, 40, {0, 0, 0});
+    draw_line(image, 5.0, 10.0, 35.0, y1, {255, 255, 255}, 1.0);
+    double sum = 0;
+    for (const Colour& c : image.pixels) sum += c[0] / 255.0;
+    EXPECT_NEAR(sum, 30.0, 0.5) << y1;
+  }
+}
+
+TEST(WritePng, ReadsBackAsWritten) {
+  GDALAllRegister();
+  const testing::TestFolder folder;
+  Image image(7, 5, {10, 20, 30});
+  image.at(6, 4) = {255, 0, 128};
+  write_png(image, folder.file("a.png"), false);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.png"});
+  const std::unique_ptr<GDALDataset> data(GDALDataset::Open(folder.file("a.png").c_str()));
+  ASSERT_TRUE(data);
+  ASSERT_EQ(data->GetRasterCount(), 3);
+  std::uint8_t pixel[2] = {};
+  for (const auto& [band, values] :
+       {std::pair{1, std::array{10, 255}}, {2, {20, 0}}, {3, {30, 128}}}) {
+    ASSERT_EQ(data->GetRasterBand(band)->RasterIO(GF_Read, 5, 4, 2, 1, pixel, 2, 1, GDT_Byte, 0, 0,
+                                                  nullptr),
+              CE_None);
+    EXPECT_EQ(pixel[0], values[0]);
+    EXPECT_EQ(pixel[1], values[1]);
+  }
+}
+
+}  // namespace
+}  // namespace ptin::tools

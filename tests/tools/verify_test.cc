@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `ptin verify` must find what is wrong: errors that were planted, and sources that are another
+// terrain.
+#include "storage/verify.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "storage/store_file.h"
+#include "storage/store_writer.h"
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using testing::make_raster;
+using testing::Outcome;
+using testing::RasterRecipe;
+using testing::run_ptin;
+using testing::TestFolder;
+
+/// Hills with two lakes without heights.
+RasterRecipe hills_with_voids() {
+  RasterRecipe recipe;
+  recipe.width = 70;
+  recipe.height = 50;
+  recipe.nodata = -9999;
+  recipe.value = [](int x, int y) {
+    const bool in_lake = (x - 20) * (x - 20) + (y - 20) * (y - 20) < 60 || (x > 50 && y > 40);
+    return in_lake ? -9999.0 : testing::hills(x, y);
+  };
+  return recipe;
+}
+
+std::string built(const TestFolder& folder, const RasterRecipe& recipe) {
+  make_raster(folder.file("source.tif"), recipe);
+  const Outcome outcome =
+      run_ptin({"build", folder.file("source.tif"), "-o", folder.file("store.ptin"), "-q"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return folder.file("store.ptin");
+}
+
+Outcome verified(const std::string& store, const std::string& source) {
+  return run_ptin({"verify", store, "--against", source, "-q"});
+}
+
+/// Writes `store` again with every record changed by `change`: sound in form, wrong in what it
+/// says.
+void plant(const std::string& store, const std::string& planted,
+           const std::function<void(VertexSplit&, std::size_t)>& change) {
+  const auto from = StoreFile::open(store);
+  std::vector<VertexSplit> records;
+  IoCounters counters;
+  for (std::uint64_t i = 0; i < from->pages().page_count(); ++i)
+    from->read_records(PageId{i}, records, counters);
+  for (std::size_t i = 0; i < records.size(); ++i) change(records[i], i);
+  const auto writer = StoreWriter::create(planted, {});
+  writer->add_segment(records, from->facts().heights);
+  writer->publish(from->facts(), from->t0(), std::string(from->metadata_json()));
+  ASSERT_TRUE(verify_store(planted).is_sound()) << "the plant must be found by --against alone";
+}
+
+TEST(Verify, FindsAGoodFileGood) {
+  const TestFolder folder;
+  const std::string store = built(folder, hills_with_voids());
+  const Outcome outcome =
+      run_ptin({"verify", store, "--against", folder.file("source.tif"), "--json", "-q"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out;
+  const auto answer = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(answer.at("sound"), true);
+  EXPECT_GE(answer.at("against").at("checks").size(), 4U);
+  for (const auto& check : answer.at("against").at("checks")) {
+    EXPECT_EQ(check.at("samples").get<int>() + check.at("void_samples").get<int>(), 70 * 50);
+    EXPECT_LE(check.at("worst_error"), check.at("certified_error").get<double>() + 1e-9);
+  }
+}
+
+TEST(Verify, FindsErrorsThatAreTooSmall) {
+  const TestFolder folder;
+  const std::string store = built(folder, hills_with_voids());
+  plant(store, folder.file("planted.ptin"), [](VertexSplit& r, std::size_t) { r.error *= 0.7F; });
+  const Outcome outcome = verified(folder.file("planted.ptin"), folder.file("source.tif"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("more than the certified"), std::string::npos) << outcome.out;
+}
+
+TEST(Verify, FindsDeviationsThatAreTooSmall) {
+  const TestFolder folder;
+  const std::string store = built(folder, {});
+  plant(store, folder.file("planted.ptin"),
+        [](VertexSplit& r, std::size_t) { r.deviation = 0.0F; });
+  const Outcome outcome = verified(folder.file("planted.ptin"), folder.file("source.tif"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("deviates"), std::string::npos) << outcome.out;
+}
+
+TEST(Verify, FindsOneWrongHeight) {
+  const TestFolder folder;
+  const std::string store = built(folder, hills_with_voids());
+  const HeightEncoding heights = StoreFile::open(store)->facts().heights;
+  bool done = false;
+  plant(store, folder.file("planted.ptin"), [&](VertexSplit& r, std::size_t) {
+    const double low = heights.code(r.height_lo);
+    if (done || (r.flags & VertexSplit::kVertexVoid) != 0 || heights.code(r.height) <= low) return;
+    r.height = r.height_lo;  // within its interval, so no rule of the format is broken
+    done = true;
+  });
+  ASSERT_TRUE(done);
+  const Outcome outcome = verified(folder.file("planted.ptin"), folder.file("source.tif"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("is off by"), std::string::npos) << outcome.out;
+}
+
+TEST(Verify, FindsVoidsThatAreCheaperThanTheyMayBe) {
+  const TestFolder folder;
+  // On a plane nothing but class changes has an error.
+  RasterRecipe flat = hills_with_voids();
+  flat.value = [value = flat.value](int x, int y) { return value(x, y) < 0 ? -9999.0 : 5.0; };
+  const std::string store = built(folder, flat);
+  plant(store, folder.file("planted.ptin"), [](VertexSplit& r, std::size_t) { r.error *= 0.25F; });
+  EXPECT_EQ(verified(store, folder.file("source.tif")).status, 0);
+  const Outcome outcome = verified(folder.file("planted.ptin"), folder.file("source.tif"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("the TIN says otherwise"), std::string::npos) << outcome.out;
+}
+
+TEST(Verify, FindsAnotherSource) {
+  const TestFolder folder;
+  const std::string store = built(folder, hills_with_voids());
+  const struct {
+    const char* what;
+    double east, north, up;
+    const char* words;
+  } cases[] = {{"half a pixel to the east", 15, 0, 0, "do not stand on the grid"},
+               {"a pixel to the north", 0, 30, 0, "the source covers grid points"},
+               {"a tenth of a unit higher", 0, 0, 0.1, "is off by"}};
+  for (const auto& c : cases) {
+    RasterRecipe recipe = hills_with_voids();
+    recipe.west += c.east;
+    recipe.north += c.north;
+    recipe.value = [value = recipe.value, up = c.up](int x, int y) {
+      const double height = value(x, y);
+      return height < 0 ? height : height + up;
+    };
+    make_raster(folder.file("other.tif"), recipe);
+    const Outcome outcome = verified(store, folder.file("other.tif"));
+    EXPECT_EQ(outcome.status, 1) << c.what;
+    EXPECT_NE(outcome.out.find(c.words), std::string::npos) << c.what << ": " << outcome.out;
+  }
+  RasterRecipe filled = hills_with_voids();
+  filled.value = [](int x, int y) { return testing::hills(x, y); };
+  make_raster(folder.file("filled.tif"), filled);
+  EXPECT_EQ(verified(store, folder.file("filled.tif")).status, 1);
+}
+
+TEST(Verify, ChecksPointsToo) {
+  const TestFolder folder;
+  const std::string source = testing::test_data("ground_points.csv");
+  ASSERT_EQ(run_ptin({"build", source, "-o", folder.file("p.ptin"), "-q"}).status, 0);
+  EXPECT_EQ(verified(folder.file("p.ptin"), source).status, 0);
+  std::string text = testing::read_file(source);
+  const std::size_t line = text.find('\n', text.size() / 2) + 1;
+  const std::size_t digit = text.find('\n', line) - 4;  // of the height: metres
+  ASSERT_TRUE(std::isdigit(static_cast<unsigned char>(text[digit])) != 0) << text.substr(line, 40);
+  text[digit] = text[digit] == '9' ? '0' : static_cast<char>(text[digit] + 1);
+  testing::write_file(folder.file("other.csv"), text);
+  const Outcome outcome = verified(folder.file("p.ptin"), folder.file("other.csv"));
+  EXPECT_EQ(outcome.status, 1) << outcome.out;
+}
+
+TEST(Verify, SaysNotFoundForAMissingSource) {
+  const TestFolder folder;
+  const std::string store = built(folder, hills_with_voids());
+  EXPECT_EQ(verified(store, folder.file("none.tif")).status, 3);
+}
+
+}  // namespace
+}  // namespace ptin::tools
