@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where benchmarks find terrains and leave files for a while.
+#pragma once
+
+#include <string>
+
+namespace ptin::bench {
+
+/// A file of the folder of larger terrains (PTIN_SHARED_DATA at configuration); empty when it is
+/// not there.
+[[nodiscard]] std::string shared_terrain(const std::string& name);
+
+/// A folder of its own in the build folder (on a disk, which a temporary folder need not be),
+/// removed with all that is in it when destroyed.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+/// The store that benchmarks of queries read: the one that the environment variable
+/// PTIN_BENCH_STORE names, else one that is built from srtm1_bigtujunga on the first call and
+/// removed when the program ends; empty when there is neither.
+[[nodiscard]] const std::string& bench_store();
+
+}  // namespace ptin::bench

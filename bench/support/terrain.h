@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Terrains in memory, ready to be simplified.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/construct/raster_tile.h"
+#include "engine/construct/terrain_source.h"
+
+namespace ptin::bench {
+
+/// A tile with its full surface and its frame.
+struct Terrain {
+  TerrainFrame frame;
+  StartedTile started;
+};
+
+/// Points on the grid, as a Delaunay triangulation wants them: ascending keys, all distinct.
+struct GridPoints {
+  std::vector<GridPoint> positions;
+  std::vector<HeightBits> heights;
+};
+
+/// The Delaunay triangulation of `points` as one tile.
+[[nodiscard]] Terrain terrain_of(const GridPoints& points, const TerrainFrame& frame);
+
+/// The heights that random points are given.
+enum class Relief {
+  kHills,  ///< 48 plane waves of 1 to 128 periods a side, amplitude falling with the frequency:
+           ///< 1000 m in all.
+  kNoise,  ///< Independent uniform heights.
+  kFlat,   ///< All the same.
+};
+
+/// `count` uniform points in the unit square (2^24 grid units a side), heights in millimetres.
+[[nodiscard]] Terrain random_terrain(std::size_t count, std::uint64_t seed,
+                                     Relief relief = Relief::kHills);
+
+/// A square of `side` x `side` samples with the south-western one at (x0, y0) of a raster.
+[[nodiscard]] Terrain raster_terrain(const std::string& path, std::int64_t x0, std::int64_t y0,
+                                     std::int64_t side);
+
+/// A made raster of `side` x `side` samples with the heights of `relief`.
+[[nodiscard]] Terrain made_raster(std::int32_t side, Relief relief);
+
+}  // namespace ptin::bench
