@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The two indexes over the record pages of one store, warm: the packed R-tree, and
+// libspatialindex's bulk-loaded disk R-tree; brute force over the pages' attributes in memory is
+// the rival of both. The store is PTIN_BENCH_STORE or is built from srtm1_bigtujunga; without
+// either, all is skipped.
+//   BM_Load/index:packed         pages' attributes -> IndexWriter -> nodes in a file, not synced;
+//   pages a second BM_Load/index:spatialindex   the same attributes -> libspatialindex's bulk
+//   loader -> its two files; pages a second BM_Search/index:i/query:q    predicate -> page ids;
+//   counters: pages found, nodes examined, pages found a second
+//     window_ppm:n is one window of n millionths of the area; point is a window without area;
+//     error_5 the whole terrain at 5 units of height; both is the window of 1/25 at that error. 64
+//     seeded places, one after the other.
+// libspatialindex keeps its nodes in an LRU buffer of its own and takes a lock; boxes of its nodes
+// are doubles of four dimensions. Cannot show: cold nodes (bench/io), several threads, trees higher
+// than two or three levels.
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "bench/support/scratch.h"
+#include "engine/query/predicate.h"
+#include "storage/index_writer.h"
+#include "storage/spatialindex_rtree.h"
+#include "storage/store_file.h"
+
+namespace {
+
+using namespace ptin;
+using namespace ptin::bench;
+
+/// The store, its pages' attributes and both indexes; made on first use. Null when there is no
+/// store.
+struct Indexed {
+  std::shared_ptr<const StoreFile> store;
+  std::vector<StoreFile::PageInfo> pages;
+  ScratchFolder folder;
+  std::unique_ptr<SpatialIndexRTree> rival;
+};
+
+Indexed* indexed() {
+  static const std::unique_ptr<Indexed> it = []() -> std::unique_ptr<Indexed> {
+    if (bench_store().empty()) return nullptr;
+    auto made = std::make_unique<Indexed>();
+    made->store = StoreFile::open(bench_store());
+    for (std::uint64_t i = 0; i < made->store->pages().page_count(); ++i) {
+      made->pages.push_back(made->store->page_info(PageId{i}));
+    }
+    made->rival = SpatialIndexRTree::open(made->store, {.base = made->folder.file("search")});
+    return made;
+  }();
+  return it.get();
+}
+
+/// Seeded predicates of one kind.
+std::vector<PredicatePtr> predicates(const std::string& query, const StoreFacts& facts) {
+  std::mt19937_64 random(1);
+  std::vector<PredicatePtr> result;
+  const double width = double(facts.bounds.max_x) - facts.bounds.min_x;
+  const double height = double(facts.bounds.max_y) - facts.bounds.min_y;
+  const double share = query == "window_ppm:1000" ? std::sqrt(0.001) : query == "point" ? 0 : 0.2;
+  for (int i = 0; i < 64; ++i) {
+    const auto place = [&](double low, double span) {
+      return low + std::uniform_real_distribution<double>(0, span * (1 - share))(random);
+    };
+    const double x = place(facts.bounds.min_x, width), y = place(facts.bounds.min_y, height);
+    const MapPoint low = facts.map.to_map(x, y);
+    const MapPoint high = facts.map.to_map(x + width * share, y + height * share);
+    const PredicatePtr window = meets_region(Window{low.x, low.y, high.x, high.y}, facts.map);
+    result.push_back(query == "error_5" ? error_above(5)
+                     : query == "both"  ? all_of({window, error_above(5)})
+                                        : window);
+  }
+  return result;
+}
+
+class BruteForce final : public RecordIndex {
+ public:
+  explicit BruteForce(const std::vector<StoreFile::PageInfo>& pages) : pages_(pages) {}
+  void search(const AttributePredicate& predicate, std::vector<PageId>& pages,
+              IoCounters&) const override {
+    for (std::size_t i = 0; i < pages_.size(); ++i) {
+      if (predicate.holds(pages_[i].attributes)) pages.push_back(PageId{i});
+    }
+  }
+
+ private:
+  const std::vector<StoreFile::PageInfo>& pages_;
+};
+
+void BM_Search(benchmark::State& state, const std::string& index, const std::string& query) {
+  const Indexed* it = indexed();
+  if (it == nullptr)
+    return state.SkipWithError("needs PTIN_BENCH_STORE or the terrains of PTIN_SHARED_DATA");
+  const BruteForce brute(it->pages);
+  const RecordIndex& searched = index == "packed"        ? it->store->index()
+                                : index == "brute_force" ? static_cast<const RecordIndex&>(brute)
+                                                         : *it->rival;
+  const std::vector<PredicatePtr> asked = predicates(query, it->store->facts());
+  std::size_t found = 0;
+  IoCounters counters;
+  std::vector<PageId> pages;
+  for (auto _ : state) {
+    found = 0;
+    counters = {};
+    for (const PredicatePtr& p : asked) {
+      pages.clear();
+      searched.search(*p, pages, counters);
+      found += pages.size();
+    }
+  }
+  const auto searches = double(asked.size());
+  state.counters["pages"] = double(found) / searches;
+  state.counters["nodes"] = double(counters.index_nodes) / searches;
+  state.counters["searches/s"] =
+      benchmark::Counter(searches, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["pages/s"] =
+      benchmark::Counter(double(found), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// What an index entry says of a page.
+layout::NodeEntry entry_of(const StoreFile::PageInfo& p, const HeightEncoding& heights) {
+  const GridBox& b = p.attributes.roi;
+  layout::NodeEntry e{};
+  e.min_x = b.min_x, e.min_y = b.min_y, e.max_x = b.max_x, e.max_y = b.max_y;
+  e.height_lo = heights.bits(p.attributes.heights.lo),
+  e.height_hi = heights.bits(p.attributes.heights.hi);
+  e.error_max = layout::to_bits(static_cast<float>(p.attributes.error));
+  e.error_min = layout::to_bits(static_cast<float>(p.min_error));
+  e.deviation_max = layout::to_bits(static_cast<float>(p.attributes.deviation));
+  e.kind_and_count = p.records;
+  return e;
+}
+
+void BM_Load(benchmark::State& state, const std::string& index) {
+  Indexed* it = indexed();
+  if (it == nullptr)
+    return state.SkipWithError("needs PTIN_BENCH_STORE or the terrains of PTIN_SHARED_DATA");
+  const HeightEncoding heights = it->store->facts().heights;
+  int built = 0;
+  for (auto _ : state) {
+    if (index == "packed") {
+      IndexWriter writer(FileLayer::system(), it->folder.file(""), "load", heights);
+      for (const StoreFile::PageInfo& p : it->pages) writer.add(entry_of(p, heights));
+      ScratchFile out(FileLayer::system(), it->folder.file(""), "load_out", true);
+      benchmark::DoNotOptimize(writer.write_to(out, 0));
+    } else {
+      const auto tree = SpatialIndexRTree::open(
+          it->store, {.base = it->folder.file("load" + std::to_string(built++))});
+      benchmark::DoNotOptimize(tree->was_built());
+    }
+  }
+  state.counters["pages"] = double(it->pages.size());
+  state.counters["pages/s"] =
+      benchmark::Counter(double(it->pages.size()), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+[[maybe_unused]] const bool registered = [] {
+  for (const char* index : {"packed", "spatialindex"}) {
+    benchmark::RegisterBenchmark((std::string("BM_Load/index:") + index).c_str(), BM_Load,
+                                 std::string(index))
+        ->Unit(benchmark::kMillisecond);
+  }
+  for (const char* query : {"point", "window_ppm:1000", "window_ppm:40000", "error_5", "both"}) {
+    for (const char* index : {"packed", "spatialindex", "brute_force"}) {
+      const std::string title = std::string("BM_Search/index:") + index + "/query:" + query;
+      benchmark::RegisterBenchmark(title.c_str(), BM_Search, std::string(index), std::string(query))
+          ->Unit(benchmark::kMicrosecond);
+    }
+  }
+  return true;
+}();
+
+}  // namespace
