@@ -26,11 +26,14 @@ struct StoreWriterOptions {
 };
 
 /// Writes beside the target under a temporary name; publish() syncs and renames. Destroyed without
-/// publish(), it removes what it wrote: the target's name never shows a part. Segments arrive in
-/// any order of dependency; the file keeps the order of segments, and inside a segment orders
-/// records by error class (one octave, coarse first), wide before narrow, then along the Hilbert
-/// curve of the box centre, then by key. Memory: one segment, plus about one byte a record for
-/// descriptors and checksums (spilled to the temporary file's side).
+/// publish(), it removes what it wrote: the target's name never shows a part. (A process that is
+/// killed leaves a file named .TARGET.PID-N.tmp.)
+/// Segments arrive in any order of dependency; the file keeps the order of segments, each on pages
+/// of its own, and inside a segment orders records by error class (one octave, coarse first), wide
+/// before narrow, then along the Hilbert curve of the box centre, then by key. The bytes depend on
+/// nothing but what is given. Memory: one segment twice and 32 bytes for each of its records while
+/// it is ordered; 2 MiB; less than one byte for a hundred records (leaves of the index go to a
+/// nameless side file).
 class StoreWriter {
  public:
   /// @throws Error invalid_argument (target exists and overwrite is off), io_error, not_found (no
@@ -41,12 +44,18 @@ class StoreWriter {
   StoreWriter& operator=(const StoreWriter&) = delete;
   virtual ~StoreWriter() = default;
 
-  /// Appends one segment. `records` is reordered in place.  @throws Error resource_exhausted (disk
-  /// full), io_error
+  /// Appends one segment. `records` is reordered in place.
+  /// @throws Error resource_exhausted (disk full), io_error, invalid_argument (another encoding of
+  ///               heights than before), internal (a record that no reader would accept)
   virtual void add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) = 0;
 
-  /// Writes T0, metadata, index and tables, syncs, renames onto the target, syncs the folder.
-  /// @throws Error resource_exhausted, io_error
+  /// Writes T0, metadata, index and tables, syncs, renames onto the target, syncs the folder. To be
+  /// called once. Moves as many bytes of pages as the front of the file is long.
+  /// @param metadata_json  UTF-8 JSON; not looked at.
+  /// @throws Error invalid_argument    facts or T0 that no reader would accept; the target exists
+  /// by now
+  ///               resource_exhausted  disk full
+  ///               io_error            also when all is done but the folder could not be synced
   virtual void publish(const StoreFacts& facts, const CoarsestTin& t0,
                        const std::string& metadata_json) = 0;
 

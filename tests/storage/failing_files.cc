@@ -38,7 +38,8 @@ void expect_old_or_new(const StoreContent& new_content) {
           ASSERT_EQ(*code, failure == ENOSPC ? ErrorCode::resource_exhausted : ErrorCode::io_error);
           ++kept;
         } else {
-          // Without an error only where the failure does not matter.
+          ASSERT_TRUE(code.has_value() || files.was_harmless())
+              << "call " << nth << " failed and nothing was said";
           ASSERT_TRUE(found == new_bytes) << "call " << nth;
           write_store(path, old_content, {.overwrite = true});
           ++replaced;

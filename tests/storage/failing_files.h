@@ -3,6 +3,7 @@
 // A file layer that fails, and what must hold when it does.
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -33,13 +34,16 @@ class FailingFiles final : public FileLayer {
       : nth_(nth), failure_(failure), for_good_(for_good) {}
 
   [[nodiscard]] int calls() const { return calls_; }
+  /// True when the first failure was one that no promise depends on: space could not be reserved
+  /// ahead, or a side file could not be closed after the new file had its name.
+  [[nodiscard]] bool was_harmless() const { return was_harmless_; }
 
   int create(const std::string& path, int& fd) noexcept override {
     return fails() ? failure_ : FileLayer::create(path, fd);
   }
   int close(int fd) noexcept override {
     const int result = FileLayer::close(fd);
-    return fails() ? failure_ : result;
+    return fails(is_renamed_) ? failure_ : result;
   }
   int write_at(int fd, std::span<const std::byte> bytes, std::uint64_t offset,
                std::size_t& written) noexcept override {
@@ -56,11 +60,15 @@ class FailingFiles final : public FileLayer {
     return fails() ? failure_ : FileLayer::read_at(fd, bytes, offset, read);
   }
   int allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexcept override {
-    return fails() ? failure_ : FileLayer::allocate(fd, offset, bytes);
+    return fails(failure_ != ENOSPC) ? failure_ : FileLayer::allocate(fd, offset, bytes);
   }
   int sync(int fd) noexcept override { return fails() ? failure_ : FileLayer::sync(fd); }
   int rename(const std::string& from, const std::string& to, bool replace) noexcept override {
-    return fails() ? failure_ : FileLayer::rename(from, to, replace);
+    if (fails()) {
+      return failure_;
+    }
+    is_renamed_ = true;
+    return FileLayer::rename(from, to, replace);
   }
   int unlink(const std::string& path) noexcept override {
     return calls_ < nth_ && fails() ? failure_ : FileLayer::unlink(path);
@@ -70,13 +78,18 @@ class FailingFiles final : public FileLayer {
   }
 
  private:
-  bool fails() noexcept {
+  bool fails(bool harmless = false) noexcept {
     ++calls_;
+    if (calls_ == nth_) {
+      was_harmless_ = harmless;
+    }
     return for_good_ ? calls_ >= nth_ : calls_ == nth_;
   }
   int nth_, failure_;
   bool for_good_;
   int calls_ = 0;
+  bool is_renamed_ = false;
+  bool was_harmless_ = false;
 };
 
 /// Publishes `content` over an older file, with each call of the file layer failing in turn: the
