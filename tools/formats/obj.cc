@@ -13,7 +13,7 @@ void write_obj(const Mesh& mesh, OutputFile& out) {
   if (!mesh.vertical_crs.empty()) line += "# vertical_crs: " + mesh.vertical_crs + "\n";
   out.write(line);
   for (const auto& vertex : mesh.vertices) {
-    line = "v";
+    line.assign(1, 'v');
     for (const double coordinate : vertex) {
       line += ' ';
       append_number(line, coordinate);
@@ -21,7 +21,7 @@ void write_obj(const Mesh& mesh, OutputFile& out) {
     out.write(line += '\n');
   }
   for (const auto& triangle : mesh.triangles) {
-    line = "f";
+    line.assign(1, 'f');
     for (const std::uint32_t vertex : triangle) {
       line += ' ';
       append_number(line, std::uint64_t{vertex} + 1);

@@ -75,6 +75,14 @@ std::string unit_of(const CrsFacts& crs) {
                                                                                           : "";
 }
 
+/// The window and what else of the map is seen beside it when the picture has another shape.
+Window visible_window(const View& view) {
+  const double beside = view.left / view.scale_x;
+  const double above = view.top / view.scale_y;
+  const Window& w = view.window;
+  return {w.min_x - beside, w.min_y - above, w.max_x + beside, w.max_y + above};
+}
+
 /// Pixels between samples, as far as the grid tells.
 int reach_for(const StoreFacts& facts, const View& view) {
   const double spacing = std::max(facts.map.step_x * view.scale_x, facts.map.step_y * view.scale_y);
@@ -94,9 +102,10 @@ int run_render(const RenderOptions& options, const Context& context) {
       make_view(window, crs.geographic, sized ? options.size[0] : 0, sized ? options.size[1] : 0);
 
   RefineRequest request;
-  request.region = region;
-  request.tolerance =
-      options.error ? options.error : tolerance_for(store, share_of(window, whole), view);
+  if (region) request.region = visible_window(view);
+  request.tolerance = options.error
+                          ? options.error
+                          : tolerance_for(store, share_of(visible_window(view), whole), view);
   request.form = ResultForm::kMeetingRegion;
   request.page_of_triangle = options.pages;
   request.stop = context.stop;

@@ -80,8 +80,8 @@ void verify_refinement(const ProgressiveTin& terrain, const Context& context, Pr
   }
 }
 
-/// The full TIN, tolerance 0, and round tolerances at which about 30, 10, 3 and 1 % of the vertices
-/// that tolerance 0 takes are left.
+/// The full TIN, tolerance 0, and four round tolerances: numbers of vertices in even steps of scale
+/// between what tolerance 0 takes and T0.
 std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
                                                  const StoreFile& store) {
   std::vector<std::optional<double>> tolerances{std::nullopt};
@@ -90,10 +90,12 @@ std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
     return tolerances;
   }
   tolerances.emplace_back(0.0);
-  const double all = static_cast<double>(vertices_at(store, 0.0));  // flat parts are no measure
-  for (const double share : {0.3, 0.1, 0.03, 0.01}) {
+  const auto coarsest = static_cast<double>(store.t0().vertices.size());
+  const double finest = static_cast<double>(vertices_at(store, 0.0)) / coarsest;
+  for (const double step : {0.85, 0.65, 0.45, 0.25}) {
     for (const double tolerance : round_tolerances(store, 60)) {
-      if (static_cast<double>(vertices_at(store, tolerance)) > share * all) continue;
+      if (static_cast<double>(vertices_at(store, tolerance)) > coarsest * std::pow(finest, step))
+        continue;
       if (tolerance > tolerances.back().value_or(0.0)) tolerances.emplace_back(tolerance);
       break;
     }

@@ -22,6 +22,7 @@ struct Finding {
                                                               ///< triangles that hold it.
   bool in_closed_surface = false;
   bool in_open_surface = false;
+  bool in_closed_void = false;
   bool covered = false;
   std::uint8_t open_triangles = 0;
 };
@@ -238,6 +239,7 @@ std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& wind
       Finding& f = found[i];
       f.covered = true;
       f.open_triangles = static_cast<std::uint8_t>(f.open_triangles + (weights.in_open() ? 1 : 0));
+      f.in_closed_void = f.in_closed_void || !is_surface;
       if (!is_surface) return;
       f.in_closed_surface = true;
       f.in_open_surface = f.in_open_surface || weights.in_open();
@@ -286,7 +288,8 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
       if (f.residual > allowed + slack_) {
         fault(&check, "the sample at " + place_text(sample.x, sample.y) + " is off by " +
                           short_number(f.residual) + ", more than the certified " +
-                          short_number(allowed));
+                          short_number(allowed) +
+                          (f.in_closed_void ? " (on an edge beside a void)" : ""));
       }
     }
   }
