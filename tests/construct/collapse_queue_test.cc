@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/collapse_queue.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace ptin {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(ErrorClass, IsAQuarterOfAnOctaveWide) {
+  EXPECT_EQ(error_class(0.0), 0U);
+  EXPECT_EQ(error_class(std::nextafter(1.0, 0.0)), 0U);
+  EXPECT_EQ(error_class(1.0), 1U);
+  for (int quarter = 0; quarter < 200; ++quarter) {
+    const double lower = std::exp2(quarter / 4.0);
+    EXPECT_EQ(error_class(lower * (1 + 1e-12)), 1U + static_cast<unsigned>(quarter));
+    EXPECT_EQ(error_class(lower * std::exp2(0.25) * (1 - 1e-12)),
+              1U + static_cast<unsigned>(quarter));
+  }
+  EXPECT_GT(error_class(kInfinity), error_class(std::numeric_limits<double>::max()));
+}
+
+RC_GTEST_PROP(ErrorClass, NeverFallsWhenTheErrorGrows, (double a, double b)) {
+  RC_ASSERT(error_class(std::min(std::abs(a), std::abs(b))) <=
+            error_class(std::max(std::abs(a), std::abs(b))));
+}
+
+CollapseMeasure measure(double error, double height, std::int32_t side) {
+  return {{100, 100}, error, height, {90, 90, 90 + side, 90 + side}};
+}
+
+TEST(PriorityScale, PutsErrorClassesBeforeBoxes) {
+  const PriorityScale scale(CostModel::kError, {0, 0, 1000, 1000}, 1000000);
+  EXPECT_LT(scale(measure(0.5, 9, 400)), scale(measure(1.5, 0, 20)));
+  EXPECT_LT(scale(measure(1.5, 9, 20)), scale(measure(1.51, 0, 400)));
+  EXPECT_LT(scale(measure(1e30, 9, 400)), scale(measure(kInfinity, 0, 20)));
+  EXPECT_LT(scale(measure(kInfinity, 9, 20)), scale(measure(kInfinity, 0, 21)));
+}
+
+TEST(PriorityScale, PutsSmallBoxesFirstForRoi) {
+  const PriorityScale scale(CostModel::kRoi, {0, 0, kGridMax, kGridMax}, 1000);
+  for (std::int32_t side = 1; side < 100000; side += 1 + side / 3) {
+    EXPECT_LT(scale(measure(9, 9, side)), scale(measure(0, 0, side + 1)));
+  }
+}
+
+TEST(PriorityScale, PutsSmallHeightIntervalsThenBoxesFirstForElevation) {
+  const PriorityScale scale(CostModel::kElevation, {0, 0, 1000, 1000}, 1000);
+  EXPECT_LT(scale(measure(9, 0.0, 300)), scale(measure(0, 1.0, 20)));
+  EXPECT_LT(scale(measure(9, 1.0, 300)), scale(measure(0, 2.0, 20)));
+  EXPECT_LT(scale(measure(9, 2.0, 20)), scale(measure(0, 2.0, 300)));
+  EXPECT_LT(scale(measure(9, 1e30, 20)), scale(measure(0, 2e30, 20)));
+}
+
+RC_GTEST_PROP(CollapseQueue, GivesTheLeastEntryFirst, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  CollapseQueue queue;
+  std::set<QueueEntry> expected;
+  VertexId next = 0;
+  const int spread = static_cast<int>(random() % 64);
+  for (int step = 0; step < 400; ++step) {
+    if (expected.empty() || random() % 5 < 2) {
+      const QueueEntry entry{random() >> spread, next++};
+      queue.push(entry);
+      expected.insert(entry);
+    } else {
+      RC_ASSERT(!queue.empty());
+      RC_ASSERT(queue.top() == *expected.begin());
+      queue.pop();
+      expected.erase(expected.begin());
+    }
+  }
+  while (!expected.empty()) {
+    RC_ASSERT(!queue.empty());
+    RC_ASSERT(queue.top() == *expected.begin());
+    queue.pop();
+    expected.erase(expected.begin());
+  }
+  RC_ASSERT(queue.empty());
+}
+
+}  // namespace
+}  // namespace ptin
