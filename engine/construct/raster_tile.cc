@@ -2,7 +2,6 @@
 #include "engine/construct/raster_tile.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -61,8 +60,9 @@ MeasureUnits measure_units(const TerrainFrame& frame, double void_slope) {
   units.heights = frame.heights;
   units.quantum_code = frame.height_quantum / frame.heights.step;
   units.void_slope_code = void_slope / frame.heights.step;
-  units.exact_codes = frame.heights.type == HeightType::int32 ||
-                      std::floor(frame.height_quantum) == frame.height_quantum;
+  // Float32 heights may look like whole numbers and not be (the quantum is only what they are near
+  // to), and what a claim of exact arithmetic saves is rounding alone.
+  units.exact_codes = frame.heights.type == HeightType::int32;
   return units;
 }
 
