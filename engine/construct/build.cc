@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <memory>
 
 #include "engine/construct/delaunay.h"
+#include "engine/construct/hierarchy.h"
 #include "engine/construct/point_source.h"
 #include "engine/construct/raster_source.h"
 #include "engine/construct/raster_tile.h"
@@ -18,10 +18,13 @@ namespace ptin {
 
 namespace {
 
-/// A terrain as one tile, ready to be simplified.
-struct OpenedTerrain {
-  TerrainFrame frame;
-  StartedTile started;
+/// One call of build(): what it was asked, and what it reports.
+struct Job {
+  const std::vector<std::string>& inputs;
+  const std::string& output;
+  const BuildOptions& options;
+  const BuildResources& resources;
+  BuildReport report;
 };
 
 SourceOptions source_options(const BuildOptions& o) {
@@ -45,40 +48,65 @@ auto stage(const BuildResources& resources, const char* name) {
   };
 }
 
-OpenedTerrain open_raster(const std::vector<std::string>& inputs, const BuildOptions& options,
-                          const BuildResources& resources, BuildReport& report) {
-  const RasterSource source = RasterSource::open(inputs, source_options(options), resources.stop,
-                                                 stage(resources, "reading"));
-  OpenedTerrain terrain;
-  terrain.frame = source.frame();
-  terrain.started = start_raster_tile(source, {0, 0, source.width(), source.height()},
-                                      measure_units(terrain.frame, options.void_slope));
-  report.source_samples = source.valid_samples();
-  report.void_samples = source.void_samples();
-  report.lone_samples = terrain.started.lone_samples;
-  return terrain;
+void build_raster(Job& job) {
+  const RasterSource source = RasterSource::open(
+      job.inputs, source_options(job.options), job.resources.stop, stage(job.resources, "reading"));
+  job.report.source_samples = source.valid_samples();
+  job.report.void_samples = source.void_samples();
+  job.report.height_rounding = source.frame().height_rounding;
+  job.report.vertices =
+      static_cast<std::uint64_t>(source.width()) * static_cast<std::uint64_t>(source.height());
+
+  // Made before the long work, so that a target that cannot be written is known at once.
+  StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame());
+  HierarchyOptions options;
+  options.cost = job.options.cost;
+  options.void_slope = job.options.void_slope;
+  options.stop = job.resources.stop;
+  options.progress = job.resources.progress;
+  const TileTree tree(
+      source.width(), source.height(),
+      job.options.tile.value_or(TileTree::default_side(source.width(), source.height())));
+  HierarchyBuilder builder(source, tree, options, [&store](std::span<VertexSplit> records) {
+    store.add_segment(records);
+  });
+  const Tin t0 = builder.run();
+  job.report.lone_samples = builder.lone_samples();
+  stage(job.resources, "writing")(0, 1);
+  store.publish(t0, job.inputs, job.report);
 }
 
-OpenedTerrain open_points(const std::vector<std::string>& inputs, const BuildOptions& options,
-                          const BuildResources& resources, BuildReport& report) {
-  const PointSet points =
-      read_points(inputs, source_options(options), resources.stop, stage(resources, "reading"));
-  OpenedTerrain terrain;
-  terrain.frame = points.frame;
-  Tile& tile = terrain.started.tile;
-  tile.units = measure_units(terrain.frame, options.void_slope);
-  tile.tin = make_delaunay_tin(points.positions, points.heights, resources.stop);
+void build_points(Job& job) {
+  const PointSet points = read_points(job.inputs, source_options(job.options), job.resources.stop,
+                                      stage(job.resources, "reading"));
+  job.report.source_samples = points.positions.size();
+  job.report.merged_points = points.merged_points;
+  job.report.largest_shift_plan = points.largest_shift_plan;
+  job.report.largest_shift_height = points.largest_shift_height;
+  job.report.height_rounding = points.frame.height_rounding;
+  job.report.vertices = points.positions.size();
+
+  StoreOutput store(job.output, job.options, job.resources.overwrite, points.frame);
+  Tile tile;
+  tile.units = measure_units(points.frame, job.options.void_slope);
+  tile.tin = make_delaunay_tin(points.positions, points.heights, job.resources.stop);
   start_tile(tile, {});
-  terrain.started.full = std::make_unique<TinSurface>(tile.tin, terrain.frame.heights);
-  report.source_samples = points.positions.size();
-  report.merged_points = points.merged_points;
-  report.largest_shift_plan = points.largest_shift_plan;
-  report.largest_shift_height = points.largest_shift_height;
-  return terrain;
+  const TinSurface full(tile.tin, points.frame.heights);
+  SimplifyOptions options;
+  options.cost = job.options.cost;
+  options.stop = job.resources.stop;
+  const auto report_collapses = stage(job.resources, "collapsing");
+  options.progress = [&](std::uint64_t collapsed) {
+    report_collapses(collapsed, job.report.vertices);
+  };
+  simplify(tile, full, options);
+  stage(job.resources, "writing")(0, 1);
+  store.add_segment(tile.records);
+  store.publish(tile.tin, job.inputs, job.report);
 }
 
-OpenedTerrain open_terrain(const std::vector<std::string>& inputs, const BuildOptions& options,
-                           const BuildResources& resources, BuildReport& report) {
+/// True for point files, false for rasters.
+bool are_points(const std::vector<std::string>& inputs) {
   if (inputs.empty()) {
     throw Error(ErrorCode::invalid_argument,
                 "no input; name a raster that GDAL reads, or points as CSV or XYZ text");
@@ -88,8 +116,7 @@ OpenedTerrain open_terrain(const std::vector<std::string>& inputs, const BuildOp
     throw Error(ErrorCode::invalid_argument,
                 "rasters and point files together; build from one kind at a time");
   }
-  return points != 0 ? open_points(inputs, options, resources, report)
-                     : open_raster(inputs, options, resources, report);
+  return points != 0;
 }
 
 }  // namespace
@@ -97,29 +124,19 @@ OpenedTerrain open_terrain(const std::vector<std::string>& inputs, const BuildOp
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
                   const BuildOptions& options, const BuildResources& resources) {
   const auto begin = std::chrono::steady_clock::now();
-  BuildReport report;
-  OpenedTerrain terrain = open_terrain(inputs, options, resources, report);
-  report.height_rounding = terrain.frame.height_rounding;
-  Tile& tile = terrain.started.tile;
-  report.vertices = tile.tin.vertices.size();
-
-  // Made before the long work, so that a target that cannot be written is known at once.
-  StoreOutput store(output, options, resources.overwrite, terrain.frame);
-  SimplifyOptions simplify_options;
-  simplify_options.cost = options.cost;
-  simplify_options.stop = resources.stop;
-  const auto report_collapses = stage(resources, "collapsing");
-  simplify_options.progress = [&](std::uint64_t collapsed) {
-    report_collapses(collapsed, report.vertices);
-  };
-  simplify(tile, *terrain.started.full, simplify_options);
-  terrain.started.full.reset();
-  stage(resources, "writing")(0, 1);
-  store.add_segment(tile.records);
-  store.publish(tile.tin, inputs, report);
+  if (options.tile && *options.tile < 2) {
+    throw Error(ErrorCode::invalid_argument, "a tile must be at least 2 grid units along a side");
+  }
+  Job job{inputs, output, options, resources, {}};
+  if (are_points(inputs)) {
+    build_points(job);
+  } else {
+    build_raster(job);
+  }
   stage(resources, "writing")(1, 1);
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return report;
+  job.report.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return job.report;
 }
 
 }  // namespace ptin

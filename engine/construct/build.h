@@ -27,6 +27,8 @@ struct BuildOptions {
   std::string vertical_crs;  ///< "" keeps what the source declares, if anything.
   double void_slope =
       0.1;  ///< Height error charged per ground unit of depth of a sample in the wrong class.
+  /// Rasters: grid units along a leaf of the tile hierarchy; none means TileTree::default_side().
+  std::optional<std::int64_t> tile;
   std::uint32_t page_bytes = 4096;
 };
 

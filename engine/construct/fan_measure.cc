@@ -202,6 +202,31 @@ bool make_fan(const StarSamples& s, std::size_t j, FanFrame& fan) {
   return true;
 }
 
+void make_spokes_of_star(const StarSamples& s, FanFrame& fan) {
+  const std::size_t triangles = s.star.triangles.size();
+  const std::size_t degree = s.link_x.size();
+  fan.j = 0;
+  fan.w_x = fan.w_y = fan.w_z = 0.0;
+  fan.spoke_x.clear();
+  fan.spoke_y.clear();
+  fan.spoke_z.clear();
+  fan.determinant.clear();
+  fan.inverse.clear();
+  fan.star_triangle.clear();
+  for (std::size_t i = 0; i <= triangles; ++i) {
+    const std::size_t k = i == degree ? 0 : i;
+    fan.spoke_x.push_back(s.link_x[k]);
+    fan.spoke_y.push_back(s.link_y[k]);
+    fan.spoke_z.push_back(s.link_z[k]);
+    if (i > 0) {
+      fan.determinant.push_back(cross(fan.spoke_x[i - 1], fan.spoke_y[i - 1], fan.spoke_x[i],
+                                      fan.spoke_y[i], s.is_wide()));
+      fan.inverse.push_back(1.0 / fan.determinant.back());
+      fan.star_triangle.push_back(static_cast<std::uint32_t>(i - 1));
+    }
+  }
+}
+
 double largest_residual(const StarSamples& s, const FanFrame& fan, std::size_t begin,
                         std::size_t end, double stop_above) noexcept {
   if (!s.is_wide()) {

@@ -35,6 +35,9 @@ struct FanFrame {
 /// neighbour along it. (The same rule as can_collapse().)
 [[nodiscard]] bool make_fan(const StarSamples& s, std::size_t j, FanFrame& fan);
 
+/// Builds the frame of the star itself: w is u, triangle i that of the star.
+void make_spokes_of_star(const StarSamples& s, FanFrame& fan);
+
 /// Largest |vertical distance| between samples [begin, end) and the fan triangle that each lies in;
 /// begin and end are multiples of kSampleLanes. Returns early, with what it has, once that exceeds
 /// `stop_above`. Rounding: see residual_bound().

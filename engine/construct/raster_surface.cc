@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/raster_surface.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -8,19 +9,15 @@ namespace ptin {
 
 namespace {
 
-/// floor(i * numerator / denominator) and its remainder for i = 1, 2, ..., without divisions in the
-/// loop.
+/// floor(i * numerator / denominator) and its remainder for i = first, first + 1, ..., without
+/// divisions in the loop. Products stay below 2^62: numerator and i are lengths on the grid.
 class Stepper {
  public:
-  /// REQUIRES: denominator > 0.
-  Stepper(std::int64_t numerator, std::int64_t denominator) noexcept
-      : denominator_(denominator),
-        quotient_step_(numerator / denominator),
-        remainder_step_(numerator % denominator) {
-    if (remainder_step_ < 0) {
-      remainder_step_ += denominator;
-      --quotient_step_;
-    }
+  /// REQUIRES: denominator > 0. step() comes before the first value.
+  Stepper(std::int64_t numerator, std::int64_t denominator, std::int64_t first) noexcept
+      : denominator_(denominator) {
+    divide(numerator, quotient_step_, remainder_step_);
+    divide(numerator * (first - 1), quotient_, remainder_);
   }
   void step() noexcept {
     quotient_ += quotient_step_;
@@ -34,9 +31,17 @@ class Stepper {
   [[nodiscard]] std::int64_t remainder() const noexcept { return remainder_; }
 
  private:
+  void divide(std::int64_t n, std::int64_t& quotient, std::int64_t& remainder) const noexcept {
+    quotient = n / denominator_;
+    remainder = n % denominator_;
+    if (remainder < 0) {
+      remainder += denominator_;
+      --quotient;
+    }
+  }
   std::int64_t denominator_;
-  std::int64_t quotient_step_;
-  std::int64_t remainder_step_;
+  std::int64_t quotient_step_ = 0;
+  std::int64_t remainder_step_ = 0;
   std::int64_t quotient_ = 0;
   std::int64_t remainder_ = 0;
 };
@@ -45,10 +50,30 @@ std::int64_t sign(std::int64_t v) noexcept { return v < 0 ? -1 : 1; }
 
 }  // namespace
 
-/// An edge in window coordinates, with the rise of its height relative to its first end.
+/// An edge in window coordinates, with the rise of its height relative to its first end, and the
+/// part of it, as fractions, that may lie in the window.
 struct RasterSurface::Line {
   std::int64_t x, y, dx, dy;
   double rise;
+  double enter = 0.0, leave = 1.0;
+
+  /// The crossings to look at, of `n` - 1 equally spaced ones: those near the window.
+  [[nodiscard]] std::int64_t first(std::int64_t n) const noexcept {
+    return std::max<std::int64_t>(static_cast<std::int64_t>(enter * static_cast<double>(n)) - 1, 1);
+  }
+  [[nodiscard]] std::int64_t end(std::int64_t n) const noexcept {
+    return std::min<std::int64_t>(static_cast<std::int64_t>(leave * static_cast<double>(n)) + 2, n);
+  }
+  void clip(std::int64_t from, std::int64_t length, std::int64_t size) noexcept {
+    if (length == 0) {
+      leave = from < 0 || from >= size ? -1.0 : leave;
+      return;
+    }
+    const double a = static_cast<double>(-from) / static_cast<double>(length);
+    const double b = static_cast<double>(size - 1 - from) / static_cast<double>(length);
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
 };
 
 RasterSurface::RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid,
@@ -75,10 +100,15 @@ bool RasterSurface::rises(std::int64_t x, std::int64_t y) const noexcept {
 void RasterSurface::cross_columns(const Line& l, GapMaximum& gap) const {
   const std::int64_t n = std::abs(l.dx);
   const double inverse = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  Stepper y(l.dy, n > 0 ? n : 1);
-  for (std::int64_t i = 1; i < n; ++i) {
+  Stepper y(l.dy, std::max<std::int64_t>(n, 1), l.first(n));
+  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
     y.step();
-    const std::size_t p = at(l.x + sign(l.dx) * i, l.y + y.floor());
+    const std::int64_t column = l.x + sign(l.dx) * i;
+    const std::int64_t row = l.y + y.floor();
+    if (!holds(column, row) || (y.remainder() != 0 && row + 1 == height_)) {
+      continue;
+    }
+    const std::size_t p = at(column, row);
     const std::size_t q = y.remainder() == 0 ? p : p + static_cast<std::size_t>(width_);
     add(p, q, static_cast<double>(y.remainder()) * inverse,
         l.rise * (static_cast<double>(i) * inverse), gap);
@@ -89,10 +119,15 @@ void RasterSurface::cross_columns(const Line& l, GapMaximum& gap) const {
 void RasterSurface::cross_rows(const Line& l, GapMaximum& gap) const {
   const std::int64_t n = std::abs(l.dy);
   const double inverse = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  Stepper x(l.dx, n > 0 ? n : 1);
-  for (std::int64_t i = 1; i < n; ++i) {
+  Stepper x(l.dx, std::max<std::int64_t>(n, 1), l.first(n));
+  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
     x.step();
-    const std::size_t p = at(l.x + x.floor(), l.y + sign(l.dy) * i);
+    const std::int64_t column = l.x + x.floor();
+    const std::int64_t row = l.y + sign(l.dy) * i;
+    if (!holds(column, row) || (x.remainder() != 0 && column + 1 == width_)) {
+      continue;
+    }
+    const std::size_t p = at(column, row);
     const std::size_t q = x.remainder() == 0 ? p : p + 1;
     add(p, q, static_cast<double>(x.remainder()) * inverse,
         l.rise * (static_cast<double>(i) * inverse), gap);
@@ -104,15 +139,15 @@ void RasterSurface::cross_rising(const Line& l, GapMaximum& gap) const {
   const std::int64_t d = l.dy - l.dx;
   const std::int64_t n = std::abs(d);
   const double inverse = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  Stepper x(l.dx, n > 0 ? n : 1);
-  for (std::int64_t i = 1; i < n; ++i) {
+  Stepper x(l.dx, std::max<std::int64_t>(n, 1), l.first(n));
+  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
     x.step();
     if (x.remainder() == 0) {
       continue;  // at a sample: a crossing with a row or a column too
     }
     const std::int64_t column = l.x + x.floor();
     const std::int64_t row = column + (l.y - l.x) + sign(d) * i;
-    if (rises(column, row)) {
+    if (holds(column, row) && holds(column + 1, row + 1) && rises(column, row)) {
       const std::size_t p = at(column, row);
       add(p, p + static_cast<std::size_t>(width_) + 1, static_cast<double>(x.remainder()) * inverse,
           l.rise * (static_cast<double>(i) * inverse), gap);
@@ -125,8 +160,8 @@ void RasterSurface::cross_falling(const Line& l, GapMaximum& gap) const {
   const std::int64_t d = l.dy + l.dx;
   const std::int64_t n = std::abs(d);
   const double inverse = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  Stepper x(l.dx, n > 0 ? n : 1);
-  for (std::int64_t i = 1; i < n; ++i) {
+  Stepper x(l.dx, std::max<std::int64_t>(n, 1), l.first(n));
+  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
     x.step();
     if (x.remainder() == 0) {
       continue;
@@ -134,7 +169,7 @@ void RasterSurface::cross_falling(const Line& l, GapMaximum& gap) const {
     const std::int64_t column = l.x + x.floor();
     const std::int64_t row = (l.y + l.x) + sign(d) * i - column -
                              1;  // the diagonal's lower right end is (column + 1, row)
-    if (!rises(column, row)) {
+    if (holds(column, row) && holds(column + 1, row + 1) && !rises(column, row)) {
       const std::size_t upper_left = at(column, row + 1);
       add(upper_left, upper_left + 1 - static_cast<std::size_t>(width_),
           static_cast<double>(x.remainder()) * inverse, l.rise * (static_cast<double>(i) * inverse),
@@ -144,10 +179,15 @@ void RasterSurface::cross_falling(const Line& l, GapMaximum& gap) const {
 }
 
 double RasterSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
-  const Line line{std::int64_t{a.position.x} - origin_.x, std::int64_t{a.position.y} - origin_.y,
-                  std::int64_t{b.position.x} - a.position.x,
-                  std::int64_t{b.position.y} - a.position.y, b.code - a.code};
+  Line line{std::int64_t{a.position.x} - origin_.x, std::int64_t{a.position.y} - origin_.y,
+            std::int64_t{b.position.x} - a.position.x, std::int64_t{b.position.y} - a.position.y,
+            b.code - a.code};
+  line.clip(line.x, line.dx, width_);
+  line.clip(line.y, line.dy, height_);
   GapMaximum gap(a.code);
+  if (line.enter > line.leave) {
+    return 0.0;
+  }
   cross_columns(line, gap);
   cross_rows(line, gap);
   cross_rising(line, gap);

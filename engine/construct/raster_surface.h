@@ -10,6 +10,7 @@
 
 namespace ptin {
 
+/// Edges may lead out of the window: only what lies inside of it is looked at.
 class RasterSurface final : public FullSurface {
  public:
   /// Takes the samples over. Layout as make_raster_tin().
@@ -26,6 +27,9 @@ class RasterSurface final : public FullSurface {
            static_cast<std::size_t>(x);
   }
   [[nodiscard]] double code(std::size_t i) const noexcept { return encoding_.code(heights_[i]); }
+  [[nodiscard]] bool holds(std::int64_t x, std::int64_t y) const noexcept {
+    return x >= 0 && y >= 0 && x < width_ && y < height_;
+  }
   [[nodiscard]] bool rises(std::int64_t x, std::int64_t y) const noexcept;
   void cross_columns(const Line& line, GapMaximum& gap) const;
   void cross_rows(const Line& line, GapMaximum& gap) const;

@@ -9,6 +9,7 @@
 #include "engine/construct/full_surface.h"
 #include "engine/construct/raster_source.h"
 #include "engine/construct/tile.h"
+#include "engine/construct/tile_tree.h"
 
 namespace ptin {
 
@@ -17,11 +18,6 @@ struct StartedTile {
   Tile tile;
   std::unique_ptr<FullSurface> full;
   std::uint64_t lone_samples = 0;  ///< Samples that touch no surface triangle; treated as void.
-};
-
-/// A window of samples, grid orientation.
-struct SampleRange {
-  std::int64_t x0 = 0, y0 = 0, width = 0, height = 0;
 };
 
 /// Constants of measuring for a terrain. @param void_slope  Height charged per ground unit of

@@ -2,16 +2,13 @@
 #include "engine/construct/record_maker.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
 
 #include "engine/check.h"
 #include "engine/construct/rounding.h"
-#include "engine/construct/sample_blocks.h"
 #include "engine/construct/saturation.h"
-#include "engine/construct/void_measure.h"
 
 namespace ptin {
 
@@ -27,14 +24,6 @@ std::pair<HeightBits, HeightBits> bits_of(const Interval& codes, const HeightEnc
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return {heights.bits(kInfinity), heights.bits(-kInfinity)};
-}
-
-bool is_mostly_alike(const std::vector<Sample>& list) {
-  std::size_t alike = 0;
-  for (std::size_t k = 1; k < list.size(); ++k) {
-    alike += list[k].height == list[k - 1].height ? 1 : 0;
-  }
-  return alike > list.size() / 2;
 }
 
 std::uint16_t flags_of(const Tin& tin, const CollapseSite& site) {
@@ -55,33 +44,6 @@ std::uint16_t flags_of(const Tin& tin, const CollapseSite& site) {
 
 }  // namespace
 
-/// Fills triangle_ and residual_; returns the collapse's own error and the deviation at samples, in
-/// codes.
-RecordMaker::OwnPart RecordMaker::measure(const StarSamples& s) {
-  assign_samples(s, fan_, triangle_, residual_);
-  if (s.void_only || s.flat) {
-    return {};
-  }
-  const double bound = residual_bound(s, tile_.units);
-  if (!s.surface_only) {
-    for (std::size_t k = 0; k < s.source.size(); ++k) {
-      triangle_[k] = static_cast<double>(
-          triangle_of_sample(tile_, s, fan_, s.x[k], s.y[k], s.source[k].depth >= 0.0F));
-    }
-    const VoidMeasure voids = measure_with_voids(tile_, s, fan_);
-    return {scaled_up(voids.error) + bound, scaled_up(voids.deviation) + bound};
-  }
-  double worst = *std::max_element(residual_.begin(), residual_.end());
-  if (!s.blocks.empty()) {
-    worst = std::max(worst, straddling_residual(s, fan_));
-  }
-  double error = scaled_up(worst) + bound;
-  if (bound > 0.0 && worst <= bound && all_residuals_zero(tile_, s, fan_)) {
-    error = 0.0;
-  }
-  return {error, error};
-}
-
 /// Largest gap along the new inner edges that have surface on one side at least; link edges are
 /// covered by what the star carries.
 double RecordMaker::spoke_deviation(const StarSamples& s) const {
@@ -98,31 +60,28 @@ double RecordMaker::spoke_deviation(const StarSamples& s) const {
   const EdgeEnd w = end_of(fan_.j);
   for (std::size_t i = 1; i < fan_.triangles(); ++i) {
     if (is_surface(i - 1) || is_surface(i)) {
-      worst = std::max(worst, full_.largest_gap(w, end_of((fan_.j + 1 + i) % star.degree())));
+      worst = std::max(worst, full_->largest_gap(w, end_of((fan_.j + 1 + i) % star.degree())));
     }
   }
   return worst;
 }
 
-VertexSplit RecordMaker::make_record(const StarSamples& s, const OwnPart& own,
-                                     const CollapseSite& site) const {
+VertexSplit RecordMaker::make_record(const StarSamples& s, const FanError& own,
+                                     const CollapseSite& site) {
   const Tin& tin = tile_.tin;
-  const double step = tile_.units.heights.step;
-  double error = own.error * step;
-  double deviation = std::max(own.deviation, spoke_deviation(s)) * step;
-  if (step != 1.0) {  // one more rounding
-    error = scaled_up(error);
-    deviation = scaled_up(deviation);
-  }
   VertexSplit r;
-  r.error = rounded_up(error);
-  r.deviation = rounded_up(deviation);
+  r.error = height_bound(own.error, tile_.units.heights);
   std::uint32_t rank = 0;
+  if (full_ != nullptr) {
+    r.deviation = height_bound(std::max(own.deviation, spoke_deviation(s)), tile_.units.heights);
+  }
   for (const TriangleId t : s.star.triangles) {
     if (const std::uint32_t below = tile_.carried[t].record; below != kNone) {
       const VertexSplit& b = tile_.records[below];
-      r.error = std::max(r.error, b.error);
-      r.deviation = std::max(r.deviation, b.deviation);
+      if (full_ != nullptr) {
+        r.error = std::max(r.error, b.error);
+        r.deviation = std::max(r.deviation, b.deviation);
+      }
       rank = std::max<std::uint32_t>(rank, b.rank + 1U);
     }
   }
@@ -146,71 +105,18 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const OwnPart& own,
   return r;
 }
 
-/// Hands every element to the fan triangle that it lies in; blocks across a spoke are taken apart.
-void RecordMaker::hand_over_samples(const StarSamples& s) {
-  for (const TriangleId t : s.star.triangles) {
-    tile_.samples.give_back(tile_.carried[t].samples);
-    tile_.carried[t].samples = {};
-  }
-  lists_.resize(std::max(lists_.size(), fan_.triangles()));
-  for (std::size_t i = 0; i < fan_.triangles(); ++i) {
-    lists_[i].samples.clear();
-  }
-  for (std::size_t k = 0; k < s.source.size(); ++k) {
-    if (s.source[k].side_log == 0) {
-      lists_[static_cast<std::size_t>(triangle_[k])].add(s.source[k], residual_[k]);
+/// Notes which records this one depends on; tightening saturates along them.
+void RecordMaker::note_dependencies(const Star& star) {
+  std::vector<std::uint32_t>& all = tile_.dependencies;
+  const auto first = static_cast<std::ptrdiff_t>(all.size());
+  for (const TriangleId t : star.triangles) {
+    if (tile_.carried[t].record != kNone) {
+      all.push_back(tile_.carried[t].record);
     }
   }
-  for (const SampleBlock& b : s.blocks) {
-    hand_over_block(s, s.source[b.source]);
-  }
-  for (std::size_t i = 0; i < fan_.triangles(); ++i) {
-    store_list(i);
-  }
-}
-
-void RecordMaker::hand_over_block(const StarSamples& s, const Sample& block) {
-  const GridPoint u = tile_.tin.position(s.star.center);
-  const double x = static_cast<double>(block.position.x) - u.x;
-  const double y = static_cast<double>(block.position.y) - u.y;
-  if (block.side_log == 0) {
-    lists_[triangle_of_sample(tile_, s, fan_, x, y, block.depth >= 0.0F)].add(block, 0.0);
-    return;
-  }
-  const auto reach = static_cast<double>((std::int64_t{1} << block.side_log) - 1);
-  const std::size_t i = triangle_of_box(fan_, x, y, x + reach, y + reach);
-  if (i < fan_.triangles()) {
-    lists_[i].add(block, 0.0);
-    return;
-  }
-  const std::int32_t half = std::int32_t{1} << (block.side_log - 1);
-  for (const GridPoint offset : {GridPoint{0, 0}, {half, 0}, {0, half}, {half, half}}) {
-    Sample quarter = block;
-    quarter.position = {block.position.x + offset.x, block.position.y + offset.y};
-    --quarter.side_log;
-    hand_over_block(s, quarter);
-  }
-}
-
-/// Long lists become blocks where that pays: where they hold more samples than the triangle is
-/// long, so that there is an inside, and most are like the one before.
-void RecordMaker::store_list(std::size_t i) {
-  std::vector<Sample>& list = lists_[i].samples;
-  CarriedState& carried = tile_.carried[fan_ids_[i]];
-  carried.holds_voids =
-      tile_.has_voids &&
-      std::any_of(list.begin(), list.end(), [](const Sample& a) { return a.depth < 0.0F; });
-  carried.holds_heights =
-      !tile_.has_voids ||
-      std::any_of(list.begin(), list.end(), [](const Sample& a) { return !(a.depth < 0.0F); });
-  const double length = std::abs(fan_.spoke_x[i]) + std::abs(fan_.spoke_y[i]) +
-                        std::abs(fan_.spoke_x[i + 1]) + std::abs(fan_.spoke_y[i + 1]);
-  if (tile_.samples_fill_grid && static_cast<double>(list.size()) > 2.0 * length + 64.0 &&
-      is_mostly_alike(list)) {
-    join_into_blocks(list);
-  }
-  carried.samples = tile_.samples.take(static_cast<std::uint32_t>(list.size()));
-  std::copy(list.begin(), list.end(), tile_.samples.samples(carried.samples).begin());
+  std::sort(all.begin() + first, all.end());
+  all.erase(std::unique(all.begin() + first, all.end()), all.end());
+  tile_.dependency_end.push_back(static_cast<std::uint32_t>(all.size()));
 }
 
 void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {
@@ -219,14 +125,17 @@ void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {
     gather_samples(tile_, s);
   }
   gather_sources(tile_, s);
-  const OwnPart own = measure(s);
+  const FanError own = measure_fan(tile_, s, fan_, assignment_);
   const CollapseSite site = collapse_site(s.star, j);
   const VertexSplit record = make_record(s, own, site);
+  if (full_ == nullptr) {
+    note_dependencies(s.star);
+  }
   fan_ids_.clear();
   for (const std::uint32_t i : fan_.star_triangle) {
     fan_ids_.push_back(s.star.triangles[i]);
   }
-  hand_over_samples(s);
+  hand_over_.run(tile_, s, fan_, assignment_, fan_ids_, false);
   (void)collapse(tile_.tin, s.star, j);
   const auto id = static_cast<std::uint32_t>(tile_.records.size());
   tile_.records.push_back(record);

@@ -23,7 +23,7 @@ enum class QueueState : std::uint8_t {
 
 class Simplifier {
  public:
-  Simplifier(Tile& tile, const FullSurface& full, const SimplifyOptions& options)
+  Simplifier(Tile& tile, const FullSurface* full, const SimplifyOptions& options)
       : tile_(tile), options_(options), maker_(tile, full), scale_(scale_of(tile, options.cost)) {}
 
   void run();
@@ -188,7 +188,11 @@ void Simplifier::run() {
 }  // namespace
 
 void simplify(Tile& tile, const FullSurface& full, const SimplifyOptions& options) {
-  Simplifier(tile, full, options).run();
+  Simplifier(tile, &full, options).run();
+}
+
+void simplify_witnesses(Tile& tile, const SimplifyOptions& options) {
+  Simplifier(tile, nullptr, options).run();
 }
 
 }  // namespace ptin

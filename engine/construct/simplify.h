@@ -34,4 +34,9 @@ struct SimplifyOptions {
 /// Deterministic. Cost: about n log n residuals for n samples. One thread.
 void simplify(Tile& tile, const FullSurface& full, const SimplifyOptions& options);
 
+/// The same for a tile that holds witnesses instead of all samples: the `error` of a record is its
+/// own part alone, measured over the witnesses, `deviation` is 0, and dependencies are noted in the
+/// tile. Tightening does the rest (tighten.h).
+void simplify_witnesses(Tile& tile, const SimplifyOptions& options);
+
 }  // namespace ptin

@@ -166,7 +166,6 @@ void classify(const Tile& tile, StarSamples& out) {
     out.surface_only = !void_triangles && !voids;
     out.void_only = !surface_triangles && !heights;
   }
-  out.flat = is_flat(tile, out);
 }
 
 /// Heights are taken relative to u's; where u has none, to that of some link vertex.
@@ -200,7 +199,9 @@ void gather_samples(const Tile& tile, StarSamples& out) {
   }
 }
 
-void gather_star(const Tile& tile, VertexId u, StarSamples& out) {
+namespace {
+
+void gather_shape(const Tile& tile, VertexId u, StarSamples& out) {
   walk_star(tile.tin, u, out.star);
   const GridPoint origin = tile.tin.vertices[u].position;
   const double origin_code = origin_code_of(tile, out.star);
@@ -212,12 +213,26 @@ void gather_star(const Tile& tile, VertexId u, StarSamples& out) {
   classify(tile, out);
   out.count = 0;
   out.blocks.clear();
+}
+
+}  // namespace
+
+void gather_star(const Tile& tile, VertexId u, StarSamples& out) {
+  gather_shape(tile, u, out);
+  out.flat = is_flat(tile, out);
   if (!out.flat && !out.void_only) {
     gather_samples(tile, out);
     if (!out.surface_only) {
       gather_sources(tile, out);
     }
   }
+}
+
+void gather_star_and_samples(const Tile& tile, VertexId u, StarSamples& out) {
+  gather_shape(tile, u, out);
+  out.flat = false;
+  gather_samples(tile, out);
+  gather_sources(tile, out);
 }
 
 }  // namespace ptin

@@ -60,6 +60,9 @@ void gather_star(const Tile& tile, VertexId u, StarSamples& out);
 /// Gathers the samples of a star where gather_star() left them out.
 void gather_samples(const Tile& tile, StarSamples& out);
 
+/// Gathers the star of `u` with all samples and sources, whatever they are like.
+void gather_star_and_samples(const Tile& tile, VertexId u, StarSamples& out);
+
 /// Fills `source` of a gathered star, in the order of its samples.
 void gather_sources(const Tile& tile, StarSamples& out);
 

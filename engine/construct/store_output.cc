@@ -43,7 +43,8 @@ nlohmann::json options_json(const BuildOptions& o) {
   nlohmann::json json{
       {"cost", name_of(o.cost)},           {"max_error", o.max_error},
       {"nodata", value_or_null(o.nodata)}, {"resolution", value_or_null(o.resolution)},
-      {"bbox", value_or_null(o.bbox)},     {"void_slope", o.void_slope}};
+      {"bbox", value_or_null(o.bbox)},     {"tile", value_or_null(o.tile)},
+      {"void_slope", o.void_slope}};
   if (!o.a_srs.empty()) {
     json["a_srs"] = o.a_srs;
   }

@@ -51,6 +51,11 @@ struct Tile {
   std::vector<VertexState> vertex_state;  ///< Beside tin.vertices.
   SampleLists samples;
   std::vector<VertexSplit> records;  ///< In the order of the collapses.
+  /// What the own records of a tile of witnesses depend on, as indices into `records` (below that
+  /// of the record itself): record i of the own ones on dependencies[dependency_end[i - 1]] ..
+  /// [dependency_end[i]].
+  std::vector<std::uint32_t> dependencies;
+  std::vector<std::uint32_t> dependency_end;
   MeasureUnits units;
   /// Every grid position inside is a sample: rasters. Then samples join into blocks.
   bool samples_fill_grid = false;

@@ -19,33 +19,62 @@ struct Place {
   std::size_t surface = kNone;   ///< A surface triangle that holds it (closed), if any.
   std::size_t any = kNone;       ///< Some triangle that holds it; a void one if any.
   bool in_open_surface = false;  ///< Inside of a surface triangle, on no edge.
-  double residual = 0.0;         ///< To `surface`.
+  double residual = 0.0;         ///< To `surface`; without one, to the edge that it lies on.
 };
+
+/// The |vertical distance| of a sample to the plane of fan triangle i.
+double residual_to(const FanFrame& fan, std::size_t i, double before, double after, double qz) {
+  const double numerator =
+      fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before);
+  return std::abs(numerator) * fan.inverse[i];
+}
+
+/// True when a sample in (void) fan triangle i lies on an edge of it whose ends both have heights:
+/// a surface triangle may come to lie beyond, now or in another refinement, and hold the sample
+/// too.
+bool on_edge_with_heights(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                          std::size_t i, bool on_first_spoke, bool on_second_spoke, bool on_link) {
+  const std::size_t degree = s.star.degree();
+  const auto has_height = [&](std::size_t link) {
+    return tile.tin.has_height[s.star.link[link % degree]] != 0;
+  };
+  const bool w = has_height(fan.j);
+  const bool first = has_height(fan.j + 1 + i);
+  const bool second = has_height(fan.j + 2 + i);
+  return (on_first_spoke && w && first) || (on_second_spoke && w && second) ||
+         (on_link && first && second);
+}
 
 Place locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, double x, double y,
              double z) {
   Place place;
   const double qx = x - fan.w_x;
   const double qy = y - fan.w_y;
+  const double qz = z - fan.w_z;
+  double on_edge = 0.0;
   std::int64_t before = cross_exact(fan.spoke_x[0], fan.spoke_y[0], qx, qy);
   for (std::size_t i = 0; i < fan.triangles(); ++i) {
     const std::int64_t after = cross_exact(fan.spoke_x[i + 1], fan.spoke_y[i + 1], qx, qy);
     if (before >= 0 && after <= 0) {
+      const auto b = static_cast<double>(before);
+      const auto a = static_cast<double>(after);
+      const double link_side = fan.determinant[i] - b + a;  // 0 on the link edge
       if (is_void(tile, s, fan.star_triangle[i])) {
         place.any = i;
+        if (on_edge_with_heights(tile, s, fan, i, before == 0, after == 0, link_side == 0.0)) {
+          on_edge = std::max(on_edge, residual_to(fan, i, b, a, qz));
+        }
       } else {
         place.any = place.any == kNone ? i : place.any;
         place.surface = i;
-        const double link_side = fan.determinant[i] - static_cast<double>(before) +
-                                 static_cast<double>(after);  // 0 on the link edge
         place.in_open_surface = before > 0 && after < 0 && link_side > 0.0;
-        const double numerator =
-            fan.determinant[i] * (z - fan.w_z) + (fan.spoke_z[i] * static_cast<double>(after) -
-                                                  fan.spoke_z[i + 1] * static_cast<double>(before));
-        place.residual = std::abs(numerator) * fan.inverse[i];
+        place.residual = residual_to(fan, i, b, a, qz);
       }
     }
     before = after;
+  }
+  if (place.surface == kNone) {
+    place.residual = on_edge;
   }
   return place;
 }
@@ -64,7 +93,7 @@ void measure_sample(const Tile& tile, const Place& place, float depth, VoidMeasu
     measure.error = std::max(measure.error, place.residual);
     measure.deviation = std::max(measure.deviation, place.residual);
   } else {
-    measure.error = std::max(measure.error, charge(tile, depth));
+    measure.error = std::max({measure.error, charge(tile, depth), place.residual});
   }
 }
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/fan_error.h"
+
+#include <algorithm>
+
+#include "engine/construct/rounding.h"
+#include "engine/construct/sample_blocks.h"
+#include "engine/construct/void_measure.h"
+
+namespace ptin {
+
+FanError measure_fan(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                     FanAssignment& assignment) {
+  assign_samples(s, fan, assignment.triangle, assignment.residual);
+  if (s.void_only || s.flat) {
+    return {};
+  }
+  const double bound = residual_bound(s, tile.units);
+  if (!s.surface_only) {
+    assign_by_class(tile, s, fan, assignment);
+    const VoidMeasure voids = measure_with_voids(tile, s, fan);
+    return {scaled_up(voids.error) + bound, scaled_up(voids.deviation) + bound};
+  }
+  double worst = *std::max_element(assignment.residual.begin(), assignment.residual.end());
+  if (!s.blocks.empty()) {
+    worst = std::max(worst, straddling_residual(s, fan));
+  }
+  double error = scaled_up(worst) + bound;
+  if (bound > 0.0 && worst <= bound && all_residuals_zero(tile, s, fan)) {
+    error = 0.0;
+  }
+  return {error, error};
+}
+
+void assign_by_class(const Tile& tile, const StarSamples& s, const FanFrame& frame,
+                     FanAssignment& assignment) {
+  for (std::size_t k = 0; k < s.source.size(); ++k) {
+    assignment.triangle[k] = static_cast<double>(
+        triangle_of_sample(tile, s, frame, s.x[k], s.y[k], s.source[k].depth >= 0.0F));
+  }
+}
+
+float height_bound(double codes, const HeightEncoding& heights) noexcept {
+  // A step other than 1 costs one more rounding.
+  return rounded_up(heights.step == 1.0 ? codes : scaled_up(codes * heights.step));
+}
+
+}  // namespace ptin

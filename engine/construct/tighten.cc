@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/tighten.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <memory>
+#include <unordered_map>
+#include <utility>
+
+#include "engine/check.h"
+#include "engine/construct/fan_error.h"
+#include "engine/construct/sample_blocks.h"
+#include "engine/construct/sample_hand_over.h"
+#include "engine/construct/star_samples.h"
+#include "engine/geometry/orient.h"
+#include "engine/mesh/split.h"
+
+namespace ptin {
+
+namespace {
+
+/// A sample whose own charge is not to be counted again: of the vertex's class, with (nearly) no
+/// depth.
+float no_depth(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
+
+/// The mesh of one replay: T0, refined around one leaf, with the leaf's samples in its triangles.
+class Replay {
+ public:
+  Replay(const Tin& t0, StartedTile&& leaf, const SampleRange& window);
+  void apply(VertexSplit& record);
+
+  [[nodiscard]] const GridBox& box() const noexcept { return box_; }
+
+ private:
+  void take_samples(const Tile& leaf);
+  void place(Sample sample, const std::vector<TriangleId>& triangles,
+             std::vector<std::vector<Sample>>& lists);
+  [[nodiscard]] VertexId vertex_at(GridPoint p) const;
+  [[nodiscard]] VertexId add_vertex(const VertexSplit& record);
+  void measure(VertexSplit& record, VertexId w);
+  [[nodiscard]] double spoke_deviation(const FanFrame& fan) const;
+  void hand_to_star();
+
+  Tile tile_;
+  std::unique_ptr<FullSurface> full_;
+  GridBox box_;
+  std::unordered_map<VertexKey, VertexId> vertices_;
+  StarSamples star_;
+  FanFrame fan_, spokes_;
+  FanAssignment assignment_;
+  SampleHandOver hand_over_;
+};
+
+Replay::Replay(const Tin& t0, StartedTile&& leaf, const SampleRange& window)
+    : full_(std::move(leaf.full)),
+      box_{static_cast<std::int32_t>(window.x0), static_cast<std::int32_t>(window.y0),
+           static_cast<std::int32_t>(window.x0 + window.width - 1),
+           static_cast<std::int32_t>(window.y0 + window.height - 1)} {
+  tile_.units = leaf.tile.units;
+  tile_.samples_fill_grid = leaf.tile.samples_fill_grid;
+  tile_.has_voids = true;  // of the whole, not of the leaf: T0 may be void where the leaf is not
+  tile_.tin = t0;
+  tile_.carried.resize(t0.triangles.size());
+  for (VertexId v = 0; v < t0.vertices.size(); ++v) {
+    vertices_.emplace(key_of(t0.position(v)), v);
+    tile_.vertex_state.push_back({no_depth(t0.has_height[v] != 0), 0, false});
+  }
+  take_samples(leaf.tile);
+}
+
+/// Every sample of the leaf that is no vertex of T0 goes to a triangle of T0 that holds it, of its
+/// own class if there is one.
+void Replay::take_samples(const Tile& leaf) {
+  std::vector<Sample> samples;
+  samples.reserve(leaf.tin.vertices.size());
+  for (VertexId v = 0; v < leaf.tin.vertices.size(); ++v) {
+    const Vertex& vertex = leaf.tin.vertices[v];
+    if (!vertices_.contains(key_of(vertex.position))) {
+      samples.push_back({vertex.position, vertex.height, leaf.vertex_state[v].depth, 0});
+    }
+  }
+  join_into_blocks(samples);
+  std::vector<TriangleId> near;
+  for (TriangleId t = 0; t < tile_.tin.triangles.size(); ++t) {
+    GridBox b;
+    for (const VertexId v : tile_.tin.triangles[t].v) {
+      b = united(b, tile_.tin.position(v));
+    }
+    if (meets(b, box_)) {
+      near.push_back(t);
+    }
+  }
+  std::vector<std::vector<Sample>> lists(near.size());
+  for (const Sample& s : samples) {
+    place(s, near, lists);
+  }
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    CarriedState& carried = tile_.carried[near[i]];
+    carried.samples = tile_.samples.take(static_cast<std::uint32_t>(lists[i].size()));
+    std::copy(lists[i].begin(), lists[i].end(), tile_.samples.samples(carried.samples).begin());
+    for (const Sample& s : lists[i]) {
+      (s.depth < 0.0F ? carried.holds_voids : carried.holds_heights) = true;
+    }
+  }
+}
+
+bool holds(const Tin& tin, TriangleId t, GridPoint p) {
+  const Triangle& triangle = tin.triangles[t];
+  for (int i = 0; i < 3; ++i) {
+    if (orient(tin.position(triangle.v[i]), tin.position(triangle.v[next_corner(i)]), p) < 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Replay::place(Sample sample, const std::vector<TriangleId>& triangles,
+                   std::vector<std::vector<Sample>>& lists) {
+  const std::int32_t reach = (std::int32_t{1} << sample.side_log) - 1;
+  const GridPoint p = sample.position;
+  const auto holds_all = [&](TriangleId t) {
+    return holds(tile_.tin, t, p) && holds(tile_.tin, t, {p.x + reach, p.y}) &&
+           holds(tile_.tin, t, {p.x, p.y + reach}) &&
+           holds(tile_.tin, t, {p.x + reach, p.y + reach});
+  };
+  const TriangleClass own = sample.depth < 0.0F ? TriangleClass::kVoid : TriangleClass::kSurface;
+  std::size_t chosen = triangles.size();
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (holds_all(triangles[i]) &&
+        (chosen == triangles.size() || tile_.tin.classes[triangles[i]] == own)) {
+      chosen = i;
+    }
+  }
+  if (chosen != triangles.size()) {
+    lists[chosen].push_back(sample);
+    return;
+  }
+  PTIN_CHECK(sample.side_log > 0);
+  --sample.side_log;
+  const std::int32_t half = std::int32_t{1} << sample.side_log;
+  for (const GridPoint offset : {GridPoint{0, 0}, {half, 0}, {0, half}, {half, half}}) {
+    Sample quarter = sample;
+    quarter.position = {p.x + offset.x, p.y + offset.y};
+    place(quarter, triangles, lists);
+  }
+}
+
+VertexId Replay::vertex_at(GridPoint p) const {
+  const auto found = vertices_.find(key_of(p));
+  PTIN_CHECK(found != vertices_.end());
+  return found->second;
+}
+
+VertexId Replay::add_vertex(const VertexSplit& record) {
+  const auto u = static_cast<VertexId>(tile_.tin.vertices.size());
+  const bool has_height = (record.flags & VertexSplit::kVertexVoid) == 0;
+  tile_.tin.vertices.push_back({record.u, record.height, kNone});
+  tile_.tin.has_height.push_back(has_height ? 1 : 0);
+  tile_.vertex_state.push_back({no_depth(has_height), 0, false});
+  vertices_.emplace(key_of(record.u), u);
+  return u;
+}
+
+void Replay::apply(VertexSplit& record) {
+  SplitSite site;
+  site.w = vertex_at(record.w);
+  site.vl = vertex_at(record.vl);
+  site.vr = vertex_at(record.vr);
+  site.u = add_vertex(record);
+  site.has_left = (record.flags & VertexSplit::kNoLeft) == 0;
+  site.has_right = (record.flags & VertexSplit::kNoRight) == 0;
+  const auto class_of = [&](VertexSplit::Flag flag) {
+    return (record.flags & flag) != 0 ? TriangleClass::kVoid : TriangleClass::kSurface;
+  };
+  site.left_class = class_of(VertexSplit::kLeftVoid);
+  site.right_class = class_of(VertexSplit::kRightVoid);
+  PTIN_CHECK(split(tile_.tin, site).applied);
+  tile_.carried.resize(tile_.tin.triangles.size());
+  gather_star_and_samples(tile_, site.u, star_);
+  measure(record, site.w);
+}
+
+/// The star of u is there again, and its triangles hold the samples of the former fan: measures
+/// those against the fan.
+void Replay::measure(VertexSplit& record, VertexId w) {
+  const auto j = static_cast<std::size_t>(
+      std::find(star_.star.link.begin(), star_.star.link.end(), w) - star_.star.link.begin());
+  PTIN_CHECK(make_fan(star_, j, fan_));
+  const double gap = spoke_deviation(fan_);
+  if (star_.count == 1) {  // u alone: construction has measured it
+    record.deviation = std::max(record.deviation, height_bound(gap, tile_.units.heights));
+    return;
+  }
+  const FanError own = measure_fan(tile_, star_, fan_, assignment_);
+  record.error = std::max(record.error, height_bound(own.error, tile_.units.heights));
+  record.deviation =
+      std::max(record.deviation, height_bound(std::max(own.deviation, gap), tile_.units.heights));
+  hand_to_star();
+}
+
+double Replay::spoke_deviation(const FanFrame& fan) const {
+  const Star& star = star_.star;
+  const auto end_of = [&](std::size_t link) {
+    const VertexId v = star.link[link];
+    return EdgeEnd{v, tile_.tin.position(v),
+                   tile_.units.heights.code(tile_.tin.vertices[v].height)};
+  };
+  const auto is_surface = [&](std::size_t i) {
+    return tile_.tin.classes[star.triangles[fan.star_triangle[i]]] == TriangleClass::kSurface;
+  };
+  const EdgeEnd w = end_of(fan.j);
+  double worst = 0.0;
+  for (std::size_t i = 1; i < fan.triangles(); ++i) {
+    const EdgeEnd end = end_of((fan.j + 1 + i) % star.degree());
+    if ((is_surface(i - 1) || is_surface(i)) &&
+        meets(united(box_of(w.position), end.position), box_)) {
+      worst = std::max(worst, full_->largest_gap(w, end));
+    }
+  }
+  return worst;
+}
+
+/// Hands the samples to the triangles around u; u's own sample, if the leaf has it, is a vertex
+/// from now on.
+void Replay::hand_to_star() {
+  make_spokes_of_star(star_, spokes_);
+  assign_samples(star_, spokes_, assignment_.triangle, assignment_.residual);
+  if (!star_.surface_only) {
+    assign_by_class(tile_, star_, spokes_, assignment_);
+  }
+  hand_over_.run(tile_, star_, spokes_, assignment_, star_.star.triangles, true);
+}
+
+}  // namespace
+
+void replay_over_leaf(std::span<InnerSegment* const> chain, const Tin& t0, StartedTile&& leaf,
+                      const SampleRange& window) {
+  Replay replay(t0, std::move(leaf), window);
+  for (InnerSegment* segment : chain) {
+    for (std::size_t i = segment->records.size(); i-- > 0;) {
+      if (meets(segment->records[i].roi, replay.box())) {
+        replay.apply(segment->records[i]);
+      }
+    }
+  }
+}
+
+std::vector<RecordBounds> saturate(InnerSegment& segment) {
+  std::vector<RecordBounds> bounds = segment.foreign;
+  bounds.reserve(bounds.size() + segment.records.size());
+  std::uint32_t begin = 0;
+  for (std::size_t i = 0; i < segment.records.size(); ++i) {
+    VertexSplit& r = segment.records[i];
+    for (std::uint32_t k = begin; k < segment.dependency_end[i]; ++k) {
+      const RecordBounds& below = bounds[segment.dependencies[k]];
+      r.error = std::max(r.error, below.error);
+      r.deviation = std::max(r.deviation, below.deviation);
+    }
+    begin = segment.dependency_end[i];
+    bounds.push_back({r.error, r.deviation});
+  }
+  std::vector<RecordBounds> exported;
+  exported.reserve(segment.exported.size());
+  for (const std::uint32_t number : segment.exported) {
+    exported.push_back(bounds[number]);
+  }
+  return exported;
+}
+
+}  // namespace ptin

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/tile_tree.h"
+
+#include <algorithm>
+
+namespace ptin {
+
+namespace {
+
+/// Leaves along a length of `units` grid units. A rest of less than half a side is added to the
+/// last leaf.
+std::int64_t leaves_along(std::int64_t units, std::int64_t side) {
+  return std::max<std::int64_t>((units + side / 2) / side, 1);
+}
+
+}  // namespace
+
+TileTree::TileTree(std::int64_t width, std::int64_t height, std::int64_t side)
+    : width_(width),
+      height_(height),
+      side_(side),
+      leaves_x_(leaves_along(width - 1, side)),
+      leaves_y_(leaves_along(height - 1, side)) {
+  while ((std::int64_t{1} << (levels_ - 1)) < std::max(leaves_x_, leaves_y_)) {
+    ++levels_;
+  }
+}
+
+std::int64_t TileTree::default_side(std::int64_t width, std::int64_t height) noexcept {
+  const std::int64_t longer = std::max(width, height);
+  std::int64_t side = 512;
+  while (side * side < 10 * longer) {
+    side *= 2;
+  }
+  return longer <= side + side / 2 ? longer : side;
+}
+
+std::vector<TileId> TileTree::children(const TileId& id) const {
+  std::vector<TileId> tiles;
+  if (id.level == 0) {
+    return tiles;
+  }
+  const int level = id.level - 1;
+  const auto count = [level](std::int64_t leaves) {
+    return (leaves + (std::int64_t{1} << level) - 1) >> level;
+  };
+  for (std::int64_t y = 2 * id.y; y < std::min(2 * id.y + 2, count(leaves_y_)); ++y) {
+    for (std::int64_t x = 2 * id.x; x < std::min(2 * id.x + 2, count(leaves_x_)); ++x) {
+      tiles.push_back({level, x, y});
+    }
+  }
+  return tiles;
+}
+
+SampleRange TileTree::window(const TileId& id) const noexcept {
+  const std::int64_t span = side_ << id.level;
+  const auto begin = [&](std::int64_t i) { return i * span; };
+  const auto end = [&](std::int64_t i, std::int64_t leaves, std::int64_t units) {
+    return ((i + 1) << id.level) >= leaves ? units : (i + 1) * span;
+  };
+  const std::int64_t x0 = begin(id.x);
+  const std::int64_t y0 = begin(id.y);
+  return {x0, y0, end(id.x, leaves_x_, width_ - 1) - x0 + 1,
+          end(id.y, leaves_y_, height_ - 1) - y0 + 1};
+}
+
+bool TileTree::on_seam(const TileId& id, std::int64_t x, std::int64_t y) const noexcept {
+  const SampleRange w = window(id);
+  const auto seam = [](std::int64_t v, std::int64_t first, std::int64_t count, std::int64_t whole) {
+    return (v == first && first > 0) || (v == first + count - 1 && v < whole - 1);
+  };
+  return seam(x, w.x0, w.width, width_) || seam(y, w.y0, w.height, height_);
+}
+
+}  // namespace ptin

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Witnesses: the few samples of a triangle that a parent tile takes along (DESIGN.md, section 5).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/construct/sample_lists.h"
+#include "engine/construct/tile.h"
+
+namespace ptin {
+
+inline constexpr std::size_t kWitnesses = 8;
+
+/// Cuts the samples of a triangle down to at most kWitnesses: those with the largest residuals of
+/// either sign, spread over its corners; of samples in the wrong class the deepest, and of voids in
+/// a void triangle the deepest too, so that a parent knows what a surface over them would cost.
+/// They order the collapses of the parent and bound nothing: tightening does (tighten.h).
+/// Deterministic; a block is taken for its first sample. Cost: linear.
+void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples);
+
+}  // namespace ptin
