@@ -36,7 +36,8 @@ def draw(axes, rows, cost, key, style, label):
 
 def draw_bound(axes, value, text):
     axes.axhline(value, color="black", linewidth=0.9, linestyle=(0, (6, 3)))
-    axes.annotate(text, (0.985, value), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8)
+    axes.annotate(text, (0.985, value), xytext=(0, 2), xycoords=("axes fraction", "data"),
+                  textcoords="offset points", ha="right", va="bottom", fontsize=8)
 
 
 def finish(axes, title, ylabel):
@@ -46,11 +47,11 @@ def finish(axes, title, ylabel):
     axes.set_xlim(0, 52000)
     axes.set_ylim(bottom=0)
     axes.grid(alpha=0.3)
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, ncol=2, loc="upper center", bbox_to_anchor=(0.5, -0.17), frameon=False)
 
 
 def figure4(rows, path):
-    figure, panels = plt.subplots(1, 2, figsize=(10, 4.2))
+    figure, panels = plt.subplots(1, 2, figsize=(10, 4.7))
     for axes, share, name in ((panels[0], 25, "1/25"), (panels[1], 4, "1/4")):
         for cost in ("error", "roi"):
             draw(axes, rows, cost, f"ratio{share}_mean", "-", f"{cost} cost, mean")
@@ -63,7 +64,7 @@ def figure4(rows, path):
 
 
 def figure5(rows, path):
-    figure, panels = plt.subplots(1, 2, figsize=(10, 4.2))
+    figure, panels = plt.subplots(1, 2, figsize=(10, 4.7))
     titles = ("splits whose own polygon holds the point", "splits retrieved: the mesh stays valid everywhere")
     for axes, key, title in zip(panels, ("polygon", "point"), titles):
         for cost in ("error", "roi"):
