@@ -32,7 +32,9 @@ struct RefineRequest {
   /// 0 means every sample exact: flat and coplanar parts stay coarse.
   std::optional<double> tolerance;
   /// Exactly this many vertices of the mesh, T0 and void ones counted (within the region: its most
-  /// important records). Excludes `tolerance`.
+  /// important records). Excludes `tolerance`. More than there are gives all of them, and
+  /// RefinedTin::exact. Counted before triangles outside of the region are left out
+  /// (kMeetingRegion).
   std::optional<std::uint64_t> vertices;
   /// Any further monotone predicate; intersected with the above. Borrowed for the call.
   const AttributePredicate* also = nullptr;
