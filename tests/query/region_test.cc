@@ -7,7 +7,8 @@
 #include <random>
 #include <vector>
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Simple_cartesian.h>
 #include <CGAL/intersections.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -19,7 +20,7 @@
 namespace ptin {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Kernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
 using ExactPoint = Kernel::Point_2;
 
 const AffineMap kIdentity{0, 0, 1, 1};
