@@ -61,15 +61,15 @@ void build_raster(Job& job) {
   StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame());
   HierarchyOptions options;
   options.cost = job.options.cost;
-  options.void_slope = job.options.void_slope;
   options.stop = job.resources.stop;
   options.progress = job.resources.progress;
   const TileTree tree(
       source.width(), source.height(),
       job.options.tile.value_or(TileTree::default_side(source.width(), source.height())));
-  HierarchyBuilder builder(source, tree, options, [&store](std::span<VertexSplit> records) {
-    store.add_segment(records);
-  });
+  const MeasureUnits units = measure_units(source.frame(), job.options.void_slope);
+  HierarchyBuilder builder(
+      [&](const SampleRange& window) { return start_raster_tile(source, window, units); }, tree,
+      options, [&](std::span<VertexSplit> records) { store.add_segment(records); });
   const Tin t0 = builder.run();
   job.report.lone_samples = builder.lone_samples();
   stage(job.resources, "writing")(0, 1);

@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/construct/raster_tile.h"
 #include "engine/construct/simplify.h"
 #include "engine/construct/tighten.h"
 #include "engine/error.h"
 
 namespace ptin {
 
-HierarchyBuilder::HierarchyBuilder(const RasterSource& source, const TileTree& tree,
+HierarchyBuilder::HierarchyBuilder(LeafStarter start_leaf, const TileTree& tree,
                                    const HierarchyOptions& options, SegmentSink sink)
-    : source_(source), tree_(tree), options_(options), sink_(std::move(sink)) {}
+    : start_leaf_(std::move(start_leaf)), tree_(tree), options_(options), sink_(std::move(sink)) {}
 
 void HierarchyBuilder::report(const char* stage, std::uint64_t done, std::uint64_t total) {
   if (options_.stop.stop_requested()) {
@@ -39,8 +38,7 @@ PushedTile HierarchyBuilder::build(const TileId& id) {
 }
 
 PushedTile HierarchyBuilder::build_leaf(const TileId& id) {
-  StartedTile leaf = start_raster_tile(source_, tree_.window(id),
-                                       measure_units(source_.frame(), options_.void_slope));
+  StartedTile leaf = start_leaf_(tree_.window(id));
   lone_samples_ += leaf.lone_samples;
   lock_seams(leaf.tile, tree_, id);
   SimplifyOptions options;
@@ -91,10 +89,7 @@ std::vector<RecordBounds> HierarchyBuilder::tighten(const TileId& id,
                                                     const Tin& t0) {
   if (id.level == 0) {
     const SampleRange window = tree_.window(id);
-    replay_over_leaf(
-        chain, t0,
-        start_raster_tile(source_, window, measure_units(source_.frame(), options_.void_slope)),
-        window);
+    replay_over_leaf(chain, t0, start_leaf_(window), window);
     report("tightening", ++leaves_done_, tree_.leaves());
     return {};
   }

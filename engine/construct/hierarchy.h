@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <span>
 #include <stop_token>
+#include <vector>
 
 #include "engine/construct/cost.h"
-#include "engine/construct/raster_source.h"
+#include "engine/construct/raster_tile.h"
 #include "engine/construct/segment.h"
 #include "engine/construct/tile_push.h"
 #include "engine/construct/tile_tree.h"
@@ -22,9 +24,12 @@ namespace ptin {
 /// place.
 using SegmentSink = std::function<void(std::span<VertexSplit>)>;
 
+/// Starts a leaf: all samples of a window and the full surface under it, the same whenever it is
+/// called. Each leaf is started twice: for its collapses and for tightening.
+using LeafStarter = std::function<StartedTile(const SampleRange&)>;
+
 struct HierarchyOptions {
   CostModel cost = CostModel::kError;
-  double void_slope = 0.1;
   std::stop_token stop;
   std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
 };
@@ -33,11 +38,11 @@ struct HierarchyOptions {
 /// its samples; those of inner tiles, a quarter of all records, wait for tightening.
 class HierarchyBuilder {
  public:
-  HierarchyBuilder(const RasterSource& source, const TileTree& tree,
-                   const HierarchyOptions& options, SegmentSink sink);
+  HierarchyBuilder(LeafStarter start_leaf, const TileTree& tree, const HierarchyOptions& options,
+                   SegmentSink sink);
 
   /// Builds everything; returns the coarsest TIN, every vertex alive.
-  /// @throws Error as start_raster_tile(), simplify(), and what the sink throws
+  /// @throws Error as simplify(), and what the starter and the sink throw
   [[nodiscard]] Tin run();
 
   [[nodiscard]] std::uint64_t lone_samples() const noexcept { return lone_samples_; }
@@ -51,7 +56,7 @@ class HierarchyBuilder {
                                     const Tin& t0);
   void report(const char* stage, std::uint64_t done, std::uint64_t total);
 
-  const RasterSource& source_;
+  LeafStarter start_leaf_;
   TileTree tree_;
   HierarchyOptions options_;
   SegmentSink sink_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/check.h"
+#include "engine/construct/fan_deviation.h"
 #include "engine/construct/rounding.h"
 #include "engine/construct/saturation.h"
 
@@ -44,28 +45,6 @@ std::uint16_t flags_of(const Tin& tin, const CollapseSite& site) {
 
 }  // namespace
 
-/// Largest gap along the new inner edges that have surface on one side at least; link edges are
-/// covered by what the star carries.
-double RecordMaker::spoke_deviation(const StarSamples& s) const {
-  double worst = 0.0;
-  const Star& star = s.star;
-  const auto end_of = [&](std::size_t link) {
-    const VertexId v = star.link[link];
-    return EdgeEnd{v, tile_.tin.position(v),
-                   tile_.units.heights.code(tile_.tin.vertices[v].height)};
-  };
-  const auto is_surface = [&](std::size_t i) {
-    return tile_.tin.classes[star.triangles[fan_.star_triangle[i]]] == TriangleClass::kSurface;
-  };
-  const EdgeEnd w = end_of(fan_.j);
-  for (std::size_t i = 1; i < fan_.triangles(); ++i) {
-    if (is_surface(i - 1) || is_surface(i)) {
-      worst = std::max(worst, full_->largest_gap(w, end_of((fan_.j + 1 + i) % star.degree())));
-    }
-  }
-  return worst;
-}
-
 VertexSplit RecordMaker::make_record(const StarSamples& s, const FanError& own,
                                      const CollapseSite& site) {
   const Tin& tin = tile_.tin;
@@ -73,7 +52,9 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const FanError& own,
   r.error = height_bound(own.error, tile_.units.heights);
   std::uint32_t rank = 0;
   if (full_ != nullptr) {
-    r.deviation = height_bound(std::max(own.deviation, spoke_deviation(s)), tile_.units.heights);
+    r.deviation =
+        height_bound(std::max(own.deviation, fan_deviation(tile_, s, fan_, *full_, kEverywhere)),
+                     tile_.units.heights);
   }
   for (const TriangleId t : s.star.triangles) {
     if (const std::uint32_t below = tile_.carried[t].record; below != kNone) {

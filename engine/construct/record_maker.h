@@ -32,7 +32,6 @@ class RecordMaker {
   void collapse_and_record(StarSamples& s, std::size_t j);
 
  private:
-  [[nodiscard]] double spoke_deviation(const StarSamples& s) const;
   [[nodiscard]] VertexSplit make_record(const StarSamples& s, const FanError& own,
                                         const CollapseSite& site);
   void note_dependencies(const Star& star);

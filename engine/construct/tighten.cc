@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/check.h"
+#include "engine/construct/fan_deviation.h"
 #include "engine/construct/fan_error.h"
 #include "engine/construct/sample_blocks.h"
 #include "engine/construct/sample_hand_over.h"
@@ -38,7 +39,6 @@ class Replay {
   [[nodiscard]] VertexId vertex_at(GridPoint p) const;
   [[nodiscard]] VertexId add_vertex(const VertexSplit& record);
   void measure(VertexSplit& record, VertexId w);
-  [[nodiscard]] double spoke_deviation(const FanFrame& fan) const;
   void hand_to_star();
 
   Tile tile_;
@@ -186,7 +186,7 @@ void Replay::measure(VertexSplit& record, VertexId w) {
   const auto j = static_cast<std::size_t>(
       std::find(star_.star.link.begin(), star_.star.link.end(), w) - star_.star.link.begin());
   PTIN_CHECK(make_fan(star_, j, fan_));
-  const double gap = spoke_deviation(fan_);
+  const double gap = fan_deviation(tile_, star_, fan_, *full_, box_);
   if (star_.count == 1) {  // u alone: construction has measured it
     record.deviation = std::max(record.deviation, height_bound(gap, tile_.units.heights));
     return;
@@ -196,28 +196,6 @@ void Replay::measure(VertexSplit& record, VertexId w) {
   record.deviation =
       std::max(record.deviation, height_bound(std::max(own.deviation, gap), tile_.units.heights));
   hand_to_star();
-}
-
-double Replay::spoke_deviation(const FanFrame& fan) const {
-  const Star& star = star_.star;
-  const auto end_of = [&](std::size_t link) {
-    const VertexId v = star.link[link];
-    return EdgeEnd{v, tile_.tin.position(v),
-                   tile_.units.heights.code(tile_.tin.vertices[v].height)};
-  };
-  const auto is_surface = [&](std::size_t i) {
-    return tile_.tin.classes[star.triangles[fan.star_triangle[i]]] == TriangleClass::kSurface;
-  };
-  const EdgeEnd w = end_of(fan.j);
-  double worst = 0.0;
-  for (std::size_t i = 1; i < fan.triangles(); ++i) {
-    const EdgeEnd end = end_of((fan.j + 1 + i) % star.degree());
-    if ((is_surface(i - 1) || is_surface(i)) &&
-        meets(united(box_of(w.position), end.position), box_)) {
-      worst = std::max(worst, full_->largest_gap(w, end));
-    }
-  }
-  return worst;
 }
 
 /// Hands the samples to the triangles around u; u's own sample, if the leaf has it, is a vertex

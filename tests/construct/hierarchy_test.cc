@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Terrains built over a tree of tiles keep every promise of those built as one tile: the records of
+// all segments are refined and held against all samples, since witnesses order them and tightening
+// must make them true.
+#include "engine/construct/hierarchy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/construct/raster_surface.h"
+#include "engine/construct/raster_tin.h"
+#include "engine/mesh/validate.h"
+#include "tests/construct/surface_oracle.h"
+#include "tests/construct/test_terrain.h"
+
+namespace ptin {
+namespace {
+
+using oracle::TestTerrain;
+
+/// The samples of a raster terrain at the grid's origin, as something that leaves start from.
+class SampledRaster {
+ public:
+  explicit SampledRaster(const TestTerrain& terrain) : terrain_(terrain) {
+    for (const oracle::PlainSample& s : terrain.samples) {
+      box_ = united(box_, s.position);
+    }
+  }
+  [[nodiscard]] bool at_origin() const {
+    return box_.min_x == 0 && box_.min_y == 0 &&
+           terrain_.samples.size() == static_cast<std::size_t>(width() * height());
+  }
+  [[nodiscard]] std::int64_t width() const { return std::int64_t{box_.max_x} - box_.min_x + 1; }
+  [[nodiscard]] std::int64_t height() const { return std::int64_t{box_.max_y} - box_.min_y + 1; }
+
+  [[nodiscard]] StartedTile start(const SampleRange& w) const {
+    std::vector<HeightBits> heights;
+    std::vector<std::uint8_t> valid;
+    std::vector<float> depths;
+    for (std::int64_t y = w.y0; y < w.y0 + w.height; ++y) {
+      for (std::int64_t x = w.x0; x < w.x0 + w.width; ++x) {
+        const auto i = static_cast<std::size_t>(y * width() + x);
+        heights.push_back(terrain_.full.vertices[i].height);
+        valid.push_back(terrain_.full.has_height[i]);
+        depths.push_back(static_cast<float>(terrain_.samples[i].depth));
+      }
+    }
+    StartedTile started;
+    const HeightEncoding& encoding = terrain_.tile.units.heights;
+    const GridPoint origin{static_cast<std::int32_t>(w.x0), static_cast<std::int32_t>(w.y0)};
+    const auto columns = static_cast<std::int32_t>(w.width);
+    const auto rows = static_cast<std::int32_t>(w.height);
+    started.tile.units = terrain_.tile.units;
+    started.tile.samples_fill_grid = true;
+    started.tile.tin = make_raster_tin(heights, valid, columns, rows, encoding, origin);
+    start_tile(started.tile, depths);
+    started.full = std::make_unique<RasterSurface>(heights, valid, columns, rows, encoding, origin);
+    return started;
+  }
+
+ private:
+  const TestTerrain& terrain_;
+  GridBox box_;
+};
+
+struct Built {
+  Tin t0;
+  std::vector<VertexSplit> records;
+};
+
+Built build_tiled(const TestTerrain& terrain, std::int64_t side) {
+  const SampledRaster raster(terrain);
+  Built built;
+  HierarchyBuilder builder([&](const SampleRange& w) { return raster.start(w); },
+                           TileTree(raster.width(), raster.height(), side), {},
+                           [&](std::span<VertexSplit> records) {
+                             built.records.insert(built.records.end(), records.begin(),
+                                                  records.end());
+                           });
+  built.t0 = builder.run();
+  for (const VertexSplit& r : built.records) {  // the oracle wants every vertex to have its place
+    built.t0.vertices.push_back({r.u, r.height, kNone});
+    built.t0.has_height.push_back((r.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0);
+  }
+  return built;
+}
+
+/// Some of the errors that occur, each also a step below; 0 and everything.
+std::vector<double> tolerances(const std::vector<VertexSplit>& records) {
+  std::vector<float> errors;
+  for (const VertexSplit& r : records) {
+    if (std::isfinite(r.error)) {
+      errors.push_back(r.error);
+    }
+  }
+  std::sort(errors.begin(), errors.end());
+  std::vector<double> all{0.0, std::numeric_limits<double>::max()};
+  for (const std::size_t percent : {50U, 90U, 99U}) {
+    if (!errors.empty()) {
+      const float e = errors[errors.size() * percent / 100];
+      all.push_back(e);
+      all.push_back(std::nextafter(e, 0.0F));
+    }
+  }
+  return all;
+}
+
+std::string check_tolerance(const TestTerrain& terrain, const Built& built, double tolerance) {
+  std::string fault;
+  double deviation = 0.0;
+  const auto needed = [&](const VertexSplit& r) {
+    const bool is = static_cast<double>(r.error) > tolerance;
+    deviation = is ? deviation : std::max(deviation, static_cast<double>(r.deviation));
+    return is;
+  };
+  const Tin tin = oracle::refined(built.t0, built.records, needed, fault);
+  for (const auto& check : {std::function<std::string()>([&] { return validate(tin); }),
+                            {[&] { return oracle::check_samples(terrain, tin, tolerance); }},
+                            {[&] { return oracle::check_deviation(terrain, tin, deviation); }}}) {
+    fault = fault.empty() ? check() : fault;
+  }
+  return fault;
+}
+
+/// Everything that is promised of a terrain in tiles; the first fault in words.
+std::string check_tiled(const TestTerrain& terrain, std::int64_t side) {
+  const Built built = build_tiled(terrain, side);
+  std::string fault = validate(built.t0);
+  const auto all = [](const VertexSplit&) { return true; };
+  const Tin full = oracle::refined(built.t0, built.records, all, fault);
+  if (fault.empty() && oracle::named_triangles(full) != oracle::named_triangles(terrain.full)) {
+    fault = "all records do not give back the full TIN";
+  }
+  for (const double tolerance : tolerances(built.records)) {
+    fault = fault.empty() ? check_tolerance(terrain, built, tolerance) : fault;
+  }
+  return fault.empty() ? fault : terrain.name + ", tiles of " + std::to_string(side) + ": " + fault;
+}
+
+TEST(Hierarchy, KeepsEveryPromiseOnNastyRasters) {
+  for (const auto& make : oracle::nasty_rasters()) {
+    const TestTerrain terrain = make();
+    if (SampledRaster(terrain).at_origin()) {
+      for (const std::int64_t side : {3, 8}) {
+        EXPECT_EQ(check_tiled(terrain, side), "");
+      }
+    }
+  }
+}
+
+TEST(Hierarchy, KeepsEveryPromiseOnLakesAndVoidsInBlocks) {
+  for (const auto& make : oracle::lakes()) {
+    const TestTerrain terrain = make();
+    if (SampledRaster(terrain).at_origin()) {
+      EXPECT_EQ(check_tiled(terrain, 16), "");
+    }
+  }
+}
+
+/// Hills of several sizes, and a mask of blobs when `voids`.
+TestTerrain hills(int size, unsigned seed, bool voids) {
+  oracle::RasterSpec spec;
+  spec.name = "hills " + std::to_string(seed);
+  spec.width = spec.height = size;
+  spec.code = [seed](int x, int y) {
+    return 400.0 * std::sin(0.05 * x + seed) * std::cos(0.04 * y) +
+           60.0 * std::sin(0.3 * x + 0.2 * y) +
+           static_cast<double>((static_cast<unsigned>(x) * 73856093U ^
+                                static_cast<unsigned>(y) * 19349663U ^ seed) %
+                               12);
+  };
+  if (voids) {
+    spec.valid = [](int x, int y) { return std::sin(0.2 * x) + std::cos(0.17 * y) < 0.9; };
+  }
+  return oracle::make_raster(spec);
+}
+
+TEST(Hierarchy, KeepsEveryPromiseOverSixBySixTiles) {
+  EXPECT_EQ(check_tiled(hills(97, 1, false), 16), "");
+  EXPECT_EQ(check_tiled(hills(97, 2, true), 16), "");
+}
+
+TEST(Hierarchy, SaturatesAcrossSegments) {
+  const Built built = build_tiled(hills(65, 3, true), 16);
+  // A record that creates a triangle which another's star holds must have larger attributes: looked
+  // for by their regions, since dependents lie inside of each other's.
+  for (const double tolerance : tolerances(built.records)) {
+    std::string fault;
+    const Tin tin = oracle::refined(
+        built.t0, built.records,
+        [&](const VertexSplit& r) { return static_cast<double>(r.error) > tolerance; }, fault);
+    EXPECT_EQ(fault, "");
+    const Tin coarse = oracle::refined(
+        built.t0, built.records,
+        [&](const VertexSplit& r) { return static_cast<double>(r.deviation) > tolerance; }, fault);
+    EXPECT_EQ(fault, "");
+    EXPECT_EQ(validate(coarse), "");
+  }
+}
+
+TEST(Hierarchy, NeedsHardlyMoreVerticesThanOneTile) {
+  const TestTerrain terrain = hills(161, 4, false);
+  const Built tiled = build_tiled(terrain, 40);
+  const Built whole = build_tiled(terrain, 1000);
+  for (const double tolerance : {5.0, 10.0, 20.0, 50.0}) {
+    const auto needed = [&](const Built& b) {
+      return static_cast<double>(b.t0.alive_vertices()) +
+             static_cast<double>(std::count_if(
+                 b.records.begin(), b.records.end(),
+                 [&](const VertexSplit& r) { return static_cast<double>(r.error) > tolerance; }));
+    };
+    EXPECT_LT(needed(tiled), 1.15 * needed(whole)) << "tolerance " << tolerance;
+  }
+}
+
+TEST(Hierarchy, GivesTheSameRecordsTwice) {
+  const TestTerrain terrain = hills(65, 5, true);
+  EXPECT_TRUE(build_tiled(terrain, 16).records == build_tiled(terrain, 16).records);
+}
+
+TEST(Hierarchy, AThinTerrainIsATreeOfTilesInARow) {
+  oracle::RasterSpec spec;
+  spec.name = "two samples wide";
+  spec.width = 150;
+  spec.height = 2;
+  spec.code = [](int x, int y) { return (x * 7919 % 31) + 3 * y; };
+  EXPECT_EQ(check_tiled(oracle::make_raster(spec), 20), "");
+}
+
+}  // namespace
+}  // namespace ptin
