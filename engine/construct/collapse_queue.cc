@@ -65,7 +65,7 @@ std::uint64_t PriorityScale::neighbourhood(GridPoint p, int octave) const noexce
 
 std::uint64_t PriorityScale::operator()(const CollapseMeasure& measure) const noexcept {
   const std::uint64_t box = clamped(half_perimeter(measure.roi));
-  const int octave = std::bit_width(box) - (box == 0 ? 0 : 1);
+  const int octave = static_cast<int>(std::bit_width(box)) - (box == 0 ? 0 : 1);
   switch (cost_) {
     case CostModel::kError: {
       const std::uint64_t c =
