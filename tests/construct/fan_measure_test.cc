@@ -99,6 +99,30 @@ TEST(MakeFan, AgreesWithCanCollapse) {
   EXPECT_GT(wide, 100U);
 }
 
+TEST(MakeFan, AgreesWithCanCollapseOnNeedlesAcrossTheGrid) {
+  // Twice the area of many a triangle along the diagonal is a few units, of products of 2^60.
+  FanFrame fan;
+  StarSamples s;
+  std::size_t allowed = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    std::mt19937_64 random(seed);
+    std::vector<GridPoint> needles{{0, kGridMax}, {kGridMax, 0}, {0, 0}, {kGridMax, kGridMax}};
+    for (int i = 0; i < 40; ++i) {
+      const auto x = static_cast<std::int32_t>(2 + random() % (kGridMax - 4));
+      needles.push_back({x, x + static_cast<std::int32_t>(random() % 3) - 1});
+    }
+    const Tile tile = oracle::make_points({"needles", needles, small_int, kInt}).tile;
+    for (VertexId u = 0; u < tile.tin.vertices.size(); ++u) {
+      gather_star(tile, u, s);
+      for (std::size_t j = 0; j < s.star.degree(); ++j) {
+        ASSERT_EQ(make_fan(s, j, fan), can_collapse(tile.tin, s.star, j));
+        allowed += make_fan(s, j, fan) ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(allowed, 100U);
+}
+
 TEST(MakeFan, NamesTheStarTriangleThatEachFanTriangleReplaces) {
   FanFrame fan;
   for_each_star(3, [&](const Tile& tile, const StarSamples& s) {

@@ -17,7 +17,7 @@ oracle::RasterFile masked() {
   file.rows = 150;
   file.nodata = -1;
   file.value = [](int x, int y) {
-    const bool is_void = (x / 40 + y / 37) % 2 == 0 || (x * 7 + y * 3) % 29 == 0;
+    const bool is_void = (x / 40 + y / 37) % 2 == 0 || (x < 50 && (x * 7 + y * 3) % 29 == 0);
     return is_void && (x % 31 != 0 || y % 17 != 0) ? -1.0 : x + 2.0 * y;
   };
   return file;
@@ -77,6 +77,28 @@ TEST(StartRasterTile, GivesAWindowTheDepthsAndClassesOfTheWhole) {
     }
   }
   EXPECT_EQ(lone, whole.lone_samples);
+}
+
+TEST(StartRasterTile, TurnsSamplesThatTouchNoSurfaceIntoVoids) {
+  const oracle::WrittenRaster raster(masked());
+  const RasterSource source = RasterSource::open({raster.path()}, {});
+  const StartedTile started =
+      start_raster_tile(source, {0, 0, 170, 150}, measure_units(source.frame(), 0.1));
+  const Tin& tin = started.tile.tin;
+  std::vector<std::uint8_t> touched(tin.vertices.size(), 0);
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    for (const VertexId v : tin.triangles[t].v) {
+      touched[v] = oracle::is_surface(tin, t) ? 1 : touched[v];
+    }
+  }
+  std::uint64_t with_height = 0;
+  for (VertexId v = 0; v < tin.vertices.size(); ++v) {
+    ASSERT_EQ(tin.has_height[v], touched[v]);
+    ASSERT_EQ(started.tile.vertex_state[v].depth > 0.0F, touched[v] != 0);
+    with_height += tin.has_height[v];
+  }
+  EXPECT_GT(started.lone_samples, 0U);
+  EXPECT_EQ(with_height + started.lone_samples, source.valid_samples());
 }
 
 TEST(StartRasterTile, SignsDepthsByClassAndMeasuresThemOnTheGround) {

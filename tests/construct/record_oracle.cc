@@ -202,6 +202,17 @@ std::string Replay::check_error(const VertexSplit& r, const Carried& below,
       }
       inside |= here || in_open(c, s.position);  // in two: on a spoke
       here = true;
+      if (!is_surface(tin_, t) && s.has_height) {  // an edge that may get surface beside it
+        for (std::size_t k = 0; k < 3; ++k) {
+          const VertexId a = tin_.triangles[t].v[k], b = tin_.triangles[t].v[(k + 1) % 3];
+          const auto gap =
+              Gap::of_crossing(c[k], c[(k + 1) % 3], {s.position, s.code}, {s.position, s.code});
+          if (gap && tin_.has_height[a] != 0 && tin_.has_height[b] != 0 &&
+              side(c[k].position, c[(k + 1) % 3].position, s.position) == 0) {
+            own.may = std::max(own.may, static_cast<double>(gap->rough()) * heights_.step);
+          }
+        }
+      }
       if (is_surface(tin_, t)) {
         in_surface = true;
         in_open_surface |= in_open(c, s.position);
