@@ -23,15 +23,17 @@ using oracle::StarTile;
 
 constexpr HeightEncoding kInt{HeightType::int32, 1.0, 0.0};
 
-/// Fills the triangles around `u` with blocks, some void where `voids`; returns their number.
-std::size_t add_blocks(Tile& tile, VertexId u, bool voids, std::mt19937_64& random) {
+/// Fills the triangles around `u` with at most `most` blocks, some void where `voids`; returns
+/// their number.
+std::size_t add_blocks(Tile& tile, VertexId u, bool voids, std::size_t most,
+                       std::mt19937_64& random) {
   Star star;
   walk_star(tile.tin, u, star);
   std::size_t added = 0;
   for (const TriangleId t : star.triangles) {
     const oracle::Corners c = oracle::corners_of(tile.tin, t, kInt);
     std::vector<Sample> list;
-    for (int attempt = 0; attempt < 60 && list.size() < 3; ++attempt) {
+    for (int attempt = 0; attempt < 60 && added + list.size() < most; ++attempt) {
       const auto log = static_cast<std::uint32_t>(1 + random() % 5);
       const std::int32_t side = 1 << log;
       const auto place = [&] { return static_cast<std::int32_t>(random() % 128) / side * side; };
@@ -97,9 +99,9 @@ OneByOne measure_one_by_one(const Tile& tile, const StarSamples& s, const FanFra
 
 /// Calls visit(tile, star) for stars with blocks, with random classes where `voids`.
 template <class Visit>
-void for_each_star_with_blocks(bool voids, const Visit& visit) {
+void for_each_star_with_blocks(bool voids, std::size_t most, const Visit& visit) {
   std::size_t blocks = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < (voids ? 1200U : 100U); ++seed) {
     std::mt19937_64 random(seed);
     StarTile made(
         seed, 127, {}, kInt, [&](GridPoint) { return static_cast<double>(random() % 50); }, 6, 0);
@@ -111,7 +113,7 @@ void for_each_star_with_blocks(bool voids, const Visit& visit) {
     }
     StarSamples s;
     for (VertexId u = 0; u < tile.tin.vertices.size(); ++u) {
-      blocks += add_blocks(tile, u, voids, random);
+      blocks += add_blocks(tile, u, voids, most, random);
       tile.vertex_state[u].depth = 1.0F;
       oracle::gather_all(tile, u, s);
       visit(tile, s);
@@ -123,7 +125,7 @@ void for_each_star_with_blocks(bool voids, const Visit& visit) {
 TEST(SampleBlocks, BoundTheResidualOfEachOfTheirSamples) {
   FanFrame fan;
   std::size_t inside = 0;
-  for_each_star_with_blocks(false, [&](const Tile& tile, const StarSamples& s) {
+  for_each_star_with_blocks(false, 6, [&](const Tile& tile, const StarSamples& s) {
     for (std::size_t j = 0; j < s.star.degree(); ++j) {
       if (make_fan(s, j, fan)) {
         const double corners =
@@ -141,7 +143,7 @@ TEST(SampleBlocks, BoundTheResidualOfEachOfTheirSamples) {
 TEST(SampleBlocks, AreChargedForEachSampleOfTheWrongClass) {
   FanFrame fan;
   std::size_t charged = 0;
-  for_each_star_with_blocks(true, [&](const Tile& tile, const StarSamples& s) {
+  for_each_star_with_blocks(true, 1, [&](const Tile& tile, const StarSamples& s) {
     for (std::size_t j = 0; j < s.star.degree(); ++j) {
       if (!make_fan(s, j, fan)) {
         continue;

@@ -59,7 +59,7 @@ TEST(StartRasterTile, GivesAWindowTheDepthsAndClassesOfTheWhole) {
   EXPECT_GT(whole.lone_samples, 0U);
   std::uint64_t lone = 0;
   for (const SampleRange& window :
-       {SampleRange{0, 0, 85, 150}, {85, 0, 85, 75}, {85, 75, 85, 75}}) {
+       {SampleRange{0, 0, 95, 150}, {95, 0, 75, 75}, {95, 75, 75, 75}}) {
     const StartedTile part = start_raster_tile(source, window, units);
     lone += part.lone_samples;
     const Tin& tin = part.tile.tin;
