@@ -128,7 +128,7 @@ CollapseChoice CollapseChooser::choose_on_surface(const Tile& tile, StarSamples&
     }
   }
   const double bound = residual_bound(s, tile.units);
-  double error = scaled_up(best_error) + bound;
+  double error = certified_residual(best_error, s, tile.units);
   if (bound > 0.0 && best_error <= bound) {
     gather_sources(tile, s);
     if (make_fan(s, best.j, fan_) && all_residuals_zero(tile, s, fan_)) {
@@ -141,7 +141,6 @@ CollapseChoice CollapseChooser::choose_on_surface(const Tile& tile, StarSamples&
 CollapseChoice CollapseChooser::choose_with_voids(const Tile& tile, const StarSamples& s) {
   CollapseChoice best;
   VertexKey best_key = kNoVertexKey;
-  const double bound = residual_bound(s, tile.units);
   for (const Candidate& c : candidates_) {
     double error = 0.0;
     if (!s.void_only) {
@@ -150,7 +149,7 @@ CollapseChoice CollapseChooser::choose_with_voids(const Tile& tile, const StarSa
       if (!measure.allowed) {
         continue;
       }
-      error = scaled_up(measure.error) + bound;
+      error = certified_residual(measure.error, s, tile.units);
     }
     if (best.j == CollapseChoice::kNoNeighbour || error < best.error ||
         (error == best.error && c.key < best_key)) {

@@ -16,7 +16,7 @@ constexpr int kClassShift = 64 - kClassBits;
 constexpr int kBoxBits = 31;
 constexpr int kSideBits = 9;
 constexpr int kOctaveShift = kBoxBits + 2 * kSideBits;
-constexpr std::uint64_t kVerticesANeighbourhood = 4096;
+constexpr std::uint64_t kVerticesANeighbourhood = 16384;
 
 std::uint64_t clamped(std::int64_t v) noexcept {
   return static_cast<std::uint64_t>(std::clamp<std::int64_t>(v, 0, INT32_MAX));

@@ -19,13 +19,14 @@ FanError measure_fan(const Tile& tile, const StarSamples& s, const FanFrame& fan
   if (!s.surface_only) {
     assign_by_class(tile, s, fan, assignment);
     const VoidMeasure voids = measure_with_voids(tile, s, fan);
-    return {scaled_up(voids.error) + bound, scaled_up(voids.deviation) + bound};
+    return {certified_residual(voids.error, s, tile.units),
+            certified_residual(voids.deviation, s, tile.units)};
   }
   double worst = *std::max_element(assignment.residual.begin(), assignment.residual.end());
   if (!s.blocks.empty()) {
     worst = std::max(worst, straddling_residual(s, fan));
   }
-  double error = scaled_up(worst) + bound;
+  double error = certified_residual(worst, s, tile.units);
   if (bound > 0.0 && worst <= bound && all_residuals_zero(tile, s, fan)) {
     error = 0.0;
   }

@@ -262,6 +262,19 @@ double residual_bound(const StarSamples& s, const MeasureUnits& units) noexcept 
   return 0x1p-47 * s.largest_z;
 }
 
+double certified_residual(double residual, const StarSamples& s,
+                          const MeasureUnits& units) noexcept {
+  const double bound = residual_bound(s, units);
+  if (bound == 0.0) {
+    const double nearest = std::nearbyint(residual);
+    const double largest_area = 8.0 * s.largest_xy * s.largest_xy;
+    if (std::abs(residual - nearest) <= 0x1p-50 * residual && largest_area * nearest < 0x1p48) {
+      return nearest;
+    }
+  }
+  return scaled_up(residual) + bound;
+}
+
 bool all_residuals_zero(const Tile& tile, const StarSamples& s, const FanFrame& fan) {
   __extension__ using Wide = __int128;
   if (!s.blocks.empty()) {

@@ -65,6 +65,14 @@ void assign_samples(const StarSamples& s, const FanFrame& fan, std::vector<doubl
   return residual * (1.0 + 0x1p-50);
 }
 
+/// The largest residual of a star as a bound: raised by its rounding and by residual_bound(). Where
+/// the arithmetic is in integers, a residual that comes out as an integer m is m and is not raised:
+/// it is a quotient n / D with D <= 8 R^2 (R = largest_xy), and one that is not m differs from it
+/// by at least 1 / D, more than the rounding while D m < 2^48. So on data in whole units an error
+/// of exactly 5 is not needed at a tolerance of 5.
+[[nodiscard]] double certified_residual(double residual, const StarSamples& s,
+                                        const MeasureUnits& units) noexcept;
+
 /// Decides exactly whether every sample lies on its fan triangle's plane: in 128-bit integers,
 /// codes scaled to integers. False also where the codes of the star span more than 60 bits: such a
 /// star is given a tiny error instead of 0.
