@@ -315,6 +315,10 @@ void measure_all(std::FILE* csv, std::size_t largest) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && argv[1][0] == '-') {
+    std::fprintf(stderr, "usage: paper_figures [FILE.csv [LARGEST_RANDOM_TIN]]\n");
+    return 2;
+  }
   std::FILE* csv = argc > 1 ? std::fopen(argv[1], "w") : stdout;
   if (csv == nullptr) {
     std::perror(argv[1]);
