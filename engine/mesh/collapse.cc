@@ -7,7 +7,8 @@ namespace ptin {
 
 namespace {
 
-/// The fan of a collapse into link[j] has the edges (link[i], link[i + 1]) for i in [first, first + count), modulo degree.
+/// The fan of a collapse into link[j] has the edges (link[i], link[i + 1]) for i in [first, first +
+/// count), modulo degree.
 struct FanRange {
   std::size_t first;
   std::size_t count;

@@ -14,7 +14,8 @@ void walk_star(const Tin& tin, VertexId v, Star& star) {
     const int c = corner_of(triangle, v);
     star.triangles.push_back(t);
     star.link.push_back(triangle.v[next_corner(c)]);
-    const TriangleId next = triangle.n[next_corner(c)];  // across the edge from v to the third corner
+    const TriangleId next =
+        triangle.n[next_corner(c)];  // across the edge from v to the third corner
     if (next == kNone) {
       star.link.push_back(triangle.v[previous_corner(c)]);
       star.closed = false;

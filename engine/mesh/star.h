@@ -10,9 +10,10 @@
 
 namespace ptin {
 
-/// The star of `center`. Triangle i is (center, link[i], link[i + 1]), indices modulo degree when closed.
-/// Closed (interior vertex): as many link vertices as triangles. Open (border vertex): one link vertex more; the first is
-/// the next vertex along the border (counter-clockwise round the domain), the last the previous one.
+/// The star of `center`. Triangle i is (center, link[i], link[i + 1]), indices modulo degree when
+/// closed. Closed (interior vertex): as many link vertices as triangles. Open (border vertex): one
+/// link vertex more; the first is the next vertex along the border (counter-clockwise round the
+/// domain), the last the previous one.
 struct Star {
   VertexId center = kNone;
   bool closed = true;

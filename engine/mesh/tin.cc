@@ -11,8 +11,8 @@ std::size_t Tin::alive_vertices() const noexcept {
 }
 
 std::size_t Tin::alive_triangles() const noexcept {
-  return static_cast<std::size_t>(std::count_if(
-      triangles.begin(), triangles.end(), [](const Triangle& t) { return t.v[0] != kNone; }));
+  return static_cast<std::size_t>(std::count_if(triangles.begin(), triangles.end(),
+                                                [](const Triangle& t) { return t.v[0] != kNone; }));
 }
 
 }  // namespace ptin

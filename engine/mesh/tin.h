@@ -12,33 +12,36 @@
 
 namespace ptin {
 
-/// Indices into the arrays of one Tin. 32 bits: one mesh in memory has fewer than 2^32 - 1 triangles; terrains have
-/// no such limit, since a tile or a refinement holds a part of one.
+/// Indices into the arrays of one Tin. 32 bits: one mesh in memory has fewer than 2^32 - 1
+/// triangles; terrains have no such limit, since a tile or a refinement holds a part of one.
 using VertexId = std::uint32_t;
 using TriangleId = std::uint32_t;
 inline constexpr std::uint32_t kNone = UINT32_MAX;
 
-/// Surface triangles carry the terrain; void triangles cover the part of the domain without heights.
+/// Surface triangles carry the terrain; void triangles cover the part of the domain without
+/// heights.
 enum class TriangleClass : std::uint8_t { kSurface = 0, kVoid = 1 };
 
-/// A vertex. `triangle` is one triangle around it; on the border it is the first of the counter-clockwise walk, the one
-/// whose clockwise neighbour around the vertex is missing (I6). A removed vertex has kNone.
+/// A vertex. `triangle` is one triangle around it; on the border it is the first of the
+/// counter-clockwise walk, the one whose clockwise neighbour around the vertex is missing (I6). A
+/// removed vertex has kNone.
 struct Vertex {
   GridPoint position;
   HeightBits height = 0;
   TriangleId triangle = kNone;
 };
 
-/// A triangle: corners counter-clockwise; neighbour n[i] lies across the edge opposite to corner v[i]
-/// (from v[i+1] to v[i+2]) and is kNone at the border. A removed triangle has v[0] == kNone.
+/// A triangle: corners counter-clockwise; neighbour n[i] lies across the edge opposite to corner
+/// v[i] (from v[i+1] to v[i+2]) and is kNone at the border. A removed triangle has v[0] == kNone.
 struct Triangle {
   VertexId v[3];
   TriangleId n[3];
 };
 
-/// A triangulation of a simply connected domain: every point of it covered once, no crack, no overlap, no T-junction.
-/// Plain arrays; functions beside it (star.h, collapse.h, split.h) change it, validate.h states its invariants.
-/// A vertex whose bit `has_height` is 0 stands in void triangles only.
+/// A triangulation of a simply connected domain: every point of it covered once, no crack, no
+/// overlap, no T-junction. Plain arrays; functions beside it (star.h, collapse.h, split.h) change
+/// it, validate.h states its invariants. A vertex whose bit `has_height` is 0 stands in void
+/// triangles only.
 struct Tin {
   std::vector<Vertex> vertices;
   std::vector<std::uint8_t> has_height;  ///< Beside `vertices`: 1 when the vertex carries a height.
