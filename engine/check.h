@@ -5,13 +5,13 @@
 
 #include "engine/error.h"
 
-/// Throws Error internal when `condition` is false, in every build. For facts that only a bug can make false
-/// and that cost nothing beside the work around them.
-#define PTIN_CHECK(condition)                                                          \
-  do {                                                                                 \
-    if (!(condition)) [[unlikely]] {                                                   \
-      ::ptin::check_failed(#condition, __FILE__, __LINE__);                            \
-    }                                                                                  \
+/// Throws Error internal when `condition` is false, in every build. For facts that only a bug can
+/// make false and that cost nothing beside the work around them.
+#define PTIN_CHECK(condition)                               \
+  do {                                                      \
+    if (!(condition)) [[unlikely]] {                        \
+      ::ptin::check_failed(#condition, __FILE__, __LINE__); \
+    }                                                       \
   } while (false)
 
 /// The same in builds without NDEBUG; nothing otherwise. For inner loops.

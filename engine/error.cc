@@ -55,7 +55,10 @@ std::string_view to_string(ErrorCode code) noexcept {
 }
 
 Error::Error(ErrorCode code, std::string_view message, std::string_view context)
-    : std::runtime_error(joined(context, message)), code_(code), message_(message), context_(context) {}
+    : std::runtime_error(joined(context, message)),
+      code_(code),
+      message_(message),
+      context_(context) {}
 
 Error system_error(int errno_value, std::string_view action, std::string_view path) {
   std::string message(action);

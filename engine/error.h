@@ -9,11 +9,12 @@
 
 namespace ptin {
 
-/// Why an operation failed. Each code has one exit status and one HTTP status (tools/error_status.h).
+/// Why an operation failed. Each code has one exit status and one HTTP status
+/// (tools/error_status.h).
 enum class ErrorCode {
-  invalid_argument,     ///< The caller's value or input is outside of the contract.
-  not_found,            ///< The file or data set does not exist.
-  corruption,           ///< Stored bytes cannot be what was written: checksum, offset, count or order.
+  invalid_argument,  ///< The caller's value or input is outside of the contract.
+  not_found,         ///< The file or data set does not exist.
+  corruption,        ///< Stored bytes cannot be what was written: checksum, offset, count or order.
   unsupported_version,  ///< Well-formed, but of a newer major version than this library reads.
   io_error,             ///< The system refused: read, write, sync, rename, map.
   resource_exhausted,   ///< The given memory or the disk is used up.
@@ -25,8 +26,9 @@ enum class ErrorCode {
 [[nodiscard]] std::string_view to_string(ErrorCode code) noexcept;
 
 /// An error: a code, one sentence (what, expected, what to do) and the place that it concerns.
-/// Thrown where the fact is known; caught in `main`, around a service request, at the top of a task, in tests.
-/// An answer that is merely "no" (outside, void, hidden) is a value and never an Error.
+/// Thrown where the fact is known; caught in `main`, around a service request, at the top of a
+/// task, in tests. An answer that is merely "no" (outside, void, hidden) is a value and never an
+/// Error.
 class Error : public std::runtime_error {
  public:
   /// @param code     What kind of failure.

@@ -10,8 +10,8 @@
 
 namespace ptin {
 
-/// A closed box on the grid. Empty when min > max in either coordinate; the default is empty and is the
-/// neutral element of united().
+/// A closed box on the grid. Empty when min > max in either coordinate; the default is empty and is
+/// the neutral element of united().
 struct GridBox {
   std::int32_t min_x = INT32_MAX;
   std::int32_t min_y = INT32_MAX;
@@ -20,7 +20,9 @@ struct GridBox {
   friend bool operator==(const GridBox&, const GridBox&) = default;
 };
 
-[[nodiscard]] constexpr bool is_empty(const GridBox& b) noexcept { return b.min_x > b.max_x || b.min_y > b.max_y; }
+[[nodiscard]] constexpr bool is_empty(const GridBox& b) noexcept {
+  return b.min_x > b.max_x || b.min_y > b.max_y;
+}
 
 [[nodiscard]] constexpr GridBox box_of(GridPoint p) noexcept { return {p.x, p.y, p.x, p.y}; }
 
@@ -29,7 +31,9 @@ struct GridBox {
           std::max(a.max_y, b.max_y)};
 }
 
-[[nodiscard]] constexpr GridBox united(const GridBox& a, GridPoint p) noexcept { return united(a, box_of(p)); }
+[[nodiscard]] constexpr GridBox united(const GridBox& a, GridPoint p) noexcept {
+  return united(a, box_of(p));
+}
 
 /// True when the two closed boxes share a point.
 [[nodiscard]] constexpr bool meets(const GridBox& a, const GridBox& b) noexcept {

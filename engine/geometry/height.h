@@ -16,8 +16,8 @@ enum class HeightType : std::uint32_t { int32 = 0, float32 = 1 };
 /// How stored heights become heights. `step` and `offset` are in the height's unit.
 ///   int32:   height = offset + step * value
 ///   float32: height = value (step 1, offset 0)
-/// The *code* of a height is its stored number as a double, exact for both types; construction and query compare
-/// and interpolate codes, and turn them into heights at the border of the library.
+/// The *code* of a height is its stored number as a double, exact for both types; construction and
+/// query compare and interpolate codes, and turn them into heights at the border of the library.
 struct HeightEncoding {
   HeightType type = HeightType::float32;
   double step = 1.0;

@@ -20,8 +20,12 @@ struct Interval {
 [[nodiscard]] constexpr Interval united(const Interval& a, const Interval& b) noexcept {
   return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
 }
-[[nodiscard]] constexpr Interval united(const Interval& a, double v) noexcept { return united(a, Interval{v, v}); }
-[[nodiscard]] constexpr bool contains(const Interval& i, double v) noexcept { return i.lo <= v && v <= i.hi; }
+[[nodiscard]] constexpr Interval united(const Interval& a, double v) noexcept {
+  return united(a, Interval{v, v});
+}
+[[nodiscard]] constexpr bool contains(const Interval& i, double v) noexcept {
+  return i.lo <= v && v <= i.hi;
+}
 [[nodiscard]] constexpr bool contains(const Interval& outer, const Interval& inner) noexcept {
   return is_empty(inner) || (outer.lo <= inner.lo && inner.hi <= outer.hi);
 }

@@ -11,26 +11,29 @@ namespace ptin {
 /// Largest coordinate of the grid. Chosen so that orient() is exact in 64 bits (orient.h).
 inline constexpr std::int32_t kGridMax = std::int32_t{1} << 30;
 
-/// A position on the planar grid: 0 <= x, y <= kGridMax, x to the east, y to the north (grid units).
+/// A position on the planar grid: 0 <= x, y <= kGridMax, x to the east, y to the north (grid
+/// units).
 struct GridPoint {
   std::int32_t x = 0;
   std::int32_t y = 0;
   friend bool operator==(const GridPoint&, const GridPoint&) = default;
 };
 
-/// A vertex is its grid position: the key orders by y, then x. No numbering, so tiles, threads and machines
-/// need not agree on one.
+/// A vertex is its grid position: the key orders by y, then x. No numbering, so tiles, threads and
+/// machines need not agree on one.
 using VertexKey = std::uint64_t;
 
 /// A key that no vertex has.
 inline constexpr VertexKey kNoVertexKey = ~VertexKey{0};
 
 [[nodiscard]] constexpr VertexKey key_of(GridPoint p) noexcept {
-  return (static_cast<VertexKey>(static_cast<std::uint32_t>(p.y)) << 32) | static_cast<std::uint32_t>(p.x);
+  return (static_cast<VertexKey>(static_cast<std::uint32_t>(p.y)) << 32) |
+         static_cast<std::uint32_t>(p.x);
 }
 
 [[nodiscard]] constexpr GridPoint point_of(VertexKey key) noexcept {
-  return {static_cast<std::int32_t>(static_cast<std::uint32_t>(key)), static_cast<std::int32_t>(key >> 32)};
+  return {static_cast<std::int32_t>(static_cast<std::uint32_t>(key)),
+          static_cast<std::int32_t>(key >> 32)};
 }
 
 /// True when both coordinates lie on the grid.

@@ -162,8 +162,9 @@ Action declare_build(CLI::App& app, Context& context) {
                  "Error charged for each ground unit that a void's border moves")
       ->type_name("S")
       ->capture_default_str();
-  app.add_option("--tile", options.tile,
-                 "Rasters: samples along a leaf of the tile hierarchy (default: by the raster's size)")
+  app.add_option(
+         "--tile", options.tile,
+         "Rasters: samples along a leaf of the tile hierarchy (default: by the raster's size)")
       ->type_name("SIDE");
   app.add_flag("--overwrite", command->overwrite, "Replace an existing output");
   add_common_options(app, context, true);
