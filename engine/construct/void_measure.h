@@ -30,11 +30,13 @@ struct VoidMeasure {
 /// samples over the link loses this: the triangle beyond may be finer in another refinement, and
 /// void there.) For the same reason a link vertex is charged when it loses all its surface
 /// triangles of this star, whatever is beyond.
-/// A data sample on a link edge beside a void fan triangle may have surface beyond, which holds it
-/// too: it is measured against that edge besides. A block is measured at its corners; one that lies
+/// A data sample on an edge of a void fan triangle whose ends have heights may have surface beyond,
+/// at once or in another refinement, which holds it too: it is measured against that edge besides.
+///
+/// A block is measured at its corners; one that lies
 /// across a spoke may be in every fan triangle between those of its corners: it is charged where
-/// any of them is of the wrong class, and its residuals are bounded along the spokes. REQUIRES:
-/// gather_sources() was called.
+/// any of them is of the wrong class, and its residuals are bounded along the spokes.
+/// REQUIRES: gather_sources() was called.
 [[nodiscard]] VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s,
                                              const FanFrame& fan);
 
