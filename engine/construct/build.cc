@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "engine/construct/delaunay.h"
 #include "engine/construct/hierarchy.h"
@@ -105,6 +106,23 @@ void build_points(Job& job) {
   store.publish(tile.tin, job.inputs, job.report);
 }
 
+/// @throws Error invalid_argument for options that mean nothing
+void check_options(const BuildOptions& o) {
+  const auto require = [](bool holds, const char* message) {
+    if (!holds) {
+      throw Error(ErrorCode::invalid_argument, message);
+    }
+  };
+  const auto is_length = [](double v) { return std::isfinite(v) && v >= 0.0; };
+  require(is_length(o.max_error), "the largest error to leave out must be a finite number >= 0");
+  require(is_length(o.void_slope), "the void slope must be a finite number >= 0");
+  require(!o.resolution || (is_length(*o.resolution) && *o.resolution > 0.0),
+          "the resolution must be a finite number > 0");
+  require(!o.bbox || ((*o.bbox)[0] < (*o.bbox)[2] && (*o.bbox)[1] < (*o.bbox)[3]),
+          "the bbox is inverted or empty; its order is xmin ymin xmax ymax");
+  require(!o.tile || *o.tile >= 2, "a tile must be at least 2 grid units along a side");
+}
+
 /// True for point files, false for rasters.
 bool are_points(const std::vector<std::string>& inputs) {
   if (inputs.empty()) {
@@ -124,9 +142,7 @@ bool are_points(const std::vector<std::string>& inputs) {
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
                   const BuildOptions& options, const BuildResources& resources) {
   const auto begin = std::chrono::steady_clock::now();
-  if (options.tile && *options.tile < 2) {
-    throw Error(ErrorCode::invalid_argument, "a tile must be at least 2 grid units along a side");
-  }
+  check_options(options);
   Job job{inputs, output, options, resources, {}};
   if (are_points(inputs)) {
     build_points(job);

@@ -54,13 +54,16 @@ void CollapseChooser::screen_all(const Tile& tile, const StarSamples& s) {
   }
 }
 
-void CollapseChooser::leave_out_crowded(const Tile& tile, const StarSamples& s) {
-  const auto crowded = [&](const Candidate& c) {
-    return tile.vertex_state[s.star.link[c.j]].degree + s.star.degree() > kComfortableDegree + 4;
-  };
-  if (!std::all_of(candidates_.begin(), candidates_.end(), crowded)) {
-    std::erase_if(candidates_, crowded);
-  }
+void CollapseChooser::set_crowded_aside(const Tile& tile, const StarSamples& s) {
+  crowded_.clear();
+  std::erase_if(candidates_, [&](const Candidate& c) {
+    const bool is =
+        tile.vertex_state[s.star.link[c.j]].degree + s.star.degree() > kComfortableDegree + 4;
+    if (is) {
+      crowded_.push_back(c);
+    }
+    return is;
+  });
 }
 
 void CollapseChooser::collect(const Tile& tile, const StarSamples& s) {
@@ -77,9 +80,7 @@ void CollapseChooser::collect(const Tile& tile, const StarSamples& s) {
       }
     }
   }
-  if (candidates_.size() > 1) {
-    leave_out_crowded(tile, s);
-  }
+  set_crowded_aside(tile, s);
 }
 
 /// Moves the candidate with the least (screen, key) of those from `first` on to place `first`.
@@ -162,6 +163,15 @@ CollapseChoice CollapseChooser::choose_with_voids(const Tile& tile, const StarSa
 
 CollapseChoice CollapseChooser::choose(const Tile& tile, StarSamples& s) {
   collect(tile, s);
+  CollapseChoice choice = choose_among_candidates(tile, s);
+  if (choice.j == CollapseChoice::kNoNeighbour) {
+    candidates_.swap(crowded_);
+    choice = choose_among_candidates(tile, s);
+  }
+  return choice;
+}
+
+CollapseChoice CollapseChooser::choose_among_candidates(const Tile& tile, StarSamples& s) {
   if (candidates_.empty()) {
     return {};
   }

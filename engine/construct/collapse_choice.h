@@ -40,12 +40,14 @@ class CollapseChooser {
   };
   void collect(const Tile& tile, const StarSamples& s);
   void screen_all(const Tile& tile, const StarSamples& s);
-  void leave_out_crowded(const Tile& tile, const StarSamples& s);
+  void set_crowded_aside(const Tile& tile, const StarSamples& s);
+  [[nodiscard]] CollapseChoice choose_among_candidates(const Tile& tile, StarSamples& s);
   void select_next(std::size_t first);
   [[nodiscard]] CollapseChoice choose_on_surface(const Tile& tile, StarSamples& s);
   [[nodiscard]] CollapseChoice choose_with_voids(const Tile& tile, const StarSamples& s);
 
   std::vector<Candidate> candidates_;
+  std::vector<Candidate> crowded_;  ///< Taken only when no other is allowed.
   std::vector<double>
       crosses_;  ///< crosses_[i * degree + k]: cross product of link i and link k, relative to u.
   bool screened_ = false;  ///< Whether the candidates' screens are known.
