@@ -50,6 +50,9 @@ Polygon random_polygon(std::mt19937_64& random, const StoreFacts& f) {
     for (std::size_t i = 0; i < corners; ++i) {
       ring.push_back(position(random, f));
     }
+    if (ring.front() == ring.back()) {
+      ring.back().x += f.map.step_x;  // a repeated last point would be dropped
+    }
     polygon.rings.push_back(ring);
     return polygon;
   }

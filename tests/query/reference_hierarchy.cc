@@ -100,11 +100,12 @@ class Simplifier {
            });
   }
 
-  bool touches_surface(VertexId v) const {
-    Star star;
-    walk_star(tin_, v, star);
-    return std::any_of(star.triangles.begin(), star.triangles.end(),
-                       [&](TriangleId t) { return is_surface(t); });
+  /// True when one of the triangles is a surface triangle around `v`.
+  bool has_surface_at(const std::vector<TriangleId>& triangles, VertexId v) const {
+    return std::any_of(triangles.begin(), triangles.end(), [&](TriangleId t) {
+      const auto& corners = tin_.triangles[t].v;
+      return tin_.is_alive(t) && is_surface(t) && std::find(corners, corners + 3, v) != corners + 3;
+    });
   }
 
   void collapse_into(std::size_t j) {
@@ -118,7 +119,7 @@ class Simplifier {
       if (tin_.has_height[v] != 0) {
         own.heights = united(own.heights, code(v));
       }
-      if (touches_surface(v)) {
+      if (v != u && tin_.has_height[v] != 0 && has_surface_at(star_.triangles, v)) {
         surface_before.push_back(v);
       }
     }
@@ -138,9 +139,11 @@ class Simplifier {
     std::vector<TriangleId> fan;
     std::copy_if(star_.triangles.begin(), star_.triangles.end(), std::back_inserter(fan),
                  [&](TriangleId t) { return tin_.is_alive(t); });
+    // A sample that loses its surface inside of this star is charged here, whatever lies around it
+    // outside: a refinement may hold another state of that.
     for (const VertexId v : surface_before) {
-      if (v != u && tin_.has_height[v] != 0 && !touches_surface(v)) {
-        own.error = kInfinity;  // it lost its class
+      if (!has_surface_at(fan, v)) {
+        own.error = kInfinity;
       }
     }
     hand_over(own, fan);
