@@ -162,6 +162,29 @@ TEST(LargestResidual, IsNeverBelowTheTrueOneAndNotFarAbove) {
   });
 }
 
+TEST(CertifiedResidual, IsNeverBelowTheTrueOneEvenWhereItIsTakenForWhole) {
+  FanFrame fan;
+  StarSamples s;
+  std::size_t whole = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const std::int32_t extent = seed % 2 == 0 ? 8 : 6000;
+    const StarTile made(seed, extent, {}, kInt, [](GridPoint p) { return noise(p) % 40; });
+    for (VertexId u = 0; u < made.tile.tin.vertices.size(); ++u) {
+      oracle::gather_all(made.tile, u, s);
+      for (std::size_t j = 0; j < s.star.degree(); ++j) {
+        if (!make_fan(s, j, fan)) {
+          continue;
+        }
+        const double worst = largest_residual(s, fan, 0, s.x.size(), kNever);
+        const double certified = certified_residual(worst, s, made.tile.units);
+        (void)expect_bounded(made.tile, s, fan, certified);
+        whole += certified > 0.0 && certified == std::floor(certified) ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(whole, 50U);
+}
+
 TEST(LargestResidual, NeedsNoBoundBesideItWhereArithmeticIsExact) {
   FanFrame fan;
   StarSamples s;
