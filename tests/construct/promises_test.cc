@@ -104,12 +104,6 @@ TEST(Promises, EverySampleIsWithinTheToleranceOnNastyRasters) {
   }
 }
 
-TEST(Promises, EverySampleIsWithinTheToleranceOnLakes) {
-  for (const auto& make : oracle::lakes()) {
-    EXPECT_EQ(check_tolerances(oracle::simplified(make()), 3), "");
-  }
-}
-
 TEST(Promises, EverySampleIsWithinTheToleranceOnNastyPoints) {
   for (const auto& make : oracle::nasty_points()) {
     EXPECT_EQ(check_tolerances(oracle::simplified(make()), 4), "");

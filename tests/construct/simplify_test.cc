@@ -53,34 +53,6 @@ TEST(Simplify, RecordsOfNastyPointsAreThoseOfTheDefinition) {
   }
 }
 
-TEST(Simplify, RecordsOfLakesAreNotBelowTheDefinition) {
-  for (const auto& make : oracle::lakes()) {
-    EXPECT_EQ(oracle::check_records(oracle::simplified(make()), false), "");
-  }
-}
-
-TEST(Simplify, BlocksOfSamplesCostFewVertices) {
-  // A block that lies across a spoke is charged whole, so errors beside voids may be larger than
-  // they need to be: by how much is seen in the vertices that a tolerance takes.
-  for (const auto& make : oracle::lakes()) {
-    TestTerrain one_by_one = make();
-    SCOPED_TRACE(one_by_one.name);
-    one_by_one.tile.samples_fill_grid = false;
-    one_by_one = oracle::simplified(std::move(one_by_one));
-    EXPECT_EQ(oracle::check_records(one_by_one), "");
-    const TestTerrain in_blocks = oracle::simplified(make());
-    for (const float tolerance : {0.0F, 0.3F, 1.0F, 3.0F, 10.0F, 30.0F}) {
-      const auto needed = [&](const TestTerrain& terrain) {
-        const auto& records = terrain.tile.records;
-        return std::count_if(records.begin(), records.end(),
-                             [&](const VertexSplit& r) { return r.error > tolerance; });
-      };
-      const auto few = needed(one_by_one);
-      EXPECT_LE(needed(in_blocks), few + few / 20 + 5) << tolerance;
-    }
-  }
-}
-
 TEST(Simplify, OtherCostsKeepTheDefinitionToo) {
   for (const CostModel cost : {CostModel::kRoi, CostModel::kElevation}) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
