@@ -137,23 +137,10 @@ bool are_points(const std::vector<std::string>& inputs) {
   return points != 0;
 }
 
-/// Numbers that would mean nothing, and be taken for something, further down.
-void check_numbers(const BuildOptions& o) {
-  if (!std::isfinite(o.max_error) || o.max_error < 0.0) {
-    throw Error(ErrorCode::invalid_argument,
-                "the largest error must be a finite number, 0 or more");
-  }
-  if (!std::isfinite(o.void_slope) || o.void_slope < 0.0) {
-    throw Error(ErrorCode::invalid_argument,
-                "the slope of voids must be a finite number, 0 or more");
-  }
-}
-
 }  // namespace
 
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
                   const BuildOptions& options, const BuildResources& resources) {
-  check_numbers(options);
   const auto begin = std::chrono::steady_clock::now();
   check_options(options);
   Job job{inputs, output, options, resources, {}};
