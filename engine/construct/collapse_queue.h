@@ -40,7 +40,7 @@ struct CollapseMeasure {
 ///   error:     error class, octave of the box's half-perimeter, neighbourhood, half-perimeter
 ///   roi:       half-perimeter (its class is its octave)
 ///   elevation: height interval, half-perimeter
-/// Neighbourhoods are squares of the plane, about 4096 vertices of the full TIN large, or 16 boxes
+/// Neighbourhoods are squares of the plane, about 16384 vertices of the full TIN large, or 16 boxes
 /// where boxes have grown. Within class and octave one is finished before the next begins: nearly
 /// the order by box alone, but the mesh that is worked on stays in the processor's caches
 /// (bench/README.md has the figures). The octave comes first, because a class can be large (on a
