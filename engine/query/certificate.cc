@@ -49,24 +49,33 @@ Certificate certify_below(const StoreFile& store, double bound) {
   return certificate;
 }
 
-Certificate certify_applied(const StoreFile& store, std::span<const PendingSplit> splits) {
-  const std::span<const ErrorBin> bins = store.error_bins();
-  std::vector<std::uint64_t> applied(bins.size(), 0);
-  for (const PendingSplit& s : splits) {
-    const auto bin =
-        std::lower_bound(bins.begin(), bins.end(), s.error,
-                         [](const ErrorBin& b, float error) { return b.upper < error; });
-    if (bin != bins.end()) {
-      ++applied[static_cast<std::size_t>(bin - bins.begin())];
-    }
-  }
-  Certificate certificate = of_finest(store);
+AppliedErrors::AppliedErrors(const StoreFile& store)
+    : store_(&store), applied_(store.error_bins().size() + 1, 0) {}
+
+std::size_t AppliedErrors::bin_of(float error) const noexcept {
+  const std::span<const ErrorBin> bins = store_->error_bins();
+  const auto bin = std::lower_bound(bins.begin(), bins.end(), error,
+                                    [](const ErrorBin& b, float e) { return b.upper < e; });
+  return static_cast<std::size_t>(bin - bins.begin());
+}
+
+Certificate AppliedErrors::certificate() const {
+  const std::span<const ErrorBin> bins = store_->error_bins();
+  Certificate certificate = of_finest(*store_);
   for (std::size_t i = 0; i < bins.size(); ++i) {
-    if (applied[i] < bins[i].records) {
+    if (applied_[i] < bins[i].records) {
       leave_out(bins[i].upper, bins[i].max_deviation, certificate);
     }
   }
   return certificate;
+}
+
+Certificate certify_applied(const StoreFile& store, std::span<const PendingSplit> splits) {
+  AppliedErrors applied(store);
+  for (const PendingSplit& s : splits) {
+    applied.add(s.error);
+  }
+  return applied.certificate();
 }
 
 }  // namespace ptin

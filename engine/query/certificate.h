@@ -4,7 +4,10 @@
 // (DESIGN.md, section 2).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "engine/query/retrieval.h"
 #include "storage/store_file.h"
@@ -17,6 +20,26 @@ struct Certificate {
   double error = 0.0;      ///< At every input sample.
   double deviation = 0.0;  ///< At any point.
   bool complete = true;    ///< No record was left out.
+};
+
+/// How many records of each bin of a file are applied: what is left out is bounded by the bins that
+/// are not complete. Borrows the store.
+class AppliedErrors {
+ public:
+  explicit AppliedErrors(const StoreFile& store);
+  void add(float error) noexcept { ++applied_[bin_of(error)]; }
+  /// REQUIRES: it was added.
+  void remove(float error) noexcept { --applied_[bin_of(error)]; }
+  /// Bounds over the whole domain. A bin of which any record was left out counts as a whole. Cost:
+  /// the number of bins.
+  [[nodiscard]] Certificate certificate() const;
+
+ private:
+  /// Errors above all bins, which a damaged table can leave, are counted behind them.
+  [[nodiscard]] std::size_t bin_of(float error) const noexcept;
+
+  const StoreFile* store_;
+  std::vector<std::uint64_t> applied_;
 };
 
 /// For an answer that leaves out only records with error <= `bound` (where it was asked); a

@@ -12,27 +12,36 @@ namespace ptin {
 
 namespace {
 
-class Everything final : public AttributePredicate {
+class Everything final : public BoundedPredicate {
  public:
   [[nodiscard]] bool holds(const Attributes&) const noexcept override { return true; }
+  [[nodiscard]] bool holds_for_all(const Attributes&, double) const noexcept override {
+    return true;
+  }
 };
 
-class MeetsRegion final : public AttributePredicate {
+class MeetsRegion final : public BoundedPredicate {
  public:
   MeetsRegion(const Region& region, const AffineMap& map) : region_(region, map) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return region_.meets(a.roi);
+  }
+  [[nodiscard]] bool holds_for_all(const Attributes& all, double) const noexcept override {
+    return region_.contains(all.roi);
   }
 
  private:
   GridRegion region_;
 };
 
-class ErrorAbove final : public AttributePredicate {
+class ErrorAbove final : public BoundedPredicate {
  public:
   explicit ErrorAbove(double tolerance) : tolerance_(tolerance) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return a.error > tolerance_;
+  }
+  [[nodiscard]] bool holds_for_all(const Attributes&, double least_error) const noexcept override {
+    return least_error > tolerance_;
   }
 
  private:
@@ -41,7 +50,7 @@ class ErrorAbove final : public AttributePredicate {
 
 /// Compares decoded heights: decoding is monotone in the code, and it is what callers see of the
 /// vertices.
-class HeightsMeet final : public AttributePredicate {
+class HeightsMeet final : public BoundedPredicate {
  public:
   HeightsMeet(double low, double high, const HeightEncoding& heights)
       : low_(low), high_(high), heights_(heights) {}
@@ -49,13 +58,17 @@ class HeightsMeet final : public AttributePredicate {
     return heights_.height_of_code(a.heights.lo) <= high_ &&
            low_ <= heights_.height_of_code(a.heights.hi);
   }
+  /// Never certain: where all is void a record's interval is empty, and meets nothing.
+  [[nodiscard]] bool holds_for_all(const Attributes&, double) const noexcept override {
+    return false;
+  }
 
  private:
   double low_, high_;
   HeightEncoding heights_;
 };
 
-class SeenFrom final : public AttributePredicate {
+class SeenFrom final : public BoundedPredicate {
  public:
   SeenFrom(const View& view, const AffineMap& map, const HeightEncoding& heights)
       : view_(view), heights_(heights), eye_(map.to_grid(view.eye)) {
@@ -76,6 +89,15 @@ class SeenFrom final : public AttributePredicate {
     }
     return a.error > view_.tau * (std::sqrt(squares) * kRoundDown);
   }
+  /// With the largest distance that a box in `all.roi` can have; each step is monotone under
+  /// rounding. In space it is never certain: where all is void a record is infinitely far away.
+  [[nodiscard]] bool holds_for_all(const Attributes& all,
+                                   double least_error) const noexcept override {
+    const double dx = reach(all.roi.min_x, all.roi.max_x, eye_.x) * ground_x_;
+    const double dy = reach(all.roi.min_y, all.roi.max_y, eye_.y) * ground_y_;
+    return !view_.eye_height &&
+           least_error > view_.tau * (std::sqrt(dx * dx + dy * dy) * kRoundDown);
+  }
 
  private:
   /// Sixteen units of rounding: twice what squares, sums, root and products above can add to a
@@ -93,34 +115,65 @@ class SeenFrom final : public AttributePredicate {
     return std::max(0.0, std::max(lo - v, v - hi) - slack);
   }
 
+  /// At least the gap of every interval within [lo, hi].
+  static double reach(double lo, double hi, double v) noexcept {
+    return std::max(0.0, std::max(hi - v, v - lo));
+  }
+
   View view_;
   HeightEncoding heights_;
   MapPoint eye_;
   double ground_x_ = 1, ground_y_ = 1, slack_x_ = 0, slack_y_ = 0;
 };
 
-class AllOf final : public AttributePredicate {
+/// Beside the parts: each as a predicate that can speak of many records, null where it cannot.
+std::vector<const BoundedPredicate*> bounded_parts(const std::vector<PredicatePtr>& parts) {
+  std::vector<const BoundedPredicate*> result;
+  result.reserve(parts.size());
+  for (const PredicatePtr& p : parts) {
+    result.push_back(dynamic_cast<const BoundedPredicate*>(p.get()));
+  }
+  return result;
+}
+
+class AllOf final : public BoundedPredicate {
  public:
-  explicit AllOf(std::vector<PredicatePtr> parts) : parts_(std::move(parts)) {}
+  explicit AllOf(std::vector<PredicatePtr> parts)
+      : parts_(std::move(parts)), bounded_(bounded_parts(parts_)) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return std::all_of(parts_.begin(), parts_.end(),
                        [&](const PredicatePtr& p) { return p->holds(a); });
   }
-
- private:
-  std::vector<PredicatePtr> parts_;
-};
-
-class AnyOf final : public AttributePredicate {
- public:
-  explicit AnyOf(std::vector<PredicatePtr> parts) : parts_(std::move(parts)) {}
-  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    return std::any_of(parts_.begin(), parts_.end(),
-                       [&](const PredicatePtr& p) { return p->holds(a); });
+  [[nodiscard]] bool holds_for_all(const Attributes& all,
+                                   double least_error) const noexcept override {
+    return std::all_of(bounded_.begin(), bounded_.end(), [&](const BoundedPredicate* p) {
+      return p != nullptr && p->holds_for_all(all, least_error);
+    });
   }
 
  private:
   std::vector<PredicatePtr> parts_;
+  std::vector<const BoundedPredicate*> bounded_;  ///< Beside the parts.
+};
+
+class AnyOf final : public BoundedPredicate {
+ public:
+  explicit AnyOf(std::vector<PredicatePtr> parts)
+      : parts_(std::move(parts)), bounded_(bounded_parts(parts_)) {}
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [&](const PredicatePtr& p) { return p->holds(a); });
+  }
+  [[nodiscard]] bool holds_for_all(const Attributes& all,
+                                   double least_error) const noexcept override {
+    return std::any_of(bounded_.begin(), bounded_.end(), [&](const BoundedPredicate* p) {
+      return p != nullptr && p->holds_for_all(all, least_error);
+    });
+  }
+
+ private:
+  std::vector<PredicatePtr> parts_;
+  std::vector<const BoundedPredicate*> bounded_;  ///< Beside the parts.
 };
 
 Error invalid(const char* message) { return Error(ErrorCode::invalid_argument, message); }

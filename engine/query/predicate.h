@@ -20,6 +20,17 @@
 
 namespace ptin {
 
+/// A monotone predicate that can tell, of all records of a page or a subtree at once, that it is
+/// true for them: what two questions agree on need not be looked at. All predicates below are.
+class BoundedPredicate : public AttributePredicate {
+ public:
+  /// True only when holds(r) for every r whose roi is not empty and lies in `all.roi`, whose
+  /// heights lie in `all.heights` (or are empty), and whose error is at least `least_error`. Falls
+  /// as `all` grows or `least_error` falls; false where it is not certain.
+  [[nodiscard]] virtual bool holds_for_all(const Attributes& all,
+                                           double least_error) const noexcept = 0;
+};
+
 using PredicatePtr = std::shared_ptr<const AttributePredicate>;
 
 /// Always true: every record, the full TIN.

@@ -8,47 +8,13 @@
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
 #include "engine/query/large_array.h"
+#include "engine/query/refinement_internal.h"
 
 namespace ptin {
 
 namespace {
 
-constexpr std::size_t kLookAhead = 16;       // Records ahead whose hash slots are fetched.
-constexpr std::size_t kStopInterval = 4096;  // Splits between two looks at the stop token.
-
-/// Where each rank's records begin when sorted by falling rank: the counting sort (paper, section
-/// 4).
-class RankOrder {
- public:
-  explicit RankOrder(std::span<const PendingSplit> splits) {
-    for (const PendingSplit& s : splits) {
-      largest_ = std::max(largest_, s.rank);
-    }
-    next_.assign(std::size_t{largest_} + 2, 0);
-    for (const PendingSplit& s : splits) {
-      ++next_[largest_ - s.rank + 1];
-    }
-    for (std::size_t i = 1; i < next_.size(); ++i) {
-      next_[i] += next_[i - 1];
-    }
-  }
-  /// The place of the next record of this rank.
-  std::uint32_t take(std::uint16_t rank) noexcept { return next_[largest_ - rank]++; }
-
- private:
-  std::uint16_t largest_ = 0;
-  std::vector<std::uint32_t> next_;
-};
-
-[[noreturn]] void throw_refused(const PendingSplit& s, const std::string& why,
-                                const QueryContext& context) {
-  const GridPoint u = point_of(s.u);
-  throw Error(ErrorCode::corruption,
-              "page " + std::to_string(s.page) + ", record of vertex (" + std::to_string(u.x) +
-                  ", " + std::to_string(u.y) + "): " + why +
-                  "; run verify, and build the file again",
-              context.file());
-}
+constexpr std::size_t kLookAhead = 16;  // Records ahead whose hash slots are fetched.
 
 SplitSite site_of(VertexId u, VertexId w, VertexId vl, VertexId vr, std::uint32_t flags) noexcept {
   const auto class_of = [flags](std::uint32_t bit) {
@@ -62,13 +28,6 @@ SplitSite site_of(VertexId u, VertexId w, VertexId vl, VertexId vr, std::uint32_
           (flags & VertexSplit::kNoRight) == 0,
           class_of(VertexSplit::kLeftVoid),
           class_of(VertexSplit::kRightVoid)};
-}
-
-/// New triangles of a split: one at a border, otherwise two. A record that has neither is refused
-/// by split().
-std::uint32_t triangles_of(std::uint32_t flags) noexcept {
-  return ((flags & VertexSplit::kNoLeft) == 0 ? 1 : 0) +
-         ((flags & VertexSplit::kNoRight) == 0 ? 1 : 0);
 }
 
 bool has_heights(const Tin& tin, VertexId a, VertexId b, VertexId c) noexcept {
@@ -167,11 +126,9 @@ Refinement::Refinement(const Tin& t0, bool track_pages) : tin_(t0), track_pages_
 }
 
 void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& context) {
-  const auto first_vertex = static_cast<VertexId>(tin_.vertices.size());
-  const auto first_triangle = static_cast<TriangleId>(tin_.triangles.size());
-  reserve(splits, context);
-  add_vertices(splits, context);
-  const std::vector<Resolved> resolved = resolve(splits, first_vertex, first_triangle, context);
+  const Batch batch = reserve(splits, context);
+  add_vertices(splits, batch, context);
+  const std::vector<Resolved> resolved = resolve(splits, batch, context);
   const StarFetcher fetcher(tin_);
   for (std::size_t i = 0; i < resolved.size(); ++i) {
     if (i % kStopInterval == 0) {
@@ -184,43 +141,64 @@ void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& conte
       fetcher.fetch_neighbours(resolved[i + StarFetcher::kNeighbours].w);
       fetcher.fetch_beyond(resolved[i + StarFetcher::kBeyond].w);
     }
-    apply_one(resolved[i], splits, context);
+    apply_one(resolved[i], batch, splits, context);
   }
+  forget_places(batch);
   context.cost.records_applied += resolved.size();
 }
 
-/// Makes room for exactly the vertices and triangles to come; triangles stay removed until their
-/// split is made.
-void Refinement::reserve(std::span<const PendingSplit> splits, const QueryContext& context) {
-  std::uint64_t triangles = tin_.triangles.size();
+/// Makes room for the vertices and triangles to come; triangles stay removed until their split is
+/// made. A mesh that grows a second time grows by half at least, so that many small batches do not
+/// copy it each time.
+Refinement::Batch Refinement::reserve(std::span<const PendingSplit> splits,
+                                      const QueryContext& context) {
+  Batch batch{splits.size(), 0, static_cast<VertexId>(tin_.vertices.size()),
+              static_cast<TriangleId>(tin_.triangles.size())};
   for (const PendingSplit& s : splits) {
-    triangles += triangles_of(s.flags);
+    batch.triangles += triangles_of(s.flags);
   }
-  const std::size_t vertices = tin_.vertices.size() + splits.size();
+  const std::size_t vertices =
+      tin_.vertices.size() + batch.vertices - std::min(batch.vertices, free_vertices_.size());
+  const std::size_t triangles =
+      tin_.triangles.size() + batch.triangles - std::min(batch.triangles, free_triangles_.size());
   if (triangles >= kNone || vertices >= kNone) {
     throw Error(ErrorCode::resource_exhausted,
                 "the answer has more triangles than one mesh can number (2^32 - 1): ask for less, "
                 "or use export",
                 context.file());
   }
-  reserve_large(tin_.vertices, vertices);
-  reserve_large(tin_.triangles, triangles);
+  const auto grown = [](std::size_t wanted, std::size_t capacity) {
+    return wanted > capacity ? std::max(wanted, capacity + capacity / 2) : capacity;
+  };
+  reserve_large(tin_.vertices, grown(vertices, tin_.vertices.capacity()));
+  reserve_large(tin_.triangles, grown(triangles, tin_.triangles.capacity()));
+  ids_.reserve(tin_.vertices.capacity());
   tin_.vertices.resize(vertices);
   tin_.has_height.resize(vertices);
   tin_.triangles.resize(triangles, {{kNone, kNone, kNone}, {kNone, kNone, kNone}});
   tin_.classes.resize(triangles);
-  ids_.reserve(vertices);
   if (track_pages_) {
     vertex_pages_.resize(vertices, kNone);
     triangle_pages_.resize(triangles, kNone);
   }
+  return batch;
+}
+
+/// The places that the batch took are free no more.
+void Refinement::forget_places(const Batch& batch) {
+  const auto drop = [](auto& free, std::size_t taken) {
+    free.erase(free.begin(),
+               free.begin() + static_cast<std::ptrdiff_t>(std::min(taken, free.size())));
+  };
+  drop(free_vertices_, batch.vertices);
+  drop(free_triangles_, batch.triangles);
 }
 
 /// Vertices and triangles keep the order of the file, along its Hilbert curves: so what lies near
 /// in the terrain mostly lies near in memory, whatever its rank.
-void Refinement::add_vertices(std::span<const PendingSplit> splits, const QueryContext& context) {
-  auto u = static_cast<VertexId>(tin_.vertices.size() - splits.size());
-  for (std::size_t i = 0; i < splits.size(); ++i, ++u) {
+void Refinement::add_vertices(std::span<const PendingSplit> splits, const Batch& batch,
+                              const QueryContext& context) {
+  for (std::size_t i = 0; i < splits.size(); ++i) {
     if (i % kStopInterval == 0) {
       context.check_stop();
     }
@@ -228,6 +206,7 @@ void Refinement::add_vertices(std::span<const PendingSplit> splits, const QueryC
       ids_.prefetch(splits[i + kLookAhead].u);
     }
     const PendingSplit& s = splits[i];
+    const VertexId u = vertex_place(batch, i);
     if (!ids_.insert(s.u, u)) {
       throw_refused(s, "its vertex is in the mesh already", context);
     }
@@ -243,14 +222,13 @@ void Refinement::add_vertices(std::span<const PendingSplit> splits, const QueryC
 /// and before the first split is made, so that look-ups do not wait for one another. A reference to
 /// a vertex that comes later in the order is found here and refused by apply_one().
 std::vector<Refinement::Resolved> Refinement::resolve(std::span<const PendingSplit> splits,
-                                                      VertexId first_vertex,
-                                                      TriangleId first_triangle,
+                                                      const Batch& batch,
                                                       const QueryContext& context) const {
   RankOrder order(splits);
   std::vector<Resolved> resolved;
   reserve_large(resolved, splits.size());
   resolved.resize(splits.size());
-  Resolved r{first_vertex, 0, 0, 0, first_triangle, 0};
+  Resolved r{};
   for (std::size_t i = 0; i < splits.size(); ++i) {
     if (i % kStopInterval == 0) {
       context.check_stop();
@@ -262,26 +240,30 @@ std::vector<Refinement::Resolved> Refinement::resolve(std::span<const PendingSpl
       ids_.prefetch(ahead.vr);
     }
     const PendingSplit& s = splits[i];
+    r.u = vertex_place(batch, i);
     r.w = ids_.find(s.w), r.vl = ids_.find(s.vl), r.vr = ids_.find(s.vr), r.flags = s.flags;
     if (r.w == KeyTable::kAbsent || r.vl == KeyTable::kAbsent || r.vr == KeyTable::kAbsent) {
       throw_refused(s, "it names a vertex that no retrieved record makes", context);
     }
     resolved[order.take(s.rank)] = r;
-    ++r.u;
     r.triangle += triangles_of(s.flags);
   }
   return resolved;
 }
 
-void Refinement::apply_one(const Resolved& s, std::span<const PendingSplit> splits,
-                           const QueryContext& context) {
+void Refinement::apply_one(const Resolved& s, const Batch& batch,
+                           std::span<const PendingSplit> splits, const QueryContext& context) {
   const SplitSite site = site_of(s.u, s.w, s.vl, s.vr, s.flags);
   const bool w_is_there = tin_.vertices[s.w].triangle != kNone;
-  const TriangleId right = s.triangle + (site.has_left ? 1 : 0);
-  const SplitResult made = w_is_there ? split_into(tin_, site, s.triangle, right) : SplitResult{};
+  // Of a record with one side only (or, damaged, none) the other place is not used, and may be
+  // none.
+  const TriangleId left = triangle_place(batch, s.triangle);
+  const TriangleId right = triangle_place(batch, s.triangle + (site.has_left ? 1 : 0));
+  const SplitResult made = w_is_there ? split_into(tin_, site, left, right) : SplitResult{};
   if (!made.applied || !classes_fit(tin_, site, made)) [[unlikely]] {
-    const PendingSplit& refused = splits[splits.size() - (tin_.vertices.size() - s.u)];
-    throw_refused(refused,
+    const VertexKey key = key_of(tin_.position(s.u));
+    throw_refused(*std::find_if(splits.begin(), splits.end(),
+                                [key](const PendingSplit& p) { return p.u == key; }),
                   made.applied ? "its classes do not fit its heights" : "it does not fit the mesh",
                   context);
   }

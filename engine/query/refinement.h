@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/mesh/star.h"
 #include "engine/mesh/tin.h"
 #include "engine/query/accounting.h"
 #include "engine/query/key_table.h"
@@ -19,8 +20,8 @@ namespace ptin {
 /// Bytes that reading and applying `records` records may take: records, mesh and key table.
 [[nodiscard]] std::uint64_t refinement_bytes(std::uint64_t records) noexcept;
 
-/// A mesh that splits are applied to. Later questions keep one and apply a further closed set to
-/// it. Threads: one owner.
+/// A mesh that splits are applied to and taken back from. Later questions keep one, apply what
+/// enters and undo what leaves. Threads: one owner.
 class Refinement {
  public:
   /// @param t0           Borrowed for the call.
@@ -39,7 +40,25 @@ class Refinement {
   /// Cost: O(k + largest rank) expected time and memory for k splits of bounded degree.
   void apply(std::span<const PendingSplit> splits, QueryContext& context);
 
+  /// Undoes `splits`, which were applied: collapses, in order of rising rank. What stays must be
+  /// closed under dependency, as the records of a monotone predicate are. Result: the TIN of what
+  /// stays (a collapse is the exact inverse of its split); the places of what went are used again
+  /// by the next apply().
+  /// @throws Error corruption  a collapse is not the inverse of its split: the records' attributes
+  /// are not saturated; names page and vertex. Throw the refinement away then.
+  ///               cancelled
+  /// Cost: O(k + largest rank) expected for k splits of bounded degree.
+  void undo(std::span<const PendingSplit> splits, QueryContext& context);
+
+  /// After undo() with removed vertices and triangles among the others (mesh/tin.h).
   [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
+  /// Vertices and triangles that are not removed. Cost: none.
+  [[nodiscard]] std::size_t alive_vertices() const noexcept {
+    return tin_.vertices.size() - free_vertices_.size();
+  }
+  [[nodiscard]] std::size_t alive_triangles() const noexcept {
+    return tin_.triangles.size() - free_triangles_.size();
+  }
   /// Local index of a vertex, or KeyTable::kAbsent.
   [[nodiscard]] VertexId find(VertexKey key) const noexcept { return ids_.find(key); }
   /// Gives the mesh away; the refinement is spent.
@@ -51,22 +70,45 @@ class Refinement {
   }
 
  private:
-  /// A split in local indices. `triangle` is the place of its first new triangle.
+  /// A split in local indices. `triangle` is the number of its first new triangle among those of
+  /// its batch.
   struct Resolved {
     VertexId u, w, vl, vr;
-    TriangleId triangle;
+    std::uint32_t triangle;
     std::uint32_t flags;
   };
-  void reserve(std::span<const PendingSplit> splits, const QueryContext& context);
-  void add_vertices(std::span<const PendingSplit> splits, const QueryContext& context);
+  /// Where a batch puts its new vertices and triangles: in the places of removed ones, then behind
+  /// `first_*`.
+  struct Batch {
+    std::size_t vertices = 0, triangles = 0;
+    VertexId first_vertex = 0;
+    TriangleId first_triangle = 0;
+  };
+  [[nodiscard]] VertexId vertex_place(const Batch& batch, std::size_t i) const noexcept {
+    return i < free_vertices_.size()
+               ? free_vertices_[i]
+               : batch.first_vertex + static_cast<VertexId>(i - free_vertices_.size());
+  }
+  [[nodiscard]] TriangleId triangle_place(const Batch& batch, std::size_t i) const noexcept {
+    return i < free_triangles_.size()
+               ? free_triangles_[i]
+               : batch.first_triangle + static_cast<TriangleId>(i - free_triangles_.size());
+  }
+  [[nodiscard]] Batch reserve(std::span<const PendingSplit> splits, const QueryContext& context);
+  void add_vertices(std::span<const PendingSplit> splits, const Batch& batch,
+                    const QueryContext& context);
   [[nodiscard]] std::vector<Resolved> resolve(std::span<const PendingSplit> splits,
-                                              VertexId first_vertex, TriangleId first_triangle,
+                                              const Batch& batch,
                                               const QueryContext& context) const;
-  void apply_one(const Resolved& split, std::span<const PendingSplit> splits,
+  void apply_one(const Resolved& split, const Batch& batch, std::span<const PendingSplit> splits,
                  const QueryContext& context);
+  void forget_places(const Batch& batch);
+  void undo_one(const PendingSplit& split, Star& star, const QueryContext& context);
 
   Tin tin_;
   KeyTable ids_;
+  std::vector<VertexId> free_vertices_;  ///< Removed: their places are used again.
+  std::vector<TriangleId> free_triangles_;
   bool track_pages_;
   std::vector<std::uint32_t> vertex_pages_,
       triangle_pages_;  ///< Beside the mesh's arrays, when tracked.

@@ -249,6 +249,19 @@ bool GridRegion::meets(const GridBox& box) const noexcept {
          (kind_ == Kind::kPolygon && side_of({box.min_x, box.min_y}) != Side::kOutside);
 }
 
+/// A box that no edge touches is on one side as a whole, and so is every box within it (side_of()).
+bool GridRegion::contains(const GridBox& box) const noexcept {
+  if (box.min_x < min_x_ || max_x_ < box.max_x || box.min_y < min_y_ || max_y_ < box.max_y) {
+    return false;
+  }
+  if (kind_ == Kind::kRectangle) {
+    return true;
+  }
+  return kind_ == Kind::kPolygon &&
+         !any_edge(box, [&](const Edge& e) { return touches(e, box); }) &&
+         side_of({box.min_x, box.min_y}) == Side::kInside;
+}
+
 /// Only the part of the rectangle inside of the triangle's box matters; there all products are of
 /// the triangle's own size.
 bool GridRegion::rectangle_meets(const GridPoint (&t)[3]) const noexcept {

@@ -60,6 +60,11 @@ class GridRegion {
   /// empty. Cost: a polygon's edges near the box.
   [[nodiscard]] bool meets(const GridBox& box) const noexcept;
 
+  /// True only when every box within `box` that is not empty meets the region: `box` lies inside.
+  /// False where that is not certain; always for segments. Law: contains(a) and b within a imply
+  /// contains(b) and meets(b). REQUIRES: `box` not empty. Cost: as meets().
+  [[nodiscard]] bool contains(const GridBox& box) const noexcept;
+
   /// True when the closed triangle shares a point with the region, conservative by the widening.
   /// REQUIRES: counter-clockwise.
   [[nodiscard]] bool meets(GridPoint a, GridPoint b, GridPoint c) const noexcept;

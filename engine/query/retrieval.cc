@@ -6,16 +6,6 @@
 
 namespace ptin {
 
-namespace {
-
-PendingSplit pending_of(const VertexSplit& r, PageId page) noexcept {
-  return {key_of(r.u),  key_of(r.w), key_of(r.vl),
-          key_of(r.vr), r.height,    r.rank,
-          r.flags,      r.error,     static_cast<std::uint32_t>(index_of(page))};
-}
-
-}  // namespace
-
 std::uint64_t most_records(const StoreFile& store, std::span<const PageId> pages) {
   std::uint64_t records = 0;
   for (const PageId page : pages) {

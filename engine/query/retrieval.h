@@ -25,6 +25,13 @@ struct PendingSplit {
 };
 static_assert(sizeof(PendingSplit) == 48);
 
+/// What applying keeps of a record.
+[[nodiscard]] inline PendingSplit pending_of(const VertexSplit& r, PageId page) noexcept {
+  return {key_of(r.u),  key_of(r.w), key_of(r.vl),
+          key_of(r.vr), r.height,    r.rank,
+          r.flags,      r.error,     static_cast<std::uint32_t>(index_of(page))};
+}
+
 /// Where records come from. Borrowed: store and index outlive the query.
 struct RecordSource {
   const StoreFile& store;

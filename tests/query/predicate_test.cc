@@ -93,6 +93,53 @@ RC_GTEST_PROP(Predicate, NeverTurnsFalseWhileItsArgumentsGrow, (std::uint64_t se
   }
 }
 
+/// Attributes that a record could have below a page or node with `all`.
+Attributes within(std::mt19937_64& random, const Attributes& all, double least_error) {
+  const auto between = [&](double lo, double hi) {
+    return random() % 4 == 0 || !std::isfinite(hi)
+               ? (random() % 2 == 0 ? lo : hi)
+               : std::uniform_real_distribution<double>(lo, hi)(random);
+  };
+  const auto range = [&](int lo, int hi, std::int32_t& low, std::int32_t& high) {
+    low = static_cast<int>(between(lo, hi));
+    high = static_cast<int>(between(low, hi));
+  };
+  Attributes a;
+  range(all.roi.min_x, all.roi.max_x, a.roi.min_x, a.roi.max_x);
+  range(all.roi.min_y, all.roi.max_y, a.roi.min_y, a.roi.max_y);
+  if (!is_empty(all.heights) && random() % 4 != 0) {
+    a.heights.lo = between(all.heights.lo, all.heights.hi);
+    a.heights.hi = between(a.heights.lo, all.heights.hi);
+  }
+  a.error = between(least_error, all.error);
+  a.deviation = all.deviation;
+  return a;
+}
+
+RC_GTEST_PROP(Predicate, HoldsForEachWhereItHoldsForAll, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  int certain = 0;
+  for (int i = 0; i < 300; ++i) {
+    const PredicatePtr p = reference::random_predicate(random, domain(), 2);
+    const auto* bounded = dynamic_cast<const BoundedPredicate*>(p.get());
+    RC_ASSERT(bounded != nullptr);
+    for (int k = 0; k < 10; ++k) {
+      const Attributes all = random_attributes(random);
+      const double least = random() % 2 == 0 ? 0.0 : all.error * 0.7;
+      if (!bounded->holds_for_all(all, least)) {
+        continue;
+      }
+      ++certain;
+      for (int step = 0; step < 20; ++step) {
+        const Attributes a = within(random, all, least);
+        RC_ASSERT(p->holds(a));
+        RC_ASSERT(bounded->holds_for_all(a, a.error));
+      }
+    }
+  }
+  RC_ASSERT(certain > 50);
+}
+
 /// A distance by hypot, not monotone, would be found by the property above only with luck; so the
 /// view is driven along boxes that grow by single units, where the last place decides.
 TEST(SeenFrom, StaysTrueWhereTheLastPlaceDecides) {

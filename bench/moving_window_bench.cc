@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The moving window, warm, over the store of PTIN_BENCH_STORE (or srtm1_bigtujunga).
+//   BM_Fresh/area_ppm:n               a fresh refinement of a window of n millionths of the area
+//   BM_Move/area_ppm:n/step_ppm:s     that window moved by s millionths of its width, to and fro:
+//   one
+//                                     move; `changed` counts splits made and undone
+//   BM_FirstMove/area_ppm:n           a new window moved there: against BM_Fresh, what the bits
+//   cost BM_Eye/tau_ppm:t                  a view moved by a thousandth of the terrain's width
+// Cannot show: cold pages; caches that do not hold the window's pages.
+#include <cmath>
+#include <memory>
+
+#include <benchmark/benchmark.h>
+
+#include "bench/support/scratch.h"
+#include "engine/query/moving_window.h"
+#include "engine/query/progressive_tin.h"
+
+namespace {
+
+using namespace ptin;
+
+const std::shared_ptr<const StoreFile>& store() {
+  static const std::shared_ptr<const StoreFile> file =
+      bench::bench_store().empty() ? nullptr : StoreFile::open(bench::bench_store());
+  return file;
+}
+
+bool skipped(benchmark::State& state) {
+  if (store() == nullptr) {
+    state.SkipWithError("needs PTIN_BENCH_STORE or srtm1_bigtujunga_utm_1197x643.tif");
+    return true;
+  }
+  return false;
+}
+
+/// A window of `area_ppm` millionths of the area, `shift` of its width to the east of the third.
+Region window_at(std::int64_t area_ppm, double shift) {
+  const StoreFacts& f = store()->facts();
+  const double share = std::sqrt(static_cast<double>(area_ppm) / 1e6);
+  const double width = f.bounds.max_x - f.bounds.min_x;
+  const double height = f.bounds.max_y - f.bounds.min_y;
+  const double x = f.bounds.min_x + width * (1 - share) / 3 + shift * width * share;
+  const double y = f.bounds.min_y + height * (1 - share) / 3;
+  const MapPoint low = f.map.to_map(x, y);
+  const MapPoint high = f.map.to_map(x + width * share, y + height * share);
+  return Window{low.x, low.y, high.x, high.y};
+}
+
+void BM_Fresh(benchmark::State& state) {
+  if (skipped(state)) return;
+  const ProgressiveTin tin(store());
+  RefineRequest request;
+  request.region = window_at(state.range(0), 0.0);
+  std::uint64_t splits = 0;
+  for (auto _ : state) {
+    splits = tin.refine(request).cost.records_applied;
+  }
+  state.counters["splits"] = static_cast<double>(splits);
+}
+
+void BM_FirstMove(benchmark::State& state) {
+  if (skipped(state)) return;
+  const PredicatePtr p = meets_region(window_at(state.range(0), 0.0), store()->facts().map);
+  std::uint64_t splits = 0;
+  for (auto _ : state) {
+    MovingWindow window(store());
+    splits = window.move_to(p).entered;
+  }
+  state.counters["splits"] = static_cast<double>(splits);
+}
+
+void move_among(benchmark::State& state, const std::vector<PredicatePtr>& places) {
+  MovingWindow window(store());
+  for (const PredicatePtr& p : places) {
+    window.move_to(p);
+  }
+  std::uint64_t changed = 0, examined = 0, moves = 0;
+  for (auto _ : state) {
+    // To and fro: 0 1 2 ... n-1 ... 2 1 0 ...
+    const std::size_t last = places.size() - 1;
+    const std::size_t i = moves++ % (2 * last);
+    const MoveResult moved = window.move_to(places[i < last ? last - 1 - i : i - last + 1]);
+    changed += moved.entered + moved.left;
+    examined += moved.cost.records_examined;
+  }
+  state.counters["changed"] = static_cast<double>(changed) / static_cast<double>(moves);
+  state.counters["examined"] = static_cast<double>(examined) / static_cast<double>(moves);
+}
+
+void BM_Move(benchmark::State& state) {
+  if (skipped(state)) return;
+  std::vector<PredicatePtr> places;
+  for (int i = 0; i < 16; ++i) {
+    places.push_back(
+        meets_region(window_at(state.range(0), i * static_cast<double>(state.range(1)) / 1e6),
+                     store()->facts().map));
+  }
+  move_among(state, places);
+}
+
+void BM_Eye(benchmark::State& state) {
+  if (skipped(state)) return;
+  const StoreFacts& f = store()->facts();
+  std::vector<PredicatePtr> places;
+  for (int i = 0; i < 16; ++i) {
+    View view;
+    view.eye = f.map.to_map(f.bounds.min_x + (f.bounds.max_x - f.bounds.min_x) * (0.4 + i * 0.001),
+                            0.5 * (f.bounds.min_y + f.bounds.max_y));
+    view.tau = static_cast<double>(state.range(0)) / 1e6;
+    places.push_back(seen_from(view, f.map, f.heights));
+  }
+  move_among(state, places);
+}
+
+#define PTIN_AREAS ->ArgName("area_ppm")->Arg(40000)->Arg(250000)->Unit(benchmark::kMicrosecond)
+BENCHMARK(BM_Fresh) PTIN_AREAS;
+BENCHMARK(BM_FirstMove) PTIN_AREAS;
+BENCHMARK(BM_Move)
+    ->ArgNames({"area_ppm", "step_ppm"})
+    ->ArgsProduct({{40000, 250000}, {1000, 10000, 100000}})
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_Eye)->ArgName("tau_ppm")->Arg(500)->Arg(5000)->Unit(benchmark::kMicrosecond);
+
+}  // namespace

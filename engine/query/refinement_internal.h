@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What applying and undoing splits have in common.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/query/accounting.h"
+#include "engine/query/retrieval.h"
+
+namespace ptin {
+
+inline constexpr std::size_t kStopInterval = 4096;  ///< Splits between two looks at the stop token.
+
+/// Where each rank's records begin when sorted by falling rank: the counting sort (paper, section
+/// 4).
+class RankOrder {
+ public:
+  explicit RankOrder(std::span<const PendingSplit> splits) {
+    for (const PendingSplit& s : splits) {
+      largest_ = std::max(largest_, s.rank);
+    }
+    next_.assign(std::size_t{largest_} + 2, 0);
+    for (const PendingSplit& s : splits) {
+      ++next_[largest_ - s.rank + 1];
+    }
+    for (std::size_t i = 1; i < next_.size(); ++i) {
+      next_[i] += next_[i - 1];
+    }
+  }
+  /// The place of the next record of this rank.
+  std::uint32_t take(std::uint16_t rank) noexcept { return next_[largest_ - rank]++; }
+
+ private:
+  std::uint16_t largest_ = 0;
+  std::vector<std::uint32_t> next_;
+};
+
+/// New triangles of a split: one at a border, otherwise two. A record that has neither is refused
+/// by split().
+[[nodiscard]] inline std::uint32_t triangles_of(std::uint32_t flags) noexcept {
+  return ((flags & VertexSplit::kNoLeft) == 0 ? 1 : 0) +
+         ((flags & VertexSplit::kNoRight) == 0 ? 1 : 0);
+}
+
+/// @throws Error corruption  always: names page and vertex
+[[noreturn]] void throw_refused(const PendingSplit& s, const std::string& why,
+                                const QueryContext& context);
+
+}  // namespace ptin
