@@ -36,6 +36,7 @@ SourceOptions source_options(const BuildOptions& o) {
     options.bbox = {(*o.bbox)[0], (*o.bbox)[1], (*o.bbox)[2], (*o.bbox)[3]};
   }
   options.a_srs = o.a_srs;
+  options.points = {o.classes, o.layer, o.z_field};
   options.vertical_crs = o.vertical_crs;
   return options;
 }
@@ -81,6 +82,7 @@ void build_points(Job& job) {
   const PointSet points = read_points(job.inputs, source_options(job.options), job.resources.stop,
                                       stage(job.resources, "reading"));
   job.report.source_samples = points.positions.size();
+  job.report.left_out_points = points.left_out_points;
   job.report.merged_points = points.merged_points;
   job.report.largest_shift_plan = points.largest_shift_plan;
   job.report.largest_shift_height = points.largest_shift_height;
@@ -123,16 +125,20 @@ void check_options(const BuildOptions& o) {
   require(!o.tile || *o.tile >= 2, "a tile must be at least 2 grid units along a side");
 }
 
-/// True for point files, false for rasters.
-bool are_points(const std::vector<std::string>& inputs) {
+/// True for points, false for rasters.
+bool are_points(const std::vector<std::string>& inputs, const PointChoice& choice) {
   if (inputs.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "no input; name a raster that GDAL reads, or points as CSV or XYZ text");
+    throw Error(
+        ErrorCode::invalid_argument,
+        "no input; name a raster that GDAL reads, or points as LAS, text or a layer that OGR "
+        "reads");
   }
-  const auto points = std::count_if(inputs.begin(), inputs.end(), is_point_file);
+  const auto points = std::count_if(inputs.begin(), inputs.end(), [&](const std::string& input) {
+    return is_point_input(input, choice);
+  });
   if (points != 0 && static_cast<std::size_t>(points) != inputs.size()) {
     throw Error(ErrorCode::invalid_argument,
-                "rasters and point files together; build from one kind at a time");
+                "rasters and points together; build from one kind at a time");
   }
   return points != 0;
 }
@@ -144,7 +150,7 @@ BuildReport build(const std::vector<std::string>& inputs, const std::string& out
   const auto begin = std::chrono::steady_clock::now();
   check_options(options);
   Job job{inputs, output, options, resources, {}};
-  if (are_points(inputs)) {
+  if (are_points(inputs, source_options(options).points)) {
     build_points(job);
   } else {
     build_raster(job);

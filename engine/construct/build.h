@@ -21,6 +21,9 @@ struct BuildOptions {
   double max_error = 0.0;  ///< Leave out records with error <= this (height's unit); 0 keeps all.
   std::optional<double> nodata;      ///< Overrides the source's.
   std::optional<double> resolution;  ///< Points: grid unit in CRS units.
+  std::vector<int> classes;          ///< LAS: keep these classes; empty keeps all.
+  std::string layer;                 ///< OGR: the layer of points; "" where there is only one.
+  std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
   std::optional<std::array<double, 4>>
       bbox;           ///< xmin ymin xmax ymax in CRS units; samples outside are left out.
   std::string a_srs;  ///< Overrides the source's CRS (anything GDAL understands); "" keeps it.
@@ -44,8 +47,9 @@ struct BuildResources {
 struct BuildReport {
   std::uint64_t source_samples = 0;  ///< Samples with a height.
   std::uint64_t void_samples = 0;
-  std::uint64_t lone_samples = 0;   ///< Samples that touch no surface triangle, treated as void.
-  std::uint64_t merged_points = 0;  ///< Points that fell together after snapping.
+  std::uint64_t lone_samples = 0;     ///< Samples that touch no surface triangle, treated as void.
+  std::uint64_t left_out_points = 0;  ///< By their class or place, or for want of a height.
+  std::uint64_t merged_points = 0;    ///< Points that fell together after snapping.
   double largest_shift_plan = 0.0, largest_shift_height = 0.0;
   double height_rounding = 0.0;
   std::uint64_t vertices = 0;  ///< Of the full TIN.

@@ -45,6 +45,15 @@ nlohmann::json options_json(const BuildOptions& o) {
       {"nodata", value_or_null(o.nodata)}, {"resolution", value_or_null(o.resolution)},
       {"bbox", value_or_null(o.bbox)},     {"tile", value_or_null(o.tile)},
       {"void_slope", o.void_slope}};
+  if (!o.classes.empty()) {
+    json["classes"] = o.classes;
+  }
+  if (!o.layer.empty()) {
+    json["layer"] = o.layer;
+  }
+  if (!o.z_field.empty()) {
+    json["z_field"] = o.z_field;
+  }
   if (!o.a_srs.empty()) {
     json["a_srs"] = o.a_srs;
   }
@@ -63,6 +72,7 @@ nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildRe
           {"samples", r.source_samples},
           {"void_samples", r.void_samples},
           {"lone_samples", r.lone_samples},
+          {"left_out_points", r.left_out_points},
           {"merged_points", r.merged_points},
           {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
           {"height_rounding", r.height_rounding}};

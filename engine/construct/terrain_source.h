@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What every source of a terrain delivers: a frame (grid, heights, CRS) and samples on the grid.
-// Raster sources are in raster_source.h, point sources in point_source.h; LAS, OGR layers and TINs
-// belong beside them.
+// Raster sources are in raster_source.h, point sources in point_source.h; TINs belong beside
+// them.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "engine/construct/point_stream.h"
 #include "engine/geometry/affine.h"
 #include "engine/geometry/height.h"
 
@@ -47,6 +48,7 @@ struct SourceOptions {
   std::string a_srs;                     ///< Overrides the CRS; anything GDAL understands.
   std::string vertical_crs;              ///< Added as the vertical part, e.g. "EPSG:5773".
   PointMerge merge = PointMerge::kMean;  ///< Points.
+  PointChoice points;                    ///< Points: which of them.
 };
 
 }  // namespace ptin

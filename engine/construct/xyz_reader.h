@@ -10,29 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/construct/point_stream.h"
+
 namespace ptin {
 
-/// A number as it is written in decimals: mantissa / 10^decimals, without trailing zeros after the
-/// point.
-struct Decimal {
-  std::int64_t mantissa = 0;  ///< At most 18 digits: further ones are rounded away.
-  std::int32_t decimals = 0;  ///< 0 .. 18
-  friend bool operator==(const Decimal&, const Decimal&) = default;
-};
-
-/// The double nearest to a decimal, but for one rounding more where its mantissa exceeds 2^53.
-[[nodiscard]] double to_double(Decimal d) noexcept;
-
-/// What a piece of text is.
-enum class NumberKind : std::uint8_t { kNumber, kNotANumber, kInfinite, kTooLarge, kNoNumber };
-
-/// Reads all of `text` as a number: sign, digits, decimal point, exponent; or "nan", "inf".
-/// kTooLarge for 10^18 and above. `value` is set for kNumber alone.
-[[nodiscard]] NumberKind parse_number(std::string_view text, Decimal& value) noexcept;
-
-struct XyzPoint {
-  Decimal x, y, z;
-};
+using XyzPoint = SourcePoint;
 
 /// Reads points from CSV or XYZ text. Numbers have decimal points. The first line that is neither
 /// empty nor a comment ('#') decides the separator (semicolon, else comma, else spaces and tabs),

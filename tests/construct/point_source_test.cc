@@ -157,10 +157,11 @@ TEST(PointSource, JoinsSeveralFiles) {
 }
 
 TEST(PointSource, KnowsTheNamesOfPointFiles) {
-  for (const char* name : {"a.csv", "b/A.XYZ", "c.txt", "d.tsv", "e.csv.gz", "f.XYZ.GZ"}) {
+  for (const char* name :
+       {"a.csv", "b/A.XYZ", "c.txt", "d.tsv", "e.csv.gz", "f.XYZ.GZ", "c.las", "D.LAZ"}) {
     EXPECT_TRUE(is_point_file(name)) << name;
   }
-  for (const char* name : {"a.tif", "xyz", "b.gz", "c.las", ""}) {
+  for (const char* name : {"a.tif", "xyz", "b.gz", "c.las.gz", ""}) {
     EXPECT_FALSE(is_point_file(name)) << name;
   }
 }

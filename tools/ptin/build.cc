@@ -62,6 +62,7 @@ nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
           {"samples", r.source_samples},
           {"void_samples", r.void_samples},
           {"lone_samples", r.lone_samples},
+          {"left_out_points", r.left_out_points},
           {"merged_points", r.merged_points},
           {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
           {"height_rounding", r.height_rounding},
@@ -83,6 +84,10 @@ void print_report(const BuildCommand& command, const BuildReport& r) {
   if (r.lone_samples > 0) {
     std::printf("  lone       %s samples touch no triangle and are treated as void\n",
                 grouped(r.lone_samples).c_str());
+  }
+  if (r.left_out_points > 0) {
+    std::printf("  left out   %s points, by their class or place, withheld, or without a height\n",
+                grouped(r.left_out_points).c_str());
   }
   if (r.merged_points > 0) {
     std::printf("  merged     %s points fell together (largest shift %s in plan, %s in height)\n",
@@ -133,8 +138,10 @@ int run_build(BuildCommand& command, const Context& context) {
 Action declare_build(CLI::App& app, Context& context) {
   const auto command = std::make_shared<BuildCommand>();
   BuildOptions& options = command->options;
-  app.add_option("INPUT", command->inputs,
-                 "A raster that GDAL reads, several of one grid, or points as CSV or XYZ text")
+  app.add_option(
+         "INPUT", command->inputs,
+         "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz\n"
+         "too), or a layer that OGR reads; several files of one CRS")
       ->required();
   app.add_option("-o,--output", command->output, "The .ptin file to write")
       ->type_name("FILE")
@@ -150,6 +157,16 @@ Action declare_build(CLI::App& app, Context& context) {
       ->type_name("V");
   app.add_option("--resolution", options.resolution, "Points: the grid unit, in CRS units")
       ->type_name("R");
+  app.add_option("--class", options.classes,
+                 "LAS: keep points of these classes, such as 2 for ground; 2,9 for several")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("N");
+  app.add_option("--layer", options.layer, "Points of this layer, where a file holds several")
+      ->type_name("NAME");
+  app.add_option("--z-field", options.z_field,
+                 "The attribute that holds the height of a layer's points (default: their z)")
+      ->type_name("NAME");
   app.add_option("--bbox", command->bbox, "Leave out samples outside of this box, in CRS units")
       ->expected(4)
       ->type_name("XMIN YMIN XMAX YMAX");

@@ -19,7 +19,9 @@ constexpr std::array<Command, 6> kCommands = {{
      "Examples:\n"
      "  ptin build dem.tif -o dem.ptin\n"
      "  ptin build north.vrt -o north.ptin --max-error 5 --vertical-crs EPSG:5773\n"
-     "  ptin build points.csv -o points.ptin --a-srs EPSG:2154 --resolution 0.01\n",
+     "  ptin build points.csv -o points.ptin --a-srs EPSG:2154 --resolution 0.01\n"
+     "  ptin build scan_*.las --class 2 -o ground.ptin\n"
+     "  ptin build survey.gpkg --layer spots --z-field height -o survey.ptin\n",
      declare_build},
     {"info", "Tell what a .ptin file holds",
      "Examples:\n"

@@ -59,11 +59,26 @@ std::array<std::size_t, 3> columns_of(const std::vector<std::string>& header) {
   return columns;
 }
 
+/// What the reader of this file takes: anything that is not known as LAS, packed text or a layer.
+bool is_plain_text(const std::string& path) {
+  std::string name = path;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return !name.ends_with(".las") && !name.ends_with(".laz") && !name.ends_with(".gz") &&
+         (is_point_file(path) || !is_point_input(path, {}));
+}
+
 class PointSamples final : public SourceSamples {
  public:
   PointSamples(const std::vector<std::string>& paths, const StoreFile& store)
-      : choices_(choices_of(store)) {
-    for (const std::string& path : paths) read_file(path, store.facts());
+      : heights_(store.facts().heights), choices_(choices_of(store)) {
+    for (const std::string& path : paths) {
+      if (is_plain_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
+        read_file(path, store.facts());
+      } else {
+        read_stream(path, store.facts());
+      }
+    }
     std::sort(samples_.begin(), samples_.end(),
               [](const Sample& a, const Sample& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
     merge();
@@ -86,9 +101,22 @@ class PointSamples final : public SourceSamples {
 
  private:
   void read_file(const std::string& path, const StoreFacts& facts);
+  void read_stream(const std::string& path, const StoreFacts& facts);
   void add(const std::array<double, 3>& p, const StoreFacts& facts, const std::string& where);
   void merge();
+  /// Whole codes, so that sums are exact; heights where the store keeps floats.
+  [[nodiscard]] double code_of(double height) const {
+    return heights_.type == HeightType::int32
+               ? std::nearbyint((height - heights_.offset) / heights_.step)
+               : height;
+  }
+  [[nodiscard]] double rounded_mean(double sum, std::size_t count) const {
+    const double mean = sum / static_cast<double>(count);
+    return heights_.type == HeightType::int32 ? heights_.height_of_code(std::nearbyint(mean))
+                                              : mean;
+  }
 
+  HeightEncoding heights_;
   SampleChoices choices_;
   std::vector<Sample> samples_;  ///< By y, then x.
   std::vector<std::string> misfits_;
@@ -126,6 +154,18 @@ void PointSamples::read_file(const std::string& path, const StoreFacts& facts) {
   }
 }
 
+void PointSamples::read_stream(const std::string& path, const StoreFacts& facts) {
+  const auto stream = open_point_stream(path, choices_.points);
+  std::vector<SourcePoint> batch;
+  std::uint64_t number = 0;
+  while (stream->next(batch)) {
+    for (const SourcePoint& p : batch) {
+      add({to_double(p.x), to_double(p.y), to_double(p.z)}, facts,
+          path + ": point " + std::to_string(++number));
+    }
+  }
+}
+
 void PointSamples::add(const std::array<double, 3>& p, const StoreFacts& facts,
                        const std::string& where) {
   if (choices_.nodata && p[2] == *choices_.nodata) return;
@@ -141,7 +181,8 @@ void PointSamples::add(const std::array<double, 3>& p, const StoreFacts& facts,
   samples_.push_back({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), p[2], false});
 }
 
-/// Points on one grid point count as one, at their mean height, as the builder documents.
+/// Points on one grid point count as one, at their mean height, rounded as heights are stored, as
+/// the builder documents.
 void PointSamples::merge() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < samples_.size();) {
@@ -149,11 +190,11 @@ void PointSamples::merge() {
     double sum = 0.0;
     while (end < samples_.size() && samples_[end].x == samples_[i].x &&
            samples_[end].y == samples_[i].y) {
-      sum += samples_[end++].height;
+      sum += code_of(samples_[end++].height);
     }
     samples_[kept] = samples_[i];
-    samples_[kept++].height =
-        end - i == 1 ? samples_[i].height : sum / static_cast<double>(end - i);
+    if (end - i > 1) samples_[kept].height = rounded_mean(sum, end - i);
+    ++kept;
     i = end;
   }
   samples_.resize(kept);

@@ -21,6 +21,18 @@ SampleChoices choices_of(const StoreFile& store) {
   if (const auto slope = options.find("void_slope"); slope != options.end() && slope->is_number()) {
     choices.void_slope = slope->get<double>();
   }
+  if (const auto classes = options.find("classes");
+      classes != options.end() && classes->is_array()) {
+    for (const auto& c : *classes) {
+      if (c.is_number_integer()) choices.points.classes.push_back(c.get<int>());
+    }
+  }
+  const auto text = [&](const char* name) {
+    const auto found = options.find(name);
+    return found != options.end() && found->is_string() ? found->get<std::string>() : "";
+  };
+  choices.points.layer = text("layer");
+  choices.points.z_field = text("z_field");
   if (const auto bbox = options.find("bbox");
       bbox != options.end() && bbox->is_array() && bbox->size() == 4) {
     choices.bbox = store.facts().bounds;

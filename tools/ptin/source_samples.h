@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The samples of a source on a terrain's grid, for `verify --against`: read with GDAL and a text
-// reader of its own, so that nothing is shared with the builder that is being verified.
+// reader of its own, so that nothing is shared with the builder that is being verified; only LAS,
+// packed text and layers come through the builder's readers.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/point_stream.h"
 #include "engine/geometry/box.h"
 #include "storage/store_file.h"
 
@@ -19,6 +21,7 @@ namespace ptin::tools {
 
 /// Choices of the build that decide which samples there are; from the metadata of the store.
 struct SampleChoices {
+  PointChoice points;
   std::optional<double> nodata;
   std::optional<GridBox> bbox;  ///< Samples outside were left out.
   double void_slope = 0.1;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Bytes of any kind are read as LAS, or refused with an Error that is no fault of ours.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+#include <cpl_vsi.h>
+
+#include "engine/construct/las_reader.h"
+#include "engine/error.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::vector<GByte> bytes(data, data + size);
+  VSIFCloseL(VSIFileFromMemBuffer("/vsimem/fuzz.las", bytes.data(), bytes.size(), FALSE));
+  try {
+    ptin::LasReader reader("/vsimem/fuzz.las", {});
+    std::vector<ptin::SourcePoint> batch;
+    std::uint64_t points = reader.left_out();
+    while (reader.next(batch)) {
+      points += batch.size();
+    }
+    if (points + reader.left_out() != reader.header().points) {
+      std::abort();
+    }
+  } catch (const ptin::Error& e) {
+    if (e.code() != ptin::ErrorCode::invalid_argument &&
+        e.code() != ptin::ErrorCode::unsupported_version) {
+      std::abort();
+    }
+  }
+  VSIUnlink("/vsimem/fuzz.las");
+  return 0;
+}
