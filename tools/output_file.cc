@@ -32,6 +32,21 @@ Error exists_already(const std::string& path) {
           "exists already; give another name, or --overwrite to replace it", path};
 }
 
+/// Renames in one step, and syncs the folder.
+void rename_into_place(const std::string& from, const std::string& to, bool overwrite) {
+  const unsigned flags = overwrite ? 0U : static_cast<unsigned>(RENAME_NOREPLACE);
+  int renamed = renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags);
+  if (renamed != 0 && errno == EEXIST) throw exists_already(to);
+  if (renamed != 0 && errno == EINVAL)
+    renamed = rename(from.c_str(), to.c_str());  // file system without it
+  if (renamed != 0) throw system_error(errno, "cannot rename the finished output", to);
+  const int folder = open(folder_of(to).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder >= 0) {
+    fsync(folder);
+    close(folder);
+  }
+}
+
 }  // namespace
 
 void check_output(const std::string& path, bool overwrite) {
@@ -89,18 +104,19 @@ void OutputFile::publish() {
   const int closed = close(fd_);
   fd_ = -1;
   if (closed != 0) throw system_error(errno, "cannot close", path_);
-  const unsigned flags = overwrite_ ? 0U : static_cast<unsigned>(RENAME_NOREPLACE);
-  int renamed = renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), flags);
-  if (renamed != 0 && errno == EEXIST) throw exists_already(path_);
-  if (renamed != 0 && errno == EINVAL)
-    renamed = rename(temporary_.c_str(), path_.c_str());  // file system without it
-  if (renamed != 0) throw system_error(errno, "cannot rename the finished output", path_);
+  rename_into_place(temporary_, path_, overwrite_);
   temporary_.clear();
-  const int folder = open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder >= 0) {
-    fsync(folder);
-    close(folder);
-  }
+}
+
+void move_into_place(const std::string& from, const std::string& to, bool overwrite) {
+  const int file = open(from.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) throw system_error(errno, "cannot open the finished output", from);
+  const int synced = fsync(file);
+  const int reason = errno;
+  close(file);
+  if (synced != 0 && reason != EINVAL && reason != EROFS)
+    throw system_error(reason, "cannot sync", to);
+  rename_into_place(from, to, overwrite);
 }
 
 }  // namespace ptin::tools

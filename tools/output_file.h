@@ -15,6 +15,11 @@ namespace ptin::tools {
 /// answer that cannot be kept.
 void check_output(const std::string& path, bool overwrite);
 
+/// Syncs the finished file `from` and gives it the name `to`, in one step; `from` is in the same
+/// file system.
+/// @throws Error io_error; invalid_argument when `to` exists and `overwrite` is off
+void move_into_place(const std::string& from, const std::string& to, bool overwrite);
+
 /// Writes beside the target under a temporary name; publish() syncs and renames. Destroyed without
 /// publish(), it removes what it wrote: the target's name never shows a part.
 class OutputFile {

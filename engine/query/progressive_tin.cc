@@ -102,7 +102,7 @@ void ProgressiveTin::use_index(std::shared_ptr<const RecordIndex> index) {
 RefinedTin ProgressiveTin::refine(const RefineRequest& request) const {
   const auto start = std::chrono::steady_clock::now();
   QueryContext context(request.stop, request.memory_limit_bytes, store_->path());
-  const RecordSource source{*store_, index_ ? *index_ : store_->index()};
+  const RecordSource source{*store_, index()};
   const Selection selection = select(request, source, bytes_of(*t0_), context);
 
   Refinement refinement(*t0_, request.page_of_triangle);

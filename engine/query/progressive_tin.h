@@ -79,6 +79,12 @@ class ProgressiveTin {
   explicit ProgressiveTin(std::shared_ptr<const StoreFile> store);
 
   [[nodiscard]] const StoreFile& store() const noexcept { return *store_; }
+  /// T0 with neighbours: what every question starts from a copy of.
+  [[nodiscard]] const Tin& t0() const noexcept { return *t0_; }
+  /// The index in use.
+  [[nodiscard]] const RecordIndex& index() const noexcept {
+    return index_ ? *index_ : store_->index();
+  }
 
   /// Uses `index` instead of the packed R-tree (the same answers; tests and `--index
   /// spatialindex`). Not thread-safe.

@@ -14,7 +14,7 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr std::array<Command, 6> kCommands = {{
+constexpr auto kCommands = std::to_array<Command>({
     {"build", "Build a .ptin file from a raster or from points",
      "Examples:\n"
      "  ptin build dem.tif -o dem.ptin\n"
@@ -47,6 +47,18 @@ constexpr std::array<Command, 6> kCommands = {{
      "  ptin refine dem.ptin --vertices 50000 -o small.obj --stats\n"
      "  ptin refine dem.ptin --point 387500 3792500 --clip -o triangle.2dm\n",
      declare_refine},
+    {"isoline", "Write isolines (contours)",
+     "Lines keep higher ground on their right; a vertex at a level counts as above it. They are "
+     "those of one TIN\n"
+     "whatever the window and the memory: cut at two windows they meet in the same coordinates. "
+     "The layer is `contour`\n"
+     "with the fields ID and elev, as gdal_contour's.\n\n"
+     "Examples:\n"
+     "  ptin isoline dem.ptin --interval 20 -o contours.gpkg\n"
+     "  ptin isoline dem.ptin --level 500 1000 --3d -o two.fgb --error 2\n"
+     "  ptin isoline dem.ptin --level 0 --window 385000 3790000 390000 3795000 -o - | jq "
+     ".features\n",
+     declare_isoline},
     {"render", "Draw shaded relief, triangles or pages as a PNG",
      "Examples:\n"
      "  ptin render dem.ptin -o dem.png\n"
@@ -58,7 +70,7 @@ constexpr std::array<Command, 6> kCommands = {{
      "Example:\n"
      "  ptin completion bash > ~/.local/share/bash-completion/completions/ptin\n",
      declare_completion},
-}};
+});
 
 constexpr const char* kExitStatuses =
     "Exit status: 0 done; 1 negative answer (verify); 2 wrong use or input; 3 not found; 4 damaged "

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where an isoline crosses an edge: one function, so that whoever asks gets the same bits.
+#pragma once
+
+#include <compare>
+
+#include "engine/geometry/affine.h"
+#include "engine/geometry/point.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin {
+
+/// The edge that an isoline crosses, by the keys of its ends: `below` lies under the level, `above`
+/// at or over it.
+struct CutEdge {
+  VertexKey below = kNoVertexKey;
+  VertexKey above = kNoVertexKey;
+  friend auto operator<=>(const CutEdge&, const CutEdge&) = default;
+};
+
+/// An end of an edge in the plane, with its height code.
+struct EdgeEnd {
+  double x, y, code;
+};
+
+/// The point at height `level` on an edge. It depends on the edge and the level alone, from the
+/// lower end to the higher one, so every triangle, tile and window gets the same bits; at the
+/// height of the higher end it is that end exactly. Grid units in, grid units out.
+/// REQUIRES: below.code < level <= above.code.
+[[nodiscard]] inline MapPoint cut_of(const EdgeEnd& below, const EdgeEnd& above,
+                                     double level) noexcept {
+  if (level == above.code) {
+    return {above.x, above.y};
+  }
+  const double t = (level - below.code) / (above.code - below.code);
+  return {below.x + t * (above.x - below.x), below.y + t * (above.y - below.y)};
+}
+
+/// Side of triangle `t` through which an isoline enters when it keeps higher ground on its right:
+/// walked counter-clockwise, that edge rises from below the level to above it.
+/// @param above  Of each corner. REQUIRES: neither all nor none.
+/// Returns the corner opposite to the edge, as Triangle::n is numbered.
+[[nodiscard]] constexpr int entry_side(const bool (&above)[3]) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    if (!above[next_corner(i)] && above[previous_corner(i)]) {
+      return i;
+    }
+  }
+  return 0;
+}
+
+/// Likewise the side through which it leaves: the edge that falls.
+[[nodiscard]] constexpr int exit_side(const bool (&above)[3]) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    if (above[next_corner(i)] && !above[previous_corner(i)]) {
+      return i;
+    }
+  }
+  return 0;
+}
+
+}  // namespace ptin

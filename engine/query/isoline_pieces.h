@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Pieces of isolines: what one mesh gives; and whole lines, joined from the pieces of several.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/query/accounting.h"
+#include "engine/query/isoline_cut.h"
+
+namespace ptin {
+
+/// Points in the order in which they were added: in memory up to a budget, then in a file without a
+/// name. Threads: none; one owner.
+class PointStore {
+ public:
+  /// @param budget_bytes      Of points kept in memory.
+  /// @param temporary_folder  Where the file is made when they do not fit; empty: nowhere.
+  PointStore(std::uint64_t budget_bytes, std::string temporary_folder);
+  PointStore(PointStore&&) noexcept;
+  PointStore& operator=(PointStore&&) noexcept;
+  ~PointStore();
+
+  [[nodiscard]] std::uint64_t size() const noexcept { return spilled_ + points_.size(); }
+  /// @throws Error resource_exhausted  over the budget and no folder, or the disk is full; io_error
+  void add(std::span<const MapPoint> points);
+  /// Appends points [first, first + count) to `out`.  @throws Error io_error
+  void read(std::uint64_t first, std::size_t count, std::vector<MapPoint>& out) const;
+
+ private:
+  void spill();
+
+  std::uint64_t budget_points_;
+  std::string folder_;
+  std::vector<MapPoint> points_;  ///< The last ones.
+  std::uint64_t spilled_ = 0;     ///< Points in the file, before them.
+  int file_ = -1;
+};
+
+/// A part of one isoline, in the triangles of one mesh.
+struct IsolinePiece {
+  std::uint32_t level = 0;
+  bool ring = false;        ///< Closed in itself; the first point comes again as the last.
+  CutEdge begin, end;       ///< Edges through which it comes and goes; of a ring: not set.
+  CutEdge smallest;         ///< Of all edges that it crosses: names the line, whatever the tiles.
+  std::uint64_t first = 0;  ///< Of its points. No two in a row are equal.
+  std::uint32_t count = 0;  ///< May be 1: all cuts at one vertex.
+  std::uint32_t smallest_at = 0;  ///< Index of the point on `smallest`; 0 for a ring.
+};
+
+/// A whole isoline: pieces one behind the other.
+struct JoinedLine {
+  std::uint32_t level = 0;
+  bool ring = false;
+  CutEdge smallest;
+  std::uint64_t first_piece = 0;  ///< In JoinedLines::order.
+  std::uint32_t pieces = 0;
+};
+
+struct JoinedLines {
+  std::vector<JoinedLine> lines;     ///< By level, then by smallest edge.
+  std::vector<std::uint32_t> order;  ///< Indices of pieces.
+};
+
+/// Joins pieces where one ends on the edge on which another of the same level begins. The lines,
+/// their order and where rings begin (on their smallest edge) do not depend on how the terrain was
+/// cut into meshes.
+/// @throws Error cancelled
+/// Cost: O(n log n) in the pieces.
+[[nodiscard]] JoinedLines join_pieces(std::span<const IsolinePiece> pieces,
+                                      const QueryContext& context);
+
+/// The points of a line, without repetitions in a row; those of a ring end with the first. Empty
+/// when they are all one point.
+/// @throws Error io_error
+void points_of(const JoinedLine& line, const JoinedLines& joined,
+               std::span<const IsolinePiece> pieces, const PointStore& store,
+               std::vector<MapPoint>& out);
+
+}  // namespace ptin

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin isoline end to end: formats, conventions, refusals; level sets against gdal_contour's.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <ogrsf_frmts.h>
+
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using nlohmann::json;
+using testing::Outcome;
+using testing::run_ptin;
+using testing::test_data;
+using testing::TestFolder;
+
+struct Feature {
+  int id = -1;
+  std::vector<double> values;
+  std::unique_ptr<OGRGeometry> geometry;
+};
+
+std::vector<Feature> read_layer(const std::string& path, const std::string& name = "contour") {
+  GDALAllRegister();
+  const GDALDatasetUniquePtr dataset(
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr, nullptr));
+  std::vector<Feature> features;
+  if (!dataset) {
+    ADD_FAILURE() << path << " is not a vector file";
+    return features;
+  }
+  OGRLayer* layer = dataset->GetLayerByName(name.c_str());
+  if (layer == nullptr) layer = dataset->GetLayer(0);  // FlatGeobuf and shapefiles name by file
+  EXPECT_NE(layer->GetSpatialRef(), nullptr);
+  for (const auto& f : *layer) {
+    Feature feature;
+    feature.id = f->GetFieldAsInteger("ID");
+    for (const char* field : {"elev", "elev_min", "elev_max"}) {
+      if (f->GetFieldIndex(field) >= 0) feature.values.push_back(f->GetFieldAsDouble(field));
+    }
+    feature.geometry.reset(f->GetGeometryRef()->clone());
+    features.push_back(std::move(feature));
+  }
+  return features;
+}
+
+struct Mountains {
+  Mountains() : file(folder.file("m.ptin")) {
+    EXPECT_EQ(run_ptin({"build", test_data("mountains_257.tif"), "-o", file, "-q"}).status, 0);
+  }
+  TestFolder folder;
+  std::string file;
+};
+
+TEST(IsolineProgram, WritesTheSameLinesInEveryFormat) {
+  const Mountains m;
+  std::vector<std::string> texts;
+  for (const char* name : {"a.gpkg", "a.fgb", "a.geojson", "a.shp"}) {
+    const std::string out = m.folder.file(name);
+    const Outcome outcome =
+        run_ptin({"isoline", m.file, "--interval", "100", "-o", out, "--json", "--3d"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json answer = json::parse(outcome.out);
+    const std::vector<Feature> features = read_layer(out);
+    EXPECT_EQ(features.size(), answer.at("lines"));
+    EXPECT_GT(features.size(), 10U);
+    EXPECT_EQ(answer.at("exact"), true);
+    double length = 0;
+    for (const Feature& f : features) {
+      EXPECT_EQ(std::fmod(f.values.at(0), 100.0), 0.0);
+      EXPECT_EQ(f.geometry->toLineString()->getZ(0), f.values.at(0));
+      length += f.geometry->toLineString()->get_Length();
+    }
+    texts.push_back(std::to_string(features.size()) + " " +
+                    std::to_string(static_cast<std::int64_t>(length)));
+  }
+  EXPECT_EQ(std::count(texts.begin(), texts.end(), texts.front()), 4);
+  EXPECT_EQ(m.folder.names(), (std::vector<std::string>{"a.dbf", "a.fgb", "a.geojson", "a.gpkg",
+                                                        "a.prj", "a.shp", "a.shx", "m.ptin"}));
+}
+
+TEST(IsolineProgram, WritesGeoJsonToStdout) {
+  const Mountains m;
+  const Outcome outcome = run_ptin({"isoline", m.file, "--level", "1000", "-o", "-"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const json answer = json::parse(outcome.out, nullptr, false);
+  EXPECT_GT(answer.at("features").size(), 0U);
+  EXPECT_EQ(answer.at("features").at(0).at("properties").at("elev"), 1000.0);
+}
+
+TEST(IsolineProgram, RefusesWhatCannotBeAnswered) {
+  const Mountains m;
+  const std::string out = m.folder.file("x.gpkg");
+  const auto refused = [&](std::vector<std::string> arguments, int status, const char* word) {
+    arguments.insert(arguments.begin(), {"isoline", m.file, "-o", out});
+    const Outcome outcome = run_ptin(arguments);
+    EXPECT_EQ(outcome.status, status) << word;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_EQ(m.folder.names(), std::vector<std::string>{"m.ptin"});
+  };
+  refused({}, 2, "--level");
+  refused({"--interval", "-5"}, 2, "interval");
+  refused({"--interval", "0.0000001"}, 2, "levels");
+  refused({"--interval", "100000", "--base", "99000"}, 2, "--interval");
+  refused({"--level", "1000", "--error", "-1"}, 2, "--error");
+  refused({"--interval", "10", "--max-lines", "3"}, 7, "isolines, more than the limit of 3");
+  refused({"--interval", "10", "--memory", "100K"}, 7, "MiB");
+  refused({"--level", "1", "--interval", "1"}, 2, "excludes");
+  const Outcome extension = run_ptin({"isoline", m.file, "--level", "1", "-o", "x.dxf"});
+  EXPECT_EQ(extension.status, 2);
+  EXPECT_NE(extension.err.find(".gpkg"), std::string::npos);
+}
+
+TEST(IsolineProgram, KeepsWhatExistsWithoutOverwrite) {
+  const Mountains m;
+  const std::string out = m.folder.file("x.gpkg");
+  testing::write_file(out, "mine");
+  EXPECT_EQ(run_ptin({"isoline", m.file, "--level", "1000", "-o", out}).status, 2);
+  EXPECT_EQ(testing::read_file(out), "mine");
+  EXPECT_EQ(run_ptin({"isoline", m.file, "--level", "1000", "-o", out, "--overwrite"}).status, 0);
+  EXPECT_FALSE(read_layer(out).empty());
+}
+
+}  // namespace
+}  // namespace ptin::tools

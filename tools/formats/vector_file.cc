@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/formats/vector_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <filesystem>
+
+#include <cpl_conv.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+#include <ogrsf_frmts.h>
+#include <unistd.h>
+
+#include "engine/error.h"
+#include "tools/output_file.h"
+
+namespace ptin::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<VectorFormat, 4> kFormats = {
+    {{"gpkg", "GPKG"}, {"fgb", "FlatGeobuf"}, {"geojson", "GeoJSON"}, {"shp", "ESRI Shapefile"}}};
+constexpr const VectorFormat& kGeoJson = kFormats[2];
+
+Error gdal_error(const std::string& what, const std::string& path) {
+  const std::string reason = CPLGetLastErrorMsg();
+  return {ErrorCode::io_error, reason.empty() ? what : what + ": " + reason, path};
+}
+
+/// What SQLite does for the safety of a file that nobody knows of yet, and whose parts nobody
+/// keeps, is switched off: the finished file is synced before it gets its name.
+class UnsafeSqlite {
+ public:
+  UnsafeSqlite() {
+    CPLSetThreadLocalConfigOption("OGR_SQLITE_SYNCHRONOUS", "OFF");
+    CPLSetThreadLocalConfigOption("OGR_SQLITE_JOURNAL", "OFF");
+  }
+  UnsafeSqlite(const UnsafeSqlite&) = delete;
+  UnsafeSqlite& operator=(const UnsafeSqlite&) = delete;
+  ~UnsafeSqlite() {
+    CPLSetThreadLocalConfigOption("OGR_SQLITE_SYNCHRONOUS", nullptr);
+    CPLSetThreadLocalConfigOption("OGR_SQLITE_JOURNAL", nullptr);
+  }
+};
+
+std::unique_ptr<OGRSpatialReference> reference_of(const std::string& wkt) {
+  auto reference = std::make_unique<OGRSpatialReference>();
+  reference->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  if (wkt.empty() || reference->importFromWkt(wkt.c_str()) != OGRERR_NONE) return nullptr;
+  return reference;
+}
+
+void create_fields(OGRLayer& layer, const VectorFile::Layer& wanted, const std::string& path) {
+  for (const VectorFile::Field& f : wanted.fields) {
+    OGRFieldDefn field(f.name, f.type == VectorFile::FieldType::kInteger ? OFTInteger : OFTReal);
+    if (f.type == VectorFile::FieldType::kInteger) field.SetWidth(8);
+    if (layer.CreateField(&field) != OGRERR_NONE) {
+      throw gdal_error(std::string("cannot create the field ") + f.name, path);
+    }
+  }
+}
+
+}  // namespace
+
+std::span<const VectorFormat> vector_formats() noexcept { return kFormats; }
+
+std::string known_vector_extensions() {
+  std::string known;
+  for (const VectorFormat& f : kFormats)
+    known.append(known.empty() ? "." : ", .").append(f.extension);
+  return known;
+}
+
+const VectorFormat& vector_format_of(const std::string& path) {
+  if (path == "-") return kGeoJson;
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".json") return kGeoJson;
+  for (const VectorFormat& f : kFormats) {
+    if (extension == std::string(".").append(f.extension)) return f;
+  }
+  const std::string what = extension.empty() ? std::string("the name has no extension")
+                                             : std::string("unknown extension ").append(extension);
+  throw Error(ErrorCode::invalid_argument,
+              what + "; known are " + known_vector_extensions() + ", and - for GeoJSON on stdout",
+              path);
+}
+
+VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
+    : path_(std::move(path)), overwrite_(overwrite), dataset_(nullptr, [](GDALDataset* d) {
+        if (d != nullptr) GDALClose(d);
+      }) {
+  const VectorFormat& format = vector_format_of(path_);
+  std::string target = "/vsistdout/";
+  if (path_ != "-") {
+    check_output(path_, overwrite_);
+    const fs::path wanted(path_);
+    folder_ = (wanted.parent_path() /
+               ("." + wanted.filename().string() + ".tmp" + std::to_string(getpid())))
+                  .string();
+    std::error_code failed;
+    if (!fs::create_directory(folder_, failed)) {
+      throw system_error(failed ? failed.value() : EEXIST, "cannot create the output", path_);
+    }
+    target = (fs::path(folder_) / wanted.filename()).string();
+  }
+  try {
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(format.driver);
+    if (driver == nullptr) {
+      throw Error(ErrorCode::io_error, std::string("this GDAL has no driver ") + format.driver,
+                  path_);
+    }
+    const UnsafeSqlite unsafe;
+    CPLErrorReset();
+    dataset_.reset(driver->Create(target.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    const std::unique_ptr<OGRSpatialReference> reference = reference_of(layer.crs_wkt);
+    if (dataset_) {
+      layer_ = dataset_->CreateLayer(layer.name, reference.get(), layer.geometry, nullptr);
+    }
+    if (layer_ == nullptr) throw gdal_error("cannot create the output", path_);
+    create_fields(*layer_, layer, path_);
+    if (dataset_->TestCapability(ODsCTransactions) != 0) dataset_->StartTransaction();
+  } catch (...) {
+    dataset_.reset();
+    if (!folder_.empty()) {
+      std::error_code ignored;
+      fs::remove_all(folder_, ignored);
+    }
+    throw;
+  }
+}
+
+VectorFile::~VectorFile() {
+  dataset_.reset();
+  if (!folder_.empty()) {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+}
+
+void VectorFile::add(std::unique_ptr<OGRGeometry> geometry, std::span<const Value> values) {
+  OGRFeature feature(layer_->GetLayerDefn());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const int field = static_cast<int>(i);
+    if (const auto* integer = std::get_if<std::int64_t>(&values[i])) {
+      feature.SetField(field, static_cast<GIntBig>(*integer));
+    } else {
+      feature.SetField(field, std::get<double>(values[i]));
+    }
+  }
+  feature.SetGeometryDirectly(geometry.release());
+  if (layer_->CreateFeature(&feature) != OGRERR_NONE) {
+    throw gdal_error("cannot write a feature", path_);
+  }
+}
+
+/// GDAL's drivers write most when they close, and some tell of a full disk only by an error message
+/// then.
+void VectorFile::close() {
+  const UnsafeSqlite unsafe;
+  CPLErrorReset();
+  if (dataset_->TestCapability(ODsCTransactions) != 0 &&
+      dataset_->CommitTransaction() != OGRERR_NONE) {
+    throw gdal_error("cannot write the output", path_);
+  }
+  dataset_.reset();
+  if (CPLGetLastErrorType() == CE_Failure) throw gdal_error("cannot write the output", path_);
+}
+
+void VectorFile::publish() {
+  close();
+  if (folder_.empty()) return;
+  // A shapefile is several files: its own name last, so that what is there is complete.
+  const fs::path target(path_);
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder_)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end(), [&](const fs::path& a, const fs::path& b) {
+    const bool a_last = a.filename() == target.filename();
+    const bool b_last = b.filename() == target.filename();
+    return a_last != b_last ? b_last : a < b;
+  });
+  for (const fs::path& file : files) {
+    move_into_place(file.string(), (target.parent_path() / file.filename()).string(), overwrite_);
+  }
+}
+
+std::unique_ptr<OGRGeometry> line_geometry(std::span<const MapPoint> points, const double* z) {
+  auto line = std::make_unique<OGRLineString>();
+  line->setNumPoints(static_cast<int>(points.size()), FALSE);
+  if (z != nullptr) line->set3D(TRUE);
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    const MapPoint p = points[static_cast<std::size_t>(i)];
+    z != nullptr ? line->setPoint(i, p.x, p.y, *z) : line->setPoint(i, p.x, p.y);
+  }
+  return line;
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A vector layer on its way out, through OGR: complete or absent.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <ogr_feature.h>
+
+#include "engine/geometry/affine.h"
+
+class GDALDataset;
+class OGRLayer;
+
+namespace ptin::tools {
+
+/// A vector format by its file extension.
+struct VectorFormat {
+  const char* extension;
+  const char* driver;  ///< GDAL's name for it.
+};
+[[nodiscard]] std::span<const VectorFormat> vector_formats() noexcept;
+/// The extensions as "`.gpkg`, ..." for help texts.
+[[nodiscard]] std::string known_vector_extensions();
+/// The format of an output; "-" is GeoJSON on stdout.
+/// @throws Error invalid_argument  unknown extension
+[[nodiscard]] const VectorFormat& vector_format_of(const std::string& path);
+
+/// One layer in one file. Written into a folder beside the target; publish() renames. Destroyed
+/// without publish(), it removes what it wrote. With "-" features go to stdout as they come.
+class VectorFile {
+ public:
+  enum class FieldType { kInteger, kReal };
+  struct Field {
+    const char* name;
+    FieldType type;
+  };
+  struct Layer {
+    const char* name;
+    OGRwkbGeometryType geometry;
+    std::vector<Field> fields;
+    std::string crs_wkt;  ///< Empty: unknown.
+  };
+  using Value = std::variant<std::int64_t, double>;
+
+  /// @throws Error as check_output; io_error when GDAL cannot create the file
+  VectorFile(std::string path, bool overwrite, const Layer& layer);
+  VectorFile(const VectorFile&) = delete;
+  VectorFile& operator=(const VectorFile&) = delete;
+  ~VectorFile();
+
+  /// Adds a feature; `values` beside the layer's fields.  @throws Error io_error
+  void add(std::unique_ptr<OGRGeometry> geometry, std::span<const Value> values);
+
+  /// Closes and makes the file appear under its name.  @throws Error io_error, resource_exhausted,
+  /// invalid_argument
+  void publish();
+
+ private:
+  void close();
+
+  std::string path_, folder_;  ///< folder_: temporary; empty on stdout.
+  bool overwrite_;
+  std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> dataset_;
+  OGRLayer* layer_ = nullptr;
+};
+
+/// A line of map points, at height `z` when given.
+[[nodiscard]] std::unique_ptr<OGRGeometry> line_geometry(std::span<const MapPoint> points,
+                                                         const double* z);
+
+}  // namespace ptin::tools
