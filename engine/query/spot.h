@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Spots: positions between grid points, in fixed point, so that everything asked of one is decided
+// exactly.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "engine/geometry/affine.h"
+#include "engine/geometry/box.h"
+#include "engine/geometry/point.h"
+
+namespace ptin {
+
+__extension__ using Int128 = __int128;
+
+/// A spot is a grid position in units of 2^-22 of a grid unit.
+inline constexpr int kSpotBits = 22;
+/// Largest coordinate of a spot, in its units: 2^31 grid units, twice the side of the largest grid.
+inline constexpr std::int64_t kSpotMax = std::int64_t{1} << (31 + kSpotBits);
+
+/// A position in the plane: -kSpotMax <= x, y <= kSpotMax.
+struct Spot {
+  std::int64_t x = 0;
+  std::int64_t y = 0;
+  friend bool operator==(const Spot&, const Spot&) = default;
+};
+
+[[nodiscard]] constexpr Spot spot_of(GridPoint p) noexcept {
+  return {std::int64_t{p.x} << kSpotBits, std::int64_t{p.y} << kSpotBits};
+}
+/// The grid coordinates of a spot. Exact on the grid's side of 2^31 (53 bits).
+[[nodiscard]] constexpr MapPoint grid_of(Spot s) noexcept {
+  constexpr double kUnit = 1.0 / (std::int64_t{1} << kSpotBits);
+  return {static_cast<double>(s.x) * kUnit, static_cast<double>(s.y) * kUnit};
+}
+
+/// The closed box (grid units) holds the spot. Exact.
+[[nodiscard]] constexpr bool contains(const GridBox& b, Spot s) noexcept {
+  const Spot low = spot_of(GridPoint{b.min_x, b.min_y});
+  const Spot high = spot_of(GridPoint{b.max_x, b.max_y});
+  return low.x <= s.x && s.x <= high.x && low.y <= s.y && s.y <= high.y;
+}
+
+/// Twice the signed area of (a, b, q), in units of 2^-22 of a grid unit squared: > 0 where q lies
+/// to the left of a -> b. Exact: differences of at most 2^30 and 2^54, products below 2^85.
+[[nodiscard]] constexpr Int128 side(GridPoint a, GridPoint b, Spot q) noexcept {
+  const Spot from = spot_of(a);
+  return Int128{std::int64_t{b.x} - a.x} * (q.y - from.y) -
+         Int128{std::int64_t{b.y} - a.y} * (q.x - from.x);
+}
+
+/// Twice the signed area of (p, q, v), in units of 2^-44: > 0 where v lies to the left of p -> q.
+/// Exact: differences of at most 2^54, products of 2^108.
+[[nodiscard]] constexpr Int128 side(Spot p, Spot q, GridPoint v) noexcept {
+  const Spot to = spot_of(v);
+  return Int128{q.x - p.x} * (to.y - p.y) - Int128{q.y - p.y} * (to.x - p.x);
+}
+
+/// From map positions to spots.
+///
+/// The grid position of a map position is (X - origin) / step in doubles, rounded to the nearest
+/// multiple of 2^-bits(): this rounded position is what every question is asked of, and from here
+/// on nothing is rounded again. bits() is 22, or as many as leave a vertex's own map position on
+/// the vertex (the conversion's error stays below half a multiple everywhere in the domain), so
+/// that heights at samples are the samples'.
+class SpotMap {
+ public:
+  /// @param bounds  Of the domain.
+  SpotMap(const AffineMap& map, const GridBox& bounds);
+
+  [[nodiscard]] int bits() const noexcept { return bits_; }
+  /// The spot; nothing when it lies more than 2^31 grid units away from the grid's origin, where no
+  /// terrain is.
+  /// @throws Error invalid_argument when a coordinate is not finite
+  [[nodiscard]] std::optional<Spot> spot(MapPoint p) const;
+  [[nodiscard]] MapPoint map(Spot s) const noexcept {
+    const MapPoint g = grid_of(s);
+    return map_.to_map(g.x, g.y);
+  }
+
+ private:
+  AffineMap map_;
+  int bits_ = kSpotBits;
+};
+
+}  // namespace ptin
