@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/bounded_mesh.h"
+
+#include <limits>
+
+namespace ptin {
+
+namespace {
+
+constexpr std::uint32_t kRankOfT0 = std::uint32_t{1} << 16;  // above every record's
+
+std::uint64_t bytes_of(const Tin& tin) {
+  return tin.vertices.size() * (sizeof(Vertex) + 1) +
+         tin.triangles.size() * (sizeof(Triangle) + 1) + KeyTable::bytes_for(tin.vertices.size());
+}
+
+}  // namespace
+
+BoundedMesh::BoundedMesh(const ProgressiveTin& terrain)
+    : terrain_(terrain), refinement_(terrain.coarsest()) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  const Made t0{-kAny, kAny, std::numeric_limits<float>::infinity(), kRankOfT0};
+  made_.assign(tin().vertices.size(), t0);
+}
+
+std::vector<PageId> BoundedMesh::search(const AttributePredicate& predicate,
+                                        QueryContext& context) const {
+  std::vector<PageId> pages;
+  terrain_.index().search(predicate, pages, context.cost.io);
+  context.check_stop();
+  return pages;
+}
+
+std::size_t BoundedMesh::refine(const AttributePredicate& predicate, QueryContext& context) {
+  return refine(search(predicate, context), predicate, context);
+}
+
+std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePredicate& predicate,
+                                QueryContext& context) {
+  const StoreFile& store = terrain_.store();
+  const HeightEncoding& heights = store.facts().heights;
+  const std::uint64_t most = most_records(store, pages);
+  context.admit(bytes_of(tin()) + refinement_bytes(most) + most * sizeof(Made));
+  store.pages().announce(pages, context.cost.io);
+  splits_.clear();
+  for (const PageId page : pages) {
+    context.check_stop();
+    records_.clear();
+    context.cost.records_examined +=
+        store.read_matching(page, predicate, records_, context.cost.io);
+    context.cost.records_retrieved += records_.size();
+    for (const VertexSplit& r : records_) {
+      const PendingSplit split = pending_of(r, page);
+      if (refinement_.find(split.u) != KeyTable::kAbsent) {
+        continue;
+      }
+      splits_.push_back(split);
+      made_.push_back({heights.code(r.height_lo), heights.code(r.height_hi), r.deviation, r.rank});
+    }
+  }
+  refinement_.apply(splits_, context);
+  return splits_.size();
+}
+
+SurfaceBounds BoundedMesh::bounds(TriangleId t) const noexcept {
+  const Triangle& triangle = tin().triangles[t];
+  const Made* made = &made_[triangle.v[0]];
+  for (int i = 1; i < 3; ++i) {
+    const Made& other = made_[triangle.v[i]];
+    made = other.rank < made->rank ? &other : made;
+  }
+  return {made->deviation, {made->lowest, made->highest}};
+}
+
+}  // namespace ptin
