@@ -85,6 +85,11 @@ std::uint64_t PriorityScale::operator()(const CollapseMeasure& measure) const no
 }
 
 void CollapseQueue::push(const QueueEntry& entry) {
+  if (first_ != ahead_.size() && entry < ahead_.back()) {
+    const auto from = ahead_.begin() + static_cast<std::ptrdiff_t>(first_);
+    ahead_.insert(std::upper_bound(from, ahead_.end(), entry), entry);
+    return;
+  }
   const std::size_t c = entry.priority >> kClassShift;
   if (c > present_) {
     waiting_[c].push_back(entry);
@@ -94,26 +99,48 @@ void CollapseQueue::push(const QueueEntry& entry) {
   std::push_heap(late_.begin(), late_.end(), kLater);
 }
 
-bool CollapseQueue::empty() {
-  while (next_ == run_.size() && late_.empty()) {
-    if (present_ == kLastClass) {
-      return true;
+/// Draws until twice kLookahead entries are ahead, or none is left elsewhere.
+void CollapseQueue::draw_ahead() {
+  ahead_.erase(ahead_.begin(), ahead_.begin() + static_cast<std::ptrdiff_t>(first_));
+  first_ = 0;
+  while (ahead_.size() < 2 * kLookahead) {
+    if (next_ == run_.size() && late_.empty()) {
+      if (present_ == kLastClass) {
+        return;
+      }
+      ++present_;
+      run_ = std::move(waiting_[present_]);
+      waiting_[present_] = {};
+      next_ = 0;
+      std::sort(run_.begin(), run_.end());
+    } else if (late_.empty() || (next_ < run_.size() && run_[next_] < late_.front())) {
+      ahead_.push_back(run_[next_++]);
+    } else {
+      std::pop_heap(late_.begin(), late_.end(), kLater);
+      ahead_.push_back(late_.back());
+      late_.pop_back();
     }
-    ++present_;
-    run_ = std::move(waiting_[present_]);
-    waiting_[present_] = {};
-    next_ = 0;
-    std::sort(run_.begin(), run_.end());
   }
-  return false;
 }
 
-void CollapseQueue::pop() {
-  if (&top() == late_.data()) {
-    std::pop_heap(late_.begin(), late_.end(), kLater);
-    late_.pop_back();
-  } else {
-    ++next_;
+bool CollapseQueue::empty() {
+  if (ahead_.size() - first_ < kLookahead) {
+    draw_ahead();
+  }
+  return first_ == ahead_.size();
+}
+
+void CollapseQueue::rename(const std::vector<VertexId>& new_name) noexcept {
+  const auto rename_all = [&](std::vector<QueueEntry>& entries, std::size_t first) {
+    for (std::size_t i = first; i < entries.size(); ++i) {
+      entries[i].vertex = new_name[entries[i].vertex];
+    }
+  };
+  rename_all(ahead_, first_);
+  rename_all(run_, next_);
+  rename_all(late_, 0);
+  for (std::vector<QueueEntry>& entries : waiting_) {
+    rename_all(entries, 0);
   }
 }
 

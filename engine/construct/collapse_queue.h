@@ -66,22 +66,33 @@ inline constexpr int kClassBits = 10;
 /// Vertices, least entry first. A vertex is in it at most once; the caller sees to that.
 ///
 /// Entries of later classes wait unsorted; a class is sorted when its turn comes, and what arrives
-/// meanwhile for it (or for an earlier one) goes through a small heap. So most entries cost one
-/// append and one sort in sequence instead of a walk through a large heap.
+/// meanwhile for it (or for an earlier one) goes through a heap. So most entries cost one append
+/// and one sort in sequence instead of a walk through a large heap. The next few dozen are drawn
+/// ahead, so that a caller sees what will come and can ask for its memory (upcoming()).
 class CollapseQueue {
  public:
   void push(const QueueEntry& entry);
-  /// Sorts the next class when the present one is used up. Amortised cost: logarithmic.
+  /// Draws entries ahead when few are left, and sorts the next class when the present one is used
+  /// up. Amortised cost: logarithmic.
   [[nodiscard]] bool empty();
   /// REQUIRES: empty() was just asked and false.
-  [[nodiscard]] const QueueEntry& top() const noexcept {
-    return late_.empty() || (next_ < run_.size() && run_[next_] < late_.front()) ? run_[next_]
-                                                                                 : late_.front();
-  }
+  [[nodiscard]] const QueueEntry& top() const noexcept { return ahead_[first_]; }
   /// REQUIRES: as top().
-  void pop();
+  void pop() noexcept { ++first_; }
+  /// The entry `n` places behind the least, or null: it will come then, but for entries that arrive
+  /// meanwhile. Known for kLookahead places unless the end is near.
+  [[nodiscard]] const QueueEntry* upcoming(std::size_t n) const noexcept {
+    return n < ahead_.size() - first_ ? &ahead_[first_ + n] : nullptr;
+  }
+  static constexpr std::size_t kLookahead = 24;
+  /// Renames all vertices in it. REQUIRES: the order of the names stays.
+  void rename(const std::vector<VertexId>& new_name) noexcept;
 
  private:
+  void draw_ahead();
+
+  std::vector<QueueEntry> ahead_;  ///< Ascending, from first_; nothing elsewhere is less.
+  std::size_t first_ = 0;
   std::vector<QueueEntry> run_;  ///< The present class, ascending, from next_.
   std::size_t next_ = 0;
   std::vector<QueueEntry> late_;  ///< Heap.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/error.h"
+#include "engine/large_array.h"
 
 namespace ptin {
 namespace {
@@ -153,6 +154,8 @@ Tin make(const Window& w) {
   const std::size_t cells =
       static_cast<std::size_t>(w.width - 1) * static_cast<std::size_t>(w.height - 1);
   Tin tin;
+  reserve_large(tin.vertices, samples);
+  reserve_large(tin.triangles, 2 * cells);
   tin.vertices.resize(samples);
   tin.has_height.resize(samples);
   tin.triangles.resize(2 * cells);

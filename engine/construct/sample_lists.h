@@ -9,8 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "engine/error.h"
 #include "engine/geometry/height.h"
 #include "engine/geometry/point.h"
+#include "engine/large_array.h"
 
 namespace ptin {
 
@@ -41,6 +43,7 @@ struct SampleSlot {
 class SampleLists {
  public:
   /// A list of `count` samples, not initialised. Spans into the pool end with the next call.
+  /// @throws Error resource_exhausted  the pool would hold more than 2^32 - 1 samples
   [[nodiscard]] SampleSlot take(std::uint32_t count) {
     if (count == 0) {
       return {};
@@ -52,9 +55,14 @@ class SampleLists {
       free.pop_back();
       return {offset, count};
     }
-    const auto offset = static_cast<std::uint32_t>(pool_.size());
-    pool_.resize(pool_.size() + (std::size_t{1} << capacity_log));
-    return {offset, count};
+    const std::size_t offset = pool_.size();
+    const std::size_t end = offset + (std::size_t{1} << capacity_log);
+    if (end > UINT32_MAX) {
+      throw Error(ErrorCode::resource_exhausted,
+                  "a tile holds more samples than one list of them counts; build in smaller tiles");
+    }
+    pool_.resize(end);
+    return {static_cast<std::uint32_t>(offset), count};
   }
 
   void give_back(SampleSlot slot) {
@@ -73,7 +81,8 @@ class SampleLists {
     return pool_.data() + slot.offset;
   }
 
-  void reserve(std::size_t samples) { pool_.reserve(samples); }
+  void reserve(std::size_t samples) { reserve_large(pool_, samples); }
+  [[nodiscard]] std::size_t capacity() const noexcept { return pool_.capacity(); }
 
  private:
   std::vector<Sample> pool_;

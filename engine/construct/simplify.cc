@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/simplify.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "engine/construct/collapse_queue.h"
 #include "engine/construct/record_maker.h"
 #include "engine/construct/saturation.h"
+#include "engine/construct/tile_compact.h"
+#include "engine/large_array.h"
 
 namespace ptin {
 
@@ -39,6 +42,12 @@ class Simplifier {
   [[nodiscard]] Evaluation evaluate(VertexId u);
   void take_top();
   void collapse(VertexId u, std::size_t j);
+  void compact_when_sparse();
+  void prefetch_upcoming() const;
+  void prefetch_star(VertexId v) const;
+  void prefetch_samples(VertexId v) const;
+  template <class Visit>
+  void for_each_around(VertexId v, const Visit& visit) const;
 
   Tile& tile_;
   const SimplifyOptions& options_;
@@ -50,6 +59,7 @@ class Simplifier {
   std::vector<QueueState> state_;
   std::vector<VertexId> target_;  ///< Of a clean vertex: the chosen w.
   std::uint64_t left_ = 0;        ///< Vertices that are neither locked nor gone.
+  std::uint64_t alive_ = 0;       ///< Vertices that are not gone.
   std::uint64_t collapsed_ = 0;
   std::uint64_t steps_ = 0;
 };
@@ -105,7 +115,11 @@ void Simplifier::fill_queue() {
   state_.assign(n, QueueState::kAbsent);
   target_.assign(n, kNone);
   for (VertexId v = 0; v < n; ++v) {
-    if (tile_.tin.vertices[v].triangle == kNone || tile_.vertex_state[v].locked) {
+    if (tile_.tin.vertices[v].triangle == kNone) {
+      continue;
+    }
+    ++alive_;
+    if (tile_.vertex_state[v].locked) {
       continue;
     }
     ++left_;
@@ -146,7 +160,87 @@ void Simplifier::collapse(VertexId u, std::size_t j) {
     }
   }
   --left_;
+  --alive_;
   ++collapsed_;
+}
+
+void Simplifier::compact_when_sparse() {
+  const std::size_t length = tile_.tin.vertices.size();
+  if (length <= options_.compact_above || 2 * alive_ > length) {
+    return;
+  }
+  const Renumbering place = compact(tile_);
+  for (std::size_t v = 0; v < length; ++v) {
+    if (place[v] != kNone) {
+      state_[place[v]] = state_[v];
+      target_[place[v]] = target_[v] == kNone ? kNone : place[target_[v]];
+    }
+  }
+  state_.resize(tile_.tin.vertices.size());
+  target_.resize(tile_.tin.vertices.size());
+  queue_.rename(place);
+}
+
+/// Calls visit(triangle id, place of v in it) for each triangle around v, in the order of its star.
+template <class Visit>
+void Simplifier::for_each_around(VertexId v, const Visit& visit) const {
+  const Tin& tin = tile_.tin;
+  const TriangleId first = tin.vertices[v].triangle;
+  TriangleId t = first;
+  do {
+    const Triangle& triangle = tin.triangles[t];
+    const int c = corner_of(triangle, v);
+    visit(t, c);
+    t = triangle.n[next_corner(c)];
+  } while (t != first && t != kNone);
+}
+
+void Simplifier::prefetch_star(VertexId v) const {
+  for_each_around(v, [this](TriangleId t, int c) {
+    __builtin_prefetch(&tile_.carried[t]);
+    const VertexId link = tile_.tin.triangles[t].v[next_corner(c)];
+    __builtin_prefetch(&tile_.tin.vertices[link]);
+    __builtin_prefetch(&tile_.vertex_state[link]);
+  });
+}
+
+void Simplifier::prefetch_samples(VertexId v) const {
+  constexpr std::uint32_t kLine = 64;
+  static constexpr std::uint32_t kSamplesAtMost = 16;
+  for_each_around(v, [this](TriangleId t, int) {
+    const SampleSlot slot = tile_.carried[t].samples;
+    const auto* bytes = reinterpret_cast<const char*>(tile_.samples.data(slot));
+    const std::size_t length = std::min(slot.count, kSamplesAtMost) * sizeof(Sample);
+    for (std::size_t i = 0; i < length; i += kLine) {
+      __builtin_prefetch(bytes + i);
+    }
+  });
+}
+
+/// Most of the time goes by waiting for memory, and the queue says what will be wanted: asks for it
+/// some steps ahead, in the order in which one thing leads to the next.
+void Simplifier::prefetch_upcoming() const {
+  const Tin& tin = tile_.tin;
+  if (const QueueEntry* e = queue_.upcoming(16)) {
+    __builtin_prefetch(&tin.vertices[e->vertex]);
+    __builtin_prefetch(&state_[e->vertex]);
+  }
+  if (const QueueEntry* e = queue_.upcoming(11)) {
+    __builtin_prefetch(&tin.triangles[tin.vertices[e->vertex].triangle]);
+  }
+  if (const QueueEntry* e = queue_.upcoming(7)) {
+    for (const TriangleId n : tin.triangles[tin.vertices[e->vertex].triangle].n) {
+      if (n != kNone) {
+        __builtin_prefetch(&tin.triangles[n]);
+      }
+    }
+  }
+  if (const QueueEntry* e = queue_.upcoming(4)) {
+    prefetch_star(e->vertex);
+  }
+  if (const QueueEntry* e = queue_.upcoming(1)) {
+    prefetch_samples(e->vertex);
+  }
 }
 
 void Simplifier::take_top() {
@@ -181,6 +275,8 @@ void Simplifier::run() {
   fill_queue();
   while (!queue_.empty() && left_ > options_.keep) {
     check_in();
+    compact_when_sparse();
+    prefetch_upcoming();
     take_top();
   }
 }

@@ -18,6 +18,9 @@ struct SimplifyOptions {
   CostModel cost = CostModel::kError;
   std::uint64_t keep = 0;  ///< Stop when this many vertices that are not locked are left; 0 goes on
                            ///< while a collapse is allowed.
+  /// Arrays of the tile that are longer than this are made shorter when half of the vertices are
+  /// gone (tile_compact.h); what is left keeps its order, and the records do not depend on it.
+  std::size_t compact_above = 4096;
   std::stop_token stop;
   std::function<void(std::uint64_t collapsed)>
       progress;  ///< Called every few thousand collapses; may be empty.
@@ -25,7 +28,8 @@ struct SimplifyOptions {
 
 /// Collapses vertices in the order of the cost until options.keep is reached or no collapse is
 /// allowed; appends a saturated record for each to tile.records and moves the samples of the star
-/// to the fan. Locked vertices stay.
+/// to the fan. Locked vertices stay. Ids of vertices and triangles change when arrays are
+/// compacted.
 ///
 /// An entry of the queue may be older than its star: it is measured again when it reaches the top
 /// (lazy evaluation), since errors and boxes mostly grow.

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/large_array.h"
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
-#include "engine/query/large_array.h"
 #include "engine/query/refinement_internal.h"
 
 namespace ptin {

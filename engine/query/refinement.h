@@ -12,7 +12,6 @@
 #include "engine/mesh/star.h"
 #include "engine/mesh/tin.h"
 #include "engine/query/accounting.h"
-#include "engine/query/key_table.h"
 #include "engine/query/retrieval.h"
 
 namespace ptin {

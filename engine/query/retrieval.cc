@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/retrieval.h"
 
-#include "engine/query/large_array.h"
+#include "engine/large_array.h"
 #include "engine/query/refinement.h"
 
 namespace ptin {

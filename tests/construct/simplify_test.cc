@@ -12,6 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/mesh/star.h"
+#include "engine/mesh/validate.h"
 #include "tests/construct/record_oracle.h"
 #include "tests/construct/surface_oracle.h"
 #include "tests/construct/test_terrain.h"
@@ -121,6 +122,27 @@ TEST(Simplify, GoesOnWhereItStopped) {
   }
   EXPECT_EQ(terrain.tile.tin.alive_vertices(), 4U);
   EXPECT_EQ(oracle::check_records(terrain), "");
+}
+
+TEST(Simplify, DoesNotDependOnArraysMadeShorter) {
+  const auto both = [](const auto& make) {
+    TestTerrain shortened = make();
+    TestTerrain kept = make();
+    SimplifyOptions options;
+    options.compact_above = 0;
+    simplify(shortened.tile, *shortened.surface, options);
+    options.compact_above = SIZE_MAX;
+    simplify(kept.tile, *kept.surface, options);
+    SCOPED_TRACE(kept.name);
+    EXPECT_EQ(shortened.tile.records, kept.tile.records);
+    EXPECT_EQ(kept.tile.tin.vertices.size(), kept.full.vertices.size());
+    EXPECT_LE(shortened.tile.tin.vertices.size(),
+              std::max<std::size_t>(2 * kept.tile.tin.alive_vertices(), 4));
+    EXPECT_EQ(oracle::named_triangles(shortened.tile.tin), oracle::named_triangles(kept.tile.tin));
+    EXPECT_EQ(validate(shortened.tile.tin), "");
+  };
+  std::ranges::for_each(oracle::nasty_rasters(), both);
+  std::ranges::for_each(oracle::nasty_points(), both);
 }
 
 TEST(Simplify, LeavesLockedVertices) {

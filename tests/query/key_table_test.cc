@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/query/key_table.h"
+#include "engine/geometry/key_table.h"
 
 #include <map>
 #include <random>

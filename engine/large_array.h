@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Arrays that a query fills at once: large ones are given large pages, where the system has them.
+// Arrays that are filled at once: large ones are given large pages, where the system has them.
 #pragma once
 
 #include <cstddef>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/geometry/point.h"
-#include "engine/query/large_array.h"
+#include "engine/large_array.h"
 
 namespace ptin {
 

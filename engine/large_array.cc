@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/query/large_array.h"
+#include "engine/large_array.h"
 
 #include <cstdint>
 

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/tile_compact.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ptin {
+
+namespace {
+
+Renumbering compact_vertices(Tile& tile) {
+  Tin& tin = tile.tin;
+  Renumbering place(tin.vertices.size(), kNone);
+  const bool is_first = tile.full_ids.empty();
+  if (is_first && !tile.samples_fill_grid) {
+    tile.full_ids.resize(tin.vertices.size());
+  }
+  VertexId next = 0;
+  for (VertexId v = 0; v < tin.vertices.size(); ++v) {
+    if (tin.vertices[v].triangle == kNone) {
+      continue;
+    }
+    tin.vertices[next] = tin.vertices[v];
+    tin.has_height[next] = tin.has_height[v];
+    tile.vertex_state[next] = tile.vertex_state[v];
+    if (!tile.full_ids.empty()) {
+      tile.full_ids[next] = is_first ? v : tile.full_ids[v];
+    }
+    place[v] = next++;
+  }
+  tin.vertices.resize(next);
+  tin.has_height.resize(next);
+  tile.vertex_state.resize(next);
+  tile.full_ids.resize(tile.full_ids.empty() ? 0 : next);
+  return place;
+}
+
+Renumbering compact_triangles(Tile& tile) {
+  Tin& tin = tile.tin;
+  Renumbering place(tin.triangles.size(), kNone);
+  TriangleId next = 0;
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (tin.is_alive(t)) {
+      tin.triangles[next] = tin.triangles[t];
+      tin.classes[next] = tin.classes[t];
+      tile.carried[next] = tile.carried[t];
+      place[t] = next++;
+    }
+  }
+  tin.triangles.resize(next);
+  tin.classes.resize(next);
+  tile.carried.resize(next);
+  return place;
+}
+
+void lay_out_samples(Tile& tile) {
+  SampleLists lists;
+  lists.reserve(tile.samples.capacity());
+  for (CarriedState& carried : tile.carried) {
+    const SampleSlot slot = lists.take(carried.samples.count);
+    const auto from = tile.samples.samples(carried.samples);
+    std::copy(from.begin(), from.end(), lists.samples(slot).begin());
+    carried.samples = slot;
+  }
+  tile.samples = std::move(lists);
+}
+
+}  // namespace
+
+Renumbering compact(Tile& tile) {
+  Renumbering vertices = compact_vertices(tile);
+  const Renumbering triangles = compact_triangles(tile);
+  for (Vertex& v : tile.tin.vertices) {
+    v.triangle = triangles[v.triangle];
+  }
+  for (Triangle& t : tile.tin.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      t.v[i] = vertices[t.v[i]];
+      t.n[i] = t.n[i] == kNone ? kNone : triangles[t.n[i]];
+    }
+  }
+  lay_out_samples(tile);
+  return vertices;
+}
+
+}  // namespace ptin
