@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/geometry/key_table.h"
 #include "engine/mesh/star.h"
 #include "engine/mesh/tin.h"
 #include "engine/query/accounting.h"
