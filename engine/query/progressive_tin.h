@@ -88,10 +88,6 @@ class ProgressiveTin {
 
   /// T0 as a mesh with neighbours; other questions start from a copy of it too.
   [[nodiscard]] const Tin& coarsest() const noexcept { return *t0_; }
-  /// The index that questions search: the store's own, or the one of use_index().
-  [[nodiscard]] const RecordIndex& index() const noexcept {
-    return index_ ? *index_ : store_->index();
-  }
 
   /// Uses `index` instead of the packed R-tree (the same answers; tests and `--index
   /// spatialindex`). Not thread-safe.
