@@ -15,17 +15,17 @@
 
 namespace ptin::tools {
 
+std::string folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
               "write_value() states little-endian files");
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-
-std::string folder_of(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  return folder.empty() ? "." : folder;
-}
 
 Error exists_already(const std::string& path) {
   return {ErrorCode::invalid_argument,
@@ -95,6 +95,17 @@ void OutputFile::flush() {
     at += static_cast<std::size_t>(n);
   }
   buffer_.clear();
+}
+
+void OutputFile::replace(std::uint64_t offset, std::string_view bytes) {
+  flush();
+  while (!bytes.empty()) {
+    const ssize_t n = pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw system_error(errno, "cannot write the output", path_);
+    offset += static_cast<std::uint64_t>(n);
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
 }
 
 void OutputFile::publish() {

@@ -4,11 +4,15 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace ptin::tools {
+
+/// The folder of a file's name; "." when it has none.
+[[nodiscard]] std::string folder_of(const std::string& path);
 
 /// Throws Error invalid_argument when `path` exists and `overwrite` is off (or is a folder),
 /// not_found when its folder does not exist. Called before the work, so that nobody waits for an
@@ -38,6 +42,10 @@ class OutputFile {
   void write_value(const T& value) {
     write(&value, sizeof value);
   }
+
+  /// Writes over bytes that were written before: a header whose counts are known at the end.
+  /// @throws Error as write
+  void replace(std::uint64_t offset, std::string_view bytes);
 
   /// Makes the file appear under its name.  @throws Error resource_exhausted, io_error;
   /// invalid_argument when the target appeared meanwhile and `overwrite` is off

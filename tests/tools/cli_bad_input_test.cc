@@ -258,6 +258,12 @@ TEST(CliBadInput, FullDisk) {
     expect_refusal(run_ptin({"refine", store, "-o", disk.path + name}), 7, name);
     EXPECT_TRUE(std::filesystem::is_empty(disk.path)) << name;
   }
+  for (const char* name : {"/a.ply", "/a.gpkg", "/a.fgb", "/a.tif"}) {
+    std::vector<std::string> arguments = {"export", store, "-q", "-o", disk.path + name};
+    if (name == std::string("/a.tif")) arguments.insert(arguments.end(), {"--pixel-size", "4"});
+    expect_refusal(run_ptin(arguments), 7, name);
+    EXPECT_TRUE(std::filesystem::is_empty(disk.path)) << name;
+  }
   expect_refusal(
       run_ptin({"render", store, "--size", "2000", "2000", "-o", disk.path + "/a.png", "-q"}), 7,
       "a.png");

@@ -59,6 +59,20 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin isoline dem.ptin --level 0 --window 385000 3790000 390000 3795000 -o - | jq "
      ".features\n",
      declare_isoline},
+    {"export", "Write the whole TIN, or a raster of it, however large",
+     "Works through the terrain part by part within --memory; the output does not depend on the "
+     "parts.\n"
+     "With a region: the triangles that meet it, whole. Triangles become POLYGON Z in .gpkg and "
+     ".fgb.\n"
+     "Rasters are sampled at pixel centres, which stand at multiples of the pixel's size from the "
+     "terrain's\n"
+     "south-western sample.\n\n"
+     "Examples:\n"
+     "  ptin export dem.ptin -o dem.ply\n"
+     "  ptin export dem.ptin --error 2 --memory 256M -o dem_2m.gpkg\n"
+     "  ptin export dem.ptin --error 5 --pixel-size 90 -o coarse.tif\n"
+     "  ptin export dem.ptin --window 385000 3790000 390000 3795000 --format COG -o valley.tif\n",
+     declare_export},
     {"render", "Draw shaded relief, triangles or pages as a PNG",
      "Examples:\n"
      "  ptin render dem.ptin -o dem.png\n"

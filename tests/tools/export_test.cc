@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin export against ptin refine, against the source, and against itself cut otherwise.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <set>
+
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <ogrsf_frmts.h>
+
+#include "engine/error.h"
+#include "engine/query/part_refiner.h"
+#include "tests/tools/mesh_reader.h"
+#include "tests/tools/program.h"
+#include "tools/export/raster_export.h"
+#include "tools/export/tin_patch.h"
+
+namespace ptin::tools {
+namespace {
+
+using testing::Outcome;
+using testing::read_file;
+using testing::read_ply;
+using testing::ReadMesh;
+using testing::run_ptin;
+using testing::test_data;
+using testing::TestFolder;
+using Point = std::array<double, 3>;
+using Facet = std::array<Point, 3>;
+
+void expect_done(const std::vector<std::string>& arguments) {
+  const Outcome outcome = run_ptin(arguments);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+}
+
+/// A terrain of tests/data, built into `folder`.
+std::string built(const TestFolder& folder, const std::string& name) {
+  const std::string path = folder.file(name + ".ptin");
+  expect_done({"build", test_data(name), "-o", path, "-q"});
+  return path;
+}
+
+/// Corners from the smallest on, in the same sense.
+Facet turned(Facet f) {
+  std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+  return f;
+}
+
+std::multiset<Facet> facets_of(const ReadMesh& mesh) {
+  std::multiset<Facet> facets;
+  for (const auto& t : mesh.triangles) {
+    facets.insert(turned({mesh.vertices.at(t[0]), mesh.vertices.at(t[1]), mesh.vertices.at(t[2])}));
+  }
+  return facets;
+}
+
+std::multiset<Facet> facets_in(const std::string& path) {
+  return facets_of(read_ply(read_file(path)));
+}
+
+/// Every feature of the only layer.
+std::multiset<Facet> features_in(const std::string& path) {
+  GDALAllRegister();
+  std::multiset<Facet> facets;
+  GDALDataset* dataset = GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR);
+  EXPECT_NE(dataset, nullptr);
+  if (dataset == nullptr) return facets;
+  EXPECT_EQ(dataset->GetLayerCount(), 1);
+  for (const auto& feature : *dataset->GetLayer(0)) {
+    const OGRPolygon* polygon = feature->GetGeometryRef()->toPolygon();
+    EXPECT_EQ(polygon->getGeometryType(), wkbPolygon25D);
+    const OGRLinearRing* ring = polygon->getExteriorRing();
+    EXPECT_EQ(ring->getNumPoints(), 4);
+    Facet f;
+    for (int i = 0; i < 3; ++i) f[i] = {ring->getX(i), ring->getY(i), ring->getZ(i)};
+    facets.insert(turned(f));
+  }
+  GDALClose(dataset);
+  return facets;
+}
+
+struct ReadRaster {
+  int width = 0, height = 0;
+  std::array<double, 6> transform{};
+  double nodata = 0.0;
+  std::vector<double> values;
+};
+
+ReadRaster read_raster(const std::string& path) {
+  GDALAllRegister();
+  ReadRaster raster;
+  GDALDataset* dataset = GDALDataset::Open(path.c_str(), GDAL_OF_RASTER);
+  EXPECT_NE(dataset, nullptr);
+  if (dataset == nullptr) return raster;
+  raster.width = dataset->GetRasterXSize();
+  raster.height = dataset->GetRasterYSize();
+  raster.nodata = dataset->GetRasterBand(1)->GetNoDataValue();
+  EXPECT_EQ(dataset->GetGeoTransform(raster.transform.data()), CE_None);
+  raster.values.resize(static_cast<std::size_t>(raster.width) * raster.height);
+  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, raster.width, raster.height,
+                                                raster.values.data(), raster.width, raster.height,
+                                                GDT_Float64, 0, 0),
+            CE_None);
+  GDALClose(dataset);
+  return raster;
+}
+
+TEST(Export, EqualsRefineAsASetOfTriangles) {
+  const TestFolder folder;
+  for (const char* name : {"coast_257.tif", "mountains_257.tif", "ground_points.csv"}) {
+    const std::string file = built(folder, name);
+    for (const std::vector<std::string>& level :
+         {std::vector<std::string>{}, {"--error", "0"}, {"--error", "3"}}) {
+      std::vector<std::string> refine = {"refine", file, "-o", folder.file("a.ply"), "--overwrite"};
+      std::vector<std::string> exported = {"export",      file, "-o", folder.file("b.ply"),
+                                           "--overwrite", "-q"};
+      refine.insert(refine.end(), level.begin(), level.end());
+      exported.insert(exported.end(), level.begin(), level.end());
+      expect_done(refine);
+      expect_done(exported);
+      EXPECT_EQ(facets_in(folder.file("a.ply")), facets_in(folder.file("b.ply"))) << name;
+    }
+  }
+}
+
+TEST(Export, OfARegionIsWhatRefineClips) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  const ReadRaster dem = read_raster(test_data("coast_257.tif"));
+  const auto& g = dem.transform;
+  const auto at = [&](double share, int axis) {
+    return std::to_string(axis == 0 ? g[0] + share * dem.width * g[1]
+                                    : g[3] + share * dem.height * g[5]);
+  };
+  const std::vector<std::string> window = {"--window", at(0.3, 0), at(0.8, 1), at(0.7, 0),
+                                           at(0.2, 1)};
+  for (const char* error : {"0", "2"}) {
+    std::vector<std::string> refine = {"refine",      file,     "-o",      folder.file("a.ply"),
+                                       "--overwrite", "--clip", "--error", error};
+    std::vector<std::string> exported = {"export",      file,      "-o",  folder.file("b.ply"),
+                                         "--overwrite", "--error", error, "-q"};
+    refine.insert(refine.end(), window.begin(), window.end());
+    exported.insert(exported.end(), window.begin(), window.end());
+    expect_done(refine);
+    expect_done(exported);
+    const auto facets = facets_in(folder.file("b.ply"));
+    EXPECT_FALSE(facets.empty());
+    EXPECT_EQ(facets_in(folder.file("a.ply")), facets);
+  }
+}
+
+TEST(Export, WindowsAgreeOnTheTrianglesThatMeetBoth) {
+  const TestFolder folder;
+  const std::string file = built(folder, "mountains_257.tif");
+  const ReadRaster dem = read_raster(test_data("mountains_257.tif"));
+  const auto& g = dem.transform;
+  const double west = g[0], east = g[0] + dem.width * g[1], north = g[3];
+  const double south = g[3] + dem.height * g[5], middle = (west + east) / 2;
+  const auto part = [&](double from, double to, const char* name) {
+    expect_done({"export", file, "--error", "4", "-q", "-o", folder.file(name), "--window",
+                 std::to_string(from), std::to_string(south), std::to_string(to),
+                 std::to_string(north)});
+    return facets_in(folder.file(name));
+  };
+  const auto left = part(west, middle, "left.ply");
+  const auto right = part(middle, east, "right.ply");
+  expect_done({"export", file, "--error", "4", "-q", "-o", folder.file("all.ply")});
+  const auto all = facets_in(folder.file("all.ply"));
+  std::set<Facet> joined(left.begin(), left.end());
+  joined.insert(right.begin(), right.end());
+  EXPECT_EQ(joined, std::set<Facet>(all.begin(), all.end()));
+  EXPECT_LT(left.size(), all.size());
+}
+
+TEST(Export, NumbersEveryVertexOnceAndBeforeItsTriangles) {
+  const TestFolder folder;
+  expect_done({"export", built(folder, "coast_257.tif"), "-q", "-o", folder.file("a.ply")});
+  const ReadMesh mesh = read_ply(read_file(folder.file("a.ply")));
+  const std::set<Point> distinct(mesh.vertices.begin(), mesh.vertices.end());
+  EXPECT_EQ(distinct.size(), mesh.vertices.size());
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const auto& t : mesh.triangles) {
+    EXPECT_GT(t[0], t[1]) << "the last corner comes first";
+    EXPECT_GT(t[0], t[2]);
+    for (const auto v : t) used.at(v) = true;
+  }
+  EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
+}
+
+/// All patches of a walk as one sequence.
+struct Joined {
+  std::vector<Point> vertices;
+  std::vector<std::array<std::uint64_t, 3>> triangles;
+  std::uint64_t cells = 0;
+};
+
+Joined joined_under(const ProgressiveTin& terrain, PartRequest request, std::uint64_t limit) {
+  request.memory_limit_bytes = limit;
+  const PartRefiner refiner(terrain, request);
+  PatchMaker maker(terrain.store(), request.region);
+  Joined all;
+  walk_cells(refiner, [&](const GridCell& cell, const RefinedTin& refined, double) {
+    const TinPatch patch = maker.make(cell, refined, std::uint64_t{1} << 30);
+    EXPECT_EQ(patch.first_vertex, all.vertices.size());
+    all.vertices.insert(all.vertices.end(), patch.vertices.begin(), patch.vertices.end());
+    for (const auto& t : patch.triangles) {
+      for (const auto& corner : t) {
+        EXPECT_EQ(all.vertices.at(corner.number), patch.point(corner));
+      }
+      all.triangles.push_back({t[0].number, t[1].number, t[2].number});
+    }
+    ++all.cells;
+  });
+  maker.finish();
+  return all;
+}
+
+TEST(Export, DoesNotDependOnTheCells) {
+  const TestFolder folder;
+  for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
+    const ProgressiveTin terrain = ProgressiveTin::open(built(folder, name));
+    for (const std::optional<double> tolerance : {std::optional<double>(), {1.0}}) {
+      PartRequest request;
+      request.tolerance = tolerance;
+      const Joined whole = joined_under(terrain, request, std::uint64_t{1} << 30);
+      EXPECT_EQ(whole.cells, 1U);
+      const bool is_raster = terrain.store().record_count() > 10'000;
+      for (const std::uint64_t limit :
+           {is_raster ? 4'000'000U : 700'000U, is_raster ? 1'500'000U : 450'000U}) {
+        const Joined parts = joined_under(terrain, request, limit);
+        EXPECT_GT(parts.cells, tolerance ? 0U : 3U) << name;
+        EXPECT_EQ(parts.vertices, whole.vertices);
+        EXPECT_EQ(parts.triangles, whole.triangles);
+      }
+    }
+  }
+}
+
+TEST(Export, RefusesMemoryThatASinglePositionDoesNotFit) {
+  const TestFolder folder;
+  const ProgressiveTin terrain = ProgressiveTin::open(built(folder, "coast_257.tif"));
+  EXPECT_THROW(static_cast<void>(joined_under(terrain, {}, 20'000)), Error);
+}
+
+TEST(Export, WritesTheSameTrianglesAsFeatures) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  expect_done({"export", file, "--error", "2", "-q", "-o", folder.file("a.ply")});
+  const auto facets = facets_in(folder.file("a.ply"));
+  for (const char* name : {"a.gpkg", "a.fgb"}) {
+    expect_done({"export", file, "--error", "2", "-q", "-o", folder.file(name)});
+    EXPECT_EQ(features_in(folder.file(name)), facets) << name;
+  }
+  EXPECT_EQ(folder.names(),
+            (std::vector<std::string>{"a.fgb", "a.gpkg", "a.ply", "coast_257.tif.ptin"}));
+}
+
+TEST(Export, RasterOfTheFullTinIsTheSource) {
+  const TestFolder folder;
+  for (const char* name : {"coast_257.tif", "mountains_257.tif"}) {
+    const std::string file = built(folder, name);
+    const ReadRaster source = read_raster(test_data(name));
+    for (const char* format : {"GTiff", "COG"}) {
+      expect_done(
+          {"export", file, "--format", format, "-q", "--overwrite", "-o", folder.file("a.tif")});
+      const ReadRaster made = read_raster(folder.file("a.tif"));
+      ASSERT_EQ(made.width, source.width);
+      ASSERT_EQ(made.height, source.height);
+      for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_NEAR(made.transform[i], source.transform[i], 1e-9 * std::abs(source.transform[i]));
+      }
+      std::size_t lone = 0;
+      for (std::size_t i = 0; i < source.values.size(); ++i) {
+        const bool is_void = source.values[i] == source.nodata;
+        if (!is_void && made.values[i] == made.nodata) {
+          ++lone;
+        } else {
+          ASSERT_EQ(made.values[i], is_void ? made.nodata : source.values[i]) << name << " " << i;
+        }
+      }
+      EXPECT_LT(lone, 5U);
+    }
+  }
+}
+
+TEST(Export, RasterDoesNotDependOnMemory) {
+  const TestFolder folder;
+  const ProgressiveTin terrain = ProgressiveTin::open(built(folder, "mountains_257.tif"));
+  const StoreFacts& facts = terrain.store().facts();
+  const PixelGrid grid(facts, {facts.map.step_x * 0.37, facts.map.step_y * 0.41}, std::nullopt);
+  std::string first;
+  for (const std::uint64_t limit : {std::uint64_t{1} << 30, std::uint64_t{1'000'000}}) {
+    PartRequest request;
+    request.memory_limit_bytes = limit;
+    const PartRefiner refiner(terrain, request);
+    const RasterTarget target{folder.file("a.tif"), true, false, -9999.0, {}, {}, limit / 8};
+    GDALAllRegister();
+    export_raster(refiner, grid, target, {});
+    const std::string bytes = read_file(target.path);
+    if (first.empty()) first = bytes;
+    EXPECT_TRUE(bytes == first);
+  }
+}
+
+/// Height of the TIN at a grid position by brute force: NAN where no surface triangle holds it.
+double height_at(const Tin& tin, const StoreFacts& facts, long double x, long double y) {
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (tin.classes[t] == TriangleClass::kVoid) continue;
+    std::array<long double, 3> w{};
+    std::array<GridPoint, 3> p{};
+    for (int i = 0; i < 3; ++i) p[i] = tin.position(tin.triangles[t].v[i]);
+    for (int i = 0; i < 3; ++i) {
+      const GridPoint a = p[next_corner(i)], b = p[previous_corner(i)];
+      w[i] = (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+    }
+    if (w[0] < 0 || w[1] < 0 || w[2] < 0) continue;
+    long double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      sum += w[i] * facts.heights.height(tin.vertices[tin.triangles[t].v[i]].height);
+    }
+    return static_cast<double>(sum / (w[0] + w[1] + w[2]));
+  }
+  return NAN;
+}
+
+TEST(Export, RasterInterpolatesTheTriangles) {
+  const TestFolder folder;
+  std::mt19937 random(7);
+  for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
+    const ProgressiveTin terrain = ProgressiveTin::open(built(folder, name));
+    RefineRequest request;
+    request.tolerance = 5.0;
+    const RefinedTin refined = terrain.refine(request);
+    const StoreFacts& facts = terrain.store().facts();
+    const GridBox& b = facts.bounds;
+    const double pitch = std::max(b.max_x - b.min_x, b.max_y - b.min_y) / 61.3;
+    const PixelGrid grid(facts, {facts.map.step_x * pitch, facts.map.step_y * pitch}, std::nullopt);
+    const PixelRect all{0, 0, grid.columns(), grid.rows()};
+    std::vector<double> heights(static_cast<std::size_t>(all.pixels()), NAN);
+    sample_tin(refined, facts, grid, all, all, heights);
+    std::size_t surface = 0;
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      const auto column = static_cast<std::int64_t>(i) % all.width;
+      const auto row = static_cast<std::int64_t>(i) / all.width;
+      const double expected =
+          height_at(refined.tin, facts, grid.x(column) * 0x1p-20L, grid.y(row) * 0x1p-20L);
+      ASSERT_EQ(std::isnan(heights[i]), std::isnan(expected)) << name << " " << i;
+      if (std::isnan(expected)) continue;
+      ASSERT_NEAR(heights[i], expected, 1e-9) << name << " " << i;
+      ++surface;
+    }
+    EXPECT_GT(surface, heights.size() / 8);
+  }
+}
+
+TEST(Export, RastersOfWindowsAreCutsOfTheWhole) {
+  const TestFolder folder;
+  const std::string file = built(folder, "mountains_257.tif");
+  const ReadRaster dem = read_raster(test_data("mountains_257.tif"));
+  const std::string size = std::to_string(dem.transform[1] * 1.7);
+  expect_done(
+      {"export", file, "-q", "--error", "2", "--pixel-size", size, "-o", folder.file("a.tif")});
+  const ReadRaster whole = read_raster(folder.file("a.tif"));
+  const double x = dem.transform[0] + 80 * dem.transform[1];
+  const double y = dem.transform[3] + 180 * dem.transform[5];
+  expect_done({"export", file, "-q", "--error", "2", "--pixel-size", size, "-o",
+               folder.file("b.tif"), "--window", std::to_string(x), std::to_string(y),
+               std::to_string(x + 90 * dem.transform[1]),
+               std::to_string(y - 100 * dem.transform[5])});
+  const ReadRaster part = read_raster(folder.file("b.tif"));
+  const double column = (part.transform[0] - whole.transform[0]) / whole.transform[1];
+  const double row = (part.transform[3] - whole.transform[3]) / whole.transform[5];
+  EXPECT_NEAR(column, std::round(column), 1e-6);
+  EXPECT_NEAR(row, std::round(row), 1e-6);
+  EXPECT_NEAR(part.width, 90 / 1.7, 1.0);
+  for (int j = 0; j < part.height; ++j) {
+    for (int i = 0; i < part.width; ++i) {
+      const auto at =
+          static_cast<std::size_t>((std::lround(row) + j) * whole.width + std::lround(column) + i);
+      ASSERT_EQ(part.values[static_cast<std::size_t>(j * part.width + i)], whole.values[at]);
+    }
+  }
+}
+
+TEST(Export, RefusesWhatMeansNothing) {
+  const TestFolder folder;
+  const std::string points = built(folder, "ground_points.csv");
+  testing::write_file(folder.file("old.ply"), "old");
+  const auto fails = [&](std::vector<std::string> arguments, const char* what) {
+    arguments.insert(arguments.begin(), {"export", points, "-q"});
+    const Outcome outcome = run_ptin(arguments);
+    EXPECT_EQ(outcome.status, 2) << what;
+    EXPECT_NE(outcome.err.find(what), std::string::npos) << outcome.err;
+    EXPECT_EQ(testing::lines_in(outcome.err), 1U);
+  };
+  fails({"-o", folder.file("a.doc")}, "names no format");
+  fails({"-o", folder.file("a.doc"), "--format", "doc"}, "unknown format");
+  fails({"-o", folder.file("old.ply")}, "exists already");
+  fails({"-o", folder.file("a.tif")}, "--pixel-size");
+  fails({"-o", folder.file("a.tif"), "--pixel-size", "0"}, "--pixel-size");
+  fails({"-o", folder.file("a.tif"), "--pixel-size", "1e-12"}, "--pixel-size");
+  fails({"-o", folder.file("a.tif"), "--pixel-size", "5", "--window", "0", "0", "1", "1"},
+        "window");
+  fails({"-o", folder.file("a.ply"), "--pixel-size", "5"}, "are for rasters");
+  fails({"-o", folder.file("a.ply"), "--error", "-1"}, "--error");
+  fails({"-o", folder.file("a.ply"), "--memory", "1M"}, "--memory");
+  fails({"-o", folder.file("a.tif"), "--pixel-size", "5", "--co", "COMPRESS=NONSENSE"}, "COMPRESS");
+  EXPECT_EQ(read_file(folder.file("old.ply")), "old");
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"ground_points.csv.ptin", "old.ply"}));
+}
+
+TEST(Export, OfADamagedStoreLeavesNothingBehind) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  std::string bytes = read_file(file);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x10);
+  testing::write_file(file, bytes);
+  for (const char* name : {"a.ply", "a.gpkg", "a.fgb", "a.tif"}) {
+    const Outcome outcome = run_ptin({"export", file, "-q", "-o", folder.file(name)});
+    EXPECT_EQ(outcome.status, 4) << name << outcome.err;
+  }
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"coast_257.tif.ptin"});
+}
+
+}  // namespace
+}  // namespace ptin::tools

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/export/gdal_output.h"
+
+#include <cpl_error.h>
+#include <gdal.h>
+#include <sys/statvfs.h>
+
+#include "tools/output_file.h"
+
+namespace ptin::tools {
+
+bool is_disk_full(const std::string& path) {
+  constexpr std::uint64_t kNearlyNothing = std::uint64_t{1} << 20;
+  struct statvfs status {};
+  return statvfs(folder_of(path).c_str(), &status) == 0 &&
+         std::uint64_t{status.f_bavail} * status.f_frsize < kNearlyNothing;
+}
+
+Error gdal_failure(const std::string& action, const std::string& path, bool was_disk_full) {
+  const std::string said = CPLGetLastErrorMsg();
+  if (was_disk_full || said.find("disk is full") != std::string::npos ||
+      said.find("No space left") != std::string::npos || is_disk_full(path)) {
+    return {ErrorCode::resource_exhausted,
+            action + ": the disk is full; make room or choose another folder", path};
+  }
+  return {ErrorCode::io_error, said.empty() ? action : action + ": " + said, path};
+}
+
+GdalCacheLimit::GdalCacheLimit(std::uint64_t bytes) : before_(GDALGetCacheMax64()) {
+  GDALSetCacheMax64(static_cast<GIntBig>(bytes));
+}
+
+GdalCacheLimit::~GdalCacheLimit() { GDALSetCacheMax64(before_); }
+
+}  // namespace ptin::tools

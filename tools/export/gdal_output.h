@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What GDAL says when it cannot write, as our own errors; and how much it may keep in memory.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/error.h"
+
+namespace ptin::tools {
+
+/// The error for a call of GDAL that failed: resource_exhausted when the disk of `path` is full,
+/// else io_error. Takes GDAL's last message.
+/// @param was_disk_full  What is_disk_full() said earlier.
+[[nodiscard]] Error gdal_failure(const std::string& action, const std::string& path,
+                                 bool was_disk_full = false);
+
+/// True when the disk of `path` has next to no room. Asked before GDAL tidies up after a failure.
+[[nodiscard]] bool is_disk_full(const std::string& path);
+
+/// Sets GDAL's block cache for the time that it lives.
+class GdalCacheLimit {
+ public:
+  explicit GdalCacheLimit(std::uint64_t bytes);
+  GdalCacheLimit(const GdalCacheLimit&) = delete;
+  GdalCacheLimit& operator=(const GdalCacheLimit&) = delete;
+  ~GdalCacheLimit();
+
+ private:
+  std::int64_t before_;
+};
+
+}  // namespace ptin::tools

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/export/raster_export.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <cpl_string.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include "engine/error.h"
+#include "tools/export/gdal_output.h"
+#include "tools/pending_file.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct DatasetCloser {
+  void operator()(GDALDataset* d) const { GDALClose(d); }
+};
+using Dataset = std::unique_ptr<GDALDataset, DatasetCloser>;
+
+constexpr const char* kBlockSide = "512";
+
+/// Float64 where Float32 would lose digits of whole codes.
+GDALDataType type_for(const StoreFacts& facts) {
+  if (facts.heights.type != HeightType::int32) return GDT_Float32;
+  const double largest = std::max(std::abs(facts.min_height), std::abs(facts.max_height));
+  return largest / facts.heights.step <= 16777216.0 ? GDT_Float32 : GDT_Float64;
+}
+
+CPLStringList options_of(const RasterTarget& target, bool for_copy) {
+  CPLStringList options;
+  if (target.is_cog == for_copy) {
+    for (const std::string& option : target.creation_options) options.AddString(option.c_str());
+  }
+  const auto set = [&](const char* key, const char* value) {
+    if (options.FetchNameValue(key) == nullptr) options.SetNameValue(key, value);
+  };
+  set("COMPRESS", "DEFLATE");
+  set("BIGTIFF", "IF_SAFER");
+  if (for_copy) {
+    set("PREDICTOR", "YES");
+    set("OVERVIEW_RESAMPLING", "AVERAGE");
+    return options;
+  }
+  set("TILED", "YES");
+  if (options.FetchBool("TILED", true)) {
+    set("BLOCKXSIZE", kBlockSide);
+    set("BLOCKYSIZE", kBlockSide);
+  }
+  const std::string compression = options.FetchNameValueDef("COMPRESS", "");
+  if (compression == "DEFLATE" || compression == "LZW" || compression == "ZSTD")
+    set("PREDICTOR", "3");
+  return options;
+}
+
+/// Fills a dataset, region by region.
+class RasterWriter {
+ public:
+  RasterWriter(const PartRefiner& refiner, const PixelGrid& grid, const RasterTarget& target,
+               GDALDataset& dataset, const std::function<void(double)>& progress)
+      : refiner_(refiner),
+        grid_(grid),
+        target_(target),
+        band_(*dataset.GetRasterBand(1)),
+        progress_(progress) {
+    int width = 0;
+    int height = 0;
+    band_.GetBlockSize(&width, &height);
+    block_width_ = width;
+    block_height_ = height;
+  }
+
+  void run() { write({0, 0, blocks(grid_.columns(), block_width_), rows_of_blocks()}); }
+
+ private:
+  static std::int64_t blocks(std::int64_t pixels, std::int64_t side) {
+    return (pixels + side - 1) / side;
+  }
+  [[nodiscard]] std::int64_t rows_of_blocks() const { return blocks(grid_.rows(), block_height_); }
+  /// Pixels of a rectangle of blocks, those beyond the raster left out.
+  [[nodiscard]] PixelRect pixels_of(const PixelRect& b) const {
+    const std::int64_t column = b.column * block_width_;
+    const std::int64_t row = b.row * block_height_;
+    return {column, row, std::min(b.width * block_width_, grid_.columns() - column),
+            std::min(b.height * block_height_, grid_.rows() - row)};
+  }
+  static std::array<PixelRect, 2> halves(const PixelRect& r) {
+    PixelRect first = r;
+    PixelRect second = r;
+    if (r.width >= r.height) {
+      first.width = r.width / 2;
+      second.column += first.width;
+      second.width -= first.width;
+    } else {
+      first.height = r.height / 2;
+      second.row += first.height;
+      second.height -= first.height;
+    }
+    return {first, second};
+  }
+  [[nodiscard]] bool fits(const PixelRect& rect) const {
+    const GridBox box = grid_.box(rect);
+    return !meets(box, refiner_.terrain().store().facts().bounds) || refiner_.fits(box);
+  }
+
+  /// Samples and writes a rectangle of blocks: together when it fits, else half by half.
+  void write(const PixelRect& b) {
+    const PixelRect rect = pixels_of(b);
+    const bool buffer_fits =
+        static_cast<std::uint64_t>(rect.pixels()) * sizeof(double) <= target_.buffer_bytes;
+    if (b.pixels() > 1 && !(buffer_fits && fits(rect))) {
+      for (const PixelRect& half : halves(b)) write(half);
+      return;
+    }
+    heights_.assign(static_cast<std::size_t>(rect.pixels()), target_.nodata);
+    sample(rect, rect);
+    emit(b, rect);
+  }
+
+  void sample(const PixelRect& part, const PixelRect& rect) {
+    const GridBox box = grid_.box(part);
+    if (!meets(box, refiner_.terrain().store().facts().bounds)) return;
+    if (part.pixels() > 1 && !refiner_.fits(box)) {
+      for (const PixelRect& half : halves(part)) sample(half, rect);
+      return;
+    }
+    const RefinedTin refined = refiner_.refine(box);
+    sample_tin(refined, refiner_.terrain().store().facts(), grid_, part, rect, heights_);
+  }
+
+  /// Writes the blocks of `b` in the order in which halving reaches them.
+  void emit(const PixelRect& b, const PixelRect& rect) {
+    if (b.pixels() > 1) {
+      for (const PixelRect& half : halves(b)) emit(half, rect);
+      return;
+    }
+    if (band_.GetRasterDataType() == GDT_Float64) {
+      write_block<double>(b, rect);
+    } else {
+      write_block<float>(b, rect);
+    }
+    ++blocks_done_;
+    if (progress_) {
+      const auto all = static_cast<double>(blocks(grid_.columns(), block_width_)) *
+                       static_cast<double>(rows_of_blocks());
+      progress_(static_cast<double>(blocks_done_) / all);
+    }
+  }
+
+  template <typename T>
+  void write_block(const PixelRect& b, const PixelRect& rect) {
+    const PixelRect pixels = pixels_of(b);
+    std::vector<T> block(static_cast<std::size_t>(block_width_ * block_height_),
+                         static_cast<T>(target_.nodata));
+    for (std::int64_t y = 0; y < pixels.height; ++y) {
+      const std::int64_t from =
+          (pixels.row + y - rect.row) * rect.width + pixels.column - rect.column;
+      std::transform(heights_.begin() + from, heights_.begin() + from + pixels.width,
+                     block.begin() + y * block_width_,
+                     [](double height) { return static_cast<T>(height); });
+    }
+    CPLErrorReset();
+    if (band_.WriteBlock(static_cast<int>(b.column), static_cast<int>(b.row), block.data()) !=
+        CE_None) {
+      throw gdal_failure("cannot write the raster", target_.path);
+    }
+  }
+
+  const PartRefiner& refiner_;
+  const PixelGrid& grid_;
+  const RasterTarget& target_;
+  GDALRasterBand& band_;
+  const std::function<void(double)>& progress_;
+  std::int64_t block_width_ = 0;
+  std::int64_t block_height_ = 0;
+  std::int64_t blocks_done_ = 0;
+  std::vector<double> heights_;
+};
+
+/// GDAL only warns of options that it does not know.
+void check_creation_options(GDALDriver* driver, const CPLStringList& options,
+                            const std::string& path) {
+  CPLErrorReset();
+  if (GDALValidateCreationOptions(driver, const_cast<char**>(options.List())) == FALSE) {
+    throw Error(ErrorCode::invalid_argument,
+                std::string("a --co is refused: ").append(CPLGetLastErrorMsg()), path);
+  }
+}
+
+Dataset create(const PendingFile& file, const PixelGrid& grid, const RasterTarget& target,
+               const StoreFacts& facts) {
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  const CPLStringList options = options_of(target, false);
+  check_creation_options(driver, options, target.path);
+  CPLErrorReset();
+  Dataset dataset(driver->Create(file.temporary().c_str(), static_cast<int>(grid.columns()),
+                                 static_cast<int>(grid.rows()), 1, type_for(facts),
+                                 const_cast<char**>(options.List())));
+  if (!dataset) throw gdal_failure("cannot create the raster", target.path);
+  auto transform = grid.geotransform();
+  dataset->SetGeoTransform(transform.data());
+  OGRSpatialReference srs;
+  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  if (!target.crs.wkt.empty() && srs.importFromWkt(target.crs.wkt.c_str()) == OGRERR_NONE)
+    dataset->SetSpatialRef(&srs);
+  GDALRasterBand* band = dataset->GetRasterBand(1);
+  band->SetNoDataValue(target.nodata);
+  if (target.crs.vertical_unit != "unknown") band->SetUnitType(target.crs.vertical_unit.c_str());
+  return dataset;
+}
+
+/// Closes a dataset and tells what its last writes met. GDALClose has no result in this GDAL.
+void close_checked(Dataset& dataset, const std::string& path) {
+  CPLErrorReset();
+  GDALClose(dataset.release());
+  if (CPLGetLastErrorType() >= CE_Failure) throw gdal_failure("cannot finish the raster", path);
+}
+
+struct CopyProgress {
+  const std::function<void(double)>& report;
+  const std::stop_token& stop;
+  static int tell(double done, const char* /*message*/, void* self) {
+    const auto& me = *static_cast<const CopyProgress*>(self);
+    if (me.report) me.report(0.5 + done / 2);
+    return me.stop.stop_requested() ? FALSE : TRUE;
+  }
+};
+
+void copy_as_cog(const PendingFile& raw, const PendingFile& file, const RasterTarget& target,
+                 CopyProgress& progress) {
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
+  if (driver == nullptr)
+    throw Error(ErrorCode::invalid_argument, "this GDAL was built without COG", target.path);
+  CPLErrorReset();
+  const Dataset source(GDALDataset::Open(raw.temporary().c_str(), GDAL_OF_RASTER));
+  if (!source) throw gdal_failure("cannot read the raster back", target.path);
+  const CPLStringList options = options_of(target, true);
+  check_creation_options(driver, options, target.path);
+  Dataset copy(driver->CreateCopy(file.temporary().c_str(), source.get(), FALSE,
+                                  const_cast<char**>(options.List()), &CopyProgress::tell,
+                                  &progress));
+  if (progress.stop.stop_requested())
+    throw Error(ErrorCode::cancelled, "the export was cancelled", target.path);
+  if (!copy || CPLGetLastErrorType() >= CE_Failure)
+    throw gdal_failure("cannot write the COG", target.path);
+  close_checked(copy, target.path);
+}
+
+}  // namespace
+
+double default_nodata(const StoreFacts& facts) noexcept {
+  constexpr double kUsual = -9999.0;
+  if (!(facts.min_height <= kUsual && kUsual <= facts.max_height)) return kUsual;
+  return static_cast<double>(std::numeric_limits<float>::lowest());
+}
+
+void export_raster(const PartRefiner& refiner, const PixelGrid& grid, const RasterTarget& target,
+                   const std::function<void(double)>& progress) {
+  const GdalCacheLimit cache(target.buffer_bytes);
+  PendingFile file(target.path, target.overwrite);
+  const StoreFacts& facts = refiner.terrain().store().facts();
+  if (!target.is_cog) {
+    Dataset dataset = create(file, grid, target, facts);
+    RasterWriter(refiner, grid, target, *dataset, progress).run();
+    close_checked(dataset, target.path);
+  } else {
+    const PendingFile raw(target.path + ".raw.tif", true);
+    const std::function<void(double)> first_half = [&](double done) {
+      if (progress) progress(done / 2);
+    };
+    Dataset dataset = create(raw, grid, target, facts);
+    RasterWriter(refiner, grid, target, *dataset, first_half).run();
+    close_checked(dataset, target.path);
+    CopyProgress copying{progress, refiner.request().stop};
+    copy_as_cog(raw, file, target, copying);
+  }
+  file.publish();
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where the patches of an export go: one sink a format, each written as it comes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "tools/export/tin_patch.h"
+#include "tools/ptin/crs_facts.h"
+
+namespace ptin::tools {
+
+/// What every sink is made from.
+struct SinkTarget {
+  std::string path;
+  bool overwrite = false;
+  CrsFacts crs;
+  std::uint64_t border_bytes = std::uint64_t{64} << 20;  ///< As PatchMaker::make.
+  std::uint64_t index_bytes = std::uint64_t{256} << 20;  ///< For an index of features.
+  std::uint64_t most_triangles = 0;                      ///< Upper bound, for that.
+};
+
+/// Takes patches in order. Destroyed before publish(), it leaves nothing behind.
+class TinSink {
+ public:
+  TinSink() = default;
+  TinSink(const TinSink&) = delete;
+  TinSink& operator=(const TinSink&) = delete;
+  virtual ~TinSink() = default;
+
+  /// @throws Error resource_exhausted (disk full; more than the format counts), io_error
+  virtual void add(const TinPatch& patch) = 0;
+  /// Makes the file appear under its name.  @throws Error as OutputFile::publish
+  virtual void publish() = 0;
+};
+
+/// PLY, binary: the conventions of tools/formats/ply.cc. Vertices go to the file as they come,
+/// triangles to a nameless one beside it first. Indices are `int`, or `uint` where there are more
+/// than 2^31 - 1 vertices; up to 2^32 - 1.
+[[nodiscard]] std::unique_ptr<TinSink> make_ply_sink(const SinkTarget& target);
+
+/// Triangles as polygons with heights (POLYGON Z: what QGIS reads of any version), one feature
+/// each, by GDAL. A GeoPackage gets its spatial index when it is finished; a FlatGeobuf one where
+/// the index fits `index_bytes` (128 bytes a triangle).
+[[nodiscard]] std::unique_ptr<TinSink> make_geopackage_sink(const SinkTarget& target);
+[[nodiscard]] std::unique_ptr<TinSink> make_flatgeobuf_sink(const SinkTarget& target);
+/// Whether a FlatGeobuf gets its index.
+[[nodiscard]] bool flatgeobuf_index_fits(const SinkTarget& target);
+
+}  // namespace ptin::tools

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/pending_file.h"
+
+#include <filesystem>
+
+#include <unistd.h>
+
+#include "tools/output_file.h"
+
+namespace ptin::tools {
+
+PendingFile::PendingFile(std::string path, bool overwrite)
+    : path_(std::move(path)), overwrite_(overwrite) {
+  check_output(path_, overwrite_);
+  temporary_ =
+      path_ + ".tmp" + std::to_string(getpid()) + std::filesystem::path(path_).extension().string();
+}
+
+PendingFile::~PendingFile() {
+  if (temporary_.empty()) return;
+  unlink(temporary_.c_str());
+  for (const char* beside : {"-journal", "-wal", "-shm", ".aux.xml", ".ovr", ".ovr.tmp",
+                             ".msk.ovr.tmp", ".warped.tif.tmp"}) {
+    unlink((temporary_ + beside).c_str());
+  }
+}
+
+void PendingFile::publish() {
+  move_into_place(temporary_, path_, overwrite_);
+  temporary_.clear();
+}
+
+}  // namespace ptin::tools

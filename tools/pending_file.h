@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The temporary name of an output that somebody else writes (GDAL, SQLite): complete or absent.
+#pragma once
+
+#include <string>
+
+namespace ptin::tools {
+
+/// A name beside the target, with the same extension, that becomes the target or disappears.
+class PendingFile {
+ public:
+  /// @throws Error as check_output
+  PendingFile(std::string path, bool overwrite);
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+  /// Removes the temporary file, and those that GDAL and SQLite keep beside one.
+  ~PendingFile();
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] const std::string& temporary() const noexcept { return temporary_; }
+
+  /// Syncs the temporary file, renames it, syncs the folder. REQUIRES: written and closed.
+  /// @throws Error resource_exhausted, io_error; invalid_argument when the target appeared
+  /// meanwhile and `overwrite` is off
+  void publish();
+
+ private:
+  std::string path_;
+  std::string temporary_;
+  bool overwrite_;
+};
+
+}  // namespace ptin::tools

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin export: the TIN at any level of detail, larger than memory too.
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "engine/query/certificate.h"
+#include "tools/error_status.h"
+#include "tools/export/raster_export.h"
+#include "tools/export/tin_sink.h"
+#include "tools/output_file.h"
+#include "tools/progress.h"
+#include "tools/ptin/crs_facts.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct ExportOptions {
+  TerrainOptions terrain;
+  RegionOptions region;
+  std::optional<double> error;
+  std::vector<double> pixel_size;
+  std::optional<double> nodata;
+  std::vector<std::string> creation_options;
+  std::string format;
+  std::string memory;
+  std::string output;
+  bool overwrite = false;
+};
+
+/// A format: triangles into a sink, or a raster.
+struct ExportFormat {
+  const char* name;       ///< As GDAL calls it.
+  const char* extension;  ///< Chooses it; empty when only --format does.
+  std::unique_ptr<TinSink> (*make_sink)(const SinkTarget& target);  ///< Null for rasters.
+  bool is_cog;
+};
+constexpr std::array<ExportFormat, 5> kFormats = {
+    {{"PLY", ".ply", make_ply_sink, false},
+     {"GPKG", ".gpkg", make_geopackage_sink, false},
+     {"FlatGeobuf", ".fgb", make_flatgeobuf_sink, false},
+     {"GTiff", ".tif", nullptr, false},
+     {"COG", "", nullptr, true}}};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+const ExportFormat& format_of(const ExportOptions& options) {
+  const std::string extension = lower(std::filesystem::path(options.output).extension().string());
+  for (const ExportFormat& format : kFormats) {
+    if (options.format.empty() ? (!extension.empty() && (extension == format.extension ||
+                                                         (extension == ".tiff" &&
+                                                          std::string(".tif") == format.extension)))
+                               : lower(options.format) == lower(format.name)) {
+      return format;
+    }
+  }
+  if (!options.format.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "unknown format; known are PLY, GPKG, FlatGeobuf, GTiff, COG", options.format);
+  }
+  throw Error(ErrorCode::invalid_argument,
+              "the extension names no format; known are .ply, .gpkg, .fgb, .tif, or give --format",
+              options.output);
+}
+
+/// Shares of --memory. What is left is the program itself and the allocator's slack.
+struct MemoryShares {
+  static constexpr std::uint64_t kProgram = std::uint64_t{16} << 20;
+  explicit MemoryShares(std::uint64_t bytes)
+      : part((bytes - kProgram) / 2), buffers(bytes / 16), index(bytes / 4) {}
+  std::uint64_t part;     ///< One refined part, and the patch made from it.
+  std::uint64_t buffers;  ///< Each of: pixels, GDAL's cache, the open border.
+  std::uint64_t index;    ///< A format's index of features.
+};
+
+MemoryShares memory_of(const ExportOptions& options) {
+  constexpr std::uint64_t kLeast = std::uint64_t{32} << 20;
+  const std::uint64_t bytes =
+      options.memory.empty() ? std::uint64_t{1} << 30 : parse_bytes(options.memory);
+  if (bytes < kLeast)
+    throw Error(ErrorCode::invalid_argument, "--memory must be at least 32M", options.memory);
+  return MemoryShares(bytes);
+}
+
+void check_options(const ExportOptions& options, const ExportFormat& format) {
+  if (options.error && !(*options.error >= 0)) {
+    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
+  }
+  for (const double size : options.pixel_size) {
+    if (!(size > 0 && std::isfinite(size)))
+      throw Error(ErrorCode::invalid_argument, "--pixel-size must be a number > 0, in map units");
+  }
+  const bool is_raster = format.make_sink == nullptr;
+  if (!is_raster &&
+      (!options.pixel_size.empty() || options.nodata || !options.creation_options.empty())) {
+    throw Error(ErrorCode::invalid_argument,
+                "--pixel-size, --nodata and --co are for rasters (.tif)", options.output);
+  }
+  if (is_raster && !options.region.polygon.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "a raster has a --window; cut it by a polygon with gdalwarp -cutline");
+  }
+  check_output(options.output, options.overwrite);
+}
+
+/// The size of a pixel: what was asked, or the grid's step where the samples fill the grid.
+std::array<double, 2> pixel_size_of(const ExportOptions& options, const StoreFile& store) {
+  if (!options.pixel_size.empty()) return {options.pixel_size.front(), options.pixel_size.back()};
+  const StoreFacts& facts = store.facts();
+  const auto source = metadata_of(store).value("source", nlohmann::json::object());
+  const auto number = [&](const char* key) { return source.value(key, std::uint64_t{0}); };
+  const std::uint64_t samples =
+      facts.source_samples + number("void_samples") + number("lone_samples");
+  const std::uint64_t places =
+      (static_cast<std::uint64_t>(facts.bounds.max_x - facts.bounds.min_x) + 1) *
+      (static_cast<std::uint64_t>(facts.bounds.max_y - facts.bounds.min_y) + 1);
+  if (samples < places) {
+    throw Error(ErrorCode::invalid_argument,
+                "this terrain was not built from a raster, so it has no pixel size of its own; "
+                "give --pixel-size",
+                store.path());
+  }
+  return {facts.map.step_x, facts.map.step_y};
+}
+
+/// What was made, for the report.
+struct Exported {
+  std::uint64_t vertices = 0, triangles = 0, cells = 0;
+  std::int64_t columns = 0, rows = 0;
+};
+
+using Report = std::function<void(double)>;
+
+Exported export_triangles(const PartRefiner& refiner, const ExportFormat& format,
+                          const SinkTarget& target, const Report& report) {
+  Exported made;
+  const std::unique_ptr<TinSink> sink = format.make_sink(target);
+  PatchMaker maker(refiner.terrain().store(), refiner.request().region);
+  walk_cells(refiner, [&](const GridCell& cell, const RefinedTin& refined, double done) {
+    sink->add(maker.make(cell, refined, target.border_bytes));
+    ++made.cells;
+    report(done);
+  });
+  maker.finish();
+  sink->publish();
+  made.vertices = maker.vertices();
+  made.triangles = maker.triangles();
+  return made;
+}
+
+Exported export_pixels(const PartRefiner& refiner, const ExportOptions& options,
+                       const RasterTarget& target, const Report& report) {
+  const StoreFile& store = refiner.terrain().store();
+  std::optional<Window> window;
+  if (const auto region = region_of(options.region, target.crs.wkt))
+    window = std::get<Window>(*region);
+  const PixelGrid grid(store.facts(), pixel_size_of(options, store), window);
+  export_raster(refiner, grid, target, report);
+  Exported made;
+  made.columns = grid.columns();
+  made.rows = grid.rows();
+  return made;
+}
+
+void warn_without_index(const ExportFormat& format, const SinkTarget& target,
+                        const Context& context) {
+  if (context.quiet || format.make_sink != make_flatgeobuf_sink || flatgeobuf_index_fits(target))
+    return;
+  std::fprintf(stderr,
+               "ptin: warning: %s has no spatial index: it would take more than a quarter of the "
+               "memory given; write .gpkg, or give more --memory\n",
+               target.path.c_str());
+}
+
+Exported export_as(const ExportFormat& format, const ExportOptions& options,
+                   const ProgressiveTin& terrain, const Context& context) {
+  const CrsFacts crs = crs_facts(terrain.store());
+  const MemoryShares memory = memory_of(options);
+  PartRequest request;
+  if (format.make_sink != nullptr) request.region = region_of(options.region, crs.wkt);
+  request.tolerance = options.error;
+  request.memory_limit_bytes = memory.part;
+  request.stop = context.stop;
+  const PartRefiner refiner(terrain, request);
+
+  Progress progress(Progress::style_for(context.quiet, stderr));
+  const Report report = [&](double done) {
+    constexpr double kSteps = 10'000.0;
+    progress.report("exporting", static_cast<std::uint64_t>(done * kSteps), 10'000);
+  };
+  report(0.0);
+  Exported made;
+  if (format.make_sink != nullptr) {
+    SinkTarget target{options.output, options.overwrite, crs, memory.buffers, memory.index, 0};
+    target.most_triangles = 2 * (refiner.records() + terrain.store().t0().vertices.size());
+    made = export_triangles(refiner, format, target, report);
+    progress.finish();
+    warn_without_index(format, target, context);
+  } else {
+    const RasterTarget target{options.output,
+                              options.overwrite,
+                              format.is_cog,
+                              options.nodata.value_or(default_nodata(terrain.store().facts())),
+                              options.creation_options,
+                              crs,
+                              memory.buffers};
+    made = export_pixels(refiner, options, target, report);
+  }
+  progress.finish();
+  return made;
+}
+
+int run_export(const ExportOptions& options, const Context& context) {
+  const ExportFormat& format = format_of(options);
+  check_options(options, format);
+  const auto start = std::chrono::steady_clock::now();
+  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Exported made = export_as(format, options, terrain, context);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const Certificate certificate = certify_below(terrain.store(), options.error.value_or(-1.0));
+  const std::uint64_t bytes = std::filesystem::file_size(options.output);
+  const bool is_raster = format.make_sink == nullptr;
+  if (context.json) {
+    nlohmann::json answer = {{"output", options.output},
+                             {"format", format.name},
+                             {"certified_error", certificate.error},
+                             {"certified_deviation", certificate.deviation},
+                             {"bytes", bytes},
+                             {"seconds", seconds}};
+    if (is_raster) {
+      answer["width"] = made.columns;
+      answer["height"] = made.rows;
+    } else {
+      answer["vertices"] = made.vertices;
+      answer["triangles"] = made.triangles;
+      answer["cells"] = made.cells;
+    }
+    print_json(answer);
+  } else if (!context.quiet) {
+    const std::string size =
+        is_raster ? grouped(static_cast<std::uint64_t>(made.columns)) + " x " +
+                        grouped(static_cast<std::uint64_t>(made.rows)) + " pixels"
+                  : grouped(made.vertices) + " vertices, " + grouped(made.triangles) +
+                        " triangles in " + grouped(made.cells) + " cells";
+    std::printf("%s: %s, %s, %.2f s; within %s at every sample, %s at any point\n",
+                options.output.c_str(), size.c_str(), human_bytes(bytes).c_str(), seconds,
+                short_number(certificate.error).c_str(),
+                short_number(certificate.deviation).c_str());
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+Action declare_export(CLI::App& app, Context& context) {
+  const auto options = std::make_shared<ExportOptions>();
+  add_terrain_options(app, options->terrain, false);
+  add_region_options(app, options->region);
+  app.remove_option(app.get_option("--point"));
+  app.add_option("--error", options->error,
+                 "Certified error allowed, in the height's unit (default: the full TIN)")
+      ->type_name("E");
+  app.add_option("-o,--output", options->output,
+                 "The file to write; its extension chooses the format: .ply, .gpkg, .fgb, .tif")
+      ->type_name("OUT")
+      ->required();
+  app.add_option("--format,--of", options->format,
+                 "The format: PLY, GPKG, FlatGeobuf, GTiff, COG (default: by the extension)")
+      ->type_name("NAME");
+  app.add_option("--pixel-size", options->pixel_size,
+                 "Rasters: the size of a pixel in map units, one number or two (default: the\n"
+                 "source raster's)")
+      ->expected(1, 2)
+      ->type_name("SIZE");
+  app.add_option("--nodata", options->nodata,
+                 "Rasters: the value where there is no surface (default -9999)")
+      ->type_name("V");
+  app.add_option("--co", options->creation_options, "Rasters: a creation option of GDAL's driver")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false);
+  app.add_option("--memory", options->memory, "Memory to work in, as 512M or 2G (default 1G)")
+      ->type_name("SIZE");
+  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
+  add_common_options(app, context, true);
+  return [options, &context] { return run_export(*options, context); };
+}
+
+}  // namespace ptin::tools
