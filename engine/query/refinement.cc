@@ -16,20 +16,6 @@ namespace {
 
 constexpr std::size_t kLookAhead = 16;  // Records ahead whose hash slots are fetched.
 
-SplitSite site_of(VertexId u, VertexId w, VertexId vl, VertexId vr, std::uint32_t flags) noexcept {
-  const auto class_of = [flags](std::uint32_t bit) {
-    return (flags & bit) != 0 ? TriangleClass::kVoid : TriangleClass::kSurface;
-  };
-  return {u,
-          w,
-          vl,
-          vr,
-          (flags & VertexSplit::kNoLeft) == 0,
-          (flags & VertexSplit::kNoRight) == 0,
-          class_of(VertexSplit::kLeftVoid),
-          class_of(VertexSplit::kRightVoid)};
-}
-
 bool has_heights(const Tin& tin, VertexId a, VertexId b, VertexId c) noexcept {
   return (tin.has_height[a] & tin.has_height[b] & tin.has_height[c]) != 0;
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/mesh/split.h"
 #include "engine/query/accounting.h"
 #include "engine/query/retrieval.h"
 
@@ -46,6 +47,22 @@ class RankOrder {
 [[nodiscard]] inline std::uint32_t triangles_of(std::uint32_t flags) noexcept {
   return ((flags & VertexSplit::kNoLeft) == 0 ? 1 : 0) +
          ((flags & VertexSplit::kNoRight) == 0 ? 1 : 0);
+}
+
+/// A record's split in local indices.
+[[nodiscard]] inline SplitSite site_of(VertexId u, VertexId w, VertexId vl, VertexId vr,
+                                       std::uint32_t flags) noexcept {
+  const auto class_of = [flags](std::uint32_t bit) {
+    return (flags & bit) != 0 ? TriangleClass::kVoid : TriangleClass::kSurface;
+  };
+  return {u,
+          w,
+          vl,
+          vr,
+          (flags & VertexSplit::kNoLeft) == 0,
+          (flags & VertexSplit::kNoRight) == 0,
+          class_of(VertexSplit::kLeftVoid),
+          class_of(VertexSplit::kRightVoid)};
 }
 
 /// @throws Error corruption  always: names page and vertex

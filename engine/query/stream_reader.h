@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Progressive transmission, the receiver: bytes in as they come, a valid TIN at any time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/tin.h"
+#include "engine/query/certificate.h"
+#include "engine/query/split_code.h"
+#include "engine/query/stream_format.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+/// Follows a stream, and after it streams that go on from it. Threads: one owner.
+class StreamReader {
+ public:
+  /// @param name  Of the stream, in errors.
+  explicit StreamReader(std::string name) : name_(std::move(name)) {}
+
+  /// Takes the next bytes, however they were cut, and applies every frame that is whole by now.
+  /// Behind the end of a stream another one may follow, which goes on from there.
+  /// @throws Error corruption  bytes that no program wrote (FORMAT.md, "A reader of streams must
+  /// reject"), a stream that does not go on from this mesh; names frame and byte. The mesh stays
+  /// valid, its certificate that of the last whole frame; nothing more can be fed.
+  ///               unsupported_version
+  /// Cost: linear; a frame that is not whole waits in memory, nothing is reserved before it came.
+  void feed(std::span<const std::byte> bytes);
+
+  /// Gives up the rest of a stream that was cut: what is fed next is the head of another one.
+  void begin_next();
+
+  /// False until T0 arrived; then the rest can be asked.
+  [[nodiscard]] bool has_mesh() const noexcept { return !tin_.triangles.empty(); }
+  /// The mesh: every vertex and triangle is alive, and those that are there keep their ids until
+  /// another stream begins.
+  [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
+  /// What the mesh is certified for, where the stream was asked for; at least base_error.
+  [[nodiscard]] const Certificate& certificate() const noexcept { return certificate_; }
+  /// Of the file that the stream came from.
+  [[nodiscard]] const StoreFacts& facts() const noexcept { return facts_; }
+  [[nodiscard]] const std::string& metadata() const noexcept { return metadata_; }
+  [[nodiscard]] std::uint64_t t0_vertices() const noexcept { return t0_vertices_; }
+
+  /// Splits of the current stream: those applied, those that it has in all.
+  [[nodiscard]] std::uint64_t splits() const noexcept { return splits_; }
+  [[nodiscard]] std::uint64_t splits_in_all() const noexcept { return splits_in_all_; }
+  /// True once the end of the current stream arrived.
+  [[nodiscard]] bool is_complete() const noexcept {
+    return expects_ == Expects::kHead && has_mesh();
+  }
+  /// Bytes fed that belong to whole frames.
+  [[nodiscard]] std::uint64_t bytes_used() const noexcept { return offset_; }
+
+ private:
+  enum class Expects { kHead, kStart, kT0, kSplits, kNothing };
+
+  /// Bytes of what comes next, as far as is known.
+  [[nodiscard]] std::size_t wanted() const;
+  void take(std::span<const std::byte> bytes);
+  void take_head(std::span<const std::byte> bytes);
+  void take_frame(const stream::FrameHead& head, std::span<const std::byte> payload);
+  void take_start(std::span<const std::byte> payload);
+  void take_t0(std::span<const std::byte> payload);
+  void take_splits(std::span<const std::byte> payload);
+  void take_end(std::span<const std::byte> payload);
+  void apply(const LocalSplit& split);
+  [[nodiscard]] std::string place() const;
+  [[noreturn]] void reject(const std::string& why) const;
+
+  std::string name_;
+  std::vector<std::byte> waiting_;  ///< Of a frame that is not whole.
+  std::uint64_t offset_ = 0;
+  std::uint32_t sequence_ = 0;
+  Expects expects_ = Expects::kHead;
+
+  std::uint64_t fingerprint_ = 0;
+  StoreFacts facts_;
+  std::string metadata_;
+  std::uint64_t base_vertices_ = 0, base_digest_ = 0;
+  std::uint64_t t0_vertices_ = 0;
+  std::uint64_t splits_ = 0, splits_in_all_ = 0;
+  std::uint64_t digest_ = 0;  ///< Of the mesh.
+  Certificate certificate_;
+  Tin tin_;
+  std::optional<SplitCode> code_;
+};
+
+}  // namespace ptin

@@ -1,0 +1,491 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Progressive transmission: streams against refinements, cut anywhere, going on from others,
+// damaged.
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/error.h"
+#include "engine/mesh/validate.h"
+#include "engine/query/progressive_tin.h"
+#include "engine/query/stream_reader.h"
+#include "engine/query/stream_writer.h"
+#include "tests/query/random_predicate.h"
+#include "tests/query/reference_hierarchy.h"
+
+namespace ptin {
+namespace {
+
+using reference::canonical;
+using reference::Hierarchy;
+using reference::TemporaryStore;
+using Bytes = std::vector<std::byte>;
+
+struct Asked {
+  explicit Asked(std::uint64_t seed)
+      : random(seed),
+        hierarchy(reference::random_hierarchy(seed)),
+        file(hierarchy),
+        store(file.open()),
+        tin(store) {}
+  [[nodiscard]] RefinedTin fresh(PredicatePtr p, std::optional<std::uint64_t> vertices = {}) const {
+    RefineRequest request;
+    request.also = p.get();
+    request.vertices = vertices;
+    return tin.refine(request);
+  }
+  [[nodiscard]] std::size_t count(const AttributePredicate& p) const {
+    return static_cast<std::size_t>(std::count_if(
+        hierarchy.records.begin(), hierarchy.records.end(),
+        [&](const auto& r) { return p.holds(attributes_of(r, hierarchy.facts.heights)); }));
+  }
+  std::mt19937_64 random;
+  Hierarchy hierarchy;
+  TemporaryStore file;
+  std::shared_ptr<const StoreFile> store;
+  ProgressiveTin tin;
+};
+
+Bytes sent(const StoreFile& store, const StreamRequest& request, StreamSummary* summary = nullptr) {
+  Bytes bytes;
+  const StreamSummary s = write_stream(store, request, [&](std::span<const std::byte> piece) {
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+  });
+  if (s.bytes != bytes.size()) {
+    throw std::runtime_error("the summary says another number of bytes than were sent");
+  }
+  if (summary != nullptr) {
+    *summary = s;
+  }
+  return bytes;
+}
+
+std::span<const std::byte> first(const Bytes& bytes, std::size_t n) { return {bytes.data(), n}; }
+
+RC_GTEST_PROP(Stream, GivesTheRefinementByWhatWasWanted, (std::uint64_t seed)) {
+  Asked asked(seed);
+  StreamRequest request;
+  request.wanted = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
+  request.metadata = "{\"n\":" + std::to_string(seed) + "}";
+  const Bytes bytes = sent(*asked.store, request);
+  StreamReader reader("stream");
+  for (std::size_t at = 0; at < bytes.size();) {  // in pieces of any size
+    const std::size_t n = std::min<std::size_t>(1 + asked.random() % 700, bytes.size() - at);
+    RC_ASSERT(!reader.is_complete());
+    reader.feed(std::span(bytes).subspan(at, n));
+    at += n;
+  }
+  RC_ASSERT(reader.is_complete());
+  RC_ASSERT(reader.bytes_used() == bytes.size());
+  RC_ASSERT(validate(reader.tin()).empty());
+  RC_ASSERT(canonical(reader.tin()) == canonical(asked.fresh(request.wanted).tin));
+  RC_ASSERT(reader.metadata() == request.metadata);
+  RC_ASSERT(reader.splits() == asked.count(*request.wanted));
+  RC_ASSERT(reader.t0_vertices() == asked.hierarchy.t0.vertices.size());
+  StoreFacts facts = asked.hierarchy.facts;
+  facts.source_samples = 0;
+  facts.page_bytes = reader.facts().page_bytes;
+  RC_ASSERT(reader.facts() == facts);
+}
+
+/// Heights too, which canonical() leaves out.
+std::vector<std::tuple<VertexKey, HeightBits, std::uint8_t>> vertices_of(const Tin& tin) {
+  std::vector<std::tuple<VertexKey, HeightBits, std::uint8_t>> all;
+  for (VertexId v = 0; v < tin.vertices.size(); ++v) {
+    all.emplace_back(key_of(tin.position(v)), tin.vertices[v].height, tin.has_height[v]);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+TEST(Stream, GivesTheFullTinBackExactly) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const Asked asked(seed);
+    StreamReader reader("stream");
+    reader.feed(sent(*asked.store, {}));
+    EXPECT_EQ(canonical(reader.tin()), canonical(asked.hierarchy.full)) << "seed " << seed;
+    EXPECT_EQ(vertices_of(reader.tin()), vertices_of(asked.hierarchy.full)) << "seed " << seed;
+    EXPECT_EQ(reader.certificate().error, asked.hierarchy.facts.base_error);
+  }
+}
+
+/// What a cut stream has to be: the first records of the total order, and their certificate.
+void require_prefix(const StreamReader& reader, const Asked& asked, const PredicatePtr& wanted) {
+  RC_ASSERT(validate(reader.tin()).empty());
+  const RefinedTin fresh = asked.fresh(wanted, reader.t0_vertices() + reader.splits());
+  RC_ASSERT(reader.tin().vertices.size() == fresh.vertices);
+  RC_ASSERT(canonical(reader.tin()) == canonical(fresh.tin));
+  RefineRequest everywhere;
+  everywhere.vertices = fresh.vertices;
+  if (wanted == nullptr) {
+    const RefinedTin same = asked.tin.refine(everywhere);
+    RC_ASSERT(reader.certificate().error == same.certified_error);
+    RC_ASSERT(reader.certificate().deviation == same.certified_deviation);
+  }
+}
+
+RC_GTEST_PROP(Stream, CutAnywhereIsTheFirstOfTheTotalOrderWithItsCertificate,
+              (std::uint64_t seed)) {
+  Asked asked(seed);
+  StreamRequest request;
+  if (asked.random() % 2 == 0) {
+    request.wanted = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
+  }
+  const Bytes bytes = sent(*asked.store, request);
+  for (int i = 0; i < 6; ++i) {
+    const std::size_t cut = asked.random() % (bytes.size() + 1);
+    StreamReader reader("stream");
+    reader.feed(first(bytes, cut));
+    RC_ASSERT(reader.is_complete() == (cut == bytes.size()));
+    RC_ASSERT(reader.bytes_used() <= cut);
+    if (reader.has_mesh()) {
+      require_prefix(reader, asked, request.wanted);
+    }
+  }
+}
+
+TEST(Stream, CanBeCutAtEveryByte) {
+  const Asked asked(7);
+  const Bytes bytes = sent(*asked.store, {});
+  StreamReader reader("stream");
+  std::uint64_t splits = UINT64_MAX;
+  double error = INFINITY;
+  for (const std::byte b : bytes) {
+    reader.feed({&b, 1});
+    if (reader.has_mesh() && reader.splits() != splits) {
+      splits = reader.splits();
+      require_prefix(reader, asked, nullptr);
+      EXPECT_LE(reader.certificate().error, error);
+      error = reader.certificate().error;
+    }
+  }
+  EXPECT_TRUE(reader.is_complete());
+  EXPECT_EQ(splits, asked.hierarchy.records.size());
+}
+
+RC_GTEST_PROP(Stream, ADeltaBringsWhatIsMissingAndNothingElse, (std::uint64_t seed)) {
+  Asked asked(seed);
+  StreamReader reader("stream");
+  std::vector<PredicatePtr> served;
+  for (int i = 0; i < 4; ++i) {
+    StreamRequest request;
+    request.wanted = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
+    request.held.predicate = i == 0 ? nullptr : any_of(served);
+    const std::size_t before = i == 0 ? 0 : asked.count(*request.held.predicate);
+    served.push_back(request.wanted);
+    StreamSummary summary;
+    reader.feed(sent(*asked.store, request, &summary));
+    RC_ASSERT(reader.is_complete());
+    RC_ASSERT(summary.splits == asked.count(*any_of(served)) - before);
+    RC_ASSERT(validate(reader.tin()).empty());
+    RC_ASSERT(canonical(reader.tin()) == canonical(asked.fresh(any_of(served)).tin));
+  }
+}
+
+RC_GTEST_PROP(Stream, ACutStreamIsTakenUpWhereItEnded, (std::uint64_t seed)) {
+  Asked asked(seed);
+  StreamRequest request;
+  request.wanted = reference::random_predicate(asked.random, asked.hierarchy.facts, 1);
+  const Bytes bytes = sent(*asked.store, request);
+  StreamReader reader("stream");
+  reader.feed(first(bytes, bytes.size() / 4 + asked.random() % (bytes.size() - bytes.size() / 4)));
+  if (!reader.has_mesh()) {
+    return;
+  }
+  const std::uint64_t had = reader.splits();
+  StreamRequest rest = request;
+  rest.held = {request.wanted, had};
+  reader.begin_next();
+  reader.feed(sent(*asked.store, rest));
+  RC_ASSERT(reader.splits() == asked.count(*request.wanted) - had);
+  RC_ASSERT(canonical(reader.tin()) == canonical(asked.fresh(request.wanted).tin));
+}
+
+TEST(Stream, SendsTheMostImportantSplitsWhenFewAreAskedFor) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Asked asked(seed);
+    StreamRequest request;
+    request.most_splits = asked.hierarchy.records.size() / 3;
+    StreamReader reader("stream");
+    StreamSummary summary;
+    reader.feed(sent(*asked.store, request, &summary));
+    EXPECT_TRUE(reader.is_complete());
+    require_prefix(reader, asked, nullptr);
+    EXPECT_EQ(summary.certificate.error, reader.certificate().error);
+  }
+}
+
+/// The triangles that a level crosses: one corner at or above it, one below.
+std::vector<reference::Corners> crossing(const Tin& tin, double level, const HeightEncoding& h) {
+  std::vector<reference::Corners> all;
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    int above = 0;
+    for (const VertexId v : tin.triangles[t].v) {
+      above += h.height(tin.vertices[v].height) >= level ? 1 : 0;
+    }
+    if (tin.classes[t] == TriangleClass::kSurface && above != 0 && above != 3) {
+      all.push_back(reference::corners_of(tin, t));
+    }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+TEST(Stream, OfALevelHasItsIsolineExactly) {
+  std::size_t crossed = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const Asked asked(seed);
+    const StoreFacts& f = asked.hierarchy.facts;
+    if (!(f.min_height < f.max_height)) {
+      continue;
+    }
+    const double level = f.min_height + 0.37 * (f.max_height - f.min_height);
+    StreamRequest request;
+    request.wanted = contains_height(level, f.heights);
+    StreamReader reader("stream");
+    reader.feed(sent(*asked.store, request));
+    const auto wanted = crossing(asked.hierarchy.full, level, f.heights);
+    EXPECT_EQ(crossing(reader.tin(), level, f.heights), wanted) << "seed " << seed;
+    crossed += wanted.size();
+  }
+  EXPECT_GT(crossed, 100u);
+}
+
+TEST(Stream, IsTheSameTwice) {
+  const Asked asked(12);
+  EXPECT_EQ(sent(*asked.store, {}), sent(*asked.store, {}));
+}
+
+TEST(Stream, RefusesMoreThanItsMemoryBeforeSendingAnything) {
+  const Asked asked(2);
+  StreamRequest request;
+  request.memory_limit_bytes = 10'000;
+  bool sent_some = false;
+  try {
+    write_stream(*asked.store, request, [&](std::span<const std::byte>) { sent_some = true; });
+    FAIL() << "more than the limit was taken";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
+  }
+  EXPECT_FALSE(sent_some);
+}
+
+TEST(Stream, StopsWhenCancelled) {
+  const Asked asked(2);
+  std::stop_source stop;
+  stop.request_stop();
+  StreamRequest request;
+  request.stop = stop.get_token();
+  EXPECT_THROW(sent(*asked.store, request), Error);
+}
+
+// -- What a reader must reject (storage/FORMAT.md, "Streams") ------------------------------------
+
+ErrorCode rejected(const Bytes& bytes) {
+  StreamReader reader("stream");
+  try {
+    reader.feed(bytes);
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("stream"), std::string::npos);
+    if (reader.has_mesh()) {
+      EXPECT_EQ(validate(reader.tin()), "");
+    }
+    EXPECT_THROW(reader.feed(bytes), Error) << "a rejected stream goes on";
+    return e.code();
+  }
+  return ErrorCode::internal;
+}
+
+TEST(StreamReader, RejectsAnyByteThatWasChanged) {
+  const Asked asked(7);
+  const Bytes bytes = sent(*asked.store, {});
+  std::mt19937_64 random(1);
+  for (std::size_t i = 0; i < bytes.size(); i += 1 + random() % 7) {
+    if (i == 10 || i == 11) {
+      continue;  // a newer minor version is read
+    }
+    Bytes changed = bytes;
+    changed[i] ^= static_cast<std::byte>(1U << (random() % 8));
+    StreamReader reader("stream");
+    try {
+      reader.feed(changed);
+      EXPECT_FALSE(reader.is_complete()) << "byte " << i;  // a length that grew waits for more
+    } catch (const Error& e) {
+      EXPECT_TRUE(e.code() == ErrorCode::corruption || e.code() == ErrorCode::unsupported_version);
+    }
+  }
+}
+
+/// A stream taken apart, changed and sealed again.
+struct Frames {
+  stream::Head head;
+  std::vector<std::pair<stream::FrameHead, Bytes>> frames;
+
+  explicit Frames(const Bytes& bytes) {
+    std::memcpy(&head, bytes.data(), sizeof head);
+    for (std::size_t at = sizeof head; at < bytes.size();) {
+      stream::FrameHead f;
+      std::memcpy(&f, bytes.data() + at, sizeof f);
+      at += sizeof f;
+      const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+      frames.emplace_back(f, Bytes(begin, begin + static_cast<std::ptrdiff_t>(f.bytes)));
+      at += f.bytes;
+    }
+  }
+  [[nodiscard]] Bytes sealed() {
+    Bytes bytes;
+    const auto add = [&](std::span<const std::byte> b) {
+      bytes.insert(bytes.end(), b.begin(), b.end());
+    };
+    add(std::as_bytes(std::span(&head, 1)));
+    for (auto& [f, payload] : frames) {
+      f.bytes = static_cast<std::uint32_t>(payload.size());
+      f.checksum = stream::checksum_of_frame(f, payload);
+      add(std::as_bytes(std::span(&f, 1)));
+      add(payload);
+    }
+    return bytes;
+  }
+  template <class T, class Change>
+  void edit(std::size_t frame, const Change& change) {
+    T object;
+    std::memcpy(&object, frames[frame].second.data(), sizeof object);
+    change(object);
+    std::memcpy(frames[frame].second.data(), &object, sizeof object);
+  }
+};
+
+class StreamReaderRejects : public testing::Test {
+ protected:
+  StreamReaderRejects() : frames(sent(*asked.store, {})) {}
+  void expect(ErrorCode code = ErrorCode::corruption) {
+    EXPECT_EQ(rejected(frames.sealed()), code);
+  }
+  Asked asked{7};
+  Frames frames;
+};
+
+TEST_F(StreamReaderRejects, NothingWhenNothingIsWrong) {
+  ASSERT_GE(frames.frames.size(), 4u);
+  expect(ErrorCode::internal);
+}
+TEST_F(StreamReaderRejects, AnotherMagic) { frames.head.magic[1] = 'X', expect(); }
+TEST_F(StreamReaderRejects, ANewerMajorVersion) {
+  frames.head.major_version = 2, expect(ErrorCode::unsupported_version);
+}
+TEST_F(StreamReaderRejects, MajorVersionZero) { frames.head.major_version = 0, expect(); }
+TEST_F(StreamReaderRejects, AReservedFieldOfTheHead) { frames.head.reserved = 1, expect(); }
+TEST_F(StreamReaderRejects, AFrameThatIsMissing) {
+  frames.frames.erase(frames.frames.begin() + 2), expect();
+}
+TEST_F(StreamReaderRejects, AKindThatCannotComeHere) { frames.frames[1].first.kind = 3, expect(); }
+TEST_F(StreamReaderRejects, AnUnknownKind) { frames.frames[2].first.kind = 9, expect(); }
+TEST_F(StreamReaderRejects, AReservedFieldOfAFrame) {
+  frames.frames[2].first.reserved = 1, expect();
+}
+TEST_F(StreamReaderRejects, AStartThatIsTooShort) { frames.frames[0].second.resize(100), expect(); }
+TEST_F(StreamReaderRejects, AnUnknownFlag) {
+  frames.edit<stream::Start>(0, [](auto& s) { s.flags = 2; }), expect();
+}
+TEST_F(StreamReaderRejects, ADeltaWithoutWhatItGoesOnFrom) {
+  frames.edit<stream::Start>(0, [](auto& s) { s.flags = stream::kIsDelta; }), expect();
+}
+TEST_F(StreamReaderRejects, AMapThatIsNoMap) {
+  frames.edit<stream::Start>(0, [](auto& s) { s.step_x = 0; }), expect();
+}
+TEST_F(StreamReaderRejects, NegativeBounds) {
+  frames.edit<stream::Start>(0, [](auto& s) { s.error = layout::to_bits(-1.0); }), expect();
+}
+TEST_F(StreamReaderRejects, MetadataOfAnotherLength) {
+  frames.edit<stream::Start>(0, [](auto& s) { s.metadata_bytes = 7; }), expect();
+}
+TEST_F(StreamReaderRejects, AnotherDigestThanThatOfT0) {
+  frames.edit<stream::Start>(0, [](auto& s) { s.base_digest ^= 1; }), expect();
+}
+TEST_F(StreamReaderRejects, CountsThatAreNotThoseOfT0) {
+  frames.edit<stream::T0Counts>(1, [](auto& c) { c.triangles += 1; }), expect();
+}
+TEST_F(StreamReaderRejects, AT0WithoutATriangle) {
+  frames.edit<stream::T0Counts>(1, [](auto& c) { c.triangles = 0; }), expect();
+}
+TEST_F(StreamReaderRejects, AT0WhoseVerticesDoNotAscend) {
+  auto& payload = frames.frames[1].second;
+  std::swap_ranges(payload.begin() + 8, payload.begin() + 24, payload.begin() + 24);
+  expect();
+}
+TEST_F(StreamReaderRejects, AT0ThatIsNoTin) {
+  auto& payload = frames.frames[1].second;
+  std::swap_ranges(payload.end() - 16, payload.end() - 12, payload.end() - 12);
+  expect();
+}
+TEST_F(StreamReaderRejects, MoreSplitsThanWereSaid) {
+  frames.edit<stream::Start>(0, [](auto& s) { s.splits -= 1; }), expect();
+}
+TEST_F(StreamReaderRejects, MoreSplitsThanTheirBytesCanHold) {
+  frames.edit<stream::Start>(0, [](auto& s) { s.splits = 1U << 30; });
+  frames.edit<stream::Splits>(2, [](auto& s) { s.count = 1U << 29; }), expect();
+}
+TEST_F(StreamReaderRejects, AFrameWithoutASplit) {
+  frames.edit<stream::Splits>(2, [](auto& s) { s.count = 0; }), expect();
+}
+TEST_F(StreamReaderRejects, ABoundThatIsNoNumber) {
+  frames.edit<stream::Splits>(2, [](auto& s) { s.deviation = UINT64_MAX; }), expect();
+}
+TEST_F(StreamReaderRejects, ACodeThatIsCutShort) {
+  frames.frames[2].second.resize(frames.frames[2].second.size() - 8), expect();
+}
+TEST_F(StreamReaderRejects, BytesBehindTheCode) {
+  frames.frames[2].second.push_back(std::byte{1}), expect();
+}
+TEST_F(StreamReaderRejects, AnEndThatComesTooEarly) {
+  frames.edit<stream::Start>(0, [](auto& s) { s.splits += 1; }), expect();
+}
+TEST_F(StreamReaderRejects, AMeshThatIsNotTheOneSent) {
+  frames.edit<stream::End>(frames.frames.size() - 1, [](auto& e) { e.digest ^= 1; }), expect();
+}
+TEST_F(StreamReaderRejects, AStreamThatBeginsAnewBehindAnother) {
+  Bytes bytes = frames.sealed();
+  const Bytes again = bytes;
+  bytes.insert(bytes.end(), again.begin(), again.end());
+  EXPECT_EQ(rejected(bytes), ErrorCode::corruption);
+}
+TEST_F(StreamReaderRejects, ADeltaOfAnotherFileOrToAnotherMesh) {
+  StreamRequest delta;
+  delta.held.predicate = error_above(5.0);
+  StreamReader reader("stream");
+  reader.feed(frames.sealed());  // everything, which is more than was said
+  EXPECT_THROW(reader.feed(sent(*asked.store, delta)), Error);
+  const Asked other(8);
+  delta.held.predicate = everything();
+  StreamReader second("stream");
+  second.feed(frames.sealed());
+  EXPECT_THROW(second.feed(sent(*other.store, delta)), Error);
+}
+TEST_F(StreamReaderRejects, AnyCodeOrIsAValidTin) {
+  std::mt19937_64 random(3);
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    Frames changed = frames;
+    auto& payload = changed.frames[2 + random() % (frames.frames.size() - 3)].second;
+    payload[24 + random() % (payload.size() - 24)] ^= static_cast<std::byte>(1U << (random() % 8));
+    StreamReader reader("stream");
+    try {
+      reader.feed(changed.sealed());  // some of the last bits of a code say nothing
+      EXPECT_EQ(canonical(reader.tin()), canonical(asked.hierarchy.full));
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::corruption);
+      ++refused;
+    }
+    EXPECT_EQ(validate(reader.tin()), "");
+  }
+  EXPECT_GT(refused, 150);
+}
+
+}  // namespace
+}  // namespace ptin
