@@ -37,6 +37,11 @@ int FileLayer::create(const std::string& path, int& fd) noexcept {
   return fd >= 0 ? 0 : errno;
 }
 
+int FileLayer::open(const std::string& path, int& fd) noexcept {
+  fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  return fd >= 0 ? 0 : errno;
+}
+
 int FileLayer::close(int fd) noexcept { return ::close(fd) == 0 ? 0 : errno; }
 
 int FileLayer::write_at(int fd, std::span<const std::byte> bytes, std::uint64_t offset,
@@ -57,6 +62,10 @@ int FileLayer::allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexc
   return ::fallocate(fd, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)) == 0 ? 0 : errno;
 }
 
+int FileLayer::truncate(int fd, std::uint64_t bytes) noexcept {
+  return ::ftruncate(fd, static_cast<off_t>(bytes)) == 0 ? 0 : errno;
+}
+
 int FileLayer::sync(int fd) noexcept { return ::fsync(fd) == 0 ? 0 : errno; }
 
 int FileLayer::rename(const std::string& from, const std::string& to, bool replace) noexcept {
@@ -71,6 +80,14 @@ int FileLayer::rename(const std::string& from, const std::string& to, bool repla
 
 int FileLayer::unlink(const std::string& path) noexcept {
   return ::unlink(path.c_str()) == 0 ? 0 : errno;
+}
+
+int FileLayer::make_folder(const std::string& path) noexcept {
+  return ::mkdir(path.c_str(), 0777) == 0 ? 0 : errno;
+}
+
+int FileLayer::remove_folder(const std::string& path) noexcept {
+  return ::rmdir(path.c_str()) == 0 ? 0 : errno;
 }
 
 int FileLayer::sync_folder(const std::string& path) noexcept {
@@ -107,6 +124,18 @@ ScratchFile::ScratchFile(FileLayer& files, const std::string& folder, const std:
   }
 }
 
+ScratchFile::ScratchFile(FileLayer& files, const std::string& path, Kept kept)
+    : files_(files),
+      folder_(path.substr(0, path.rfind('/'))),
+      path_(path),
+      kept_(true),
+      shown_(path) {
+  const int failure = kept == Kept::kNew ? files_.create(path_, fd_) : files_.open(path_, fd_);
+  if (failure != 0) {
+    throw system_error(failure, kept == Kept::kNew ? "cannot create" : "cannot open", path);
+  }
+}
+
 ScratchFile::~ScratchFile() { close_and_remove(); }
 
 void ScratchFile::close_and_remove() noexcept {
@@ -114,7 +143,7 @@ void ScratchFile::close_and_remove() noexcept {
     static_cast<void>(files_.close(fd_));
     fd_ = -1;
   }
-  if (!path_.empty()) {
+  if (!path_.empty() && !kept_) {
     static_cast<void>(files_.unlink(path_));
     path_.clear();
   }
@@ -169,6 +198,20 @@ void ScratchFile::reserve(std::uint64_t offset, std::uint64_t bytes) {
   const int failure = bytes == 0 ? 0 : files_.allocate(fd_, offset, bytes);
   if (failure == ENOSPC || failure == EDQUOT || failure == EFBIG) {
     throw system_error(failure, "cannot reserve " + std::to_string(bytes) + " bytes", shown_);
+  }
+}
+
+void ScratchFile::truncate(std::uint64_t bytes) {
+  const int failure = files_.truncate(fd_, bytes);
+  if (failure != 0) {
+    throw system_error(failure, "cannot cut to " + std::to_string(bytes) + " bytes", shown_);
+  }
+}
+
+void ScratchFile::sync() {
+  const int failure = files_.sync(fd_);
+  if (failure != 0) {
+    throw system_error(failure, "cannot sync", shown_);
   }
 }
 

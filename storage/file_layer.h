@@ -27,6 +27,8 @@ class FileLayer {
   /// Creates a file that must not exist yet, for reading and writing; `fd` is valid when 0 is
   /// returned.
   virtual int create(const std::string& path, int& fd) noexcept;
+  /// Opens a file for reading and writing that exists.
+  virtual int open(const std::string& path, int& fd) noexcept;
   virtual int close(int fd) noexcept;
   /// May write less than asked for, like pwrite(2).
   virtual int write_at(int fd, std::span<const std::byte> bytes, std::uint64_t offset,
@@ -37,18 +39,28 @@ class FileLayer {
   /// Reserves space, so that a full disk is known early. File systems that cannot do it answer
   /// EOPNOTSUPP.
   virtual int allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexcept;
+  /// Cuts the file to `bytes`, or fills it with zeros up to there.
+  virtual int truncate(int fd, std::uint64_t bytes) noexcept;
   virtual int sync(int fd) noexcept;
   /// Puts `from` in the place of `to` in one step. With `replace` off an existing `to` is EEXIST.
   virtual int rename(const std::string& from, const std::string& to, bool replace) noexcept;
   virtual int unlink(const std::string& path) noexcept;
+  /// Creates a folder that must not exist yet.
+  virtual int make_folder(const std::string& path) noexcept;
+  /// Removes a folder that is empty.
+  virtual int remove_folder(const std::string& path) noexcept;
   /// Makes the names in a folder durable.
   virtual int sync_folder(const std::string& path) noexcept;
 };
 
-/// A file being written: closed when destroyed, removed too unless it was kept. Errors are
+/// A file being written: closed when destroyed, removed too unless it is a kept one. Errors are
 /// ptin::Error and name the file.
 class ScratchFile {
  public:
+  enum class Kept { kNew, kExisting };
+  /// A file of this very name, which stays when the object goes: work that can be taken up again.
+  /// @throws Error not_found, io_error, resource_exhausted; also when a new one exists already
+  ScratchFile(FileLayer& files, const std::string& path, Kept kept);
   /// Creates `folder`/`.stem.N.tmp` with the first N that is free. With `nameless` on the name is
   /// removed at once, so that nothing can be left behind.
   /// @throws Error not_found (no such folder), io_error, resource_exhausted
@@ -64,6 +76,8 @@ class ScratchFile {
   void copy_from(const ScratchFile& from, std::uint64_t from_offset, std::uint64_t bytes,
                  std::uint64_t offset);
   void reserve(std::uint64_t offset, std::uint64_t bytes);
+  void truncate(std::uint64_t bytes);
+  void sync();
   /// Syncs, closes, renames onto `target`, syncs the folder. With `replace` off an existing target
   /// is invalid_argument.
   void publish_as(const std::string& target, bool replace);
@@ -74,6 +88,7 @@ class ScratchFile {
   FileLayer& files_;
   std::string folder_;
   std::string path_;  ///< Empty once there is no name to remove.
+  bool kept_ = false;
   std::string shown_;
   int fd_ = -1;
 };

@@ -181,19 +181,35 @@ class StoreWriterImpl final : public StoreWriter {
         files_(options.files != nullptr ? *options.files : FileLayer::system()),
         folder_(folder_of(path)),
         stem_(std::filesystem::path(path).filename().string()),
-        file_(files_, folder_, stem_, false) {
+        file_(options.work_folder.empty() ? ScratchFile(files_, folder_, stem_, false)
+                                          : kept_file(files_, options.work_folder + "/pages")) {
+    if (!options_.work_folder.empty()) {
+      const std::string journal = options_.work_folder + "/descriptors";
+      journal_.emplace(files_, journal, kept(journal));
+    }
     pending_.reserve(kWriteBytes);
   }
 
+  void resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) override;
+  [[nodiscard]] StoreCheckpoint position() const override;
+  void sync() override;
   void add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) override;
   void publish(const StoreFacts& facts, const CoarsestTin& t0,
                const std::string& metadata_json) override;
 
  private:
+  static ScratchFile::Kept kept(const std::string& path) {
+    return std::filesystem::exists(path) ? ScratchFile::Kept::kExisting : ScratchFile::Kept::kNew;
+  }
+  static ScratchFile kept_file(FileLayer& files, const std::string& path) {
+    return ScratchFile(files, path, kept(path));
+  }
   void start(const HeightEncoding& heights);
   void add(const VertexSplit& r);
   void finish_page();
   void flush();
+  void restore_moved_pages();
+  void take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page);
   PageSlots move_pages_behind(std::uint64_t front_bytes);
 
   std::string path_;
@@ -201,6 +217,7 @@ class StoreWriterImpl final : public StoreWriter {
   FileLayer& files_;
   std::string folder_, stem_;
   ScratchFile file_;
+  std::optional<PageJournal> journal_;
   std::optional<HeightEncoding> heights_;
   std::optional<PagePacker> page_;
   std::optional<IndexWriter> index_;
@@ -252,6 +269,9 @@ void StoreWriterImpl::finish_page() {
   layout::NodeEntry entry;
   const std::span<const std::byte> bytes = page_->finish(entry);
   index_->add(entry);
+  if (journal_) {
+    journal_->add(entry);
+  }
   pending_.insert(pending_.end(), bytes.begin(), bytes.end());
   if (pending_.size() >= kWriteBytes) {
     flush();
@@ -264,6 +284,65 @@ void StoreWriterImpl::flush() {
   pending_.clear();
 }
 
+StoreCheckpoint StoreWriterImpl::position() const {
+  PTIN_CHECK(journal_.has_value());
+  return journal_->end();
+}
+
+void StoreWriterImpl::sync() {
+  PTIN_CHECK(journal_.has_value() && !published_);
+  flush();
+  file_.sync();
+  journal_->sync();
+}
+
+// A publish() that was interrupted has put the front of the file over the first pages.
+void StoreWriterImpl::restore_moved_pages() {
+  const std::optional<PublishMark> mark = journal_->find_mark();
+  if (!mark) {
+    return;
+  }
+  const std::uint64_t pages_bytes = mark->pages * options_.page_bytes;
+  if (mark->moved_bytes > pages_bytes || mark->moved_to < pages_bytes) {
+    throw Error(ErrorCode::corruption, "the unfinished build's mark of publishing is not sound",
+                path_);
+  }
+  file_.copy_from(file_, mark->moved_to, mark->moved_bytes, 0);
+  file_.sync();
+}
+
+// Reads the next page again, and counts it as add() and finish_page() did.
+void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page) {
+  const std::uint32_t count = entry.kind_and_count & (layout::kWidePage - 1);
+  const RecordKind kind =
+      (entry.kind_and_count & layout::kWidePage) != 0 ? RecordKind::kWide : RecordKind::kNarrow;
+  file_.read_at(page, written_bytes_);
+  std::vector<VertexSplit> records(count);
+  if (checksum_of(page) != entry.checksum || count * record_bytes(kind) > page.size() ||
+      decode_records(page, kind, records) != count) {
+    throw Error(ErrorCode::corruption,
+                "page " + std::to_string(written_bytes_ / options_.page_bytes) +
+                    " of the unfinished build is damaged; start again after --discard",
+                path_);
+  }
+  for (const VertexSplit& r : records) {
+    errors_.add(r);
+    max_rank_ = std::max(max_rank_, r.rank);
+  }
+  records_ += count;
+  index_->add(entry);
+  written_bytes_ += page.size();
+}
+
+void StoreWriterImpl::resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) {
+  PTIN_CHECK(journal_.has_value() && records_ == 0);
+  start(heights);
+  restore_moved_pages();
+  std::vector<std::byte> page(options_.page_bytes);
+  journal_->replay(checkpoint, [&](const layout::NodeEntry& entry) { take_back(entry, page); });
+  file_.truncate(written_bytes_);
+}
+
 // Makes room for the front: the pages that are in its way go to the end, which moves no more bytes
 // than the front has.
 PageSlots StoreWriterImpl::move_pages_behind(std::uint64_t front_bytes) {
@@ -271,6 +350,10 @@ PageSlots StoreWriterImpl::move_pages_behind(std::uint64_t front_bytes) {
   const std::uint64_t moved = std::min(front_bytes, pages_bytes);
   file_.reserve(pages_bytes, front_bytes);
   file_.copy_from(file_, 0, moved, std::max(front_bytes, pages_bytes));
+  if (journal_) {
+    file_.sync();  // from here on the first pages are in their copies alone
+    journal_->mark(moved, std::max(front_bytes, pages_bytes));
+  }
   const std::uint64_t pages = pages_bytes / options_.page_bytes;
   const std::uint64_t front_pages = front_bytes / options_.page_bytes;
   return {pages, front_pages < pages ? front_pages : 0, front_bytes, options_.page_bytes};

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "storage/page_journal.h"
 #include "storage/record.h"
 #include "storage/store_file.h"
 
@@ -23,6 +24,10 @@ struct StoreWriterOptions {
       4096;  ///< Power of two from 4096 to 65536. StoreFacts::page_bytes is not looked at.
   FileLayer* files =
       nullptr;  ///< Through which to write; borrowed; null means the system. For tests.
+  /// A folder on the file system of the target. When it is named, work is kept there, in the files
+  /// `pages` and `descriptors`, until publish(), so that another writer can go on from a
+  /// checkpoint; its owner removes them. Otherwise nothing is ever left behind.
+  std::string work_folder = {};
 };
 
 /// Writes beside the target under a temporary name; publish() syncs and renames. Destroyed without
@@ -43,6 +48,18 @@ class StoreWriter {
   StoreWriter(const StoreWriter&) = delete;
   StoreWriter& operator=(const StoreWriter&) = delete;
   virtual ~StoreWriter() = default;
+
+  /// Goes on from a checkpoint that a writer with the same work folder, target and options made:
+  /// pages behind it are forgotten, those before it are read again and checked. To be called first.
+  /// @throws Error corruption (the pages are not those of the checkpoint), io_error
+  /// Cost: one reading of the pages.
+  virtual void resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) = 0;
+
+  /// Where the writer stands: behind the last segment. Only with a work folder, as sync().
+  [[nodiscard]] virtual StoreCheckpoint position() const = 0;
+  /// Makes all segments so far durable.
+  /// @throws Error resource_exhausted, io_error
+  virtual void sync() = 0;
 
   /// Appends one segment. `records` is reordered in place.
   /// @throws Error resource_exhausted (disk full), io_error, invalid_argument (another encoding of

@@ -14,7 +14,8 @@ Progress::Style Progress::style_for(bool quiet, std::FILE* stream) {
 
 Progress::~Progress() { finish(false); }
 
-void Progress::report(const char* stage, std::uint64_t done, std::uint64_t total) {
+void Progress::report(const char* stage, std::uint64_t done, std::uint64_t total,
+                      const std::string& detail) {
   if (style_ == Style::kSilent) return;
   if (stage_ != stage) {
     finish();
@@ -25,11 +26,11 @@ void Progress::report(const char* stage, std::uint64_t done, std::uint64_t total
   }
   const double share =
       total == 0 ? 0.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
-  style_ == Style::kTerminal ? report_terminal(share) : report_sparse(share);
+  style_ == Style::kTerminal ? report_terminal(share, detail) : report_sparse(share);
   std::fflush(stream_);
 }
 
-void Progress::report_terminal(double share) {
+void Progress::report_terminal(double share, const std::string& detail) {
   const int per_mille = static_cast<int>(share * 1000.0);
   if (per_mille == last_tick_) return;
   last_tick_ = per_mille;
@@ -39,6 +40,9 @@ void Progress::report_terminal(double share) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - stage_start_).count();
   std::fprintf(stream_, "\r\x1b[K%-12s [%-*s] %5.1f %%", stage_.c_str(), kWidth, bar.c_str(),
                share * 100.0);
+  if (!detail.empty()) {
+    std::fprintf(stream_, "  %s", detail.c_str());
+  }
   if (share > 0.02 && share < 1.0 && seconds > 1.0) {
     std::fprintf(stream_, "  %.0f s left", seconds / share - seconds);
   }

@@ -29,12 +29,14 @@ class Progress {
 
   /// `done` of `total` units of `stage` are done; total 0 means unknown. A new stage ends the one
   /// before.
-  void report(const char* stage, std::uint64_t done, std::uint64_t total);
+  /// @param detail  Shown behind the bar on a terminal.
+  void report(const char* stage, std::uint64_t done, std::uint64_t total,
+              const std::string& detail = "");
   /// Ends the current stage; nothing when there is none.
   void finish(bool complete = true);
 
  private:
-  void report_terminal(double share);
+  void report_terminal(double share, const std::string& detail);
   void report_sparse(double share);
 
   Style style_;

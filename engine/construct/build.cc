@@ -4,9 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <nlohmann/json.hpp>
 
 #include "engine/construct/delaunay.h"
 #include "engine/construct/hierarchy.h"
+#include "engine/construct/memory_plan.h"
 #include "engine/construct/point_source.h"
 #include "engine/construct/raster_source.h"
 #include "engine/construct/raster_tile.h"
@@ -50,7 +55,82 @@ auto stage(const BuildResources& resources, const char* name) {
   };
 }
 
+/// What decides the bytes of the output, and that its inputs are still the ones it began with.
+nlohmann::json fingerprint(const Job& job, const RasterSource& source, const TileTree& tree) {
+  nlohmann::json files = nlohmann::json::array();
+  for (const std::string& input : job.inputs) {
+    std::error_code ignored;  // of inputs that are no files: GDAL knows more than those
+    const auto bytes = std::filesystem::file_size(input, ignored);
+    const auto time = std::filesystem::last_write_time(input, ignored);
+    files.push_back({input, ignored ? 0 : bytes, ignored ? 0 : time.time_since_epoch().count()});
+  }
+  return {{"options", options_json(job.options)},
+          {"page_bytes", job.options.page_bytes},
+          {"tile", tree.side()},
+          {"inputs", files},
+          {"size", {source.width(), source.height()}},
+          {"samples", source.valid_samples()}};
+}
+
+/// Collapses and tightens everything into `store`.
+Tin build_tiles(Job& job, const RasterSource& source, const TileTree& tree, const BuildPlan& plan,
+                Workspace& workspace, StoreOutput& store) {
+  HierarchyOptions options;
+  options.collapse.cost = job.options.cost;
+  options.collapse.units = measure_units(source.frame(), job.options.void_slope);
+  options.threads = plan.threads;
+  options.bytes = plan.tile_bytes;
+  options.checkpoint_interval = job.resources.checkpoint_interval;
+  options.stop = job.resources.stop;
+  options.progress = job.resources.progress;
+  const auto make_starter = [&]() -> LeafStarter {
+    const auto own = std::make_shared<const RasterSource>(source.duplicate());
+    return [own, units = options.collapse.units](const SampleRange& window) {
+      return start_raster_tile(*own, window, units);
+    };
+  };
+  BuiltHierarchy built = build_hierarchy(make_starter, tree, options, workspace, store);
+  job.report.lone_samples = built.lone_samples;
+  return std::move(built.t0);
+}
+
+/// True when an interrupted build had got as far as giving the output its name.
+bool is_published(const Job& job, const Workspace& workspace) {
+  const std::vector<nlohmann::json> lines = workspace.lines();
+  return !lines.empty() && lines.back().contains("publishing") &&
+         !std::filesystem::exists(workspace.folder() + "/pages") &&
+         std::filesystem::exists(job.output);
+}
+
+void build_in(Workspace& workspace, Job& job, const RasterSource& source, const TileTree& tree,
+              const BuildPlan& plan) {
+  job.report.resumed = !workspace.lines().empty();
+  if (is_published(job, workspace)) {
+    const auto store = StoreFile::open(job.output);
+    job.report.records = store->record_count();
+    job.report.t0_vertices = store->t0().vertices.size();
+    job.report.max_rank = store->max_rank();
+    job.report.file_bytes = std::filesystem::file_size(job.output);
+    return;
+  }
+  StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame(),
+                    job.resources.files, workspace.folder());
+  const Tin t0 = build_tiles(job, source, tree, plan, workspace, store);
+  stage(job.resources, "writing")(0, 1);
+  workspace.append({{{"publishing", true}}});
+  store.publish(t0, job.inputs, job.report);
+}
+
+/// Faults of the system, not of the input: what was done is worth keeping.
+bool can_be_resumed(ErrorCode code) {
+  return code == ErrorCode::cancelled || code == ErrorCode::resource_exhausted ||
+         code == ErrorCode::io_error;
+}
+
 void build_raster(Job& job) {
+  const std::uint64_t memory =
+      job.resources.memory_bytes != 0 ? job.resources.memory_bytes : default_memory();
+  const GdalCacheLimit cache(share_memory(memory, 0, 1).gdal_cache);
   const RasterSource source = RasterSource::open(
       job.inputs, source_options(job.options), job.resources.stop, stage(job.resources, "reading"));
   job.report.source_samples = source.valid_samples();
@@ -58,24 +138,32 @@ void build_raster(Job& job) {
   job.report.height_rounding = source.frame().height_rounding;
   job.report.vertices =
       static_cast<std::uint64_t>(source.width()) * static_cast<std::uint64_t>(source.height());
-
-  // Made before the long work, so that a target that cannot be written is known at once.
-  StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame());
-  HierarchyOptions options;
-  options.cost = job.options.cost;
-  options.stop = job.resources.stop;
-  options.progress = job.resources.progress;
   const TileTree tree(
       source.width(), source.height(),
       job.options.tile.value_or(TileTree::default_side(source.width(), source.height())));
-  const MeasureUnits units = measure_units(source.frame(), job.options.void_slope);
-  HierarchyBuilder builder(
-      [&](const SampleRange& window) { return start_raster_tile(source, window, units); }, tree,
-      options, [&](std::span<VertexSplit> records) { store.add_segment(records); });
-  const Tin t0 = builder.run();
-  job.report.lone_samples = builder.lone_samples();
-  stage(job.resources, "writing")(0, 1);
-  store.publish(t0, job.inputs, job.report);
+  const BuildPlan plan = plan_build(tree, job.output, job.options, job.resources, TileBytes{});
+  if (job.resources.plan) {
+    job.resources.plan(plan);
+  }
+  if (job.resources.dry_run) {
+    return;
+  }
+  FileLayer& files = job.resources.files != nullptr ? *job.resources.files : FileLayer::system();
+  Workspace workspace(files, job.output, job.resources.tmp, job.resources.unfinished,
+                      fingerprint(job, source, tree));
+  try {
+    build_in(workspace, job, source, tree, plan);
+  } catch (const Error& e) {
+    if (can_be_resumed(e.code())) {
+      throw Error(e.code(),
+                  e.message() + "; what is done is kept in " + workspace.folder() +
+                      ": go on by --resume, or remove it by --discard",
+                  e.context());
+    }
+    workspace.remove_all();
+    throw;
+  }
+  workspace.remove_all();
 }
 
 void build_points(Job& job) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -11,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/build_plan.h"
 #include "engine/construct/cost.h"
+#include "engine/construct/workspace.h"
 
 namespace ptin {
 
@@ -38,9 +41,18 @@ struct BuildOptions {
 /// How the work is done; never changes a byte of the file.
 struct BuildResources {
   bool overwrite = false;
+  /// Hard limit on the anonymous memory of the process, bytes; 0 means default_memory().
+  std::uint64_t memory_bytes = 0;
+  int threads = 0;  ///< 0 means one a core. Fewer are used where memory is short.
+  std::string tmp;  ///< Folder for temporary files; "" means beside the output.
+  Unfinished unfinished = Unfinished::kRefuse;  ///< What to do with an interrupted build.
+  bool dry_run = false;                         ///< Stop when the plan is made.
+  /// Called once, before the work starts, with what it expects to need.
+  std::function<void(const BuildPlan&)> plan;
+  std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
+  FileLayer* files = nullptr;  ///< Through which to write; null means the system. For tests.
   std::stop_token stop;
-  /// Called from the building thread, at most a few times a second: stage name, done and total in
-  /// its units.
+  /// Stage name, done and total in its units; called from any thread, but never twice at once.
   std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
 };
 
@@ -58,11 +70,15 @@ struct BuildReport {
   std::uint16_t max_rank = 0;
   std::uint64_t file_bytes = 0;
   double seconds = 0.0;
+  bool resumed = false;  ///< An interrupted build was taken up.
 };
 
-/// Builds `output` from `inputs` (one raster or several of one grid; or point files).
-/// @throws Error invalid_argument, not_found, io_error, resource_exhausted, cancelled; nothing is
-/// left behind.
+/// Builds `output` from `inputs` (one raster or several of one grid; or point files). The output's
+/// name does not appear before the file is complete.
+/// @throws Error invalid_argument, not_found: nothing is left behind.
+///               io_error, resource_exhausted, cancelled: a raster's build that has begun is kept
+///               beside the output (workspace.h) and can be resumed; the message names the folder.
+/// Memory: within BuildResources::memory_bytes for rasters; all points of point files.
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
                   const BuildOptions& options, const BuildResources& resources);
 

@@ -1,68 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Builds a raster tile by tile: collapses from the leaves to the root, then tightens from the root
+// Builds a terrain tile by tile: collapses from the leaves to the root, then tightens from the root
 // to the leaves (DESIGN.md, section 5).
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <span>
 #include <stop_token>
-#include <vector>
 
-#include "engine/construct/cost.h"
-#include "engine/construct/raster_tile.h"
-#include "engine/construct/segment.h"
-#include "engine/construct/tile_push.h"
+#include "engine/construct/segment_output.h"
+#include "engine/construct/tile_bytes.h"
+#include "engine/construct/tile_collapse.h"
 #include "engine/construct/tile_tree.h"
+#include "engine/construct/workspace.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin {
 
-/// Receives finished segments, in an order that depends on the tree alone; may reorder them in
-/// place.
-using SegmentSink = std::function<void(std::span<VertexSplit>)>;
-
-/// Starts a leaf: all samples of a window and the full surface under it, the same whenever it is
-/// called. Each leaf is started twice: for its collapses and for tightening.
-using LeafStarter = std::function<StartedTile(const SampleRange&)>;
-
 struct HierarchyOptions {
-  CostModel cost = CostModel::kError;
+  CollapseOptions collapse;
+  int threads = 1;
+  std::uint64_t bytes = ~std::uint64_t{0};  ///< Of all tiles in work at once.
+  TileBytes tile_bytes;
+  std::chrono::milliseconds checkpoint_interval{2000};
   std::stop_token stop;
+  /// Samples done and in all; called by any thread, but never twice at once.
   std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
 };
 
-/// One build. Segments of leaves are final when the leaf is collapsed, since a leaf measures all
-/// its samples; those of inner tiles, a quarter of all records, wait for tightening.
-class HierarchyBuilder {
- public:
-  HierarchyBuilder(LeafStarter start_leaf, const TileTree& tree, const HierarchyOptions& options,
-                   SegmentSink sink);
-
-  /// Builds everything; returns the coarsest TIN, every vertex alive.
-  /// @throws Error as simplify(), and what the starter and the sink throw
-  [[nodiscard]] Tin run();
-
-  [[nodiscard]] std::uint64_t lone_samples() const noexcept { return lone_samples_; }
-
- private:
-  [[nodiscard]] PushedTile build(const TileId& id);
-  [[nodiscard]] PushedTile build_leaf(const TileId& id);
-  [[nodiscard]] PushedTile build_inner(const TileId& id);
-  [[nodiscard]] std::uint64_t vertices_to_keep(const Tile& tile, const TileId& id) const;
-  std::vector<RecordBounds> tighten(const TileId& id, std::vector<InnerSegment*>& chain,
-                                    const Tin& t0);
-  void report(const char* stage, std::uint64_t done, std::uint64_t total);
-
-  LeafStarter start_leaf_;
-  TileTree tree_;
-  HierarchyOptions options_;
-  SegmentSink sink_;
-  std::map<TileId, InnerSegment> segments_;
-  std::uint64_t lone_samples_ = 0;
-  std::uint64_t leaves_done_ = 0;
+struct BuiltHierarchy {
+  Tin t0;  ///< The coarsest TIN, every vertex alive.
+  std::uint64_t lone_samples = 0;
+  std::uint64_t most_bytes = 0;  ///< Admitted at once, by estimate.
 };
+
+/// Builds everything, or the rest of it when the workspace holds an interrupted build. Segments go
+/// to `output` in the order of the tree. Those of leaves are final when the leaf is collapsed,
+/// since a leaf measures all its samples; those of inner tiles, a quarter of all records, lie in
+/// the workspace until tightening.
+/// @param make_starter  Called once for each thread.
+/// @throws Error as simplify(), the starters and the output; resource_exhausted, io_error; after
+/// the last two, and cancelled, the workspace can be taken up again.
+[[nodiscard]] BuiltHierarchy build_hierarchy(const std::function<LeafStarter()>& make_starter,
+                                             const TileTree& tree, const HierarchyOptions& options,
+                                             Workspace& workspace, SegmentOutput& output);
 
 }  // namespace ptin

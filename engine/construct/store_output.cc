@@ -2,6 +2,7 @@
 #include "engine/construct/store_output.h"
 
 #include <algorithm>
+#include <bit>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
@@ -39,6 +40,23 @@ nlohmann::json value_or_null(const std::optional<T>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
+nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildReport& r) {
+  nlohmann::json files = nlohmann::json::array();
+  for (const std::string& input : inputs) {
+    files.push_back(std::filesystem::path(input).filename().string());
+  }
+  return {{"files", files},
+          {"samples", r.source_samples},
+          {"void_samples", r.void_samples},
+          {"lone_samples", r.lone_samples},
+          {"left_out_points", r.left_out_points},
+          {"merged_points", r.merged_points},
+          {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
+          {"height_rounding", r.height_rounding}};
+}
+
+}  // namespace
+
 nlohmann::json options_json(const BuildOptions& o) {
   nlohmann::json json{
       {"cost", name_of(o.cost)},           {"max_error", o.max_error},
@@ -63,23 +81,6 @@ nlohmann::json options_json(const BuildOptions& o) {
   return json;
 }
 
-nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildReport& r) {
-  nlohmann::json files = nlohmann::json::array();
-  for (const std::string& input : inputs) {
-    files.push_back(std::filesystem::path(input).filename().string());
-  }
-  return {{"files", files},
-          {"samples", r.source_samples},
-          {"void_samples", r.void_samples},
-          {"lone_samples", r.lone_samples},
-          {"left_out_points", r.left_out_points},
-          {"merged_points", r.merged_points},
-          {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
-          {"height_rounding", r.height_rounding}};
-}
-
-}  // namespace
-
 CoarsestTin coarsest_tin(const Tin& tin) {
   CoarsestTin t0;
   std::vector<std::uint32_t> place(tin.vertices.size(), kNone);
@@ -102,7 +103,8 @@ CoarsestTin coarsest_tin(const Tin& tin) {
 }
 
 StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
-                         const TerrainFrame& frame)
+                         const TerrainFrame& frame, FileLayer* files,
+                         const std::string& work_folder)
     : path_(path),
       options_(options),
       frame_(frame),
@@ -111,6 +113,8 @@ StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, b
   StoreWriterOptions writer_options;
   writer_options.overwrite = overwrite;
   writer_options.page_bytes = options.page_bytes;
+  writer_options.files = files;
+  writer_options.work_folder = work_folder;
   writer_ = StoreWriter::create(path, writer_options);
 }
 
@@ -138,6 +142,27 @@ void StoreOutput::add_segment(std::span<VertexSplit> records) {
   }
   records_ += records.size();
   writer_->add_segment(records, frame_.heights);
+}
+
+nlohmann::json StoreOutput::position() const {
+  const StoreCheckpoint end = writer_->position();
+  return {{"pages", end.pages},
+          {"chain", end.chain},
+          {"records", records_},
+          {"rank", max_rank_},
+          // As bits: JSON knows no infinity.
+          {"base_error", std::bit_cast<std::uint64_t>(base_error_)},
+          {"base_deviation", std::bit_cast<std::uint64_t>(base_deviation_)}};
+}
+
+void StoreOutput::resume(const nlohmann::json& position) {
+  writer_->resume(
+      {position.at("pages").get<std::uint64_t>(), position.at("chain").get<std::uint64_t>()},
+      frame_.heights);
+  records_ = position.at("records").get<std::uint64_t>();
+  max_rank_ = position.at("rank").get<std::uint16_t>();
+  base_error_ = std::bit_cast<double>(position.at("base_error").get<std::uint64_t>());
+  base_deviation_ = std::bit_cast<double>(position.at("base_deviation").get<std::uint64_t>());
 }
 
 void StoreOutput::publish(const Tin& t0, const std::vector<std::string>& inputs,

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "engine/construct/build.h"
+#include "engine/construct/segment_output.h"
 #include "engine/construct/terrain_source.h"
 #include "engine/mesh/tin.h"
 #include "storage/store_writer.h"
@@ -17,15 +18,20 @@ namespace ptin {
 
 /// Takes segments of records with their final attributes, leaves out the finest detail
 /// (BuildOptions::max_error), adds the rounding of heights, and publishes. Destroyed before
-/// publish(), it leaves nothing behind.
-class StoreOutput {
+/// publish(), it leaves nothing behind, but for what is in a work folder.
+class StoreOutput final : public SegmentOutput {
  public:
+  /// @param files, work_folder  As StoreWriterOptions; without a folder nothing can be resumed.
   /// @throws Error as StoreWriter::create
   StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
-              const TerrainFrame& frame);
+              const TerrainFrame& frame, FileLayer* files = nullptr,
+              const std::string& work_folder = "");
 
   /// One segment; reordered in place.  @throws Error as StoreWriter::add_segment
-  void add_segment(std::span<VertexSplit> records);
+  void add_segment(std::span<VertexSplit> records) override;
+  [[nodiscard]] nlohmann::json position() const override;
+  void sync() override { writer_->sync(); }
+  void resume(const nlohmann::json& position) override;
 
   /// @param t0       The coarsest TIN: the alive part of a mesh in which nothing more collapses.
   /// @param inputs   Names for the metadata; their folders are left out, so that the bytes do not
@@ -44,6 +50,9 @@ class StoreOutput {
   std::uint64_t records_ = 0;
   std::uint16_t max_rank_ = 0;
 };
+
+/// The options that decide the bytes of a file, as its metadata has them.
+[[nodiscard]] nlohmann::json options_json(const BuildOptions& options);
 
 /// The alive part of a mesh as the store keeps it, in the order of the vertices.
 [[nodiscard]] CoarsestTin coarsest_tin(const Tin& tin);

@@ -28,7 +28,8 @@ float no_depth(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
 class Replay {
  public:
   Replay(const Tin& t0, StartedTile&& leaf, const SampleRange& window);
-  void apply(VertexSplit& record);
+  /// What the leaf shows of the record.
+  RecordBounds apply(const VertexSplit& record);
 
   [[nodiscard]] const GridBox& box() const noexcept { return box_; }
 
@@ -38,7 +39,7 @@ class Replay {
              std::vector<std::vector<Sample>>& lists);
   [[nodiscard]] VertexId vertex_at(GridPoint p) const;
   [[nodiscard]] VertexId add_vertex(const VertexSplit& record);
-  void measure(VertexSplit& record, VertexId w);
+  RecordBounds measure(VertexId w);
   void hand_to_star();
 
   Tile tile_;
@@ -161,7 +162,7 @@ VertexId Replay::add_vertex(const VertexSplit& record) {
   return u;
 }
 
-void Replay::apply(VertexSplit& record) {
+RecordBounds Replay::apply(const VertexSplit& record) {
   SplitSite site;
   site.w = vertex_at(record.w);
   site.vl = vertex_at(record.vl);
@@ -177,25 +178,23 @@ void Replay::apply(VertexSplit& record) {
   PTIN_CHECK(split(tile_.tin, site).applied);
   tile_.carried.resize(tile_.tin.triangles.size());
   gather_star_and_samples(tile_, site.u, star_);
-  measure(record, site.w);
+  return measure(site.w);
 }
 
 /// The star of u is there again, and its triangles hold the samples of the former fan: measures
 /// those against the fan.
-void Replay::measure(VertexSplit& record, VertexId w) {
+RecordBounds Replay::measure(VertexId w) {
   const auto j = static_cast<std::size_t>(
       std::find(star_.star.link.begin(), star_.star.link.end(), w) - star_.star.link.begin());
   PTIN_CHECK(make_fan(star_, j, fan_));
   const double gap = fan_deviation(tile_, star_, fan_, *full_, box_);
   if (star_.count == 1) {  // u alone: construction has measured it
-    record.deviation = std::max(record.deviation, height_bound(gap, tile_.units.heights));
-    return;
+    return {0.0F, height_bound(gap, tile_.units.heights)};
   }
   const FanError own = measure_fan(tile_, star_, fan_, assignment_);
-  record.error = std::max(record.error, height_bound(own.error, tile_.units.heights));
-  record.deviation =
-      std::max(record.deviation, height_bound(std::max(own.deviation, gap), tile_.units.heights));
   hand_to_star();
+  return {height_bound(own.error, tile_.units.heights),
+          height_bound(std::max(own.deviation, gap), tile_.units.heights)};
 }
 
 /// Hands the samples to the triangles around u; u's own sample, if the leaf has it, is a vertex
@@ -211,38 +210,21 @@ void Replay::hand_to_star() {
 
 }  // namespace
 
-void replay_over_leaf(std::span<InnerSegment* const> chain, const Tin& t0, StartedTile&& leaf,
+void replay_over_leaf(std::span<const ReplaySegment> chain, const Tin& t0, StartedTile&& leaf,
                       const SampleRange& window) {
   Replay replay(t0, std::move(leaf), window);
-  for (InnerSegment* segment : chain) {
-    for (std::size_t i = segment->records.size(); i-- > 0;) {
-      if (meets(segment->records[i].roi, replay.box())) {
-        replay.apply(segment->records[i]);
+  for (const ReplaySegment& segment : chain) {
+    for (std::size_t i = segment.records.size(); i-- > 0;) {
+      const VertexSplit& record = segment.records[i];
+      if (!meets(record.roi, replay.box())) {
+        continue;
+      }
+      const RecordBounds shown = replay.apply(record);
+      if (shown.error > record.error || shown.deviation > record.deviation) {
+        segment.raises->push_back({static_cast<std::uint32_t>(i), shown});
       }
     }
   }
-}
-
-std::vector<RecordBounds> saturate(InnerSegment& segment) {
-  std::vector<RecordBounds> bounds = segment.foreign;
-  bounds.reserve(bounds.size() + segment.records.size());
-  std::uint32_t begin = 0;
-  for (std::size_t i = 0; i < segment.records.size(); ++i) {
-    VertexSplit& r = segment.records[i];
-    for (std::uint32_t k = begin; k < segment.dependency_end[i]; ++k) {
-      const RecordBounds& below = bounds[segment.dependencies[k]];
-      r.error = std::max(r.error, below.error);
-      r.deviation = std::max(r.deviation, below.deviation);
-    }
-    begin = segment.dependency_end[i];
-    bounds.push_back({r.error, r.deviation});
-  }
-  std::vector<RecordBounds> exported;
-  exported.reserve(segment.exported.size());
-  for (const std::uint32_t number : segment.exported) {
-    exported.push_back(bounds[number]);
-  }
-  return exported;
 }
 
 }  // namespace ptin

@@ -13,9 +13,15 @@
 
 namespace ptin {
 
-/// Replays the splits of a chain of segments, root first, over all samples of one leaf, and raises
-/// the own error and deviation of each record to what the leaf's samples and its part of the full
-/// surface show.
+/// A segment of a chain, and where what a leaf shows of its records goes.
+struct ReplaySegment {
+  std::span<const VertexSplit> records;  ///< In the order of the collapses.
+  std::vector<BoundsRaise>* raises = nullptr;
+};
+
+/// Replays the splits of a chain of segments, root first, over all samples of one leaf, and notes
+/// for each record the own error and deviation that the leaf's samples and its part of the full
+/// surface show, where they are more than the record says.
 ///
 /// Only records whose region of influence meets the leaf are applied: they are closed under
 /// dependency, and each fan that touches the leaf is there. A sample begins in a triangle of T0 and
@@ -23,18 +29,11 @@ namespace ptin {
 /// applies, it is in a triangle over which it was measured. Samples that are vertices at the time
 /// are not measured, as in construction.
 ///
-/// @param chain  Segments of the leaf's ancestors, the root's first. Their records' error and
-/// deviation are raised.
+/// @param chain  Segments of the leaf's ancestors, the root's first.
 /// @param t0     The coarsest TIN: what the root's collapses left. Every vertex alive.
 /// @param leaf   The leaf as start_raster_tile() made it. Used up.
 /// Cost: about 2.5 residuals a sample for each halving of the vertices above the leaf.
-void replay_over_leaf(std::span<InnerSegment* const> chain, const Tin& t0, StartedTile&& leaf,
+void replay_over_leaf(std::span<const ReplaySegment> chain, const Tin& t0, StartedTile&& leaf,
                       const SampleRange& window);
-
-/// Saturates a segment whose own parts are final: each record gets the maximum over itself and what
-/// it depends on.
-/// @return  The bounds of the exported records, in their order.
-/// Cost: linear in the dependencies.
-std::vector<RecordBounds> saturate(InnerSegment& segment);
 
 }  // namespace ptin

@@ -40,6 +40,7 @@ class TileTree {
 
   [[nodiscard]] TileId root() const noexcept { return {levels_ - 1, 0, 0}; }
   [[nodiscard]] int levels() const noexcept { return levels_; }
+  [[nodiscard]] std::int64_t side() const noexcept { return side_; }
   [[nodiscard]] std::uint64_t leaves() const noexcept {
     return static_cast<std::uint64_t>(leaves_x_) * static_cast<std::uint64_t>(leaves_y_);
   }

@@ -361,7 +361,7 @@ TEST(Build, SaysThatTheFolderIsMissing) {
             ErrorCode::not_found);
 }
 
-TEST(Build, IsCancelledAtEveryStageAndLeavesNothingBehind) {
+TEST(Build, IsCancelledAtEveryStageAndKeepsWhatIsDone) {
   RasterFile file = plain(GDT_Int16);
   file.columns = file.rows = 90;
   const WrittenRaster raster(file);
@@ -384,8 +384,14 @@ TEST(Build, IsCancelledAtEveryStageAndLeavesNothingBehind) {
                 build({raster.path()}, folder.file("out.ptin"), options, resources);
               }).code(),
               ErrorCode::cancelled);
-    EXPECT_EQ(folder.names(), std::vector<std::string>{"out.ptin"});
     EXPECT_TRUE(oracle::bytes_of(folder.file("out.ptin")) == "mine");
+    resources.stop = {};
+    resources.unfinished = Unfinished::kResume;
+    build({raster.path()}, folder.file("out.ptin"), options, resources);
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"out.ptin"});
+    build({raster.path()}, folder.file("plain.ptin"), options, {});
+    EXPECT_TRUE(oracle::bytes_of(folder.file("out.ptin")) ==
+                oracle::bytes_of(folder.file("plain.ptin")));
   }
 }
 

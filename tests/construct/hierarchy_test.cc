@@ -18,6 +18,7 @@
 #include "engine/construct/raster_surface.h"
 #include "engine/construct/raster_tin.h"
 #include "engine/mesh/validate.h"
+#include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/surface_oracle.h"
 #include "tests/construct/test_terrain.h"
 
@@ -76,16 +77,23 @@ struct Built {
   std::vector<VertexSplit> records;
 };
 
-Built build_tiled(const TestTerrain& terrain, std::int64_t side) {
+Built build_tiled(const TestTerrain& terrain, std::int64_t side, int threads = 1) {
   const SampledRaster raster(terrain);
+  const test::TemporaryFolder folder;
+  test::UnsyncedFiles files;
+  Workspace workspace(files, folder.path() + "/t.ptin", "", Unfinished::kRefuse, {});
+  test::RecordsInMemory output;
+  HierarchyOptions options;
+  options.collapse.units = terrain.tile.units;
+  options.threads = threads;
+  const TileTree tree(raster.width(), raster.height(), side);
   Built built;
-  HierarchyBuilder builder([&](const SampleRange& w) { return raster.start(w); },
-                           TileTree(raster.width(), raster.height(), side), {},
-                           [&](std::span<VertexSplit> records) {
-                             built.records.insert(built.records.end(), records.begin(),
-                                                  records.end());
-                           });
-  built.t0 = builder.run();
+  built.t0 =
+      build_hierarchy(
+          [&]() -> LeafStarter { return [&](const SampleRange& w) { return raster.start(w); }; },
+          tree, options, workspace, output)
+          .t0;
+  built.records = output.records();
   for (const VertexSplit& r : built.records) {  // the oracle wants every vertex to have its place
     built.t0.vertices.push_back({r.u, r.height, kNone});
     built.t0.has_height.push_back((r.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0);
@@ -223,7 +231,11 @@ TEST(Hierarchy, NeedsHardlyMoreVerticesThanOneTile) {
 
 TEST(Hierarchy, GivesTheSameRecordsTwice) {
   const TestTerrain terrain = hills(65, 5, true);
-  EXPECT_TRUE(build_tiled(terrain, 16).records == build_tiled(terrain, 16).records);
+  const Built alone = build_tiled(terrain, 16);
+  EXPECT_TRUE(alone.records == build_tiled(terrain, 16).records);
+  for (const int threads : {2, 5}) {
+    EXPECT_TRUE(alone.records == build_tiled(terrain, 16, threads).records);
+  }
 }
 
 TEST(Hierarchy, AThinTerrainIsATreeOfTilesInARow) {

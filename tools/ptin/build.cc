@@ -3,13 +3,20 @@
 // ptin build: from a source to a .ptin file, with a report.
 #include "engine/construct/build.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
+#include <malloc.h>
+
+#include "engine/construct/memory_plan.h"
 #include "tools/error_status.h"
 #include "tools/output_file.h"
 #include "tools/progress.h"
+#include "tools/progress_fd.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
 
@@ -24,6 +31,10 @@ struct BuildCommand {
   std::vector<double> bbox;
   BuildOptions options;
   bool overwrite = false;
+  std::string memory, tmp;
+  int threads = 0;
+  bool resume = false, discard = false, dry_run = false;
+  int progress_fd = -1;
 };
 
 CostModel cost_of(const std::string& name) {
@@ -111,20 +122,125 @@ void print_report(const BuildCommand& command, const BuildReport& r) {
   std::printf("      ptin verify %s --against %s\n", out, command.inputs.front().c_str());
 }
 
+nlohmann::json plan_json(const BuildPlan& p) {
+  return {{"tile", p.tile_side},
+          {"tiles", p.leaves},
+          {"levels", p.levels},
+          {"vertices", p.vertices},
+          {"threads", p.threads},
+          {"memory_limit", p.memory_limit},
+          {"memory_expected", p.memory_expected},
+          {"temporary_bytes", p.temporary_bytes},
+          {"output_bytes", p.output_bytes},
+          {"free_bytes", p.output_free},
+          {"seconds", p.seconds}};
+}
+
+/// One line of what is to come; a second one when less is used than was asked for.
+void print_plan(const BuildPlan& p) {
+  std::fprintf(stderr,
+               "plan: %s vertices in %s tiles of %lld, %d thread%s, at most %s of memory, %s of "
+               "temporary disk, %s of output, roughly %s\n",
+               grouped(p.vertices).c_str(), grouped(p.leaves).c_str(),
+               static_cast<long long>(p.tile_side), p.threads, p.threads == 1 ? "" : "s",
+               human_bytes(p.memory_expected).c_str(), human_bytes(p.temporary_bytes).c_str(),
+               human_bytes(p.output_bytes).c_str(), human_duration(p.seconds).c_str());
+  if (p.threads < p.threads_wanted) {
+    std::fprintf(stderr, "plan: %d threads instead of %d, since no more tiles fit into %s\n",
+                 p.threads, p.threads_wanted, human_bytes(p.memory_limit).c_str());
+  }
+}
+
+/// What a run shows while it works.
+class BuildShow {
+ public:
+  BuildShow(const BuildCommand& command, const Context& context)
+      : progress_(Progress::style_for(context.quiet, stderr)) {
+    if (command.progress_fd >= 0) fd_.emplace(command.progress_fd);
+  }
+  void report(const char* stage, std::uint64_t done, std::uint64_t total) {
+    const auto now = std::chrono::steady_clock::now();
+    if (stage_ != stage) {
+      stage_ = stage;
+      begin_ = now;
+      first_ = done;
+    }
+    if (now - looked_ > std::chrono::milliseconds(500)) {
+      looked_ = now;
+      memory_ = anonymous_bytes_now();
+    }
+    if (fd_) fd_->report(stage, done, total, memory_);
+    const double seconds = std::chrono::duration<double>(now - begin_).count();
+    std::string detail;
+    if (seconds > 1.0 && total > 1) {
+      detail = grouped(static_cast<std::uint64_t>(static_cast<double>(done - first_) / seconds)) +
+               " vertices/s, " + human_bytes(memory_);
+    }
+    progress_.report(stage, done, total, detail);
+  }
+  void finish() { progress_.finish(); }
+
+ private:
+  Progress progress_;
+  std::optional<ProgressFd> fd_;
+  std::string stage_;
+  std::chrono::steady_clock::time_point begin_{}, looked_{};
+  std::uint64_t first_ = 0, memory_ = 0;
+};
+
+BuildResources resources_of(const BuildCommand& command, const Context& context, BuildShow& show) {
+  BuildResources resources;
+  resources.overwrite = command.overwrite;
+  resources.stop = context.stop;
+  if (!command.memory.empty()) resources.memory_bytes = parse_bytes(command.memory);
+  resources.threads = command.threads;
+  resources.tmp = command.tmp;
+  resources.unfinished = command.resume    ? Unfinished::kResume
+                         : command.discard ? Unfinished::kDiscard
+                                           : Unfinished::kRefuse;
+  resources.dry_run = command.dry_run;
+  resources.plan = [&command, &context, &show](const BuildPlan& plan) {
+    show.finish();
+    if (command.dry_run && context.json) {
+      print_json(plan_json(plan));
+    } else if (!context.quiet) {
+      print_plan(plan);
+    }
+  };
+  resources.progress = [&show](const char* stage, std::uint64_t done, std::uint64_t total) {
+    show.report(stage, done, total);
+  };
+  return resources;
+}
+
+/// Big blocks go back to the system as soon as they are freed, so that the limit holds between
+/// tiles too.
+void return_freed_memory(int threads) {
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  mallopt(M_TRIM_THRESHOLD, 4 << 20);
+  mallopt(M_ARENA_MAX, std::max(threads, 1) + 1);
+}
+
 int run_build(BuildCommand& command, const Context& context) {
+  if (command.discard && command.inputs.empty()) {
+    const bool found = Workspace::discard(FileLayer::system(), command.output);
+    if (!context.quiet) {
+      std::printf(
+          found ? "%s: the unfinished build is removed\n" : "%s: there is no unfinished build\n",
+          command.output.c_str());
+    }
+    return found ? kExitDone : kExitNegative;
+  }
   check_command(command);
+  return_freed_memory(command.threads);
   BuildReport report;
   {
-    Progress progress(Progress::style_for(context.quiet, stderr));
-    BuildResources resources;
-    resources.overwrite = command.overwrite;
-    resources.stop = context.stop;
-    resources.progress = [&progress](const char* stage, std::uint64_t done, std::uint64_t total) {
-      progress.report(stage, done, total);
-    };
-    report = build(command.inputs, command.output, command.options, resources);
-    progress.finish();
+    BuildShow show(command, context);
+    report = build(command.inputs, command.output, command.options,
+                   resources_of(command, context, show));
+    show.finish();
   }
+  if (command.dry_run) return kExitDone;
   if (context.json) {
     print_json(report_json(command, report));
   } else if (!context.quiet) {
@@ -139,10 +255,9 @@ Action declare_build(CLI::App& app, Context& context) {
   const auto command = std::make_shared<BuildCommand>();
   BuildOptions& options = command->options;
   app.add_option(
-         "INPUT", command->inputs,
-         "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz\n"
-         "too), or a layer that OGR reads; several files of one CRS")
-      ->required();
+      "INPUT", command->inputs,
+      "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz\n"
+      "too), or a layer that OGR reads; several files of one CRS");
   app.add_option("-o,--output", command->output, "The .ptin file to write")
       ->type_name("FILE")
       ->required();
@@ -183,6 +298,27 @@ Action declare_build(CLI::App& app, Context& context) {
          "--tile", options.tile,
          "Rasters: samples along a leaf of the tile hierarchy (default: by the raster's size)")
       ->type_name("SIDE");
+  app.add_option("--memory", command->memory,
+                 "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less\n"
+                 "where a cgroup or a resource limit allows less)")
+      ->type_name("SIZE");
+  app.add_option("--threads", command->threads,
+                 "Threads (default: one a core); fewer are used where memory is short. The output\n"
+                 "is the same for any number")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  app.add_option("--tmp", command->tmp, "Folder for temporary files (default: beside the output)")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
+  auto* resume = app.add_flag("--resume", command->resume, "Go on with an interrupted build");
+  app.add_flag("--discard", command->discard,
+               "Remove an interrupted build first; without INPUT, only that")
+      ->excludes(resume);
+  app.add_flag("--dry-run", command->dry_run, "Say what the build would need, and stop");
+  app.add_option("--progress-fd", command->progress_fd,
+                 "Write progress as lines of JSON to this file descriptor")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("FD");
   app.add_flag("--overwrite", command->overwrite, "Replace an existing output");
   add_common_options(app, context, true);
   return [command, &context] { return run_build(*command, context); };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/human.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -35,6 +37,18 @@ std::string short_number(double value) {
     if (shown.back() == '.') shown.pop_back();
   }
   return shown;
+}
+
+std::string human_duration(double seconds) {
+  std::array<char, 32> text{};
+  if (seconds < 120.0) {
+    std::snprintf(text.data(), text.size(), "%.0f s", std::max(1.0, seconds));
+  } else if (seconds < 7200.0) {
+    std::snprintf(text.data(), text.size(), "%.0f min", seconds / 60.0);
+  } else {
+    std::snprintf(text.data(), text.size(), "%.1f h", seconds / 3600.0);
+  }
+  return text.data();
 }
 
 std::uint64_t parse_bytes(const std::string& text) {

@@ -12,6 +12,8 @@ namespace ptin::tools {
 [[nodiscard]] std::string grouped(std::uint64_t n);
 /// Bytes as "3.2 MiB"; below 1024 "512 bytes".
 [[nodiscard]] std::string human_bytes(std::uint64_t bytes);
+/// Seconds as "12 s", "3 min", "1.5 h".
+[[nodiscard]] std::string human_duration(double seconds);
 /// Six significant digits without trailing zeros; "inf" when infinite.
 [[nodiscard]] std::string short_number(double value);
 /// A size in bytes from "512M", "2G", "4096": suffixes K, M, G, T are powers of 1024.

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/build_plan.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+
+#include <sys/stat.h>
+
+#include "engine/construct/build.h"
+#include "engine/construct/memory_plan.h"
+#include "engine/error.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+// Measured on terrains of 4097 to 16385 samples a side (bench/README.md), with some room.
+constexpr double kOutputBytesOfVertex = 66.0;
+constexpr double kTemporaryBytesOfVertex = 55.0;
+constexpr double kVerticesPerSecond = 150000.0;  ///< A thread's, both halves of the build.
+
+std::string folder_of(const std::string& path) {
+  const std::string parent = std::filesystem::path(path).parent_path().string();
+  return parent.empty() ? "." : parent;
+}
+
+std::uint64_t samples_of_leaf(const TileTree& tree) {
+  const SampleRange w = tree.window({0, 0, 0});
+  return static_cast<std::uint64_t>(w.width) * static_cast<std::uint64_t>(w.height);
+}
+
+std::string in_mib(std::uint64_t bytes) { return std::to_string((bytes + kMiB - 1) / kMiB) + "M"; }
+
+/// The longest side whose tiles fit into `bytes`.
+std::int64_t side_that_fits(std::uint64_t bytes, const TileBytes& tile_bytes) {
+  std::int64_t side = 4096;
+  while (side > 16 && tile_bytes.of_batch(static_cast<std::uint64_t>(side + 1) *
+                                          static_cast<std::uint64_t>(side + 1)) > bytes) {
+    side /= 2;
+  }
+  return side;
+}
+
+void plan_memory(BuildPlan& plan, const TileTree& tree, const BuildResources& resources,
+                 const TileBytes& tile_bytes) {
+  const std::uint64_t present = anonymous_bytes_now();
+  const std::uint64_t samples = samples_of_leaf(tree);
+  const std::uint64_t one = std::max(tile_bytes.of_batch(samples), tile_bytes.of_replay(samples));
+  plan.memory_limit = resources.memory_bytes != 0 ? resources.memory_bytes : default_memory();
+  plan.threads_wanted = resources.threads > 0
+                            ? resources.threads
+                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  plan.threads = plan.threads_wanted;
+  MemoryShares shares = share_memory(plan.memory_limit, present, plan.threads);
+  while (plan.threads > 1 && shares.tiles < one * static_cast<std::uint64_t>(plan.threads)) {
+    shares = share_memory(plan.memory_limit, present, --plan.threads);
+  }
+  if (shares.tiles < one) {
+    const std::uint64_t rest = share_memory(~std::uint64_t{0}, present, 1).tiles;
+    const std::uint64_t besides = ~std::uint64_t{0} - rest;
+    throw Error(ErrorCode::resource_exhausted,
+                "a tile of " + std::to_string(plan.tile_side) + " samples a side needs " +
+                    in_mib(one + besides) + " and the limit is " + in_mib(plan.memory_limit) +
+                    "; give --memory " + in_mib(one + besides) + ", or --tile " +
+                    std::to_string(side_that_fits(shares.tiles, tile_bytes)));
+  }
+  plan.gdal_cache = shares.gdal_cache;
+  plan.tile_bytes = shares.tiles;
+  plan.memory_expected =
+      plan.memory_limit - shares.tiles + one * static_cast<std::uint64_t>(plan.threads);
+}
+
+std::uint64_t free_in(const std::string& folder) {
+  std::error_code failure;
+  const std::filesystem::space_info space = std::filesystem::space(folder, failure);
+  return failure ? ~std::uint64_t{0} : space.available;
+}
+
+bool on_same_disk(const std::string& a, const std::string& b) {
+  struct stat first {
+  }, second{};
+  return ::stat(a.c_str(), &first) == 0 && ::stat(b.c_str(), &second) == 0 &&
+         first.st_dev == second.st_dev;
+}
+
+void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& options,
+               const BuildResources& resources) {
+  const auto vertices = static_cast<double>(plan.vertices);
+  plan.output_bytes = static_cast<std::uint64_t>(vertices * kOutputBytesOfVertex) + kMiB;
+  plan.temporary_bytes =
+      plan.leaves == 1 ? 0 : static_cast<std::uint64_t>(vertices * kTemporaryBytesOfVertex) + kMiB;
+  const std::string folder = folder_of(output);
+  const std::string tmp = resources.tmp.empty() ? folder : resources.tmp;
+  plan.output_free = free_in(folder);
+  plan.temporary_free = free_in(tmp);
+  plan.same_disk = on_same_disk(folder, tmp);
+  // With --max-error how much is left out is not known before.
+  const std::uint64_t least_output = options.max_error > 0.0 ? 0 : plan.output_bytes;
+  const auto require = [](std::uint64_t needed, std::uint64_t free, const std::string& where) {
+    if (needed > free) {
+      throw Error(ErrorCode::resource_exhausted,
+                  "the build needs up to " + in_mib(needed) + " of disk here and " + in_mib(free) +
+                      " are free; free some, or name another disk for temporary files by --tmp",
+                  where);
+    }
+  };
+  if (plan.same_disk) {
+    require(least_output + plan.temporary_bytes, plan.output_free, folder);
+  } else {
+    require(least_output, plan.output_free, folder);
+    require(plan.temporary_bytes, plan.temporary_free, tmp);
+  }
+}
+
+}  // namespace
+
+BuildPlan plan_build(const TileTree& tree, const std::string& output, const BuildOptions& options,
+                     const BuildResources& resources, const TileBytes& tile_bytes) {
+  const SampleRange whole = tree.window(tree.root());
+  BuildPlan plan;
+  plan.tile_side = tree.side();
+  plan.leaves = tree.leaves();
+  plan.levels = tree.levels();
+  plan.vertices =
+      static_cast<std::uint64_t>(whole.width) * static_cast<std::uint64_t>(whole.height);
+  plan_memory(plan, tree, resources, tile_bytes);
+  plan_disk(plan, output, options, resources);
+  plan.seconds = static_cast<double>(plan.vertices) / kVerticesPerSecond / plan.threads;
+  return plan;
+}
+
+}  // namespace ptin

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a build expects to need, said before the work starts.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/construct/tile_bytes.h"
+#include "engine/construct/tile_tree.h"
+
+namespace ptin {
+
+struct BuildOptions;
+struct BuildResources;
+
+struct BuildPlan {
+  std::int64_t tile_side = 0;
+  std::uint64_t leaves = 0;
+  int levels = 0;
+  std::uint64_t vertices = 0;
+  std::uint64_t memory_limit = 0;     ///< Bytes of anonymous memory.
+  std::uint64_t memory_expected = 0;  ///< At most, by estimate.
+  std::uint64_t gdal_cache = 0;
+  std::uint64_t tile_bytes = 0;  ///< Share of all tiles in work.
+  int threads_wanted = 1;
+  int threads = 1;                    ///< As many as fit.
+  std::uint64_t temporary_bytes = 0;  ///< Disk, at most, beside the output.
+  std::uint64_t output_bytes = 0;     ///< At most.
+  std::uint64_t temporary_free = 0, output_free = 0;
+  bool same_disk = true;
+  double seconds = 0.0;  ///< Roughly.
+};
+
+/// @param tree  Of the terrain's tiles.
+/// @throws Error resource_exhausted  one tile does not fit into the memory (names the --memory and
+///                                   the --tile that would), or the disk has less free than needed
+[[nodiscard]] BuildPlan plan_build(const TileTree& tree, const std::string& output,
+                                   const BuildOptions& options, const BuildResources& resources,
+                                   const TileBytes& tile_bytes);
+
+}  // namespace ptin

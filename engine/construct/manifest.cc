@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/manifest.h"
+
+#include <array>
+#include <charconv>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "storage/checksum.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::size_t kChecksumDigits = 16;
+
+std::string checksum_text(const std::string& text) {
+  std::array<char, kChecksumDigits> digits{};
+  const std::uint64_t checksum = checksum_of(std::as_bytes(std::span(text)));
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), checksum, 16).ptr;
+  const std::string shown(digits.data(), end);
+  return std::string(kChecksumDigits - shown.size(), '0') + shown;
+}
+
+ScratchFile::Kept kept(const std::string& path) {
+  return std::filesystem::exists(path) ? ScratchFile::Kept::kExisting : ScratchFile::Kept::kNew;
+}
+
+}  // namespace
+
+Manifest::Manifest(FileLayer& files, const std::string& path)
+    : path_(path), file_(files, path, kept(path)) {
+  read();
+}
+
+Manifest::~Manifest() = default;
+
+void Manifest::read() {
+  std::string text(std::filesystem::file_size(path_), '\0');
+  file_.read_at(std::as_writable_bytes(std::span(text)), 0);
+  while (true) {
+    const std::size_t end = text.find('\n', bytes_);
+    if (end == std::string::npos || end - bytes_ <= kChecksumDigits + 1) {
+      break;
+    }
+    const std::string body =
+        text.substr(bytes_ + kChecksumDigits + 1, end - bytes_ - kChecksumDigits - 1);
+    if (text.compare(bytes_, kChecksumDigits, checksum_text(body)) != 0) {
+      break;
+    }
+    lines_.push_back(nlohmann::json::parse(body));
+    bytes_ = end + 1;
+  }
+  if (bytes_ != text.size()) {
+    file_.truncate(bytes_);
+  }
+}
+
+void Manifest::append(const std::vector<nlohmann::json>& lines) {
+  std::string text;
+  for (const nlohmann::json& line : lines) {
+    const std::string body = line.dump();
+    text += checksum_text(body) + ' ' + body + '\n';
+  }
+  file_.write_at(std::as_bytes(std::span(text)), bytes_);
+  bytes_ += text.size();
+  file_.sync();
+}
+
+}  // namespace ptin

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where finished segments go.
+#pragma once
+
+#include <span>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "storage/record.h"
+
+namespace ptin {
+
+/// Receives segments, in an order that depends on the tree of tiles alone. Threads: one at a time.
+class SegmentOutput {
+ public:
+  SegmentOutput() = default;
+  SegmentOutput(const SegmentOutput&) = delete;
+  SegmentOutput& operator=(const SegmentOutput&) = delete;
+  virtual ~SegmentOutput() = default;
+
+  /// May reorder the records in place.
+  virtual void add_segment(std::span<VertexSplit> records) = 0;
+  /// Where it stands, as something that a manifest keeps.
+  [[nodiscard]] virtual nlohmann::json position() const = 0;
+  /// Makes everything up to position() durable.
+  virtual void sync() = 0;
+  /// Goes back to a position that was made durable. @throws Error corruption
+  virtual void resume(const nlohmann::json& position) = 0;
+};
+
+}  // namespace ptin

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/tile_collapse.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/construct/simplify.h"
+
+namespace ptin {
+
+namespace {
+
+std::uint64_t vertices_to_keep(const Tile& tile, const TileTree& tree, const TileId& id) {
+  if (id == tree.root()) {
+    return 0;
+  }
+  const auto free = std::count_if(tile.vertex_state.begin(), tile.vertex_state.end(),
+                                  [](const VertexState& v) { return !v.locked; });
+  return static_cast<std::uint64_t>(free) / 4;
+}
+
+SimplifyOptions simplify_options(const CollapseOptions& options, std::uint64_t keep,
+                                 const std::stop_token& stop) {
+  SimplifyOptions result;
+  result.cost = options.cost;
+  result.keep = keep;
+  result.stop = stop;
+  return result;
+}
+
+}  // namespace
+
+CollapsedLeaf collapse_leaf(const TileId& id, const TileTree& tree, const LeafStarter& start,
+                            const CollapseOptions& options, const std::stop_token& stop) {
+  StartedTile leaf = start(tree.window(id));
+  lock_seams(leaf.tile, tree, id);
+  simplify(leaf.tile, *leaf.full,
+           simplify_options(options, vertices_to_keep(leaf.tile, tree, id), stop));
+  leaf.full.reset();
+  CollapsedLeaf result;
+  result.lone_samples = leaf.lone_samples;
+  result.records = leaf.tile.records;
+  result.pushed = push_up(std::move(leaf.tile));
+  return result;
+}
+
+CollapsedInner collapse_inner(const TileId& id, const TileTree& tree, std::vector<Tile>&& parts,
+                              const CollapseOptions& options, const std::stop_token& stop) {
+  CollapsedInner result;
+  InnerSegment& segment = result.segment;
+  segment.id = id;
+  for (const Tile& part : parts) {
+    segment.child_begin.push_back(static_cast<std::uint32_t>(segment.foreign.size()));
+    for (const VertexSplit& r : part.records) {
+      segment.foreign.push_back({r.error, r.deviation});
+    }
+  }
+  Tile tile = join_tiles(std::move(parts), tree, id);
+  simplify_witnesses(tile, simplify_options(options, vertices_to_keep(tile, tree, id), stop));
+  segment.records.assign(tile.records.begin() + static_cast<std::ptrdiff_t>(segment.foreign.size()),
+                         tile.records.end());
+  segment.dependencies = std::move(tile.dependencies);
+  segment.dependency_end = std::move(tile.dependency_end);
+  PushedTile pushed = push_up(std::move(tile));
+  segment.exported = std::move(pushed.exported);
+  result.pushed = std::move(pushed.tile);
+  return result;
+}
+
+}  // namespace ptin

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/page_journal.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/error.h"
+#include "storage/checksum.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::uint64_t kMarkMagic = 0x6b72614d6e697450U;  // "PtinMark"
+constexpr std::size_t kBufferedEntries = 4096;
+
+std::uint64_t next_in_chain(std::uint64_t chain, const layout::NodeEntry& page) {
+  struct {
+    std::uint64_t chain;
+    layout::NodeEntry page;
+  } link{chain, page};
+  return checksum_of_object(link);
+}
+
+std::uint64_t checksum_of(const PublishMark& mark) {
+  return ptin::checksum_of(
+      std::as_bytes(std::span(&mark, 1)).first(offsetof(PublishMark, checksum)));
+}
+
+}  // namespace
+
+PageJournal::PageJournal(FileLayer& files, const std::string& path, ScratchFile::Kept kept)
+    : path_(path), file_(files, path, kept) {}
+
+void PageJournal::add(const layout::NodeEntry& page) {
+  pending_.push_back(page);
+  end_.chain = next_in_chain(end_.chain, page);
+  ++end_.pages;
+  if (pending_.size() == kBufferedEntries) {
+    write_pending();
+  }
+}
+
+void PageJournal::write_pending() {
+  file_.write_at(std::as_bytes(std::span(pending_)), written_ * sizeof(layout::NodeEntry));
+  written_ += pending_.size();
+  pending_.clear();
+}
+
+void PageJournal::sync() {
+  write_pending();
+  file_.sync();
+}
+
+void PageJournal::mark(std::uint64_t moved_bytes, std::uint64_t moved_to) {
+  write_pending();
+  PublishMark mark{kMarkMagic, written_, moved_bytes, moved_to, 0};
+  mark.checksum = checksum_of(mark);
+  file_.write_at(std::as_bytes(std::span(&mark, 1)), written_ * sizeof(layout::NodeEntry));
+  file_.sync();
+}
+
+std::optional<PublishMark> PageJournal::find_mark() const {
+  const std::uint64_t bytes = std::filesystem::file_size(path_);
+  if (bytes < sizeof(PublishMark)) {
+    return std::nullopt;
+  }
+  PublishMark mark;
+  file_.read_at(std::as_writable_bytes(std::span(&mark, 1)), bytes - sizeof mark);
+  const bool is_sound = mark.magic == kMarkMagic && mark.checksum == checksum_of(mark) &&
+                        mark.pages == (bytes - sizeof mark) / sizeof(layout::NodeEntry);
+  return is_sound ? std::optional(mark) : std::nullopt;
+}
+
+void PageJournal::replay(const StoreCheckpoint& checkpoint,
+                         const std::function<void(const layout::NodeEntry&)>& page) {
+  const auto refuse = [this](const char* what) { throw Error(ErrorCode::corruption, what, path_); };
+  if (std::filesystem::file_size(path_) / sizeof(layout::NodeEntry) < checkpoint.pages) {
+    refuse("the unfinished build's list of pages is shorter than its manifest says");
+  }
+  end_ = {};
+  std::vector<layout::NodeEntry> entries(kBufferedEntries);
+  while (end_.pages < checkpoint.pages) {
+    const std::span<layout::NodeEntry> part(entries.data(),
+                                            static_cast<std::size_t>(std::min<std::uint64_t>(
+                                                kBufferedEntries, checkpoint.pages - end_.pages)));
+    file_.read_at(std::as_writable_bytes(part), end_.pages * sizeof(layout::NodeEntry));
+    for (const layout::NodeEntry& entry : part) {
+      page(entry);
+      end_.chain = next_in_chain(end_.chain, entry);
+      ++end_.pages;
+    }
+  }
+  if (!(end_ == checkpoint)) {
+    refuse("the unfinished build's list of pages is not the one that its manifest speaks of");
+  }
+  file_.truncate(end_.pages * sizeof(layout::NodeEntry));
+  written_ = end_.pages;
+}
+
+}  // namespace ptin
