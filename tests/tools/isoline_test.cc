@@ -3,6 +3,7 @@
 // ptin isoline end to end: formats, conventions, refusals; level sets against gdal_contour's.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include <gdal_priv.h>
@@ -84,6 +85,69 @@ TEST(IsolineProgram, WritesTheSameLinesInEveryFormat) {
   EXPECT_EQ(std::count(texts.begin(), texts.end(), texts.front()), 4);
   EXPECT_EQ(m.folder.names(), (std::vector<std::string>{"a.dbf", "a.fgb", "a.geojson", "a.gpkg",
                                                         "a.prj", "a.shp", "a.shx", "m.ptin"}));
+}
+
+TEST(IsolineProgram, PolygonsAreValidAndCoverTheSurface) {
+  const TestFolder folder;
+  struct Case {
+    const char* raster;
+    std::vector<std::string> options;
+  };
+  const std::vector<Case> cases = {{"mountains_257.tif", {"--interval", "50"}},
+                                   {"mountains_257.tif", {"--interval", "100", "--error", "20"}},
+                                   {"mountains_257.tif", {"--level", "1000", "1001", "1002"}},
+                                   {"coast_257.tif", {"--interval", "10"}},
+                                   {"coast_257.tif", {"--level", "0", "1", "5"}}};
+  for (const Case& c : cases) {
+    const std::string file = folder.file(std::string(c.raster) + ".ptin");
+    if (!std::filesystem::exists(file)) {
+      ASSERT_EQ(run_ptin({"build", test_data(c.raster), "-o", file, "-q"}).status, 0);
+    }
+    std::vector<std::string> arguments = {
+        "isoline", file, "--polygons", "-o", folder.file("p.gpkg"), "--overwrite", "-q"};
+    arguments.insert(arguments.end(), c.options.begin(), c.options.end());
+    const Outcome outcome = run_ptin(arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    double area = 0;
+    double before = -1e9;
+    for (const Feature& f : read_layer(folder.file("p.gpkg"))) {
+      EXPECT_TRUE(f.geometry->IsValid()) << c.raster << " " << f.values[0] << " " << c.options[0];
+      EXPECT_LT(f.values.at(0), f.values.at(1));
+      EXPECT_GE(f.values.at(0), before);
+      before = f.values.at(1);
+      area += f.geometry->toMultiPolygon()->get_Area();
+    }
+    const GDALDatasetUniquePtr raster(GDALDataset::Open(test_data(c.raster).c_str()));
+    double g[6];
+    raster->GetGeoTransform(g);
+    if (std::string(c.raster) == "mountains_257.tif") {
+      EXPECT_NEAR(area / (256 * 256 * g[1] * -g[5]), 1.0, 1e-9);
+    }
+  }
+}
+
+TEST(IsolineProgram, PolygonsOfTwoWindowsShareTheirBorder) {
+  const Mountains m;
+  GDALAllRegister();
+  const GDALDatasetUniquePtr raster(GDALDataset::Open(test_data("mountains_257.tif").c_str()));
+  double g[6];
+  raster->GetGeoTransform(g);
+  const double west = g[0], north = g[3], east = g[0] + 257 * g[1], south = g[3] + 257 * g[5];
+  const double middle = west + 100.3 * g[1];
+  double area = 0;
+  for (const auto& [a, b] : {std::pair{west, middle}, std::pair{middle, east}}) {
+    const std::string out = m.folder.file("w.gpkg");
+    const auto text = [](double v) { return json(v).dump(); };
+    const Outcome outcome =
+        run_ptin({"isoline", m.file, "--interval", "100", "--polygons", "-o", out, "--overwrite",
+                  "-q", "--window", text(a), text(south), text(b), text(north)});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    for (const Feature& f : read_layer(out)) {
+      EXPECT_TRUE(f.geometry->IsValid());
+      area += f.geometry->toMultiPolygon()->get_Area();
+    }
+  }
+  EXPECT_NEAR(area / (256 * 256 * g[1] * -g[5]), 1.0, 1e-9);
 }
 
 TEST(IsolineProgram, WritesGeoJsonToStdout) {

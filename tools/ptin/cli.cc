@@ -47,15 +47,16 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin refine dem.ptin --vertices 50000 -o small.obj --stats\n"
      "  ptin refine dem.ptin --point 387500 3792500 --clip -o triangle.2dm\n",
      declare_refine},
-    {"isoline", "Write isolines (contours)",
+    {"isoline", "Write isolines (contours) as lines, or as polygons between them",
      "Lines keep higher ground on their right; a vertex at a level counts as above it. They are "
      "those of one TIN\n"
      "whatever the window and the memory: cut at two windows they meet in the same coordinates. "
      "The layer is `contour`\n"
-     "with the fields ID and elev, as gdal_contour's.\n\n"
+     "with the fields ID and elev, or elev_min and elev_max, as gdal_contour's.\n\n"
      "Examples:\n"
      "  ptin isoline dem.ptin --interval 20 -o contours.gpkg\n"
      "  ptin isoline dem.ptin --level 500 1000 --3d -o two.fgb --error 2\n"
+     "  ptin isoline dem.ptin --interval 100 --base 50 --polygons -o bands.gpkg\n"
      "  ptin isoline dem.ptin --level 0 --window 385000 3790000 390000 3795000 -o - | jq "
      ".features\n",
      declare_isoline},

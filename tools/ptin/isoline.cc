@@ -8,12 +8,18 @@
 #include <filesystem>
 #include <memory>
 
+#include <ogr_geometry.h>
+
+#include "engine/query/certificate.h"
+#include "engine/query/isoline_bands.h"
 #include "tools/error_status.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output_file.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
+#include "tools/region/cut.h"
+#include "tools/region/tin_mesh.h"
 
 namespace ptin::tools {
 
@@ -27,6 +33,7 @@ struct IsolineOptions {
   double base = 0.0;
   std::optional<double> error;
   bool z = false;
+  bool polygons = false;
   std::uint64_t max_lines = IsolineRequest{}.most_lines;
   std::string memory, output;
   bool overwrite = false;
@@ -118,6 +125,122 @@ void report(const IsolineOptions& options, const Isolines& lines, const Written&
   }
 }
 
+int run_lines(const IsolineOptions& options, const IsolineRequest& request,
+              const ProgressiveTin& terrain, const Context& context) {
+  const CrsFacts crs = crs_facts(terrain.store());
+  const Isolines lines = isolines(terrain, request);
+  const Written written = write_lines(lines, options, crs.wkt, context);
+  if (written.features == 0 && !context.quiet) {
+    std::fprintf(stderr, "ptin: warning: no surface crosses these levels; the layer is empty\n");
+  }
+  report(options, lines, written, crs, context);
+  return kExitDone;
+}
+
+/// A raster without a void: its triangles away from the levels may stay coarse, since its border is
+/// straight. Otherwise the borders of voids are wanted everywhere, and the index knows none.
+bool has_straight_border(const StoreFile& store) {
+  const GridBox& b = store.facts().bounds;
+  const std::uint64_t full = (static_cast<std::uint64_t>(b.max_x - b.min_x) + 1) *
+                             (static_cast<std::uint64_t>(b.max_y - b.min_y) + 1);
+  return store.facts().source_samples == full &&
+         store.t0().vertices.size() + store.record_count() == full;
+}
+
+RefinedTin refine_for_bands(const IsolineRequest& request, const LevelSet& levels,
+                            const ProgressiveTin& terrain) {
+  const PredicatePtr crossing = levels.crossing();
+  RefineRequest refine;
+  if (request.window) refine.region = *request.window;
+  refine.tolerance = request.tolerance;
+  refine.memory_limit_bytes = request.memory_limit_bytes / 2;
+  refine.stop = request.stop;
+  if (has_straight_border(terrain.store())) refine.also = crossing.get();
+  return terrain.refine(refine);
+}
+
+std::unique_ptr<OGRGeometry> polygon_geometry(const BandPolygon& polygon) {
+  auto geometry = std::make_unique<OGRPolygon>();
+  for (const std::vector<MapPoint>& points : polygon.rings) {
+    auto ring = std::make_unique<OGRLinearRing>();
+    ring->setNumPoints(static_cast<int>(points.size()), FALSE);
+    for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+      ring->setPoint(i, points[static_cast<std::size_t>(i)].x,
+                     points[static_cast<std::size_t>(i)].y);
+    }
+    geometry->addRingDirectly(ring.release());
+  }
+  return geometry;
+}
+
+/// One feature a band that has an area, as gdal_contour -p.
+std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelSet& levels,
+                          const StoreFacts& facts, const IsolineOptions& options,
+                          const std::string& wkt) {
+  VectorFile file(options.output, options.overwrite,
+                  {"contour",
+                   wkbMultiPolygon,
+                   {{"ID", VectorFile::FieldType::kInteger},
+                    {"elev_min", VectorFile::FieldType::kReal},
+                    {"elev_max", VectorFile::FieldType::kReal}},
+                   wkt});
+  std::uint64_t features = 0;
+  for (std::size_t i = 0; i < polygons.size();) {
+    const std::uint32_t band = polygons[i].band;
+    auto parts = std::make_unique<OGRMultiPolygon>();
+    for (; i < polygons.size() && polygons[i].band == band; ++i) {
+      parts->addGeometryDirectly(polygon_geometry(polygons[i]).release());
+    }
+    const double low = band == 0 ? facts.min_height : levels.height(band - 1);
+    const double high = band == levels.size() ? facts.max_height : levels.height(band);
+    const VectorFile::Value values[] = {static_cast<std::int64_t>(features), low, high};
+    file.add(std::move(parts), values);
+    ++features;
+  }
+  file.publish();
+  return features;
+}
+
+int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
+                 const ProgressiveTin& terrain, const Context& context) {
+  const StoreFacts& facts = terrain.store().facts();
+  const CrsFacts crs = crs_facts(terrain.store());
+  const LevelSet levels(request.levels, facts.heights);
+  RefinedTin refined = refine_for_bands(request, levels, terrain);
+  const Mesh mesh = request.window ? cut_to_region(refined, facts, *request.window)
+                                   : surface_mesh(refined, facts);
+  refined.tin = {};
+  std::vector<double> heights;  // as the vertices' are decoded
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    heights.push_back(facts.heights.height_of_code(levels.code(i)));
+  }
+  const QueryContext query(request.stop, request.memory_limit_bytes, terrain.store().path());
+  const std::vector<BandPolygon> polygons =
+      band_polygons({mesh.vertices, mesh.triangles}, heights, query);
+  if (polygons.size() > request.most_lines) {
+    throw Error(ErrorCode::resource_exhausted,
+                "there are " + std::to_string(polygons.size()) +
+                    " polygons, more than the limit of " + std::to_string(request.most_lines) +
+                    ": ask for fewer levels or a larger error, or raise --max-lines",
+                options.terrain.file);
+  }
+  const std::uint64_t features = write_bands(polygons, levels, facts, options, crs.wkt);
+  if (context.json) {
+    print_json({{"output", options.output},
+                {"levels", levels.heights()},
+                {"features", features},
+                {"polygons", polygons.size()},
+                {"certified_error",
+                 certify_below(terrain.store(), request.tolerance.value_or(-1.0)).error},
+                {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+                {"cost", cost_json(refined.cost)}});
+  } else if (!context.quiet && options.output != "-") {
+    std::printf("%s: %s bands of %s polygons\n", options.output.c_str(), grouped(features).c_str(),
+                grouped(polygons.size()).c_str());
+  }
+  return kExitDone;
+}
+
 int run_isoline(const IsolineOptions& options, const Context& context) {
   check_options(options, context);
   const ProgressiveTin terrain = open_terrain(options.terrain);
@@ -139,13 +262,8 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
   request.temporary_folder = folder_for_temporaries(options);
   request.stop = context.stop;
-  const Isolines lines = isolines(terrain, request);
-  const Written written = write_lines(lines, options, crs.wkt, context);
-  if (written.features == 0 && !context.quiet) {
-    std::fprintf(stderr, "ptin: warning: no surface crosses these levels; the layer is empty\n");
-  }
-  report(options, lines, written, crs, context);
-  return kExitDone;
+  return options.polygons ? run_polygons(options, request, terrain, context)
+                          : run_lines(options, request, terrain, context);
 }
 
 }  // namespace
@@ -165,14 +283,17 @@ Action declare_isoline(CLI::App& app, Context& context) {
   add_region_options(app, options->region, true);
   app.add_option("--error", options->error, "Certified error allowed, in the height's unit")
       ->type_name("E");
-  app.add_flag("--3d", options->z, "Points carry the height of their line");
+  auto* z = app.add_flag("--3d", options->z, "Points carry the height of their line");
+  app.add_flag("-p,--polygons", options->polygons,
+               "Polygons between the levels, with elev_min and elev_max, instead of lines")
+      ->excludes(z);
   app.add_option("-o,--output", options->output,
                  "The layer to write; its extension chooses the format: " +
                      known_vector_extensions() + "; - is GeoJSON on stdout")
       ->type_name("OUT")
       ->required();
   app.add_option("--max-lines", options->max_lines,
-                 "Refuse, before anything is written, when there are more lines")
+                 "Refuse, before anything is written, when there are more lines, or polygons")
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--memory", options->memory,
