@@ -141,8 +141,10 @@ PointGrid PointGridScan::grid() const {
   grid.west = x_.lowest(grid.x);
   grid.south = y_.lowest(grid.y);
   // Differences of numbers up to 2^62 fit; as doubles they are near enough for a limit of 2^30.
-  const double width = static_cast<double>(x_.highest(grid.x)) - static_cast<double>(grid.west);
-  const double height = static_cast<double>(y_.highest(grid.y)) - static_cast<double>(grid.south);
+  grid.east = x_.highest(grid.x);
+  grid.north = y_.highest(grid.y);
+  const double width = static_cast<double>(grid.east) - static_cast<double>(grid.west);
+  const double height = static_cast<double>(grid.north) - static_cast<double>(grid.south);
   check_extent(std::max(width, height) * grid.x.unit(), grid.x.unit(), context_);
   grid.heights = StepCounter(std::max(height_decimals_, z_.decimals()));
   grid.whole = static_cast<double>(z_.lowest(grid.heights)) >= -kInt32Max &&

@@ -65,6 +65,7 @@ class DecimalRange {
 struct PointGrid {
   StepCounter x, y;
   std::int64_t west = 0, south = 0;  ///< Steps of the grid's origin.
+  std::int64_t east = 0, north = 0;  ///< Steps of the farthest points.
   StepCounter heights;               ///< Whole codes, where `whole`.
   bool whole = false;  ///< Heights are codes: whole steps of a power of ten that fit int32.
 
@@ -75,6 +76,10 @@ struct PointGrid {
   /// The height as merging takes it: its code where `whole`, else in its unit.
   [[nodiscard]] double height(Decimal z) const noexcept {
     return whole ? static_cast<double>(heights.steps(z)) : to_double(z);
+  }
+  /// The largest x or y of all points, on the grid.
+  [[nodiscard]] std::int64_t largest() const noexcept {
+    return east - west > north - south ? east - west : north - south;
   }
   /// How far in plan a point moves, CRS units.
   [[nodiscard]] double shift(const SourcePoint& p) const noexcept;

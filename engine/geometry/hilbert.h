@@ -31,4 +31,31 @@ namespace ptin {
   return position;
 }
 
+/// A cell of the grid of the curve.
+struct HilbertCell {
+  std::uint32_t x = 0, y = 0;
+  friend bool operator==(const HilbertCell&, const HilbertCell&) = default;
+};
+
+/// The cell at a position: the inverse of hilbert_position().
+[[nodiscard]] constexpr HilbertCell hilbert_cell(std::uint64_t position) noexcept {
+  HilbertCell cell;
+  std::uint32_t swapped = 0;
+  std::uint32_t inverted = 0;
+  for (int bit = 31; bit >= 0; --bit) {
+    const auto place = static_cast<std::uint32_t>(position >> (2 * bit)) & 3U;
+    const std::uint32_t qx = place >> 1;
+    const std::uint32_t qy = (place ^ qx) & 1U;
+    const std::uint32_t turned_x = (qx ^ inverted) & 1U;
+    const std::uint32_t turned_y = (qy ^ inverted) & 1U;
+    const std::uint32_t exchanged = (turned_x ^ turned_y) & swapped;
+    cell.x |= (turned_x ^ exchanged) << bit;
+    cell.y |= (turned_y ^ exchanged) << bit;
+    const std::uint32_t lower = qy - 1U;
+    swapped ^= lower;
+    inverted ^= lower & (0U - qx);
+  }
+  return cell;
+}
+
 }  // namespace ptin

@@ -61,5 +61,9 @@ RC_GTEST_PROP(HilbertPosition, NeighboursAlongTheCurveShareASide, (std::uint64_t
   RC_ASSERT(std::uint64_t{apart(ax, bx)} + apart(ay, by) == 1U);
 }
 
+RC_GTEST_PROP(HilbertCell, IsTheInverse, (std::uint32_t x, std::uint32_t y)) {
+  RC_ASSERT(hilbert_cell(hilbert_position(x, y)) == (HilbertCell{x, y}));
+}
+
 }  // namespace
 }  // namespace ptin::test

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The Delaunay stage of points: buckets on disk to the triangles of tiles. Items are points of
+// tiles, so that margins count as work and not as output.
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+
+#include <benchmark/benchmark.h>
+#include <cpl_vsi.h>
+
+#include "engine/construct/delaunay.h"
+#include "engine/construct/point_buckets.h"
+#include "engine/construct/tile_delaunay.h"
+#include "tests/construct/las_file.h"
+
+namespace ptin {
+namespace {
+
+enum Kind : int { kEven, kGrid, kClusters };
+
+/// A LAS file of `n` points in memory.
+std::string las_of(Kind kind, std::uint64_t n) {
+  std::mt19937_64 random(1);
+  LasFileMaker las;
+  const auto side = static_cast<std::int32_t>(std::sqrt(static_cast<double>(n)));
+  std::normal_distribution<double> normal(0.0, 1.0);
+  for (std::uint64_t i = 0; i < n; ++i) {
+    LasPoint p;
+    if (kind == kGrid) {
+      p.x = static_cast<std::int32_t>(i) % side;
+      p.y = static_cast<std::int32_t>(i) / side;
+    } else if (kind == kEven) {
+      p.x = static_cast<std::int32_t>(random() % (100U * static_cast<unsigned>(side)));
+      p.y = static_cast<std::int32_t>(random() % (100U * static_cast<unsigned>(side)));
+    } else {
+      const auto c = static_cast<std::int32_t>(random() % 20);
+      p.x = c * 7919 % 20 * 300 * side +
+            static_cast<std::int32_t>(normal(random) * side * 10 * (1 + c));
+      p.y = c * 400 * side + static_cast<std::int32_t>(normal(random) * side * 10 * (1 + c));
+    }
+    p.z = static_cast<std::int32_t>(100 * std::sin(p.x * 1e-4) * std::cos(p.y * 1e-4));
+    las.points.push_back(p);
+  }
+  return las.bytes();
+}
+
+const PointBuckets& buckets_of(Kind kind, std::uint64_t n) {
+  static std::unique_ptr<PointBuckets> buckets;
+  static int last_kind = -1;
+  static std::uint64_t last_n = 0;
+  if (!buckets || last_kind != kind || last_n != n) {
+    const std::string bytes = las_of(kind, n);
+    VSILFILE* file = VSIFOpenL("/vsimem/bench.las", "wb");
+    VSIFWriteL(bytes.data(), 1, bytes.size(), file);
+    VSIFCloseL(file);
+    buckets = std::make_unique<PointBuckets>(
+        PointBuckets::read({"/vsimem/bench.las"}, {}, {FileLayer::system(), "."}));
+    VSIUnlink("/vsimem/bench.las");
+    last_kind = kind;
+    last_n = n;
+  }
+  return *buckets;
+}
+
+void Tiles(benchmark::State& state) {
+  const PointBuckets& buckets =
+      buckets_of(static_cast<Kind>(state.range(0)), static_cast<std::uint64_t>(state.range(1)));
+  const auto count = static_cast<std::uint64_t>(state.range(2));
+  DelaunayTiler tiler(buckets);
+  std::uint64_t points = 0, others = 0;
+  for (auto _ : state) {
+    for (std::uint64_t first = 0; first < buckets.size(); first += count) {
+      const DelaunayTile tile = tiler.make(first, std::min(count, buckets.size() - first));
+      benchmark::DoNotOptimize(tile.tin.triangles.data());
+      points += tile.own_points;
+      others += tile.other_points;
+    }
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(points));
+  state.counters["margin"] = static_cast<double>(others) / static_cast<double>(points);
+}
+BENCHMARK(Tiles)
+    ->ArgNames({"kind", "points", "tile"})
+    ->Args({kEven, 1'000'000, 250'000})
+    ->Args({kEven, 1'000'000, 65'536})
+    ->Args({kGrid, 1'000'000, 250'000})
+    ->Args({kClusters, 1'000'000, 250'000})
+    ->Unit(benchmark::kMillisecond);
+
+/// From a LAS file in memory to buckets on disk.
+void Buckets(benchmark::State& state) {
+  const std::string bytes = las_of(kEven, static_cast<std::uint64_t>(state.range(0)));
+  VSILFILE* file = VSIFOpenL("/vsimem/bench.las", "wb");
+  VSIFWriteL(bytes.data(), 1, bytes.size(), file);
+  VSIFCloseL(file);
+  for (auto _ : state) {
+    const PointBuckets buckets = PointBuckets::read(
+        {"/vsimem/bench.las"}, {},
+        {FileLayer::system(), ".", static_cast<std::uint64_t>(state.range(1)) << 20});
+    benchmark::DoNotOptimize(buckets.size());
+  }
+  VSIUnlink("/vsimem/bench.las");
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(Buckets)
+    ->ArgNames({"points", "memory"})
+    ->Args({1'000'000, 64})
+    ->Args({1'000'000, 2})
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace ptin

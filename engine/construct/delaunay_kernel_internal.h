@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// CGAL's Delaunay triangulation over grid points, and how it becomes a Tin. For *delaunay*.cc
+// alone.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include "engine/geometry/point.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin::delaunay_internal {
+
+using BaseKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// The kernel's points, whose coordinates are whole numbers below 2^31 here, with predicates in 64
+/// and 128 bits behind a filter in doubles: on grids, where everything is cocircular, the kernel's
+/// own fall back to arithmetic of any length.
+class GridKernel : public BaseKernel {
+ public:
+  using Point_2 = BaseKernel::Point_2;
+
+  struct Orientation_2 {
+    using result_type = CGAL::Orientation;
+    CGAL::Orientation operator()(const Point_2& p, const Point_2& q, const Point_2& r) const {
+      // Differences are at most 2^30, so products at most 2^60: 64 bits hold their difference.
+      const auto qx = static_cast<std::int64_t>(q.x() - p.x());
+      const auto qy = static_cast<std::int64_t>(q.y() - p.y());
+      const auto rx = static_cast<std::int64_t>(r.x() - p.x());
+      const auto ry = static_cast<std::int64_t>(r.y() - p.y());
+      const std::int64_t left = qx * ry, right = qy * rx;
+      return left > right ? CGAL::LEFT_TURN : (left < right ? CGAL::RIGHT_TURN : CGAL::COLLINEAR);
+    }
+  };
+
+  struct Side_of_oriented_circle_2 {
+    using result_type = CGAL::Oriented_side;
+    CGAL::Oriented_side operator()(const Point_2& p, const Point_2& q, const Point_2& r,
+                                   const Point_2& t) const {
+      const double qpx = q.x() - p.x(), qpy = q.y() - p.y();
+      const double rpx = r.x() - p.x(), rpy = r.y() - p.y();
+      const double tpx = t.x() - p.x(), tpy = t.y() - p.y();
+      const double tqx = t.x() - q.x(), tqy = t.y() - q.y();
+      const double rqx = r.x() - q.x(), rqy = r.y() - q.y();
+      const double a = qpx * tpy - qpy * tpx, b = tpx * tqx + tpy * tqy;
+      const double c = qpx * rpy - qpy * rpx, d = rpx * rqx + rpy * rqy;
+      const double determinant = a * d - b * c;
+      // CGAL's bound for this formula (Filtered_kernel, static filters): differences are exact
+      // here.
+      const double width =
+          std::max({std::abs(qpx), std::abs(rpx), std::abs(tpx), std::abs(tqx), std::abs(rqx)});
+      const double height =
+          std::max({std::abs(qpy), std::abs(rpy), std::abs(tpy), std::abs(tqy), std::abs(rqy)});
+      const double larger = std::max(width, height), smaller = std::min(width, height);
+      const double bound = 8.8878565762001373e-15 * larger * smaller * (larger * larger);
+      if (determinant > bound) {
+        return CGAL::ON_POSITIVE_SIDE;
+      }
+      if (determinant < -bound) {
+        return CGAL::ON_NEGATIVE_SIDE;
+      }
+      // All four terms are at most 2^61: 128 bits hold the products.
+      __extension__ using Int128 = __int128;
+      const auto whole = [](double v) { return static_cast<std::int64_t>(v); };
+      const std::int64_t ia = whole(qpx) * whole(tpy) - whole(qpy) * whole(tpx);
+      const std::int64_t ib = whole(tpx) * whole(tqx) + whole(tpy) * whole(tqy);
+      const std::int64_t ic = whole(qpx) * whole(rpy) - whole(qpy) * whole(rpx);
+      const std::int64_t id = whole(rpx) * whole(rqx) + whole(rpy) * whole(rqy);
+      const Int128 left = Int128{ia} * id, right = Int128{ib} * ic;
+      return left > right   ? CGAL::ON_POSITIVE_SIDE
+             : left < right ? CGAL::ON_NEGATIVE_SIDE
+                            : CGAL::ON_ORIENTED_BOUNDARY;
+    }
+  };
+
+  [[nodiscard]] Orientation_2 orientation_2_object() const { return {}; }
+  [[nodiscard]] Side_of_oriented_circle_2 side_of_oriented_circle_2_object() const { return {}; }
+};
+
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<VertexId, GridKernel>;
+using FaceBase = CGAL::Triangulation_face_base_with_info_2<TriangleId, GridKernel>;
+using DataStructure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
+using Delaunay = CGAL::Delaunay_triangulation_2<GridKernel, DataStructure>;
+
+inline GridPoint position_of(const Delaunay::Vertex_handle& v) {
+  return {static_cast<std::int32_t>(v->point().x()), static_cast<std::int32_t>(v->point().y())};
+}
+
+/// A face and where its smallest vertex id stands in it.
+struct Oriented {
+  Delaunay::Face_handle face;
+  int first = 0;
+
+  [[nodiscard]] int place(int i) const { return first + i > 2 ? first + i - 3 : first + i; }
+  [[nodiscard]] VertexId corner(int i) const { return face->vertex(place(i))->info(); }
+  [[nodiscard]] TriangleId neighbour(int i) const { return face->neighbor(place(i))->info(); }
+};
+
+/// Brings faces into the ascending order of their first two corners and numbers them so.
+/// REQUIRES: the info of all other faces is kNone.
+inline std::vector<Oriented> number_faces(const std::vector<Delaunay::Face_handle>& faces,
+                                          std::size_t vertices) {
+  std::vector<std::uint32_t> start(vertices + 1, 0);
+  std::vector<Oriented> oriented;
+  oriented.reserve(faces.size());
+  for (const Delaunay::Face_handle& f : faces) {
+    Oriented face{f, 0};
+    for (const int i : {1, 2}) {
+      if (f->vertex(i)->info() < face.corner(0)) {
+        face.first = i;
+      }
+    }
+    ++start[face.corner(0) + 1];
+    oriented.push_back(face);
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<Oriented> sorted(faces.size());
+  auto next = start;
+  for (const Oriented& face : oriented) {
+    sorted[next[face.corner(0)]++] = face;
+  }
+  for (std::size_t v = 0; v < vertices; ++v) {
+    std::sort(sorted.begin() + start[v], sorted.begin() + start[v + 1],
+              [](const Oriented& a, const Oriented& b) { return a.corner(1) < b.corner(1); });
+  }
+  for (std::size_t t = 0; t < sorted.size(); ++t) {
+    sorted[t].face->info() = static_cast<TriangleId>(t);
+  }
+  return sorted;
+}
+
+/// Adds numbered faces to a Tin that has its vertices, and gives each vertex a triangle: on the
+/// border the one without a clockwise neighbour, inside the first.
+inline void add_faces(const std::vector<Oriented>& faces, Tin& tin) {
+  tin.triangles.reserve(faces.size());
+  for (const Oriented& f : faces) {
+    tin.triangles.push_back({{f.corner(0), f.corner(1), f.corner(2)},
+                             {f.neighbour(0), f.neighbour(1), f.neighbour(2)}});
+  }
+  tin.classes.assign(faces.size(), TriangleClass::kSurface);
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      TriangleId& of_vertex = tin.vertices[tin.triangles[t].v[i]].triangle;
+      if (of_vertex == kNone || tin.triangles[t].n[previous_corner(i)] == kNone) {
+        of_vertex = t;
+      }
+    }
+  }
+}
+
+}  // namespace ptin::delaunay_internal

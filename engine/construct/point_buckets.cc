@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/point_buckets.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/construct/crs.h"
+#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/point_grid.h"
+#include "engine/construct/point_merge.h"
+#include "engine/construct/point_order_internal.h"
+#include "engine/construct/point_reading.h"
+#include "engine/construct/point_spool.h"
+#include "engine/error.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::uint64_t kMostBuckets = std::uint64_t{1} << 20;
+
+[[noreturn]] void refuse(const std::string& context, const std::string& sentence) {
+  throw Error(ErrorCode::invalid_argument, sentence, context);
+}
+
+/// What the codes or heights of a terrain are, found while they come.
+class HeightFinder {
+ public:
+  HeightFinder(bool whole, double step) : whole_(whole), step_(step) {}
+
+  void add(double height) {
+    if (whole_) {
+      low_ = std::min(low_, height);
+      high_ = std::max(high_, height);
+    } else {
+      scan_.add(height);
+    }
+  }
+  [[nodiscard]] HeightFit fit() const {
+    if (!whole_) {
+      return scan_.fit();
+    }
+    HeightFit fit;
+    fit.encoding = {HeightType::int32, step_, 0.0};
+    fit.quantum = step_;
+    fit.min_height = fit.encoding.height_of_code(low_);
+    fit.max_height = fit.encoding.height_of_code(high_);
+    return fit;
+  }
+
+ private:
+  bool whole_;
+  double step_;
+  HeightScan scan_{HeightScan::Given::kFloat64};
+  double low_ = std::numeric_limits<double>::infinity();
+  double high_ = -std::numeric_limits<double>::infinity();
+};
+
+void check_area(const ConvexHull& hull, std::uint64_t points, const std::string& context) {
+  if (points < 3) {
+    refuse(context,
+           "there are " + std::to_string(points) + " distinct points; a terrain needs at least 3");
+  }
+  if (hull.corners().size() < 3) {
+    refuse(context, "all points lie on one line; a terrain needs an area");
+  }
+}
+
+}  // namespace
+
+/// Merges points that come in the order of the curve, and writes them in buckets.
+class PointBuckets::Writer {
+ public:
+  Writer(PointBuckets& to, const PointGrid& grid, const PointOrder& order, PointMerge rule)
+      : to_(to),
+        grid_(grid),
+        order_(order),
+        rule_(rule),
+        heights_(grid.whole, grid.heights.unit()) {
+    to_.boxes_.emplace_back();
+  }
+
+  void add(const KeyedHeight& p) {
+    if (merged_ && p.key == key_) {
+      merged_->add(p.height);
+      return;
+    }
+    put();
+    key_ = p.key;
+    merged_.emplace(p.height);
+  }
+
+  void finish() {
+    put();
+    write();
+    const HeightFit fit = heights_.fit();
+    set_heights(to_.frame_, fit);
+    to_.codes_are_whole_ = grid_.whole;
+    to_.counts_.largest_shift_height *= grid_.whole ? fit.encoding.step : 1.0;
+    to_.counts_.merged_points = to_.counts_.source_points - to_.size_;
+    to_.hull_ = hull_.hull();
+  }
+
+ private:
+  void put() {
+    if (!merged_) {
+      return;
+    }
+    const double height = merged_->height(rule_, grid_.whole);
+    double& largest = to_.counts_.largest_shift_height;
+    largest = std::max(largest, merged_->shift(height));
+    heights_.add(height);
+    const GridPoint position = order_.point(key_);
+    hull_.add(position);
+    bucket_.push_back({position, height});
+    ++to_.size_;
+    if (bucket_.size() == to_.bucket_points_) {
+      write();
+    }
+  }
+
+  void write() {
+    if (bucket_.empty()) {
+      return;
+    }
+    std::vector<GridBox>& boxes = to_.boxes_.front();
+    to_.file_->write_at(std::as_bytes(std::span(bucket_)),
+                        boxes.size() * to_.bucket_points_ * sizeof(Stored));
+    GridBox box;
+    for (const Stored& p : bucket_) {
+      box = united(box, p.position);
+    }
+    boxes.push_back(box);
+    bucket_.clear();
+  }
+
+  PointBuckets& to_;
+  const PointGrid& grid_;
+  const PointOrder& order_;
+  PointMerge rule_;
+  HeightFinder heights_;
+  HullCollector hull_;
+  std::vector<Stored> bucket_;
+  std::uint64_t key_ = 0;
+  std::optional<MergedHeight> merged_;
+};
+
+void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rule,
+                        const ExternalMemory& memory, const std::stop_token& stop,
+                        const Progress& progress) {
+  const std::uint64_t total = spool.size();
+  std::uint64_t done = 0;
+  const auto report = [&](std::size_t points) {
+    if (stop.stop_requested()) {
+      throw Error(ErrorCode::cancelled, "sorting the points was cancelled");
+    }
+    done += points;
+    if (progress) {
+      progress("sorting", done, 2 * total);
+    }
+  };
+  const PointOrder order(grid.largest());
+  PointSorter sorter(memory);
+  std::vector<SourcePoint> batch;
+  while (spool.take(batch)) {
+    for (const SourcePoint& p : batch) {
+      sorter.add({order.key(grid.position(p)), grid.height(p.z)});
+      counts_.largest_shift_plan = std::max(counts_.largest_shift_plan, grid.shift(p));
+    }
+    report(batch.size());
+  }
+  while ((total + bucket_points_ - 1) / bucket_points_ > kMostBuckets) {
+    bucket_points_ *= 2;
+  }
+  file_ = std::make_unique<ScratchFile>(memory.files, memory.folder, "buckets", true);
+  Writer writer(*this, grid, order, rule);
+  sorter.merge(
+      [&](std::span<const KeyedHeight> points) {
+        for (const KeyedHeight& p : points) {
+          writer.add(p);
+        }
+        report(points.size());
+      },
+      stop);
+  writer.finish();
+}
+
+void PointBuckets::index_boxes() {
+  while (boxes_.back().size() > 1) {
+    const std::vector<GridBox>& below = boxes_.back();
+    std::vector<GridBox> above((below.size() + kFanOut - 1) / kFanOut);
+    for (std::size_t i = 0; i < below.size(); ++i) {
+      above[i / kFanOut] = united(above[i / kFanOut], below[i]);
+    }
+    boxes_.push_back(std::move(above));
+  }
+}
+
+PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const SourceOptions& options,
+                                const ExternalMemory& memory, const std::stop_token& stop,
+                                const Progress& progress) {
+  const std::string context = paths.empty() ? "" : paths[0];
+  PointBuckets buckets;
+  PointSpool spool(memory);
+  const PointReading reading = read_sources(
+      paths, options, [&](const SourcePoint& p) { spool.add(p); }, stop,
+      [&](std::uint64_t done, std::uint64_t total) {
+        if (progress) {
+          progress("reading", done, total);
+        }
+      });
+  set_crs(buckets.frame_, resolve_crs(reading.crs, options.a_srs, options.vertical_crs));
+  buckets.frame_.map = reading.grid.map();
+  buckets.counts_.source_points = reading.points;
+  buckets.counts_.left_out_points = reading.left_out;
+  buckets.sort(spool, reading.grid, options.merge, memory, stop, progress);
+  check_area(buckets.hull_, buckets.size_, context);
+  buckets.index_boxes();
+  return buckets;
+}
+
+void PointBuckets::take(std::uint64_t first, std::uint64_t count,
+                        std::vector<BucketPoint>& points) const {
+  std::vector<Stored> stored(count);
+  file_->read_at(std::as_writable_bytes(std::span(stored)), first * sizeof(Stored));
+  points.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    points[i] = {stored[i].position, codes_are_whole_
+                                         ? frame_.heights.bits(stored[i].height)
+                                         : encode_height(frame_.heights, stored[i].height)};
+  }
+}
+
+}  // namespace ptin

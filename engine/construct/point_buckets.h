@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Any number of points on the grid, on disk: merged, in the order of the Hilbert curve, cut into
+// buckets of equal size whose boxes are kept in memory.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <queue>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "engine/construct/hull_collector.h"
+#include "engine/construct/point_sorter.h"
+#include "engine/construct/terrain_source.h"
+#include "engine/geometry/box.h"
+#include "engine/geometry/point.h"
+#include "storage/file_layer.h"
+
+namespace ptin {
+
+/// A point on the grid.
+struct BucketPoint {
+  GridPoint position;
+  HeightBits height = 0;
+};
+
+/// What happened on the way from the source to the buckets.
+struct PointCounts {
+  std::uint64_t source_points = 0;    ///< Read and not left out.
+  std::uint64_t left_out_points = 0;  ///< By class or place, withheld, or without a height.
+  std::uint64_t merged_points = 0;    ///< Of the source's: those that share a position with others.
+  double largest_shift_plan = 0.0;    ///< As PointSet.
+  double largest_shift_height = 0.0;
+};
+
+/// Points in buckets. Skewed sources are no worse than even ones: buckets hold equally many points,
+/// however far apart. Threads: const members from any number at once.
+class PointBuckets {
+ public:
+  using Progress = std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)>;
+
+  /// Reads the sources once (read_points() says what becomes of points, by the same rules) and
+  /// sorts what they hold. Disk: 27 bytes a point while it is read, 43 while it is sorted, then 16;
+  /// in memory.folder. Memory: memory.bytes, and 16 bytes for each of at most 2^20 buckets.
+  /// @throws Error as read_points(), and resource_exhausted when the disk is full
+  static PointBuckets read(const std::vector<std::string>& paths, const SourceOptions& options,
+                           const ExternalMemory& memory, const std::stop_token& stop = {},
+                           const Progress& progress = {});
+
+  [[nodiscard]] const TerrainFrame& frame() const noexcept { return frame_; }
+  [[nodiscard]] const PointCounts& counts() const noexcept { return counts_; }
+  [[nodiscard]] const ConvexHull& hull() const noexcept { return hull_; }
+  /// Distinct positions.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  [[nodiscard]] std::uint64_t bucket_points() const noexcept { return bucket_points_; }
+  [[nodiscard]] std::uint64_t buckets() const noexcept { return boxes_.front().size(); }
+  [[nodiscard]] const GridBox& box(std::uint64_t bucket) const noexcept {
+    return boxes_.front()[bucket];
+  }
+  /// Points first .. first + count - 1 in the order of the curve.  @throws Error io_error
+  void take(std::uint64_t first, std::uint64_t count, std::vector<BucketPoint>& points) const;
+
+  /// Calls visit(bucket) for each bucket whose box pleases `meets`, the nearest to `from` first,
+  /// until it returns false. `meets` must hold for every box around one for which it holds.
+  template <class Meets, class Visit>
+  void visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const;
+
+ private:
+  struct Stored {
+    GridPoint position;
+    double height;  ///< A code where codes_are_whole_, else a height.
+  };
+  class Writer;
+  PointBuckets() = default;
+  void sort(class PointSpool& spool, const struct PointGrid& grid, PointMerge rule,
+            const ExternalMemory& memory, const std::stop_token& stop, const Progress& progress);
+  void index_boxes();
+
+  TerrainFrame frame_;
+  PointCounts counts_;
+  ConvexHull hull_;
+  std::uint64_t size_ = 0;
+  std::uint64_t bucket_points_ = 1024;
+  bool codes_are_whole_ = false;
+  std::unique_ptr<ScratchFile> file_;
+  static constexpr std::uint64_t kFanOut = 16;
+  std::vector<std::vector<GridBox>> boxes_;  ///< Of buckets, of groups of 16 of those, and so on.
+};
+
+template <class Meets, class Visit>
+void PointBuckets::visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const {
+  struct Entry {
+    std::int64_t distance;
+    std::size_t level;
+    std::uint64_t number;
+    bool operator<(const Entry& other) const noexcept {  // a queue takes the largest first
+      return distance != other.distance ? distance > other.distance
+             : level != other.level     ? level > other.level
+                                        : number > other.number;
+    }
+  };
+  std::priority_queue<Entry> queue;
+  const auto push = [&](std::size_t level, std::uint64_t number) {
+    const GridBox& b = boxes_[level][number];
+    if (meets(b)) {
+      const std::int64_t dx = std::max(
+          {std::int64_t{b.min_x} - from.x, std::int64_t{from.x} - b.max_x, std::int64_t{0}});
+      const std::int64_t dy = std::max(
+          {std::int64_t{b.min_y} - from.y, std::int64_t{from.y} - b.max_y, std::int64_t{0}});
+      queue.push({dx * dx + dy * dy, level, number});
+    }
+  };
+  push(boxes_.size() - 1, 0);
+  while (!queue.empty()) {
+    const Entry top = queue.top();
+    queue.pop();
+    if (top.level == 0) {
+      if (!visit(top.number)) {
+        return;
+      }
+      continue;
+    }
+    const std::uint64_t end =
+        std::min<std::uint64_t>((top.number + 1) * kFanOut, boxes_[top.level - 1].size());
+    for (std::uint64_t child = top.number * kFanOut; child < end; ++child) {
+      push(top.level - 1, child);
+    }
+  }
+}
+
+}  // namespace ptin
