@@ -50,6 +50,7 @@ class SampleLists {
     }
     const auto capacity_log = static_cast<std::size_t>(std::bit_width(count - 1));
     std::vector<std::uint32_t>& free = free_[capacity_log];
+    used_ += std::size_t{1} << capacity_log;
     if (!free.empty()) {
       const std::uint32_t offset = free.back();
       free.pop_back();
@@ -61,15 +62,29 @@ class SampleLists {
       throw Error(ErrorCode::resource_exhausted,
                   "a tile holds more samples than one list of them counts; build in smaller tiles");
     }
+    if (end > pool_.capacity()) {
+      reserve(end + end / 4);  // by less than doubling: the old pool is there while it is copied
+    }
     pool_.resize(end);
     return {static_cast<std::uint32_t>(offset), count};
   }
 
   void give_back(SampleSlot slot) {
     if (slot.count != 0) {
-      free_[static_cast<std::size_t>(std::bit_width(slot.count - 1))].push_back(slot.offset);
+      const auto capacity_log = static_cast<std::size_t>(std::bit_width(slot.count - 1));
+      free_[capacity_log].push_back(slot.offset);
+      used_ -= std::size_t{1} << capacity_log;
     }
   }
+
+  /// True when most of the pool is free lists of lengths that nobody asks for any more: as
+  /// triangles grow, so do their lists. Time to lay them out anew (tile_compact.h).
+  [[nodiscard]] bool is_sparse() const noexcept {
+    constexpr std::size_t kWorthwhile = std::size_t{1} << 16;
+    return pool_.size() > kWorthwhile && pool_.size() / 2 > used_;
+  }
+  /// Samples in lists, each rounded up to its capacity.
+  [[nodiscard]] std::size_t used() const noexcept { return used_; }
 
   [[nodiscard]] std::span<Sample> samples(SampleSlot slot) noexcept {
     return {pool_.data() + slot.offset, slot.count};
@@ -82,10 +97,10 @@ class SampleLists {
   }
 
   void reserve(std::size_t samples) { reserve_large(pool_, samples); }
-  [[nodiscard]] std::size_t capacity() const noexcept { return pool_.capacity(); }
 
  private:
   std::vector<Sample> pool_;
+  std::size_t used_ = 0;
   std::array<std::vector<std::uint32_t>, 33> free_;
 };
 

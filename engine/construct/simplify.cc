@@ -2,6 +2,7 @@
 #include "engine/construct/simplify.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "engine/construct/record_maker.h"
 #include "engine/construct/saturation.h"
 #include "engine/construct/tile_compact.h"
+#include "engine/construct/witness.h"
 #include "engine/large_array.h"
 
 namespace ptin {
@@ -27,7 +29,12 @@ enum class QueueState : std::uint8_t {
 class Simplifier {
  public:
   Simplifier(Tile& tile, const FullSurface* full, const SimplifyOptions& options)
-      : tile_(tile), options_(options), maker_(tile, full), scale_(scale_of(tile, options.cost)) {}
+      : tile_(tile),
+        options_(options),
+        is_capped_(full == nullptr),
+        first_samples_(tile.samples.used()),
+        maker_(tile, full),
+        scale_(scale_of(tile, options.cost)) {}
 
   void run();
 
@@ -42,6 +49,7 @@ class Simplifier {
   [[nodiscard]] Evaluation evaluate(VertexId u);
   void take_top();
   void collapse(VertexId u, std::size_t j);
+  [[nodiscard]] std::size_t most_samples() const;
   void compact_when_sparse();
   void prefetch_upcoming() const;
   void prefetch_star(VertexId v) const;
@@ -51,6 +59,8 @@ class Simplifier {
 
   Tile& tile_;
   const SimplifyOptions& options_;
+  bool is_capped_;               ///< Lists are cut down to witnesses at each compaction.
+  std::size_t first_samples_;    ///< In all lists at the beginning.
   RecordMaker maker_;
   CollapseChooser chooser_;
   PriorityScale scale_;
@@ -164,12 +174,22 @@ void Simplifier::collapse(VertexId u, std::size_t j) {
   ++collapsed_;
 }
 
+/// Samples that a triangle keeps at a compaction: all lists together hardly more than at the
+/// beginning.
+std::size_t Simplifier::most_samples() const {
+  if (!is_capped_) {
+    return std::numeric_limits<std::size_t>::max();
+  }
+  return std::max(kWitnessesInWork, first_samples_ / static_cast<std::size_t>(2 * alive_ + 1));
+}
+
 void Simplifier::compact_when_sparse() {
   const std::size_t length = tile_.tin.vertices.size();
-  if (length <= options_.compact_above || 2 * alive_ > length) {
+  const bool is_worthwhile = length > options_.compact_above && 2 * alive_ <= length;
+  if (!is_worthwhile && !tile_.samples.is_sparse()) {
     return;
   }
-  const Renumbering place = compact(tile_);
+  const Renumbering place = compact(tile_, most_samples());
   for (std::size_t v = 0; v < length; ++v) {
     if (place[v] != kNone) {
       state_[place[v]] = state_[v];

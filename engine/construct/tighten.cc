@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <limits>
 #include <memory>
 #include <unordered_map>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "engine/construct/sample_blocks.h"
 #include "engine/construct/sample_hand_over.h"
 #include "engine/construct/star_samples.h"
+#include "engine/construct/tile_compact.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/split.h"
 
@@ -66,7 +68,7 @@ Replay::Replay(const Tin& t0, StartedTile&& leaf, const SampleRange& window)
     vertices_.emplace(key_of(t0.position(v)), v);
     tile_.vertex_state.push_back({no_depth(t0.has_height[v] != 0), 0, false});
   }
-  take_samples(leaf.tile);
+  take_samples(std::exchange(leaf.tile, {}));  // its mesh is not needed any more
 }
 
 /// Every sample of the leaf that is no vertex of T0 goes to a triangle of T0 that holds it, of its
@@ -177,6 +179,9 @@ RecordBounds Replay::apply(const VertexSplit& record) {
   site.right_class = class_of(VertexSplit::kRightVoid);
   PTIN_CHECK(split(tile_.tin, site).applied);
   tile_.carried.resize(tile_.tin.triangles.size());
+  if (tile_.samples.is_sparse()) {
+    lay_out_samples(tile_, std::numeric_limits<std::size_t>::max());
+  }
   gather_star_and_samples(tile_, site.u, star_);
   return measure(site.w);
 }

@@ -2,7 +2,10 @@
 #include "engine/construct/tile_compact.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
+
+#include "engine/construct/witness.h"
 
 namespace ptin {
 
@@ -53,21 +56,27 @@ Renumbering compact_triangles(Tile& tile) {
   return place;
 }
 
-void lay_out_samples(Tile& tile) {
+}  // namespace
+
+void lay_out_samples(Tile& tile, std::size_t most) {
   SampleLists lists;
-  lists.reserve(tile.samples.capacity());
-  for (CarriedState& carried : tile.carried) {
-    const SampleSlot slot = lists.take(carried.samples.count);
-    const auto from = tile.samples.samples(carried.samples);
-    std::copy(from.begin(), from.end(), lists.samples(slot).begin());
-    carried.samples = slot;
+  lists.reserve(tile.samples.used() + tile.samples.used() / 4);
+  std::vector<Sample> chosen;
+  for (TriangleId t = 0; t < tile.carried.size(); ++t) {
+    CarriedState& carried = tile.carried[t];
+    std::span<const Sample> from = std::as_const(tile.samples).samples(carried.samples);
+    if (from.size() > most) {
+      chosen.assign(from.begin(), from.end());
+      choose_witnesses(tile, t, chosen, most);
+      from = chosen;
+    }
+    carried.samples = lists.take(static_cast<std::uint32_t>(from.size()));
+    std::copy(from.begin(), from.end(), lists.samples(carried.samples).begin());
   }
   tile.samples = std::move(lists);
 }
 
-}  // namespace
-
-Renumbering compact(Tile& tile) {
+Renumbering compact(Tile& tile, std::size_t most_samples) {
   Renumbering vertices = compact_vertices(tile);
   const Renumbering triangles = compact_triangles(tile);
   for (Vertex& v : tile.tin.vertices) {
@@ -79,7 +88,7 @@ Renumbering compact(Tile& tile) {
       t.n[i] = t.n[i] == kNone ? kNone : triangles[t.n[i]];
     }
   }
-  lay_out_samples(tile);
+  lay_out_samples(tile, most_samples);
   return vertices;
 }
 

@@ -63,11 +63,12 @@ class Judge {
 
 }  // namespace
 
-void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples) {
+void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
+                      std::size_t most) {
   for (Sample& s : samples) {
     s.side_log = 0;
   }
-  if (samples.size() <= kWitnesses) {
+  if (samples.size() <= most) {
     return;
   }
   const Judge judge(tile, t);
@@ -89,7 +90,7 @@ void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& sampl
     (place ? rest : samples).push_back(c.sample);
     place = true;
   }
-  rest.resize(std::min(rest.size(), kWitnesses - samples.size()));
+  rest.resize(std::min(rest.size(), most - samples.size()));
   samples.insert(samples.end(), rest.begin(), rest.end());
 }
 

@@ -12,12 +12,17 @@
 namespace ptin {
 
 inline constexpr std::size_t kWitnesses = 8;
+/// Samples that a triangle of a tile of witnesses may keep while it is collapsed, at least: coarse
+/// fans would otherwise hold all of them.
+inline constexpr std::size_t kWitnessesInWork = 32;
 
-/// Cuts the samples of a triangle down to at most kWitnesses: those with the largest residuals of
+/// Cuts the samples of a triangle down to at most `most`: those with the largest residuals of
 /// either sign, spread over its corners; of samples in the wrong class the deepest, and of voids in
 /// a void triangle the deepest too, so that a parent knows what a surface over them would cost.
 /// They order the collapses of the parent and bound nothing: tightening does (tighten.h).
-/// Deterministic; a block is taken for its first sample. Cost: linear.
-void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples);
+/// Deterministic; a block is taken for its first sample. Cost: n log n.
+/// REQUIRES: most >= 6.
+void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
+                      std::size_t most = kWitnesses);
 
 }  // namespace ptin
