@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -34,22 +35,28 @@ class CollapseChooser {
 
  private:
   struct Candidate {
-    std::size_t j;
-    double screen;  ///< |residual| of u, a lower bound of the error; 0 where it is not known.
-    VertexKey key;
+    double screen;    ///< |residual| of u, a lower bound of the error; 0 where it is not known.
+    std::uint32_t j;  ///< w is link[j].
+  };
+  /// The best so far.
+  struct Best {
+    std::size_t j = CollapseChoice::kNoNeighbour;
+    double error = std::numeric_limits<double>::infinity();  ///< Not raised by its rounding yet.
+    double charge = 0.0;
+    VertexKey key = kNoVertexKey;
   };
   void collect(const Tile& tile, const StarSamples& s);
-  void screen_all(const Tile& tile, const StarSamples& s);
-  void set_crowded_aside(const Tile& tile, const StarSamples& s);
-  [[nodiscard]] CollapseChoice choose_among_candidates(const Tile& tile, StarSamples& s);
-  void select_next(std::size_t first);
-  [[nodiscard]] CollapseChoice choose_on_surface(const Tile& tile, StarSamples& s);
-  [[nodiscard]] CollapseChoice choose_with_voids(const Tile& tile, const StarSamples& s);
+  void screen_all(const StarSamples& s);
+  void select_next(const Tile& tile, const StarSamples& s, std::size_t first);
+  [[nodiscard]] static bool is_crowded(const Tile& tile, const StarSamples& s, std::size_t j);
+  [[nodiscard]] Best best_of(const Tile& tile, const StarSamples& s, bool crowded_too);
+  void measure(const Tile& tile, const StarSamples& s, std::size_t j, Best& best);
+  [[nodiscard]] double certified(const Tile& tile, StarSamples& s, const Best& best);
 
   std::vector<Candidate> candidates_;
-  std::vector<Candidate> crowded_;  ///< Taken only when no other is allowed.
-  std::vector<double>
-      crosses_;  ///< crosses_[i * degree + k]: cross product of link i and link k, relative to u.
+  // Scratch of the screen: the link, padded; cross products of link i and link k, relative to u;
+  // and of each w its smallest fan triangle and its screen.
+  std::vector<double> x_, y_, z_, crosses_, least_, screens_;
   bool screened_ = false;  ///< Whether the candidates' screens are known.
   FanFrame fan_;
 };

@@ -35,9 +35,23 @@ FanError measure_fan(const Tile& tile, const StarSamples& s, const FanFrame& fan
 
 void assign_by_class(const Tile& tile, const StarSamples& s, const FanFrame& frame,
                      FanAssignment& assignment) {
+  const auto class_of = [&](std::size_t i) {
+    return tile.tin.classes[s.star.triangles[frame.star_triangle[i]]];
+  };
+  bool one_class = true;
+  for (std::size_t i = 1; i < frame.triangles(); ++i) {
+    one_class = one_class && class_of(i) == class_of(0);
+  }
+  if (one_class) {
+    return;
+  }
   for (std::size_t k = 0; k < s.source.size(); ++k) {
-    assignment.triangle[k] = static_cast<double>(
-        triangle_of_sample(tile, s, frame, s.x[k], s.y[k], s.source[k].depth >= 0.0F));
+    const bool has_height = s.source[k].depth >= 0.0F;
+    const TriangleClass own = has_height ? TriangleClass::kSurface : TriangleClass::kVoid;
+    if (class_of(static_cast<std::size_t>(assignment.triangle[k])) != own) {
+      assignment.triangle[k] =
+          static_cast<double>(triangle_of_sample(tile, s, frame, s.x[k], s.y[k], has_height));
+    }
   }
 }
 

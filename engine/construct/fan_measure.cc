@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/construct/lanes_internal.h"
+
 namespace ptin {
 
 namespace {
@@ -17,36 +19,13 @@ double cross(double ax, double ay, double bx, double by, bool wide) noexcept {
   return wide ? cross_wide(ax, ay, bx, by) : ax * by - ay * bx;
 }
 
-// Function versions are chosen once by the loader; sanitizers run before it may, so they get the
-// plain one.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__x86_64__)
-#define PTIN_VERSIONS
-#else
-#define PTIN_VERSIONS __attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
-
-using Lanes = double __attribute__((vector_size(kSampleLanes * sizeof(double))));
-
-void load(Lanes& lanes, const double* from) noexcept {
-  __builtin_memcpy(&lanes, from, sizeof lanes);
-}
-void store(double* to, const Lanes& lanes) noexcept { __builtin_memcpy(to, &lanes, sizeof lanes); }
-
-using LaneIndices = long long __attribute__((vector_size(kSampleLanes * sizeof(long long))));
-
-inline double largest_lane(Lanes v) noexcept {
-  const Lanes other = __builtin_shuffle(v, LaneIndices{2, 3, 0, 1});
-  v = v > other ? v : other;
-  return v[0] > v[1] ? v[0] : v[1];
-}
-
 /// The loops below are the same for narrow coordinates; wide ones are rare (triangles more than
 /// 2^25 grid units across) and take the scalar loop.
 PTIN_VERSIONS
 double largest_residual_narrow(const double* x, const double* y, const double* z,
                                const FanFrame& fan, std::size_t begin, std::size_t end,
                                double stop_above) noexcept {
-  const std::size_t triangles = fan.determinant.size();
+  const std::size_t triangles = fan.triangles();
   const double* sx = fan.spoke_x.data();
   const double* sy = fan.spoke_y.data();
   const double* sz = fan.spoke_z.data();
@@ -54,23 +33,17 @@ double largest_residual_narrow(const double* x, const double* y, const double* z
   const double* inv = fan.inverse.data();
   double worst = 0.0;
   for (std::size_t k = begin; k < end; k += kSampleLanes) {
-    Lanes qx, qy, qz;
-    load(qx, x + k);
-    load(qy, y + k);
-    load(qz, z + k);
-    qx = qx - fan.w_x;
-    qy = qy - fan.w_y;
-    qz = qz - fan.w_z;
+    const Lanes qx = load_lanes(x + k) - fan.w_x;
+    const Lanes qy = load_lanes(y + k) - fan.w_y;
+    const Lanes qz = load_lanes(z + k) - fan.w_z;
     Lanes block = {};
     Lanes before = sx[0] * qy - sy[0] * qx;
     for (std::size_t i = 0; i < triangles; ++i) {
       const Lanes after = sx[i + 1] * qy - sy[i + 1] * qx;
-      Lanes r = (det[i] * qz + (sz[i] * after - sz[i + 1] * before)) * inv[i];
-      r = r < 0.0 ? -r : r;
-      const Lanes within =
-          -after < before ? -after : before;  // not negative inside of the triangle
+      Lanes r = magnitude((det[i] * qz + (sz[i] * after - sz[i + 1] * before)) * inv[i]);
+      const Lanes within = smaller(before, -after);  // not negative inside of the triangle
       r = within < 0.0 ? block : r;
-      block = r > block ? r : block;
+      block = larger(block, r);
       before = after;
     }
     worst = std::max(worst, largest_lane(block));
@@ -84,31 +57,27 @@ double largest_residual_narrow(const double* x, const double* y, const double* z
 PTIN_VERSIONS
 void assign_narrow(const double* x, const double* y, const double* z, std::size_t end,
                    const FanFrame& fan, double* triangle, double* residual) noexcept {
-  const std::size_t triangles = fan.determinant.size();
+  const std::size_t triangles = fan.triangles();
   for (std::size_t k = 0; k < end; k += kSampleLanes) {
-    Lanes qx, qy, qz;
-    load(qx, x + k);
-    load(qy, y + k);
-    load(qz, z + k);
-    qx = qx - fan.w_x;
-    qy = qy - fan.w_y;
-    qz = qz - fan.w_z;
+    const Lanes qx = load_lanes(x + k) - fan.w_x;
+    const Lanes qy = load_lanes(y + k) - fan.w_y;
+    const Lanes qz = load_lanes(z + k) - fan.w_z;
     Lanes found = {};
     Lanes worst = {};
     Lanes before = fan.spoke_x[0] * qy - fan.spoke_y[0] * qx;
     for (std::size_t i = 0; i < triangles; ++i) {
       const Lanes after = fan.spoke_x[i + 1] * qy - fan.spoke_y[i + 1] * qx;
-      Lanes r = (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
-                fan.inverse[i];
-      r = r < 0.0 ? -r : r;
-      const Lanes within = -after < before ? -after : before;
+      const Lanes r = magnitude(
+          (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
+          fan.inverse[i]);
+      const Lanes within = smaller(before, -after);
       const Lanes number = Lanes{} + static_cast<double>(i);
       worst = within < 0.0 ? worst : r;
       found = within < 0.0 ? found : number;
       before = after;
     }
-    store(triangle + k, found);
-    store(residual + k, worst);
+    store_lanes(triangle + k, found);
+    store_lanes(residual + k, worst);
   }
 }
 
@@ -175,15 +144,10 @@ bool make_fan(const StarSamples& s, std::size_t j, FanFrame& fan) {
   fan.w_x = s.link_x[j];
   fan.w_y = s.link_y[j];
   fan.w_z = s.link_z[j];
-  const std::size_t spokes = degree - 1;
-  fan.spoke_x.resize(spokes);
-  fan.spoke_y.resize(spokes);
-  fan.spoke_z.resize(spokes);
-  fan.determinant.resize(spokes - 1);
-  fan.inverse.resize(spokes - 1);
-  fan.star_triangle.resize(spokes - 1);
+  fan.set_triangles(degree - 2);
+  bool valid = true;
   std::size_t k = j;
-  for (std::size_t i = 0; i < spokes; ++i) {
+  for (std::size_t i = 0; i + 1 < degree; ++i) {
     k = k + 1 == degree ? 0 : k + 1;
     fan.spoke_x[i] = s.link_x[k] - fan.w_x;
     fan.spoke_y[i] = s.link_y[k] - fan.w_y;
@@ -191,15 +155,13 @@ bool make_fan(const StarSamples& s, std::size_t j, FanFrame& fan) {
     if (i > 0) {
       const double det =
           cross(fan.spoke_x[i - 1], fan.spoke_y[i - 1], fan.spoke_x[i], fan.spoke_y[i], wide);
-      if (!(det > 0.0)) {
-        return false;
-      }
+      valid = valid && det > 0.0;
       fan.determinant[i - 1] = det;
       fan.inverse[i - 1] = 1.0 / det;
       fan.star_triangle[i - 1] = static_cast<std::uint32_t>(k == 0 ? degree - 1 : k - 1);
     }
   }
-  return true;
+  return valid;
 }
 
 void make_spokes_of_star(const StarSamples& s, FanFrame& fan) {
@@ -207,22 +169,17 @@ void make_spokes_of_star(const StarSamples& s, FanFrame& fan) {
   const std::size_t degree = s.link_x.size();
   fan.j = 0;
   fan.w_x = fan.w_y = fan.w_z = 0.0;
-  fan.spoke_x.clear();
-  fan.spoke_y.clear();
-  fan.spoke_z.clear();
-  fan.determinant.clear();
-  fan.inverse.clear();
-  fan.star_triangle.clear();
+  fan.set_triangles(triangles);
   for (std::size_t i = 0; i <= triangles; ++i) {
     const std::size_t k = i == degree ? 0 : i;
-    fan.spoke_x.push_back(s.link_x[k]);
-    fan.spoke_y.push_back(s.link_y[k]);
-    fan.spoke_z.push_back(s.link_z[k]);
+    fan.spoke_x[i] = s.link_x[k];
+    fan.spoke_y[i] = s.link_y[k];
+    fan.spoke_z[i] = s.link_z[k];
     if (i > 0) {
-      fan.determinant.push_back(cross(fan.spoke_x[i - 1], fan.spoke_y[i - 1], fan.spoke_x[i],
-                                      fan.spoke_y[i], s.is_wide()));
-      fan.inverse.push_back(1.0 / fan.determinant.back());
-      fan.star_triangle.push_back(static_cast<std::uint32_t>(i - 1));
+      fan.determinant[i - 1] = cross(fan.spoke_x[i - 1], fan.spoke_y[i - 1], fan.spoke_x[i],
+                                     fan.spoke_y[i], s.is_wide());
+      fan.inverse[i - 1] = 1.0 / fan.determinant[i - 1];
+      fan.star_triangle[i - 1] = static_cast<std::uint32_t>(i - 1);
     }
   }
 }

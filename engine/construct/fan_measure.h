@@ -14,14 +14,27 @@ namespace ptin {
 /// The fan of a collapse into w, relative to w: spokes from w to the link vertices, triangle i
 /// between spokes i and i + 1.
 struct FanFrame {
-  std::size_t j = 0;                              ///< w is link[j] of the star.
-  double w_x = 0.0, w_y = 0.0, w_z = 0.0;         ///< w relative to u.
+  std::size_t j = 0;                       ///< w is link[j] of the star.
+  double w_x = 0.0, w_y = 0.0, w_z = 0.0;  ///< w relative to u.
+  // Buffers, at least as long as they need to be (but for star_triangle, which is as long).
   std::vector<double> spoke_x, spoke_y, spoke_z;  ///< One more than triangles.
   std::vector<double> determinant, inverse;  ///< Twice the area of each triangle, and its inverse.
   std::vector<std::uint32_t>
       star_triangle;  ///< Index in the star of the triangle that each replaces.
 
-  [[nodiscard]] std::size_t triangles() const noexcept { return determinant.size(); }
+  [[nodiscard]] std::size_t triangles() const noexcept { return triangles_; }
+  void set_triangles(std::size_t n) {
+    triangles_ = n;
+    if (n >= spoke_x.size()) {
+      for (std::vector<double>* buffer : {&spoke_x, &spoke_y, &spoke_z, &determinant, &inverse}) {
+        buffer->resize(2 * n + 1);
+      }
+    }
+    star_triangle.resize(n);
+  }
+
+ private:
+  std::size_t triangles_ = 0;
 };
 
 /// The cross product of two vectors with integer coordinates below 2^31, exactly.

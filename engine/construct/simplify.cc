@@ -14,6 +14,7 @@
 #include "engine/construct/tile_compact.h"
 #include "engine/construct/witness.h"
 #include "engine/large_array.h"
+#include "engine/prefetch.h"
 
 namespace ptin {
 
@@ -217,41 +218,41 @@ void Simplifier::for_each_around(VertexId v, const Visit& visit) const {
 
 void Simplifier::prefetch_star(VertexId v) const {
   for_each_around(v, [this](TriangleId t, int c) {
-    __builtin_prefetch(&tile_.carried[t]);
+    prefetch(&tile_.carried[t]);
     const VertexId link = tile_.tin.triangles[t].v[next_corner(c)];
-    __builtin_prefetch(&tile_.tin.vertices[link]);
-    __builtin_prefetch(&tile_.vertex_state[link]);
+    prefetch(&tile_.tin.vertices[link]);
+    prefetch(&tile_.vertex_state[link]);
   });
 }
 
 void Simplifier::prefetch_samples(VertexId v) const {
   constexpr std::uint32_t kLine = 64;
-  static constexpr std::uint32_t kSamplesAtMost = 16;
+  static constexpr std::uint32_t kSamplesAtMost = 32;
   for_each_around(v, [this](TriangleId t, int) {
     const SampleSlot slot = tile_.carried[t].samples;
     const auto* bytes = reinterpret_cast<const char*>(tile_.samples.data(slot));
     const std::size_t length = std::min(slot.count, kSamplesAtMost) * sizeof(Sample);
     for (std::size_t i = 0; i < length; i += kLine) {
-      __builtin_prefetch(bytes + i);
+      prefetch(bytes + i);
     }
   });
 }
 
-/// Most of the time goes by waiting for memory, and the queue says what will be wanted: asks for it
-/// some steps ahead, in the order in which one thing leads to the next.
+/// Most of the time would go by waiting for memory, and the queue says what will be wanted: asks
+/// for it some steps ahead, in the order in which one thing leads to the next.
 void Simplifier::prefetch_upcoming() const {
   const Tin& tin = tile_.tin;
   if (const QueueEntry* e = queue_.upcoming(16)) {
-    __builtin_prefetch(&tin.vertices[e->vertex]);
-    __builtin_prefetch(&state_[e->vertex]);
+    prefetch(&tin.vertices[e->vertex]);
+    prefetch(&state_[e->vertex]);
   }
-  if (const QueueEntry* e = queue_.upcoming(11)) {
-    __builtin_prefetch(&tin.triangles[tin.vertices[e->vertex].triangle]);
+  if (const QueueEntry* e = queue_.upcoming(12)) {
+    prefetch(&tin.triangles[tin.vertices[e->vertex].triangle]);
   }
-  if (const QueueEntry* e = queue_.upcoming(7)) {
+  if (const QueueEntry* e = queue_.upcoming(8)) {
     for (const TriangleId n : tin.triangles[tin.vertices[e->vertex].triangle].n) {
       if (n != kNone) {
-        __builtin_prefetch(&tin.triangles[n]);
+        prefetch(&tin.triangles[n]);
       }
     }
   }

@@ -46,8 +46,9 @@ void gather_link(const Tile& tile, GridPoint origin, double origin_code, StarSam
 template <HeightType type>
 class Layout {
  public:
-  Layout(GridPoint origin, double origin_code, StarSamples& out)
-      : origin_(origin),
+  Layout(const MeasureUnits& units, GridPoint origin, double origin_code, StarSamples& out)
+      : units_(units),
+        origin_(origin),
         origin_code_(origin_code),
         out_(out),
         x_(out.x.data()),
@@ -68,6 +69,12 @@ class Layout {
     }
     ++n_;
   }
+  /// As add(), where surface and void meet.
+  void add_with_charge(const Sample& s) {
+    out_.charge[n_] = units_.charge(s.depth);
+    out_.is_void[n_] = s.depth < 0.0F ? 1.0 : 0.0;
+    add(s);
+  }
   /// The further corners of blocks, then padding with u itself.
   void finish() {
     const std::size_t total = n_ + 3 * out_.blocks.size();
@@ -75,6 +82,13 @@ class Layout {
     out_.x.resize(padded);
     out_.y.resize(padded);
     out_.z.resize(padded);
+    x_ = out_.x.data();
+    y_ = out_.y.data();
+    z_ = out_.z.data();
+    if (!out_.surface_only) {
+      out_.charge.resize(padded, 0.0);
+      out_.is_void.resize(padded, 1.0);
+    }
     for (SampleBlock& b : out_.blocks) {
       b.corners = static_cast<std::uint32_t>(n_);
       put(b.x1, b.y0, b.z);
@@ -89,11 +103,12 @@ class Layout {
 
  private:
   void put(double x, double y, double z) {
-    out_.x[n_] = x;
-    out_.y[n_] = y;
-    out_.z[n_] = z;
+    x_[n_] = x;
+    y_[n_] = y;
+    z_[n_] = z;
     ++n_;
   }
+  const MeasureUnits& units_;
   GridPoint origin_;
   double origin_code_;
   StarSamples& out_;
@@ -132,8 +147,14 @@ void lay_out_samples(const Tile& tile, GridPoint origin, double origin_code, Sta
   out.x.resize(count);
   out.y.resize(count);
   out.z.resize(count);
-  Layout<type> layout(origin, origin_code, out);
-  for_each_sample(tile, out, [&](const Sample& s) { layout.add(s); });
+  Layout<type> layout(tile.units, origin, origin_code, out);
+  if (out.surface_only) {
+    for_each_sample(tile, out, [&](const Sample& s) { layout.add(s); });
+  } else {
+    out.charge.resize(count);
+    out.is_void.resize(count);
+    for_each_sample(tile, out, [&](const Sample& s) { layout.add_with_charge(s); });
+  }
   layout.finish();
   out.largest_z = std::max(out.largest_z, layout.largest());
 }
@@ -149,7 +170,7 @@ bool is_flat(const Tile& tile, const StarSamples& s) {
 }
 
 void classify(const Tile& tile, StarSamples& out) {
-  out.surface_only = true;
+  out.surface_only = out.surface_triangles = true;
   out.void_only = false;
   if (tile.has_voids) {
     bool void_triangles = false;
@@ -163,6 +184,7 @@ void classify(const Tile& tile, StarSamples& out) {
       heights |= tile.carried[t].holds_heights;
       voids |= tile.carried[t].holds_voids;
     }
+    out.surface_triangles = !void_triangles;
     out.surface_only = !void_triangles && !voids;
     out.void_only = !surface_triangles && !heights;
   }
@@ -222,9 +244,6 @@ void gather_star(const Tile& tile, VertexId u, StarSamples& out) {
   out.flat = is_flat(tile, out);
   if (!out.flat && !out.void_only) {
     gather_samples(tile, out);
-    if (!out.surface_only) {
-      gather_sources(tile, out);
-    }
   }
 }
 

@@ -38,13 +38,17 @@ struct StarSamples {
   /// Samples: u first, then the first of every triangle's list, then the others, then the further
   /// corners of blocks; padded.
   std::vector<double> x, y, z;
+  /// Beside x, where surface and void meet (not surface_only): what a sample is charged in the
+  /// wrong class, and 1 for one without a height, else 0. Copies count as without, at no charge.
+  std::vector<double> charge, is_void;
   std::size_t count = 0;  ///< Elements of the lists and u, without further corners and padding.
   std::vector<SampleBlock> blocks;
-  /// The same elements as stored; filled by gather_sources(), and where surface and void meet.
+  /// The same elements as stored; filled by gather_sources().
   std::vector<Sample> source;
   double largest_xy = 0.0;   ///< Largest |coordinate| of the link.
   double largest_z = 0.0;    ///< Largest |height difference| of link and samples that have heights.
   bool surface_only = true;  ///< No void triangle in the star and no sample without height in it.
+  bool surface_triangles = true;  ///< No void triangle in the star.
   bool void_only =
       false;          ///< Only void triangles, and no sample with a height in them, u included.
   bool flat = false;  ///< surface_only, and every height is the same: no residual whatever the fan.

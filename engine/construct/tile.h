@@ -3,7 +3,9 @@
 // A tile under construction: a TIN, what its triangles carry, and the records that came off.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/construct/cost.h"
@@ -41,6 +43,13 @@ struct MeasureUnits {
   double void_slope_code = 0.0;  ///< Height codes charged per ground unit of depth.
   bool exact_codes =
       false;  ///< Codes are integers, so that residuals of small stars have no rounding.
+
+  /// What a sample of the wrong class is charged, in codes. A depth beyond the cut-off is infinite,
+  /// and so is its charge, whatever the slope.
+  [[nodiscard]] double charge(float depth) const noexcept {
+    return std::isinf(depth) ? std::numeric_limits<double>::infinity()
+                             : static_cast<double>(std::abs(depth)) * void_slope_code;
+  }
 };
 
 /// A tile: everything that a collapse reads and changes. What is pushed up to a parent is the TIN,

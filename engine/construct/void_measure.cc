@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/construct/lanes_internal.h"
 #include "engine/construct/sample_blocks.h"
 
 namespace ptin {
@@ -79,22 +80,80 @@ Place locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, double
   return place;
 }
 
-double charge(const Tile& tile, float depth) noexcept {
-  return static_cast<double>(std::abs(depth)) * tile.units.void_slope_code;
+void charge(VoidMeasure& measure, double amount) {
+  measure.charge = std::max(measure.charge, amount);
+  measure.error = std::max(measure.error, amount);
 }
 
 /// Charges one sample at its place.
 void measure_sample(const Tile& tile, const Place& place, float depth, VoidMeasure& measure) {
   if (depth < 0.0F) {
     if (place.in_open_surface) {
-      measure.error = std::max(measure.error, charge(tile, depth));
+      charge(measure, tile.units.charge(depth));
     }
   } else if (place.surface != kNone) {
     measure.error = std::max(measure.error, place.residual);
     measure.deviation = std::max(measure.deviation, place.residual);
   } else {
-    measure.error = std::max({measure.error, charge(tile, depth), place.residual});
+    charge(measure, tile.units.charge(depth));
+    measure.error = std::max(measure.error, place.residual);
   }
+}
+
+/// What kSampleLanes samples are found to be.
+struct LaneMeasure {
+  Lanes residual;  ///< Of those with a height: in surface triangles; -1 where they are in none.
+  Lanes charge;    ///< Of those without.
+};
+
+PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,
+                                     const unsigned char* is_surface, std::size_t k) noexcept {
+  const Lanes none = Lanes{} - 1.0;
+  const Lanes qx = load_lanes(s.x.data() + k) - fan.w_x;
+  const Lanes qy = load_lanes(s.y.data() + k) - fan.w_y;
+  const Lanes qz = load_lanes(s.z.data() + k) - fan.w_z;
+  Lanes residual = none;
+  Lanes inside = {};  // above 0 inside of a surface triangle, on no edge
+  Lanes before = fan.spoke_x[0] * qy - fan.spoke_y[0] * qx;
+  for (std::size_t i = 0; i < fan.triangles(); ++i) {
+    const Lanes after = fan.spoke_x[i + 1] * qy - fan.spoke_y[i + 1] * qx;
+    if (is_surface[i] != 0) {
+      const Lanes within = smaller(before, -after);
+      const Lanes r = magnitude(
+          (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
+          fan.inverse[i]);
+      residual = larger(residual, within < 0.0 ? none : r);
+      inside = larger(inside, smaller(within, fan.determinant[i] - before + after));
+    }
+    before = after;
+  }
+  const Lanes is_void = load_lanes(s.is_void.data() + k);
+  const Lanes charge = load_lanes(s.charge.data() + k);
+  LaneMeasure m;
+  m.residual = is_void > 0.0 ? Lanes{} : residual;
+  m.charge = is_void > 0.0 ? (inside > 0.0 ? charge : Lanes{}) : Lanes{};
+  return m;
+}
+
+/// Measures from sample `begin` on while every sample with a height has a surface triangle and the
+/// error does not exceed `stop_above`. Returns where it stopped: the first lanes that hold one that
+/// has none, or the end.
+PTIN_VERSIONS
+std::size_t measure_while_found(const StarSamples& s, const FanFrame& fan,
+                                const unsigned char* is_surface, std::size_t begin,
+                                double stop_above, double& residual, double& charge) noexcept {
+  for (std::size_t k = begin; k < s.x.size(); k += kSampleLanes) {
+    const LaneMeasure m = measure_lanes(s, fan, is_surface, k);
+    if (largest_lane(-m.residual) > 0.0) {
+      return k;
+    }
+    residual = std::max(residual, largest_lane(m.residual));
+    charge = std::max(charge, largest_lane(m.charge));
+    if (std::max(residual, charge) > stop_above) {
+      return s.x.size();
+    }
+  }
+  return s.x.size();
 }
 
 /// Charges a block: each corner as a sample; and where the corners are in different triangles, the
@@ -113,19 +172,56 @@ void measure_block(const Tile& tile, const StarSamples& s, const FanFrame& fan,
   for (std::size_t i = first; i <= last && first != last; ++i) {
     const bool is_wrong = is_void(tile, s, fan.star_triangle[i]) == (b.depth >= 0.0F);
     if (is_wrong) {
-      measure.error = std::max(measure.error, charge(tile, b.depth));
+      charge(measure, tile.units.charge(b.depth));
     }
   }
 }
 
-void measure_samples(const Tile& tile, const StarSamples& s, const FanFrame& fan,
-                     VoidMeasure& measure) {
-  for (std::size_t k = 0; k < s.source.size(); ++k) {
-    if (s.source[k].side_log == 0) {
-      const Place place = locate(tile, s, fan, s.x[k], s.y[k], s.z[k]);
-      measure_sample(tile, place, s.source[k].depth, measure);
+/// One by one: coordinates beyond the exact range of doubles, and samples that lose their surface.
+void measure_singly(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::size_t begin,
+                    std::size_t end, VoidMeasure& measure) {
+  for (std::size_t k = begin; k < std::min(end, s.count); ++k) {
+    const Place place = locate(tile, s, fan, s.x[k], s.y[k], s.z[k]);
+    if (s.is_void[k] != 0.0) {
+      charge(measure, place.in_open_surface ? s.charge[k] : 0.0);
+      continue;
+    }
+    if (place.surface == kNone) {
+      charge(measure, s.charge[k]);
+    } else {
+      measure.deviation = std::max(measure.deviation, place.residual);
+    }
+    measure.error = std::max(measure.error, place.residual);
+  }
+}
+
+void measure_samples(const Tile& tile, const StarSamples& s, const FanFrame& fan, double stop_above,
+                     std::vector<unsigned char>& is_surface, VoidMeasure& measure) {
+  if (s.is_wide()) {
+    measure_singly(tile, s, fan, 0, s.count, measure);
+    return;
+  }
+  is_surface.resize(fan.triangles());
+  for (std::size_t i = 0; i < fan.triangles(); ++i) {
+    is_surface[i] = is_void(tile, s, fan.star_triangle[i]) ? 0 : 1;
+  }
+  std::size_t k = 0;
+  while (k < s.x.size() && measure.error <= stop_above) {
+    double residual = 0.0;
+    double charged = 0.0;
+    k = measure_while_found(s, fan, is_surface.data(), k, stop_above, residual, charged);
+    charge(measure, charged);
+    measure.error = std::max(measure.error, residual);
+    measure.deviation = std::max(measure.deviation, residual);
+    if (k < s.x.size()) {
+      measure_singly(tile, s, fan, k, k + kSampleLanes, measure);
+      k += kSampleLanes;
     }
   }
+}
+
+void measure_blocks(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                    VoidMeasure& measure) {
   bool data_blocks = false;
   for (const SampleBlock& b : s.blocks) {
     measure_block(tile, s, fan, b, measure);
@@ -166,7 +262,8 @@ bool keeps_surface(const Tile& tile, const StarSamples& s, const FanFrame& fan, 
 
 }  // namespace
 
-VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const FanFrame& fan) {
+VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                               double stop_above) {
   VoidMeasure measure;
   if (tile.tin.has_height[s.star.link[fan.j]] == 0) {
     for (const std::uint32_t t : fan.star_triangle) {
@@ -176,12 +273,19 @@ VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const Fan
     }
   }
   measure.allowed = true;
-  measure_samples(tile, s, fan, measure);
-  for (std::size_t k = 0; k < s.star.degree(); ++k) {
-    const VertexId v = s.star.link[k];
-    if (tile.tin.has_height[v] != 0 && had_surface(tile, s, k) && !keeps_surface(tile, s, fan, k)) {
-      measure.error = std::max(measure.error, charge(tile, tile.vertex_state[v].depth));
+  if (!s.surface_triangles) {  // else the whole fan is surface, and keeps everybody
+    for (std::size_t k = 0; k < s.star.degree(); ++k) {
+      const VertexId v = s.star.link[k];
+      if (tile.tin.has_height[v] != 0 && had_surface(tile, s, k) &&
+          !keeps_surface(tile, s, fan, k)) {
+        charge(measure, tile.units.charge(tile.vertex_state[v].depth));
+      }
     }
+  }
+  thread_local std::vector<unsigned char> is_surface;
+  measure_samples(tile, s, fan, stop_above, is_surface, measure);
+  if (measure.error <= stop_above) {
+    measure_blocks(tile, s, fan, measure);
   }
   return measure;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "engine/construct/fan_measure.h"
@@ -16,7 +17,8 @@ namespace ptin {
 struct VoidMeasure {
   bool allowed = false;    ///< False when a surface triangle would get a corner without height.
   double error = 0.0;      ///< Height codes; residuals and charges; not rounded up yet.
-  double deviation = 0.0;  ///< Largest residual alone.
+  double charge = 0.0;     ///< Largest charge alone.
+  double deviation = 0.0;  ///< Largest residual in a surface triangle alone.
 };
 
 /// Measures every sample of the star, and the link vertices that would lose their last surface
@@ -36,9 +38,11 @@ struct VoidMeasure {
 /// A block is measured at its corners; one that lies
 /// across a spoke may be in every fan triangle between those of its corners: it is charged where
 /// any of them is of the wrong class, and its residuals are bounded along the spokes.
-/// REQUIRES: gather_sources() was called.
-[[nodiscard]] VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s,
-                                             const FanFrame& fan);
+/// @param stop_above  Returns early, with what it has, once the error exceeds this.
+/// Cost: samples times degree, in lanes; those that lose their surface one by one.
+[[nodiscard]] VoidMeasure measure_with_voids(
+    const Tile& tile, const StarSamples& s, const FanFrame& fan,
+    double stop_above = std::numeric_limits<double>::infinity());
 
 /// The fan triangle that a sample at (x, y), relative to u, goes to: one of its own class where it
 /// lies on a spoke. Cost: the degree.

@@ -47,7 +47,7 @@ class Judge {
       c.weight = std::abs(residual);
     } else {
       c.above = has_height;
-      c.weight = static_cast<double>(std::abs(s.depth)) * tile_.units.void_slope_code;
+      c.weight = tile_.units.charge(s.depth);
     }
     return c;
   }

@@ -57,7 +57,9 @@ struct Tin {
 
 /// Place of vertex `v` (0, 1, 2) in triangle `t`. REQUIRES: it is a corner.
 [[nodiscard]] inline int corner_of(const Triangle& t, VertexId v) noexcept {
-  return t.v[0] == v ? 0 : (t.v[1] == v ? 1 : 2);
+  // Without branches: which one it is cannot be predicted, and walks do little else.
+  const int first_two = static_cast<int>(t.v[1] == v);
+  return t.v[2] == v ? 2 : first_two;
 }
 
 /// Place of neighbour `n` in triangle `t`. REQUIRES: it is a neighbour.
