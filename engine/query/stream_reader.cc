@@ -64,6 +64,7 @@ void StreamReader::begin_next() {
   offset_ += waiting_.size();
   waiting_.clear();
   sequence_ = 0;
+  complete_ = false;
   expects_ = Expects::kHead;
 }
 
@@ -81,7 +82,8 @@ std::size_t StreamReader::wanted() const {
   return sizeof(stream::FrameHead) + head.bytes;
 }
 
-void StreamReader::feed(std::span<const std::byte> bytes) {
+std::size_t StreamReader::feed(std::span<const std::byte> bytes) {
+  const std::size_t given = bytes.size();
   if (expects_ == Expects::kNothing) {
     reject("the stream was rejected before");
   }
@@ -93,12 +95,15 @@ void StreamReader::feed(std::span<const std::byte> bytes) {
                       bytes.begin() + static_cast<std::ptrdiff_t>(taken));
       bytes = bytes.subspan(taken);
       if (taken < missing) {
-        return;
+        return given;
       }
       if (waiting_.size() == wanted()) {
         take(waiting_);
         offset_ += waiting_.size();
         waiting_.clear();
+        if (is_complete()) {
+          return given - bytes.size();
+        }
       }
     }
   } catch (...) {
@@ -138,6 +143,7 @@ void StreamReader::take_head(std::span<const std::byte> bytes) {
     reject("the head of the stream holds values that no program wrote");
   }
   sequence_ = 0;
+  complete_ = false;
   expects_ = Expects::kStart;
 }
 
@@ -292,6 +298,7 @@ void StreamReader::take_end(std::span<const std::byte> payload) {
       end.digest != digest_) {
     reject("the mesh at the end of the stream is not the one that was sent");
   }
+  complete_ = true;
   expects_ = Expects::kHead;
 }
 

@@ -26,13 +26,14 @@ class StreamReader {
   explicit StreamReader(std::string name) : name_(std::move(name)) {}
 
   /// Takes the next bytes, however they were cut, and applies every frame that is whole by now.
-  /// Behind the end of a stream another one may follow, which goes on from there.
+  /// @return How many were taken: all, unless the stream ended before. What is fed behind the end
+  /// of a stream is another one, which goes on from there.
   /// @throws Error corruption  bytes that no program wrote (FORMAT.md, "A reader of streams must
   /// reject"), a stream that does not go on from this mesh; names frame and byte. The mesh stays
   /// valid, its certificate that of the last whole frame; nothing more can be fed.
   ///               unsupported_version
   /// Cost: linear; a frame that is not whole waits in memory, nothing is reserved before it came.
-  void feed(std::span<const std::byte> bytes);
+  std::size_t feed(std::span<const std::byte> bytes);
 
   /// Gives up the rest of a stream that was cut: what is fed next is the head of another one.
   void begin_next();
@@ -53,9 +54,7 @@ class StreamReader {
   [[nodiscard]] std::uint64_t splits() const noexcept { return splits_; }
   [[nodiscard]] std::uint64_t splits_in_all() const noexcept { return splits_in_all_; }
   /// True once the end of the current stream arrived.
-  [[nodiscard]] bool is_complete() const noexcept {
-    return expects_ == Expects::kHead && has_mesh();
-  }
+  [[nodiscard]] bool is_complete() const noexcept { return complete_; }
   /// Bytes fed that belong to whole frames.
   [[nodiscard]] std::uint64_t bytes_used() const noexcept { return offset_; }
 
@@ -80,6 +79,7 @@ class StreamReader {
   std::uint64_t offset_ = 0;
   std::uint32_t sequence_ = 0;
   Expects expects_ = Expects::kHead;
+  bool complete_ = false;
 
   std::uint64_t fingerprint_ = 0;
   StoreFacts facts_;

@@ -126,7 +126,7 @@ class Writer {
     summary_.base_vertices = base.vertices.size();
     send_head();
     send_start(base, splits);
-    if (request_.held.predicate == nullptr) {
+    if (request_.held.empty()) {
       send_t0(base);
     }
     GrowingMesh mesh(base, splits.size());
@@ -178,11 +178,15 @@ class Writer {
   double left_out_ = -1.0;  ///< Largest error of a record that is wanted and beyond `most_splits`.
 };
 
+void append_bytes(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
+  const std::size_t before = out.size();
+  out.resize(before + bytes.size());
+  std::copy(bytes.begin(), bytes.end(), out.begin() + static_cast<std::ptrdiff_t>(before));
+}
+
 template <class T>
 void append(std::vector<std::byte>& out, const T& object) {
-  const std::size_t before = out.size();
-  out.resize(before + sizeof object);
-  std::memcpy(out.data() + before, &object, sizeof object);
+  append_bytes(out, std::as_bytes(std::span(&object, 1)));
 }
 
 /// By falling rank; within a rank along the Hilbert curve, where the mesh is in the caches.
@@ -211,20 +215,23 @@ void sort_by_rank(std::span<PendingSplit> splits) {
   std::copy(sorted.begin(), sorted.end(), splits.begin());
 }
 
-/// What the receiver has, numbered as it numbers it: T0, and the records it was served.
+/// What the receiver has, numbered as it numbers it: T0, and the records it was served. Each
+/// serving is closed under dependency, and so are they together.
 Tin Writer::base_mesh() {
-  Tin t0 = mesh_of(store_.t0(), store_.path());
-  if (request_.held.predicate == nullptr) {
-    return stream::numbered_by_key(t0);
+  Refinement refinement(mesh_of(store_.t0(), store_.path()));
+  for (const StreamHeld& held : request_.held) {
+    const PredicatePtr predicate = held.predicate ? held.predicate : everything();
+    std::vector<PendingSplit> splits =
+        retrieve(source_, *predicate, refinement_bytes(refinement.tin().vertices.size()), context_);
+    if (held.splits < splits.size()) {
+      const auto last = splits.begin() + static_cast<std::ptrdiff_t>(held.splits);
+      std::nth_element(splits.begin(), last, splits.end(), is_before);
+      splits.erase(last, splits.end());
+    }
+    std::erase_if(splits,
+                  [&](const PendingSplit& s) { return refinement.find(s.u) != KeyTable::kAbsent; });
+    refinement.apply(splits, context_);
   }
-  std::vector<PendingSplit> held = retrieve(source_, *request_.held.predicate, 0, context_);
-  if (request_.held.splits < held.size()) {
-    const auto last = held.begin() + static_cast<std::ptrdiff_t>(request_.held.splits);
-    std::nth_element(held.begin(), last, held.end(), is_before);
-    held.erase(last, held.end());
-  }
-  Refinement refinement(t0);
-  refinement.apply(held, context_);
   return stream::numbered_by_key(refinement.tin());
 }
 
@@ -239,7 +246,7 @@ std::vector<PendingSplit> Writer::missing_splits(const Tin& base) {
   context_.admit(base_bytes + 2 * refinement_bytes(most_records(store_, pages)));
   std::vector<PendingSplit> splits;
   read_pages(store_, pages, *wanted, context_, splits);
-  if (request_.held.predicate != nullptr) {
+  if (!request_.held.empty()) {
     KeyTable held(base.vertices.size());
     for (VertexId v = 0; v < base.vertices.size(); ++v) {
       held.insert(key_of(base.position(v)), v);
@@ -289,7 +296,7 @@ void Writer::send_start(const Tin& base, std::span<const PendingSplit> splits) {
   const auto bits = [](double v) { return layout::to_bits(v); };
   const stream::Start start{store_.fingerprint(),
                             static_cast<std::uint32_t>(f.heights.type),
-                            request_.held.predicate != nullptr ? stream::kIsDelta : 0,
+                            !request_.held.empty() ? stream::kIsDelta : 0,
                             bits(f.heights.step),
                             bits(f.heights.offset),
                             bits(f.map.origin_x),
@@ -309,8 +316,7 @@ void Writer::send_start(const Tin& base, std::span<const PendingSplit> splits) {
                             request_.metadata.size()};
   std::vector<std::byte> payload;
   append(payload, start);
-  const auto text = std::as_bytes(std::span(request_.metadata));
-  payload.insert(payload.end(), text.begin(), text.end());
+  append_bytes(payload, std::as_bytes(std::span(request_.metadata)));
   send_frame(stream::FrameKind::kStart, payload);
 }
 

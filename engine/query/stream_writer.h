@@ -13,6 +13,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "engine/query/accounting.h"
 #include "engine/query/certificate.h"
@@ -21,10 +22,10 @@
 
 namespace ptin {
 
-/// What a receiver was served before: the first `splits` records of the total order for which
-/// `predicate` is true.
+/// Something that a receiver was served before: the first `splits` records of the total order for
+/// which `predicate` is true.
 struct StreamHeld {
-  PredicatePtr predicate;  ///< Null: nothing, not even T0.
+  PredicatePtr predicate;                                            ///< Null: everything.
   std::uint64_t splits = std::numeric_limits<std::uint64_t>::max();  ///< Fewer: it was cut there.
 };
 
@@ -33,7 +34,8 @@ struct StreamRequest {
   PredicatePtr wanted;
   /// The tolerance that is part of `wanted`, if there is one: certificates say so at the end.
   std::optional<double> tolerance;
-  StreamHeld held;
+  /// Together; empty: nothing, not even T0.
+  std::vector<StreamHeld> held;
   /// At most so many splits, the most important ones.
   std::uint64_t most_splits = std::numeric_limits<std::uint64_t>::max();
   /// Text for the receiver (JSON: CRS, units, what was asked); at most 1 MiB.

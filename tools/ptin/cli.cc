@@ -74,6 +74,26 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin export dem.ptin --error 5 --pixel-size 90 -o coarse.tif\n"
      "  ptin export dem.ptin --window 385000 3790000 390000 3795000 --format COG -o valley.tif\n",
      declare_export},
+    {"stream", "Send a terrain progressively, the most important first",
+     "T0, then vertex splits in frames of which any first few are a valid TIN with a certified "
+     "error; a receiver may stop\n"
+     "anywhere. With --have... only what the receiver does not have is sent; `ptin unstream` tells "
+     "what it has (--have).\n\n"
+     "Examples:\n"
+     "  ptin stream dem.ptin -o dem.pts\n"
+     "  ptin stream dem.ptin --error 5 -o - | ssh field 'ptin unstream - -o dem.ply'\n"
+     "  ptin stream dem.ptin --window 385000 3790000 390000 3795000 --have-error 5 -o more.pts\n"
+     "  ptin stream dem.ptin --error 1 --have-error 1 --have-splits 20000 -o rest.pts\n"
+     "  ptin stream dem.ptin --level 500 1000 -o isolines.pts\n",
+     declare_stream},
+    {"unstream", "Receive what `ptin stream` sent, cut off anywhere or not, as a mesh",
+     "Several streams follow each other: the first begins with T0, each other goes on from "
+     "there.\n\n"
+     "Examples:\n"
+     "  ptin unstream dem.pts -o dem.ply\n"
+     "  head -c 100000 dem.pts | ptin unstream - -o coarse.glb\n"
+     "  ptin unstream dem.pts more.pts -o dem.ply --json\n",
+     declare_unstream},
     {"render", "Draw shaded relief, triangles or pages as a PNG",
      "Examples:\n"
      "  ptin render dem.ptin -o dem.png\n"

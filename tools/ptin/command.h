@@ -38,6 +38,8 @@ Action declare_info(CLI::App& app, Context& context);
 Action declare_verify(CLI::App& app, Context& context);
 Action declare_refine(CLI::App& app, Context& context);
 Action declare_export(CLI::App& app, Context& context);
+Action declare_stream(CLI::App& app, Context& context);
+Action declare_unstream(CLI::App& app, Context& context);
 Action declare_render(CLI::App& app, Context& context);
 Action declare_isoline(CLI::App& app, Context& context);
 Action declare_completion(CLI::App& app, Context& context);

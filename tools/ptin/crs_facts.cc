@@ -73,8 +73,7 @@ std::string text_at(const nlohmann::json& object, const char* key) {
 
 }  // namespace
 
-CrsFacts crs_facts(const StoreFile& store) {
-  const nlohmann::json metadata = metadata_of(store);
+CrsFacts crs_facts_of(const nlohmann::json& metadata) {
   const auto it = metadata.find("crs");
   const nlohmann::json crs = it != metadata.end() ? *it : nlohmann::json::object();
   std::string wkt = crs.is_string() ? crs.get<std::string>() : std::string();
@@ -92,5 +91,7 @@ CrsFacts crs_facts(const StoreFile& store) {
   }
   return facts;
 }
+
+CrsFacts crs_facts(const StoreFile& store) { return crs_facts_of(metadata_of(store)); }
 
 }  // namespace ptin::tools

@@ -34,6 +34,10 @@ struct CrsFacts {
 /// The metadata of a store as JSON.  @throws Error corruption when it is none
 [[nodiscard]] nlohmann::json metadata_of(const StoreFile& store);
 
+/// The facts of a CRS as metadata hold it (`crs`, `crs_wkt`, `units`); units from there where the
+/// WKT says nothing.
+[[nodiscard]] CrsFacts crs_facts_of(const nlohmann::json& metadata);
+
 /// The facts of a store's CRS; units from the metadata where the WKT says nothing.
 [[nodiscard]] CrsFacts crs_facts(const StoreFile& store);
 

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin stream: a terrain as bytes of which the first few are a coarse terrain.
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+
+#include <unistd.h>
+
+#include "engine/query/stream_writer.h"
+#include "tools/error_status.h"
+#include "tools/output_file.h"
+#include "tools/ptin/crs_facts.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+#include "tools/ptin/stream_request.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct StreamOptions {
+  TerrainOptions terrain;
+  Serving wanted, had;
+  std::string have;
+  std::string memory, output;
+  bool stats = false;
+  bool overwrite = false;
+};
+
+void check_options(const StreamOptions& options, const Context& context) {
+  if (options.output != "-") {
+    check_output(options.output, options.overwrite);
+    return;
+  }
+  if (context.json) {
+    throw Error(ErrorCode::invalid_argument,
+                "--json and -o - both write to stdout; give the stream a file name");
+  }
+  if (::isatty(STDOUT_FILENO) != 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "a stream is binary: redirect stdout, or give the stream a file name");
+  }
+}
+
+/// CRS and units for the receiver, and what was asked, so that it can say what it has.
+std::string metadata_for(const StoreFile& store, const Serving& wanted) {
+  const nlohmann::json all = metadata_of(store);
+  nlohmann::json metadata = {{"request", to_json(wanted)}};
+  for (const char* name : {"crs", "crs_wkt", "units"}) {
+    if (const auto it = all.find(name); it != all.end()) metadata[name] = *it;
+  }
+  return metadata.dump();
+}
+
+std::vector<StreamHeld> held_of(const StreamOptions& options, const StoreFacts& facts) {
+  std::vector<Serving> servings;
+  if (!options.have.empty()) servings = servings_of(options.have);
+  if (options.had.given()) servings.push_back(options.had);
+  std::vector<StreamHeld> held;
+  for (const Serving& s : servings) {
+    held.push_back({predicate_of(s, facts), s.splits.value_or(StreamHeld{}.splits)});
+  }
+  return held;
+}
+
+void write_to_stdout(std::span<const std::byte> bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size()) {
+    throw system_error(errno, "cannot write", "stdout");
+  }
+}
+
+StreamSummary send(const StreamOptions& options, const StoreFile& store,
+                   const StreamRequest& request) {
+  if (options.output == "-") {
+    const StreamSummary summary = write_stream(store, request, write_to_stdout);
+    if (std::fflush(stdout) != 0) throw system_error(errno, "cannot write", "stdout");
+    return summary;
+  }
+  OutputFile out(options.output, options.overwrite);
+  const StreamSummary summary = write_stream(store, request, [&](std::span<const std::byte> bytes) {
+    out.write(bytes.data(), bytes.size());
+  });
+  out.publish();
+  return summary;
+}
+
+void print_stats(const StreamOptions& options, const StreamSummary& s) {
+  std::fprintf(stderr, "%s: %s splits on %s vertices in %s frames, %s\n", options.output.c_str(),
+               grouped(s.splits).c_str(), grouped(s.base_vertices).c_str(),
+               grouped(s.frames).c_str(), human_bytes(s.bytes).c_str());
+  if (s.splits != 0) {
+    std::fprintf(stderr, "  size       %.2f bytes a split\n",
+                 static_cast<double>(s.bytes) / static_cast<double>(s.splits));
+  }
+  std::fprintf(stderr, "  certified  %s at every sample, %s at any point of what was asked for\n",
+               short_number(s.certificate.error).c_str(),
+               short_number(s.certificate.deviation).c_str());
+  std::fprintf(stderr, "  cost       %s records retrieved, %s pages, %.3f s\n",
+               grouped(s.cost.records_retrieved).c_str(), grouped(s.cost.io.pages).c_str(),
+               s.cost.seconds);
+}
+
+int run_stream(const StreamOptions& options, const Context& context) {
+  check_options(options, context);
+  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const StoreFile& store = terrain.store();
+  StreamRequest request;
+  request.wanted = predicate_of(options.wanted, store.facts());
+  request.tolerance = options.wanted.error;
+  request.held = held_of(options, store.facts());
+  if (options.wanted.splits) request.most_splits = *options.wanted.splits;
+  request.metadata = metadata_for(store, options.wanted);
+  request.stop = context.stop;
+  if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
+  const StreamSummary summary = send(options, store, request);
+  if (context.json) {
+    print_json({{"output", options.output},
+                {"base_vertices", summary.base_vertices},
+                {"splits", summary.splits},
+                {"frames", summary.frames},
+                {"bytes", summary.bytes},
+                {"split_bytes", summary.split_bytes},
+                {"certified_error", summary.certificate.error},
+                {"certified_deviation", summary.certificate.deviation},
+                {"cost", cost_json(summary.cost)}});
+  } else if (options.stats) {
+    print_stats(options, summary);
+  }
+  return kExitDone;
+}
+
+/// --window, --error, --level and --splits under a common prefix.
+void add_serving(CLI::App& app, Serving& serving, const std::string& prefix,
+                 const std::string& what) {
+  app.add_option("--" + prefix + "window", serving.window, what + " window, in map units")
+      ->expected(4)
+      ->type_name("XMIN YMIN XMAX YMAX");
+  app.add_option("--" + prefix + "error", serving.error,
+                 what + " certified error, in the height's unit")
+      ->type_name("E");
+  app.add_option("--" + prefix + "level", serving.levels,
+                 what + " heights: only what isolines at them need")
+      ->expected(1, 1000)
+      ->type_name("H...");
+  app.add_option("--" + prefix + "splits", serving.splits,
+                 what + " number of splits: only the first so many, the most important ones")
+      ->type_name("N");
+}
+
+}  // namespace
+
+Action declare_stream(CLI::App& app, Context& context) {
+  const auto options = std::make_shared<StreamOptions>();
+  add_terrain_options(app, options->terrain, false);
+  add_serving(app, options->wanted, "", "What to send:");
+  add_serving(app, options->had, "have-", "What the receiver was served before:");
+  app.add_option("--have", options->have,
+                 "What the receiver was served before, as `ptin unstream --json` prints it")
+      ->type_name("JSON");
+  app.add_option("-o,--output", options->output, "The stream to write; - for stdout")
+      ->type_name("OUT")
+      ->required();
+  app.add_flag("--stats", options->stats, "Print, on stderr, what was sent and what it cost");
+  app.add_option("--memory", options->memory, "Memory that it may take, as 512M or 2G (default 4G)")
+      ->type_name("SIZE");
+  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
+  add_common_options(app, context, true);
+  return [options, &context] { return run_stream(*options, context); };
+}
+
+}  // namespace ptin::tools

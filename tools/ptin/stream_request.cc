@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/stream_request.h"
+
+#include <cmath>
+
+#include "engine/error.h"
+#include "tools/ptin/query_options.h"
+
+namespace ptin::tools {
+
+namespace {
+
+[[noreturn]] void throw_unreadable(const std::string& why) {
+  throw Error(ErrorCode::invalid_argument,
+              why +
+                  "; expected what `ptin unstream --json` prints as \"have\": a list of objects "
+                  "with window, error, levels and splits",
+              "--have");
+}
+
+Serving serving_of(const nlohmann::json& json) {
+  if (!json.is_object()) throw_unreadable("a serving is no object");
+  Serving serving;
+  try {
+    for (const auto& [name, value] : json.items()) {
+      if (name == "window") {
+        value.get_to(serving.window);
+      } else if (name == "error") {
+        serving.error = value.get<double>();
+      } else if (name == "levels") {
+        value.get_to(serving.levels);
+      } else if (name == "splits") {
+        serving.splits = value.get<std::uint64_t>();
+      } else {
+        throw_unreadable("\"" + name + "\" is no part of a serving");
+      }
+    }
+  } catch (const nlohmann::json::exception&) {
+    throw_unreadable("a value is not of its type");
+  }
+  if (!serving.window.empty() && serving.window.size() != 4) {
+    throw_unreadable("a window has four numbers");
+  }
+  return serving;
+}
+
+}  // namespace
+
+PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts) {
+  std::vector<PredicatePtr> parts;
+  RegionOptions region;
+  region.window = serving.window;
+  if (const auto window = region_of(region, "")) parts.push_back(meets_region(*window, facts.map));
+  if (serving.error) parts.push_back(error_above(*serving.error));
+  if (!serving.levels.empty()) {
+    std::vector<PredicatePtr> levels;
+    for (const double level : serving.levels) {
+      levels.push_back(contains_height(level, facts.heights));
+    }
+    parts.push_back(any_of(std::move(levels)));
+  }
+  return all_of(std::move(parts));
+}
+
+nlohmann::json to_json(const Serving& serving) {
+  nlohmann::json json = nlohmann::json::object();
+  if (!serving.window.empty()) json["window"] = serving.window;
+  if (serving.error) json["error"] = *serving.error;
+  if (!serving.levels.empty()) json["levels"] = serving.levels;
+  if (serving.splits) json["splits"] = *serving.splits;
+  return json;
+}
+
+std::vector<Serving> servings_of(const std::string& text) {
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw_unreadable("this is no JSON");
+  std::vector<Serving> servings;
+  if (!json.is_array()) return {serving_of(json)};
+  for (const nlohmann::json& one : json) servings.push_back(serving_of(one));
+  return servings;
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin unstream: what arrived of a stream, as a mesh.
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "engine/query/stream_reader.h"
+#include "tools/error_status.h"
+#include "tools/formats/mesh_writer.h"
+#include "tools/ptin/crs_facts.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+#include "tools/ptin/stream_request.h"
+#include "tools/region/tin_mesh.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct UnstreamOptions {
+  std::vector<std::string> inputs;
+  std::string output;
+  bool overwrite = false;
+};
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File opened(const std::string& path) {
+  if (path == "-") return {stdin, [](std::FILE*) { return 0; }};
+  File file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) throw system_error(errno, "cannot open", path);
+  return file;
+}
+
+/// The metadata of the stream that is being read.  @throws Error corruption when it is no JSON
+/// object
+nlohmann::json metadata_of(const StreamReader& reader) {
+  nlohmann::json json = nlohmann::json::parse(reader.metadata(), nullptr, false);
+  if (!json.is_object()) {
+    throw Error(ErrorCode::corruption,
+                "the stream's metadata is no JSON object; `ptin stream` "
+                "did not write it");
+  }
+  return json;
+}
+
+/// Reads streams one after the other, and notes what each brought.
+class Receiver {
+ public:
+  explicit Receiver(std::string name) : reader_(std::move(name)) {}
+
+  void read(const std::string& path, const Context& context) {
+    const File file = opened(path);
+    std::vector<std::byte> buffer(std::size_t{1} << 20);
+    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
+      if (context.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+      for (std::span<const std::byte> rest(buffer.data(), n); !rest.empty();) {
+        rest = rest.subspan(reader_.feed(rest));
+        within_ = !reader_.is_complete();
+        if (!within_) note();
+      }
+    }
+    if (std::ferror(file.get()) != 0) throw system_error(errno, "cannot read", path);
+    if (within_ && reader_.has_mesh()) note();
+    if (within_) reader_.begin_next();
+  }
+
+  [[nodiscard]] const StreamReader& reader() const { return reader_; }
+  [[nodiscard]] const nlohmann::json& have() const { return have_; }
+  [[nodiscard]] bool complete() const { return !within_ && reader_.has_mesh(); }
+
+ private:
+  void note() {
+    nlohmann::json serving = metadata_of(reader_).value("request", nlohmann::json::object());
+    if (!reader_.is_complete()) serving["splits"] = reader_.splits();
+    have_.push_back(std::move(serving));
+  }
+
+  StreamReader reader_;
+  nlohmann::json have_ = nlohmann::json::array();
+  bool within_ = true;  ///< The last stream was not read to its end.
+};
+
+RefinedTin refined_of(const StreamReader& reader) {
+  RefinedTin refined;
+  refined.tin = reader.tin();
+  refined.vertices = refined.tin.vertices.size();
+  refined.triangles = refined.tin.triangles.size();
+  refined.void_vertices = static_cast<std::uint64_t>(
+      std::count(refined.tin.has_height.begin(), refined.tin.has_height.end(), 0));
+  refined.t0_vertices = reader.t0_vertices();
+  refined.certified_error = reader.certificate().error;
+  refined.certified_deviation = reader.certificate().deviation;
+  return refined;
+}
+
+nlohmann::json answer_of(const UnstreamOptions& options, const Receiver& receiver,
+                         const RefinedTin& refined, const Mesh& mesh) {
+  const StreamReader& reader = receiver.reader();
+  return {{"output", options.output.empty() ? nlohmann::json() : nlohmann::json(options.output)},
+          {"complete", receiver.complete()},
+          {"splits", reader.splits()},
+          {"splits_in_all", reader.splits_in_all()},
+          {"vertices", refined.vertices},
+          {"void_vertices", refined.void_vertices},
+          {"triangles", refined.triangles},
+          {"t0_vertices", refined.t0_vertices},
+          {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
+          {"certified_error", refined.certified_error},
+          {"certified_deviation", refined.certified_deviation},
+          {"bytes_used", reader.bytes_used()},
+          {"have", receiver.have()}};
+}
+
+void print_report(const Receiver& receiver, const RefinedTin& refined) {
+  const StreamReader& reader = receiver.reader();
+  std::fprintf(stderr,
+               "%s vertices, %s triangles; certified %s at every sample, %s at any point of "
+               "what was asked for\n",
+               grouped(refined.vertices).c_str(), grouped(refined.triangles).c_str(),
+               short_number(refined.certified_error).c_str(),
+               short_number(refined.certified_deviation).c_str());
+  if (!receiver.complete()) {
+    std::fprintf(stderr,
+                 "the stream was cut: %s of %s splits arrived; for the rest ask "
+                 "`ptin stream FILE ... --have '%s'`\n",
+                 grouped(reader.splits()).c_str(), grouped(reader.splits_in_all()).c_str(),
+                 receiver.have().dump().c_str());
+  }
+}
+
+int run_unstream(const UnstreamOptions& options, const Context& context) {
+  if (!options.output.empty()) {
+    static_cast<void>(mesh_format_of(options.output));
+    check_output(options.output, options.overwrite);
+  }
+  std::string name = options.inputs.size() == 1 ? options.inputs.front() : "streams";
+  Receiver receiver(name == "-" ? "stdin" : std::move(name));
+  for (const std::string& input : options.inputs) receiver.read(input, context);
+  if (!receiver.reader().has_mesh()) {
+    throw Error(ErrorCode::corruption,
+                "the stream ends before T0: nothing of it can be shown; get more of it");
+  }
+  const RefinedTin refined = refined_of(receiver.reader());
+  Mesh mesh = surface_mesh(refined, receiver.reader().facts());
+  const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
+  mesh.crs = crs.horizontal_text();
+  mesh.vertical_crs = crs.vertical_text();
+  mesh.geographic = crs.geographic;
+  if (!options.output.empty()) write_mesh(mesh, options.output, options.overwrite);
+  if (context.json) {
+    print_json(answer_of(options, receiver, refined, mesh));
+  } else if (!context.quiet) {
+    print_report(receiver, refined);
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+Action declare_unstream(CLI::App& app, Context& context) {
+  const auto options = std::make_shared<UnstreamOptions>();
+  app.add_option("IN", options->inputs, "Streams, one after the other; - for stdin")->required();
+  app.add_option(
+         "-o,--output", options->output,
+         "The mesh to write; its extension chooses the format. None: only tell what arrived")
+      ->type_name("OUT");
+  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
+  add_common_options(app, context, true);
+  return [options, &context] { return run_unstream(*options, context); };
+}
+
+}  // namespace ptin::tools
