@@ -4,6 +4,7 @@
 // damaged.
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
@@ -351,7 +352,7 @@ struct Frames {
   [[nodiscard]] Bytes sealed() {
     Bytes bytes;
     const auto add = [&](std::span<const std::byte> b) {
-      bytes.insert(bytes.end(), b.begin(), b.end());
+      std::copy(b.begin(), b.end(), std::back_inserter(bytes));
     };
     add(std::as_bytes(std::span(&head, 1)));
     for (auto& [f, payload] : frames) {
