@@ -17,6 +17,8 @@
 #include "engine/construct/raster_tile.h"
 #include "engine/construct/simplify.h"
 #include "engine/construct/store_output.h"
+#include "engine/construct/tin_soup.h"
+#include "engine/construct/tin_source.h"
 #include "engine/construct/tin_surface.h"
 #include "engine/error.h"
 
@@ -166,23 +168,14 @@ void build_raster(Job& job) {
   workspace.remove_all();
 }
 
-void build_points(Job& job) {
-  const PointSet points = read_points(job.inputs, source_options(job.options), job.resources.stop,
-                                      stage(job.resources, "reading"));
-  job.report.source_samples = points.positions.size();
-  job.report.left_out_points = points.left_out_points;
-  job.report.merged_points = points.merged_points;
-  job.report.largest_shift_plan = points.largest_shift_plan;
-  job.report.largest_shift_height = points.largest_shift_height;
-  job.report.height_rounding = points.frame.height_rounding;
-  job.report.vertices = points.positions.size();
-
-  StoreOutput store(job.output, job.options, job.resources.overwrite, points.frame);
+/// Collapses a full TIN as one tile and writes it.
+void build_one_tile(Job& job, const TerrainFrame& frame, Tin full_tin) {
+  StoreOutput store(job.output, job.options, job.resources.overwrite, frame);
   Tile tile;
-  tile.units = measure_units(points.frame, job.options.void_slope);
-  tile.tin = make_delaunay_tin(points.positions, points.heights, job.resources.stop);
+  tile.units = measure_units(frame, job.options.void_slope);
+  tile.tin = std::move(full_tin);
   start_tile(tile, {});
-  const TinSurface full(tile.tin, points.frame.heights);
+  const TinSurface full(tile.tin, frame.heights);
   SimplifyOptions options;
   options.cost = job.options.cost;
   options.stop = job.resources.stop;
@@ -194,6 +187,40 @@ void build_points(Job& job) {
   stage(job.resources, "writing")(0, 1);
   store.add_segment(tile.records);
   store.publish(tile.tin, job.inputs, job.report);
+}
+
+void build_points(Job& job) {
+  const PointSet points = read_points(job.inputs, source_options(job.options), job.resources.stop,
+                                      stage(job.resources, "reading"));
+  job.report.source_samples = points.positions.size();
+  job.report.left_out_points = points.left_out_points;
+  job.report.merged_points = points.merged_points;
+  job.report.largest_shift_plan = points.largest_shift_plan;
+  job.report.largest_shift_height = points.largest_shift_height;
+  job.report.height_rounding = points.frame.height_rounding;
+  job.report.vertices = points.positions.size();
+
+  build_one_tile(job, points.frame,
+                 make_delaunay_tin(points.positions, points.heights, job.resources.stop));
+}
+
+/// Somebody else's triangles, in memory.
+void build_tin(Job& job) {
+  if (job.inputs.size() != 1) {
+    throw Error(ErrorCode::invalid_argument, "several inputs, a TIN among them; build a TIN alone");
+  }
+  const std::uint64_t memory =
+      job.resources.memory_bytes != 0 ? job.resources.memory_bytes : default_memory();
+  TinTerrain terrain = read_tin(job.inputs[0], source_options(job.options), memory,
+                                job.resources.stop, stage(job.resources, "reading"));
+  job.report.source_samples = job.report.vertices = terrain.tin.vertices.size();
+  job.report.left_out_points = terrain.unused_vertices;
+  job.report.left_out_triangles = terrain.left_out_triangles;
+  job.report.void_triangles = terrain.tin.triangles.size() - terrain.surface_triangles;
+  job.report.merged_points = terrain.merged_vertices;
+  job.report.largest_shift_plan = terrain.largest_shift_plan;
+  job.report.height_rounding = terrain.frame.height_rounding;
+  build_one_tile(job, terrain.frame, std::move(terrain.tin));
 }
 
 /// @throws Error invalid_argument for options that mean nothing
@@ -219,7 +246,7 @@ bool are_points(const std::vector<std::string>& inputs, const PointChoice& choic
     throw Error(
         ErrorCode::invalid_argument,
         "no input; name a raster that GDAL reads, or points as LAS, text or a layer that OGR "
-        "reads");
+        "reads, or a TIN");
   }
   const auto points = std::count_if(inputs.begin(), inputs.end(), [&](const std::string& input) {
     return is_point_input(input, choice);
@@ -238,7 +265,9 @@ BuildReport build(const std::vector<std::string>& inputs, const std::string& out
   const auto begin = std::chrono::steady_clock::now();
   check_options(options);
   Job job{inputs, output, options, resources, {}};
-  if (are_points(inputs, source_options(options).points)) {
+  if (!options.repair && std::any_of(inputs.begin(), inputs.end(), is_tin_file)) {
+    build_tin(job);
+  } else if (are_points(inputs, source_options(options).points)) {
     build_points(job);
   } else {
     build_raster(job);

@@ -27,6 +27,7 @@ struct BuildOptions {
   std::vector<int> classes;          ///< LAS: keep these classes; empty keeps all.
   std::string layer;                 ///< OGR: the layer of points; "" where there is only one.
   std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
+  bool repair = false;  ///< TINs: triangulate the vertices anew instead of taking the triangles.
   std::optional<std::array<double, 4>>
       bbox;           ///< xmin ymin xmax ymax in CRS units; samples outside are left out.
   std::string a_srs;  ///< Overrides the source's CRS (anything GDAL understands); "" keeps it.
@@ -61,7 +62,9 @@ struct BuildReport {
   std::uint64_t void_samples = 0;
   std::uint64_t lone_samples = 0;     ///< Samples that touch no surface triangle, treated as void.
   std::uint64_t left_out_points = 0;  ///< By their class or place, or for want of a height.
-  std::uint64_t merged_points = 0;    ///< Points that fell together after snapping.
+  std::uint64_t left_out_triangles = 0;  ///< TINs: hidden, or with a corner of no height.
+  std::uint64_t void_triangles = 0;      ///< TINs: of the full TIN, between surface and hull.
+  std::uint64_t merged_points = 0;       ///< Points that fell together after snapping.
   double largest_shift_plan = 0.0, largest_shift_height = 0.0;
   double height_rounding = 0.0;
   std::uint64_t vertices = 0;  ///< Of the full TIN.
@@ -73,12 +76,13 @@ struct BuildReport {
   bool resumed = false;  ///< An interrupted build was taken up.
 };
 
-/// Builds `output` from `inputs` (one raster or several of one grid; or point files). The output's
-/// name does not appear before the file is complete.
+/// Builds `output` from `inputs` (one raster or several of one grid; or point files; or a TIN). The
+/// output's name does not appear before the file is complete.
 /// @throws Error invalid_argument, not_found: nothing is left behind.
 ///               io_error, resource_exhausted, cancelled: a raster's build that has begun is kept
 ///               beside the output (workspace.h) and can be resumed; the message names the folder.
-/// Memory: within BuildResources::memory_bytes for rasters; all points of point files.
+/// Memory: within BuildResources::memory_bytes for rasters; all points of point files, all of a
+/// TIN.
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
                   const BuildOptions& options, const BuildResources& resources);
 

@@ -9,6 +9,8 @@
 #include "engine/construct/gdal_session_internal.h"
 #include "engine/construct/las_reader.h"
 #include "engine/construct/ogr_points.h"
+#include "engine/construct/tin_soup.h"
+#include "engine/construct/tin_source.h"
 #include "engine/construct/xyz_reader.h"
 #include "engine/error.h"
 
@@ -70,8 +72,8 @@ class TextPoints final : public PointStream {
 bool is_point_file(const std::string& path) { return is_las(path) || is_text(path); }
 
 bool is_point_input(const std::string& path, const PointChoice& choice) {
-  return is_point_file(path) || !choice.layer.empty() || !choice.z_field.empty() ||
-         OgrPoints::reads(path);
+  return is_point_file(path) || is_tin_file(path) || !choice.layer.empty() ||
+         !choice.z_field.empty() || OgrPoints::reads(path);
 }
 
 std::unique_ptr<PointStream> open_point_stream(const std::string& path, const PointChoice& choice) {
@@ -80,6 +82,9 @@ std::unique_ptr<PointStream> open_point_stream(const std::string& path, const Po
     throw Error(ErrorCode::invalid_argument,
                 "only LAS has classes; leave the choice of classes out, or build LAS files alone",
                 path);
+  }
+  if (is_tin_file(path)) {
+    return std::make_unique<TinVertices>(path, choice);
   }
   if (is_las(path)) {
     if (ogr) {

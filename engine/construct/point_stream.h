@@ -70,12 +70,13 @@ class PointStream {
 [[nodiscard]] bool is_point_file(const std::string& path);
 
 /// True when an input is points rather than a raster: by its name, or because a layer or attribute
-/// is chosen, or since OGR reads it and GDAL finds no raster in it. Cost: opens other files than
-/// those known by name.
+/// is chosen, or as a TIN that has vertices, or since OGR reads it and GDAL finds no raster in it.
+/// Cost: opens other files than those known by name.
 [[nodiscard]] bool is_point_input(const std::string& path, const PointChoice& choice);
 
-/// Opens a file of points by its name: LAS (las_reader.h), text (xyz_reader.h), anything else as a
-/// layer of OGR's (ogr_points.h); with a layer or z-field chosen, OGR always.
+/// Opens a file of points by its name: LAS (las_reader.h), a TIN for its vertices (tin_source.h),
+/// text (xyz_reader.h), anything else as a layer of OGR's (ogr_points.h); with a layer or z-field
+/// chosen, OGR always.
 /// @throws Error  not_found, io_error, invalid_argument, unsupported_version  as those; a choice
 /// that
 ///                means nothing for the kind of file

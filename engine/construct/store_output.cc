@@ -63,6 +63,9 @@ nlohmann::json options_json(const BuildOptions& o) {
       {"nodata", value_or_null(o.nodata)}, {"resolution", value_or_null(o.resolution)},
       {"bbox", value_or_null(o.bbox)},     {"tile", value_or_null(o.tile)},
       {"void_slope", o.void_slope}};
+  if (o.repair) {
+    json["repair"] = true;
+  }
   if (!o.classes.empty()) {
     json["classes"] = o.classes;
   }

@@ -74,6 +74,8 @@ nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
           {"void_samples", r.void_samples},
           {"lone_samples", r.lone_samples},
           {"left_out_points", r.left_out_points},
+          {"left_out_triangles", r.left_out_triangles},
+          {"void_triangles", r.void_triangles},
           {"merged_points", r.merged_points},
           {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
           {"height_rounding", r.height_rounding},
@@ -99,6 +101,10 @@ void print_report(const BuildCommand& command, const BuildReport& r) {
   if (r.left_out_points > 0) {
     std::printf("  left out   %s points, by their class or place, withheld, or without a height\n",
                 grouped(r.left_out_points).c_str());
+  }
+  if (r.left_out_triangles + r.void_triangles > 0) {
+    std::printf("  triangles  %s void ones fill holes and pockets; %s hidden ones left out\n",
+                grouped(r.void_triangles).c_str(), grouped(r.left_out_triangles).c_str());
   }
   if (r.merged_points > 0) {
     std::printf("  merged     %s points fell together (largest shift %s in plan, %s in height)\n",
@@ -257,7 +263,8 @@ Action declare_build(CLI::App& app, Context& context) {
   app.add_option(
       "INPUT", command->inputs,
       "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz\n"
-      "too), or a layer that OGR reads; several files of one CRS");
+      "too), or a layer that OGR reads; several files of one CRS; or a TIN: PLY, OBJ, 2DM, "
+      "LandXML");
   app.add_option("-o,--output", command->output, "The .ptin file to write")
       ->type_name("FILE")
       ->required();
@@ -282,6 +289,8 @@ Action declare_build(CLI::App& app, Context& context) {
   app.add_option("--z-field", options.z_field,
                  "The attribute that holds the height of a layer's points (default: their z)")
       ->type_name("NAME");
+  app.add_flag("--repair", options.repair,
+               "TINs: leave the triangles and triangulate the vertices anew (no voids then)");
   app.add_option("--bbox", command->bbox, "Leave out samples outside of this box, in CRS units")
       ->expected(4)
       ->type_name("XMIN YMIN XMAX YMAX");

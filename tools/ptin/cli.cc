@@ -15,7 +15,7 @@ namespace ptin::tools {
 namespace {
 
 constexpr auto kCommands = std::to_array<Command>({
-    {"build", "Build a .ptin file from a raster or from points",
+    {"build", "Build a .ptin file from a raster, points or a TIN",
      "Examples:\n"
      "  ptin build dem.tif -o dem.ptin\n"
      "  ptin build north.vrt -o north.ptin --max-error 5 --vertical-crs EPSG:5773\n"

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A file read forwards: as lines, as blocks of bytes, or as whatever comes next.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ptin {
+
+/// Reads forwards through one buffer of 256 KiB. Not thread-safe. What it returns is valid until
+/// the next call.
+class ByteReader {
+ public:
+  /// @throws Error not_found, io_error
+  explicit ByteReader(std::string path);
+  /// Reads `content` itself; `name` stands for the path in errors.
+  ByteReader(std::string name, std::string content);
+
+  /// The next line without its end (LF, CR LF); false at the end of the file.
+  /// @throws Error invalid_argument  longer than 64 KiB; io_error
+  [[nodiscard]] bool line(std::string_view& text);
+  /// The next `count` bytes, at most 64 KiB; fewer at the end of the file.  @throws Error io_error
+  [[nodiscard]] std::span<const char> bytes(std::size_t count);
+  /// Some further bytes, at most 64 KiB; none at the end of the file.  @throws Error io_error
+  [[nodiscard]] std::span<const char> some() { return bytes(kLongest); }
+
+  static constexpr std::size_t kLongest = std::size_t{64} << 10;
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }  ///< Of the whole file.
+  [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
+  [[nodiscard]] std::uint64_t line_number() const noexcept { return line_; }
+  /// "path:line", for errors.
+  [[nodiscard]] std::string place() const { return path_ + ":" + std::to_string(line_); }
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  /// Makes at least `count` bytes available where the file has them.
+  void want(std::size_t count);
+  void take(std::size_t count) noexcept {
+    begin_ += count;
+    position_ += count;
+  }
+
+  std::string path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0, end_ = 0;  ///< What is left of the buffer.
+  std::uint64_t size_ = 0, position_ = 0, line_ = 0;
+};
+
+}  // namespace ptin

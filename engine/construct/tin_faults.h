@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Whether triangles on the grid are a terrain: strictly counter-clockwise, beside one another, each
+// point covered at most once. Exact.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/geometry/point.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin {
+
+using Corners = std::array<VertexId, 3>;
+
+/// A directed edge with a triangle on its left and none on its right.
+struct BorderEdge {
+  VertexId from, to;
+};
+
+/// One kind of fault: how often, and where first.
+struct TinFault {
+  std::uint64_t count = 0;
+  GridPoint first;
+
+  void add(GridPoint where) {
+    if (count++ == 0) {
+      first = where;
+    }
+  }
+};
+
+/// Everything that can be wrong with triangles.
+struct TinFaults {
+  TinFault no_area;       ///< Triangles whose corners lie on one line or coincide.
+  TinFault turned_over;   ///< Triangles that run clockwise while most do not.
+  TinFault heights;       ///< Positions with several heights.
+  TinFault shared_edges;  ///< Edges that more than one triangle has on the same side.
+  TinFault t_junctions;   ///< Vertices inside of an edge of the border.
+  TinFault crossings;     ///< Edges of the border that cross.
+  TinFault covered;       ///< Pieces of the plane that are covered more than once.
+
+  [[nodiscard]] bool any() const noexcept;
+};
+
+/// Turns all triangles round when most of them are clockwise; true when it did.
+bool turn_majority(std::span<const GridPoint> positions, std::vector<Corners>& triangles);
+
+/// Counts triangles without area and clockwise ones.
+void check_orientation(std::span<const GridPoint> positions, std::span<const Corners> triangles,
+                       TinFaults& faults);
+
+/// The border of counter-clockwise triangles, in ascending order of (from, to); counts edges that
+/// are there twice.
+/// Cost: O(n log n); 16 bytes an edge.
+[[nodiscard]] std::vector<BorderEdge> border_of(std::span<const GridPoint> positions,
+                                                std::span<const Corners> triangles,
+                                                TinFaults& faults);
+
+/// Counts vertices inside of border edges, and border edges that cross.
+/// Cost: O(b log^2 b + pairs of edges whose boxes meet).
+void check_border(std::span<const GridPoint> positions, std::span<const BorderEdge> border,
+                  TinFaults& faults);
+
+}  // namespace ptin

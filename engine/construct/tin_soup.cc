@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/tin_soup.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "engine/construct/soup_builder_internal.h"
+#include "engine/error.h"
+
+namespace ptin {
+
+namespace {
+
+struct TinFormat {
+  std::string_view extension;
+  TinSoup (*read)(ByteReader& in, const TinReading& reading);
+};
+constexpr std::array<TinFormat, 5> kFormats = {{{".ply", read_ply},
+                                                {".obj", read_obj},
+                                                {".2dm", read_two_dm},
+                                                {".xml", read_land_xml},
+                                                {".landxml", read_land_xml}}};
+
+const TinFormat* format_of(std::string_view path) {
+  std::string name(path);
+  std::transform(name.begin(), name.end(), name.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  for (const TinFormat& format : kFormats) {
+    if (name.ends_with(format.extension)) {
+      return &format;
+    }
+  }
+  return nullptr;
+}
+
+[[noreturn]] void refuse(const std::string& sentence, const std::string& place) {
+  throw Error(ErrorCode::invalid_argument, sentence, place);
+}
+
+}  // namespace
+
+bool is_tin_file(std::string_view path) { return format_of(path) != nullptr; }
+
+TinSoup read_tin_soup(const std::string& path, const TinReading& reading) {
+  const TinFormat* format = format_of(path);
+  if (format == nullptr) {
+    refuse("this is no TIN by its name; known are .ply, .obj, .2dm, .xml, .landxml", path);
+  }
+  ByteReader in(path);
+  return format->read(in, reading);
+}
+
+void split_words(std::string_view line, std::vector<std::string_view>& words) {
+  words.clear();
+  std::size_t at = 0;
+  while ((at = line.find_first_not_of(" \t", at)) != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+}
+
+Decimal coordinate_of(std::string_view word, const std::string& place) {
+  Decimal value;
+  switch (parse_number(word, value)) {
+    case NumberKind::kNumber:
+      return value;
+    case NumberKind::kNotANumber:
+    case NumberKind::kInfinite:
+      refuse("a coordinate is not a finite number", place);
+    case NumberKind::kTooLarge:
+      refuse("a coordinate is 10^18 or more", place);
+    case NumberKind::kNoNumber:
+      break;
+  }
+  refuse("'" + std::string(word.substr(0, 40)) + "' stands where a number belongs", place);
+}
+
+Decimal coordinate_of(double value, const std::string& place) {
+  if (!(std::abs(value) < 1e18)) {
+    refuse("a coordinate is not a finite number below 10^18", place);
+  }
+  return decimal_of(value);
+}
+
+Decimal coordinate_of(float value, const std::string& place) {
+  char text[64];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return coordinate_of({text, static_cast<std::size_t>(end - text)}, place);
+}
+
+std::int64_t whole_of(std::string_view word, const std::string& place) {
+  std::int64_t value = 0;
+  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (status != std::errc() || end != word.data() + word.size()) {
+    refuse("'" + std::string(word.substr(0, 40)) + "' stands where a whole number belongs", place);
+  }
+  return value;
+}
+
+void SoupBuilder::look_around() {
+  constexpr std::uint64_t kInterval = 1 << 16;
+  if (++added_ % kInterval != 0) {
+    return;
+  }
+  if (reading_.stop.stop_requested()) {
+    throw Error(ErrorCode::cancelled, "reading was cancelled", in_.path());
+  }
+  if (reading_.progress) {
+    reading_.progress(in_.position(), in_.size());
+  }
+  constexpr std::uint64_t kIdBytes = 40;
+  const std::uint64_t bytes = soup_.vertices.capacity() * sizeof(SourcePoint) +
+                              triangles_.capacity() * 36 + index_of_.size() * kIdBytes;
+  if (bytes > reading_.memory_bytes) {
+    throw Error(ErrorCode::resource_exhausted,
+                "this TIN does not fit in the memory given, and TINs are built in memory; give "
+                "more --memory, or build from its points, which may be larger",
+                in_.path());
+  }
+}
+
+void SoupBuilder::add_vertex(const SourcePoint& p) {
+  look_around();
+  if (soup_.vertices.size() >= UINT32_MAX / 2) {
+    throw Error(ErrorCode::resource_exhausted, "more vertices than one mesh in memory counts",
+                in_.path());
+  }
+  soup_.vertices.push_back(p);
+}
+
+void SoupBuilder::add_vertex(std::int64_t id, const SourcePoint& p) {
+  const auto index = static_cast<std::uint32_t>(soup_.vertices.size());
+  if (!index_of_.try_emplace(id, index).second) {
+    refuse("two vertices have the id " + std::to_string(id), in_.place());
+  }
+  add_vertex(p);
+}
+
+void SoupBuilder::add_triangle(const std::array<std::int64_t, 3>& ids) {
+  look_around();
+  triangles_.push_back(ids);
+}
+
+TinSoup SoupBuilder::finish() {
+  if (soup_.vertices.empty() || triangles_.empty()) {
+    refuse(soup_.vertices.empty() ? "there is no vertex in this file"
+           : soup_.hidden_triangles > 0
+               ? "every triangle in this file is hidden"
+               : "there is no triangle in this file; points alone are built from CSV, XYZ or LAS",
+           in_.path());
+  }
+  soup_.triangles.reserve(triangles_.size());
+  for (const auto& ids : triangles_) {
+    std::array<std::uint32_t, 3> corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto found = index_of_.find(ids[i]);
+      const bool is_known = index_of_.empty()
+                                ? ids[i] >= 0 && static_cast<std::uint64_t>(ids[i]) < vertices()
+                                : found != index_of_.end();
+      if (!is_known) {
+        refuse("triangle " + std::to_string(soup_.triangles.size()) + " names vertex " +
+                   std::to_string(ids[i]) + ", which is not there",
+               in_.path());
+      }
+      corners[i] = index_of_.empty() ? static_cast<std::uint32_t>(ids[i]) : found->second;
+    }
+    soup_.triangles.push_back(corners);
+  }
+  return std::move(soup_);
+}
+
+}  // namespace ptin

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// TINs as sources: what becomes of concave, broken, hidden and flattened triangles.
+#include "engine/construct/tin_source.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "engine/construct/delaunay.h"
+#include "engine/error.h"
+#include "engine/geometry/orient.h"
+#include "engine/mesh/validate.h"
+
+namespace ptin {
+namespace {
+
+using Vertex3 = std::array<double, 3>;
+using Face = std::array<int, 3>;
+
+/// A file that goes with the test.
+class TestFile {
+ public:
+  TestFile(const std::string& extension, const std::string& content)
+      : path_(
+            std::filesystem::temp_directory_path() /
+            ("ptin_tin_" + std::to_string(getpid()) + "_" + std::to_string(count_++) + extension)) {
+    std::ofstream(path_, std::ios::binary) << content;
+  }
+  ~TestFile() { std::filesystem::remove(path_); }
+  TestFile(const TestFile&) = delete;
+  TestFile& operator=(const TestFile&) = delete;
+  [[nodiscard]] std::string path() const { return path_.string(); }
+
+ private:
+  static inline int count_ = 0;
+  std::filesystem::path path_;
+};
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string obj_of(const std::vector<Vertex3>& vertices, const std::vector<Face>& faces) {
+  std::string text = "# a mesh\n";
+  for (const Vertex3& v : vertices) {
+    text += "v " + number(v[0]) + " " + number(v[1]) + " " + number(v[2]) + "\n";
+  }
+  for (const Face& f : faces) {
+    text += "f " + std::to_string(f[0] + 1) + " " + std::to_string(f[1] + 1) + "/7 " +
+            std::to_string(f[2] + 1) + "/7/7\n";
+  }
+  return text;
+}
+
+TinTerrain read(const std::vector<Vertex3>& vertices, const std::vector<Face>& faces,
+                const SourceOptions& options = {}) {
+  const TestFile file(".obj", obj_of(vertices, faces));
+  return read_tin(file.path(), options, UINT64_MAX);
+}
+
+std::string refusal(const std::vector<Vertex3>& vertices, const std::vector<Face>& faces) {
+  try {
+    static_cast<void>(read(vertices, faces));
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
+    return e.message();
+  }
+  return "accepted";
+}
+
+using GridTriangle = std::array<VertexKey, 3>;
+
+std::set<GridTriangle> triangles_of(const Tin& tin, TriangleClass wanted) {
+  std::set<GridTriangle> set;
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (tin.classes[t] != wanted) continue;
+    GridTriangle keys{};
+    for (std::size_t i = 0; i < 3; ++i) keys[i] = key_of(tin.position(tin.triangles[t].v[i]));
+    std::rotate(keys.begin(), std::min_element(keys.begin(), keys.end()), keys.end());
+    EXPECT_TRUE(set.insert(keys).second);
+  }
+  return set;
+}
+
+void expect_sound(const TinTerrain& terrain, std::size_t surface, std::size_t filling) {
+  EXPECT_EQ(validate(terrain.tin), "");
+  EXPECT_EQ(triangles_of(terrain.tin, TriangleClass::kSurface).size(), surface);
+  EXPECT_EQ(triangles_of(terrain.tin, TriangleClass::kVoid).size(), filling);
+  EXPECT_EQ(terrain.surface_triangles, surface);
+}
+
+const std::vector<Vertex3> kSquare = {{0, 0, 1}, {10, 0, 2}, {10, 10, 3}, {0, 10, 4}};
+const std::vector<Face> kTwo = {{0, 1, 2}, {0, 2, 3}};
+
+TEST(TinSource, TakesAConvexTinAsItIs) {
+  const TinTerrain terrain = read(kSquare, kTwo);
+  expect_sound(terrain, 2, 0);
+  EXPECT_EQ(terrain.frame.min_height, 1.0);
+  EXPECT_EQ(terrain.frame.max_height, 4.0);
+  EXPECT_EQ(terrain.largest_shift_plan, 0.0);
+}
+
+TEST(TinSource, TurnsATinThatIsClockwiseThroughout) {
+  expect_sound(read(kSquare, {{2, 1, 0}, {3, 2, 0}}), 2, 0);
+}
+
+TEST(TinSource, FillsConcaveBordersHolesAndGaps) {
+  // An L: one pocket.
+  const std::vector<Vertex3> corner = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0},
+                                       {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
+  expect_sound(read(corner, {{0, 1, 3}, {1, 2, 3}, {0, 3, 5}, {3, 4, 5}}), 4, 1);
+  // A ring around a hole.
+  const std::vector<Vertex3> ring = {{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0},
+                                     {3, 3, 0}, {6, 3, 0}, {6, 6, 0}, {3, 6, 0}};
+  expect_sound(
+      read(
+          ring,
+          {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}),
+      8, 2);
+  // Two islands, and two triangles that touch in a vertex.
+  const std::vector<Vertex3> islands = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
+                                        {8, 8, 0}, {9, 8, 0}, {8, 9, 0}};
+  expect_sound(read(islands, {{0, 1, 2}, {3, 4, 5}}), 2, 3);
+  const std::vector<Vertex3> bow = {{0, 0, 0}, {4, 2, 0}, {0, 4, 0}, {8, 0, 0}, {8, 4, 0}};
+  expect_sound(read(bow, {{0, 1, 2}, {1, 3, 4}}), 2, 2);
+  // A lake with an island in it.
+  std::vector<Vertex3> lake = ring;
+  lake.insert(lake.end(), {{4, 4, 0}, {5, 4, 0}, {4, 5, 0}});
+  expect_sound(read(lake, {{0, 1, 5},
+                           {0, 5, 4},
+                           {1, 2, 6},
+                           {1, 6, 5},
+                           {2, 3, 7},
+                           {2, 7, 6},
+                           {3, 0, 4},
+                           {3, 4, 7},
+                           {8, 9, 10}}),
+               9, 7);
+}
+
+TEST(TinSource, NamesEveryFault) {
+  EXPECT_NE(refusal({{0, 0, 0}, {4, 0, 0}, {8, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {0, 2, 3}})
+                .find("1 triangle has no area (it is at 0 0)"),
+            std::string::npos);
+  std::vector<Vertex3> strip = kSquare;
+  strip.push_back({20, 0, 0});
+  EXPECT_NE(refusal(strip, {{0, 1, 2}, {0, 2, 3}, {4, 1, 2}}).find("1 triangle is turned over"),
+            std::string::npos);
+  EXPECT_NE(refusal(kSquare, {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}).find("3 edges have two triangles"),
+            std::string::npos);
+  EXPECT_NE(refusal({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {4, 0, 9}, {4, 4, 0}}, {{0, 1, 2}, {3, 4, 2}})
+                .find("1 position has several heights (it is at 4 0)"),
+            std::string::npos);
+  // The long side of the first is two sides of the others.
+  EXPECT_NE(refusal({{0, 0, 0}, {8, 0, 0}, {4, 8, 0}, {4, 0, 0}, {4, -5, 0}},
+                    {{0, 1, 2}, {0, 4, 3}, {3, 4, 1}})
+                .find("1 vertex lies inside of an edge (T-junction) (it is at 4 0)"),
+            std::string::npos);
+  EXPECT_NE(refusal({{0, 0, 0}, {8, 0, 0}, {4, 8, 0}, {3, -2, 0}, {5, -2, 0}, {4, 4, 0}},
+                    {{0, 1, 2}, {3, 4, 5}})
+                .find("2 pairs of border edges cross"),
+            std::string::npos);
+  // One on top of the other without touching.
+  EXPECT_NE(refusal({{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {2, 2, 5}, {3, 2, 5}, {2, 3, 5}},
+                    {{0, 1, 2}, {3, 4, 5}})
+                .find("1 piece is covered more than once"),
+            std::string::npos);
+}
+
+TEST(TinSource, WeldsVerticesOfOneHeightAndDropsUnusedOnes) {
+  const TinTerrain terrain =
+      read({{0, 0, 1}, {4, 0, 2}, {0, 4, 3}, {4, 0, 2}, {4, 4, 5}, {0, 4, 3}, {99, 99, 99}},
+           {{0, 1, 2}, {3, 4, 5}});
+  expect_sound(terrain, 2, 0);
+  EXPECT_EQ(terrain.tin.vertices.size(), 4U);
+  EXPECT_EQ(terrain.merged_vertices, 2U);
+  EXPECT_EQ(terrain.unused_vertices, 1U);
+}
+
+TEST(TinSource, LeavesOutTrianglesOfNoHeight) {
+  SourceOptions options;
+  options.nodata = 3.0;
+  std::vector<Vertex3> vertices = kSquare;
+  vertices.push_back({20, -5, 7});
+  const TinTerrain terrain = read(vertices, {{0, 1, 2}, {0, 2, 3}, {0, 4, 1}, {0, 1, 3}}, options);
+  EXPECT_EQ(terrain.left_out_triangles, 2U);
+}
+
+TEST(TinSource, KeepsWhatDigitsTheGridHoldsAndFlipsSpoiledSlivers) {
+  // A fan of slivers finer than the grid along one side of a square of 300 units.
+  std::vector<Vertex3> vertices = {{0, 0, 0}, {300, 0, 0}, {300, 300, 0}, {0, 300, 0}};
+  vertices.push_back({100.12345600123, 0.00000000017, 1});
+  vertices.push_back({200.00000000456, 0.00000000031, 2});
+  const std::vector<Face> faces = {{0, 1, 5}, {0, 5, 4}, {0, 4, 3},
+                                   {4, 5, 3}, {5, 2, 3}, {5, 1, 2}};
+  const TinTerrain terrain = read(vertices, faces);
+  EXPECT_EQ(validate(terrain.tin), "");
+  EXPECT_EQ(terrain.frame.map.step_x, 1e-6);
+  EXPECT_GT(terrain.largest_shift_plan, 0.0);
+  EXPECT_LT(terrain.largest_shift_plan, 1e-6);
+  EXPECT_GE(terrain.mended_triangles, 2U);
+  EXPECT_EQ(triangles_of(terrain.tin, TriangleClass::kVoid).size(), 0U);
+  EXPECT_EQ(terrain.tin.vertices.size(), 6U);
+}
+
+/// Triangulations of random points with triangles taken out at random, against the definition.
+TEST(TinSource, FillsRandomHolesExactly) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 60; ++round) {
+    const int side = 3 + static_cast<int>(random() % 40);
+    std::map<VertexKey, HeightBits> points;
+    const int count = 4 + static_cast<int>(random() % 150);
+    for (int i = 0; i < count; ++i) {
+      const GridPoint p{static_cast<std::int32_t>(random() % side),
+                        static_cast<std::int32_t>(random() % side)};
+      points[key_of(p)] = static_cast<HeightBits>(random() % 100);
+    }
+    std::vector<GridPoint> positions;
+    std::vector<HeightBits> heights;
+    for (const auto& [key, height] : points) {
+      positions.push_back(point_of(key));
+      heights.push_back(height);
+    }
+    Tin full;
+    try {
+      full = make_delaunay_tin(positions, heights);
+    } catch (const Error&) {
+      continue;  // collinear
+    }
+    std::vector<Vertex3> vertices;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      vertices.push_back({double(positions[i].x), double(positions[i].y), double(heights[i])});
+    }
+    std::vector<Face> faces;
+    std::set<GridTriangle> kept;
+    const auto share = random() % 10;
+    for (const Triangle& t : full.triangles) {
+      if (random() % 10 < share) continue;
+      faces.push_back({int(t.v[0]), int(t.v[1]), int(t.v[2])});
+    }
+    if (faces.empty()) continue;
+    std::shuffle(faces.begin(), faces.end(), random);
+    const TinTerrain terrain = read(vertices, faces);
+    EXPECT_EQ(validate(terrain.tin), "");
+    const auto surface = triangles_of(terrain.tin, TriangleClass::kSurface);
+    EXPECT_EQ(surface.size(), faces.size());
+    const MapPoint origin = terrain.frame.map.to_map(0, 0);
+    for (const Face& f : faces) {
+      GridTriangle keys{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const GridPoint p = positions[static_cast<std::size_t>(f[i])];
+        keys[i] = key_of(
+            {p.x - static_cast<std::int32_t>(origin.x), p.y - static_cast<std::int32_t>(origin.y)});
+      }
+      std::rotate(keys.begin(), std::min_element(keys.begin(), keys.end()), keys.end());
+      EXPECT_TRUE(surface.contains(keys));
+    }
+  }
+}
+
+TEST(TinSource, RefusesABoxAndTooLittleMemory) {
+  SourceOptions options;
+  options.bbox = {0, 0, 1, 1};
+  EXPECT_THROW(static_cast<void>(read(kSquare, kTwo, options)), Error);
+  std::vector<Vertex3> many(200'000, {1, 2, 3});
+  const TestFile file(".obj", obj_of(many, kTwo));
+  try {
+    static_cast<void>(read_tin(file.path(), {}, 1'000'000));
+    FAIL() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
+    EXPECT_NE(e.message().find("--memory"), std::string::npos);
+  }
+}
+
+TEST(TinVertices, AreThoseThatTrianglesUse) {
+  std::vector<Vertex3> vertices = kSquare;
+  vertices.push_back({50, 50, 50});
+  const TestFile file(".obj", obj_of(vertices, kTwo));
+  TinVertices points(file.path(), {});
+  std::vector<SourcePoint> batch;
+  ASSERT_TRUE(points.next(batch));
+  EXPECT_EQ(batch.size(), 4U);
+  EXPECT_EQ(points.left_out(), 1U);
+  EXPECT_FALSE(points.next(batch));
+}
+
+}  // namespace
+}  // namespace ptin
