@@ -17,7 +17,7 @@ std::uint64_t bytes_of(const Tin& tin) {
 }  // namespace
 
 BoundedMesh::BoundedMesh(const ProgressiveTin& terrain)
-    : terrain_(terrain), refinement_(terrain.coarsest()) {
+    : terrain_(terrain), refinement_(terrain.t0()) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   const Made t0{-kAny, kAny, std::numeric_limits<float>::infinity(), kRankOfT0};
   made_.assign(tin().vertices.size(), t0);

@@ -135,7 +135,7 @@ void Locating::locate_exactly(std::span<const Ordered> group, std::span<const Pa
                               const SpotSet& wanted) {
   std::vector<PendingSplit> splits;
   read_pages(terrain_.store(), pages, wanted, context_, splits);
-  Refinement refinement(terrain_.coarsest());
+  Refinement refinement(terrain_.t0());
   refinement.apply(splits, context_);
   walk_group(refinement.tin(), group, [](TriangleId) {
     return SurfaceBounds{0.0, {-INFINITY, INFINITY}};

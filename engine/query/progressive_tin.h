@@ -86,9 +86,6 @@ class ProgressiveTin {
     return index_ ? *index_ : store_->index();
   }
 
-  /// T0 as a mesh with neighbours; other questions start from a copy of it too.
-  [[nodiscard]] const Tin& coarsest() const noexcept { return *t0_; }
-
   /// Uses `index` instead of the packed R-tree (the same answers; tests and `--index
   /// spatialindex`). Not thread-safe.
   void use_index(std::shared_ptr<const RecordIndex> index);

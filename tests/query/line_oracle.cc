@@ -19,6 +19,23 @@ std::array<RationalPoint, 3> corners(const Tin& tin, TriangleId t) {
 
 }  // namespace
 
+namespace {
+
+/// Surely apart, by boxes that are a grid unit too large: rationals are slow.
+bool is_far(const Tin& tin, TriangleId t, const RationalPoint& p, const RationalPoint& q) {
+  const auto apart = [](double a0, double a1, double b0, double b1, double b2) {
+    return std::max({b0, b1, b2}) < std::min(a0, a1) - 1 ||
+           std::min({b0, b1, b2}) > std::max(a0, a1) + 1;
+  };
+  const GridPoint a = tin.position(tin.triangles[t].v[0]);
+  const GridPoint b = tin.position(tin.triangles[t].v[1]);
+  const GridPoint c = tin.position(tin.triangles[t].v[2]);
+  return apart(p.x.convert_to<double>(), q.x.convert_to<double>(), a.x, b.x, c.x) ||
+         apart(p.y.convert_to<double>(), q.y.convert_to<double>(), a.y, b.y, c.y);
+}
+
+}  // namespace
+
 Rational rational_of(Int128 v) {
   // In three digits of 2^42, each of which a 64-bit integer holds.
   constexpr std::int64_t kDigit = std::int64_t{1} << 42;
@@ -37,6 +54,9 @@ RationalPoint rational_of(GridPoint p) { return {Rational(p.x), Rational(p.y)}; 
 std::vector<TriangleId> triangles_at(const Tin& tin, const RationalPoint& p) {
   std::vector<TriangleId> all;
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (is_far(tin, t, p, p)) {
+      continue;
+    }
     const auto c = corners(tin, t);
     if (cross(c[0], c[1], p) >= 0 && cross(c[1], c[2], p) >= 0 && cross(c[2], c[0], p) >= 0) {
       all.push_back(t);
@@ -59,6 +79,9 @@ Rational code_on(const Tin& tin, const HeightEncoding& heights, TriangleId t,
 /// Cuts the way by the three half-planes.
 std::optional<Shares> shares_in(const Tin& tin, TriangleId t, const RationalPoint& p,
                                 const RationalPoint& q) {
+  if (is_far(tin, t, p, q)) {
+    return std::nullopt;
+  }
   const auto c = corners(tin, t);
   Shares s{0, 1};
   for (std::size_t i = 0; i < 3; ++i) {

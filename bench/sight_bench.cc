@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Lines of sight (paper, section 5.3). The store: PTIN_BENCH_STORE, else srtm1_bigtujunga.
+//
+// SightVerdict   random pairs over the whole terrain, ends 2 units above ground, exact verdict, one
+//                solver: pairs a second, the share hidden, records applied a pair
+// SightFull      the same with first obstruction and smallest clearance
+// SightSingle    the same pairs, each from T0 by itself: records applied over those that refining
+//                along the whole segment applies (`of_refining`)
+//
+// Pairs are uniform over the domain, and seeded. Distances are plane in map units, so in a
+// geographic CRS the Earth's curvature plays no part here.
+#include <random>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "bench/support/scratch.h"
+#include "engine/query/sight.h"
+
+namespace {
+
+using namespace ptin;
+
+const ProgressiveTin* terrain() {
+  static const std::string path = bench::bench_store();
+  if (path.empty()) return nullptr;
+  static const ProgressiveTin opened = ProgressiveTin::open(path);
+  return &opened;
+}
+
+std::vector<SightPair> random_pairs(std::size_t count) {
+  const StoreFacts& f = terrain()->store().facts();
+  std::mt19937_64 random(1997);
+  std::uniform_real_distribution<double> x(f.bounds.min_x, f.bounds.max_x);
+  std::uniform_real_distribution<double> y(f.bounds.min_y, f.bounds.max_y);
+  std::vector<SightPair> pairs(count);
+  for (SightPair& p : pairs) {
+    p = {f.map.to_map(x(random), y(random)), 2.0, f.map.to_map(x(random), y(random)), 2.0};
+  }
+  return pairs;
+}
+
+bool skipped(benchmark::State& state) {
+  if (terrain() != nullptr) return false;
+  state.SkipWithError("no store: set PTIN_BENCH_STORE");
+  return true;
+}
+
+void solve_pairs(benchmark::State& state, bool verdict_only) {
+  if (skipped(state)) return;
+  const std::vector<SightPair> pairs = random_pairs(static_cast<std::size_t>(state.range(0)));
+  SightRequest request;
+  request.verdict_only = verdict_only;
+  std::uint64_t hidden = 0;
+  std::uint64_t applied = 0;
+  for (auto _ : state) {
+    hidden = applied = 0;
+    SightSolver solver(*terrain(), request);
+    for (const SightPair& pair : pairs) {
+      const SightResult r = solver.solve(pair);
+      hidden += r.verdict == SightVerdict::kHidden ? 1 : 0;
+      applied += r.cost.records_applied;
+    }
+  }
+  const auto count = static_cast<double>(pairs.size());
+  state.counters["pairs/s"] =
+      benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["hidden"] = static_cast<double>(hidden) / count;
+  state.counters["records/pair"] = static_cast<double>(applied) / count;
+}
+
+void SightVerdict(benchmark::State& state) { solve_pairs(state, true); }
+BENCHMARK(SightVerdict)->Arg(2000)->Unit(benchmark::kMillisecond);
+
+void SightFull(benchmark::State& state) { solve_pairs(state, false); }
+BENCHMARK(SightFull)->Arg(500)->Unit(benchmark::kMillisecond);
+
+void single_pairs(benchmark::State& state, bool verdict_only) {
+  if (skipped(state)) return;
+  const std::vector<SightPair> pairs = random_pairs(200);
+  SightRequest request;
+  request.verdict_only = verdict_only;
+  std::uint64_t applied = 0;
+  for (auto _ : state) {
+    applied = 0;
+    for (const SightPair& pair : pairs) {
+      applied += sight(*terrain(), pair, request).cost.records_applied;
+    }
+  }
+  std::uint64_t refined = 0;
+  for (const SightPair& pair : pairs) {
+    RefineRequest along;
+    along.region = Segment{pair.a, pair.b};
+    refined += terrain()->refine(along).cost.records_applied;
+  }
+  state.counters["pairs/s"] = benchmark::Counter(static_cast<double>(pairs.size()),
+                                                 benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["records/pair"] = static_cast<double>(applied) / static_cast<double>(pairs.size());
+  state.counters["of_refining"] = static_cast<double>(applied) / static_cast<double>(refined);
+}
+
+void SightSingleVerdict(benchmark::State& state) { single_pairs(state, true); }
+BENCHMARK(SightSingleVerdict)->Unit(benchmark::kMillisecond);
+
+void SightSingleFull(benchmark::State& state) { single_pairs(state, false); }
+BENCHMARK(SightSingleFull)->Unit(benchmark::kMillisecond);
+
+}  // namespace

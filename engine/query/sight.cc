@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/query/certificate.h"
+#include "engine/query/fresnel_internal.h"
+#include "engine/query/sight_search_internal.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+[[noreturn]] void throw_invalid(const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, what);
+}
+
+void check(const SightRequest& r) {
+  if (!(r.curvature >= 0) || !std::isfinite(r.curvature)) {
+    throw_invalid(
+        "the curvature coefficient is negative or not finite: expected 0 (a flat Earth) "
+        "to 1 (no refraction)");
+  }
+  if (!(r.earth_diameter > 0)) {
+    throw_invalid("the Earth's diameter is not positive");
+  }
+  if (!(r.wavelength >= 0) || !std::isfinite(r.wavelength)) {
+    throw_invalid("the wavelength is negative or not finite");
+  }
+  if (r.tolerance && !(*r.tolerance >= 0)) {
+    throw_invalid(
+        "the tolerance is negative or not a number: expected a value >= 0 in the "
+        "height's unit");
+  }
+}
+
+/// Whether the full TIN may have void triangles: a vertex without height, a void triangle in T0, or
+/// a change of class that no tolerance allows.
+bool may_have_voids(const StoreFile& store) {
+  const CoarsestTin& t0 = store.t0();
+  return std::any_of(t0.vertices.begin(), t0.vertices.end(),
+                     [](const auto& v) { return v.has_height == 0; }) ||
+         std::any_of(t0.triangles.begin(), t0.triangles.end(),
+                     [](const auto& t) { return t.is_void != 0; }) ||
+         std::any_of(store.error_bins().begin(), store.error_bins().end(), [](const auto& bin) {
+           return bin.void_vertices > 0 || (std::isinf(bin.upper) && bin.records > 0);
+         });
+}
+
+/// The error that about `records` records exceed, by the file's table; infinite when none do.
+double error_of_first(const StoreFile& store, std::uint64_t records) {
+  double error = kInfinity;
+  std::uint64_t above = 0;
+  const auto bins = store.error_bins();
+  for (std::size_t i = bins.size(); i-- > 0 && above < records;) {
+    error = i == 0 ? 0.0 : bins[i - 1].upper;
+    above += bins[i].records;
+  }
+  return error;
+}
+
+class DeviationAbove final : public AttributePredicate {
+ public:
+  DeviationAbove(double deviation, double tolerance)
+      : deviation_(deviation), tolerance_(tolerance) {}
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
+    return a.deviation > deviation_ && a.error > tolerance_;
+  }
+
+ private:
+  double deviation_, tolerance_;
+};
+
+/// Where the clearance first falls to zero in a piece that hides the line: at its beginning, or the
+/// first root of the parabola c(t) = c0 + (c1 - c0 - bend) t + bend t^2, t from 0 to 1.
+double first_below(const SightView& view, const SightPiece& piece) {
+  const double width = piece.to - piece.from;
+  const double c0 = view.ray().middle(piece.from) - piece.ground_from;
+  const double c1 = view.ray().middle(piece.to) - piece.ground_to;
+  const double bend = view.bend * width * width;
+  const double slope = c1 - c0 - bend;
+  const double root = std::sqrt(std::max(0.0, slope * slope - 4 * bend * c0));
+  const double t = c0 > 0 && root - slope > 0 ? std::min(1.0, 2 * c0 / (root - slope)) : 0.0;
+  return piece.from + t * width;
+}
+
+}  // namespace
+
+class SightSolver::Impl {
+ public:
+  Impl(const ProgressiveTin& terrain, SightRequest request, std::uint64_t base_records);
+  SightResult solve(const SightPair& pair);
+
+  QueryCost base_cost;
+
+ private:
+  /// Meshes larger than the coarse one by this many vertices are given up.
+  static constexpr std::size_t kMostExtra = std::size_t{1} << 16;
+
+  [[nodiscard]] Spot spot_of_end(MapPoint p, double height) const;
+  [[nodiscard]] double ground_length(const SightPair& pair) const;
+  void renew_mesh();
+  void answer(const SightPair& pair, Spot p, Spot q, QueryContext& context, SightResult& result);
+  void answer_upright(const SightPair& pair, SightResult& result);
+  void measure(SightSearch& search, const SightPair& pair, SightResult& result);
+  void set_clearance(const SightView& view, const SightPair& pair, SightResult& result) const;
+  void measure_line(const SightView& view, const SightPair& pair, SightResult& result) const;
+  void state_ends(const SightView& view, SightResult& result) const;
+  [[nodiscard]] SightPoint point_at(const SightPair& pair, const SightView& view, double share,
+                                    double length) const;
+
+  const ProgressiveTin& terrain_;
+  SightRequest request_;
+  StoreFacts store_facts_;
+  SightFacts facts_;
+  SpotMap map_;
+  double step_ = 0.0;
+  std::optional<BoundedMesh> base_;  ///< As it was built; not kept when it is T0.
+  std::optional<BoundedMesh> mesh_;
+  std::size_t base_vertices_ = 0;
+  bool is_spoilt_ = false;  ///< An error came while the mesh was changed.
+};
+
+SightSolver::Impl::Impl(const ProgressiveTin& terrain, SightRequest request,
+                        std::uint64_t base_records)
+    : terrain_(terrain),
+      request_(std::move(request)),
+      store_facts_(terrain.store().facts()),
+      map_(store_facts_.map, store_facts_.bounds) {
+  check(request_);
+  const StoreFile& store = terrain.store();
+  facts_.heights = store_facts_.heights;
+  const Certificate finest = certify_below(store, request_.tolerance.value_or(-1.0));
+  facts_.finest_deviation = finest.deviation;
+  facts_.classes_exact = finest.error == 0;
+  facts_.max_height = store_facts_.max_height;
+  facts_.has_voids = may_have_voids(store);
+  facts_.base_deviation = kInfinity;
+  const double range = std::max(0.0, store_facts_.max_height - store_facts_.min_height);
+  step_ =
+      std::max(range / 4096,
+               store_facts_.heights.type == HeightType::int32 ? store_facts_.heights.step : 0.0);
+  base_.emplace(terrain);
+  if (base_records > 0) {
+    facts_.base_deviation = error_of_first(store, base_records);
+    QueryContext context(request_.stop, request_.memory_limit_bytes, store.path());
+    base_->refine(DeviationAbove(facts_.base_deviation, request_.tolerance.value_or(-1.0)),
+                  context);
+    base_cost = context.cost;
+    if (request_.tolerance) {
+      facts_.base_deviation = std::max(facts_.base_deviation, facts_.finest_deviation);
+    }
+  }
+  base_vertices_ = base_->tin().vertices.size();
+  mesh_.emplace(*base_);
+}
+
+void SightSolver::Impl::renew_mesh() {
+  if (is_spoilt_ || mesh_->tin().vertices.size() > base_vertices_ + kMostExtra) {
+    mesh_.emplace(*base_);
+    is_spoilt_ = false;
+  }
+}
+
+Spot SightSolver::Impl::spot_of_end(MapPoint p, double height) const {
+  if (!std::isfinite(height)) {
+    throw_invalid("the height of an end is not a finite number");
+  }
+  const std::optional<Spot> spot = map_.spot(p);
+  if (!spot) {
+    throw_invalid("an end lies too far from the terrain: give map units of its CRS");
+  }
+  return *spot;
+}
+
+double SightSolver::Impl::ground_length(const SightPair& pair) const {
+  const double length = request_.ground_distance
+                            ? request_.ground_distance(pair.a, pair.b)
+                            : std::sqrt((pair.b.x - pair.a.x) * (pair.b.x - pair.a.x) +
+                                        (pair.b.y - pair.a.y) * (pair.b.y - pair.a.y));
+  if (!std::isfinite(length)) {
+    throw_invalid("the distance between the ends is not known: they may lie off the ellipsoid");
+  }
+  return length;
+}
+
+SightResult SightSolver::Impl::solve(const SightPair& pair) {
+  const auto start = std::chrono::steady_clock::now();
+  const Spot p = spot_of_end(pair.a, pair.height_a);
+  const Spot q = spot_of_end(pair.b, pair.height_b);
+  SightResult result;
+  if (p == q) {
+    answer_upright(pair, result);
+  } else {
+    renew_mesh();
+    QueryContext context(request_.stop, request_.memory_limit_bytes, terrain_.store().path());
+    is_spoilt_ = true;
+    answer(pair, p, q, context, result);
+    is_spoilt_ = false;
+    result.cost = context.cost;
+  }
+  terrain_.store().pages().check_unchanged();
+  result.cost.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+void SightSolver::Impl::answer(const SightPair& pair, Spot p, Spot q, QueryContext& context,
+                               SightResult& result) {
+  result.length = ground_length(pair);
+  const double bend = request_.curvature * result.length * result.length / request_.earth_diameter;
+  SightSearch search(facts_, request_, *mesh_, context, step_);
+  search.begin(p, q, pair, bend, 0);
+  if (facts_.has_voids) {
+    search.finish_ends();
+  }
+  state_ends(search.view(), result);
+  if (!search.view().ends_defined()) {
+    result.verdict = SightVerdict::kUndefined;
+    return;
+  }
+  const bool whole_line = !request_.verdict_only && (facts_.has_voids || request_.wavelength > 0);
+  if (whole_line) {
+    search.finish_line();
+  }
+  result.verdict = search.decide();
+  if (request_.verdict_only) {
+    if (const SightPiece* hidden = search.hidden_piece(); hidden != nullptr) {
+      result.obstruction = point_at(pair, search.view(), hidden->guess_at, result.length);
+    }
+  } else {
+    measure(search, pair, result);
+  }
+  for (const SightPiece& piece : search.view().pieces) {
+    if (result.verdict == SightVerdict::kUndecided && piece.verdict == PieceVerdict::kUndecided) {
+      result.certified_deviation = std::max(result.certified_deviation, piece.deviation);
+    }
+  }
+  result.exact = facts_.finest_deviation == 0 && result.verdict != SightVerdict::kUndecided &&
+                 !search.out_of_budget();
+}
+
+/// Both ends at one place: the line is upright, and hidden as far as it lies under ground.
+void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& result) {
+  LocateRequest request;
+  request.tolerance = request_.tolerance;
+  request.memory_limit_bytes = request_.memory_limit_bytes;
+  request.stop = request_.stop;
+  const LocateResult located = locate(terrain_, {&pair.a, 1}, request);
+  const LocatedPoint& ground = located.points[0];
+  result.cost = located.cost;
+  result.exact = located.exact;
+  result.state_a = result.state_b = ground.state;
+  result.void_length = 0.0;
+  const double lower = std::min(pair.height_a, pair.height_b);
+  if (ground.state != PointState::kSurface) {
+    result.verdict = request_.absolute ? SightVerdict::kVisible : SightVerdict::kUndefined;
+    return;
+  }
+  result.clearance_min = request_.absolute ? lower - ground.height_max : lower;
+  result.clearance_max = request_.absolute ? lower - ground.height_min : lower;
+  result.verdict = result.clearance_min >= 0  ? SightVerdict::kVisible
+                   : result.clearance_max < 0 ? SightVerdict::kHidden
+                                              : SightVerdict::kUndecided;
+  const double height = request_.absolute ? lower : ground.height + lower;
+  result.clearance_at = SightPoint{pair.a, 0.0, 0.0, height};
+  if (result.verdict == SightVerdict::kHidden) {
+    result.obstruction = result.clearance_at;
+  }
+}
+
+void SightSolver::Impl::state_ends(const SightView& view, SightResult& result) const {
+  const auto state = [](const SightEnd& end) {
+    return !end.inside ? PointState::kOutside
+                       : (end.surface ? PointState::kSurface : PointState::kVoid);
+  };
+  result.state_a = state(view.a);
+  result.state_b = state(view.b);
+}
+
+SightPoint SightSolver::Impl::point_at(const SightPair& pair, const SightView& view, double share,
+                                       double length) const {
+  return {{pair.a.x + share * (pair.b.x - pair.a.x), pair.a.y + share * (pair.b.y - pair.a.y)},
+          share,
+          share * length,
+          view.ray().middle(share)};
+}
+
+/// First obstruction, smallest clearance, and what is measured along the whole line.
+void SightSolver::Impl::measure(SightSearch& search, const SightPair& pair, SightResult& result) {
+  if (!search.out_of_budget()) {
+    search.finish_ends();
+  }
+  if (result.verdict == SightVerdict::kHidden) {
+    const SightPiece* hidden = search.find_first_hidden();
+    const SightView& view = search.view();
+    const double share = hidden != nullptr ? first_below(view, *hidden) : 2.0;
+    if (std::min(share, view.touched_at()) <= 1.0) {
+      result.obstruction = point_at(pair, view, std::min(share, view.touched_at()), result.length);
+    }
+  }
+  if (request_.wavelength > 0 || facts_.has_voids) {
+    measure_line(search.view(), pair, result);
+  } else {
+    result.void_length = 0.0;
+  }
+  search.find_least_clearance();
+  set_clearance(search.view(), pair, result);
+}
+
+void SightSolver::Impl::set_clearance(const SightView& view, const SightPair& pair,
+                                      SightResult& result) const {
+  Lowest lowest = view.least_touch();
+  double least = lowest.value;
+  double most = lowest.value;
+  for (const SightPiece& p : view.pieces) {
+    least = std::min(least, p.least);
+    most = std::min(most, p.most);
+    if (p.surface && p.guess < lowest.value) {
+      lowest = {p.guess, p.guess_at};
+    }
+  }
+  if (view.pieces.empty() || !std::isfinite(lowest.value)) {
+    return;
+  }
+  const bool known = facts_.finest_deviation == 0 && view.ray().is_known() &&
+                     std::none_of(view.pieces.begin(), view.pieces.end(),
+                                  [&](const SightPiece& p) { return !p.final && p.least < most; });
+  result.clearance_min = known ? lowest.value : least;
+  result.clearance_max = known ? lowest.value : most;
+  result.clearance_at = point_at(pair, view, lowest.at, result.length);
+}
+
+void SightSolver::Impl::measure_line(const SightView& view, const SightPair& pair,
+                                     SightResult& result) const {
+  double voids = 0.0;
+  LeastRatio least{kInfinity, 0.0};
+  for (const SightPiece& p : view.pieces) {
+    if (!p.surface) {
+      voids += (p.to - p.from) * result.length;
+      continue;
+    }
+    const LeastRatio ratio =
+        least_fresnel_ratio(p.from, view.ray().middle(p.from) - p.ground_from, p.to,
+                            view.ray().middle(p.to) - p.ground_to, view.bend);
+    least = ratio.ratio < least.ratio ? ratio : least;
+  }
+  result.void_length = voids;
+  if (request_.wavelength > 0 && least.ratio < kInfinity) {
+    // The zone's radius is sqrt(wavelength d1 d2 / (d1 + d2)) with d1 = s L, d2 = (1 - s) L.
+    result.fresnel_ratio = least.ratio / std::sqrt(request_.wavelength * result.length);
+    result.fresnel_at = point_at(pair, view, least.at, result.length);
+  }
+}
+
+SightSolver::SightSolver(const ProgressiveTin& terrain, SightRequest request,
+                         std::uint64_t base_records)
+    : impl_(std::make_unique<Impl>(terrain, std::move(request), base_records)) {}
+SightSolver::~SightSolver() = default;
+SightSolver::SightSolver(SightSolver&&) noexcept = default;
+SightSolver& SightSolver::operator=(SightSolver&&) noexcept = default;
+
+const QueryCost& SightSolver::base_cost() const noexcept { return impl_->base_cost; }
+
+SightResult SightSolver::solve(const SightPair& pair) { return impl_->solve(pair); }
+
+SightResult sight(const ProgressiveTin& terrain, const SightPair& pair,
+                  const SightRequest& request) {
+  return SightSolver(terrain, request, 0).solve(pair);
+}
+
+}  // namespace ptin

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/query/sight_predicate_internal.h"
+
+namespace ptin {
+
+namespace {
+
+std::int32_t clamped(double v) noexcept {
+  return static_cast<std::int32_t>(std::clamp(v, -2147483648.0, 2147483647.0));
+}
+
+/// A box around the stretch, a grid unit wider on each side than rounding could need.
+GridBox box_around(Spot p, Spot q, double from, double to) noexcept {
+  const MapPoint a = grid_of(p);
+  const MapPoint b = grid_of(q);
+  const double x0 = a.x + from * (b.x - a.x);
+  const double x1 = a.x + to * (b.x - a.x);
+  const double y0 = a.y + from * (b.y - a.y);
+  const double y1 = a.y + to * (b.y - a.y);
+  return {clamped(std::floor(std::min(x0, x1)) - 1), clamped(std::floor(std::min(y0, y1)) - 1),
+          clamped(std::ceil(std::max(x0, x1)) + 1), clamped(std::ceil(std::max(y0, y1)) + 1)};
+}
+
+}  // namespace
+
+SightPredicate::SightPredicate(Spot p, Spot q, std::vector<Stretch> stretches, double end_deviation,
+                               double tolerance)
+    : p_(p),
+      q_(q),
+      stretches_(std::move(stretches)),
+      end_deviation_(end_deviation),
+      tolerance_(tolerance) {
+  for (const Stretch& s : stretches_) {
+    around_.push_back(box_around(p, q, s.from, s.to));
+    whole_ = united(whole_, around_.back());
+  }
+}
+
+bool SightPredicate::holds(const Attributes& a) const noexcept {
+  if (!(a.error > tolerance_)) {
+    return false;
+  }
+  if (a.deviation > end_deviation_ && (contains(a.roi, p_) || contains(a.roi, q_))) {
+    return true;
+  }
+  if (!meets(a.roi, whole_) || !meets_line(a.roi)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < stretches_.size(); ++i) {
+    const Stretch& s = stretches_[i];
+    if (a.deviation > s.deviation && a.heights.hi >= s.lowest_code && meets(a.roi, around_[i])) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// The corners of the box do not all lie strictly on one side of the line through p and q.
+bool SightPredicate::meets_line(const GridBox& b) const noexcept {
+  // The corners farthest to the left and to the right of the direction of the line.
+  const bool east = q_.x >= p_.x;
+  const bool north = q_.y >= p_.y;
+  const GridPoint left{north ? b.min_x : b.max_x, east ? b.max_y : b.min_y};
+  const GridPoint right{north ? b.max_x : b.min_x, east ? b.min_y : b.max_y};
+  return side(p_, q_, left) >= 0 && side(p_, q_, right) <= 0;
+}
+
+}  // namespace ptin

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Lines of sight against the full TIN in rationals.
+#include "engine/query/sight.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/error.h"
+#include "tests/query/built_terrain.h"
+#include "tests/query/sight_oracle.h"
+
+namespace ptin {
+namespace {
+
+using reference::nasty_spot;
+using reference::Rational;
+using reference::SmallTerrain;
+using reference::true_sight;
+using reference::TrueSight;
+
+/// A request and a pair in which touching, grazing and lines along edges are common.
+struct Asked {
+  SightRequest request;
+  SightPair pair;
+  Spot p, q;
+  double bend = 0.0;
+};
+
+double nasty_end(std::mt19937_64& random, bool absolute) {
+  if (random() % 4 == 0) {
+    return std::uniform_real_distribution<double>(absolute ? -5 : -1, absolute ? 40 : 8)(random);
+  }
+  return static_cast<double>(random() % (absolute ? 31 : 4));
+}
+
+Asked random_question(std::mt19937_64& random, const SmallTerrain& t) {
+  Asked asked;
+  const StoreFacts& f = t.terrain->store().facts();
+  const SpotMap map(f.map, f.bounds);
+  do {
+    asked.pair.a = map.map(nasty_spot(random, t.full));
+    asked.pair.b = map.map(nasty_spot(random, t.full));
+    asked.p = *map.spot(asked.pair.a);
+    asked.q = *map.spot(asked.pair.b);
+  } while (asked.p == asked.q);
+  asked.request.absolute = random() % 3 == 0;
+  asked.request.curvature = random() % 2 == 0 ? 0.0 : 0.85714;
+  asked.request.earth_diameter = random() % 2 == 0 ? 2 * 6378137.0 : 60.0;
+  asked.pair.height_a = nasty_end(random, asked.request.absolute);
+  asked.pair.height_b = nasty_end(random, asked.request.absolute);
+  const double dx = asked.pair.b.x - asked.pair.a.x;
+  const double dy = asked.pair.b.y - asked.pair.a.y;
+  const double length = std::sqrt(dx * dx + dy * dy);
+  asked.bend = asked.request.curvature * length * length / asked.request.earth_diameter;
+  return asked;
+}
+
+void check_verdict(const TrueSight& truth, const SightResult& found) {
+  if (!truth.defined) {
+    RC_ASSERT(found.verdict == SightVerdict::kUndefined);
+    return;
+  }
+  RC_ASSERT(found.verdict == (truth.hidden ? SightVerdict::kHidden : SightVerdict::kVisible));
+  RC_ASSERT(found.exact);
+}
+
+void check_measures(const TrueSight& truth, const SightResult& found) {
+  if (!truth.defined) {
+    return;
+  }
+  RC_ASSERT(std::isnan(found.clearance_min) == !truth.clearance.has_value());
+  if (truth.clearance) {
+    const double clearance = truth.clearance->convert_to<double>();
+    RC_ASSERT(std::abs(found.clearance_min - clearance) < 1e-9);
+    RC_ASSERT(found.clearance_min == found.clearance_max);
+  }
+  RC_ASSERT(found.obstruction.has_value() == truth.hidden);
+  if (truth.hidden) {
+    RC_ASSERT(std::abs(found.obstruction->share - truth.first) < 1e-6);
+  }
+  RC_ASSERT(std::abs(found.void_length - truth.void_share * found.length) < 1e-6);
+}
+
+RC_GTEST_PROP(Sight, AgreesWithEveryTriangleInRationals, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const SmallTerrain t(seed);
+  for (int i = 0; i < 5; ++i) {
+    const Asked asked = random_question(random, t);
+    const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
+                                       asked.pair.height_b, asked.request.absolute, asked.bend);
+    const SightResult found = sight(*t.terrain, asked.pair, asked.request);
+    check_verdict(truth, found);
+    check_measures(truth, found);
+  }
+}
+
+RC_GTEST_PROP(Sight, SolversAgreeWithEveryTriangleWhateverTheyAskedBefore, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const SmallTerrain t(seed);
+  const Asked first = random_question(random, t);
+  SightRequest request = first.request;
+  request.curvature = 0.0;
+  request.verdict_only = random() % 2 == 0;
+  SightSolver solver(*t.terrain, request, random() % 3 == 0 ? 0 : random() % 100);
+  for (int i = 0; i < 5; ++i) {
+    const Asked asked = random_question(random, t);
+    const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
+                                       asked.pair.height_b, request.absolute, 0.0);
+    const SightResult found = solver.solve(asked.pair);
+    check_verdict(truth, found);
+    if (!request.verdict_only) {
+      check_measures(truth, found);
+    }
+  }
+}
+
+RC_GTEST_PROP(Sight, IsNeverWrongWhenItStopsEarly, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const SmallTerrain t(seed);
+  for (int i = 0; i < 5; ++i) {
+    Asked asked = random_question(random, t);
+    const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
+                                       asked.pair.height_b, asked.request.absolute, asked.bend);
+    asked.request.verdict_only = random() % 2 == 0;
+    if (random() % 2 == 0) {
+      asked.request.tolerance = static_cast<double>(random() % 8);
+    } else {
+      asked.request.budget = random() % 60;
+    }
+    const SightResult found = sight(*t.terrain, asked.pair, asked.request);
+    if (found.verdict == SightVerdict::kUndecided || !truth.defined ||
+        found.verdict == SightVerdict::kUndefined) {
+      continue;
+    }
+    RC_ASSERT(found.verdict == (truth.hidden ? SightVerdict::kHidden : SightVerdict::kVisible));
+    if (!std::isnan(found.clearance_min) && truth.clearance) {
+      const double clearance = truth.clearance->convert_to<double>();
+      RC_ASSERT(found.clearance_min <= clearance + 1e-9);
+      RC_ASSERT(found.clearance_max >= clearance - 1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ptin
