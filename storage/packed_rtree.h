@@ -13,6 +13,21 @@
 
 namespace ptin {
 
+/// What a best-first search asks, and gives.
+class BestFirstVisitor {
+ public:
+  BestFirstVisitor() = default;
+  BestFirstVisitor(const BestFirstVisitor&) = delete;
+  BestFirstVisitor& operator=(const BestFirstVisitor&) = delete;
+  virtual ~BestFirstVisitor() = default;
+  /// The best that anything with these attributes can be; -infinity: nothing. Monotone: not smaller
+  /// for larger attributes.
+  [[nodiscard]] virtual double bound(const Attributes& a) const = 0;
+  /// Called for pages in the order of falling bounds. Returns the cut-off: what is bounded below it
+  /// is not visited any more. It never falls.
+  virtual double visit(PageId page) = 0;
+};
+
 class PackedRTree final : public RecordIndex {
  public:
   /// @param nodes    Borrowed for the life of the index.
@@ -26,8 +41,15 @@ class PackedRTree final : public RecordIndex {
   void search(const AttributePredicate& predicate, std::vector<PageId>& pages,
               IoCounters& counters) const override;
 
+  /// Visits pages best first, until the cut-off is above the bound of all that is left.
+  /// @throws Error corruption; what the visitor throws
+  /// Cost: nodes and pages whose bound is at least the final cut-off, times a logarithm.
+  void search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const;
+
  private:
   struct Search;
+  [[nodiscard]] layout::NodeEntry sound_entry(const layout::IndexNode& node, std::uint32_t level,
+                                              std::uint64_t number, std::uint32_t i) const;
   void visit(Search& search, std::uint32_t level, std::uint64_t number,
              std::uint64_t checksum) const;
 

@@ -94,6 +94,13 @@ constexpr auto kCommands = std::to_array<Command>({
      "  head -c 100000 dem.pts | ptin unstream - -o coarse.glb\n"
      "  ptin unstream dem.pts more.pts -o dem.ply --json\n",
      declare_unstream},
+    {"highest", "Find the highest or lowest point of a window",
+     "Exact, of the full TIN. Reads little more than what lies around the answer.\n\n"
+     "Examples:\n"
+     "  ptin highest dem.ptin\n"
+     "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 -k 10 --json\n"
+     "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 --lowest\n",
+     declare_highest},
     {"render", "Draw shaded relief, triangles or pages as a PNG",
      "Examples:\n"
      "  ptin render dem.ptin -o dem.png\n"

@@ -42,6 +42,7 @@ Action declare_stream(CLI::App& app, Context& context);
 Action declare_unstream(CLI::App& app, Context& context);
 Action declare_render(CLI::App& app, Context& context);
 Action declare_isoline(CLI::App& app, Context& context);
+Action declare_highest(CLI::App& app, Context& context);
 Action declare_completion(CLI::App& app, Context& context);
 
 /// Declares --json (and -q where there is something to silence).

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The highest or lowest point of a window, and its highest vertices, best first over the index.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "engine/query/accounting.h"
+#include "engine/query/progressive_tin.h"
+
+namespace ptin {
+
+struct HighestRequest {
+  std::optional<Window> window;  ///< Map units, closed. None: the whole terrain.
+  bool lowest = false;           ///< The lowest instead; "highest" below then means that.
+  std::uint32_t vertices = 1;    ///< How many of the highest vertices, >= 1.
+  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
+  std::stop_token stop;
+};
+
+struct HeightAt {
+  MapPoint position;  ///< Map units.
+  double height = 0;  ///< Height's unit.
+};
+
+struct HighestResult {
+  /// Why there is no point: the window lies outside of the domain, or holds nothing but voids.
+  enum class State : std::uint8_t { kSurface, kVoid, kOutside };
+  State state = State::kSurface;
+  /// The highest point of the surface in the window: one of several, when there are. At a vertex,
+  /// or on the window's border, where an edge crosses it or at its corner.
+  HeightAt point;
+  bool at_vertex = false;
+  /// The highest vertices in the window, falling; fewer when it holds fewer. Of equal ones those
+  /// that are found first: the same for the same file and request.
+  std::vector<HeightAt> vertices;
+  QueryCost cost;
+};
+
+/// Finds them. Exact: of the full TIN, heights at vertices as stored; on the window's border
+/// interpolated, with the rounding of a few operations.
+/// @throws Error invalid_argument    the window is inverted or not finite; no vertex is asked for
+///               resource_exhausted, corruption, io_error, cancelled
+/// Cost: the pages and nodes whose height interval reaches above the k-th highest vertex of the
+/// window: those around it, and coarse records that reach out to higher ground outside. With voids,
+/// a point location for each vertex besides. An index other than the packed R-tree reads the same
+/// pages after a search of all that meet the window.
+[[nodiscard]] HighestResult highest(const ProgressiveTin& terrain, const HighestRequest& request);
+
+}  // namespace ptin

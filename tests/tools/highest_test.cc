@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin highest end to end.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using nlohmann::json;
+using testing::Outcome;
+using testing::run_ptin;
+
+TEST(HighestProgram, FindsThePeakAndTellsOutsideFromVoid) {
+  const testing::TestFolder folder;
+  testing::RasterRecipe recipe;
+  recipe.nodata = -9999.0;
+  recipe.value = [](int column, int row) {
+    if (column > 25) return -9999.0;
+    return column == 7 && row == 5 ? 123.0 : 10.0 + column + row;
+  };
+  testing::make_raster(folder.file("r.tif"), recipe);
+  const std::string file = folder.file("r.ptin");
+  ASSERT_EQ(run_ptin({"build", folder.file("r.tif"), "-o", file, "-q"}).status, 0);
+  const auto ask = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"highest", file, "--json"});
+    const Outcome outcome = run_ptin(more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out, nullptr, false);
+  };
+  const json peak = ask({"-k", "2"});
+  EXPECT_EQ(peak.at("state"), "surface");
+  EXPECT_EQ(peak.at("point").at("height"), 123.0);
+  EXPECT_EQ(peak.at("point").at("x"), 500000.0 + 7.5 * 30);
+  EXPECT_EQ(peak.at("point").at("y"), 4000000.0 - 5.5 * 30);
+  EXPECT_EQ(peak.at("point").at("at_vertex"), true);
+  ASSERT_EQ(peak.at("vertices").size(), 2U);
+  EXPECT_EQ(peak.at("vertices").at(1).at("height"), 10.0 + 25 + 32);
+  EXPECT_EQ(ask({"--lowest"}).at("point").at("height"), 10.0);
+  EXPECT_EQ(ask({"--window", "0", "0", "1", "1"}).at("state"), "outside");
+  EXPECT_EQ(ask({"--window", "500900", "3999500", "500950", "3999600"}).at("state"), "void");
+  // Between samples: the border of the window holds the highest point.
+  const json border = ask({"--window", "500100", "3999700", "500104", "3999702"});
+  EXPECT_EQ(border.at("point").at("at_vertex"), false);
+  EXPECT_TRUE(border.at("vertices").empty());
+  EXPECT_EQ(run_ptin({"highest", file, "--window", "1", "0", "0", "1"}).status, 2);
+  EXPECT_EQ(run_ptin({"highest", file, "-k", "0"}).status, 2);
+}
+
+}  // namespace
+}  // namespace ptin::tools

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin highest: the highest or lowest point of a window.
+#include "engine/query/highest.h"
+
+#include <cstdio>
+#include <memory>
+
+#include "tools/error_status.h"
+#include "tools/ptin/crs_facts.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct HighestOptions {
+  TerrainOptions terrain;
+  RegionOptions region;
+  bool lowest = false;
+  std::uint32_t vertices = 1;
+};
+
+const char* state_name(HighestResult::State state) {
+  switch (state) {
+    case HighestResult::State::kSurface:
+      return "surface";
+    case HighestResult::State::kVoid:
+      return "void";
+    case HighestResult::State::kOutside:
+      break;
+  }
+  return "outside";
+}
+
+nlohmann::json position_json(const HeightAt& p) {
+  return {{"x", p.position.x}, {"y", p.position.y}, {"height", p.height}};
+}
+
+void print_text(const HighestResult& result, const HighestOptions& options) {
+  if (result.state != HighestResult::State::kSurface) {
+    std::printf("%s\n", state_name(result.state));
+    return;
+  }
+  std::printf("%s %.17g at %.17g %.17g (%s)\n", options.lowest ? "lowest" : "highest",
+              result.point.height, result.point.position.x, result.point.position.y,
+              result.at_vertex ? "a vertex" : "on the window's border");
+  for (const HeightAt& v : result.vertices) {
+    std::printf("  vertex %.17g at %.17g %.17g\n", v.height, v.position.x, v.position.y);
+  }
+}
+
+int run_highest(const HighestOptions& options, const Context& context) {
+  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const CrsFacts crs = crs_facts(terrain.store());
+  HighestRequest request;
+  if (const auto region = region_of(options.region, crs.wkt)) {
+    request.window = std::get<Window>(*region);
+  }
+  request.lowest = options.lowest;
+  request.vertices = options.vertices;
+  request.stop = context.stop;
+  const HighestResult result = highest(terrain, request);
+  if (!context.json) {
+    print_text(result, options);
+    return kExitDone;
+  }
+  nlohmann::json answer = {
+      {"state", state_name(result.state)},
+      {"lowest", options.lowest},
+      {"vertices", nlohmann::json::array()},
+      {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+      {"cost", cost_json(result.cost)}};
+  if (result.state == HighestResult::State::kSurface) {
+    answer["point"] = position_json(result.point);
+    answer["point"]["at_vertex"] = result.at_vertex;
+  }
+  for (const HeightAt& v : result.vertices) answer["vertices"].push_back(position_json(v));
+  print_json(answer);
+  return kExitDone;
+}
+
+}  // namespace
+
+Action declare_highest(CLI::App& app, Context& context) {
+  const auto options = std::make_shared<HighestOptions>();
+  add_terrain_options(app, options->terrain, true);
+  add_region_options(app, options->region, true);
+  app.add_flag("--lowest", options->lowest, "The lowest point instead");
+  app.add_option("-k", options->vertices, "How many of the highest vertices to list")
+      ->type_name("K")
+      ->check(CLI::Range(1U, 1000000U))
+      ->capture_default_str();
+  add_common_options(app, context, false);
+  return [options, &context] { return run_highest(*options, context); };
+}
+
+}  // namespace ptin::tools
