@@ -9,10 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/delaunay.h"
 #include "engine/construct/hierarchy.h"
 #include "engine/construct/memory_plan.h"
-#include "engine/construct/point_source.h"
+#include "engine/construct/point_buckets.h"
+#include "engine/construct/point_tile.h"
 #include "engine/construct/raster_source.h"
 #include "engine/construct/raster_tile.h"
 #include "engine/construct/simplify.h"
@@ -25,6 +25,10 @@
 namespace ptin {
 
 namespace {
+
+/// What a leaf of points takes: its triangulation by CGAL goes before its collapses begin, its copy
+/// of the full surface stays.
+constexpr TileBytes kPointTileBytes{560, 480, 4.0, 8U << 20};
 
 /// One call of build(): what it was asked, and what it reports.
 struct Job {
@@ -57,8 +61,17 @@ auto stage(const BuildResources& resources, const char* name) {
   };
 }
 
+/// What a build works on, of whatever kind its source is.
+struct Terrain {
+  TerrainFrame frame;
+  MeasureUnits units;
+  TileTree tree;
+  std::function<LeafStarter()> make_starter;  ///< Called once for each thread.
+  std::uint64_t samples = 0;                  ///< With a height.
+};
+
 /// What decides the bytes of the output, and that its inputs are still the ones it began with.
-nlohmann::json fingerprint(const Job& job, const RasterSource& source, const TileTree& tree) {
+nlohmann::json fingerprint(const Job& job, const Terrain& terrain) {
   nlohmann::json files = nlohmann::json::array();
   for (const std::string& input : job.inputs) {
     std::error_code ignored;  // of inputs that are no files: GDAL knows more than those
@@ -66,32 +79,25 @@ nlohmann::json fingerprint(const Job& job, const RasterSource& source, const Til
     const auto time = std::filesystem::last_write_time(input, ignored);
     files.push_back({input, ignored ? 0 : bytes, ignored ? 0 : time.time_since_epoch().count()});
   }
-  return {{"options", options_json(job.options)},
-          {"page_bytes", job.options.page_bytes},
-          {"tile", tree.side()},
-          {"inputs", files},
-          {"size", {source.width(), source.height()}},
-          {"samples", source.valid_samples()}};
+  const SampleRange whole = terrain.tree.window(terrain.tree.root());
+  return {{"options", options_json(job.options)}, {"page_bytes", job.options.page_bytes},
+          {"tile", terrain.tree.side()},          {"inputs", files},
+          {"size", {whole.width, whole.height}},  {"samples", terrain.samples}};
 }
 
 /// Collapses and tightens everything into `store`.
-Tin build_tiles(Job& job, const RasterSource& source, const TileTree& tree, const BuildPlan& plan,
-                Workspace& workspace, StoreOutput& store) {
+Tin build_tiles(Job& job, const Terrain& terrain, const BuildPlan& plan, Workspace& workspace,
+                StoreOutput& store) {
   HierarchyOptions options;
   options.collapse.cost = job.options.cost;
-  options.collapse.units = measure_units(source.frame(), job.options.void_slope);
+  options.collapse.units = terrain.units;
   options.threads = plan.threads;
   options.bytes = plan.tile_bytes;
   options.checkpoint_interval = job.resources.checkpoint_interval;
   options.stop = job.resources.stop;
   options.progress = job.resources.progress;
-  const auto make_starter = [&]() -> LeafStarter {
-    const auto own = std::make_shared<const RasterSource>(source.duplicate());
-    return [own, units = options.collapse.units](const SampleRange& window) {
-      return start_raster_tile(*own, window, units);
-    };
-  };
-  BuiltHierarchy built = build_hierarchy(make_starter, tree, options, workspace, store);
+  BuiltHierarchy built =
+      build_hierarchy(terrain.make_starter, terrain.tree, options, workspace, store);
   job.report.lone_samples = built.lone_samples;
   return std::move(built.t0);
 }
@@ -104,8 +110,7 @@ bool is_published(const Job& job, const Workspace& workspace) {
          std::filesystem::exists(job.output);
 }
 
-void build_in(Workspace& workspace, Job& job, const RasterSource& source, const TileTree& tree,
-              const BuildPlan& plan) {
+void build_in(Workspace& workspace, Job& job, const Terrain& terrain, const BuildPlan& plan) {
   job.report.resumed = !workspace.lines().empty();
   if (is_published(job, workspace)) {
     const auto store = StoreFile::open(job.output);
@@ -115,9 +120,9 @@ void build_in(Workspace& workspace, Job& job, const RasterSource& source, const 
     job.report.file_bytes = std::filesystem::file_size(job.output);
     return;
   }
-  StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame(),
+  StoreOutput store(job.output, job.options, job.resources.overwrite, terrain.frame,
                     job.resources.files, workspace.folder());
-  const Tin t0 = build_tiles(job, source, tree, plan, workspace, store);
+  const Tin t0 = build_tiles(job, terrain, plan, workspace, store);
   stage(job.resources, "writing")(0, 1);
   workspace.append({{{"publishing", true}}});
   store.publish(t0, job.inputs, job.report);
@@ -129,32 +134,27 @@ bool can_be_resumed(ErrorCode code) {
          code == ErrorCode::io_error;
 }
 
-void build_raster(Job& job) {
-  const std::uint64_t memory =
-      job.resources.memory_bytes != 0 ? job.resources.memory_bytes : default_memory();
-  const GdalCacheLimit cache(share_memory(memory, 0, 1).gdal_cache);
-  const RasterSource source = RasterSource::open(
-      job.inputs, source_options(job.options), job.resources.stop, stage(job.resources, "reading"));
-  job.report.source_samples = source.valid_samples();
-  job.report.void_samples = source.void_samples();
-  job.report.height_rounding = source.frame().height_rounding;
-  job.report.vertices =
-      static_cast<std::uint64_t>(source.width()) * static_cast<std::uint64_t>(source.height());
-  const TileTree tree(
-      source.width(), source.height(),
-      job.options.tile.value_or(TileTree::default_side(source.width(), source.height())));
-  const BuildPlan plan = plan_build(tree, job.output, job.options, job.resources, TileBytes{});
+FileLayer& files_of(const Job& job) {
+  return job.resources.files != nullptr ? *job.resources.files : FileLayer::system();
+}
+
+std::uint64_t memory_of(const Job& job) {
+  return job.resources.memory_bytes != 0 ? job.resources.memory_bytes : default_memory();
+}
+
+void build_terrain(Job& job, const Terrain& terrain, const TileBytes& tile_bytes) {
+  const BuildPlan plan =
+      plan_build(terrain.tree, job.output, job.options, job.resources, tile_bytes);
   if (job.resources.plan) {
     job.resources.plan(plan);
   }
   if (job.resources.dry_run) {
     return;
   }
-  FileLayer& files = job.resources.files != nullptr ? *job.resources.files : FileLayer::system();
-  Workspace workspace(files, job.output, job.resources.tmp, job.resources.unfinished,
-                      fingerprint(job, source, tree));
+  Workspace workspace(files_of(job), job.output, job.resources.tmp, job.resources.unfinished,
+                      fingerprint(job, terrain));
   try {
-    build_in(workspace, job, source, tree, plan);
+    build_in(workspace, job, terrain, plan);
   } catch (const Error& e) {
     if (can_be_resumed(e.code())) {
       throw Error(e.code(),
@@ -166,6 +166,67 @@ void build_raster(Job& job) {
     throw;
   }
   workspace.remove_all();
+}
+
+void build_raster(Job& job) {
+  const GdalCacheLimit cache(share_memory(memory_of(job), 0, 1).gdal_cache);
+  const RasterSource source = RasterSource::open(
+      job.inputs, source_options(job.options), job.resources.stop, stage(job.resources, "reading"));
+  job.report.source_samples = source.valid_samples();
+  job.report.void_samples = source.void_samples();
+  job.report.height_rounding = source.frame().height_rounding;
+  job.report.vertices =
+      static_cast<std::uint64_t>(source.width()) * static_cast<std::uint64_t>(source.height());
+  const MeasureUnits units = measure_units(source.frame(), job.options.void_slope);
+  const auto make_starter = [&source, units]() -> LeafStarter {
+    const auto own = std::make_shared<const RasterSource>(source.duplicate());
+    return
+        [own, units](const SampleRange& window) { return start_raster_tile(*own, window, units); };
+  };
+  build_terrain(
+      job,
+      {source.frame(), units,
+       TileTree(source.width(), source.height(),
+                job.options.tile.value_or(TileTree::default_side(source.width(), source.height()))),
+       make_starter, source.valid_samples()},
+      TileBytes{});
+}
+
+/// Temporary files of points: where those of the tiles will be.
+std::string folder_for_points(const Job& job) {
+  if (!job.resources.tmp.empty()) {
+    return job.resources.tmp;
+  }
+  const std::string folder = std::filesystem::path(job.output).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+void build_points(Job& job) {
+  const GdalCacheLimit cache(share_memory(memory_of(job), 0, 1).gdal_cache);
+  const PointBuckets points =
+      PointBuckets::read(job.inputs, source_options(job.options),
+                         {files_of(job), folder_for_points(job),
+                          std::clamp<std::uint64_t>(memory_of(job) / 8, std::uint64_t{1} << 20,
+                                                    std::uint64_t{256} << 20)},
+                         job.resources.stop, job.resources.progress);
+  job.report.source_samples = points.size();
+  job.report.left_out_points = points.counts().left_out_points;
+  job.report.merged_points = points.counts().merged_points;
+  job.report.largest_shift_plan = points.counts().largest_shift_plan;
+  job.report.largest_shift_height = points.counts().largest_shift_height;
+  job.report.height_rounding = points.frame().height_rounding;
+  job.report.vertices = points.size();
+  Terrain terrain{points.frame(),
+                  measure_units(points.frame(), job.options.void_slope),
+                  point_tree(points, job.options.tile),
+                  {},
+                  points.size()};
+  terrain.make_starter = [&]() -> LeafStarter {
+    const auto starter = std::make_shared<PointTileStarter>(
+        points, terrain.tree, terrain.units, job.options.max_edge, job.resources.stop);
+    return [starter](const SampleRange& window) { return starter->start(window); };
+  };
+  build_terrain(job, terrain, kPointTileBytes);
 }
 
 /// Collapses a full TIN as one tile and writes it.
@@ -187,21 +248,6 @@ void build_one_tile(Job& job, const TerrainFrame& frame, Tin full_tin) {
   stage(job.resources, "writing")(0, 1);
   store.add_segment(tile.records);
   store.publish(tile.tin, job.inputs, job.report);
-}
-
-void build_points(Job& job) {
-  const PointSet points = read_points(job.inputs, source_options(job.options), job.resources.stop,
-                                      stage(job.resources, "reading"));
-  job.report.source_samples = points.positions.size();
-  job.report.left_out_points = points.left_out_points;
-  job.report.merged_points = points.merged_points;
-  job.report.largest_shift_plan = points.largest_shift_plan;
-  job.report.largest_shift_height = points.largest_shift_height;
-  job.report.height_rounding = points.frame.height_rounding;
-  job.report.vertices = points.positions.size();
-
-  build_one_tile(job, points.frame,
-                 make_delaunay_tin(points.positions, points.heights, job.resources.stop));
 }
 
 /// Somebody else's triangles, in memory.
@@ -235,6 +281,8 @@ void check_options(const BuildOptions& o) {
   require(is_length(o.void_slope), "the void slope must be a finite number >= 0");
   require(!o.resolution || (is_length(*o.resolution) && *o.resolution > 0.0),
           "the resolution must be a finite number > 0");
+  require(!o.max_edge || (is_length(*o.max_edge) && *o.max_edge > 0.0),
+          "the longest edge must be a finite number > 0");
   require(!o.bbox || ((*o.bbox)[0] < (*o.bbox)[2] && (*o.bbox)[1] < (*o.bbox)[3]),
           "the bbox is inverted or empty; its order is xmin ymin xmax ymax");
   require(!o.tile || *o.tile >= 2, "a tile must be at least 2 grid units along a side");

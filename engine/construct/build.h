@@ -26,6 +26,7 @@ struct BuildOptions {
   std::optional<double> resolution;  ///< Points: grid unit in CRS units.
   std::vector<int> classes;          ///< LAS: keep these classes; empty keeps all.
   std::string layer;                 ///< OGR: the layer of points; "" where there is only one.
+  std::optional<double> max_edge;    ///< Points: triangles with a longer edge are void; CRS units.
   std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
   bool repair = false;  ///< TINs: triangulate the vertices anew instead of taking the triangles.
   std::optional<std::array<double, 4>>
@@ -76,13 +77,13 @@ struct BuildReport {
   bool resumed = false;  ///< An interrupted build was taken up.
 };
 
-/// Builds `output` from `inputs` (one raster or several of one grid; or point files; or a TIN). The
+/// Builds `output` from `inputs` (one raster or several of one grid; or points; or a TIN). The
 /// output's name does not appear before the file is complete.
 /// @throws Error invalid_argument, not_found: nothing is left behind.
-///               io_error, resource_exhausted, cancelled: a raster's build that has begun is kept
+///               io_error, resource_exhausted, cancelled: a build over tiles that has begun is kept
 ///               beside the output (workspace.h) and can be resumed; the message names the folder.
-/// Memory: within BuildResources::memory_bytes for rasters; all points of point files, all of a
-/// TIN.
+/// Memory: within BuildResources::memory_bytes for rasters and points; all of a TIN. Points are
+/// sorted into temporary files first, which a resumed build makes again.
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
                   const BuildOptions& options, const BuildResources& resources);
 

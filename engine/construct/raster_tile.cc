@@ -90,6 +90,7 @@ StartedTile start_raster_tile(const RasterSource& source, const SampleRange& win
                          static_cast<std::int32_t>(window.y0)};
   const auto width = static_cast<std::int32_t>(window.width);
   const auto height = static_cast<std::int32_t>(window.height);
+  started.box = {origin.x, origin.y, origin.x + width - 1, origin.y + height - 1};
   started.tile.units = units;
   started.tile.samples_fill_grid = true;
   started.tile.tin = make_raster_tin(heights, valid, width, height, units.heights, origin);

@@ -10,6 +10,7 @@
 #include "engine/construct/raster_source.h"
 #include "engine/construct/tile.h"
 #include "engine/construct/tile_tree.h"
+#include "engine/geometry/box.h"
 
 namespace ptin {
 
@@ -17,6 +18,7 @@ namespace ptin {
 struct StartedTile {
   Tile tile;
   std::unique_ptr<FullSurface> full;
+  GridBox box;                     ///< Of all samples and the full surface.
   std::uint64_t lone_samples = 0;  ///< Samples that touch no surface triangle; treated as void.
 };
 

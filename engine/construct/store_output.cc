@@ -69,6 +69,9 @@ nlohmann::json options_json(const BuildOptions& o) {
   if (!o.classes.empty()) {
     json["classes"] = o.classes;
   }
+  if (o.max_edge) {
+    json["max_edge"] = *o.max_edge;
+  }
   if (!o.layer.empty()) {
     json["layer"] = o.layer;
   }

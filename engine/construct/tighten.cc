@@ -11,10 +11,12 @@
 #include "engine/check.h"
 #include "engine/construct/fan_deviation.h"
 #include "engine/construct/fan_error.h"
+#include "engine/construct/packed_boxes.h"
 #include "engine/construct/sample_blocks.h"
 #include "engine/construct/sample_hand_over.h"
 #include "engine/construct/star_samples.h"
 #include "engine/construct/tile_compact.h"
+#include "engine/geometry/hilbert.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/split.h"
 
@@ -29,7 +31,7 @@ float no_depth(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
 /// The mesh of one replay: T0, refined around one leaf, with the leaf's samples in its triangles.
 class Replay {
  public:
-  Replay(const Tin& t0, StartedTile&& leaf, const SampleRange& window);
+  Replay(const Tin& t0, StartedTile&& leaf);
   /// What the leaf shows of the record.
   RecordBounds apply(const VertexSplit& record);
 
@@ -37,8 +39,8 @@ class Replay {
 
  private:
   void take_samples(const Tile& leaf);
-  void place(Sample sample, const std::vector<TriangleId>& triangles,
-             std::vector<std::vector<Sample>>& lists);
+  void look_around();
+  void place(Sample sample, std::vector<std::vector<Sample>>& lists);
   [[nodiscard]] VertexId vertex_at(GridPoint p) const;
   [[nodiscard]] VertexId add_vertex(const VertexSplit& record);
   RecordBounds measure(VertexId w);
@@ -47,6 +49,8 @@ class Replay {
   Tile tile_;
   std::unique_ptr<FullSurface> full_;
   GridBox box_;
+  std::vector<TriangleId> near_;  ///< Triangles of T0 that the leaf may touch.
+  PackedBoxes near_boxes_;        ///< Theirs.
   std::unordered_map<VertexKey, VertexId> vertices_;
   StarSamples star_;
   FanFrame fan_, spokes_;
@@ -54,11 +58,7 @@ class Replay {
   SampleHandOver hand_over_;
 };
 
-Replay::Replay(const Tin& t0, StartedTile&& leaf, const SampleRange& window)
-    : full_(std::move(leaf.full)),
-      box_{static_cast<std::int32_t>(window.x0), static_cast<std::int32_t>(window.y0),
-           static_cast<std::int32_t>(window.x0 + window.width - 1),
-           static_cast<std::int32_t>(window.y0 + window.height - 1)} {
+Replay::Replay(const Tin& t0, StartedTile&& leaf) : full_(std::move(leaf.full)), box_(leaf.box) {
   tile_.units = leaf.tile.units;
   tile_.samples_fill_grid = leaf.tile.samples_fill_grid;
   tile_.has_voids = true;  // of the whole, not of the leaf: T0 may be void where the leaf is not
@@ -69,6 +69,37 @@ Replay::Replay(const Tin& t0, StartedTile&& leaf, const SampleRange& window)
     tile_.vertex_state.push_back({no_depth(t0.has_height[v] != 0), 0, false});
   }
   take_samples(std::exchange(leaf.tile, {}));  // its mesh is not needed any more
+}
+
+/// Finds the triangles of T0 that the leaf may touch. T0 is two triangles on rasters, and the hull
+/// of points, which may be large.
+void Replay::look_around() {
+  const auto box_of_triangle = [this](TriangleId t) {
+    GridBox b;
+    for (const VertexId v : tile_.tin.triangles[t].v) {
+      b = united(b, tile_.tin.position(v));
+    }
+    return b;
+  };
+  for (TriangleId t = 0; t < tile_.tin.triangles.size(); ++t) {
+    if (meets(box_of_triangle(t), box_)) {
+      near_.push_back(t);
+    }
+  }
+  static constexpr std::size_t kMany = 64;
+  if (near_.size() > kMany) {
+    std::stable_sort(near_.begin(), near_.end(), [&](TriangleId a, TriangleId b) {
+      const GridPoint p = tile_.tin.position(tile_.tin.triangles[a].v[0]);
+      const GridPoint q = tile_.tin.position(tile_.tin.triangles[b].v[0]);
+      return hilbert_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y)) <
+             hilbert_position(static_cast<std::uint32_t>(q.x), static_cast<std::uint32_t>(q.y));
+    });
+  }
+  std::vector<GridBox> boxes;
+  for (const TriangleId t : near_) {
+    boxes.push_back(box_of_triangle(t));
+  }
+  near_boxes_ = PackedBoxes(std::move(boxes));
 }
 
 /// Every sample of the leaf that is no vertex of T0 goes to a triangle of T0 that holds it, of its
@@ -82,23 +113,16 @@ void Replay::take_samples(const Tile& leaf) {
       samples.push_back({vertex.position, vertex.height, leaf.vertex_state[v].depth, 0});
     }
   }
-  join_into_blocks(samples);
-  std::vector<TriangleId> near;
-  for (TriangleId t = 0; t < tile_.tin.triangles.size(); ++t) {
-    GridBox b;
-    for (const VertexId v : tile_.tin.triangles[t].v) {
-      b = united(b, tile_.tin.position(v));
-    }
-    if (meets(b, box_)) {
-      near.push_back(t);
-    }
+  if (leaf.samples_fill_grid) {
+    join_into_blocks(samples);
   }
-  std::vector<std::vector<Sample>> lists(near.size());
+  look_around();
+  std::vector<std::vector<Sample>> lists(near_.size());
   for (const Sample& s : samples) {
-    place(s, near, lists);
+    place(s, lists);
   }
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    CarriedState& carried = tile_.carried[near[i]];
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    CarriedState& carried = tile_.carried[near_[i]];
     carried.samples = tile_.samples.take(static_cast<std::uint32_t>(lists[i].size()));
     std::copy(lists[i].begin(), lists[i].end(), tile_.samples.samples(carried.samples).begin());
     for (const Sample& s : lists[i]) {
@@ -117,8 +141,7 @@ bool holds(const Tin& tin, TriangleId t, GridPoint p) {
   return true;
 }
 
-void Replay::place(Sample sample, const std::vector<TriangleId>& triangles,
-                   std::vector<std::vector<Sample>>& lists) {
+void Replay::place(Sample sample, std::vector<std::vector<Sample>>& lists) {
   const std::int32_t reach = (std::int32_t{1} << sample.side_log) - 1;
   const GridPoint p = sample.position;
   const auto holds_all = [&](TriangleId t) {
@@ -127,14 +150,15 @@ void Replay::place(Sample sample, const std::vector<TriangleId>& triangles,
            holds(tile_.tin, t, {p.x + reach, p.y + reach});
   };
   const TriangleClass own = sample.depth < 0.0F ? TriangleClass::kVoid : TriangleClass::kSurface;
-  std::size_t chosen = triangles.size();
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (holds_all(triangles[i]) &&
-        (chosen == triangles.size() || tile_.tin.classes[triangles[i]] == own)) {
-      chosen = i;
-    }
-  }
-  if (chosen != triangles.size()) {
+  std::size_t chosen = near_.size();
+  near_boxes_.visit(
+      [&](const GridBox& b) { return contains(b, p); },
+      [&](std::size_t i) {
+        if (holds_all(near_[i]) && (chosen == near_.size() || tile_.tin.classes[near_[i]] == own)) {
+          chosen = i;
+        }
+      });
+  if (chosen != near_.size()) {
     lists[chosen].push_back(sample);
     return;
   }
@@ -144,7 +168,7 @@ void Replay::place(Sample sample, const std::vector<TriangleId>& triangles,
   for (const GridPoint offset : {GridPoint{0, 0}, {half, 0}, {0, half}, {half, half}}) {
     Sample quarter = sample;
     quarter.position = {p.x + offset.x, p.y + offset.y};
-    place(quarter, triangles, lists);
+    place(quarter, lists);
   }
 }
 
@@ -215,9 +239,8 @@ void Replay::hand_to_star() {
 
 }  // namespace
 
-void replay_over_leaf(std::span<const ReplaySegment> chain, const Tin& t0, StartedTile&& leaf,
-                      const SampleRange& window) {
-  Replay replay(t0, std::move(leaf), window);
+void replay_over_leaf(std::span<const ReplaySegment> chain, const Tin& t0, StartedTile&& leaf) {
+  Replay replay(t0, std::move(leaf));
   for (const ReplaySegment& segment : chain) {
     for (std::size_t i = segment.records.size(); i-- > 0;) {
       const VertexSplit& record = segment.records[i];

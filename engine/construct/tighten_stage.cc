@@ -119,7 +119,7 @@ TightenStage::Replayed TightenStage::replay(const Batch& batch, const LeafStarte
       throw Error(ErrorCode::cancelled, "the build was cancelled");
     }
     const SampleRange window = tree_.window(leaf);
-    replay_over_leaf(chain, t0_, start(window), window);
+    replay_over_leaf(chain, t0_, start(window));
     report(samples_in(window));
   }
   Replayed result{files.back(), SegmentBounds(files.back()->view()), {}, {}, {}};

@@ -536,16 +536,7 @@ DelaunayTile TileMaker::cut_out(const std::vector<Face_handle>& faces) {
     tin.vertices.push_back({point_of(key), heights_[v], kNone});
   }
   tin.has_height.assign(order.size(), 1);
-  const std::vector<Oriented> numbered = number_faces(faces, order.size());
-  add_faces(numbered, tin);
-  tile.on_seam.assign(order.size(), 0);
-  for (const Oriented& f : numbered) {
-    for (int i = 0; i < 3; ++i) {
-      if (f.neighbour(i) == kNone && !delaunay_.is_infinite(f.face->neighbor(f.place(i)))) {
-        tile.on_seam[f.corner(next_corner(i))] = tile.on_seam[f.corner(previous_corner(i))] = 1;
-      }
-    }
-  }
+  add_faces(number_faces(faces, order.size()), tin);
   return tile;
 }
 
@@ -573,7 +564,8 @@ void TileMaker::make_voids(DelaunayTile& tile, const LongestEdge& longest) const
       tin.classes[t] = TriangleClass::kVoid;
     }
   }
-  for (const Vertex_handle& handle : handles_) {
+  for (std::size_t id = 0; id < handles_.size(); ++id) {
+    const Vertex_handle& handle = handles_[id];
     const VertexId v = handle->info();
     if (v >= tin.vertices.size() || tin.position(v) != position_of(handle)) {
       continue;  // not one of the tile's
@@ -585,6 +577,7 @@ void TileMaker::make_voids(DelaunayTile& tile, const LongestEdge& longest) const
       surface = surface || (!delaunay_.is_infinite(f) && longest.is_within(f));
     } while (++f != first);
     tin.has_height[v] = surface ? 1 : 0;
+    tile.lone_points += !surface && own_[id] != 0 ? 1 : 0;
   }
 }
 

@@ -20,9 +20,8 @@ struct DelaunayTile {
   /// Vertices in the order of their keys, triangles as make_delaunay_tin(). Beyond the border lies
   /// another tile or the outside.
   Tin tin;
-  std::vector<std::uint8_t>
-      on_seam;  ///< Beside tin.vertices: 1 where an edge has another tile beyond.
   std::uint64_t own_points = 0;
+  std::uint64_t lone_points = 0;   ///< Own ones that touch no surface triangle: without a height.
   std::uint64_t other_points = 0;  ///< Of other tiles, that were triangulated along.
 };
 

@@ -227,7 +227,36 @@ Tile join_tiles(std::vector<Tile>&& parts, const TileTree& tree, const TileId& p
   return to;
 }
 
+namespace {
+
+/// Over points: a vertex whose triangles are not all in the tile has an edge with nothing beyond
+/// that is not on the hull, and the other way round.
+void lock_open_edges(Tile& tile, const ConvexHull& hull) {
+  const Tin& tin = tile.tin;
+  for (VertexState& v : tile.vertex_state) {
+    v.locked = false;
+  }
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (!tin.is_alive(t)) {
+      continue;
+    }
+    for (int i = 0; i < 3; ++i) {
+      const VertexId a = tin.triangles[t].v[next_corner(i)];
+      const VertexId b = tin.triangles[t].v[previous_corner(i)];
+      if (tin.triangles[t].n[i] == kNone && !hull.has_on_border(tin.position(a), tin.position(b))) {
+        tile.vertex_state[a].locked = tile.vertex_state[b].locked = true;
+      }
+    }
+  }
+}
+
+}  // namespace
+
 void lock_seams(Tile& tile, const TileTree& tree, const TileId& id) {
+  if (tree.hull() != nullptr) {
+    lock_open_edges(tile, *tree.hull());
+    return;
+  }
   for (VertexId v = 0; v < tile.tin.vertices.size(); ++v) {
     const GridPoint p = tile.tin.position(v);
     tile.vertex_state[v].locked = tree.on_seam(id, p.x, p.y);

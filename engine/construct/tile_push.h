@@ -31,7 +31,8 @@ struct PushedTile {
 [[nodiscard]] Tile join_tiles(std::vector<Tile>&& parts, const TileTree& tree,
                               const TileId& parent);
 
-/// Locks the vertices of a tile that are on its seams.
+/// Locks the vertices of a tile that are on its seams: over points those with an edge that has no
+/// triangle beyond and does not lie on the hull.
 void lock_seams(Tile& tile, const TileTree& tree, const TileId& id);
 
 }  // namespace ptin

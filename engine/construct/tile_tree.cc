@@ -2,6 +2,10 @@
 #include "engine/construct/tile_tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/geometry/hilbert.h"
 
 namespace ptin {
 
@@ -24,6 +28,29 @@ TileTree::TileTree(std::int64_t width, std::int64_t height, std::int64_t side)
   while ((std::int64_t{1} << (levels_ - 1)) < std::max(leaves_x_, leaves_y_)) {
     ++levels_;
   }
+}
+
+TileTree TileTree::over_points(std::uint64_t points, std::int64_t side,
+                               std::shared_ptr<const ConvexHull> hull) {
+  const auto most = static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side);
+  int halvings = 0;
+  while (points > 0 && ((points - 1) >> (2 * halvings)) + 1 > most) {
+    ++halvings;
+  }
+  const double in_leaf = std::ceil(std::ldexp(static_cast<double>(points), -2 * halvings));
+  const auto leaf_side =
+      std::max<std::int64_t>(static_cast<std::int64_t>(std::ceil(std::sqrt(in_leaf))), 2);
+  const std::int64_t width = (leaf_side << halvings) + 1;
+  TileTree tree(width, width, leaf_side);
+  tree.hull_ = std::move(hull);
+  return tree;
+}
+
+std::uint64_t TileTree::leaf_number(const SampleRange& window) const noexcept {
+  // The curve through the 4^k squares of side 1, at the beginning of the curve of order 32: that
+  // begins with them in this order or mirrored at the diagonal, always the same.
+  return hilbert_position(static_cast<std::uint32_t>(window.x0 / side_),
+                          static_cast<std::uint32_t>(window.y0 / side_));
 }
 
 std::int64_t TileTree::default_side(std::int64_t width, std::int64_t height) noexcept {

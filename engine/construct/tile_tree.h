@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The tree of tiles over a raster: squares of samples that share their border rows, four siblings
-// to a parent (DESIGN.md, section 5).
+// The tree of tiles: over a raster squares of samples that share their border rows, over points
+// equal pieces of a space-filling curve; four siblings to a parent (DESIGN.md, section 5).
 #pragma once
 
 #include <compare>
 #include <cstdint>
+#include <memory>
 #include <vector>
+
+#include "engine/construct/hull_collector.h"
 
 namespace ptin {
 
@@ -24,14 +27,26 @@ struct TileId {
   friend auto operator<=>(const TileId&, const TileId&) = default;
 };
 
-/// Which tiles there are. A function of the raster's size and the side alone: never of memory or
-/// threads.
+/// Which tiles there are. A function of the raster's size (or the number of points) and the side
+/// alone: never of memory or threads.
 class TileTree {
  public:
   /// @param width, height  Samples of the raster, at least 2 each.
   /// @param side           Grid units along a leaf; neighbours share the row of samples between
   /// them.
   TileTree(std::int64_t width, std::int64_t height, std::int64_t side);
+
+  /// The tree over points: 4^k leaves that hold equally many, one after the other along the Hilbert
+  /// curve. Their windows are those of a raster of as many samples; leaf_number() says which leaf.
+  /// @param points  Their number.
+  /// @param side    The root of how many a leaf holds at most.
+  /// @param hull    Of all points: edges on it are no seams.
+  [[nodiscard]] static TileTree over_points(std::uint64_t points, std::int64_t side,
+                                            std::shared_ptr<const ConvexHull> hull);
+  /// The hull of points; null over a raster.
+  [[nodiscard]] const ConvexHull* hull() const noexcept { return hull_.get(); }
+  /// Over points: the place along the curve of the leaf that has this window.
+  [[nodiscard]] std::uint64_t leaf_number(const SampleRange& window) const noexcept;
 
   /// The side that is used unless the caller names one: 512, or the root of ten times the raster's
   /// longer side where that is more, so that seams weigh little (DESIGN.md, section 5); the whole
@@ -56,6 +71,7 @@ class TileTree {
   std::int64_t width_, height_, side_;
   std::int64_t leaves_x_, leaves_y_;
   int levels_ = 1;
+  std::shared_ptr<const ConvexHull> hull_;
 };
 
 }  // namespace ptin

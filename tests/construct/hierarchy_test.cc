@@ -63,6 +63,7 @@ class SampledRaster {
     started.tile.samples_fill_grid = true;
     started.tile.tin = make_raster_tin(heights, valid, columns, rows, encoding, origin);
     start_tile(started.tile, depths);
+    started.box = {origin.x, origin.y, origin.x + columns - 1, origin.y + rows - 1};
     started.full = std::make_unique<RasterSurface>(heights, valid, columns, rows, encoding, origin);
     return started;
   }

@@ -91,12 +91,15 @@ inline std::vector<GridPoint> points_of(PointKind kind, std::uint64_t n, std::ui
   return points;
 }
 
+inline std::string height_text(GridPoint p) {
+  const double z = std::sin(p.x * 1e-3) * 50 + std::cos(p.y * 1.7e-3) * 30;
+  return std::to_string(std::lround(z * 4));
+}
+
 inline std::string text_of(const std::vector<GridPoint>& points) {
   std::string text;
   for (const GridPoint p : points) {
-    const double z = std::sin(p.x * 1e-3) * 50 + std::cos(p.y * 1.7e-3) * 30;
-    text += std::to_string(p.x) + " " + std::to_string(p.y) + " " +
-            std::to_string(std::lround(z * 4)) + "\n";
+    text += std::to_string(p.x) + " " + std::to_string(p.y) + " " + height_text(p) + "\n";
   }
   return text;
 }

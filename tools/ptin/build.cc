@@ -291,6 +291,9 @@ Action declare_build(CLI::App& app, Context& context) {
       ->type_name("NAME");
   app.add_flag("--repair", options.repair,
                "TINs: leave the triangles and triangulate the vertices anew (no voids then)");
+  app.add_option("--max-edge", options.max_edge,
+                 "Points: triangles with an edge longer than this, in CRS units, become void")
+      ->type_name("L");
   app.add_option("--bbox", command->bbox, "Leave out samples outside of this box, in CRS units")
       ->expected(4)
       ->type_name("XMIN YMIN XMAX YMAX");
