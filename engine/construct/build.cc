@@ -257,8 +257,12 @@ void build_tin(Job& job) {
   }
   const std::uint64_t memory =
       job.resources.memory_bytes != 0 ? job.resources.memory_bytes : default_memory();
-  TinTerrain terrain = read_tin(job.inputs[0], source_options(job.options), memory,
-                                job.resources.stop, stage(job.resources, "reading"));
+  // A build takes five times what its triangles take while they are read: so a file that does not
+  // fit is refused before the work.
+  constexpr std::uint64_t kBuildOverReading = 5;
+  TinTerrain terrain =
+      read_tin(job.inputs[0], source_options(job.options), memory / kBuildOverReading,
+               job.resources.stop, stage(job.resources, "reading"));
   job.report.source_samples = job.report.vertices = terrain.tin.vertices.size();
   job.report.left_out_points = terrain.unused_vertices;
   job.report.left_out_triangles = terrain.left_out_triangles;

@@ -113,8 +113,8 @@ void SoupBuilder::look_around() {
     reading_.progress(in_.position(), in_.size());
   }
   constexpr std::uint64_t kIdBytes = 40;
-  const std::uint64_t bytes = soup_.vertices.capacity() * sizeof(SourcePoint) +
-                              triangles_.capacity() * 36 + index_of_.size() * kIdBytes;
+  const std::uint64_t bytes = soup_.vertices.size() * sizeof(SourcePoint) + triangles_.size() * 36 +
+                              index_of_.size() * kIdBytes;
   if (bytes > reading_.memory_bytes) {
     throw Error(ErrorCode::resource_exhausted,
                 "this TIN does not fit in the memory given, and TINs are built in memory; give "

@@ -128,6 +128,20 @@ TEST(CliBadInput, RastersThatAreNoTerrain) {
   expect_no_build(folder, folder.file("hills.tif"), 2, "EPSG:999999", {"--a-srs", "EPSG:999999"});
 }
 
+TEST(CliBadInput, RotatedRastersAndRastersWithoutABand) {
+  const TestFolder folder;
+  make_raster(folder.file("hills.tif"), {});
+  write_file(folder.file("rotated.vrt"),
+             "<VRTDataset rasterXSize=\"33\" rasterYSize=\"33\">"
+             "<GeoTransform>0, 1, 0.5, 0, 0.5, -1</GeoTransform>"
+             "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>"
+             "<SourceFilename relativeToVRT=\"1\">hills.tif</SourceFilename>"
+             "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>");
+  expect_no_build(folder, folder.file("rotated.vrt"), 2, "rotated or sheared");
+  write_file(folder.file("none.vrt"), "<VRTDataset rasterXSize=\"33\" rasterYSize=\"33\"/>");
+  expect_no_build(folder, folder.file("none.vrt"), 2, "no band");
+}
+
 TEST(CliBadInput, OutputThatCannotBe) {
   const TestFolder folder;
   const std::string store = small_store(folder);

@@ -57,6 +57,16 @@ TEST(Cli, CompletionKnowsEverySubcommandAndOption) {
   }
 }
 
+TEST(Cli, ManualPageKnowsEverySubcommandAndOption) {
+  const Outcome outcome = run_ptin({"completion", "man"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(outcome.out.starts_with(".TH PTIN 1"));
+  for (const char* word : {"PTIN EXPORT", "\\-\\-max\\-error", "\\-\\-pixel\\-size", "EXIT STATUS",
+                           "ptin build dem.tif"}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  }
+}
+
 TEST(Cli, BuildReportsWhatItMade) {
   const TestFolder folder;
   const json report = answer_of(

@@ -241,6 +241,25 @@ TEST(Export, DoesNotDependOnTheCells) {
   }
 }
 
+TEST(Export, NoticesAStoreThatIsReplacedOnTheWay) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  std::filesystem::copy_file(file, folder.file("other"));
+  const ProgressiveTin terrain = ProgressiveTin::open(file);
+  PartRequest request;
+  request.memory_limit_bytes = 4'000'000;
+  int cells = 0;
+  try {
+    walk_cells(PartRefiner(terrain, request), [&](const GridCell&, const RefinedTin&, double) {
+      if (++cells == 2) std::filesystem::rename(folder.file("other"), file);
+    });
+    FAIL() << "not noticed";
+  } catch (const Error& e) {
+    EXPECT_EQ(cells, 2);
+    EXPECT_TRUE(e.code() == ErrorCode::corruption || e.code() == ErrorCode::io_error) << e.what();
+  }
+}
+
 TEST(Export, RefusesMemoryThatASinglePositionDoesNotFit) {
   const TestFolder folder;
   const ProgressiveTin terrain = ProgressiveTin::open(built(folder, "coast_257.tif"));

@@ -108,9 +108,10 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin render dem.ptin --window 385000 3790000 390000 3795000 --pages --size 1600 1200 -o "
      "pages.png\n",
      declare_render},
-    {"completion", "Print a completion script for a shell",
+    {"completion", "Print a completion script for a shell, or the manual page",
      "Example:\n"
-     "  ptin completion bash > ~/.local/share/bash-completion/completions/ptin\n",
+     "  ptin completion bash > ~/.local/share/bash-completion/completions/ptin\n"
+     "  ptin completion man | man -l -\n",
      declare_completion},
 });
 
@@ -136,6 +137,8 @@ int report_wrong_use(const CLI::App& app, const CLI::ParseError& error, bool jso
 }  // namespace
 
 std::span<const Command> commands() noexcept { return kCommands; }
+
+const char* exit_statuses() noexcept { return kExitStatuses; }
 
 void add_common_options(CLI::App& app, Context& context, bool has_quiet) {
   app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");

@@ -17,6 +17,9 @@ struct CommandLine {
 };
 [[nodiscard]] CommandLine make_command_line(Context& context);
 
+/// Every exit status in one sentence.
+[[nodiscard]] const char* exit_statuses() noexcept;
+
 /// Parses and runs. --help and --version return 0, wrong use returns 2 after one sentence on
 /// stderr.
 /// @throws Error  what the subcommand throws

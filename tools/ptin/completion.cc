@@ -6,6 +6,7 @@
 
 #include "tools/error_status.h"
 #include "tools/ptin/cli.h"
+#include "tools/ptin/man_page.h"
 
 namespace ptin::tools {
 
@@ -50,9 +51,11 @@ std::string bash_script() {
 
 Action declare_completion(CLI::App& app, Context& /*context*/) {
   const auto shell = std::make_shared<std::string>();
-  app.add_option("SHELL", *shell, "Which shell")->required()->check(CLI::IsMember({"bash"}));
+  app.add_option("SHELL", *shell, "bash; or man for the manual page")
+      ->required()
+      ->check(CLI::IsMember({"bash", "man"}));
   return [shell] {
-    const std::string script = bash_script();
+    const std::string script = *shell == "man" ? man_page() : bash_script();
     std::fwrite(script.data(), 1, script.size(), stdout);
     return kExitDone;
   };

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/man_page.h"
+
+#include "tools/ptin/cli.h"
+
+namespace ptin::tools {
+
+namespace {
+
+/// Text as roff prints it: backslashes and hyphens literal, no line taken for a request.
+std::string escaped(const std::string& text) {
+  std::string roff;
+  bool at_start = true;
+  for (const char c : text) {
+    if (at_start && (c == '.' || c == '\'')) roff += "\\&";
+    if (c == '\\') {
+      roff += "\\e";
+    } else if (c == '-') {
+      roff += "\\-";
+    } else {
+      roff += c;
+    }
+    at_start = c == '\n';
+  }
+  return roff;
+}
+
+/// Help breaks lines where a terminal would; a page breaks them itself.
+std::string on_one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n') c = ' ';
+  }
+  return text;
+}
+
+std::string names_of(const CLI::Option& option) {
+  std::string names;
+  for (const std::string& name : option.get_snames())
+    names.append(names.empty() ? "-" : ", -").append(name);
+  for (const std::string& name : option.get_lnames())
+    names.append(names.empty() ? "--" : ", --").append(name);
+  return names.empty() ? option.get_name(true) : names;
+}
+
+void add_option(const CLI::Option& option, std::string& page) {
+  page.append(".TP\n.B ").append(escaped(names_of(option)));
+  const bool is_positional = option.get_snames().empty() && option.get_lnames().empty();
+  const std::string type =
+      option.get_type_size() == 0 || is_positional ? "" : option.get_type_name();
+  if (!type.empty()) page.append(" \\fI").append(escaped(type)).append("\\fR");
+  page.append("\n").append(escaped(on_one_line(option.get_description()))).append("\n");
+}
+
+/// The footer: paragraphs, then examples line by line.
+void add_footer(const std::string& footer, std::string& page) {
+  const std::size_t examples = footer.find("Example");
+  const std::string before = footer.substr(0, examples);
+  if (!before.empty()) page.append(".PP\n").append(escaped(on_one_line(before))).append("\n");
+  if (examples == std::string::npos) return;
+  page.append(".PP\n.nf\n").append(escaped(footer.substr(examples)));
+  if (!page.ends_with('\n')) page += '\n';
+  page.append(".fi\n");
+}
+
+}  // namespace
+
+std::string man_page() {
+  Context context;
+  const CommandLine line = make_command_line(context);
+  std::string page = ".TH PTIN 1 \"\" \"ptin " PTIN_VERSION "\" \"User Commands\"\n";
+  page.append(".SH NAME\nptin \\- ").append(escaped(line.app->get_description())).append("\n");
+  page.append(".SH SYNOPSIS\n.B ptin\n\\fISUBCOMMAND\\fR [\\fIOPTION\\fR...]\n");
+  page.append(".SH DESCRIPTION\n");
+  for (const Command& command : commands()) {
+    page.append(".TP\n.B ").append(escaped(command.name)).append("\n");
+    page.append(escaped(command.summary)).append("\n");
+  }
+  for (const Command& command : commands()) {
+    const CLI::App& app = *line.app->get_subcommand(command.name);
+    page.append(".SH \"PTIN ");
+    for (const char* c = command.name; *c != '\0'; ++c)
+      page += *c >= 'a' && *c <= 'z' ? static_cast<char>(*c - 'a' + 'A') : *c;
+    page.append("\"\n").append(escaped(command.summary)).append(".\n");
+    for (const CLI::Option* option : app.get_options()) add_option(*option, page);
+    add_footer(command.examples, page);
+  }
+  page.append(".SH \"EXIT STATUS\"\n").append(escaped(on_one_line(exit_statuses()))).append("\n");
+  return page;
+}
+
+}  // namespace ptin::tools
