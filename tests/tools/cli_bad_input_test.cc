@@ -139,7 +139,7 @@ TEST(CliBadInput, RotatedRastersAndRastersWithoutABand) {
              "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>");
   expect_no_build(folder, folder.file("rotated.vrt"), 2, "rotated or sheared");
   write_file(folder.file("none.vrt"), "<VRTDataset rasterXSize=\"33\" rasterYSize=\"33\"/>");
-  expect_no_build(folder, folder.file("none.vrt"), 2, "no band");
+  expect_no_build(folder, folder.file("none.vrt"), 2, "bands");
 }
 
 TEST(CliBadInput, OutputThatCannotBe) {
