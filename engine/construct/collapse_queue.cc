@@ -12,14 +12,26 @@ namespace {
 
 constexpr std::uint64_t kLastClass = (std::uint64_t{1} << kClassBits) - 1;
 constexpr int kClassShift = 64 - kClassBits;
-// error: class 10, octave 5, neighbourhood 2 x 9, half-perimeter 31 bits.
-constexpr int kBoxBits = 31;
+// error: class 10, octave 5, neighbourhood 2 x 9, sixteenth of the octave 4, chain 12,
+// half-perimeter 15 bits.
+constexpr int kBoxBits = 15;
+constexpr int kChainBits = 12;
+constexpr int kPartBits = 4;
 constexpr int kSideBits = 9;
-constexpr int kOctaveShift = kBoxBits + 2 * kSideBits;
+constexpr int kPartShift = kBoxBits + kChainBits;
+constexpr int kNeighbourhoodShift = kPartShift + kPartBits;
+constexpr int kOctaveShift = kNeighbourhoodShift + 2 * kSideBits;
 constexpr std::uint64_t kVerticesANeighbourhood = 16384;
 
 std::uint64_t clamped(std::int64_t v) noexcept {
   return static_cast<std::uint64_t>(std::clamp<std::int64_t>(v, 0, INT32_MAX));
+}
+
+/// The bits of `box` below its highest one, as a fraction of kPartBits + kBoxBits bits.
+std::uint64_t within_octave(std::uint64_t box, int octave) noexcept {
+  constexpr int kBits = kPartBits + kBoxBits;
+  const std::uint64_t below = box & ~(std::uint64_t{1} << octave);
+  return octave <= kBits ? below << (kBits - octave) : below >> (octave - kBits);
 }
 
 /// Any heap order with the least entry in front.
@@ -70,8 +82,13 @@ std::uint64_t PriorityScale::operator()(const CollapseMeasure& measure) const no
     case CostModel::kError: {
       const std::uint64_t c =
           std::min<std::uint64_t>(error_class(measure.error_quanta), kLastClass);
+      const std::uint64_t fraction = within_octave(box, octave);
+      const std::uint64_t chain =
+          std::min<std::uint64_t>(measure.chain, (std::uint64_t{1} << kChainBits) - 1);
       return (c << kClassShift) | (static_cast<std::uint64_t>(octave) << kOctaveShift) |
-             (neighbourhood(measure.vertex, octave) << kBoxBits) | box;
+             (neighbourhood(measure.vertex, octave) << kNeighbourhoodShift) |
+             (fraction >> kBoxBits << kPartShift) | (chain << kBoxBits) |
+             (fraction & ((std::uint64_t{1} << kBoxBits) - 1));
     }
     case CostModel::kRoi:
       return (static_cast<std::uint64_t>(octave) << kClassShift) | box;

@@ -30,6 +30,7 @@ struct CollapseMeasure {
       0.0;  ///< Error of the collapse's own samples, in height quanta; may be +infinity.
   double height_quanta = 0.0;  ///< Length of the saturated height interval, in height quanta.
   GridBox roi;                 ///< Saturated box.
+  std::uint32_t chain = 0;     ///< Collapses that this one would come to depend on, one on another.
 };
 
 /// Class of an error: 0 below one height quantum, then one class for each quarter of an octave
@@ -37,7 +38,8 @@ struct CollapseMeasure {
 [[nodiscard]] std::uint32_t error_class(double error_quanta) noexcept;
 
 /// Turns measures into priorities of 64 bits, the highest ten of which are a class.
-///   error:     error class, octave of the box's half-perimeter, neighbourhood, half-perimeter
+///   error:     error class, octave of the box's half-perimeter, neighbourhood, sixteenth of that
+///              octave, chain, half-perimeter
 ///   roi:       half-perimeter (its class is its octave)
 ///   elevation: height interval, half-perimeter
 /// Neighbourhoods are squares of the plane, about 16384 vertices of the full TIN large, or 16 boxes
@@ -46,6 +48,10 @@ struct CollapseMeasure {
 /// (bench/README.md has the figures). The octave comes first, because a class can be large (on a
 /// lake everything is of class 0) and a neighbourhood finished to the end would leave huge
 /// triangles beside small ones.
+///
+/// The chain comes before the last of the box: where boxes are nearly equal, as along a seam of
+/// tiles across a lake, an order by box alone takes one vertex after its neighbour, each depending
+/// on the one before; by chain every other one goes first.
 class PriorityScale {
  public:
   /// @param bounds    Of all vertices.

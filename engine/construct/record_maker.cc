@@ -121,8 +121,7 @@ void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {
   const auto id = static_cast<std::uint32_t>(tile_.records.size());
   tile_.records.push_back(record);
   for (const TriangleId t : fan_ids_) {
-    tile_.carried[t].roi = record.roi;
-    tile_.carried[t].record = id;
+    carry_record(tile_.carried[t], record, id);
   }
 }
 

@@ -16,6 +16,14 @@ GridBox saturated_box(const Tile& tile, const Star& star) noexcept {
   return box;
 }
 
+std::uint32_t saturated_chain(const Tile& tile, const Star& star) noexcept {
+  std::uint32_t chain = 0;
+  for (const TriangleId t : star.triangles) {
+    chain = std::max<std::uint32_t>(chain, tile.carried[t].chain);
+  }
+  return chain;
+}
+
 Interval saturated_heights(const Tile& tile, const Star& star) noexcept {
   Interval heights;
   const HeightEncoding& encoding = tile.units.heights;

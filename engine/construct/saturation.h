@@ -13,6 +13,9 @@ namespace ptin {
 /// Box of P(u) and of everything that depends on this collapse. Cost: the degree.
 [[nodiscard]] GridBox saturated_box(const Tile& tile, const Star& star) noexcept;
 
+/// Longest chain of collapses that this one would extend: the rank of its record. Cost: the degree.
+[[nodiscard]] std::uint32_t saturated_chain(const Tile& tile, const Star& star) noexcept;
+
 /// Height codes of u, P(u) and of everything below: covers the full surface inside of P(u), and any
 /// fan. Cost: the degree, and a record a triangle.
 [[nodiscard]] Interval saturated_heights(const Tile& tile, const Star& star) noexcept;

@@ -60,8 +60,8 @@ class Simplifier {
 
   Tile& tile_;
   const SimplifyOptions& options_;
-  bool is_capped_;               ///< Lists are cut down to witnesses at each compaction.
-  std::size_t first_samples_;    ///< In all lists at the beginning.
+  bool is_capped_;             ///< Lists are cut down to witnesses at each compaction.
+  std::size_t first_samples_;  ///< In all lists at the beginning.
   RecordMaker maker_;
   CollapseChooser chooser_;
   PriorityScale scale_;
@@ -112,6 +112,7 @@ Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
   measure.vertex = tile_.tin.position(u);
   measure.error_quanta = e.choice.error / tile_.units.quantum_code;
   measure.roi = saturated_box(tile_, star_.star);
+  measure.chain = saturated_chain(tile_, star_.star);
   if (options_.cost == CostModel::kElevation) {
     const Interval heights = saturated_heights(tile_, star_.star);
     measure.height_quanta =
@@ -187,7 +188,8 @@ std::size_t Simplifier::most_samples() const {
 void Simplifier::compact_when_sparse() {
   const std::size_t length = tile_.tin.vertices.size();
   const bool is_worthwhile = length > options_.compact_above && 2 * alive_ <= length;
-  if (!is_worthwhile && !tile_.samples.is_sparse()) {
+  const bool never = options_.compact_above == std::numeric_limits<std::size_t>::max();
+  if (never || (!is_worthwhile && !tile_.samples.is_sparse())) {
     return;
   }
   const Renumbering place = compact(tile_, most_samples());

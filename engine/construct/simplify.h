@@ -20,6 +20,7 @@ struct SimplifyOptions {
                            ///< while a collapse is allowed.
   /// Arrays of the tile that are longer than this are made shorter when half of the vertices are
   /// gone (tile_compact.h); what is left keeps its order, and the records do not depend on it.
+  /// The largest value leaves them alone.
   std::size_t compact_above = 4096;
   std::stop_token stop;
   std::function<void(std::uint64_t collapsed)>

@@ -23,11 +23,21 @@ namespace ptin {
 struct CarriedState {
   GridBox roi;  ///< Empty for a triangle of the full TIN.
   std::uint32_t record =
-      kNone;                   ///< Index into Tile::records; kNone for a triangle of the full TIN.
-  SampleSlot samples;          ///< Removed samples inside this triangle.
+      kNone;           ///< Index into Tile::records; kNone for a triangle of the full TIN.
+  SampleSlot samples;  ///< Removed samples inside this triangle.
+  /// Length of the longest chain of collapses that ends here: 1 and the rank of its record, 65 535
+  /// at most; 0 for a triangle of the full TIN.
+  std::uint16_t chain = 0;
   bool holds_heights = false;  ///< Some of them have a height ...
   bool holds_voids = false;    ///< ... and some have none.
 };
+
+/// What a triangle carries that the record with index `id` has made.
+inline void carry_record(CarriedState& carried, const VertexSplit& r, std::uint32_t id) noexcept {
+  carried.roi = r.roi;
+  carried.record = id;
+  carried.chain = static_cast<std::uint16_t>(r.rank == UINT16_MAX ? r.rank : r.rank + 1);
+}
 
 /// Per-vertex facts of a tile.
 struct VertexState {

@@ -69,8 +69,9 @@ Tile read_pushed(ArrayFileReader& in, const MeasureUnits& units) {
   auto next = samples.begin();
   for (const StoredCarried& c : carried) {
     CarriedState state;
-    state.record = c.record;
-    state.roi = c.record == kNone ? GridBox{} : tile.records[c.record].roi;
+    if (c.record != kNone) {
+      carry_record(state, tile.records[c.record], c.record);
+    }
     state.samples = tile.samples.take(c.samples);
     std::copy_n(next, c.samples, tile.samples.samples(state.samples).begin());
     next += c.samples;

@@ -44,6 +44,22 @@ TEST(PriorityScale, PutsErrorClassesBeforeBoxes) {
   EXPECT_LT(scale(measure(kInfinity, 9, 20)), scale(measure(kInfinity, 0, 21)));
 }
 
+TEST(PriorityScale, PutsShortChainsFirstWhereBoxesAreNearlyEqual) {
+  const PriorityScale scale(CostModel::kError, {0, 0, 1 << 20, 1 << 20}, 1000000);
+  const auto with_chain = [](std::int32_t side, std::uint32_t chain) {
+    CollapseMeasure m = measure(0.0, 0.0, side);
+    m.chain = chain;
+    return m;
+  };
+  EXPECT_LT(scale(with_chain(1010, 3)), scale(with_chain(1000, 4)));
+  EXPECT_LT(scale(with_chain(1000, 4)), scale(with_chain(1010, 4)));
+  EXPECT_LT(scale(with_chain(1000, 9)), scale(with_chain(1200, 3)));
+  EXPECT_EQ(scale(with_chain(1000, 5000)), scale(with_chain(1000, 60000)));
+  for (std::int32_t side = 1; side < 500000; side += 1 + side / 7) {
+    EXPECT_LT(scale(with_chain(side, 60000)), scale(with_chain(side + 1 + side / 8, 0)));
+  }
+}
+
 TEST(PriorityScale, PutsSmallBoxesFirstForRoi) {
   const PriorityScale scale(CostModel::kRoi, {0, 0, kGridMax, kGridMax}, 1000);
   for (std::int32_t side = 1; side < 100000; side += 1 + side / 3) {
