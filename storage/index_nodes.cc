@@ -79,6 +79,16 @@ const layout::IndexNode& MappedIndexNodes::node(std::uint32_t level, std::uint64
   return mapped;
 }
 
+void MappedIndexNodes::announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
+                                IoCounters& counters) const noexcept {
+  join_ranges(
+      level, numbers, [&](std::uint64_t position) { return verified_.test(position); },
+      [&](std::uint64_t offset, std::uint64_t bytes) {
+        mapping_.will_need(offset, bytes);
+        ++counters.ranges_announced;
+      });
+}
+
 layout::NodeEntry MappedIndexNodes::descriptor(PageId page) const {
   require_page(page);
   const std::uint64_t leaf = index_of(page) / layout::kFanOut;
@@ -115,6 +125,21 @@ const layout::IndexNode& PreadIndexNodes::node(std::uint32_t level, std::uint64_
   *slot.node = scratch;
   slot.position = position;
   return scratch;
+}
+
+void PreadIndexNodes::announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
+                               IoCounters& counters) const noexcept {
+  join_ranges(
+      level, numbers,
+      [&](std::uint64_t position) {
+        Slot& slot = slot_of(position);
+        const std::lock_guard lock(slot.lock);
+        return slot.position == position;
+      },
+      [&](std::uint64_t offset, std::uint64_t bytes) {
+        file_.will_need(offset, bytes);
+        ++counters.ranges_announced;
+      });
 }
 
 layout::NodeEntry PreadIndexNodes::descriptor(PageId page) const {

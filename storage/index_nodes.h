@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,11 @@ class IndexNodes {
                                                       std::uint64_t expected,
                                                       layout::IndexNode& scratch) const = 0;
 
+  /// Starts reading those nodes of a level that have not been read before. `numbers` ascend. A
+  /// hint.
+  virtual void announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
+                        IoCounters& counters) const noexcept = 0;
+
   /// The descriptor of a page: a copy, not yet checked for sense. Cost: the path from the root when
   /// its leaf is not verified (mapped) or not cached (pread), otherwise one copy.
   /// @throws Error corruption (also: no such page), io_error
@@ -62,6 +68,30 @@ class IndexNodes {
   /// Compares checksum and place. @throws Error corruption
   void verify(const layout::IndexNode& node, std::uint32_t level, std::uint64_t number,
               std::uint64_t expected) const;
+  /// Calls `start(offset, bytes)` for ranges of nodes of a level, near ones joined, of which
+  /// `is_known(position)` is false.
+  template <class IsKnown, class Start>
+  void join_ranges(std::uint32_t level, std::span<const std::uint64_t> numbers,
+                   const IsKnown& is_known, const Start& start) const noexcept {
+    constexpr std::uint64_t kGap = 8;  // nodes: 32 KiB, which one request reads along
+    std::uint64_t begin = 0;
+    std::uint64_t end = 0;
+    for (const std::uint64_t number : numbers) {
+      const std::uint64_t position = place_.shape.position(level, number);
+      if (is_known(position)) {
+        continue;
+      }
+      if (end != 0 && position >= end + kGap) {
+        start(offset_of(begin), (end - begin) * layout::kNodeBytes);
+        end = 0;
+      }
+      begin = end == 0 ? position : begin;
+      end = position + 1;
+    }
+    if (end != 0) {
+      start(offset_of(begin), (end - begin) * layout::kNodeBytes);
+    }
+  }
   /// The entry of a page, found from the root.
   [[nodiscard]] layout::NodeEntry descend_to(PageId page) const;
 
@@ -76,6 +106,8 @@ class MappedIndexNodes final : public IndexNodes {
   [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
                                               std::uint64_t expected,
                                               layout::IndexNode& scratch) const override;
+  void announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
+                IoCounters& counters) const noexcept override;
   [[nodiscard]] layout::NodeEntry descriptor(PageId page) const override;
   void require_undamaged() const override { mapping_.require_undamaged(); }
 
@@ -91,6 +123,8 @@ class PreadIndexNodes final : public IndexNodes {
   [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
                                               std::uint64_t expected,
                                               layout::IndexNode& scratch) const override;
+  void announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
+                IoCounters& counters) const noexcept override;
   [[nodiscard]] layout::NodeEntry descriptor(PageId page) const override;
 
  private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/error.h"
@@ -11,20 +12,44 @@
 
 namespace ptin {
 
-struct PackedRTree::Search {
-  const AttributePredicate& predicate;
-  std::vector<PageId>& pages;
-  IoCounters& counters;
+namespace {
+
+/// Nodes of a level that are to be visited: their numbers, ascending, and checksums.
+struct Found {
+  std::vector<std::uint64_t> numbers, checksums;
 };
 
+}  // namespace
+
+/// Level by level, each announced before it is read: so a search waits once a level for the disk,
+/// not once a node. Within a level from left to right, so that pages come out ascending.
 void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId>& pages,
                          IoCounters& counters) const {
   const IndexShape& shape = nodes_.shape();
   if (shape.levels() == 0) {
     return;
   }
-  Search search{predicate, pages, counters};
-  visit(search, shape.levels() - 1, 0, nodes_.root_checksum());
+  Found found{{0}, {nodes_.root_checksum()}};
+  Found below;
+  for (std::uint32_t level = shape.levels(); level-- > 0;) {
+    if (found.numbers.size() > 1) {
+      nodes_.announce(level, found.numbers, counters);
+    }
+    below.numbers.clear();
+    below.checksums.clear();
+    for (std::size_t i = 0; i < found.numbers.size(); ++i) {
+      visit({level, found.numbers[i], found.checksums[i]}, predicate, counters,
+            [&](std::uint64_t child, std::uint64_t checksum) {
+              if (level == 0) {
+                pages.push_back(PageId{child});
+              } else {
+                below.numbers.push_back(child);
+                below.checksums.push_back(checksum);
+              }
+            });
+    }
+    std::swap(found, below);
+  }
   nodes_.require_undamaged();
 }
 
@@ -82,25 +107,19 @@ void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& count
   nodes_.require_undamaged();
 }
 
-// Depth first and from left to right, so that pages come out ascending. Depth: the number of
-// levels, at most ten.
-void PackedRTree::visit(Search& search, std::uint32_t level, std::uint64_t number,
-                        std::uint64_t checksum) const {
+/// Calls `take` for each entry that satisfies the predicate.
+template <class Take>
+void PackedRTree::visit(const Place& at, const AttributePredicate& predicate, IoCounters& counters,
+                        const Take& take) const {
   layout::IndexNode scratch;  // stays untouched when nodes are mapped
-  const layout::IndexNode& node = nodes_.node(level, number, checksum, scratch);
-  ++search.counters.index_nodes;
-  search.counters.bytes_read += layout::kNodeBytes;
-  const std::uint32_t entries = nodes_.shape().entries(level, number);
+  const layout::IndexNode& node = nodes_.node(at.level, at.number, at.checksum, scratch);
+  ++counters.index_nodes;
+  counters.bytes_read += layout::kNodeBytes;
+  const std::uint32_t entries = nodes_.shape().entries(at.level, at.number);
   for (std::uint32_t i = 0; i < entries; ++i) {
-    const layout::NodeEntry entry = sound_entry(node, level, number, i);
-    if (!search.predicate.holds(attributes_of(entry, heights_))) {
-      continue;
-    }
-    const std::uint64_t child = number * layout::kFanOut + i;
-    if (level == 0) {
-      search.pages.push_back(PageId{child});
-    } else {
-      visit(search, level - 1, child, entry.checksum);
+    const layout::NodeEntry entry = sound_entry(node, at.level, at.number, i);
+    if (predicate.holds(attributes_of(entry, heights_))) {
+      take(at.number * layout::kFanOut + i, entry.checksum);
     }
   }
 }

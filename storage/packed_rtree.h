@@ -35,9 +35,9 @@ class PackedRTree final : public RecordIndex {
   PackedRTree(const IndexNodes& nodes, const HeightEncoding& heights)
       : nodes_(nodes), heights_(heights) {}
 
-  /// As RecordIndex::search. Entries are tested where they lie; nothing is allocated but what
-  /// `pages` grows by. Cost: one call of the predicate for each entry of each node visited; a node
-  /// is visited when its own entry satisfies the predicate.
+  /// As RecordIndex::search. Entries are tested where they lie. Cost: one call of the predicate for
+  /// each entry of each node visited; a node is visited when its own entry satisfies the predicate.
+  /// The nodes of a level that were never read are announced together before they are.
   void search(const AttributePredicate& predicate, std::vector<PageId>& pages,
               IoCounters& counters) const override;
 
@@ -47,11 +47,15 @@ class PackedRTree final : public RecordIndex {
   void search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const;
 
  private:
-  struct Search;
+  struct Place {
+    std::uint32_t level;
+    std::uint64_t number, checksum;
+  };
   [[nodiscard]] layout::NodeEntry sound_entry(const layout::IndexNode& node, std::uint32_t level,
                                               std::uint64_t number, std::uint32_t i) const;
-  void visit(Search& search, std::uint32_t level, std::uint64_t number,
-             std::uint64_t checksum) const;
+  template <class Take>
+  void visit(const Place& at, const AttributePredicate& predicate, IoCounters& counters,
+             const Take& take) const;
 
   const IndexNodes& nodes_;
   HeightEncoding heights_;

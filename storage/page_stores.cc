@@ -3,8 +3,6 @@
 
 #include <cstring>
 
-#include <fcntl.h>
-
 #include "engine/check.h"
 #include "engine/error.h"
 #include "storage/checksum.h"
@@ -118,8 +116,7 @@ void PreadPageStore::read_described(PageId id, const layout::NodeEntry& descript
 }
 
 void PreadPageStore::will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept {
-  ::posix_fadvise(file_.descriptor(), static_cast<off_t>(offset), static_cast<off_t>(bytes),
-                  POSIX_FADV_WILLNEED);
+  file_.will_need(offset, bytes);
 }
 
 }  // namespace ptin

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "storage/read_only_file.h"
 
+#include <algorithm>
 #include <cerrno>
 
 #include <boost/interprocess/exceptions.hpp>
@@ -72,6 +73,19 @@ void ReadOnlyFile::read_at(std::span<std::byte> out, std::uint64_t offset) const
     }
     out = out.subspan(static_cast<std::size_t>(n));
     offset += static_cast<std::uint64_t>(n);
+  }
+}
+
+void ReadOnlyFile::expect_jumps() const noexcept {
+  ::posix_fadvise(descriptor(), 0, 0, POSIX_FADV_RANDOM);
+}
+
+void ReadOnlyFile::will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept {
+  // The kernel cuts one call short at its read-ahead limit, commonly 128 KiB.
+  constexpr std::uint64_t kStep = std::uint64_t{128} << 10;
+  for (std::uint64_t at = 0; at < bytes; at += kStep) {
+    ::posix_fadvise(descriptor(), static_cast<off_t>(offset + at),
+                    static_cast<off_t>(std::min(kStep, bytes - at)), POSIX_FADV_WILLNEED);
   }
 }
 

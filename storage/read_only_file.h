@@ -27,6 +27,12 @@ class ReadOnlyFile {
   /// @throws Error io_error; corruption when the file ends before
   void read_at(std::span<std::byte> out, std::uint64_t offset) const;
 
+  /// Tells the kernel that reads will jump about: its read-ahead reads up to three times what a
+  /// point needs. A hint.
+  void expect_jumps() const noexcept;
+  /// Starts reading a range. A hint.
+  void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept;
+
   /// Compares size, modification and change time with those at opening.
   /// What keeps all three (a write through a mapping made before, say) is not seen.
   /// @throws Error corruption

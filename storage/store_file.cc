@@ -65,6 +65,7 @@ StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access)
     nodes_ = std::make_unique<MappedIndexNodes>(file_, *mapping_, place);
     pages_ = std::make_unique<MappedPageStore>(file_, *mapping_, front_.slots, *nodes_);
   } else {
+    file_.expect_jumps();
     nodes_ = std::make_unique<PreadIndexNodes>(file_, place);
     pages_ = std::make_unique<PreadPageStore>(file_, front_.slots, *nodes_);
   }

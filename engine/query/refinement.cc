@@ -8,6 +8,7 @@
 #include "engine/large_array.h"
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
+#include "engine/query/apply_order.h"
 #include "engine/query/refinement_internal.h"
 
 namespace ptin {
@@ -210,7 +211,7 @@ void Refinement::add_vertices(std::span<const PendingSplit> splits, const Batch&
 std::vector<Refinement::Resolved> Refinement::resolve(std::span<const PendingSplit> splits,
                                                       const Batch& batch,
                                                       const QueryContext& context) const {
-  RankOrder order(splits);
+  const std::vector<std::uint32_t> places = places_of(splits);
   std::vector<Resolved> resolved;
   reserve_large(resolved, splits.size());
   resolved.resize(splits.size());
@@ -231,7 +232,7 @@ std::vector<Refinement::Resolved> Refinement::resolve(std::span<const PendingSpl
     if (r.w == KeyTable::kAbsent || r.vl == KeyTable::kAbsent || r.vr == KeyTable::kAbsent) {
       throw_refused(s, "it names a vertex that no retrieved record makes", context);
     }
-    resolved[order.take(s.rank)] = r;
+    resolved[places[i]] = r;
     r.triangle += triangles_of(s.flags);
   }
   return resolved;

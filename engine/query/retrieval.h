@@ -14,22 +14,25 @@
 
 namespace ptin {
 
-/// What is kept of a record between reading and applying: 48 bytes.
+/// What is kept of a record between reading and applying: 64 bytes.
 struct PendingSplit {
   VertexKey u, w, vl, vr;
   HeightBits height;
   std::uint16_t rank;
   std::uint16_t flags;  ///< VertexSplit::Flag.
   float error;
+  GridBox roi;         ///< What it needs has a larger one: an order of applying follows from it.
   std::uint32_t page;  ///< Index of its page, for errors and pictures; modulo 2^32.
 };
-static_assert(sizeof(PendingSplit) == 48);
+static_assert(sizeof(PendingSplit) == 64);
 
 /// What applying keeps of a record.
 [[nodiscard]] inline PendingSplit pending_of(const VertexSplit& r, PageId page) noexcept {
-  return {key_of(r.u),  key_of(r.w), key_of(r.vl),
-          key_of(r.vr), r.height,    r.rank,
-          r.flags,      r.error,     static_cast<std::uint32_t>(index_of(page))};
+  return {key_of(r.u),  key_of(r.w),
+          key_of(r.vl), key_of(r.vr),
+          r.height,     r.rank,
+          r.flags,      r.error,
+          r.roi,        static_cast<std::uint32_t>(index_of(page))};
 }
 
 /// Where records come from. Borrowed: store and index outlive the query.

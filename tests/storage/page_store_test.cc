@@ -3,6 +3,7 @@
 // The page stores, and what happens when the file changes under them.
 #include "storage/page_store.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -108,6 +109,20 @@ TEST_P(PageStoreTest, NamesANodeThatDoesNotMatchItsChecksum) {
   EXPECT_EQ(code_of([&] { static_cast<void>(store->page_info(PageId{3})); }),
             ErrorCode::corruption);
   EXPECT_EQ(code_of([&] { static_cast<void>(store->page_info(PageId{90})); }), std::nullopt);
+}
+
+TEST_P(PageStoreTest, AnnouncesTheNodesOfALevelBeforeTheyAreReadForTheFirstTime) {
+  const auto store = open();
+  const FunctionPredicate all([](const Attributes&) { return true; });
+  for (const std::uint64_t expected : {1U, 0U}) {  // four leaves, one beside the other
+    std::vector<PageId> ids;
+    IoCounters counters;
+    store->index().search(all, ids, counters);
+    EXPECT_EQ(counters.index_nodes, 5U);
+    EXPECT_EQ(counters.ranges_announced, expected);
+    EXPECT_EQ(ids.size(), store->pages().page_count());
+    EXPECT_TRUE(std::is_sorted(ids.begin(), ids.end()));
+  }
 }
 
 TEST_P(PageStoreTest, AnnouncesNearPagesAsOneRange) {
