@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The height along a line, with a break at every edge of the TIN that it crosses.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "engine/query/locate.h"
+
+namespace ptin {
+
+struct ProfileRequest {
+  /// Certified error asked for, in the height's unit, >= 0. None: exact.
+  std::optional<double> tolerance;
+  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
+  std::stop_token stop;
+};
+
+/// A point where the profile bends: a vertex of the line, or where it crosses an edge or a vertex
+/// of the TIN. Between two points the surface is straight.
+struct ProfilePoint {
+  MapPoint position;      ///< Map units.
+  double distance = 0.0;  ///< Along the line, plane, map units.
+  /// Height's unit; NaN where no surface touches the line.
+  double height = std::numeric_limits<double>::quiet_NaN();
+  /// What the stretch that begins here runs over; of a last point, what the one before does.
+  PointState state = PointState::kOutside;
+  std::uint32_t part = 0;  ///< Which segment of the line it is on.
+};
+
+struct ProfileResult {
+  std::vector<ProfilePoint> points;
+  double certified_error = 0.0;      ///< At samples.
+  double certified_deviation = 0.0;  ///< Of every height.
+  bool exact = false;
+  QueryCost cost;
+};
+
+/// Walks along a polyline of at least two points. Segments of no length are left out.
+/// @throws Error invalid_argument    fewer than two points; a coordinate that is not finite, or
+/// more than 2^31 grid units away; a tolerance that is negative or NaN
+///               resource_exhausted, corruption, io_error, cancelled
+/// Cost: the records whose region of influence meets the line, and the triangles on the way.
+[[nodiscard]] ProfileResult profile(const ProgressiveTin& terrain, std::span<const MapPoint> line,
+                                    const ProfileRequest& request = {});
+
+}  // namespace ptin
