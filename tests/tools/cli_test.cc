@@ -39,8 +39,8 @@ json answer_of(const std::vector<std::string>& arguments) {
 TEST(Cli, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(run_ptin({"--help"}).status, 0);
   EXPECT_TRUE(run_ptin({"--version"}).out.starts_with("ptin "));
-  for (const char* command : {"build", "info", "verify", "refine", "isoline", "stream", "unstream",
-                              "highest", "render", "completion"}) {
+  for (const char* command : {"build", "info", "verify", "refine", "isoline", "locate", "profile",
+                              "sight", "stream", "unstream", "highest", "render", "completion"}) {
     const Outcome help = run_ptin({command, "--help"});
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos)

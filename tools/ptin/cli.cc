@@ -101,6 +101,27 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 -k 10 --json\n"
      "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 --lowest\n",
      declare_highest},
+    {"locate", "Tell the triangle and the height at points",
+     "Three answers, told apart: a height (surface), void, outside. None is an error.\n\n"
+     "Examples:\n"
+     "  ptin locate dem.ptin 387500 3792500 --json\n"
+     "  ptin locate dem.ptin --points wells.gpkg --error 5\n"
+     "  cut -d, -f2,3 track.csv | ptin locate dem.ptin --points - > heights.csv\n",
+     declare_locate},
+    {"profile", "Tell the height along a line, with a break at every edge crossed",
+     "Examples:\n"
+     "  ptin profile dem.ptin --line 'LINESTRING(385000 3790000, 390000 3795000)'\n"
+     "  ptin profile dem.ptin --line road.geojson --error 1 -o road.png\n",
+     declare_profile},
+    {"sight", "Tell whether one point sees another, and what is in the way",
+     "Hidden: some inner point of the line lies below the surface. Touching is visible; voids do "
+     "not obstruct.\n"
+     "Heights are above ground, or with --absolute absolute.\n\n"
+     "Examples:\n"
+     "  ptin sight dem.ptin 385000 3790000 2 390000 3795000 10 --json\n"
+     "  ptin sight dem.ptin --pairs links.csv --frequency 5.8e9 > links_seen.csv\n"
+     "  ptin sight dem.ptin --pairs - --verdict --curvature 0 < pairs.txt\n",
+     declare_sight},
     {"render", "Draw shaded relief, triangles or pages as a PNG",
      "Examples:\n"
      "  ptin render dem.ptin -o dem.png\n"

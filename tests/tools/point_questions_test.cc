@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin locate, profile and sight, end to end.
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using nlohmann::json;
+using testing::lines_in;
+using testing::Outcome;
+using testing::run_ptin;
+using testing::TestFolder;
+using testing::write_file;
+
+/// A wall of 100 across flat ground of 10, 30 m pixels; the north-eastern corner is void.
+std::string wall(const TestFolder& folder) {
+  testing::RasterRecipe recipe;
+  recipe.nodata = -9999.0;
+  recipe.value = [](int column, int row) {
+    if (column > 28 && row < 4) return -9999.0;
+    return column == 16 ? 100.0 : 10.0;
+  };
+  testing::make_raster(folder.file("wall.tif"), recipe);
+  const Outcome built =
+      run_ptin({"build", folder.file("wall.tif"), "-o", folder.file("wall.ptin"), "-q"});
+  EXPECT_EQ(built.status, 0) << built.err;
+  return folder.file("wall.ptin");
+}
+
+json answer_of(const std::vector<std::string>& arguments) {
+  const Outcome outcome = run_ptin(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return json::parse(outcome.out, nullptr, false);
+}
+
+constexpr double kWest = 500015.0;    // centre of the western column
+constexpr double kNorth = 3999985.0;  // centre of the northern row
+
+std::string east(double columns) { return std::to_string(kWest + 30 * columns); }
+std::string south(double rows) { return std::to_string(kNorth - 30 * rows); }
+
+TEST(LocateCommand, TellsThreeStatesApart) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const json top = answer_of({"locate", terrain, east(16), south(10), "--json"}).at("points").at(0);
+  EXPECT_EQ(top.at("state"), "surface");
+  EXPECT_EQ(top.at("height"), 100.0);
+  EXPECT_EQ(top.at("height_min"), top.at("height_max"));
+  EXPECT_EQ(top.at("triangle").size(), 3u);
+  const json hole = answer_of({"locate", terrain, east(31), south(1), "--json"}).at("points").at(0);
+  EXPECT_EQ(hole.at("state"), "void");
+  EXPECT_TRUE(hole.at("height").is_null());
+  const json off = answer_of({"locate", terrain, "0", "0", "--json"}).at("points").at(0);
+  EXPECT_EQ(off.at("state"), "outside");
+}
+
+TEST(LocateCommand, ReadsManyPointsAndKeepsTheirOrder) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  write_file(folder.file("p.csv"),
+             "x,y\n" + east(15.5) + "," + south(20) + "\n0 0\n" + east(3) + ";" + south(3) + "\n");
+  const Outcome outcome = run_ptin({"locate", terrain, "--points", folder.file("p.csv")});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(lines_in(outcome.out), 4u);
+  EXPECT_NE(outcome.out.find("surface,55,55,55"), std::string::npos) << outcome.out;
+  EXPECT_LT(outcome.out.find("surface,55"), outcome.out.find("outside"));
+  EXPECT_LT(outcome.out.find("outside"), outcome.out.find("surface,10,10,10"));
+}
+
+TEST(LocateCommand, NamesTheLineThatIsNoPoint) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  write_file(folder.file("p.csv"), "x,y\n1,2\nhere\n");
+  const Outcome outcome = run_ptin({"locate", terrain, "--points", folder.file("p.csv")});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("line 3"), std::string::npos) << outcome.err;
+  EXPECT_EQ(run_ptin({"locate", terrain}).status, 2);
+  EXPECT_EQ(run_ptin({"locate", terrain, "--points", folder.file("none.csv")}).status, 3);
+}
+
+TEST(ProfileCommand, BreaksAtEveryEdgeAndWritesThreeFormats) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string line =
+      "LINESTRING(" + east(14) + " " + south(20) + "," + east(18) + " " + south(20) + ")";
+  const json profile = answer_of({"profile", terrain, "--line", line, "--json"});
+  ASSERT_EQ(profile.at("points").size(), 5u);  // along a row: a break at each sample
+  EXPECT_EQ(profile.at("points").at(2).at("height"), 100.0);
+  EXPECT_EQ(profile.at("length"), 120.0);
+  for (const char* name : {"p.csv", "p.geojson", "p.png"}) {
+    EXPECT_EQ(run_ptin({"profile", terrain, "--line", line, "-o", folder.file(name)}).status, 0);
+    EXPECT_GT(std::filesystem::file_size(folder.file(name)), 50u);
+  }
+  EXPECT_EQ(run_ptin({"profile", terrain, "--line", line, "-o", folder.file("p.doc")}).status, 2);
+}
+
+TEST(SightCommand, SeesOverAndNotThroughAWall) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const json low = answer_of({"sight", terrain, east(4), south(20), "5", east(28), south(20), "5",
+                              "--curvature", "0", "--json"});
+  EXPECT_EQ(low.at("verdict"), "hidden");
+  EXPECT_NEAR(low.at("obstruction").at("distance").get<double>(), 30 * (11 + 5.0 / 90), 1e-6);
+  EXPECT_NEAR(low.at("clearance").at("min").get<double>(), -85.0, 1e-9);
+  const json high = answer_of({"sight", terrain, east(4), south(20), "90", east(28), south(20),
+                               "90", "--curvature", "0", "--json"});
+  EXPECT_EQ(high.at("verdict"), "visible");  // it touches
+  EXPECT_NEAR(high.at("clearance").at("min").get<double>(), 0.0, 1e-9);
+  const json bent =
+      answer_of({"sight", terrain, east(4), south(20), "90", east(28), south(20), "90", "--json"});
+  EXPECT_EQ(bent.at("verdict"), "hidden");  // the Earth's curvature is enough
+  const json over_void =
+      answer_of({"sight", terrain, east(31), south(1), "5", east(28), south(20), "5", "--json"});
+  EXPECT_TRUE(over_void.at("verdict").is_null());
+  EXPECT_EQ(over_void.at("ends").at(0), "void");
+}
+
+TEST(SightCommand, AnswersPairsInTheirOrder) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  std::string rows;
+  for (int i = 0; i < 20; ++i) {
+    const std::string height = i % 2 == 0 ? "1" : "200";
+    rows += east(4) + " " + south(12 + i) + " " + height + " " + east(28) + " " + south(12 + i) +
+            " " + height + "\n";
+  }
+  write_file(folder.file("pairs.txt"), rows);
+  const json answers = answer_of({"sight", terrain, "--pairs", folder.file("pairs.txt"), "--json"});
+  ASSERT_EQ(answers.at("pairs").size(), 20u);
+  for (std::size_t i = 0; i < 20; ++i) {
+    EXPECT_EQ(answers.at("pairs").at(i).at("verdict"), i % 2 == 0 ? "hidden" : "visible");
+  }
+}
+
+}  // namespace
+}  // namespace ptin::tools

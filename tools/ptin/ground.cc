@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/ground.h"
+
+#include <cmath>
+
+#include <geodesic.h>
+#include <ogr_spatialref.h>
+
+namespace ptin::tools {
+
+namespace {
+
+/// Metres in a unit of height: that of the vertical CRS, else metres.
+double metres_per_height(const OGRSpatialReference& srs) {
+  return srs.IsCompound() != 0 ? srs.GetTargetLinearUnits("VERT_CS", nullptr) : 1.0;
+}
+
+}  // namespace
+
+Ground ground_of(const std::string& crs_wkt) {
+  Ground ground;
+  OGRSpatialReference srs;
+  const bool known = !crs_wkt.empty() && srs.importFromWkt(crs_wkt.c_str()) == OGRERR_NONE;
+  if (known) {
+    ground.metres_per_height = metres_per_height(srs);
+    ground.earth_diameter = 2 * srs.GetSemiMajor() / ground.metres_per_height;
+  }
+  if (known && srs.IsGeographic() != 0) {
+    geod_geodesic ellipsoid;
+    const double inverse = srs.GetInvFlattening();
+    geod_init(&ellipsoid, srs.GetSemiMajor(), inverse > 0 ? 1 / inverse : 0.0);
+    const double degrees = srs.GetAngularUnits() * 180 / M_PI;
+    ground.distance = [ellipsoid, degrees, scale = ground.metres_per_height](MapPoint a,
+                                                                             MapPoint b) {
+      double metres = 0.0;
+      geod_inverse(&ellipsoid, a.y * degrees, a.x * degrees, b.y * degrees, b.x * degrees, &metres,
+                   nullptr, nullptr);
+      return metres / scale;
+    };
+    return ground;
+  }
+  const double scale = (known ? srs.GetLinearUnits() : 1.0) / ground.metres_per_height;
+  ground.distance = [scale](MapPoint a, MapPoint b) {
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    return scale * std::sqrt(dx * dx + dy * dy);
+  };
+  return ground;
+}
+
+}  // namespace ptin::tools
