@@ -182,7 +182,8 @@ std::size_t Simplifier::most_samples() const {
   if (!is_capped_) {
     return std::numeric_limits<std::size_t>::max();
   }
-  return std::max(kWitnessesInWork, first_samples_ / static_cast<std::size_t>(2 * alive_ + 1));
+  return std::clamp(first_samples_ / static_cast<std::size_t>(2 * alive_ + 1), kWitnessesInWork,
+                    kMostWitnessesInWork);
 }
 
 void Simplifier::compact_when_sparse() {

@@ -54,10 +54,11 @@ std::uint64_t TileTree::leaf_number(const SampleRange& window) const noexcept {
 }
 
 std::int64_t TileTree::default_side(std::int64_t width, std::int64_t height) noexcept {
+  constexpr std::int64_t kStep = 32;
   const std::int64_t longer = std::max(width, height);
   std::int64_t side = 256;
   while (side * side < 10 * longer) {
-    side *= 2;
+    side += kStep;
   }
   return longer <= side + side / 2 ? longer : side;
 }

@@ -12,9 +12,10 @@
 namespace ptin {
 
 inline constexpr std::size_t kWitnesses = 8;
-/// Samples that a triangle of a tile of witnesses may keep while it is collapsed, at least: coarse
-/// fans would otherwise hold all of them.
+/// Samples that a triangle of a tile of witnesses may keep while it is collapsed, at least and at
+/// most: coarse fans would otherwise hold all of them.
 inline constexpr std::size_t kWitnessesInWork = 32;
+inline constexpr std::size_t kMostWitnessesInWork = 1024;
 
 /// Cuts the samples of a triangle down to at most `most`: those with the largest residuals of
 /// either sign, spread over its corners; of samples in the wrong class the deepest, and of voids in
