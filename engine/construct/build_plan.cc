@@ -27,19 +27,44 @@ std::string folder_of(const std::string& path) {
   return parent.empty() ? "." : parent;
 }
 
+/// Of the largest leaf: the last one of a row may be half a side longer than the others.
 std::uint64_t samples_of_leaf(const TileTree& tree) {
-  const SampleRange w = tree.window({0, 0, 0});
-  return static_cast<std::uint64_t>(w.width) * static_cast<std::uint64_t>(w.height);
+  TileId last = tree.root();
+  while (last.level > 0) {
+    last = tree.children(last).back();
+  }
+  const SampleRange w = tree.window(last);
+  const SampleRange first = tree.window({0, 0, 0});
+  return static_cast<std::uint64_t>(std::max(w.width, first.width)) *
+         static_cast<std::uint64_t>(std::max(w.height, first.height));
 }
 
 std::string in_mib(std::uint64_t bytes) { return std::to_string((bytes + kMiB - 1) / kMiB) + "M"; }
 
+/// What the largest piece of work takes: a batch of leaves, or the join of four tiles, which holds
+/// as many vertices as a leaf and those of the seams around it and in it.
+std::uint64_t bytes_of_largest(std::uint64_t leaf_samples, const TileTree& tree,
+                               const TileBytes& tile_bytes) {
+  const std::uint64_t leaf =
+      std::max(tile_bytes.of_batch(leaf_samples), tile_bytes.of_replay(leaf_samples));
+  if (tree.levels() < 3) {  // joined within the batch
+    return leaf;
+  }
+  const SampleRange whole = tree.window(tree.root());
+  const auto seams = static_cast<std::uint64_t>(whole.width + whole.height);
+  return std::max(leaf, tile_bytes.of_join((leaf_samples + seams) * tile_bytes.pushed_of_vertex));
+}
+
 /// The longest side whose tiles fit into `bytes`.
-std::int64_t side_that_fits(std::uint64_t bytes, const TileBytes& tile_bytes) {
-  std::int64_t side = 4096;
-  while (side > 16 && tile_bytes.of_batch(static_cast<std::uint64_t>(side + 1) *
-                                          static_cast<std::uint64_t>(side + 1)) > bytes) {
-    side /= 2;
+std::int64_t side_that_fits(std::uint64_t bytes, const TileTree& tree,
+                            const TileBytes& tile_bytes) {
+  std::int64_t side = tree.side();
+  const auto fits = [&] {  // the last tile of a row may be half a side longer
+    const auto longest = static_cast<std::uint64_t>(side + side / 2);
+    return bytes_of_largest(longest * longest, tree, tile_bytes) <= bytes;
+  };
+  while (side > 32 && !fits()) {
+    side -= 16;
   }
   return side;
 }
@@ -48,29 +73,37 @@ void plan_memory(BuildPlan& plan, const TileTree& tree, const BuildResources& re
                  const TileBytes& tile_bytes) {
   const std::uint64_t present = anonymous_bytes_now();
   const std::uint64_t samples = samples_of_leaf(tree);
-  const std::uint64_t one = std::max(tile_bytes.of_batch(samples), tile_bytes.of_replay(samples));
+  const std::uint64_t one = bytes_of_largest(samples, tree, tile_bytes);
   plan.memory_limit = resources.memory_bytes != 0 ? resources.memory_bytes : default_memory();
   plan.threads_wanted = resources.threads > 0
                             ? resources.threads
                             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   plan.threads = plan.threads_wanted;
   MemoryShares shares = share_memory(plan.memory_limit, present, plan.threads);
-  while (plan.threads > 1 && shares.tiles < one * static_cast<std::uint64_t>(plan.threads)) {
+  const std::uint64_t batch = std::max(tile_bytes.of_batch(samples), tile_bytes.of_replay(samples));
+  const auto fit = [&] {
+    return shares.tiles >= one && shares.tiles >= batch * static_cast<std::uint64_t>(plan.threads);
+  };
+  while (plan.threads > 1 && !fit()) {
     shares = share_memory(plan.memory_limit, present, --plan.threads);
   }
   if (shares.tiles < one) {
-    const std::uint64_t rest = share_memory(~std::uint64_t{0}, present, 1).tiles;
-    const std::uint64_t besides = ~std::uint64_t{0} - rest;
+    std::uint64_t enough = plan.memory_limit;
+    while (share_memory(enough, present, 1).tiles < one) {
+      enough += kMiB;
+    }
     throw Error(ErrorCode::resource_exhausted,
                 "a tile of " + std::to_string(plan.tile_side) + " samples a side needs " +
-                    in_mib(one + besides) + " and the limit is " + in_mib(plan.memory_limit) +
-                    "; give --memory " + in_mib(one + besides) + ", or --tile " +
-                    std::to_string(side_that_fits(shares.tiles, tile_bytes)));
+                    in_mib(enough) + " of memory in all and the limit is " +
+                    in_mib(plan.memory_limit) + "; give --memory " + in_mib(enough) +
+                    ", or --tile " +
+                    std::to_string(side_that_fits(shares.tiles, tree, tile_bytes)));
   }
   plan.gdal_cache = shares.gdal_cache;
   plan.tile_bytes = shares.tiles;
   plan.memory_expected =
-      plan.memory_limit - shares.tiles + one * static_cast<std::uint64_t>(plan.threads);
+      plan.memory_limit - shares.tiles +
+      std::min(shares.tiles, std::max(one, batch * static_cast<std::uint64_t>(plan.threads)));
 }
 
 std::uint64_t free_in(const std::string& folder) {

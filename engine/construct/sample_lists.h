@@ -77,11 +77,11 @@ class SampleLists {
     }
   }
 
-  /// True when most of the pool is free lists of lengths that nobody asks for any more: as
+  /// True when a third of the pool is free lists of lengths that nobody asks for any more: as
   /// triangles grow, so do their lists. Time to lay them out anew (tile_compact.h).
   [[nodiscard]] bool is_sparse() const noexcept {
     constexpr std::size_t kWorthwhile = std::size_t{1} << 16;
-    return pool_.size() > kWorthwhile && pool_.size() / 2 > used_;
+    return pool_.size() > kWorthwhile && pool_.size() / 3 * 2 > used_;
   }
   /// Samples in lists, each rounded up to its capacity.
   [[nodiscard]] std::size_t used() const noexcept { return used_; }

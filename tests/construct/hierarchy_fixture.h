@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a build over a tree of tiles needs besides the terrain: a folder, and an output that keeps
-// records in memory.
+// What a build over a tree of tiles needs besides the terrain: files that fail or are not synced,
+// and an output that keeps records in memory.
 #pragma once
 
-#include <cstdlib>
-#include <filesystem>
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,34 +18,59 @@
 
 namespace ptin::test {
 
-/// A new folder, removed with all that is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "ptin-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      std::abort();
-    }
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 /// Files that are never synced: tests survive no power cut anyway.
 class UnsyncedFiles : public FileLayer {
  public:
   int sync(int) noexcept override { return 0; }
   int sync_folder(const std::string&) noexcept override { return 0; }
+};
+
+/// From the n-th call on everything fails but closing and removing, as on a disk that is full or
+/// gone; half of the first failing write gets through.
+class FailingFiles final : public FileLayer {
+ public:
+  explicit FailingFiles(int nth) : nth_(nth) {}
+  /// Calls so far that could have failed.
+  [[nodiscard]] int calls() const { return calls_; }
+
+  int create(const std::string& path, int& fd) noexcept override {
+    return fails() ? ENOSPC : FileLayer::create(path, fd);
+  }
+  int open(const std::string& path, int& fd) noexcept override {
+    return fails() ? EIO : FileLayer::open(path, fd);
+  }
+  int write_at(int fd, std::span<const std::byte> bytes, std::uint64_t offset,
+               std::size_t& written) noexcept override {
+    if (fails()) {
+      static_cast<void>(FileLayer::write_at(fd, bytes.first(bytes.size() / 2), offset, written));
+      written = 0;
+      return ENOSPC;
+    }
+    return FileLayer::write_at(fd, bytes, offset, written);
+  }
+  int read_at(int fd, std::span<std::byte> bytes, std::uint64_t offset,
+              std::size_t& read) noexcept override {
+    return fails() ? EIO : FileLayer::read_at(fd, bytes, offset, read);
+  }
+  int allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexcept override {
+    return fails() ? ENOSPC : FileLayer::allocate(fd, offset, bytes);
+  }
+  int truncate(int fd, std::uint64_t bytes) noexcept override {
+    return fails() ? EIO : FileLayer::truncate(fd, bytes);
+  }
+  int sync(int) noexcept override { return fails() ? EIO : 0; }
+  int rename(const std::string& from, const std::string& to, bool replace) noexcept override {
+    return fails() ? EIO : FileLayer::rename(from, to, replace);
+  }
+  int make_folder(const std::string& path) noexcept override {
+    return fails() ? ENOSPC : FileLayer::make_folder(path);
+  }
+  int sync_folder(const std::string&) noexcept override { return fails() ? EIO : 0; }
+
+ private:
+  bool fails() noexcept { return ++calls_ >= nth_; }
+  int nth_;
+  int calls_ = 0;
 };
 
 /// Segments as they come, and where each ends.

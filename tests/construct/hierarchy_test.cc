@@ -19,6 +19,7 @@
 #include "engine/construct/raster_tin.h"
 #include "engine/mesh/validate.h"
 #include "tests/construct/hierarchy_fixture.h"
+#include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
 #include "tests/construct/test_terrain.h"
 
@@ -80,9 +81,9 @@ struct Built {
 
 Built build_tiled(const TestTerrain& terrain, std::int64_t side, int threads = 1) {
   const SampledRaster raster(terrain);
-  const test::TemporaryFolder folder;
+  const oracle::ScratchFolder folder;
   test::UnsyncedFiles files;
-  Workspace workspace(files, folder.path() + "/t.ptin", "", Unfinished::kRefuse, {});
+  Workspace workspace(files, folder.file("t.ptin"), "", Unfinished::kRefuse, {});
   test::RecordsInMemory output;
   HierarchyOptions options;
   options.collapse.units = terrain.tile.units;

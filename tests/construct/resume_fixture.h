@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A small build that can be interrupted, and what must hold of it afterwards.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/construct/build.h"
+#include "engine/error.h"
+#include "tests/construct/made_raster.h"
+
+namespace ptin::test {
+
+/// Hills of 65 x 65 samples with a lake, in tiles of 16.
+class InterruptibleBuild {
+ public:
+  InterruptibleBuild();
+
+  [[nodiscard]] BuildOptions options() const;
+  /// Every note is a checkpoint.
+  [[nodiscard]] static BuildResources resources();
+  [[nodiscard]] std::string output() const { return folder_.file("out.ptin"); }
+  [[nodiscard]] const oracle::ScratchFolder& folder() const { return folder_; }
+
+  /// The code of the error that the build throws; none when it ends well.
+  [[nodiscard]] std::optional<ErrorCode> run(const BuildResources& resources) const;
+  /// Resumes with the system's files until the build ends well, and expects the bytes of one that
+  /// was not interrupted, and nothing else in the folder.
+  void expect_resumed_to_the_same_bytes() const;
+
+ private:
+  oracle::WrittenRaster raster_;
+  oracle::ScratchFolder folder_;
+  std::string expected_;
+};
+
+}  // namespace ptin::test
