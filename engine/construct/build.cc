@@ -28,7 +28,7 @@ namespace {
 
 /// What a leaf of points takes: its triangulation by CGAL goes before its collapses begin, its copy
 /// of the full surface stays.
-constexpr TileBytes kPointTileBytes{560, 480, 4.0, 8U << 20};
+constexpr TileBytes kPointTileBytes{.collapse_of_sample = 640, .replay_of_sample = 560};
 
 /// One call of build(): what it was asked, and what it reports.
 struct Job {
