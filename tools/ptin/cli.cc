@@ -122,6 +122,15 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin sight dem.ptin --pairs links.csv --frequency 5.8e9 > links_seen.csv\n"
      "  ptin sight dem.ptin --pairs - --verdict --curvature 0 < pairs.txt\n",
      declare_sight},
+    {"viewshed", "Find what one observer sees",
+     "A target is hidden when some point of the straight line to it lies strictly below the "
+     "surface; "
+     "touching is\n"
+     "visible, and voids hide nothing. The surface is the TIN, without interpolation of cells.\n\n"
+     "Examples:\n"
+     "  ptin viewshed dem.ptin 387500 3792500 1.7 --radius 10000 -o seen.tif\n"
+     "  ptin viewshed dem.ptin 387500 3792500 30 --radius 40000 --curvature 0.85714 -o seen.gpkg\n",
+     declare_viewshed},
     {"render", "Draw shaded relief, triangles or pages as a PNG",
      "Examples:\n"
      "  ptin render dem.ptin -o dem.png\n"

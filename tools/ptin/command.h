@@ -46,6 +46,7 @@ Action declare_sight(CLI::App& app, Context& context);
 Action declare_render(CLI::App& app, Context& context);
 Action declare_isoline(CLI::App& app, Context& context);
 Action declare_highest(CLI::App& app, Context& context);
+Action declare_viewshed(CLI::App& app, Context& context);
 Action declare_completion(CLI::App& app, Context& context);
 
 /// Declares --json (and -q where there is something to silence).

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The horizon around an eye: for each direction the steepest of the edges seen so far.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ptin {
+
+/// A point relative to the eye, in any unit that is the same for all.
+struct Offset {
+  double x = 0, y = 0, z = 0;
+};
+
+/// Twice the signed area of the triangle (eye, a, b) in the plane.
+[[nodiscard]] inline double turn(const Offset& a, const Offset& b) noexcept {
+  return a.x * b.y - a.y * b.x;
+}
+
+/// The upper envelope, over the directions around the eye, of the edges that were raised. An edge
+/// is the plane through it and the eye: a direction sees its height as a slope that is linear in
+/// the direction. So there are no angles, and where offsets are integers of moderate size (products
+/// of three below 2^53) no comparison rounds, but for where two edges cross each other's direction.
+/// Threads: one owner.
+///
+/// Edges must come front to back: whatever is asked lies beyond all edges raised in its direction.
+/// Directions are kept in buckets, each with its pieces in order; edges near the eye span many
+/// buckets, those far away one.
+class Horizon {
+ public:
+  /// @param buckets  About four times the radius in edges' lengths; >= 4.
+  explicit Horizon(std::size_t buckets);
+
+  /// Which of two pieces that meet exactly in the direction asked for counts.
+  enum class Side : std::uint8_t { kBoth, kLeft, kRight };
+
+  /// Raises the horizon to the edge a -> b. REQUIRES: turn(a, b) > 0.
+  void raise(const Offset& a, const Offset& b);
+
+  /// True when no edge in front rises strictly above the ray to `p`. REQUIRES: not the eye itself.
+  [[nodiscard]] bool sees(const Offset& p, Side side = Side::kBoth) const noexcept;
+
+  [[nodiscard]] std::size_t pieces() const noexcept { return pieces_; }
+
+ private:
+  struct Direction {
+    double x, y;
+  };
+  /// Points with n . p >= 0 lie on or above the plane; z == 0: no edge yet.
+  struct Plane {
+    double x = 0, y = 0, z = 0;
+    friend bool operator==(const Plane&, const Plane&) = default;
+  };
+  /// From `start` counter-clockwise to the next piece, or the end of its bucket.
+  struct Piece {
+    Direction start;
+    Plane plane;
+  };
+  static double turn(Direction a, Direction b) noexcept { return a.x * b.y - a.y * b.x; }
+  [[nodiscard]] std::size_t bucket_of(Direction d) const noexcept;
+  [[nodiscard]] std::size_t after(std::size_t bucket) const noexcept {
+    return bucket + 1 == buckets_.size() ? 0 : bucket + 1;
+  }
+  static bool hides(const Plane& plane, const Offset& p) noexcept {
+    return plane.z > 0 && plane.x * p.x + plane.y * p.y + plane.z * p.z < 0;
+  }
+  void raise_in(std::size_t bucket, Direction from, Direction to, const Plane& plane);
+  void add(Direction start, const Plane& plane);
+
+  std::vector<Direction> borders_;  ///< Where each bucket begins.
+  std::vector<std::vector<Piece>> buckets_;
+  std::vector<Piece> scratch_;
+  std::size_t pieces_ = 0;
+};
+
+}  // namespace ptin

@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/viewshed.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/query/horizon.h"
+#include "engine/query/walk.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::size_t kStopInterval = 4096;
+constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1;
+constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
+
+Error invalid(const char* message) { return Error(ErrorCode::invalid_argument, message); }
+
+void check(const ViewshedRequest& r) {
+  if (!std::isfinite(r.eye.x) || !std::isfinite(r.eye.y) || !std::isfinite(r.eye_height)) {
+    throw invalid("the observer's position or height is not a finite number");
+  }
+  if (!(r.radius > 0) || !std::isfinite(r.radius)) {
+    throw invalid("the radius must be a number > 0");
+  }
+  if (!(r.target_height >= 0) || !std::isfinite(r.target_height)) {
+    throw invalid("the target's height must be a number >= 0");
+  }
+  if (r.pixel_size && !(*r.pixel_size > 0 && std::isfinite(*r.pixel_size))) {
+    throw invalid("the pixel size must be a number > 0");
+  }
+  if (!std::isfinite(r.curvature) || !(r.earth_radius > 0) || !(r.ground_per_map_x > 0) ||
+      !(r.ground_per_map_y > 0)) {
+    throw invalid("curvature, earth radius or ground units are not what they should be");
+  }
+}
+
+/// Whether a corner of a triangle, or a point of it, is looked at from within the triangle.
+struct Approach {
+  bool from_within = false;
+  Horizon::Side side = Horizon::Side::kBoth;
+};
+
+class Viewer {
+ public:
+  Viewer(const Tin& tin, const StoreFacts& facts, const ViewshedRequest& request,
+         const QueryContext& context)
+      : tin_(tin), facts_(facts), request_(request), context_(context) {
+    const auto spot = SpotMap(facts.map, facts.bounds).spot(request.eye);
+    if (!spot) {
+      throw invalid("the observer stands outside of the terrain");
+    }
+    spot_ = *spot;
+    eye_ = grid_of(spot_);
+    ground_x_ = facts.map.step_x * request.ground_per_map_x;
+    ground_y_ = facts.map.step_y * request.ground_per_map_y;
+  }
+
+  Viewshed run() {
+    find_eye_height();
+    place_vertices();
+    place_pixels();
+    sweep();
+    collect();
+    return std::move(result_);
+  }
+
+ private:
+  void find_eye_height();
+  void place_vertices();
+  void place_pixels();
+  void sweep();
+  void collect();
+  void look_at(TriangleId t, Horizon& horizon);
+  void look_at_pixels(TriangleId t, const Horizon& horizon);
+  void look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column, std::int64_t row);
+  [[nodiscard]] Approach approach_corner(const std::array<Offset, 3>& o, int corner) const noexcept;
+  [[nodiscard]] double drop(double x, double y) const noexcept {
+    const double gx = x * ground_x_;
+    const double gy = y * ground_y_;
+    return request_.curvature * (gx * gx + gy * gy) / (2 * request_.earth_radius);
+  }
+  [[nodiscard]] bool within(double x, double y) const noexcept {
+    const double gx = x * ground_x_;
+    const double gy = y * ground_y_;
+    return gx * gx + gy * gy <= request_.radius * request_.radius;
+  }
+  [[nodiscard]] std::array<Offset, 3> offsets(TriangleId t) const noexcept {
+    const auto& v = tin_.triangles[t].v;
+    return {offsets_[v[0]], offsets_[v[1]], offsets_[v[2]]};
+  }
+  [[nodiscard]] bool is_surface(TriangleId t) const noexcept {
+    return t != kNone && tin_.classes[t] == TriangleClass::kSurface;
+  }
+  /// A target in line with an edge is looked at along it from both sides, each when its triangle
+  /// comes: only then is what was raised on that side in front of the target.
+  static void see(Sight& target, bool visible) noexcept {
+    target = visible && target != Sight::kHidden ? Sight::kVisible : Sight::kHidden;
+  }
+
+  const Tin& tin_;
+  const StoreFacts& facts_;
+  const ViewshedRequest& request_;
+  const QueryContext& context_;
+  Spot spot_;
+  MapPoint eye_;  ///< The spot in grid units.
+  double ground_x_ = 1, ground_y_ = 1;
+  std::vector<Offset> offsets_;       ///< Beside the vertices: grid units, and height's unit.
+  std::vector<Sight> seen_;           ///< Beside the vertices; kNothing: not looked at yet.
+  double pixel_x_ = 1, pixel_y_ = 1;  ///< Grid units.
+  double first_x_ = 0, first_y_ = 0;  ///< Offset of pixel 0.
+  bool pixels_on_grid_ = false;
+  Viewshed result_;
+};
+
+void Viewer::find_eye_height() {
+  const Place place = find_spot(tin_, spot_, 0);
+  if (place.lies == Lies::kOutside) {
+    throw invalid("the observer stands outside of the terrain");
+  }
+  result_.eye_height = request_.eye_height;
+  if (request_.absolute) {
+    return;
+  }
+  if (!is_surface(answering_triangle(tin_, place))) {
+    throw invalid(
+        "the observer stands on a void, where no height is known; give an absolute height");
+  }
+  const Footing footing = footing_of(tin_, spot_, place);
+  result_.eye_height += facts_.heights.height_of_code(code_at(tin_, facts_.heights, footing));
+}
+
+void Viewer::place_vertices() {
+  context_.admit(tin_.vertices.size() * (sizeof(Vertex) + 1 + kVertexBytes) +
+                 tin_.triangles.size() * (sizeof(Triangle) + 1 + kTriangleBytes));
+  offsets_.reserve(tin_.vertices.size());
+  for (const Vertex& v : tin_.vertices) {
+    const double x = v.position.x - eye_.x;
+    const double y = v.position.y - eye_.y;
+    offsets_.push_back({x, y, facts_.heights.height(v.height) - result_.eye_height - drop(x, y)});
+  }
+  seen_.assign(tin_.vertices.size(), Sight::kNothing);
+}
+
+void Viewer::place_pixels() {
+  pixel_x_ = request_.pixel_size ? *request_.pixel_size / facts_.map.step_x : 1.0;
+  pixel_y_ = request_.pixel_size ? *request_.pixel_size / facts_.map.step_y : 1.0;
+  pixels_on_grid_ = !request_.pixel_size;
+  const double reach_x = std::floor(request_.radius / (ground_x_ * pixel_x_));
+  const double reach_y = std::floor(request_.radius / (ground_y_ * pixel_y_));
+  constexpr double kMostPixels = 1e5;
+  if (reach_x > kMostPixels || reach_y > kMostPixels) {
+    throw invalid("the raster has more than 200 000 pixels a side: give a larger pixel size");
+  }
+  // On the grid: centres are the grid points, whatever the eye.
+  const double centre_x = pixels_on_grid_ ? std::floor(eye_.x + 0.5) - eye_.x : 0.0;
+  const double centre_y = pixels_on_grid_ ? std::floor(eye_.y + 0.5) - eye_.y : 0.0;
+  result_.width = static_cast<std::uint32_t>(2 * reach_x) + 1;
+  result_.height = static_cast<std::uint32_t>(2 * reach_y) + 1;
+  context_.admit(std::uint64_t{result_.width} * result_.height);
+  first_x_ = centre_x - reach_x * pixel_x_;
+  first_y_ = centre_y + reach_y * pixel_y_;
+  result_.first = facts_.map.to_map(eye_.x + first_x_, eye_.y + first_y_);
+  result_.step_x = pixel_x_ * facts_.map.step_x;
+  result_.step_y = pixel_y_ * facts_.map.step_y;
+  result_.pixels.assign(std::size_t{result_.width} * result_.height, Sight::kNothing);
+}
+
+/// Front to back: a triangle comes when all neighbours across the sides that face the eye have
+/// come. A side that turns its back to the eye is raised when its triangle has been looked at.
+void Viewer::sweep() {
+  std::vector<std::uint8_t> waits(tin_.triangles.size());
+  std::vector<TriangleId> ready;
+  std::size_t left = 0;
+  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    if (!tin_.is_alive(t)) {
+      continue;
+    }
+    ++left;
+    const auto o = offsets(t);
+    for (int i = 0; i < 3; ++i) {
+      const bool faces = turn(o[static_cast<std::size_t>(next_corner(i))],
+                              o[static_cast<std::size_t>(previous_corner(i))]) < 0;
+      if (faces && tin_.triangles[t].n[i] != kNone) {
+        ++waits[t];
+      }
+    }
+    if (waits[t] == 0) {
+      ready.push_back(t);
+    }
+  }
+  const double across = std::max(request_.radius / ground_x_, request_.radius / ground_y_);
+  Horizon horizon(static_cast<std::size_t>(std::clamp(4 * across, 64.0, 65536.0)));
+  for (std::size_t next = 0; next < ready.size(); ++next) {
+    if (next % kStopInterval == 0) {
+      context_.check_stop();
+    }
+    const TriangleId t = ready[next];
+    --left;
+    look_at(t, horizon);
+    const auto o = offsets(t);
+    for (int i = 0; i < 3; ++i) {
+      const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
+      const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
+      if (!(turn(a, b) > 0)) {
+        continue;
+      }
+      const TriangleId n = tin_.triangles[t].n[i];
+      if (is_surface(t) || is_surface(n)) {
+        horizon.raise(a, b);
+      }
+      if (n != kNone && --waits[n] == 0) {
+        ready.push_back(n);
+      }
+    }
+  }
+  if (left != 0) {
+    // Triangles can hide one another in a ring only where the mesh is far from Delaunay.
+    throw Error(ErrorCode::invalid_argument,
+                "around this observer some triangles lie in front of one another in a ring, so "
+                "they have no order from front to back: move the observer a little, or ask for "
+                "another error",
+                context_.file());
+  }
+}
+
+/// The ray to a corner comes through the triangle when the eye is on the inner side of both sides
+/// at that corner; along a side when it is in line with it.
+Approach Viewer::approach_corner(const std::array<Offset, 3>& o, int corner) const noexcept {
+  const Offset& at = o[static_cast<std::size_t>(corner)];
+  const Offset& next = o[static_cast<std::size_t>(next_corner(corner))];
+  const Offset& previous = o[static_cast<std::size_t>(previous_corner(corner))];
+  const double leaving = turn(at, next);
+  const double coming = turn(previous, at);
+  if (leaving < 0 || coming < 0) {
+    return {};
+  }
+  if (leaving == 0) {
+    return {true, turn(at, previous) > 0 ? Horizon::Side::kLeft : Horizon::Side::kRight};
+  }
+  if (coming == 0) {
+    return {true, turn(at, next) > 0 ? Horizon::Side::kLeft : Horizon::Side::kRight};
+  }
+  return {true, Horizon::Side::kBoth};
+}
+
+void Viewer::look_at(TriangleId t, Horizon& horizon) {
+  const auto o = offsets(t);
+  for (int i = 0; i < 3; ++i) {
+    const VertexId v = tin_.triangles[t].v[i];
+    if (tin_.has_height[v] == 0) {
+      continue;
+    }
+    Offset p = o[static_cast<std::size_t>(i)];
+    if (!within(p.x, p.y)) {
+      continue;
+    }
+    if (p.x == 0 && p.y == 0) {
+      seen_[v] = Sight::kVisible;
+      continue;
+    }
+    const Approach approach = approach_corner(o, i);
+    if (approach.from_within) {
+      p.z += request_.target_height;
+      see(seen_[v], horizon.sees(p, approach.side));
+    }
+  }
+  if (is_surface(t)) {
+    look_at_pixels(t, horizon);
+  }
+}
+
+/// Pixel centres in the box of the triangle, but for those on its corners, which are vertices.
+void Viewer::look_at_pixels(TriangleId t, const Horizon& horizon) {
+  const auto& v = tin_.triangles[t].v;
+  const GridPoint a = tin_.position(v[0]);
+  const GridPoint b = tin_.position(v[1]);
+  const GridPoint c = tin_.position(v[2]);
+  if (pixels_on_grid_ && (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
+                                 (std::int64_t{c.x} - a.x) * (std::int64_t{b.y} - a.y) ==
+                             1) {
+    return;  // the smallest triangle of a grid has no grid point but its corners
+  }
+  const auto o = offsets(t);
+  const auto [left, right] = std::minmax({o[0].x, o[1].x, o[2].x});
+  const auto [low, high] = std::minmax({o[0].y, o[1].y, o[2].y});
+  const auto clamp = [](double value, std::uint32_t size) {
+    return static_cast<std::int64_t>(std::clamp(value, -1.0, static_cast<double>(size)));
+  };
+  const std::int64_t from_column = clamp(std::ceil((left - first_x_) / pixel_x_), result_.width);
+  const std::int64_t to_column = clamp(std::floor((right - first_x_) / pixel_x_), result_.width);
+  const std::int64_t from_row = clamp(std::ceil((first_y_ - high) / pixel_y_), result_.height);
+  const std::int64_t to_row = clamp(std::floor((first_y_ - low) / pixel_y_), result_.height);
+  for (std::int64_t row = std::max<std::int64_t>(from_row, 0);
+       row <= std::min<std::int64_t>(to_row, result_.height - 1); ++row) {
+    context_.check_stop();
+    for (std::int64_t column = std::max<std::int64_t>(from_column, 0);
+         column <= std::min<std::int64_t>(to_column, result_.width - 1); ++column) {
+      look_at_pixel(t, horizon, column, row);
+    }
+  }
+}
+
+void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column,
+                           std::int64_t row) {
+  Sight& pixel =
+      result_
+          .pixels[static_cast<std::size_t>(row) * result_.width + static_cast<std::size_t>(column)];
+  Offset p{first_x_ + static_cast<double>(column) * pixel_x_,
+           first_y_ - static_cast<double>(row) * pixel_y_, 0};
+  if (!within(p.x, p.y)) {
+    return;
+  }
+  const auto o = offsets(t);
+  double weights[3];
+  double sum = 0;
+  Horizon::Side side = Horizon::Side::kBoth;
+  for (int i = 0; i < 3; ++i) {
+    const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
+    const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
+    const double w = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+    const double faces = turn(a, b);
+    if (w < 0 || (w == 0 && faces < 0)) {
+      return;  // outside, or on a side that the ray reaches from beyond
+    }
+    if (w == 0 && faces == 0) {
+      side = turn(p, o[static_cast<std::size_t>(i)]) > 0 ? Horizon::Side::kLeft
+                                                         : Horizon::Side::kRight;
+    }
+    weights[i] = w;
+    sum += w;
+  }
+  if (p.x == 0 && p.y == 0) {
+    pixel = Sight::kVisible;
+    return;
+  }
+  // On the plane of the triangle, and lowered as a point of its own: the corners' were lowered too.
+  for (std::size_t i = 0; i < 3; ++i) {
+    p.z += weights[i] / sum * (o[i].z + drop(o[i].x, o[i].y));
+  }
+  p.z += request_.target_height - drop(p.x, p.y);
+  see(pixel, horizon.sees(p, side));
+}
+
+void Viewer::collect() {
+  for (VertexId v = 0; v < seen_.size(); ++v) {
+    if (seen_[v] == Sight::kNothing || !touches_surface(tin_, v)) {
+      continue;
+    }
+    const Offset& o = offsets_[v];
+    if (pixels_on_grid_) {
+      const auto column = static_cast<std::int64_t>(std::llround(o.x - first_x_));
+      const auto row = static_cast<std::int64_t>(std::llround(first_y_ - o.y));
+      if (column >= 0 && row >= 0 && column < result_.width && row < result_.height) {
+        result_.pixels[static_cast<std::size_t>(row) * result_.width +
+                       static_cast<std::size_t>(column)] = seen_[v];
+      }
+    }
+    const GridPoint p = tin_.position(v);
+    result_.vertices.push_back({facts_.map.to_map(p.x, p.y),
+                                facts_.heights.height(tin_.vertices[v].height),
+                                seen_[v] == Sight::kVisible});
+  }
+  for (const Sight s : result_.pixels) {
+    result_.visible_pixels += s == Sight::kVisible ? 1 : 0;
+    result_.hidden_pixels += s == Sight::kHidden ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+Viewshed viewshed(const ProgressiveTin& terrain, const ViewshedRequest& request) {
+  const auto start = std::chrono::steady_clock::now();
+  check(request);
+  const double reach_x = request.radius / request.ground_per_map_x;
+  const double reach_y = request.radius / request.ground_per_map_y;
+  RefineRequest refine;
+  refine.region = Window{request.eye.x - reach_x, request.eye.y - reach_y, request.eye.x + reach_x,
+                         request.eye.y + reach_y};
+  refine.tolerance = request.tolerance;
+  refine.memory_limit_bytes = request.memory_limit_bytes;
+  refine.stop = request.stop;
+  const RefinedTin refined = terrain.refine(refine);
+  const StoreFile& store = terrain.store();
+  const QueryContext context(request.stop, request.memory_limit_bytes, store.path());
+  Viewshed result = Viewer(refined.tin, store.facts(), request, context).run();
+  result.certified_error = refined.certified_error;
+  result.exact = refined.exact;
+  result.cost = refined.cost;
+  result.cost.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace ptin

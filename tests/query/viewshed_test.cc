@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What an observer sees, against a sight line to every target over every edge of the full TIN.
+#include "engine/query/viewshed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/error.h"
+#include "tests/query/reference_hierarchy.h"
+
+namespace ptin {
+namespace {
+
+using reference::Hierarchy;
+using reference::TemporaryStore;
+
+/// How far the ray from the eye to a target clears the edges of the surface at its lowest, in the
+/// height's unit; edges that it meets at the target or the eye alone do not count.
+double clearance(const Hierarchy& h, MapPoint eye, double eye_z, MapPoint target, double target_z) {
+  double least = INFINITY;
+  const auto turn = [](MapPoint a, MapPoint b, MapPoint c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  };
+  const double length2 =
+      (target.x - eye.x) * (target.x - eye.x) + (target.y - eye.y) * (target.y - eye.y);
+  const auto at = [&](double x, double y, double z) {
+    const double s =
+        ((x - eye.x) * (target.x - eye.x) + (y - eye.y) * (target.y - eye.y)) / length2;
+    if (s > 1e-9 && s < 1 - 1e-9) least = std::min(least, eye_z + s * (target_z - eye_z) - z);
+  };
+  for (TriangleId t = 0; t < h.full.triangles.size(); ++t) {
+    if (h.full.classes[t] != TriangleClass::kSurface) continue;
+    for (int i = 0; i < 3; ++i) {
+      const Vertex& va = h.full.vertices[h.full.triangles[t].v[i]];
+      const Vertex& vb = h.full.vertices[h.full.triangles[t].v[(i + 1) % 3]];
+      const MapPoint a = h.facts.map.to_map(va.position.x, va.position.y);
+      const MapPoint b = h.facts.map.to_map(vb.position.x, vb.position.y);
+      const double za = h.facts.heights.height(va.height);
+      const double zb = h.facts.heights.height(vb.height);
+      const double da = turn(eye, target, a);
+      const double db = turn(eye, target, b);
+      if (da == 0) at(a.x, a.y, za);
+      if (db == 0) at(b.x, b.y, zb);
+      if ((da < 0) != (db < 0) && da != 0 && db != 0) {
+        const double s = da / (da - db);
+        at(a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), za + s * (zb - za));
+      }
+    }
+  }
+  return least;
+}
+
+RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed)) {
+  const Hierarchy h = reference::random_hierarchy(seed);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  std::mt19937_64 random(seed);
+  ViewshedRequest request;
+  const GridBox& b = h.facts.bounds;
+  double x = double(b.min_x) + double(random() % std::uint64_t(b.max_x - b.min_x + 1));
+  double y = double(b.min_y) + double(random() % std::uint64_t(b.max_y - b.min_y + 1));
+  if (random() % 2 == 0)
+    x = std::min<double>(x + 0.375, b.max_x), y = std::min<double>(y + 0.28125, b.max_y);
+  request.eye = h.facts.map.to_map(x, y);
+  request.absolute = random() % 2 == 0;
+  request.eye_height = request.absolute ? h.facts.max_height * 0.7 : double(random() % 3);
+  request.target_height = random() % 3 == 0 ? 0.5 : 0.0;
+  request.radius =
+      (1 + double(random() % 30)) / 40 * double(half_perimeter(b)) * h.facts.map.step_x;
+  if (random() % 2 == 0) request.pixel_size = h.facts.map.step_x * 0.71;
+  Viewshed seen{};
+  try {
+    seen = viewshed(terrain, request);
+  } catch (const Error& error) {
+    RC_ASSERT(error.code() == ErrorCode::invalid_argument);  // on a void, or a ring of triangles
+    return;
+  }
+  std::map<std::pair<double, double>, bool> visible;
+  for (const Viewshed::Target& v : seen.vertices) {
+    visible[{v.position.x, v.position.y}] = v.visible;
+    if (v.position == request.eye) continue;
+    const double c =
+        clearance(h, request.eye, seen.eye_height, v.position, v.height + request.target_height);
+    // Rounding of this oracle; at whole clearances the answers must agree.
+    if (std::abs(c) > 1e-9) RC_ASSERT(v.visible == (c > 0));
+  }
+  std::size_t expected = 0;
+  for (VertexId v = 0; v < h.full.vertices.size(); ++v) {
+    const GridPoint p = h.full.position(v);
+    const MapPoint at = h.facts.map.to_map(p.x, p.y);
+    bool surface = false;
+    for (TriangleId t = 0; t < h.full.triangles.size(); ++t) {
+      const auto& c = h.full.triangles[t].v;
+      surface = surface ||
+                (h.full.classes[t] == TriangleClass::kSurface && std::find(c, c + 3, v) != c + 3);
+    }
+    const double d = std::hypot(at.x - request.eye.x, at.y - request.eye.y);
+    if (surface && d < request.radius * (1 - 1e-9)) {
+      ++expected;
+      RC_ASSERT(visible.contains({at.x, at.y}));
+    }
+  }
+  RC_ASSERT(seen.vertices.size() >= expected);
+  for (int sample = 0; sample < 60; ++sample) {
+    {
+      const auto row = static_cast<std::uint32_t>(random() % seen.height);
+      const auto column = static_cast<std::uint32_t>(random() % seen.width);
+      const Sight s = seen.pixels[std::size_t{row} * seen.width + column];
+      const MapPoint at{seen.first.x + column * seen.step_x, seen.first.y - row * seen.step_y};
+      for (TriangleId t = 0; t < h.full.triangles.size(); ++t) {
+        if (h.full.classes[t] != TriangleClass::kSurface) continue;
+        double w[3], z = 0, sum = 0;
+        for (int i = 0; i < 3; ++i) {
+          const GridPoint p = h.full.position(h.full.triangles[t].v[(i + 1) % 3]);
+          const GridPoint q = h.full.position(h.full.triangles[t].v[(i + 2) % 3]);
+          const MapPoint a = h.facts.map.to_map(p.x, p.y);
+          const MapPoint c = h.facts.map.to_map(q.x, q.y);
+          w[i] = (a.x - at.x) * (c.y - at.y) - (a.y - at.y) * (c.x - at.x);
+          z += w[i] * h.facts.heights.height(h.full.vertices[h.full.triangles[t].v[i]].height);
+          sum += w[i];
+        }
+        if (std::min({w[0], w[1], w[2]}) <= 1e-6) continue;  // borders: vertices tell of those
+        const double d = std::hypot(at.x - request.eye.x, at.y - request.eye.y);
+        if (d > request.radius * (1 + 1e-9)) RC_ASSERT(s == Sight::kNothing);
+        if (d >= request.radius * (1 - 1e-9) || d < 1e-9) continue;
+        const double c =
+            clearance(h, request.eye, seen.eye_height, at, z / sum + request.target_height);
+        RC_ASSERT(s != Sight::kNothing);
+        if (std::abs(c) > 1e-9) RC_ASSERT((s == Sight::kVisible) == (c > 0));
+      }
+    }
+  }
+}
+
+/// Heights 0 but for a wall.
+Hierarchy plain_with_wall(double wall) {
+  std::mt19937_64 random(1);
+  Tin full = reference::random_grid(random, 21, 21, 1, 0.0);
+  const HeightEncoding heights{HeightType::int32, 0.25, -3.0};
+  for (Vertex& v : full.vertices) {
+    v.height = heights.bits(((v.position.x == 14 ? wall : 0.0) + 3.0) / 0.25);
+  }
+  reference::Options options;
+  options.measured = false;
+  return reference::simplify(std::move(full), random, options);
+}
+
+TEST(Viewshed, OfAPlainFromItsOwnHeightTouchesAndSeesEverything) {
+  const Hierarchy h = plain_with_wall(0.0);
+  const TemporaryStore file(h);
+  ViewshedRequest request;
+  request.eye = h.facts.map.to_map(7, 9);
+  request.radius = 1000;
+  const Viewshed seen = viewshed(ProgressiveTin(file.open()), request);
+  EXPECT_EQ(seen.vertices.size(), 441U);
+  EXPECT_TRUE(std::all_of(seen.vertices.begin(), seen.vertices.end(),
+                          [](const Viewshed::Target& t) { return t.visible; }));
+  EXPECT_EQ(seen.hidden_pixels, 0U);
+}
+
+TEST(Viewshed, EndsBehindAWall) {
+  const Hierarchy h = plain_with_wall(5.0);
+  const TemporaryStore file(h);
+  ViewshedRequest request;
+  request.eye = h.facts.map.to_map(7, 9);
+  request.eye_height = 2;
+  request.radius = 1000;
+  const ProgressiveTin terrain(file.open());
+  for (const Viewshed::Target& t : viewshed(terrain, request).vertices) {
+    EXPECT_EQ(t.visible, h.facts.map.to_grid(t.position).x < 14.5)
+        << h.facts.map.to_grid(t.position).x << " " << h.facts.map.to_grid(t.position).y;
+  }
+  request.curvature = 1;
+  request.earth_radius = 1;  // a ball: what is beyond a few units is below the plain's horizon
+  EXPECT_LT(viewshed(terrain, request).visible_pixels, 100U);
+}
+
+TEST(Viewshed, RefusesWhatMeansNothing) {
+  const Hierarchy h = plain_with_wall(0.0);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  ViewshedRequest request;
+  request.eye = h.facts.map.to_map(7, 9);
+  EXPECT_THROW(static_cast<void>(viewshed(terrain, request)), Error) << "no radius";
+  request.radius = 1;
+  request.eye.x -= 1e6;
+  EXPECT_THROW(static_cast<void>(viewshed(terrain, request)), Error) << "outside";
+  request.eye = h.facts.map.to_map(7, 9);
+  request.target_height = -1;
+  EXPECT_THROW(static_cast<void>(viewshed(terrain, request)), Error);
+}
+
+}  // namespace
+}  // namespace ptin

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin viewshed: what one observer sees, as a raster or as points.
+#include "engine/query/viewshed.h"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+
+#include <gdal_priv.h>
+#include <ogr_geometry.h>
+#include <ogr_spatialref.h>
+
+#include "tools/error_status.h"
+#include "tools/export/gdal_output.h"
+#include "tools/formats/vector_file.h"
+#include "tools/output_file.h"
+#include "tools/pending_file.h"
+#include "tools/ptin/crs_facts.h"
+#include "tools/ptin/human.h"
+#include "tools/ptin/query_options.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct ViewshedOptions {
+  TerrainOptions terrain;
+  double x = 0, y = 0, height = 0;
+  double target_height = 0, radius = 0, curvature = 0;
+  bool absolute = false;
+  std::optional<double> pixel_size, error;
+  std::string memory, output;
+  bool overwrite = false;
+};
+
+bool is_raster(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".tif" || extension == ".tiff";
+}
+
+void check_options(const ViewshedOptions& options) {
+  if (options.error && !(*options.error >= 0)) {
+    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
+  }
+  if (options.output == "-") {
+    throw Error(ErrorCode::invalid_argument, "the output must be a file: .tif for a raster, " +
+                                                 known_vector_extensions() + " for vertices");
+  }
+  if (!is_raster(options.output)) static_cast<void>(vector_format_of(options.output));
+  check_output(options.output, options.overwrite);
+}
+
+/// Ground units (those of heights, taken as metres where the CRS says nothing) in a map unit.
+void set_ground(const CrsFacts& crs, ViewshedRequest& request) {
+  OGRSpatialReference srs;
+  if (crs.wkt.empty() || srs.importFromWkt(crs.wkt.c_str()) != OGRERR_NONE) return;
+  const double height_unit = srs.IsCompound() != 0 ? srs.GetTargetLinearUnits("VERT_CS") : 1.0;
+  const double a = srs.GetSemiMajor();
+  const double flattening = srs.GetInvFlattening();
+  const double f = flattening > 0 ? 1 / flattening : 0.0;
+  request.earth_radius = a * (1 - f / 3) / height_unit;
+  if (!crs.geographic) {
+    request.ground_per_map_x = request.ground_per_map_y = srs.GetLinearUnits() / height_unit;
+    return;
+  }
+  const double unit = srs.GetAngularUnits();
+  const double sine = std::sin(request.eye.y * unit);
+  const double e2 = f * (2 - f);
+  const double w2 = 1 - e2 * sine * sine;
+  const double normal = a / std::sqrt(w2);
+  request.ground_per_map_y = unit * normal * (1 - e2) / w2 / height_unit;
+  request.ground_per_map_x = unit * normal * std::sqrt(1 - sine * sine) / height_unit;
+}
+
+void write_raster(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt) {
+  PendingFile pending(options.output, options.overwrite);
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  const char* creation[] = {"COMPRESS=DEFLATE", "TILED=YES", "BIGTIFF=IF_SAFER", nullptr};
+  const int width = static_cast<int>(seen.width);
+  const int height = static_cast<int>(seen.height);
+  GDALDatasetUniquePtr file(driver->Create(pending.temporary().c_str(), width, height, 1, GDT_Byte,
+                                           const_cast<char**>(creation)));
+  if (!file) throw gdal_failure("cannot create the raster", options.output);
+  double transform[6] = {seen.first.x - seen.step_x / 2, seen.step_x, 0,
+                         seen.first.y + seen.step_y / 2, 0,           -seen.step_y};
+  file->SetGeoTransform(transform);
+  if (!wkt.empty()) file->SetProjection(wkt.c_str());
+  GDALRasterBand* band = file->GetRasterBand(1);
+  band->SetNoDataValue(static_cast<double>(Sight::kNothing));
+  CPLErrorReset();
+  const CPLErr written =
+      band->RasterIO(GF_Write, 0, 0, width, height, const_cast<Sight*>(seen.pixels.data()), width,
+                     height, GDT_Byte, 0, 0, nullptr);
+  file->FlushCache(true);
+  file.reset();
+  if (written != CE_None || CPLGetLastErrorType() == CE_Failure) {
+    throw gdal_failure("cannot write the raster", options.output);
+  }
+  pending.publish();
+}
+
+void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt) {
+  VectorFile file(
+      options.output, options.overwrite,
+      {"viewshed",
+       wkbPoint,
+       {{"height", VectorFile::FieldType::kReal}, {"visible", VectorFile::FieldType::kInteger}},
+       wkt});
+  for (const Viewshed::Target& v : seen.vertices) {
+    const VectorFile::Value values[] = {v.height, static_cast<std::int64_t>(v.visible ? 1 : 0)};
+    file.add(std::make_unique<OGRPoint>(v.position.x, v.position.y), values);
+  }
+  file.publish();
+}
+
+void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts& crs,
+            const Context& context) {
+  std::uint64_t visible = 0;
+  for (const Viewshed::Target& v : seen.vertices) visible += v.visible ? 1 : 0;
+  if (context.json) {
+    print_json({{"output", options.output},
+                {"eye_height", seen.eye_height},
+                {"width", seen.width},
+                {"height", seen.height},
+                {"pixels", {{"visible", seen.visible_pixels}, {"hidden", seen.hidden_pixels}}},
+                {"vertices", {{"visible", visible}, {"hidden", seen.vertices.size() - visible}}},
+                {"certified_error", seen.certified_error},
+                {"exact", seen.exact},
+                {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+                {"cost", cost_json(seen.cost)}});
+  } else if (!context.quiet) {
+    std::printf("%s: %s of %s pixels visible, %s of %s vertices\n", options.output.c_str(),
+                grouped(seen.visible_pixels).c_str(),
+                grouped(seen.visible_pixels + seen.hidden_pixels).c_str(), grouped(visible).c_str(),
+                grouped(seen.vertices.size()).c_str());
+  }
+}
+
+int run_viewshed(const ViewshedOptions& options, const Context& context) {
+  check_options(options);
+  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const CrsFacts crs = crs_facts(terrain.store());
+  ViewshedRequest request;
+  request.eye = {options.x, options.y};
+  request.eye_height = options.height;
+  request.absolute = options.absolute;
+  request.target_height = options.target_height;
+  request.curvature = options.curvature;
+  request.pixel_size = options.pixel_size;
+  request.tolerance = options.error;
+  request.stop = context.stop;
+  if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
+  set_ground(crs, request);
+  request.radius = crs.geographic ? options.radius : options.radius * request.ground_per_map_x;
+  const Viewshed seen = viewshed(terrain, request);
+  if (is_raster(options.output)) {
+    write_raster(seen, options, crs.wkt);
+  } else {
+    write_vertices(seen, options, crs.wkt);
+  }
+  report(options, seen, crs, context);
+  return kExitDone;
+}
+
+}  // namespace
+
+Action declare_viewshed(CLI::App& app, Context& context) {
+  const auto options = std::make_shared<ViewshedOptions>();
+  add_terrain_options(app, options->terrain, true);
+  app.add_option("X", options->x, "The observer's position, in map units")->required();
+  app.add_option("Y", options->y, "")->required();
+  app.add_option("H", options->height, "The observer's height above the surface")->required();
+  app.add_option("--radius", options->radius,
+                 "How far to look: map units; metres in a geographic CRS")
+      ->type_name("R")
+      ->required();
+  app.add_flag("--absolute", options->absolute, "H is a height of itself, not above the surface");
+  app.add_option("--target-height", options->target_height, "Height of targets above the surface")
+      ->type_name("T");
+  app.add_option("--curvature", options->curvature,
+                 "Coefficient of the earth's curvature with refraction, as 0.85714; 0: flat")
+      ->type_name("C")
+      ->capture_default_str();
+  app.add_option("--pixel-size", options->pixel_size,
+                 "Side of a pixel, map units (default: the grid's)")
+      ->type_name("S");
+  app.add_option("--error", options->error, "Certified error allowed, in the height's unit")
+      ->type_name("E");
+  app.add_option(
+         "-o,--output", options->output,
+         "A raster (.tif: visible 255, hidden 0, else 128), or the vertices with `visible` (" +
+             known_vector_extensions() + ")")
+      ->type_name("OUT")
+      ->required();
+  app.add_option("--memory", options->memory, "Memory for the answer, as 512M or 2G (default 4G)")
+      ->type_name("SIZE");
+  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
+  add_common_options(app, context, true);
+  return [options, &context] { return run_viewshed(*options, context); };
+}
+
+}  // namespace ptin::tools
