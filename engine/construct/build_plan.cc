@@ -132,12 +132,13 @@ void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& o
   plan.same_disk = on_same_disk(folder, tmp);
   // With --max-error how much is left out is not known before.
   const std::uint64_t least_output = options.max_error > 0.0 ? 0 : plan.output_bytes;
-  const auto require = [](std::uint64_t needed, std::uint64_t free, const std::string& where) {
+  const auto require = [&](std::uint64_t needed, std::uint64_t free, const std::string& where) {
     if (needed > free) {
       throw Error(ErrorCode::resource_exhausted,
-                  "the build needs up to " + in_mib(needed) + " of disk here and " + in_mib(free) +
+                  "the build needs up to " + in_mib(needed) + " of disk in " + where + " and " +
+                      in_mib(free) +
                       " are free; free some, or name another disk for temporary files by --tmp",
-                  where);
+                  output);
     }
   };
   if (plan.same_disk) {

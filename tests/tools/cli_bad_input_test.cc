@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Bad input: the documented exit status, one clear sentence, and nothing left behind.
+#include <algorithm>
 #include <csignal>
 #include <limits>
 
@@ -294,6 +295,12 @@ TEST(CliSignals, StopABuildTidily) {
         run_ptin({"build", folder.file("large.tif"), "-o", folder.file("large.ptin"), "-q"}, signal,
                  std::chrono::milliseconds(700));
     expect_refusal(outcome, 8, "");
+    // What is done is kept, and goes when it is told to.
+    const auto names = folder.names();
+    EXPECT_EQ(std::count(names.begin(), names.end(), "large.ptin"), 0);
+    const bool is_kept = names.size() == 2;
+    EXPECT_EQ(run_ptin({"build", "--discard", "-q", "-o", folder.file("large.ptin")}).status,
+              is_kept ? 0 : 1);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"large.tif"});
   }
 }
