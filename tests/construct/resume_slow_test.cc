@@ -18,7 +18,7 @@ TEST(ResumeSlow, GivesTheSameBytesWhicheverCallFailed) {
     test::FailingFiles files(nth);
     BuildResources resources = test::InterruptibleBuild::resources();
     resources.files = &files;
-    interrupted.run(resources);
+    static_cast<void>(interrupted.run(resources));  // some calls may fail without harm
     calls = files.calls();
     interrupted.expect_resumed_to_the_same_bytes();
   }
