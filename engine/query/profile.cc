@@ -92,7 +92,9 @@ class SegmentWriter {
       reached = piece.to.share();
       near = piece.triangle;
     }
-    if (!walk.ends_inside()) {
+    if (walk.ends_inside()) {  // no piece when the line only touches the domain with its end
+      put(1.0, touched(walk.entry(), part + 1, near), points_.back().state);
+    } else {
       put(reached, nullptr, PointState::kOutside);
       put(1.0, nullptr, PointState::kOutside);
     }
@@ -100,6 +102,18 @@ class SegmentWriter {
   }
 
  private:
+  /// `entry` when it is the line's end on a surface, else nothing.
+  [[nodiscard]] const Crossing* touched(const Crossing& entry, std::size_t end,
+                                        TriangleId near) const {
+    if (entry.share() != 1.0) {
+      return nullptr;  // the last piece has told its height
+    }
+    const Place place = find_spot(tin_, line_.spots[end], near);
+    const TriangleId triangle = answering_triangle(tin_, place);
+    const bool surface = triangle != kNone && tin_.classes[triangle] == TriangleClass::kSurface;
+    return surface ? &entry : nullptr;
+  }
+
   void put(double share, const Crossing* ground, PointState state) {
     const MapPoint& a = line_.positions[part_];
     const MapPoint& b = line_.positions[part_ + 1];

@@ -231,7 +231,7 @@ TEST(Export, DoesNotDependOnTheCells) {
       EXPECT_EQ(whole.cells, 1U);
       const bool is_raster = terrain.store().record_count() > 10'000;
       for (const std::uint64_t limit :
-           {is_raster ? 4'000'000U : 700'000U, is_raster ? 1'500'000U : 450'000U}) {
+           {is_raster ? 4'000'000U : 700'000U, is_raster ? 1'500'000U : 600'000U}) {
         const Joined parts = joined_under(terrain, request, limit);
         EXPECT_GT(parts.cells, tolerance ? 0U : 3U) << name;
         EXPECT_EQ(parts.vertices, whole.vertices);

@@ -53,8 +53,11 @@ TEST(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
     killed += outcome.status == 128 + SIGKILL ? 1 : 0;
     if (outcome.status != 0) {
       EXPECT_EQ(outcome.status, 128 + SIGKILL) << outcome.err;
-      EXPECT_FALSE(std::filesystem::exists(folder.file("k.ptin")));
-      ASSERT_EQ(run_ptin(build("k.ptin", {"--resume", "--threads", "1"})).status, 0);
+      // Killed after it was complete and had its name: nothing but tidying is left.
+      const bool is_complete = std::filesystem::exists(folder.file("k.ptin"));
+      EXPECT_TRUE(!is_complete || read_file(folder.file("k.ptin")) == expected);
+      const auto resumed = run_ptin(build("k.ptin", {"--resume", "--threads", "1"}));
+      EXPECT_TRUE(resumed.status == 0 || (is_complete && resumed.status == 2)) << resumed.err;
     }
     EXPECT_TRUE(read_file(folder.file("k.ptin")) == expected) << "after " << after.count() << " ms";
     std::filesystem::remove(folder.file("k.ptin"));

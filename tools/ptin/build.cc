@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -65,7 +66,10 @@ void check_command(BuildCommand& command) {
                   "--bbox is inverted or empty; its order is XMIN YMIN XMAX YMAX");
     }
   }
-  check_output(command.output, command.overwrite);
+  // An interrupted build may have been killed when its output had just got its name.
+  const bool is_resumed =
+      command.resume && std::filesystem::exists(Workspace::folder_of(command.output));
+  check_output(command.output, command.overwrite || is_resumed);
 }
 
 nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
