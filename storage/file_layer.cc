@@ -235,11 +235,13 @@ void ScratchFile::publish_as(const std::string& target, bool replace) {
     throw system_error(failure, "cannot rename the finished file onto this name", target);
   }
   path_.clear();
-  failure = files_.sync_folder(folder_);
+  const std::size_t slash = target.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : target.substr(0, slash + 1);
+  failure = files_.sync_folder(folder);
   if (failure != 0) {
     throw system_error(
         failure, "the file is complete, but its name may not survive a power cut: cannot sync",
-        folder_);
+        folder);
   }
 }
 

@@ -317,8 +317,9 @@ void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std:
   const RecordKind kind =
       (entry.kind_and_count & layout::kWidePage) != 0 ? RecordKind::kWide : RecordKind::kNarrow;
   file_.read_at(page, written_bytes_);
-  std::vector<VertexSplit> records(count);
-  if (checksum_of(page) != entry.checksum || count * record_bytes(kind) > page.size() ||
+  const bool fits = count * record_bytes(kind) <= page.size();
+  std::vector<VertexSplit> records(fits ? count : 0);
+  if (!fits || checksum_of(page) != entry.checksum ||
       decode_records(page, kind, records) != count) {
     throw Error(ErrorCode::corruption,
                 "page " + std::to_string(written_bytes_ / options_.page_bytes) +

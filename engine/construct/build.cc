@@ -128,10 +128,10 @@ void build_in(Workspace& workspace, Job& job, const Terrain& terrain, const Buil
   store.publish(t0, job.inputs, job.report);
 }
 
-/// Faults of the system, not of the input: what was done is worth keeping.
-bool can_be_resumed(ErrorCode code) {
-  return code == ErrorCode::cancelled || code == ErrorCode::resource_exhausted ||
-         code == ErrorCode::io_error;
+/// Worth keeping: faults of the system, and whatever comes when hours of work may be there.
+bool is_kept(const Workspace& workspace, ErrorCode code) {
+  return workspace.has_work() || code == ErrorCode::cancelled ||
+         code == ErrorCode::resource_exhausted || code == ErrorCode::io_error;
 }
 
 FileLayer& files_of(const Job& job) {
@@ -156,7 +156,7 @@ void build_terrain(Job& job, const Terrain& terrain, const TileBytes& tile_bytes
   try {
     build_in(workspace, job, terrain, plan);
   } catch (const Error& e) {
-    if (can_be_resumed(e.code())) {
+    if (is_kept(workspace, e.code())) {
       throw Error(e.code(),
                   e.message() + "; what is done is kept in " + workspace.folder() +
                       ": go on by --resume, or remove it by --discard",
@@ -289,7 +289,8 @@ void check_options(const BuildOptions& o) {
           "the longest edge must be a finite number > 0");
   require(!o.bbox || ((*o.bbox)[0] < (*o.bbox)[2] && (*o.bbox)[1] < (*o.bbox)[3]),
           "the bbox is inverted or empty; its order is xmin ymin xmax ymax");
-  require(!o.tile || *o.tile >= 2, "a tile must be at least 2 grid units along a side");
+  require(!o.tile || (*o.tile >= 2 && *o.tile <= (std::int64_t{1} << 20)),
+          "a tile must be 2 to 1,048,576 grid units along a side");
 }
 
 /// True for points, false for rasters.

@@ -23,20 +23,13 @@ ArrayFileFacts facts_in(const nlohmann::json& j) {
 
 BuildLog::BuildLog(Workspace& workspace, SegmentOutput& output, std::chrono::milliseconds interval)
     : workspace_(workspace), output_(output), interval_(interval) {
-  // Lines come in groups that end in a checkpoint; a group without it was torn.
-  const std::vector<nlohmann::json> lines = workspace.lines();
-  std::size_t sound = 0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    sound = lines[i].contains("checkpoint") ? i + 1 : sound;
+  for (const nlohmann::json& line : workspace.lines()) {
+    take_up(line);
   }
-  for (std::size_t i = 0; i < sound; ++i) {
-    take_up(lines[i]);
-  }
-  if (!position_.is_null()) {
-    output_.resume(position_);
-  } else {
+  if (position_.is_null()) {
     position_ = output_.position();
   }
+  output_.resume(position_);  // also from the very beginning: what lies behind it goes
 }
 
 void BuildLog::take_up(const nlohmann::json& line) {

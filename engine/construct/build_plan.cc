@@ -130,6 +130,10 @@ void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& o
   plan.output_free = free_in(folder);
   plan.temporary_free = free_in(tmp);
   plan.same_disk = on_same_disk(folder, tmp);
+  if (resources.unfinished != Unfinished::kRefuse &&
+      std::filesystem::exists(Workspace::folder_of(output))) {
+    return;  // much of it is on the disk already
+  }
   // With --max-error how much is left out is not known before.
   const std::uint64_t least_output = options.max_error > 0.0 ? 0 : plan.output_bytes;
   const auto require = [&](std::uint64_t needed, std::uint64_t free, const std::string& where) {

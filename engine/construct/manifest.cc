@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -49,20 +50,22 @@ void Manifest::read() {
     if (text.compare(bytes_, kChecksumDigits, checksum_text(body)) != 0) {
       break;
     }
-    lines_.push_back(nlohmann::json::parse(body));
+    for (nlohmann::json& entry : nlohmann::json::parse(body)) {
+      entries_.push_back(std::move(entry));
+    }
     bytes_ = end + 1;
   }
   if (bytes_ != text.size()) {
     file_.truncate(bytes_);
+    file_.sync();
   }
 }
 
-void Manifest::append(const std::vector<nlohmann::json>& lines) {
-  std::string text;
-  for (const nlohmann::json& line : lines) {
-    const std::string body = line.dump();
-    text += checksum_text(body) + ' ' + body + '\n';
-  }
+void Manifest::append(const std::vector<nlohmann::json>& group) {
+  // Names of files need not be UTF-8.
+  const std::string body =
+      nlohmann::json(group).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string text = checksum_text(body) + ' ' + body + '\n';
   file_.write_at(std::as_bytes(std::span(text)), bytes_);
   bytes_ += text.size();
   file_.sync();

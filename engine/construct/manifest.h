@@ -13,8 +13,9 @@
 
 namespace ptin {
 
-/// Lines of JSON, each behind its checksum, added at the end and never changed. A line that was
-/// torn by a power cut ends what is believed, and is cut off.
+/// Groups of JSON entries, each group one line behind its checksum, added at the end and never
+/// changed: a group is there as a whole or not at all. A line that was torn by a power cut ends
+/// what is believed, and is cut off.
 class Manifest {
  public:
   /// Opens `path`, or makes it. @throws Error io_error, resource_exhausted
@@ -23,17 +24,17 @@ class Manifest {
   Manifest(const Manifest&) = delete;
   Manifest& operator=(const Manifest&) = delete;
 
-  /// What was there when it was opened.
-  [[nodiscard]] const std::vector<nlohmann::json>& lines() const noexcept { return lines_; }
-  /// Writes lines and syncs. What they speak of must be synced before.
-  void append(const std::vector<nlohmann::json>& lines);
+  /// What was there when it was opened, group after group.
+  [[nodiscard]] const std::vector<nlohmann::json>& entries() const noexcept { return entries_; }
+  /// Writes a group and syncs. What it speaks of must be synced before.
+  void append(const std::vector<nlohmann::json>& group);
 
  private:
   void read();
 
   std::string path_;
   ScratchFile file_;
-  std::vector<nlohmann::json> lines_;
+  std::vector<nlohmann::json> entries_;
   std::uint64_t bytes_ = 0;
 };
 

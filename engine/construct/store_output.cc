@@ -190,7 +190,8 @@ void StoreOutput::publish(const Tin& t0, const std::vector<std::string>& inputs,
       {"height_quantum", frame_.height_quantum},
       {"options", options_json(options_)},
       {"source", source_json(inputs, report)}};
-  writer_->publish(facts, coarsest, metadata.dump());
+  writer_->publish(facts, coarsest,
+                   metadata.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   report.records = records_;
   report.t0_vertices = coarsest.vertices.size();
   report.max_rank = max_rank_;

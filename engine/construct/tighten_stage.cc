@@ -81,7 +81,9 @@ TightenStage::Open& TightenStage::open(const TileId& id) {
 // Handing out.
 
 std::optional<std::uint64_t> TightenStage::next_bytes() {
-  if (next_batch_ == order_.batches().size()) {
+  // Results wait for their turn, and what they take is counted no more: so not too many of them.
+  const auto most_waiting = 2 * static_cast<std::size_t>(options_.threads);
+  if (next_batch_ == order_.batches().size() || next_batch_ - turn_ >= most_waiting) {
     return std::nullopt;
   }
   std::uint64_t samples = 0;

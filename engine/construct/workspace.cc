@@ -26,7 +26,8 @@ std::string temporary_folder(const std::string& output, const std::string& tmp) 
   const fs::path whole = fs::absolute(output);
   const std::string text = whole.string();
   const std::uint64_t name = checksum_of(std::as_bytes(std::span(text)));
-  return tmp + "/." + whole.filename().string() + ".ptin-build-" + std::to_string(name);
+  return fs::absolute(tmp).string() + "/." + whole.filename().string() + ".ptin-build-" +
+         std::to_string(name);
 }
 
 void make_folder(FileLayer& files, const std::string& path) {
@@ -56,6 +57,12 @@ void remove_folder(FileLayer& files, const std::string& path) {
   if (failure != 0 && failure != ENOENT) {
     throw system_error(failure, "cannot remove the folder of temporary files", path);
   }
+}
+
+/// As it is when it has been written and read: NaN becomes null, and bytes that are no UTF-8 are
+/// replaced.
+nlohmann::json as_read_back(const nlohmann::json& json) {
+  return nlohmann::json::parse(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 nlohmann::json first_line(const nlohmann::json& fingerprint, const std::string& tmp) {
@@ -100,8 +107,8 @@ bool Workspace::discard(FileLayer& files, const std::string& output) {
   const Lock lock(folder);
   if (fs::exists(manifest_in(folder))) {
     const Manifest manifest(files, manifest_in(folder));
-    if (!manifest.lines().empty()) {
-      remove_folder(files, manifest.lines().front().value("tmp", folder));
+    if (!manifest.entries().empty()) {
+      remove_folder(files, manifest.entries().front().value("tmp", folder));
     }
   }
   if (fs::exists(folder)) {
@@ -122,7 +129,7 @@ Workspace::Workspace(FileLayer& files, const std::string& output, const std::str
   if (!tmp.empty()) {
     tmp_ = temporary_folder(output, tmp);
   }
-  if (manifest_->lines().empty()) {
+  if (manifest_->entries().empty()) {
     begin(fingerprint);
     return;
   }
@@ -132,15 +139,21 @@ Workspace::Workspace(FileLayer& files, const std::string& output, const std::str
                     " is here; go on with it by --resume, or remove it by --discard",
                 folder_);
   }
-  const nlohmann::json& first = manifest_->lines().front();
-  if (first.value("ptin_build", 0) != 1 || first.value("of", nlohmann::json()) != fingerprint) {
+  const nlohmann::json& first = manifest_->entries().front();
+  if (first.value("ptin_build", 0) != 1 ||
+      first.value("of", nlohmann::json()) != as_read_back(fingerprint)) {
     throw Error(ErrorCode::invalid_argument,
                 "the unfinished build here is of other inputs or other options; repeat those, or "
                 "remove it by --discard",
                 folder_);
   }
   tmp_ = first.value("tmp", folder_);
-  make_folder(files_, tmp_);
+  has_work_ = manifest_->entries().size() > 1;
+  if (!fs::exists(tmp_)) {
+    throw Error(ErrorCode::not_found,
+                "the temporary files of the unfinished build are not there; is their disk mounted?",
+                tmp_);
+  }
 }
 
 /// The first line; until it is there, there is nothing to resume, and nothing stays behind.
@@ -158,14 +171,18 @@ void Workspace::begin(const nlohmann::json& fingerprint) {
 Workspace::~Workspace() = default;
 
 std::vector<nlohmann::json> Workspace::lines() const {
-  const std::vector<nlohmann::json>& all = manifest_->lines();
+  const std::vector<nlohmann::json>& all = manifest_->entries();
   return all.empty() ? all : std::vector<nlohmann::json>(all.begin() + 1, all.end());
 }
 
-void Workspace::append(const std::vector<nlohmann::json>& lines) { manifest_->append(lines); }
+void Workspace::append(const std::vector<nlohmann::json>& lines) {
+  manifest_->append(lines);
+  has_work_ = true;
+}
 
 void Workspace::sync_names() {
-  for (const std::string& folder : {folder_, tmp_}) {
+  const std::string parent = fs::path(folder_).parent_path().string();
+  for (const std::string& folder : {folder_, tmp_, parent.empty() ? "." : parent}) {
     const int failure = files_.sync_folder(folder);
     if (failure != 0) {
       throw system_error(failure, "cannot sync", folder);

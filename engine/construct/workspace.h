@@ -53,6 +53,8 @@ class Workspace {
   /// What an interrupted build had done, without the line of the workspace itself.
   [[nodiscard]] std::vector<nlohmann::json> lines() const;
   void append(const std::vector<nlohmann::json>& lines);
+  /// True when there is something that a resumed build need not do again.
+  [[nodiscard]] bool has_work() const noexcept { return has_work_; }
   /// Makes the names of new files durable. @throws Error io_error
   void sync_names();
 
@@ -69,6 +71,7 @@ class Workspace {
   std::string folder_, tmp_;
   std::unique_ptr<Lock> lock_;
   std::unique_ptr<Manifest> manifest_;
+  bool has_work_ = false;
 };
 
 }  // namespace ptin

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -166,7 +167,10 @@ class BuildShow {
  public:
   BuildShow(const BuildCommand& command, const Context& context)
       : progress_(Progress::style_for(context.quiet, stderr)) {
-    if (command.progress_fd >= 0) fd_.emplace(command.progress_fd);
+    if (command.progress_fd >= 0) {
+      std::signal(SIGPIPE, SIG_IGN);  // a reader may go away
+      fd_.emplace(command.progress_fd);
+    }
   }
   void report(const char* stage, std::uint64_t done, std::uint64_t total) {
     const auto now = std::chrono::steady_clock::now();
