@@ -84,6 +84,53 @@ TEST(LocateCommand, NamesTheLineThatIsNoPoint) {
   EXPECT_EQ(run_ptin({"locate", terrain, "--points", folder.file("none.csv")}).status, 3);
 }
 
+TEST(LocateCommand, LosesNoFirstRow) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string points = folder.file("p.csv");
+  const std::string row = east(3) + "," + south(3);
+  const auto count = [&](const std::string& text) {
+    write_file(points, text);
+    return answer_of({"locate", terrain, "--points", points, "--json"}).at("points").size();
+  };
+  EXPECT_EQ(count("\xEF\xBB\xBF" + row + "\r\n" + row + "\r\n"), 2u);
+  EXPECT_EQ(count("\xEF\xBB\xBFx1,y1\n" + row + "\n"), 1u);
+  EXPECT_EQ(
+      count("\n  " + east(3) + " , \t" + south(3) + " ,,,name\n" + east(3) + "   " + south(3)), 2u);
+  for (const char* first : {"\"380000\",\"3802000\"", "380000m 3802000m", "here,380000,3802000"}) {
+    write_file(points, first + ("\n" + row + "\n"));
+    const Outcome outcome = run_ptin({"locate", terrain, "--points", points});
+    EXPECT_EQ(outcome.status, 2) << first;
+    EXPECT_NE(outcome.err.find("line 1"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(LocateCommand, ShiftsNoColumnWhereANumberIsMissing) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string points = folder.file("p.csv");
+  for (const char* bad : {"380000,,3802000", ",380000,3802000", "380000; ;3802000", "380000,",
+                          "380000\t\t3802000", ",,"}) {
+    write_file(points, "x,y\n1,2\n" + std::string(bad) + "\n");
+    const Outcome outcome = run_ptin({"locate", terrain, "--points", points});
+    EXPECT_EQ(outcome.status, 2) << bad;
+    EXPECT_NE(outcome.err.find("line 3"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(LocateCommand, SaysWhenItCannotReadThePoints) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  std::filesystem::create_directory(folder.file("points"));
+  const Outcome of_folder = run_ptin({"locate", terrain, "--points", folder.file("points")});
+  EXPECT_EQ(of_folder.status, 2);
+  EXPECT_NE(of_folder.err.find("folder"), std::string::npos) << of_folder.err;
+  // It opens, and its first byte cannot be read.
+  const Outcome fault = run_ptin({"locate", terrain, "--points", "/proc/self/mem"});
+  EXPECT_EQ(fault.status, 6);
+  EXPECT_NE(fault.err.find("/proc/self/mem"), std::string::npos) << fault.err;
+}
+
 TEST(ProfileCommand, BreaksAtEveryEdgeAndWritesThreeFormats) {
   const TestFolder folder;
   const std::string terrain = wall(folder);

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/number_rows.h"
 
+#include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
-#include <sstream>
+#include <optional>
+#include <span>
 #include <string_view>
+#include <system_error>
 
 #include <ogrsf_frmts.h>
 
@@ -18,52 +22,96 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr std::string_view kSeparators = " \t,;\r";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// The numbers at the beginning of a line, at most `most`.
-std::size_t parse_numbers(std::string_view line, std::size_t most, std::vector<double>& out) {
-  std::size_t count = 0;
-  while (count < most) {
-    const std::size_t begin = line.find_first_not_of(kSeparators);
-    if (begin == std::string_view::npos) break;
-    line.remove_prefix(begin);
-    if (line.front() == '+') line.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, fault] = std::from_chars(line.data(), line.data() + line.size(), value);
-    const auto used = static_cast<std::size_t>(end - line.data());
-    if (fault != std::errc() ||
-        (used < line.size() && kSeparators.find(line[used]) == std::string_view::npos)) {
-      break;
+/// The fields of a line. Blanks only set apart; two commas, semicolons or (in a line without
+/// those) tabs in a row have an empty field between them: a number that is missing must not shift
+/// the others.
+void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
+  const bool listed = line.find_first_of(",;") != std::string_view::npos;
+  const std::string_view separators = listed ? ",;" : "\t";
+  const std::string_view blanks = listed ? " \t\r" : " \r";
+  const auto skip_blanks = [&] {
+    line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  };
+  fields.clear();
+  if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
+  skip_blanks();
+  for (bool more = true; more;) {
+    std::size_t length = 0;
+    while (length < line.size() && separators.find(line[length]) == std::string_view::npos &&
+           blanks.find(line[length]) == std::string_view::npos) {
+      ++length;
     }
-    out.push_back(value);
-    line.remove_prefix(used);
-    ++count;
+    fields.push_back(line.substr(0, length));
+    line.remove_prefix(length);
+    skip_blanks();
+    more = !line.empty();
+    if (more && separators.find(line.front()) != std::string_view::npos) {
+      line.remove_prefix(1);
+      skip_blanks();
+    }
   }
-  return count;
+}
+
+std::optional<double> number_of(std::string_view field) {
+  if (field.starts_with('+')) field.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, fault] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (fault != std::errc() || end != field.data() + field.size()) return std::nullopt;
+  return value;
+}
+
+/// True for numbers, and for what was meant as one: quoted, with a unit or a decimal comma.
+bool looks_like_number(std::string_view field) {
+  const std::size_t begin = field.find_first_not_of("\"'+-.");
+  return number_of(field) ||
+         (begin != std::string_view::npos && field[begin] >= '0' && field[begin] <= '9');
+}
+
+[[noreturn]] void throw_bad_line(std::size_t number, const std::string& what, std::size_t columns,
+                                 const std::string& name) {
+  throw Error(ErrorCode::invalid_argument,
+              "line " + std::to_string(number) + " " + what + ", expected " +
+                  std::to_string(columns) + " numbers separated by commas or spaces",
+              name);
+}
+
+void append_row(std::span<const std::string_view> fields, std::size_t columns, std::size_t line,
+                const std::string& name, std::vector<double>& rows) {
+  for (std::size_t i = 0; i < columns; ++i) {
+    if (i == fields.size()) {
+      throw_bad_line(line, "has only " + std::to_string(i) + " numbers", columns, name);
+    }
+    const std::string place = "field " + std::to_string(i + 1);
+    if (fields[i].empty()) throw_bad_line(line, "has nothing in " + place, columns, name);
+    const std::optional<double> value = number_of(fields[i]);
+    if (!value) throw_bad_line(line, "has no number in " + place, columns, name);
+    rows.push_back(*value);
+  }
 }
 
 std::vector<double> rows_of(std::istream& in, const std::string& name, std::size_t columns) {
   std::vector<double> rows;
+  std::vector<std::string_view> fields;
   std::string line;
   for (std::size_t number = 1; std::getline(in, line); ++number) {
-    if (line.find_first_not_of(kSeparators) == std::string::npos) continue;
-    const std::size_t found = parse_numbers(line, columns, rows);
-    if (found == columns) continue;
-    rows.resize(rows.size() - found);
-    if (number == 1 && found == 0) continue;  // a header
-    throw Error(ErrorCode::invalid_argument,
-                "line " + std::to_string(number) + " has " + std::to_string(found) +
-                    " numbers, expected " + std::to_string(columns) +
-                    " separated by commas or spaces",
-                name);
+    if (number == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
+    split_fields(line, fields);
+    if (fields.empty()) continue;
+    const bool header =
+        number == 1 && std::none_of(fields.begin(), fields.end(), looks_like_number);
+    if (!header) append_row(fields, columns, number, name, rows);
   }
+  if (in.bad()) throw Error(ErrorCode::io_error, "cannot be read to its end", name);
   return rows;
 }
 
 void require_file(const std::string& path) {
-  if (!std::filesystem::exists(path)) {
-    throw Error(ErrorCode::not_found, "no such file", path);
-  }
+  std::error_code fault;
+  if (std::filesystem::exists(path, fault)) return;
+  if (fault) throw system_error(fault.value(), "cannot open", path);
+  throw Error(ErrorCode::not_found, "no such file", path);
 }
 
 using DatasetPtr = std::unique_ptr<GDALDataset>;
@@ -109,7 +157,12 @@ std::vector<MapPoint> line_of_wkt(const std::string& wkt) {
 std::vector<double> read_rows(const std::string& path, std::size_t columns) {
   if (path == "-") return rows_of(std::cin, "standard input", columns);
   require_file(path);
+  if (std::filesystem::is_directory(path)) {
+    throw Error(ErrorCode::invalid_argument, "is a folder; name a text file with numbers", path);
+  }
+  errno = 0;
   std::ifstream in(path);
+  if (!in) throw system_error(errno, "cannot open", path);
   return rows_of(in, path, columns);
 }
 

@@ -12,9 +12,11 @@
 namespace ptin::tools {
 
 /// Rows of at least `columns` numbers from a text file, or from standard input when `path` is "-":
-/// separated by commas, semicolons, tabs or spaces; a first line that is no numbers is a header;
-/// further columns are left alone. All rows one behind the other, `columns` numbers each.
-/// @throws Error not_found, invalid_argument (names the line)
+/// separated by commas, semicolons, tabs or spaces; a first line without anything like a number is
+/// a header; further columns are left alone; a UTF-8 byte order mark is skipped. All rows one
+/// behind the other, `columns` numbers each.
+/// @throws Error not_found, io_error, invalid_argument (names the line; a field is empty or no
+/// number; a folder)
 [[nodiscard]] std::vector<double> read_rows(const std::string& path, std::size_t columns);
 
 /// The points of a text file as read_rows(), or of the first layer of a vector file that GDAL
