@@ -87,6 +87,10 @@ std::size_t StreamReader::feed(std::span<const std::byte> bytes) {
   if (expects_ == Expects::kNothing) {
     reject("the stream was rejected before");
   }
+  if (expects_ == Expects::kHead && waiting_.empty() && !bytes.empty()) {
+    complete_ = false;  // From its first byte on the next stream is the current one.
+    splits_ = splits_in_all_ = 0;
+  }
   try {
     while (true) {
       const std::size_t missing = wanted() - waiting_.size();

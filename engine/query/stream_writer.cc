@@ -223,13 +223,14 @@ Tin Writer::base_mesh() {
     const PredicatePtr predicate = held.predicate ? held.predicate : everything();
     std::vector<PendingSplit> splits =
         retrieve(source_, *predicate, refinement_bytes(refinement.tin().vertices.size()), context_);
+    // Before cutting: the receiver counts what it was sent, without what it had by then.
+    std::erase_if(splits,
+                  [&](const PendingSplit& s) { return refinement.find(s.u) != KeyTable::kAbsent; });
     if (held.splits < splits.size()) {
       const auto last = splits.begin() + static_cast<std::ptrdiff_t>(held.splits);
       std::nth_element(splits.begin(), last, splits.end(), is_before);
       splits.erase(last, splits.end());
     }
-    std::erase_if(splits,
-                  [&](const PendingSplit& s) { return refinement.find(s.u) != KeyTable::kAbsent; });
     refinement.apply(splits, context_);
   }
   return stream::numbered_by_key(refinement.tin());

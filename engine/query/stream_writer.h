@@ -22,8 +22,9 @@
 
 namespace ptin {
 
-/// Something that a receiver was served before: the first `splits` records of the total order for
-/// which `predicate` is true.
+/// Something that a receiver was served before: of the records for which `predicate` is true and
+/// which no serving before this one in the list brought, the first `splits` of the total order. So
+/// servings are listed in the order in which they were received.
 struct StreamHeld {
   PredicatePtr predicate;                                            ///< Null: everything.
   std::uint64_t splits = std::numeric_limits<std::uint64_t>::max();  ///< Fewer: it was cut there.
@@ -34,7 +35,7 @@ struct StreamRequest {
   PredicatePtr wanted;
   /// The tolerance that is part of `wanted`, if there is one: certificates say so at the end.
   std::optional<double> tolerance;
-  /// Together; empty: nothing, not even T0.
+  /// In the order received; empty: nothing, not even T0.
   std::vector<StreamHeld> held;
   /// At most so many splits, the most important ones.
   std::uint64_t most_splits = std::numeric_limits<std::uint64_t>::max();

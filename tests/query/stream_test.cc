@@ -218,6 +218,40 @@ RC_GTEST_PROP(Stream, ACutStreamIsTakenUpWhereItEnded, (std::uint64_t seed)) {
   RC_ASSERT(canonical(reader.tin()) == canonical(asked.fresh(request.wanted).tin));
 }
 
+/// Two servings that overlap, the second one a delta of few splits, then the rest.
+void go_on_from_a_part(Asked& asked, bool cut) {
+  StreamRequest one, two;
+  one.wanted = reference::random_predicate(asked.random, asked.hierarchy.facts, 1);
+  one.most_splits = asked.random() % (asked.count(*one.wanted) + 1);
+  StreamReader reader("stream");
+  reader.feed(sent(*asked.store, one));
+  two.held = {{one.wanted, one.most_splits}};
+  const std::size_t all = asked.hierarchy.records.size();
+  if (!cut) two.most_splits = asked.random() % (all + 1);
+  const Bytes delta = sent(*asked.store, two);
+  reader.begin_next();
+  reader.feed(first(delta, cut ? 1 + asked.random() % delta.size() : delta.size()));
+  StreamRequest rest;
+  rest.held = {{one.wanted, one.most_splits}, {two.wanted, reader.splits()}};
+  const std::uint64_t had = one.most_splits + reader.splits();
+  if (!reader.is_complete()) reader.begin_next();
+  StreamSummary summary;
+  reader.feed(sent(*asked.store, rest, &summary));
+  RC_ASSERT(reader.is_complete());
+  RC_ASSERT(summary.splits == all - had);
+  RC_ASSERT(canonical(reader.tin()) == canonical(asked.hierarchy.full));
+}
+
+RC_GTEST_PROP(Stream, ADeltaThatWasCutIsTakenUpWhereItEnded, (std::uint64_t seed)) {
+  Asked asked(seed);
+  go_on_from_a_part(asked, true);
+}
+
+RC_GTEST_PROP(Stream, ADeltaOfFewSplitsIsTakenUpWhereItEnded, (std::uint64_t seed)) {
+  Asked asked(seed);
+  go_on_from_a_part(asked, false);
+}
+
 TEST(Stream, SendsTheMostImportantSplitsWhenFewAreAskedFor) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Asked asked(seed);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/query/stream_writer.h"
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
 
@@ -131,6 +132,44 @@ TEST_F(StreamCli, WritesToStdoutAndReadsLevels) {
   EXPECT_EQ(piped.out, read_file(file("s.pts")));
   EXPECT_LT(answer({"unstream", file("s.pts")}).at("vertices"),
             answer({"refine", file("t.ptin"), "--error", "5", "-o", file("r.ply")}).at("vertices"));
+}
+
+TEST_F(StreamCli, TakesUpADeltaThatWasCut) {
+  build("mountains_257.tif");
+  const std::string t = file("t.ptin");
+  const json all = answer({"stream", t, "-o", file("all.pts")});
+  answer({"stream", t, "--error", "5", "-o", file("a.pts")});
+  answer({"stream", t, "--error", "1", "--have-error", "5", "-o", file("b.pts")});
+  const std::string delta = read_file(file("b.pts"));
+  for (const std::size_t cut : {std::size_t{0}, std::size_t{7}, delta.size() / 2}) {
+    write_file(file("cut.pts"), delta.substr(0, cut));
+    const json part = answer({"unstream", file("a.pts"), file("cut.pts")});
+    answer({"stream", t, "--have", part.at("have").dump(), "-o", file("rest.pts"), "--overwrite"});
+    const json whole = answer({"unstream", file("a.pts"), file("cut.pts"), file("rest.pts")});
+    EXPECT_TRUE(whole.at("complete")) << cut;
+    EXPECT_EQ(whole.at("vertices"), answer({"unstream", file("all.pts")}).at("vertices")) << cut;
+  }
+  EXPECT_GT(all.at("splits"), 1000);
+}
+
+TEST_F(StreamCli, RejectsARequestThatNobodyCanHaveMade) {
+  build("mountains_257.tif");
+  for (const char* metadata :
+       {R"({"request":5})", R"({"request":null})", R"({"request":{"window":[1]}})",
+        R"({"request":{"splits":"x"}})", R"({"request":[{},{}]})", "[]", "{"}) {
+    StreamRequest request;
+    request.wanted = error_above(20.0);
+    request.metadata = metadata;
+    std::string bytes;
+    write_stream(*StoreFile::open(file("t.ptin")), request, [&](std::span<const std::byte> piece) {
+      bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+    });
+    for (const std::size_t size : {bytes.size(), bytes.size() - 1}) {
+      write_file(file("s.pts"), bytes.substr(0, size));
+      const Outcome outcome = run_ptin({"unstream", file("s.pts")});
+      EXPECT_EQ(outcome.status, 4) << metadata << ": " << outcome.err;
+    }
+  }
 }
 
 TEST_F(StreamCli, SaysWhatIsWrong) {

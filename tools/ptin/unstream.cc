@@ -47,6 +47,18 @@ nlohmann::json metadata_of(const StreamReader& reader) {
   return json;
 }
 
+/// What the sender was asked for.  @throws Error corruption  it is nothing that can be asked
+Serving serving_in(const nlohmann::json& metadata) {
+  const nlohmann::json request = metadata.value("request", nlohmann::json::object());
+  try {
+    return servings_of(nlohmann::json::array({request}).dump()).front();
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::invalid_argument) throw;
+  }
+  throw Error(ErrorCode::corruption,
+              "the request in the stream's metadata is none; `ptin stream` did not write it");
+}
+
 /// Reads streams one after the other, and notes what each brought.
 class Receiver {
  public:
@@ -55,7 +67,9 @@ class Receiver {
   void read(const std::string& path, const Context& context) {
     const File file = opened(path);
     std::vector<std::byte> buffer(std::size_t{1} << 20);
+    bool begun = false;
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
+      begun = true;
       if (context.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
       for (std::span<const std::byte> rest(buffer.data(), n); !rest.empty();) {
         rest = rest.subspan(reader_.feed(rest));
@@ -64,7 +78,7 @@ class Receiver {
       }
     }
     if (std::ferror(file.get()) != 0) throw system_error(errno, "cannot read", path);
-    if (within_ && reader_.has_mesh()) note();
+    if (begun && within_ && reader_.has_mesh()) note();
     if (within_) reader_.begin_next();
   }
 
@@ -74,9 +88,9 @@ class Receiver {
 
  private:
   void note() {
-    nlohmann::json serving = metadata_of(reader_).value("request", nlohmann::json::object());
-    if (!reader_.is_complete()) serving["splits"] = reader_.splits();
-    have_.push_back(std::move(serving));
+    Serving serving = serving_in(metadata_of(reader_));
+    if (!reader_.is_complete()) serving.splits = reader_.splits();
+    have_.push_back(to_json(serving));
   }
 
   StreamReader reader_;
