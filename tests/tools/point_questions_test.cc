@@ -144,6 +144,8 @@ TEST(ProfileCommand, BreaksAtEveryEdgeAndWritesThreeFormats) {
     EXPECT_EQ(run_ptin({"profile", terrain, "--line", line, "-o", folder.file(name)}).status, 0);
     EXPECT_GT(std::filesystem::file_size(folder.file(name)), 50u);
   }
+  const json written = json::parse(testing::read_file(folder.file("p.geojson")));
+  EXPECT_EQ(written.at("crs").at("properties").at("name"), "urn:ogc:def:crs:EPSG::32611");
   EXPECT_EQ(run_ptin({"profile", terrain, "--line", line, "-o", folder.file("p.doc")}).status, 2);
 }
 

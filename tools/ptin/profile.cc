@@ -45,8 +45,18 @@ std::string csv_of(const ProfileResult& profile) {
   return text;
 }
 
+/// Adds the member `crs` of GeoJSON 2008, as GDAL does, where the CRS has a code and is not WGS 84
+/// (which GeoJSON means without it).
+void add_crs(const CrsFacts& crs, nlohmann::json& collection) {
+  const std::size_t colon = crs.code.find(':');
+  if (colon == std::string::npos || crs.code == "EPSG:4326") return;
+  const std::string name =
+      "urn:ogc:def:crs:" + crs.code.substr(0, colon) + "::" + crs.code.substr(colon + 1);
+  collection["crs"] = {{"type", "name"}, {"properties", {{"name", name}}}};
+}
+
 /// A MultiLineString of the stretches over ground, with heights.
-nlohmann::json geojson_of(const ProfileResult& profile) {
+nlohmann::json geojson_of(const ProfileResult& profile, const CrsFacts& crs) {
   nlohmann::json lines = nlohmann::json::array();
   nlohmann::json line = nlohmann::json::array();
   for (const ProfilePoint& p : profile.points) {
@@ -65,7 +75,10 @@ nlohmann::json geojson_of(const ProfileResult& profile) {
       {"type", "Feature"},
       {"properties", properties},
       {"geometry", {{"type", "MultiLineString"}, {"coordinates", lines}}}};
-  return {{"type", "FeatureCollection"}, {"features", nlohmann::json::array({feature})}};
+  nlohmann::json collection = {{"type", "FeatureCollection"},
+                               {"features", nlohmann::json::array({feature})}};
+  add_crs(crs, collection);
+  return collection;
 }
 
 /// Distance to the right, height upwards, both filling the picture; a line at each end of the
@@ -98,14 +111,15 @@ Image plot_of(const ProfileResult& profile) {
   return image;
 }
 
-void write_profile(const ProfileOptions& options, const ProfileResult& profile) {
+void write_profile(const ProfileOptions& options, const ProfileResult& profile,
+                   const CrsFacts& crs) {
   const std::string extension = std::filesystem::path(options.output).extension().string();
   if (extension == ".png") {
     write_png(plot_of(profile), options.output, options.overwrite);
     return;
   }
   OutputFile out(options.output, options.overwrite);
-  out.write(extension == ".csv" ? csv_of(profile) : geojson_of(profile).dump() + "\n");
+  out.write(extension == ".csv" ? csv_of(profile) : geojson_of(profile, crs).dump() + "\n");
   out.publish();
 }
 
@@ -129,7 +143,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   request.tolerance = options.error;
   request.stop = context.stop;
   const ProfileResult result = profile(terrain, line, request);
-  if (!options.output.empty()) write_profile(options, result);
+  if (!options.output.empty()) write_profile(options, result, crs);
   if (context.json) {
     nlohmann::json answer = {
         {"certified_error", result.certified_error},
