@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Writes a made terrain of any size as a tiled GeoTIFF, for benchmarks of builds that are larger than
-// the real terrains at hand: fractal noise with the slopes of a mountain range, heights in decimetres
-// (Int16), 30 m pixels; the same bytes whenever it runs.
+// Writes a made terrain of any size as a tiled GeoTIFF, for benchmarks of builds that are larger
+// than the real terrains at hand: fractal noise with the slopes of a mountain range, heights in
+// decimetres (Int16), 30 m pixels; the same bytes whenever it runs.
 //   make_terrain SIDE OUT.tif
 #include <algorithm>
 #include <cmath>
@@ -53,8 +53,8 @@ std::int16_t height(int x, int y) {
 bool write(int side, const char* path) {
   GDALAllRegister();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
-  const char* const options[] = {"TILED=YES", "BLOCKXSIZE=512", "BLOCKYSIZE=512", "BIGTIFF=IF_SAFER",
-                                 nullptr};
+  const char* const options[] = {"TILED=YES", "BLOCKXSIZE=512", "BLOCKYSIZE=512",
+                                 "BIGTIFF=IF_SAFER", nullptr};
   const GDALDatasetUniquePtr file(GDALDataset::FromHandle(
       driver->Create(path, side, side, 1, GDT_Int16, const_cast<char**>(options))));
   if (!file) return false;
@@ -73,8 +73,8 @@ bool write(int side, const char* path) {
           block[static_cast<std::size_t>(j) * w + i] = height(x + i, y + j);
         }
       }
-      if (file->GetRasterBand(1)->RasterIO(GF_Write, x, y, w, h, block.data(), w, h, GDT_Int16, 0, 0,
-                                           nullptr) != CE_None) {
+      if (file->GetRasterBand(1)->RasterIO(GF_Write, x, y, w, h, block.data(), w, h, GDT_Int16, 0,
+                                           0, nullptr) != CE_None) {
         return false;
       }
     }
