@@ -33,6 +33,14 @@ void BatchOrder::visit(const TileTree& tree, const TileId& id, std::vector<TileI
   path.pop_back();
 }
 
+std::uint64_t BatchOrder::largest_leaf(const TileTree& tree, const Batch& batch) {
+  std::uint64_t samples = 0;
+  for (const TileId& leaf : batch.leaves) {
+    samples = std::max(samples, tree.window(leaf).samples());
+  }
+  return samples;
+}
+
 std::size_t BatchOrder::place_in_parent(const TileTree& tree, const TileId& child) {
   const std::vector<TileId> siblings = tree.children(parent_of(child));
   return static_cast<std::size_t>(std::find(siblings.begin(), siblings.end(), child) -

@@ -29,6 +29,8 @@ class BatchOrder {
   [[nodiscard]] const std::vector<Batch>& batches() const noexcept { return batches_; }
   /// Place of `child` among the children of its parent.
   [[nodiscard]] static std::size_t place_in_parent(const TileTree& tree, const TileId& child);
+  /// Samples of the largest leaf of a batch: what its work is estimated by.
+  [[nodiscard]] static std::uint64_t largest_leaf(const TileTree& tree, const Batch& batch);
   [[nodiscard]] static TileId parent_of(const TileId& id) noexcept {
     return {id.level + 1, id.x / 2, id.y / 2};
   }

@@ -9,14 +9,6 @@
 
 namespace ptin {
 
-namespace {
-
-std::uint64_t samples_in(const SampleRange& w) {
-  return static_cast<std::uint64_t>(w.width) * static_cast<std::uint64_t>(w.height);
-}
-
-}  // namespace
-
 CollapseStage::CollapseStage(const std::function<LeafStarter()>& make_starter, const TileTree& tree,
                              const BatchOrder& order, const HierarchyOptions& options,
                              BuildLog& log)
@@ -26,7 +18,7 @@ CollapseStage::CollapseStage(const std::function<LeafStarter()>& make_starter, c
   }
   for (const Batch& batch : order.batches()) {
     if (log.collapsed().contains(batch.top)) {
-      samples_done_ += samples_in(tree.window(batch.top));
+      samples_done_ += tree.window(batch.top).samples();
     }
   }
   for (const auto& [id, tile] : log.collapsed()) {
@@ -67,11 +59,8 @@ std::optional<std::uint64_t> CollapseStage::next_bytes() {
   if (next_batch_ == order_.batches().size()) {
     return std::nullopt;
   }
-  std::uint64_t samples = 0;
-  for (const TileId& leaf : order_.batches()[next_batch_].leaves) {
-    samples = std::max(samples, samples_in(tree_.window(leaf)));
-  }
-  return options_.tile_bytes.of_batch(samples);
+  return options_.tile_bytes.of_batch(
+      BatchOrder::largest_leaf(tree_, order_.batches()[next_batch_]));
 }
 
 Piece CollapseStage::take(int worker) {
@@ -112,7 +101,7 @@ std::function<void()> CollapseStage::collapse_batch(std::size_t number, const Le
     segments_.add(number, leaf.records);
     result.lone_samples += leaf.lone_samples;
     parts.push_back(std::move(leaf.pushed.tile));
-    report(samples_in(tree_.window(id)));
+    report(tree_.window(id).samples());
   }
   const ArrayFileFacts records = segments_.end(number);
   const std::uint64_t lone_samples = result.lone_samples;
@@ -173,7 +162,7 @@ void CollapseStage::report(std::uint64_t samples) {
   const std::lock_guard lock(report_mutex_);
   samples_done_ += samples;
   if (options_.progress) {
-    options_.progress("collapsing", samples_done_, samples_in(tree_.window(tree_.root())));
+    options_.progress("collapsing", samples_done_, tree_.window(tree_.root()).samples());
   }
 }
 

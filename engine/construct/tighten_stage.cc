@@ -13,10 +13,6 @@ namespace {
 
 constexpr const char* kBounds = ".bounds";
 
-std::uint64_t samples_in(const SampleRange& w) {
-  return static_cast<std::uint64_t>(w.width) * static_cast<std::uint64_t>(w.height);
-}
-
 /// One entry for each record: the maxima over several leaves.
 void combine(std::vector<BoundsRaise>& raises) {
   std::sort(raises.begin(), raises.end(),
@@ -51,7 +47,7 @@ TightenStage::TightenStage(const std::function<LeafStarter()>& make_starter, con
   }
   for (std::size_t i = 0; i < turn_; ++i) {
     take_up(order.batches()[i]);
-    samples_done_ += samples_in(tree.window(order.batches()[i].top));
+    samples_done_ += tree.window(order.batches()[i].top).samples();
   }
 }
 
@@ -86,11 +82,8 @@ std::optional<std::uint64_t> TightenStage::next_bytes() {
   if (next_batch_ == order_.batches().size() || next_batch_ - turn_ >= most_waiting) {
     return std::nullopt;
   }
-  std::uint64_t samples = 0;
-  for (const TileId& leaf : order_.batches()[next_batch_].leaves) {
-    samples = std::max(samples, samples_in(tree_.window(leaf)));
-  }
-  return options_.tile_bytes.of_replay(samples);
+  return options_.tile_bytes.of_replay(
+      BatchOrder::largest_leaf(tree_, order_.batches()[next_batch_]));
 }
 
 Piece TightenStage::take(int worker) {
@@ -122,7 +115,7 @@ TightenStage::Replayed TightenStage::replay(const Batch& batch, const LeafStarte
     }
     const SampleRange window = tree_.window(leaf);
     replay_over_leaf(chain, t0_, start(window));
-    report(samples_in(window));
+    report(window.samples());
   }
   Replayed result{files.back(), SegmentBounds(files.back()->view()), {}, {}, {}};
   result.bounds.raise(raises.back());
@@ -224,7 +217,7 @@ void TightenStage::report(std::uint64_t samples) {
   const std::lock_guard lock(mutex_);
   samples_done_ += samples;
   if (options_.progress) {
-    options_.progress("tightening", samples_done_, samples_in(tree_.window(tree_.root())));
+    options_.progress("tightening", samples_done_, tree_.window(tree_.root()).samples());
   }
 }
 

@@ -17,6 +17,9 @@ namespace ptin {
 /// south.
 struct SampleRange {
   std::int64_t x0 = 0, y0 = 0, width = 0, height = 0;
+  [[nodiscard]] std::uint64_t samples() const noexcept {
+    return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  }
   friend bool operator==(const SampleRange&, const SampleRange&) = default;
 };
 

@@ -8,6 +8,7 @@
 #include "engine/error.h"
 #include "engine/query/certificate.h"
 #include "engine/query/isoline_clip.h"
+#include "engine/query/meets_box.h"
 #include "engine/query/refinement.h"
 #include "engine/query/retrieval.h"
 
@@ -18,17 +19,6 @@ namespace {
 constexpr std::int64_t kSmallestTile = 32;  // grid units a side
 constexpr std::uint64_t kTraceBytes = 16;   // a record: bands, marks of two triangles
 constexpr std::uint64_t kSmallestLimit = 1 << 20;
-
-class MeetsBox final : public AttributePredicate {
- public:
-  explicit MeetsBox(const GridBox& box) : box_(box) {}
-  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    return meets(a.roi, box_);
-  }
-
- private:
-  GridBox box_;
-};
 
 std::pair<GridBox, GridBox> halves(const GridBox& box) {
   std::pair<GridBox, GridBox> two{box, box};

@@ -10,24 +10,13 @@
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/key_table.h"
+#include "engine/query/meets_box.h"
 #include "engine/query/refinement.h"
 #include "engine/query/retrieval.h"
 
 namespace ptin {
 
 namespace {
-
-/// `roi` meets a box of the grid: exact.
-class MeetsBox final : public AttributePredicate {
- public:
-  explicit MeetsBox(const GridBox& box) : box_(box) {}
-  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    return meets(a.roi, box_);
-  }
-
- private:
-  GridBox box_;
-};
 
 PredicatePtr wanted_by(const PartRequest& request, const StoreFacts& facts) {
   std::vector<PredicatePtr> parts;
