@@ -92,6 +92,19 @@ double first_below(const SightView& view, const SightPiece& piece) {
   return piece.from + t * width;
 }
 
+/// All before it is visible, and it is what it is in the full TIN.
+bool is_first_for_certain(const SightView& view, const SightPiece* hidden) {
+  const auto first = std::find_if(view.pieces.begin(), view.pieces.end(), [](const auto& p) {
+    return p.verdict != PieceVerdict::kVisible;
+  });
+  return first == view.pieces.end() ? hidden == nullptr
+                                    : &*first == hidden && is_final_truth(*hidden);
+}
+
+bool is_true_everywhere(const SightView& view) {
+  return std::all_of(view.pieces.begin(), view.pieces.end(), is_final_truth);
+}
+
 }  // namespace
 
 class SightSolver::Impl {
@@ -109,8 +122,9 @@ class SightSolver::Impl {
   [[nodiscard]] double ground_length(const SightPair& pair) const;
   void renew_mesh();
   void answer(const SightPair& pair, Spot p, Spot q, QueryContext& context, SightResult& result);
+  void answer_defined(SightSearch& search, const SightPair& pair, SightResult& result);
   void answer_upright(const SightPair& pair, SightResult& result);
-  void measure(SightSearch& search, const SightPair& pair, SightResult& result);
+  bool measure(SightSearch& search, const SightPair& pair, SightResult& result);
   void set_clearance(const SightView& view, const SightPair& pair, SightResult& result) const;
   void measure_line(const SightView& view, const SightPair& pair, SightResult& result) const;
   void state_ends(const SightView& view, SightResult& result) const;
@@ -139,10 +153,13 @@ SightSolver::Impl::Impl(const ProgressiveTin& terrain, SightRequest request,
   const StoreFile& store = terrain.store();
   facts_.heights = store_facts_.heights;
   const Certificate finest = certify_below(store, request_.tolerance.value_or(-1.0));
+  facts_.file_deviation = store_facts_.base_deviation;
   facts_.finest_deviation = finest.deviation;
-  facts_.classes_exact = finest.error == 0;
   facts_.max_height = store_facts_.max_height;
   facts_.has_voids = may_have_voids(store);
+  // An error of 0 does not do: voids may differ between samples.
+  facts_.exact_settles = !facts_.has_voids || store_facts_.base_error == 0;
+  facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);
   facts_.base_deviation = kInfinity;
   const double range = std::max(0.0, store_facts_.max_height - store_facts_.min_height);
   step_ =
@@ -223,42 +240,55 @@ void SightSolver::Impl::answer(const SightPair& pair, Spot p, Spot q, QueryConte
     search.finish_ends();
   }
   state_ends(search.view(), result);
-  if (!search.view().ends_defined()) {
+  const bool is_certain = !facts_.has_voids || search.ends_known();
+  if (search.view().ends_defined() && (is_certain || request_.absolute)) {
+    answer_defined(search, pair, result);
+  } else if (is_certain) {
     result.verdict = SightVerdict::kUndefined;
-    return;
+    result.exact = store_facts_.base_error == 0;
+  } else {
+    result.certified_deviation = kInfinity;  // the budget did not reach the ends
   }
+}
+
+void SightSolver::Impl::answer_defined(SightSearch& search, const SightPair& pair,
+                                       SightResult& result) {
   const bool whole_line = !request_.verdict_only && (facts_.has_voids || request_.wavelength > 0);
   if (whole_line) {
     search.finish_line();
   }
   result.verdict = search.decide();
+  bool measured = true;
   if (request_.verdict_only) {
     if (const SightPiece* hidden = search.hidden_piece(); hidden != nullptr) {
       result.obstruction = point_at(pair, search.view(), hidden->guess_at, result.length);
     }
   } else {
-    measure(search, pair, result);
+    measured = measure(search, pair, result);
   }
   for (const SightPiece& piece : search.view().pieces) {
     if (result.verdict == SightVerdict::kUndecided && piece.verdict == PieceVerdict::kUndecided) {
       result.certified_deviation = std::max(result.certified_deviation, piece.deviation);
     }
   }
-  result.exact = facts_.finest_deviation == 0 && result.verdict != SightVerdict::kUndecided &&
-                 !search.out_of_budget();
+  result.exact =
+      store_facts_.base_error == 0 && result.verdict != SightVerdict::kUndecided && measured;
 }
 
 /// Both ends at one place: the line is upright, and hidden as far as it lies under ground.
 void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& result) {
-  LocateRequest request;
-  request.tolerance = request_.tolerance;
+  if (request_.budget && *request_.budget == 0) {
+    result.certified_deviation = kInfinity;
+    return;
+  }
+  LocateRequest request;  // exact: ends are, whatever the tolerance
   request.memory_limit_bytes = request_.memory_limit_bytes;
   request.stop = request_.stop;
   const LocateResult located = locate(terrain_, {&pair.a, 1}, request);
   const LocatedPoint& ground = located.points[0];
   result.cost = located.cost;
-  result.exact = located.exact;
   result.state_a = result.state_b = ground.state;
+  result.exact = located.exact;
   result.void_length = 0.0;
   const double lower = std::min(pair.height_a, pair.height_b);
   if (ground.state != PointState::kSurface) {
@@ -270,6 +300,9 @@ void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& resul
   result.verdict = result.clearance_min >= 0  ? SightVerdict::kVisible
                    : result.clearance_max < 0 ? SightVerdict::kHidden
                                               : SightVerdict::kUndecided;
+  if (result.verdict == SightVerdict::kUndecided) {
+    result.certified_deviation = located.certified_deviation;
+  }
   const double height = request_.absolute ? lower : ground.height + lower;
   result.clearance_at = SightPoint{pair.a, 0.0, 0.0, height};
   if (result.verdict == SightVerdict::kHidden) {
@@ -295,14 +328,15 @@ SightPoint SightSolver::Impl::point_at(const SightPair& pair, const SightView& v
 }
 
 /// First obstruction, smallest clearance, and what is measured along the whole line.
-void SightSolver::Impl::measure(SightSearch& search, const SightPair& pair, SightResult& result) {
-  if (!search.out_of_budget()) {
-    search.finish_ends();
-  }
+/// @returns whether all of that is as in the full TIN
+bool SightSolver::Impl::measure(SightSearch& search, const SightPair& pair, SightResult& result) {
+  search.finish_ends();
+  bool is_true = !facts_.has_voids || search.ends_known();
   if (result.verdict == SightVerdict::kHidden) {
     const SightPiece* hidden = search.find_first_hidden();
     const SightView& view = search.view();
     const double share = hidden != nullptr ? first_below(view, *hidden) : 2.0;
+    is_true = is_true && is_first_for_certain(view, hidden) && view.knows_levels();
     if (std::min(share, view.touched_at()) <= 1.0) {
       result.obstruction = point_at(pair, view, std::min(share, view.touched_at()), result.length);
     }
@@ -314,6 +348,9 @@ void SightSolver::Impl::measure(SightSearch& search, const SightPair& pair, Sigh
   }
   search.find_least_clearance();
   set_clearance(search.view(), pair, result);
+  return is_true && !(result.clearance_min < result.clearance_max) &&
+         std::isfinite(result.void_length) &&
+         (request_.wavelength == 0 || is_true_everywhere(search.view()));
 }
 
 void SightSolver::Impl::set_clearance(const SightView& view, const SightPair& pair,
@@ -331,9 +368,10 @@ void SightSolver::Impl::set_clearance(const SightView& view, const SightPair& pa
   if (view.pieces.empty() || !std::isfinite(lowest.value)) {
     return;
   }
-  const bool known = facts_.finest_deviation == 0 && view.ray().is_known() &&
-                     std::none_of(view.pieces.begin(), view.pieces.end(),
-                                  [&](const SightPiece& p) { return !p.final && p.least < most; });
+  const bool known = view.ray().is_known() &&
+                     std::none_of(view.pieces.begin(), view.pieces.end(), [&](const auto& p) {
+                       return p.least < most && !is_final_truth(p);
+                     });
   result.clearance_min = known ? lowest.value : least;
   result.clearance_max = known ? lowest.value : most;
   result.clearance_at = point_at(pair, view, lowest.at, result.length);
@@ -342,8 +380,13 @@ void SightSolver::Impl::set_clearance(const SightView& view, const SightPair& pa
 void SightSolver::Impl::measure_line(const SightView& view, const SightPair& pair,
                                      SightResult& result) const {
   double voids = 0.0;
+  bool whole = true;  // else the budget ended first
   LeastRatio least{kInfinity, 0.0};
   for (const SightPiece& p : view.pieces) {
+    if (facts_.has_voids && !p.settled) {
+      voids = std::numeric_limits<double>::quiet_NaN();
+    }
+    whole = whole && p.final;
     if (!p.surface) {
       voids += (p.to - p.from) * result.length;
       continue;
@@ -354,7 +397,7 @@ void SightSolver::Impl::measure_line(const SightView& view, const SightPair& pai
     least = ratio.ratio < least.ratio ? ratio : least;
   }
   result.void_length = voids;
-  if (request_.wavelength > 0 && least.ratio < kInfinity) {
+  if (request_.wavelength > 0 && whole && least.ratio < kInfinity) {
     // The zone's radius is sqrt(wavelength d1 d2 / (d1 + d2)) with d1 = s L, d2 = (1 - s) L.
     result.fresnel_ratio = least.ratio / std::sqrt(request_.wavelength * result.length);
     result.fresnel_at = point_at(pair, view, least.at, result.length);

@@ -32,9 +32,11 @@ struct SightRequest {
   /// ellipsoid). None: the plane distance in map units.
   std::function<double(MapPoint, MapPoint)> ground_distance;
   double wavelength = 0.0;  ///< Height's unit; above 0 the first Fresnel zone is measured.
-  /// Leave out records of error at or below this (height's unit); none: exact.
+  /// Leave out records of error at or below this (height's unit), but not below the ends, nor at a
+  /// point that hides the line unless it is a void; none: exact.
   std::optional<double> tolerance;
-  /// Stop once this many records were retrieved for one pair.
+  /// Stop once this many records were retrieved for one pair: looked at before each step, so that
+  /// the last one may overrun it.
   std::optional<std::uint64_t> budget;
   /// Nothing but the verdict is wanted: obstruction and clearance are what deciding it happened to
   /// show.
@@ -45,7 +47,8 @@ struct SightRequest {
 
 /// Hidden: some inner point of the straight line (bent by curvature) lies strictly below the closed
 /// surface. Touching is visible, voids do not obstruct. Undecided: the request stopped earlier, or
-/// the file itself is not exact. Undefined: heights are above ground and an end stands on none.
+/// the file itself is not exact. Undefined: heights are above ground and an end stands on none. The
+/// other three are certain, also of a request that leaves something out.
 enum class SightVerdict : std::uint8_t { kVisible, kHidden, kUndecided, kUndefined };
 
 /// A point of the line.
@@ -58,22 +61,27 @@ struct SightPoint {
 
 struct SightResult {
   SightVerdict verdict = SightVerdict::kUndecided;
+  /// Exact, unless the budget ended before them.
   PointState state_a = PointState::kOutside, state_b = PointState::kOutside;
   double length = 0.0;  ///< Over ground, height's unit.
-  /// Hidden: where the line first goes below ground (a point below it, with `verdict_only`).
+  /// Hidden: where the line first goes below ground (with `verdict_only`, or not exact: some point
+  /// where it is below).
   std::optional<SightPoint> obstruction;
   /// Smallest height of the line above the surface, ends included, and where: the truth lies in
-  /// [clearance_min, clearance_max], equal when exact. NaN where there is no surface.
+  /// [clearance_min, clearance_max], equal when exact; the larger is infinite when all there is may
+  /// be void. NaN where there is no surface.
   double clearance_min = std::numeric_limits<double>::quiet_NaN();
   double clearance_max = std::numeric_limits<double>::quiet_NaN();
   std::optional<SightPoint> clearance_at;
-  /// Smallest clearance over the radius of the first Fresnel zone, ends excluded.
+  /// Smallest clearance over the radius of the first Fresnel zone, ends excluded; none when the
+  /// budget ended before. At a tolerance that of the coarser surface.
   std::optional<double> fresnel_ratio;
   std::optional<SightPoint> fresnel_at;
-  /// Length of the line over voids, height's unit; NaN when not known (`verdict_only`).
+  /// Length of the line over voids, height's unit; NaN when not known (`verdict_only`, or records
+  /// left out that decide it).
   double void_length = std::numeric_limits<double>::quiet_NaN();
   double certified_deviation = 0.0;  ///< Of what is undecided; 0 when nothing is.
-  bool exact = false;                ///< Nothing that matters was left out.
+  bool exact = false;                ///< All that is told is true of the source.
   QueryCost cost;
 };
 

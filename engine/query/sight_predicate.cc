@@ -41,9 +41,6 @@ SightPredicate::SightPredicate(Spot p, Spot q, std::vector<Stretch> stretches, d
 }
 
 bool SightPredicate::holds(const Attributes& a) const noexcept {
-  if (!(a.error > tolerance_)) {
-    return false;
-  }
   if (a.deviation > end_deviation_ && (contains(a.roi, p_) || contains(a.roi, q_))) {
     return true;
   }
@@ -52,7 +49,8 @@ bool SightPredicate::holds(const Attributes& a) const noexcept {
   }
   for (std::size_t i = 0; i < stretches_.size(); ++i) {
     const Stretch& s = stretches_[i];
-    if (a.deviation > s.deviation && a.heights.hi >= s.lowest_code && meets(a.roi, around_[i])) {
+    if (a.deviation > s.deviation && (a.error > tolerance_ || s.beyond) &&
+        a.heights.hi >= s.lowest_code && meets(a.roi, around_[i])) {
       return true;
     }
   }

@@ -12,14 +12,15 @@
 namespace ptin {
 
 /// True for records that a stretch of the line meets, whose deviation is too large for it and whose
-/// surface may reach up to it; and at the ends, for those whose deviation is too large for them.
-/// Monotone: exact integers and comparisons.
+/// surface may reach up to it; and at the ends, for those whose deviation is too large for them,
+/// whatever the tolerance. Monotone: exact integers and comparisons.
 class SightPredicate final : public AttributePredicate {
  public:
   struct Stretch {
     double from = 0.0, to = 0.0;  ///< Shares of the way.
     double deviation = -1.0;      ///< Records at or below it are left out; negative: none are.
     double lowest_code = 0.0;     ///< So are those whose heights end below this.
+    bool beyond = false;          ///< Records within the tolerance are wanted too.
   };
 
   /// @param end_deviation  As Stretch::deviation, at p and q; infinite: nothing is asked there.

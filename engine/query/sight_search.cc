@@ -45,8 +45,10 @@ void SightSearch::look() {
   view_.decide(mesh_);
 }
 
+/// Of absolute ends only their states are asked, and those only voids can change.
 bool SightSearch::ends_known() const noexcept {
-  return (view_.a.absolute || view_.a.known) && (view_.b.absolute || view_.b.known);
+  return (view_.a.known && view_.b.known) ||
+         (request_.absolute && (!facts_.has_voids || request_.verdict_only));
 }
 
 bool SightSearch::out_of_budget() const noexcept {
@@ -54,23 +56,47 @@ bool SightSearch::out_of_budget() const noexcept {
 }
 
 void SightSearch::finish_ends() {
-  if (!ends_known()) {
+  if (!ends_known() && !out_of_budget()) {
     refine({}, kEverything, 0.0);
   }
 }
 
 void SightSearch::finish_line() {
-  refine({{0.0, 1.0, kEverything, -kInfinity}}, kEverything, kInfinity);
+  while (!out_of_budget()) {
+    std::vector<Stretch> stretches = unfinished_stretches();
+    if (stretches.empty()) {
+      return;
+    }
+    refine(std::move(stretches), kEverything, kInfinity);
+  }
+}
+
+/// Where the line is not final: everything at once, or with a budget step by step, to overrun it
+/// by one step at most.
+std::vector<SightPredicate::Stretch> SightSearch::unfinished_stretches() const {
+  std::vector<Stretch> stretches;
+  for (const SightPiece& p : view_.pieces) {
+    if (!p.final) {
+      add(stretches, p.from, p.to, request_.budget ? quarter_of(p.deviation) : kEverything);
+    }
+  }
+  return stretches;
+}
+
+/// One point: as fine as it gets.
+void SightSearch::settle_touch() {
+  refine({{0.0, 1.0, kEverything, -kInfinity, true}}, kEverything, kInfinity);
 }
 
 /// Applies what the stretches and ends ask for, notes it, and looks again. Records whose surface
 /// ends lower than `margin` below the lowest the line can be are left out of a stretch.
 void SightSearch::refine(std::vector<Stretch> stretches, double end_deviation, double margin) {
-  const bool asks_ends = !request_.absolute && !ends_known();
+  const bool asks_ends = !ends_known();
   const double ends = asks_ends ? end_deviation : kInfinity;
   for (const Stretch& s : stretches) {
-    view_.known.push_back(
-        {s.from, s.to, s.deviation, std::isinf(s.lowest_code) ? kInfinity : margin});
+    view_.known.push_back({s.from, s.to, s.deviation,
+                           std::isinf(s.lowest_code) ? kInfinity : margin,
+                           s.beyond || !request_.tolerance});
   }
   const SightPredicate wanted(p_, q_, std::move(stretches), ends,
                               request_.tolerance.value_or(-1.0));
@@ -112,7 +138,11 @@ void SightSearch::add(std::vector<Stretch>& stretches, double from, double to,
 }
 
 /// Leaves out of each stretch what ends lower than `margin` below the lowest the line can be there.
+/// Where there are voids it may still say what is void above.
 void SightSearch::cut_below_line(std::vector<Stretch>& stretches, double margin) const {
+  if (facts_.has_voids) {
+    return;
+  }
   for (Stretch& s : stretches) {
     const double lowest = view_.ray().lowest(s.from, s.to) - margin;
     const double code = (lowest - facts_.heights.offset) / facts_.heights.step;
@@ -135,15 +165,25 @@ SightVerdict SightSearch::decide() {
     const bool undecided = std::any_of(view_.pieces.begin(), view_.pieces.end(), [](const auto& p) {
       return p.verdict == PieceVerdict::kUndecided;
     });
-    if (!undecided) {
+    if (!undecided && !view_.is_touch_open()) {
       return SightVerdict::kVisible;
     }
     if (out_of_budget()) {
       return SightVerdict::kUndecided;
     }
+    if (view_.is_touch_open()) {
+      if (!view_.known.empty()) {
+        return SightVerdict::kUndecided;  // the file does not know its voids
+      }
+      settle_touch();
+      continue;
+    }
     std::vector<Stretch> stretches = undecided_stretches();
     if (stretches.empty() && ends_known()) {
-      return SightVerdict::kUndecided;  // the file, or the tolerance, does not say more
+      stretches = unsettled_stretch();
+      if (stretches.empty()) {
+        return SightVerdict::kUndecided;  // the file, or the tolerance, does not say more
+      }
     }
     double ends = kInfinity;
     for (const Stretch& s : stretches) {
@@ -181,6 +221,21 @@ std::vector<SightPredicate::Stretch> SightSearch::undecided_stretches() const {
   return stretches;
 }
 
+/// The one point that hides the line if it is no void, which a tolerance does not tell.
+std::vector<SightPredicate::Stretch> SightSearch::unsettled_stretch() const {
+  const SightPiece* likely = nullptr;
+  for (const SightPiece& p : view_.pieces) {
+    if (p.verdict == PieceVerdict::kUndecided && facts_.has_voids && p.surface && !p.exact &&
+        p.guess < -p.deviation && (likely == nullptr || p.guess < likely->guess)) {
+      likely = &p;
+    }
+  }
+  if (likely == nullptr) {
+    return {};
+  }
+  return {{likely->guess_at, likely->guess_at, kEverything, -kInfinity, true}};
+}
+
 const SightPiece* SightSearch::find_first_hidden() {
   while (true) {
     const auto first = std::find_if(view_.pieces.begin(), view_.pieces.end(), [](const auto& p) {
@@ -190,7 +245,7 @@ const SightPiece* SightSearch::find_first_hidden() {
       return first == view_.pieces.end() ? nullptr : hidden_piece();
     }
     if (first->final && ends_known()) {
-      return first->verdict == PieceVerdict::kHidden ? &*first : nullptr;
+      return hidden_piece();  // the first, unless a tolerance leaves one before it undecided
     }
     std::vector<Stretch> stretches = stretch_to_first_hidden();
     refine(std::move(stretches), kEverything, 0.0);

@@ -23,7 +23,7 @@ class SightSearch {
   /// Sets the line. REQUIRES: p != q.
   void begin(Spot p, Spot q, const SightPair& pair, double bend, TriangleId start);
 
-  /// Makes ends, or the whole line, as fine as they get.
+  /// Makes ends exact, or the whole line as fine as it gets; stops when the budget is spent.
   void finish_ends();
   void finish_line();
 
@@ -37,15 +37,19 @@ class SightSearch {
   [[nodiscard]] const SightView& view() const noexcept { return view_; }
   [[nodiscard]] const SightPiece* hidden_piece() const noexcept;
   [[nodiscard]] bool out_of_budget() const noexcept;
+  /// Whatever is asked of the ends is known.
+  [[nodiscard]] bool ends_known() const noexcept;
 
  private:
   using Stretch = SightPredicate::Stretch;
 
   void look();
-  [[nodiscard]] bool ends_known() const noexcept;
   [[nodiscard]] double target(double margin, double deviation) const noexcept;
   [[nodiscard]] double quarter_of(double deviation) const noexcept;
+  void settle_touch();
+  [[nodiscard]] std::vector<Stretch> unfinished_stretches() const;
   [[nodiscard]] std::vector<Stretch> undecided_stretches() const;
+  [[nodiscard]] std::vector<Stretch> unsettled_stretch() const;
   [[nodiscard]] std::vector<Stretch> stretch_to_first_hidden() const;
   [[nodiscard]] std::vector<Stretch> stretches_of_least(double most) const;
   void add(std::vector<Stretch>& stretches, double from, double to, double deviation) const;

@@ -61,8 +61,34 @@ void SightView::look(const BoundedMesh& mesh, TriangleId start) {
   if (b.inside && last_triangle != kNone) {
     set_end(mesh, last, last_triangle, last_surface, b);
   }
+  touch_open_ = false;
+  if (pieces.empty() && walk.meets_domain()) {
+    set_only_point(mesh, walk);
+  }
   set_level(a);
   set_level(b);
+}
+
+/// An end on the border of the domain from where the line stays outside, or a corner of the domain
+/// that the line touches.
+void SightView::set_only_point(const BoundedMesh& mesh, const LineWalk& walk) {
+  for (SightEnd* end : {&a, &b}) {
+    if (end->inside) {
+      const TriangleId t = answering(mesh, *end, start_);
+      set_end(mesh, walk.entry(), t, mesh.tin().classes[t] == TriangleClass::kSurface, *end);
+    }
+  }
+  touch_open_ =
+      facts_.has_voids &&
+      !(facts_.exact_settles && std::any_of(known.begin(), known.end(), [&](const auto& k) {
+          const double share = walk.entry().share();
+          return k.deviation < 0 && k.beyond && k.from <= share && share <= k.to;
+        }));
+}
+
+TriangleId SightView::answering(const BoundedMesh& mesh, const SightEnd& end,
+                                TriangleId near) const {
+  return answering_triangle(mesh.tin(), find_spot(mesh.tin(), &end == &a ? p_ : q_, near));
 }
 
 void SightView::add_piece(const BoundedMesh& mesh, const LinePiece& piece) {
@@ -85,12 +111,15 @@ void SightView::add_piece(const BoundedMesh& mesh, const LinePiece& piece) {
   for (const KnownStretch& k : known) {
     if (is_known_by(k, view)) {
       view.final = view.final || k.deviation < 0;
+      view.exact = view.exact || (k.deviation < 0 && k.beyond);
       view.deviation = std::min(view.deviation, std::max(k.deviation, 0.0));
     }
   }
-  view.deviation = std::max(view.final ? 0.0 : view.deviation, facts_.finest_deviation);
+  view.settled = (view.final && facts_.final_settles) || (view.exact && facts_.exact_settles);
+  view.deviation = std::max(view.final ? 0.0 : view.deviation,
+                            view.exact ? facts_.file_deviation : facts_.finest_deviation);
   view.highest = std::min(facts_.heights.height_of_code(bounds.heights.hi), facts_.max_height) +
-                 facts_.finest_deviation;
+                 facts_.file_deviation;
   if (view.surface) {
     const bool follows = !pieces.empty() && pieces.back().surface;
     view.ground_from = follows ? pieces.back().ground_to : ground_at(mesh, piece.from);
@@ -107,9 +136,8 @@ void SightView::set_end(const BoundedMesh& mesh, const Crossing& c, TriangleId t
   end.footing = c.footing;
   end.surface = surface;
   if (!surface) {
-    const Place place = find_spot(tin, &end == &a ? p_ : q_, t);
-    const TriangleId answering = answering_triangle(tin, place);
-    end.surface = answering != kNone && tin.classes[answering] == TriangleClass::kSurface;
+    const TriangleId other = answering(mesh, end, t);
+    end.surface = other != kNone && tin.classes[other] == TriangleClass::kSurface;
   }
   if (!end.surface || end.absolute) {
     return;
@@ -117,7 +145,7 @@ void SightView::set_end(const BoundedMesh& mesh, const Crossing& c, TriangleId t
   const double ground = ground_at(mesh, c);
   double deviation = std::min(mesh.bounds(t).deviation, facts_.base_deviation);
   deviation = end.known ? 0.0 : std::min(deviation, std::max(end.deviation, 0.0));
-  deviation = std::max(deviation, facts_.finest_deviation);
+  deviation = std::max(deviation, facts_.file_deviation);
   end.level = {ground + end.height - deviation, ground + end.height + deviation};
 }
 
@@ -143,10 +171,9 @@ void SightView::decide(const BoundedMesh& mesh) {
   least_touch_ = {kInfinity, 0.0};
   for (SightPiece& piece : pieces) {
     decide_by_bounds(piece);
-    any_exact_ = any_exact_ || (piece.final && piece.verdict == PieceVerdict::kUndecided);
+    any_exact_ = any_exact_ || (is_final_truth(piece) && piece.verdict == PieceVerdict::kUndecided);
   }
-  const bool knows_ends = (a.absolute || a.known) && (b.absolute || b.known);
-  if (facts_.finest_deviation == 0 && knows_ends &&
+  if (facts_.file_deviation == 0 && knows_levels() &&
       (any_exact_ || facts_.has_voids || pieces.empty())) {
     decide_exactly(mesh);
   }
@@ -165,14 +192,12 @@ void SightView::decide_by_bounds(SightPiece& p) const {
     const Lowest high = lowest_between(p.from, ray_.high(p.from) - p.ground_from, p.to,
                                        ray_.high(p.to) - p.ground_to, bend);
     // Where the mesh is coarse there may be a void instead.
-    p.most = facts_.has_voids && !(p.final && facts_.classes_exact)
-                 ? kInfinity
-                 : high.value + p.deviation + slack;
+    p.most = facts_.has_voids && !p.settled ? kInfinity : high.value + p.deviation + slack;
     const Lowest guess = lowest_between(p.from, ray_.middle(p.from) - p.ground_from, p.to,
                                         ray_.middle(p.to) - p.ground_to, bend);
     p.guess = guess.value;
     p.guess_at = guess.at;
-  } else if (p.final && facts_.classes_exact) {
+  } else if (p.settled) {
     p.least = kInfinity;
   }
   p.least =
@@ -190,20 +215,20 @@ void SightView::decide_exactly(const BoundedMesh& mesh) {
                           !b.absolute && ray_.a.lo == ray_.b.lo && is_level(tin, a.footing) &&
                           is_level(tin, b.footing);
   LineWalk walk(tin, p_, q_, start_);
-  if (walk.meets_domain() && (pieces.empty() || !pieces.front().surface)) {
+  if (walk.meets_domain() && pieces.empty() && !touch_open_) {
     check_touch(mesh, walk.entry(), exact);
   }
   for (std::size_t i = 0; i < pieces.size() && walk.next(); ++i) {
     const LinePiece& piece = walk.piece();
     SightPiece& view = pieces[i];
-    if (view.final && view.surface && view.verdict == PieceVerdict::kUndecided) {
+    if (is_final_truth(view) && view.surface && view.verdict == PieceVerdict::kUndecided) {
       const bool same_level = level_line && is_level(tin, piece.from.footing) &&
                               is_level(tin, piece.to.footing) && view.ground_from == ray_.a.lo &&
                               view.ground_to == ray_.a.lo;
       const int sign = same_level ? 0 : exact.sign_over(piece);
       view.verdict = sign < 0 ? PieceVerdict::kHidden : PieceVerdict::kVisible;
     }
-    if (facts_.has_voids && view.final && !view.surface) {
+    if (facts_.has_voids && view.settled && !view.surface) {
       check_touch(mesh, piece.from, exact);
       check_touch(mesh, piece.to, exact);
     }

@@ -74,6 +74,15 @@ Rational clearance_at(const SmallTerrain& t, TriangleId triangle, const Rational
   return line - (Rational(h.offset) + Rational(h.step) * code_on(t.full, h, triangle, at));
 }
 
+PointState state_at(const Tin& tin, const RationalPoint& at) {
+  const std::vector<TriangleId> triangles = triangles_at(tin, at);
+  const bool surface = std::any_of(triangles.begin(), triangles.end(), [&](TriangleId t) {
+    return tin.classes[t] == TriangleClass::kSurface;
+  });
+  return triangles.empty() ? PointState::kOutside
+                           : (surface ? PointState::kSurface : PointState::kVoid);
+}
+
 }  // namespace
 
 SmallTerrain::SmallTerrain(std::uint64_t seed, double max_error) : path(fresh_path(".ptin")) {
@@ -116,6 +125,8 @@ TrueSight true_sight(const SmallTerrain& t, Spot p, double height_p, Spot q, dou
   const std::optional<Rational> za = level(a, height_p);
   const std::optional<Rational> zb = level(b, height_q);
   TrueSight truth;
+  truth.state_p = state_at(t.full, a);
+  truth.state_q = state_at(t.full, b);
   truth.defined = za && zb;
   if (!truth.defined) return truth;
   const Rational k(bend);

@@ -29,6 +29,7 @@ struct SmallTerrain {
 
 struct TrueSight {
   bool defined = false;
+  PointState state_p = PointState::kOutside, state_q = PointState::kOutside;
   bool hidden = false;
   double first = 0.0;  ///< Share of the way where the line first goes below; when hidden.
   std::optional<Rational> clearance;

@@ -3,6 +3,7 @@
 // Lines of sight against the full TIN in rationals.
 #include "engine/query/sight.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -69,6 +70,8 @@ void check_verdict(const TrueSight& truth, const SightResult& found) {
 }
 
 void check_measures(const TrueSight& truth, const SightResult& found) {
+  RC_ASSERT(found.state_a == truth.state_p);
+  RC_ASSERT(found.state_b == truth.state_q);
   if (!truth.defined) {
     return;
   }
@@ -118,6 +121,27 @@ RC_GTEST_PROP(Sight, SolversAgreeWithEveryTriangleWhateverTheyAskedBefore, (std:
   }
 }
 
+/// An answer that left something out: whatever it does tell is true.
+void check_certificate(const TrueSight& truth, const SightResult& found) {
+  if (found.verdict != SightVerdict::kUndecided) {
+    RC_ASSERT(truth.defined == (found.verdict != SightVerdict::kUndefined));
+  }
+  if (!truth.defined) {
+    return;
+  }
+  if (found.verdict != SightVerdict::kUndecided) {
+    RC_ASSERT(found.verdict == (truth.hidden ? SightVerdict::kHidden : SightVerdict::kVisible));
+  }
+  if (!std::isnan(found.clearance_min) && truth.clearance) {
+    const double clearance = truth.clearance->convert_to<double>();
+    RC_ASSERT(found.clearance_min <= clearance + 1e-9);
+    RC_ASSERT(found.clearance_max >= clearance - 1e-9);
+  }
+  if (!std::isnan(found.void_length)) {
+    RC_ASSERT(std::abs(found.void_length - truth.void_share * found.length) < 1e-6);
+  }
+}
+
 RC_GTEST_PROP(Sight, IsNeverWrongWhenItStopsEarly, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const SmallTerrain t(seed);
@@ -126,22 +150,40 @@ RC_GTEST_PROP(Sight, IsNeverWrongWhenItStopsEarly, (std::uint64_t seed)) {
     const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
                                        asked.pair.height_b, asked.request.absolute, asked.bend);
     asked.request.verdict_only = random() % 2 == 0;
+    asked.request.wavelength = random() % 3 == 0 ? 1.0 : 0.0;
     if (random() % 2 == 0) {
       asked.request.tolerance = static_cast<double>(random() % 8);
-    } else {
+    }
+    if (!asked.request.tolerance || random() % 3 == 0) {
       asked.request.budget = random() % 60;
     }
     const SightResult found = sight(*t.terrain, asked.pair, asked.request);
-    if (found.verdict == SightVerdict::kUndecided || !truth.defined ||
-        found.verdict == SightVerdict::kUndefined) {
-      continue;
+    check_certificate(truth, found);
+    if (found.exact) {
+      check_verdict(truth, found);
+      if (!asked.request.verdict_only) {
+        check_measures(truth, found);
+      }
     }
-    RC_ASSERT(found.verdict == (truth.hidden ? SightVerdict::kHidden : SightVerdict::kVisible));
-    if (!std::isnan(found.clearance_min) && truth.clearance) {
-      const double clearance = truth.clearance->convert_to<double>();
-      RC_ASSERT(found.clearance_min <= clearance + 1e-9);
-      RC_ASSERT(found.clearance_max >= clearance - 1e-9);
-    }
+  }
+}
+
+/// The truth is that of a file that holds everything.
+RC_GTEST_PROP(Sight, IsNeverWrongOfAFileThatIsNotExact, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const SmallTerrain t(seed);
+  const bool has_voids = std::any_of(t.full.classes.begin(), t.full.classes.end(),
+                                     [](auto c) { return c != TriangleClass::kSurface; });
+  if (has_voids) {
+    return;  // the certificate is of where both are surface
+  }
+  const SmallTerrain rough(seed, 1.0 + static_cast<double>(random() % 4));
+  for (int i = 0; i < 5; ++i) {
+    Asked asked = random_question(random, t);
+    const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
+                                       asked.pair.height_b, asked.request.absolute, asked.bend);
+    asked.request.verdict_only = random() % 2 == 0;
+    check_certificate(truth, sight(*rough.terrain, asked.pair, asked.request));
   }
 }
 

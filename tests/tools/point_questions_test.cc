@@ -170,6 +170,43 @@ TEST(SightCommand, SeesOverAndNotThroughAWall) {
   EXPECT_EQ(over_void.at("ends").at(0), "void");
 }
 
+TEST(SightCommand, KeepsToItsBudgetAlsoOverVoidsAndInTheFresnelZone) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::vector<std::string> pair = {"sight",  terrain,   east(4), south(20), "90",
+                                         east(28), south(20), "90",    "--json"};
+  const auto asked = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = pair;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return answer_of(arguments);
+  };
+  const auto records = [](const json& answer) {
+    return answer.at("cost").at("records_retrieved").get<int>();
+  };
+  const json whole = asked({"--frequency", "1e9"});
+  EXPECT_TRUE(whole.at("exact").get<bool>());
+  EXPECT_EQ(whole.at("void_length"), 0.0);
+  const json none = asked({"--frequency", "1e9", "--budget", "0"});
+  EXPECT_EQ(records(none), 0);
+  EXPECT_EQ(none.at("verdict"), "undecided");
+  EXPECT_FALSE(none.at("exact").get<bool>());
+  EXPECT_TRUE(none.at("void_length").is_null());
+  const json few = asked({"--frequency", "1e9", "--budget", "1"});
+  EXPECT_GT(records(few), 0);
+  EXPECT_LT(records(few), records(whole));
+  EXPECT_FALSE(few.at("exact").get<bool>());
+}
+
+TEST(SightCommand, AnEndOnTheBorderStandsOnGround) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const json away = answer_of({"sight", terrain, east(0), south(20), "5", east(-9), south(20), "50",
+                               "--absolute", "--json"});
+  EXPECT_EQ(away.at("ends").at(0), "surface");
+  EXPECT_EQ(away.at("ends").at(1), "outside");
+  EXPECT_EQ(away.at("verdict"), "visible");
+}
+
 TEST(SightCommand, AnswersPairsInTheirOrder) {
   const TestFolder folder;
   const std::string terrain = wall(folder);
