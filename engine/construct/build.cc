@@ -15,11 +15,10 @@
 #include "engine/construct/point_tile.h"
 #include "engine/construct/raster_source.h"
 #include "engine/construct/raster_tile.h"
-#include "engine/construct/simplify.h"
 #include "engine/construct/store_output.h"
 #include "engine/construct/tin_soup.h"
 #include "engine/construct/tin_source.h"
-#include "engine/construct/tin_surface.h"
+#include "engine/construct/tin_tile.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -229,48 +228,35 @@ void build_points(Job& job) {
   build_terrain(job, terrain, kPointTileBytes);
 }
 
-/// Collapses a full TIN as one tile and writes it.
-void build_one_tile(Job& job, const TerrainFrame& frame, Tin full_tin) {
-  StoreOutput store(job.output, job.options, job.resources.overwrite, frame);
-  Tile tile;
-  tile.units = measure_units(frame, job.options.void_slope);
-  tile.tin = std::move(full_tin);
-  start_tile(tile, {});
-  const TinSurface full(tile.tin, frame.heights);
-  SimplifyOptions options;
-  options.cost = job.options.cost;
-  options.stop = job.resources.stop;
-  const auto report_collapses = stage(job.resources, "collapsing");
-  options.progress = [&](std::uint64_t collapsed) {
-    report_collapses(collapsed, job.report.vertices);
-  };
-  simplify(tile, full, options);
-  stage(job.resources, "writing")(0, 1);
-  store.add_segment(tile.records);
-  store.publish(tile.tin, job.inputs, job.report);
-}
-
-/// Somebody else's triangles, in memory.
+/// Somebody else's triangles.
 void build_tin(Job& job) {
   if (job.inputs.size() != 1) {
     throw Error(ErrorCode::invalid_argument, "several inputs, a TIN among them; build a TIN alone");
   }
-  const std::uint64_t memory =
-      job.resources.memory_bytes != 0 ? job.resources.memory_bytes : default_memory();
-  // A build takes five times what its triangles take while they are read: so a file that does not
-  // fit is refused before the work.
-  constexpr std::uint64_t kBuildOverReading = 5;
-  TinTerrain terrain =
-      read_tin(job.inputs[0], source_options(job.options), memory / kBuildOverReading,
-               job.resources.stop, stage(job.resources, "reading"));
-  job.report.source_samples = job.report.vertices = terrain.tin.vertices.size();
-  job.report.left_out_points = terrain.unused_vertices;
-  job.report.left_out_triangles = terrain.left_out_triangles;
-  job.report.void_triangles = terrain.tin.triangles.size() - terrain.surface_triangles;
-  job.report.merged_points = terrain.merged_vertices;
-  job.report.largest_shift_plan = terrain.largest_shift_plan;
-  job.report.height_rounding = terrain.frame.height_rounding;
-  build_one_tile(job, terrain.frame, std::move(terrain.tin));
+  const TinTriangles triangles =
+      TinTriangles::read(job.inputs[0], source_options(job.options),
+                         {files_of(job), folder_for_points(job),
+                          std::max<std::uint64_t>(memory_of(job) / 2, 1U << 20)},
+                         job.resources.stop, job.resources.progress);
+  const TinCounts& counts = triangles.counts();
+  job.report.source_samples = job.report.vertices = counts.vertices;
+  job.report.left_out_points = counts.unused_vertices;
+  job.report.left_out_triangles = counts.left_out_triangles;
+  job.report.void_triangles = counts.void_triangles;
+  job.report.merged_points = counts.merged_vertices;
+  job.report.largest_shift_plan = counts.largest_shift_plan;
+  job.report.height_rounding = triangles.frame().height_rounding;
+  Terrain terrain{triangles.frame(),
+                  measure_units(triangles.frame(), job.options.void_slope),
+                  tin_tree(triangles, job.options.tile),
+                  {},
+                  counts.vertices};
+  terrain.make_starter = [&]() -> LeafStarter {
+    return [&](const SampleRange& window) {
+      return start_tin_tile(triangles, terrain.tree, window, terrain.units);
+    };
+  };
+  build_terrain(job, terrain, kPointTileBytes);
 }
 
 /// @throws Error invalid_argument for options that mean nothing

@@ -82,8 +82,8 @@ struct BuildReport {
 /// @throws Error invalid_argument, not_found: nothing is left behind.
 ///               io_error, resource_exhausted, cancelled: a build over tiles that has begun is kept
 ///               beside the output (workspace.h) and can be resumed; the message names the folder.
-/// Memory: within BuildResources::memory_bytes for rasters and points; all of a TIN. Points are
-/// sorted into temporary files first, which a resumed build makes again.
+/// Memory: within BuildResources::memory_bytes. Points and triangles are sorted into temporary files
+/// first, which a resumed build makes again.
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
                   const BuildOptions& options, const BuildResources& resources);
 

@@ -9,7 +9,7 @@
 
 #include <expat.h>
 
-#include "engine/construct/soup_builder_internal.h"
+#include "engine/construct/tin_reader_internal.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -23,8 +23,8 @@ constexpr std::uint64_t kLongestToken = 1U << 20;  // bytes without an event
 /// Gathers the chosen surface. Errors are kept and thrown outside of expat, which is C.
 class LandXml {
  public:
-  LandXml(ByteReader& in, const TinReading& reading)
-      : in_(in), reading_(reading), soup_(in, reading), parser_(XML_ParserCreate(nullptr)) {
+  LandXml(ByteReader& in, const TinReading& reading, TinSink& sink)
+      : in_(in), reading_(reading), tin_(in, reading, sink), parser_(XML_ParserCreate(nullptr)) {
     if (!parser_) {
       throw Error(ErrorCode::resource_exhausted, "no memory for a parser", in.path());
     }
@@ -34,7 +34,7 @@ class LandXml {
     XML_SetStartDoctypeDeclHandler(parser_.get(), &LandXml::doctype);
   }
 
-  TinSoup read() {
+  TinFileFacts read() {
     for (auto bytes = in_.some();; bytes = in_.some()) {
       const bool is_last = bytes.empty();
       const XML_Status status =
@@ -187,7 +187,7 @@ class LandXml {
     const bool is_number = !code.empty() && code.size() < 10 &&
                            code.find_first_not_of("0123456789") == std::string::npos;
     if (is_number && code != "0") {
-      soup_.soup().crs = "EPSG:" + code;
+      tin_.set_crs("EPSG:" + code);
     }
   }
 
@@ -208,23 +208,23 @@ class LandXml {
     split_text(3, "a point");
     const std::string where = place();
     // Surveyors write northing before easting.
-    soup_.add_vertex(whole_of(id_, where),
-                     {coordinate_of(words_[1], where), coordinate_of(words_[0], where),
-                      coordinate_of(words_[2], where)});
+    tin_.add_vertex(whole_of(id_, where),
+                    {coordinate_of(words_[1], where), coordinate_of(words_[0], where),
+                     coordinate_of(words_[2], where)});
   }
 
   void end_face() {
     split_text(3, "a face");
     if (is_hidden_) {
-      soup_.add_hidden();
+      tin_.add_hidden();
       return;
     }
     const std::string where = place();
-    soup_.add_triangle(
+    tin_.add_triangle(
         {whole_of(words_[0], where), whole_of(words_[1], where), whole_of(words_[2], where)});
   }
 
-  TinSoup finish() {
+  TinFileFacts finish() {
     if (!has_surface_) {
       throw Error(ErrorCode::invalid_argument,
                   reading_.surface.empty() || names_.empty()
@@ -232,12 +232,12 @@ class LandXml {
                       : "there is no surface '" + reading_.surface + "'; there is " + names_,
                   in_.path());
     }
-    return soup_.finish();
+    return tin_.finish();
   }
 
   ByteReader& in_;
   const TinReading& reading_;
-  SoupBuilder soup_;
+  TinReceiver tin_;
   std::unique_ptr<XML_ParserStruct, ParserFree> parser_;
   std::exception_ptr failure_;
   int depth_ = 0;
@@ -249,8 +249,8 @@ class LandXml {
 
 }  // namespace
 
-TinSoup read_land_xml(ByteReader& in, const TinReading& reading) {
-  return LandXml(in, reading).read();
+TinFileFacts read_land_xml(ByteReader& in, const TinReading& reading, TinSink& sink) {
+  return LandXml(in, reading, sink).read();
 }
 
 }  // namespace ptin

@@ -2,7 +2,7 @@
 //
 // Wavefront OBJ: `v x y z` and `f a b c` (a/t/n too; negative indices count from the last vertex),
 // z up. Everything else is passed over.
-#include "engine/construct/soup_builder_internal.h"
+#include "engine/construct/tin_reader_internal.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -21,8 +21,8 @@ std::int64_t corner_of_word(std::string_view word, std::uint64_t vertices,
 
 }  // namespace
 
-TinSoup read_obj(ByteReader& in, const TinReading& reading) {
-  SoupBuilder soup(in, reading);
+TinFileFacts read_obj(ByteReader& in, const TinReading& reading, TinSink& sink) {
+  TinReceiver tin(in, reading, sink);
   std::string_view line;
   std::vector<std::string_view> words;
   while (in.line(line)) {
@@ -35,8 +35,8 @@ TinSoup read_obj(ByteReader& in, const TinReading& reading) {
         throw Error(ErrorCode::invalid_argument, "a vertex needs x, y and z", in.place());
       }
       const std::string place = in.place();
-      soup.add_vertex({coordinate_of(words[1], place), coordinate_of(words[2], place),
-                       coordinate_of(words[3], place)});
+      tin.add_vertex({coordinate_of(words[1], place), coordinate_of(words[2], place),
+                      coordinate_of(words[3], place)});
     } else if (words[0] == "f") {
       if (words.size() != 4) {
         throw Error(ErrorCode::invalid_argument,
@@ -46,12 +46,12 @@ TinSoup read_obj(ByteReader& in, const TinReading& reading) {
       }
       std::array<std::int64_t, 3> ids{};
       for (std::size_t i = 0; i < 3; ++i) {
-        ids[i] = corner_of_word(words[i + 1], soup.vertices(), in.place());
+        ids[i] = corner_of_word(words[i + 1], tin.vertices(), in.place());
       }
-      soup.add_triangle(ids);
+      tin.add_triangle(ids);
     }
   }
-  return soup.finish();
+  return tin.finish();
 }
 
 }  // namespace ptin

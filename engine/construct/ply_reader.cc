@@ -11,7 +11,7 @@
 #include <limits>
 #include <optional>
 
-#include "engine/construct/soup_builder_internal.h"
+#include "engine/construct/tin_reader_internal.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -301,8 +301,7 @@ std::array<std::size_t, 3> axes_of(const Element& element, const ByteReader& in)
   return axes;
 }
 
-void read_vertices(const Element& element, const ByteReader& in, Values& values,
-                   SoupBuilder& soup) {
+void read_vertices(const Element& element, const ByteReader& in, Values& values, TinReceiver& tin) {
   const auto axes = axes_of(element, in);
   for (std::uint64_t row = 0; row < element.count; ++row) {
     values.begin_row();
@@ -316,11 +315,11 @@ void read_vertices(const Element& element, const ByteReader& in, Values& values,
             values.coordinate(element.properties[i].type);
       }
     }
-    soup.add_vertex({p[0], p[1], p[2]});
+    tin.add_vertex({p[0], p[1], p[2]});
   }
 }
 
-void read_faces(const Element& element, const ByteReader& in, Values& values, SoupBuilder& soup) {
+void read_faces(const Element& element, const ByteReader& in, Values& values, TinReceiver& tin) {
   const auto is_corners = [](const Property& p) {
     return p.count && (p.name == "vertex_indices" || p.name == "vertex_index");
   };
@@ -345,7 +344,7 @@ void read_faces(const Element& element, const ByteReader& in, Values& values, So
       for (std::int64_t& id : ids) {
         id = values.whole(p.type);
       }
-      soup.add_triangle(ids);
+      tin.add_triangle(ids);
     }
   }
 }
@@ -371,18 +370,17 @@ void check_counts(const Header& header, const ByteReader& in) {
 
 }  // namespace
 
-TinSoup read_ply(ByteReader& in, const TinReading& reading) {
+TinFileFacts read_ply(ByteReader& in, const TinReading& reading, TinSink& sink) {
   const Header header = HeaderReader(in).read();
   check_counts(header, in);
-  SoupBuilder soup(in, reading);
-  soup.soup().crs = header.crs;
-  soup.soup().vertical_crs = header.vertical_crs;
+  TinReceiver tin(in, reading, sink);
+  tin.set_crs(header.crs, header.vertical_crs);
   Values values(in, header.encoding);
   for (const Element& element : header.elements) {
     if (element.name == "vertex") {
-      read_vertices(element, in, values, soup);
+      read_vertices(element, in, values, tin);
     } else if (element.name == "face") {
-      read_faces(element, in, values, soup);
+      read_faces(element, in, values, tin);
     } else {
       for (std::uint64_t row = 0; row < element.count; ++row) {
         values.begin_row();
@@ -392,7 +390,7 @@ TinSoup read_ply(ByteReader& in, const TinReading& reading) {
       }
     }
   }
-  return soup.finish();
+  return tin.finish();
 }
 
 }  // namespace ptin

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "engine/geometry/orient.h"
 
@@ -12,29 +13,31 @@ namespace {
 
 class Flipper {
  public:
-  Flipper(std::span<const GridPoint> positions, std::vector<Corners>& triangles)
-      : positions_(positions), triangles_(triangles) {
+  Flipper(std::span<const GridPoint> positions, std::vector<Corners>& triangles,
+          std::span<const std::uint8_t> is_complete)
+      : positions_(positions), triangles_(triangles), is_complete_(is_complete) {
     sides_.reserve(3 * triangles.size());
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       add_sides(t);
     }
   }
 
-  std::uint64_t run(std::vector<std::uint32_t> open) {
+  SliverFlips run(std::vector<std::uint32_t> open) {
     // Every flip makes two triangles, so this ends even where bad ones chase each other.
     std::uint64_t left = 64 * open.size();
-    std::uint64_t mended = 0;
+    SliverFlips flips;
     while (!open.empty() && left-- > 0) {
       const std::uint32_t t = open.back();
       open.pop_back();
       if (is_gone(t) || is_good(t)) {
         continue;
       }
-      ++mended;
+      ++flips.mended;
       mend(t, open);
     }
     std::erase_if(triangles_, [](const Corners& c) { return c[0] == kNone; });
-    return mended;
+    flips.beyond = std::move(beyond_);
+    return flips;
   }
 
  private:
@@ -91,6 +94,9 @@ class Flipper {
     const VertexId apex = c[0], a = c[1], b = c[2];
     const auto found = sides_.find(side(b, a));
     if (found == sides_.end()) {
+      if (is_complete_[a] == 0 && is_complete_[b] == 0) {
+        beyond_.insert(beyond_.end(), {a, b});
+      }
       remove(t);
       return;
     }
@@ -106,14 +112,18 @@ class Flipper {
 
   std::span<const GridPoint> positions_;
   std::vector<Corners>& triangles_;
+  std::span<const std::uint8_t> is_complete_;
+  std::vector<VertexId> beyond_;
   std::unordered_map<std::uint64_t, std::uint32_t> sides_;
 };
 
 }  // namespace
 
-std::uint64_t flip_slivers(std::span<const GridPoint> positions, std::vector<Corners>& triangles,
-                           std::vector<std::uint32_t> slivers) {
-  return slivers.empty() ? 0 : Flipper(positions, triangles).run(std::move(slivers));
+SliverFlips flip_slivers(std::span<const GridPoint> positions, std::vector<Corners>& triangles,
+                         std::vector<std::uint32_t> slivers,
+                         std::span<const std::uint8_t> is_complete) {
+  return slivers.empty() ? SliverFlips{}
+                         : Flipper(positions, triangles, is_complete).run(std::move(slivers));
 }
 
 }  // namespace ptin

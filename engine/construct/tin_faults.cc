@@ -1,96 +1,59 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/tin_faults.h"
 
-#include <algorithm>
+#include <cstdio>
 #include <utility>
 
-#include "engine/geometry/orient.h"
+#include "engine/error.h"
 
 namespace ptin {
 
 namespace {
 
-/// An undirected edge with the side on which its triangle lies.
-struct Side {
-  VertexId low, high;
-  bool is_reversed;  ///< Runs from high to low.
+class FaultReport {
+ public:
+  FaultReport(const AffineMap& map, std::string path) : map_(map), path_(std::move(path)) {}
 
-  friend auto operator<=>(const Side&, const Side&) = default;
-};
-
-/// Sides of all triangles, those of one edge beside each other.
-std::vector<Side> sides_of(std::span<const Corners> triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (const Corners& t : triangles) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const VertexId from = t[i];
-      const VertexId to = t[i == 2 ? 0 : i + 1];
-      sides.push_back({std::min(from, to), std::max(from, to), from > to});
+  void add(const TinFault& fault, const char* one, const char* many) {
+    if (fault.count == 0) {
+      return;
+    }
+    const MapPoint at = map_.to_map(fault.first.x, fault.first.y);
+    char place[80];
+    std::snprintf(place, sizeof place, " (%s at %.10g %.10g)", fault.count > 1 ? "first" : "it is",
+                  at.x, at.y);
+    text_ += (text_.empty() ? "" : "; ") + std::to_string(fault.count) + " " +
+             (fault.count == 1 ? one : many) + place;
+  }
+  void throw_if_any() const {
+    if (!text_.empty()) {
+      throw Error(ErrorCode::invalid_argument,
+                  "these triangles are no terrain: " + text_ +
+                      "; mend the file, or let --repair triangulate its points anew",
+                  path_);
     }
   }
-  std::sort(sides.begin(), sides.end());
-  return sides;
-}
+
+ private:
+  AffineMap map_;
+  std::string path_;
+  std::string text_;
+};
 
 }  // namespace
 
-bool TinFaults::any() const noexcept {
-  return no_area.count + turned_over.count + heights.count + shared_edges.count +
-             t_junctions.count + crossings.count + covered.count >
-         0;
-}
-
-bool turn_majority(std::span<const GridPoint> positions, std::vector<Corners>& triangles) {
-  std::int64_t excess = 0;
-  for (const Corners& t : triangles) {
-    const std::int64_t sign = orient(positions[t[0]], positions[t[1]], positions[t[2]]);
-    excess += sign > 0 ? 1 : (sign < 0 ? -1 : 0);
-  }
-  if (excess >= 0) {
-    return false;
-  }
-  for (Corners& t : triangles) {
-    std::swap(t[1], t[2]);
-  }
-  return true;
-}
-
-void check_orientation(std::span<const GridPoint> positions, std::span<const Corners> triangles,
-                       TinFaults& faults) {
-  for (const Corners& t : triangles) {
-    const std::int64_t sign = orient(positions[t[0]], positions[t[1]], positions[t[2]]);
-    if (sign <= 0) {
-      (sign == 0 ? faults.no_area : faults.turned_over).add(positions[t[0]]);
-    }
-  }
-}
-
-std::vector<BorderEdge> border_of(std::span<const GridPoint> positions,
-                                  std::span<const Corners> triangles, TinFaults& faults) {
-  const std::vector<Side> sides = sides_of(triangles);
-  std::vector<BorderEdge> border;
-  for (std::size_t first = 0; first < sides.size();) {
-    std::size_t end = first;
-    std::array<std::uint64_t, 2> count{};
-    for (; end < sides.size() && sides[end].low == sides[first].low &&
-           sides[end].high == sides[first].high;
-         ++end) {
-      ++count[sides[end].is_reversed ? 1 : 0];
-    }
-    const Side& side = sides[first];
-    if (count[0] > 1 || count[1] > 1) {
-      faults.shared_edges.add(positions[side.low]);
-    } else if (count[0] != count[1]) {
-      border.push_back(side.is_reversed ? BorderEdge{side.high, side.low}
-                                        : BorderEdge{side.low, side.high});
-    }
-    first = end;
-  }
-  std::sort(border.begin(), border.end(), [](const BorderEdge& a, const BorderEdge& b) {
-    return a.from != b.from ? a.from < b.from : a.to < b.to;
-  });
-  return border;
+void TinFaults::refuse(const AffineMap& map, const std::string& path) const {
+  FaultReport report(map, path);
+  report.add(no_area, "triangle has no area", "triangles have no area");
+  report.add(turned_over, "triangle is turned over", "triangles are turned over");
+  report.add(heights, "position has several heights", "positions have several heights");
+  report.add(shared_edges, "edge has two triangles on one side",
+             "edges have two triangles on one side");
+  report.add(t_junctions, "vertex lies inside of an edge (T-junction)",
+             "vertices lie inside of an edge (T-junctions)");
+  report.add(crossings, "pair of border edges crosses", "pairs of border edges cross");
+  report.add(covered, "piece is covered more than once", "pieces are covered more than once");
+  report.throw_if_any();
 }
 
 }  // namespace ptin

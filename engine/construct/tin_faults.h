@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/geometry/affine.h"
 #include "engine/geometry/point.h"
 #include "engine/mesh/tin.h"
 
@@ -44,22 +45,9 @@ struct TinFaults {
   TinFault crossings;     ///< Edges of the border that cross.
   TinFault covered;       ///< Pieces of the plane that are covered more than once.
 
-  [[nodiscard]] bool any() const noexcept;
+  /// @throws Error invalid_argument  with every kind, how often and where first, if there is any
+  void refuse(const AffineMap& map, const std::string& path) const;
 };
-
-/// Turns all triangles round when most of them are clockwise; true when it did.
-bool turn_majority(std::span<const GridPoint> positions, std::vector<Corners>& triangles);
-
-/// Counts triangles without area and clockwise ones.
-void check_orientation(std::span<const GridPoint> positions, std::span<const Corners> triangles,
-                       TinFaults& faults);
-
-/// The border of counter-clockwise triangles, in ascending order of (from, to); counts edges that
-/// are there twice.
-/// Cost: O(n log n); 16 bytes an edge.
-[[nodiscard]] std::vector<BorderEdge> border_of(std::span<const GridPoint> positions,
-                                                std::span<const Corners> triangles,
-                                                TinFaults& faults);
 
 /// Counts vertices inside of border edges, and border edges that cross.
 /// Cost: O(b log^2 b + pairs of edges whose boxes meet).

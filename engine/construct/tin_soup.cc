@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <unordered_map>
 #include <utility>
 
-#include "engine/construct/soup_builder_internal.h"
+#include "engine/construct/tin_reader_internal.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -15,7 +16,7 @@ namespace {
 
 struct TinFormat {
   std::string_view extension;
-  TinSoup (*read)(ByteReader& in, const TinReading& reading);
+  TinReader* read;
 };
 constexpr std::array<TinFormat, 5> kFormats = {{{".ply", read_ply},
                                                 {".obj", read_obj},
@@ -44,13 +45,13 @@ const TinFormat* format_of(std::string_view path) {
 
 bool is_tin_file(std::string_view path) { return format_of(path) != nullptr; }
 
-TinSoup read_tin_soup(const std::string& path, const TinReading& reading) {
+TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, TinSink& sink) {
   const TinFormat* format = format_of(path);
   if (format == nullptr) {
     refuse("this is no TIN by its name; known are .ply, .obj, .2dm, .xml, .landxml", path);
   }
   ByteReader in(path);
-  return format->read(in, reading);
+  return format->read(in, reading, sink);
 }
 
 void split_words(std::string_view line, std::vector<std::string_view>& words) {
@@ -101,7 +102,7 @@ std::int64_t whole_of(std::string_view word, const std::string& place) {
   return value;
 }
 
-void SoupBuilder::look_around() {
+void TinReceiver::look_around() {
   constexpr std::uint64_t kInterval = 1 << 16;
   if (++added_ % kInterval != 0) {
     return;
@@ -112,65 +113,77 @@ void SoupBuilder::look_around() {
   if (reading_.progress) {
     reading_.progress(in_.position(), in_.size());
   }
-  constexpr std::uint64_t kIdBytes = 40;
-  const std::uint64_t bytes = soup_.vertices.size() * sizeof(SourcePoint) + triangles_.size() * 36 +
-                              index_of_.size() * kIdBytes;
-  if (bytes > reading_.memory_bytes) {
-    throw Error(ErrorCode::resource_exhausted,
-                "this TIN does not fit in the memory given, and TINs are built in memory; give "
-                "more --memory, or build from its points, which may be larger",
-                in_.path());
-  }
 }
 
-void SoupBuilder::add_vertex(const SourcePoint& p) {
-  look_around();
-  if (soup_.vertices.size() >= UINT32_MAX / 2) {
-    throw Error(ErrorCode::resource_exhausted, "more vertices than one mesh in memory counts",
-                in_.path());
-  }
-  soup_.vertices.push_back(p);
-}
-
-void SoupBuilder::add_vertex(std::int64_t id, const SourcePoint& p) {
-  const auto index = static_cast<std::uint32_t>(soup_.vertices.size());
-  if (!index_of_.try_emplace(id, index).second) {
-    refuse("two vertices have the id " + std::to_string(id), in_.place());
-  }
-  add_vertex(p);
-}
-
-void SoupBuilder::add_triangle(const std::array<std::int64_t, 3>& ids) {
-  look_around();
-  triangles_.push_back(ids);
-}
-
-TinSoup SoupBuilder::finish() {
-  if (soup_.vertices.empty() || triangles_.empty()) {
-    refuse(soup_.vertices.empty() ? "there is no vertex in this file"
-           : soup_.hidden_triangles > 0
+TinFileFacts TinReceiver::finish() {
+  if (facts_.vertices == 0 || facts_.triangles == 0) {
+    refuse(facts_.vertices == 0 ? "there is no vertex in this file"
+           : facts_.hidden_triangles > 0
                ? "every triangle in this file is hidden"
                : "there is no triangle in this file; points alone are built from CSV, XYZ or LAS",
            in_.path());
   }
-  soup_.triangles.reserve(triangles_.size());
-  for (const auto& ids : triangles_) {
-    std::array<std::uint32_t, 3> corners{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto found = index_of_.find(ids[i]);
-      const bool is_known = index_of_.empty()
-                                ? ids[i] >= 0 && static_cast<std::uint64_t>(ids[i]) < vertices()
-                                : found != index_of_.end();
-      if (!is_known) {
-        refuse("triangle " + std::to_string(soup_.triangles.size()) + " names vertex " +
-                   std::to_string(ids[i]) + ", which is not there",
-               in_.path());
-      }
-      corners[i] = index_of_.empty() ? static_cast<std::uint32_t>(ids[i]) : found->second;
+  return std::move(facts_);
+}
+
+namespace {
+
+/// Everything in memory, ids still to be found.
+class SoupCollector final : public TinSink {
+ public:
+  explicit SoupCollector(std::string path) : path_(std::move(path)) {}
+
+  void add_vertex(std::int64_t id, const SourcePoint& p) override {
+    const auto index = static_cast<std::uint32_t>(soup_.vertices.size());
+    if (index >= UINT32_MAX / 2) {
+      throw Error(ErrorCode::resource_exhausted, "more vertices than one mesh in memory counts",
+                  path_);
     }
-    soup_.triangles.push_back(corners);
+    if (!index_of_.try_emplace(id, index).second) {
+      refuse("two vertices have the id " + std::to_string(id), path_);
+    }
+    soup_.vertices.push_back(p);
   }
-  return std::move(soup_);
+  void add_triangle(const std::array<std::int64_t, 3>& ids) override { triangles_.push_back(ids); }
+
+  TinSoup finish(TinFileFacts facts) {
+    soup_.facts = std::move(facts);
+    soup_.triangles.reserve(triangles_.size());
+    for (const auto& ids : triangles_) {
+      std::array<std::uint32_t, 3> corners{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto found = index_of_.find(ids[i]);
+        if (found == index_of_.end()) {
+          refuse("triangle " + std::to_string(soup_.triangles.size()) + " names vertex " +
+                     std::to_string(ids[i]) + ", which is not there",
+                 path_);
+        }
+        corners[i] = found->second;
+      }
+      soup_.triangles.push_back(corners);
+    }
+    return std::move(soup_);
+  }
+
+ private:
+  std::string path_;
+  TinSoup soup_;
+  std::vector<std::array<std::int64_t, 3>> triangles_;
+  std::unordered_map<std::int64_t, std::uint32_t> index_of_;
+};
+
+}  // namespace
+
+TinSoup read_soup(TinReader& reader, ByteReader& in, const TinReading& reading) {
+  SoupCollector soup(in.path());
+  TinFileFacts facts = reader(in, reading, soup);
+  return soup.finish(std::move(facts));
+}
+
+TinSoup read_tin_soup(const std::string& path, const TinReading& reading) {
+  SoupCollector soup(path);
+  TinFileFacts facts = read_tin_file(path, reading, soup);
+  return soup.finish(std::move(facts));
 }
 
 }  // namespace ptin

@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A TIN of somebody else's as a terrain: read, snapped to the grid, checked, made convex.
+// A TIN of somebody else's as a terrain, of any size: read, snapped to the grid, checked, made
+// convex, and taken tile by tile.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <stop_token>
 #include <string>
+#include <vector>
 
+#include "engine/construct/external_sorter.h"
+#include "engine/construct/hull_collector.h"
 #include "engine/construct/point_stream.h"
+#include "engine/construct/record_file.h"
 #include "engine/construct/terrain_source.h"
+#include "engine/construct/tin_on_grid.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin {
 
-/// The full TIN of a file of triangles.
-struct TinTerrain {
-  TerrainFrame frame;
-  Tin tin;  ///< Valid, convex; the file's triangles are surface, what fills up the hull is void.
+/// What happened on the way from the file.
+struct TinCounts {
+  std::uint64_t vertices = 0;  ///< Distinct positions, of triangles.
   std::uint64_t surface_triangles = 0;
+  std::uint64_t void_triangles = 0;      ///< That fill up the convex hull.
   std::uint64_t left_out_triangles = 0;  ///< Hidden ones, and those with a corner of no height.
   std::uint64_t unused_vertices = 0;     ///< In no triangle: left out.
   std::uint64_t merged_vertices = 0;     ///< Shared a position and a height with another.
@@ -26,7 +33,7 @@ struct TinTerrain {
   double largest_shift_plan = 0.0;       ///< How far snapping moved a vertex, CRS units.
 };
 
-/// Reads one TIN (tin_soup.h says from what) and makes it a terrain.
+/// The full TIN of a file of triangles, on disk.
 ///
 /// The grid is that of points (point_source.h), but that digits beyond it are dropped: programs
 /// write TINs with all digits of a double. Without a resolution the unit is the smallest power of
@@ -35,20 +42,59 @@ struct TinTerrain {
 /// one; slivers that snapping flattens or turns over are flipped away (sliver_flips.h). Concave
 /// borders and holes are filled with void triangles up to the convex hull.
 ///
-/// @param memory_bytes  For the triangles while they are read; the work after takes as much again.
-/// @throws Error  as read_tin_soup()
-///                invalid_argument  this is no terrain: triangles without area (after snapping),
-///                                  turned over or over one another, positions with several
-///                                  heights, T-junctions; the message counts each kind and names
-///                                  its first place. A bbox is asked for. The CRS is not understood
-///                cancelled
-/// Cost: O(n log n), about 1 us and 250 bytes a triangle.
-[[nodiscard]] TinTerrain read_tin(
-    const std::string& path, const SourceOptions& options, std::uint64_t memory_bytes,
-    const std::stop_token& stop = {},
-    const std::function<void(std::uint64_t done, std::uint64_t total)>& progress = {});
+/// Threads: const members from any number at once.
+class TinTriangles {
+ public:
+  using Progress = std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)>;
 
-/// The vertices of a TIN's triangles as points: to triangulate them anew, or to verify against.
+  /// Reads one TIN (tin_soup.h says from what) once.
+  /// @throws Error  as read_tin_file()
+  ///                invalid_argument    this is no terrain: triangles without area (after
+  ///                snapping),
+  ///                                    turned over or over one another, positions with several
+  ///                                    heights, T-junctions; the message counts each kind and
+  ///                                    names its first place. An id that no vertex has, or that
+  ///                                    two have. A bbox is asked for. The CRS is not understood
+  ///                resource_exhausted  the disk is full; the border alone (not the triangles) is
+  ///                                    more than fits into `whole_memory` bytes
+  ///                io_error, cancelled
+  /// Cost: O(n log n), about 2 us a triangle. Disk: about 500 bytes a vertex while it is sorted,
+  /// 130 in the end; in memory.folder. Memory: memory.bytes, then kBytesOfBorderEdge for an edge of
+  /// the border.
+  static TinTriangles read(const std::string& path, const SourceOptions& options,
+                           const ExternalMemory& memory, const std::stop_token& stop = {},
+                           const Progress& progress = {});
+
+  [[nodiscard]] const TerrainFrame& frame() const noexcept { return frame_; }
+  [[nodiscard]] const TinCounts& counts() const noexcept { return counts_; }
+  [[nodiscard]] const ConvexHull& hull() const noexcept { return hull_; }
+
+  /// Part `i` of `n`: the triangles, surface and void, whose smallest vertex (by key: the lowest,
+  /// then leftmost) is one of the vertices i / n to (i + 1) / n along the curve. In general a
+  /// polygon with holes, of several pieces, that may touch itself at a vertex. Vertices are in the
+  /// order of their keys. Every triangle is in one part.
+  /// @throws Error io_error; resource_exhausted  more triangles than one mesh in memory counts
+  /// Cost: linear but for sorting; 130 bytes a triangle while it runs.
+  [[nodiscard]] Tin part(std::uint64_t i, std::uint64_t n) const;
+
+  /// What an edge of the border takes in memory while pockets and holes are triangulated.
+  static constexpr std::uint64_t kBytesOfBorderEdge = 480;
+
+ private:
+  TinTriangles() = default;
+  [[nodiscard]] std::uint64_t place_of_part(std::uint64_t i, std::uint64_t n) const;
+  void take(const RecordFile<GridTriangle>& from, std::uint64_t begin, std::uint64_t end,
+            std::vector<GridTriangle>& triangles) const;
+
+  TerrainFrame frame_;
+  TinCounts counts_;
+  ConvexHull hull_;
+  bool codes_are_whole_ = false;
+  std::unique_ptr<RecordFile<GridTriangle>> surface_, voids_;
+  std::unique_ptr<RecordFile<std::uint64_t>> places_;
+};
+
+/// The vertices of a TIN's triangles as points: to verify against. In memory.
 class TinVertices final : public PointStream {
  public:
   /// @throws Error as read_tin_soup()

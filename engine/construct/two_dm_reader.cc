@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "engine/construct/soup_builder_internal.h"
+#include "engine/construct/tin_reader_internal.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -16,22 +16,21 @@ namespace {
   throw Error(ErrorCode::invalid_argument, sentence, in.place());
 }
 
-void read_card(const ByteReader& in, const std::vector<std::string_view>& words,
-               SoupBuilder& soup) {
+void read_card(const ByteReader& in, const std::vector<std::string_view>& words, TinReceiver& tin) {
   constexpr std::array<std::string_view, 5> kOthers = {"E2L", "E6T", "E8Q", "E9Q", "E4Q"};
   const std::string place = in.place();
   if (words[0] == "ND") {
     if (words.size() < 5) {
       refuse(in, "a node needs an id, x, y and z");
     }
-    soup.add_vertex(whole_of(words[1], place),
-                    {coordinate_of(words[2], place), coordinate_of(words[3], place),
-                     coordinate_of(words[4], place)});
+    tin.add_vertex(whole_of(words[1], place),
+                   {coordinate_of(words[2], place), coordinate_of(words[3], place),
+                    coordinate_of(words[4], place)});
   } else if (words[0] == "E3T") {
     if (words.size() < 5) {
       refuse(in, "a triangle needs an id and three nodes");
     }
-    soup.add_triangle(
+    tin.add_triangle(
         {whole_of(words[2], place), whole_of(words[3], place), whole_of(words[4], place)});
   } else if (words[0] != "E2L" &&
              std::find(kOthers.begin(), kOthers.end(), words[0]) != kOthers.end()) {
@@ -42,8 +41,8 @@ void read_card(const ByteReader& in, const std::vector<std::string_view>& words,
 
 }  // namespace
 
-TinSoup read_two_dm(ByteReader& in, const TinReading& reading) {
-  SoupBuilder soup(in, reading);
+TinFileFacts read_two_dm(ByteReader& in, const TinReading& reading, TinSink& sink) {
+  TinReceiver tin(in, reading, sink);
   std::string_view line;
   std::vector<std::string_view> words;
   bool has_begun = false;
@@ -59,9 +58,9 @@ TinSoup read_two_dm(ByteReader& in, const TinReading& reading) {
       has_begun = true;
       continue;
     }
-    read_card(in, words, soup);
+    read_card(in, words, tin);
   }
-  return soup.finish();
+  return tin.finish();
 }
 
 }  // namespace ptin

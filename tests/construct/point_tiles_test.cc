@@ -17,10 +17,9 @@
 #include "engine/construct/tile_push.h"
 #include "engine/construct/tin_surface.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/point_sets.h"
-#include "tests/construct/surface_oracle.h"
+#include "tests/construct/store_promises.h"
 
 namespace ptin {
 namespace {
@@ -61,27 +60,6 @@ void make_voids(TestTerrain& terrain, double longest) {
   }
 }
 
-/// The first promise that a store breaks, in words.
-std::string check_store(const TestTerrain& terrain, const ProgressiveTin& tin) {
-  if (!(oracle::named_triangles(tin.refine({}).tin) == oracle::named_triangles(terrain.full))) {
-    return "P1: the full TIN is another one";
-  }
-  for (const double tolerance : {0.0, 0.3, 1.0, 4.0, 25.0, 1e9}) {
-    RefineRequest request;
-    request.tolerance = tolerance;
-    const RefinedTin refined = tin.refine(request);
-    std::string fault = validate(refined.tin);
-    fault = fault.empty() ? oracle::check_samples(terrain, refined.tin, tolerance) : fault;
-    fault = fault.empty()
-                ? oracle::check_deviation(terrain, refined.tin, refined.certified_deviation)
-                : fault;
-    if (!fault.empty()) {
-      return "at " + std::to_string(tolerance) + ": " + fault;
-    }
-  }
-  return {};
-}
-
 struct Case {
   PointKind kind;
   std::uint64_t points;
@@ -106,7 +84,7 @@ void expect_promises(const Case& c) {
   const BuildReport report = build({folder.file("in.xyz")}, folder.file("out.ptin"), options, {});
   EXPECT_EQ(report.vertices, terrain.samples.size());
   EXPECT_EQ(folder.names().size(), 2U) << "nothing else is left behind";
-  EXPECT_EQ(check_store(terrain, ProgressiveTin::open(folder.file("out.ptin"))), "");
+  EXPECT_EQ(oracle::check_store(terrain, ProgressiveTin::open(folder.file("out.ptin"))), "");
 }
 
 TEST(PointsOverTiles, KeepTheirPromises) {

@@ -12,11 +12,11 @@
 namespace ptin {
 namespace {
 
-using Reader = TinSoup (*)(ByteReader&, const TinReading&);
+using Reader = TinReader*;
 
 TinSoup parse(Reader reader, const std::string& content, const TinReading& reading = {}) {
   ByteReader in("file", content);
-  return reader(in, reading);
+  return read_soup(*reader, in, reading);
 }
 
 std::string refusal(Reader reader, const std::string& content, const TinReading& reading = {}) {
@@ -103,10 +103,10 @@ TEST(TinSoup, EveryFormatGivesTheSame) {
   expect_square(parse(read_two_dm, kTwoDm));
   const TinSoup xml = parse(read_land_xml, land_xml(kSurface));
   expect_square(xml);
-  EXPECT_EQ(xml.hidden_triangles, 1U);
-  EXPECT_EQ(xml.crs, "EPSG:3007");
-  EXPECT_EQ(parse(read_ply, kAsciiPly).crs, "EPSG:32611");
-  EXPECT_EQ(parse(read_ply, binary_ply(true)).vertical_crs, "EPSG:5773");
+  EXPECT_EQ(xml.facts.hidden_triangles, 1U);
+  EXPECT_EQ(xml.facts.crs, "EPSG:3007");
+  EXPECT_EQ(parse(read_ply, kAsciiPly).facts.crs, "EPSG:32611");
+  EXPECT_EQ(parse(read_ply, binary_ply(true)).facts.vertical_crs, "EPSG:5773");
 }
 
 TEST(TinSoup, KnowsTinsByTheirNames) {
@@ -177,8 +177,8 @@ TEST(TinSoup, ChoosesAmongSurfaces) {
   second.replace(second.find("top"), 3, "low");
   const std::string both = land_xml(kSurface + second);
   EXPECT_TRUE(says(refusal(read_land_xml, both), "--layer"));
-  expect_square(parse(read_land_xml, both, {"low", UINT64_MAX, {}, {}}));
-  EXPECT_TRUE(says(refusal(read_land_xml, both, {"mid", UINT64_MAX, {}, {}}), "'top', 'low'"));
+  expect_square(parse(read_land_xml, both, {"low", {}, {}}));
+  EXPECT_TRUE(says(refusal(read_land_xml, both, {"mid", {}, {}}), "'top', 'low'"));
   EXPECT_TRUE(says(refusal(read_land_xml, land_xml("")), "no surface"));
   EXPECT_TRUE(says(
       refusal(read_land_xml, land_xml("<Surface name='g'><Definition surfType='grid'/></Surface>")),

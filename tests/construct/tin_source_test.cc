@@ -61,10 +61,24 @@ std::string obj_of(const std::vector<Vertex3>& vertices, const std::vector<Face>
   return text;
 }
 
+/// Everything at once.
+struct TinTerrain : TinCounts {
+  TinTerrain(const TinTriangles& triangles, std::uint64_t parts = 1)
+      : TinCounts(triangles.counts()), frame(triangles.frame()), tin(triangles.part(0, parts)) {}
+  TerrainFrame frame;
+  Tin tin;
+};
+
+TinTriangles triangles_in(const std::string& path, const SourceOptions& options = {},
+                          std::uint64_t memory = std::uint64_t{64} << 20) {
+  return TinTriangles::read(path, options,
+                            {FileLayer::system(), std::filesystem::temp_directory_path(), memory});
+}
+
 TinTerrain read(const std::vector<Vertex3>& vertices, const std::vector<Face>& faces,
                 const SourceOptions& options = {}) {
   const TestFile file(".obj", obj_of(vertices, faces));
-  return read_tin(file.path(), options, UINT64_MAX);
+  return triangles_in(file.path(), options);
 }
 
 std::string refusal(const std::vector<Vertex3>& vertices, const std::vector<Face>& faces) {
@@ -77,13 +91,13 @@ std::string refusal(const std::vector<Vertex3>& vertices, const std::vector<Face
   return "accepted";
 }
 
-using GridTriangle = std::array<VertexKey, 3>;
+using KeyTriangle = std::array<VertexKey, 3>;
 
-std::set<GridTriangle> triangles_of(const Tin& tin, TriangleClass wanted) {
-  std::set<GridTriangle> set;
+std::set<KeyTriangle> triangles_of(const Tin& tin, TriangleClass wanted) {
+  std::set<KeyTriangle> set;
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
     if (tin.classes[t] != wanted) continue;
-    GridTriangle keys{};
+    KeyTriangle keys{};
     for (std::size_t i = 0; i < 3; ++i) keys[i] = key_of(tin.position(tin.triangles[t].v[i]));
     std::rotate(keys.begin(), std::min_element(keys.begin(), keys.end()), keys.end());
     EXPECT_TRUE(set.insert(keys).second);
@@ -212,6 +226,20 @@ TEST(TinSource, KeepsWhatDigitsTheGridHoldsAndFlipsSpoiledSlivers) {
   EXPECT_EQ(terrain.tin.vertices.size(), 6U);
 }
 
+/// Every triangle is in one part.
+void expect_parts_are_the_whole(const TinTriangles& triangles, const Tin& whole,
+                                std::uint64_t parts) {
+  for (const TriangleClass wanted : {TriangleClass::kSurface, TriangleClass::kVoid}) {
+    std::set<KeyTriangle> all;
+    for (std::uint64_t i = 0; i < parts; ++i) {
+      for (const KeyTriangle& t : triangles_of(triangles.part(i, parts), wanted)) {
+        EXPECT_TRUE(all.insert(t).second);
+      }
+    }
+    EXPECT_TRUE(all == triangles_of(whole, wanted)) << parts << " parts";
+  }
+}
+
 /// Triangulations of random points with triangles taken out at random, against the definition.
 TEST(TinSource, FillsRandomHolesExactly) {
   std::mt19937 random(11);
@@ -241,7 +269,7 @@ TEST(TinSource, FillsRandomHolesExactly) {
       vertices.push_back({double(positions[i].x), double(positions[i].y), double(heights[i])});
     }
     std::vector<Face> faces;
-    std::set<GridTriangle> kept;
+    std::set<KeyTriangle> kept;
     const auto share = random() % 10;
     for (const Triangle& t : full.triangles) {
       if (random() % 10 < share) continue;
@@ -249,13 +277,16 @@ TEST(TinSource, FillsRandomHolesExactly) {
     }
     if (faces.empty()) continue;
     std::shuffle(faces.begin(), faces.end(), random);
-    const TinTerrain terrain = read(vertices, faces);
+    const TestFile file(".obj", obj_of(vertices, faces));
+    const TinTriangles triangles = triangles_in(file.path());
+    const TinTerrain terrain = triangles;
     EXPECT_EQ(validate(terrain.tin), "");
+    expect_parts_are_the_whole(triangles, terrain.tin, 1 + random() % 20);
     const auto surface = triangles_of(terrain.tin, TriangleClass::kSurface);
     EXPECT_EQ(surface.size(), faces.size());
     const MapPoint origin = terrain.frame.map.to_map(0, 0);
     for (const Face& f : faces) {
-      GridTriangle keys{};
+      KeyTriangle keys{};
       for (std::size_t i = 0; i < 3; ++i) {
         const GridPoint p = positions[static_cast<std::size_t>(f[i])];
         keys[i] = key_of(
@@ -267,18 +298,39 @@ TEST(TinSource, FillsRandomHolesExactly) {
   }
 }
 
-TEST(TinSource, RefusesABoxAndTooLittleMemory) {
+TEST(TinSource, RefusesABoxAndABorderThatDoesNotFit) {
   SourceOptions options;
   options.bbox = {0, 0, 1, 1};
   EXPECT_THROW(static_cast<void>(read(kSquare, kTwo, options)), Error);
-  std::vector<Vertex3> many(200'000, {1, 2, 3});
-  const TestFile file(".obj", obj_of(many, kTwo));
+  std::vector<Vertex3> vertices;
+  std::vector<Face> faces;
+  for (int i = 0; i < 3000; ++i) {
+    const double x = 2.0 * (i % 60), y = 2.0 * (i / 60);
+    const int n = static_cast<int>(vertices.size());
+    vertices.insert(vertices.end(), {{x, y, 0}, {x + 1, y, 0}, {x, y + 1, 0}});
+    faces.push_back({n, n + 1, n + 2});
+  }
+  const TestFile file(".obj", obj_of(vertices, faces));
   try {
-    static_cast<void>(read_tin(file.path(), {}, 1'000'000));
+    static_cast<void>(triangles_in(file.path(), {}, 1'000'000));
     FAIL() << "accepted";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
+    EXPECT_NE(e.message().find("has 9000 edges"), std::string::npos) << e.message();
     EXPECT_NE(e.message().find("--memory"), std::string::npos);
+  }
+}
+
+TEST(TinSource, NamesVerticesThatAreNotThereOrTwice) {
+  EXPECT_EQ(refusal(kSquare, {{0, 1, 2}, {0, 2, 7}}),
+            "triangle 1 names vertex 7, which is not there");
+  const TestFile file(".2dm",
+                      "MESH2D\nND 5 0 0 0\nND -3 9 0 1\nE3T 1 5 -3 8 1\nND 8 9 9 2\nND 5 1 1 1\n");
+  try {
+    static_cast<void>(triangles_in(file.path()));
+    FAIL() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.message(), "two vertices have the id 5");
   }
 }
 

@@ -13,7 +13,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ptin::ByteReader in("fuzz", std::string(reinterpret_cast<const char*>(data), size));
   try {
-    const ptin::TinSoup soup = ptin::read_obj(in, {});
+    const ptin::TinSoup soup = ptin::read_soup(ptin::read_obj, in, {});
     for (const auto& t : soup.triangles) {
       for (const std::uint32_t v : t) {
         if (v >= soup.vertices.size()) std::abort();

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the codes or heights of points are, found while they come.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/construct/height_fit_internal.h"
+
+namespace ptin {
+
+class HeightFinder {
+ public:
+  /// @param whole  Heights are codes: whole steps of `step` (PointGrid).
+  HeightFinder(bool whole, double step) : whole_(whole), step_(step) {}
+
+  void add(double height) {
+    if (whole_) {
+      low_ = std::min(low_, height);
+      high_ = std::max(high_, height);
+    } else {
+      scan_.add(height);
+    }
+  }
+  [[nodiscard]] HeightFit fit() const {
+    if (!whole_) {
+      return scan_.fit();
+    }
+    HeightFit fit;
+    fit.encoding = {HeightType::int32, step_, 0.0};
+    fit.quantum = step_;
+    fit.min_height = fit.encoding.height_of_code(low_);
+    fit.max_height = fit.encoding.height_of_code(high_);
+    return fit;
+  }
+
+ private:
+  bool whole_;
+  double step_;
+  HeightScan scan_{HeightScan::Given::kFloat64};
+  double low_ = std::numeric_limits<double>::infinity();
+  double high_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace ptin

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Records of one size on disk: written one after the other, read from anywhere.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "engine/construct/external_sorter.h"
+#include "storage/file_layer.h"
+
+namespace ptin {
+
+/// Threads: after finish(), const members from any number at once.
+template <class Record>
+class RecordFile {
+  static_assert(std::is_trivially_copyable_v<Record>);
+
+ public:
+  /// @throws Error not_found (no such folder), io_error, resource_exhausted
+  RecordFile(const ExternalMemory& memory, const std::string& stem)
+      : file_(std::make_unique<ScratchFile>(memory.files, memory.folder, stem, true)) {}
+
+  /// @throws Error io_error, resource_exhausted (the disk is full)
+  void add(const Record& record) {
+    block_.push_back(record);
+    if (block_.size() == kBlock) {
+      finish();
+    }
+  }
+  /// To be called when the last record has been added.
+  void finish() {
+    file_->write_at(std::as_bytes(std::span(block_)), written_ * sizeof(Record));
+    written_ += block_.size();
+    block_.clear();
+  }
+  [[nodiscard]] std::uint64_t size() const noexcept { return written_ + block_.size(); }
+
+  /// @throws Error io_error
+  void take(std::uint64_t first, std::uint64_t count, std::vector<Record>& records) const {
+    records.resize(count);
+    file_->read_at(std::as_writable_bytes(std::span(records)), first * sizeof(Record));
+  }
+  [[nodiscard]] Record at(std::uint64_t i) const {
+    Record record;
+    file_->read_at(std::as_writable_bytes(std::span(&record, 1)), i * sizeof(Record));
+    return record;
+  }
+  /// Calls visit(record) for all of them, in their order.
+  template <class Visit>
+  void visit(const Visit& visit) const {
+    std::vector<Record> records;
+    for (std::uint64_t i = 0; i < size(); i += records.size()) {
+      take(i, std::min<std::uint64_t>(kBlock, size() - i), records);
+      for (const Record& record : records) {
+        visit(record);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBlock = 1 << 13;
+  std::unique_ptr<ScratchFile> file_;
+  std::vector<Record> block_;
+  std::uint64_t written_ = 0;
+};
+
+}  // namespace ptin
