@@ -37,6 +37,12 @@ int FileLayer::create(const std::string& path, int& fd) noexcept {
   return fd >= 0 ? 0 : errno;
 }
 
+int FileLayer::create_nameless(const std::string& folder, int& fd) noexcept {
+  fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  // A kernel or a file system that does not know the flag takes this for opening the folder.
+  return fd >= 0 ? 0 : errno == EISDIR || errno == EINVAL ? EOPNOTSUPP : errno;
+}
+
 int FileLayer::open(const std::string& path, int& fd) noexcept {
   fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   return fd >= 0 ? 0 : errno;
@@ -104,7 +110,29 @@ int FileLayer::sync_folder(const std::string& path) noexcept {
 ScratchFile::ScratchFile(FileLayer& files, const std::string& folder, const std::string& stem,
                          bool nameless)
     : files_(files), folder_(folder), shown_(folder + "/" + stem) {
-  const std::string prefix = folder + "/." + stem + "." + std::to_string(::getpid()) + "-";
+  if (!nameless) {
+    create_named(stem);
+    return;
+  }
+  int failure = files_.create_nameless(folder, fd_);
+  if (failure == 0) {
+    return;
+  }
+  if (failure != EOPNOTSUPP) {
+    fd_ = -1;
+    throw system_error(failure, "cannot create a file in this folder", folder);
+  }
+  create_named(stem);
+  failure = files_.unlink(path_);
+  if (failure != 0) {
+    close_and_remove();
+    throw system_error(failure, "cannot remove a temporary name", shown_);
+  }
+  path_.clear();
+}
+
+void ScratchFile::create_named(const std::string& stem) {
+  const std::string prefix = folder_ + "/." + stem + "." + std::to_string(::getpid()) + "-";
   int failure = EEXIST;
   for (int n = 0; failure == EEXIST && n < 1000; ++n) {
     path_ = prefix + std::to_string(n) + ".tmp";
@@ -112,15 +140,7 @@ ScratchFile::ScratchFile(FileLayer& files, const std::string& folder, const std:
   }
   if (failure != 0) {
     path_.clear();
-    throw system_error(failure, "cannot create a file in this folder", folder);
-  }
-  if (nameless) {
-    failure = files_.unlink(path_);
-    if (failure != 0) {
-      close_and_remove();
-      throw system_error(failure, "cannot remove a temporary name", shown_);
-    }
-    path_.clear();
+    throw system_error(failure, "cannot create a file in this folder", folder_);
   }
 }
 

@@ -27,6 +27,9 @@ class FileLayer {
   /// Creates a file that must not exist yet, for reading and writing; `fd` is valid when 0 is
   /// returned.
   virtual int create(const std::string& path, int& fd) noexcept;
+  /// Creates a file without a name in a folder, for reading and writing: it is gone with its
+  /// descriptor, however the process ends. File systems that cannot do it answer EOPNOTSUPP.
+  virtual int create_nameless(const std::string& folder, int& fd) noexcept;
   /// Opens a file for reading and writing that exists.
   virtual int open(const std::string& path, int& fd) noexcept;
   virtual int close(int fd) noexcept;
@@ -61,8 +64,9 @@ class ScratchFile {
   /// A file of this very name, which stays when the object goes: work that can be taken up again.
   /// @throws Error not_found, io_error, resource_exhausted; also when a new one exists already
   ScratchFile(FileLayer& files, const std::string& path, Kept kept);
-  /// Creates `folder`/`.stem.N.tmp` with the first N that is free. With `nameless` on the name is
-  /// removed at once, so that nothing can be left behind.
+  /// Creates `folder`/`.stem.N.tmp` with the first N that is free. With `nameless` on it has no
+  /// name, so that nothing can be left behind; where the file system cannot do that, one that is
+  /// removed at once.
   /// @throws Error not_found (no such folder), io_error, resource_exhausted
   ScratchFile(FileLayer& files, const std::string& folder, const std::string& stem, bool nameless);
   ScratchFile(const ScratchFile&) = delete;
@@ -83,6 +87,7 @@ class ScratchFile {
   void publish_as(const std::string& target, bool replace);
 
  private:
+  void create_named(const std::string& stem);
   void close_and_remove() noexcept;
 
   FileLayer& files_;

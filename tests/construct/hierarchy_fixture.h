@@ -36,6 +36,9 @@ class FailingFiles final : public FileLayer {
   int create(const std::string& path, int& fd) noexcept override {
     return fails() ? ENOSPC : FileLayer::create(path, fd);
   }
+  int create_nameless(const std::string& folder, int& fd) noexcept override {
+    return fails() ? ENOSPC : FileLayer::create_nameless(folder, fd);
+  }
   int open(const std::string& path, int& fd) noexcept override {
     return fails() ? EIO : FileLayer::open(path, fd);
   }

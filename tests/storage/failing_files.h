@@ -41,6 +41,9 @@ class FailingFiles final : public FileLayer {
   int create(const std::string& path, int& fd) noexcept override {
     return fails() ? failure_ : FileLayer::create(path, fd);
   }
+  int create_nameless(const std::string& folder, int& fd) noexcept override {
+    return fails() ? failure_ : FileLayer::create_nameless(folder, fd);
+  }
   int close(int fd) noexcept override {
     const int result = FileLayer::close(fd);
     return fails(is_renamed_) ? failure_ : result;
