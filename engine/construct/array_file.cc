@@ -75,6 +75,7 @@ ArrayFileReader::ArrayFileReader(const std::string& path, const ArrayFileFacts& 
     }
     found.bytes += padded(header.element_bytes * header.elements);
   }
+  mapped_.require_undamaged();
   if (!(found == facts)) {
     refuse();
   }
@@ -95,7 +96,9 @@ std::span<const std::byte> ArrayFileReader::take_bytes(std::size_t element) {
   std::copy_n(mapped_.at(offset_), sizeof header, reinterpret_cast<std::byte*>(&header));
   const std::span<const std::byte> bytes(mapped_.at(offset_ + sizeof header),
                                          header.element_bytes * header.elements);
-  if (header.element_bytes != element || checksum_of(bytes) != header.checksum) {
+  const bool is_sound = header.element_bytes == element && checksum_of(bytes) == header.checksum;
+  mapped_.require_undamaged();
+  if (!is_sound) {
     refuse();
   }
   offset_ += sizeof header + padded(bytes.size());

@@ -66,6 +66,9 @@ class ArrayFileReader {
     const std::span<const std::byte> bytes = take_bytes(sizeof(T));
     return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
+  /// @throws Error corruption  when a span met a hole since: the file was cut short, or its disk
+  ///                           failed; to be called when the work with spans is done
+  void require_undamaged() const { mapped_.require_undamaged(); }
   /// As take(), copied.
   template <class T>
   [[nodiscard]] std::vector<T> take_copy() {

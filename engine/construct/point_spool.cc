@@ -25,10 +25,12 @@ void PointSpool::flush() {
   if (block_.empty()) {
     return;
   }
-  if (blocks_ % kFileBlocks == 0) {
-    files_.push_back(std::make_unique<ScratchFile>(memory_.files, memory_.folder, "spool", true));
+  if (files_.empty() || blocks_ == files_.back().first_block + files_.back().blocks) {
+    files_.push_back({std::make_unique<ScratchFile>(memory_.files, memory_.folder, "spool", true),
+                      blocks_, kFileBlocks << (files_.size() / kFilesOfSize)});
   }
-  files_.back()->write_at(block_, blocks_ % kFileBlocks * kBlockRecords * kRecordBytes);
+  const File& last = files_.back();
+  last.file->write_at(block_, (blocks_ - last.first_block) * kBlockRecords * kRecordBytes);
   ++blocks_;
   block_.clear();
 }
@@ -46,7 +48,8 @@ bool PointSpool::take(std::vector<SourcePoint>& batch) {
   const auto count =
       static_cast<std::size_t>(std::min<std::uint64_t>(kBlockRecords, size_ - taken_));
   block_.resize(count * kRecordBytes);
-  files_[block / kFileBlocks]->read_at(block_, block % kFileBlocks * kBlockRecords * kRecordBytes);
+  File& from = files_[taking_];
+  from.file->read_at(block_, (block - from.first_block) * kBlockRecords * kRecordBytes);
   for (std::size_t r = 0; r < count; ++r) {
     const std::byte* record = block_.data() + r * kRecordBytes;
     std::array<Decimal, 3> numbers;
@@ -57,8 +60,9 @@ bool PointSpool::take(std::vector<SourcePoint>& batch) {
     batch.push_back({numbers[0], numbers[1], numbers[2]});
   }
   taken_ += count;
-  if (taken_ / kBlockRecords % kFileBlocks == 0) {
-    files_[block / kFileBlocks].reset();
+  if (block + 1 == from.first_block + from.blocks) {
+    from.file.reset();
+    ++taking_;
   }
   return true;
 }

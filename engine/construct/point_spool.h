@@ -30,12 +30,20 @@ class PointSpool {
   /// Three mantissas and the decimals of each.
   static constexpr std::size_t kRecordBytes = 3 * 8 + 3;
   static constexpr std::size_t kBlockRecords = 1 << 15;
+  /// Files are small, so that they are given back early, and few, since each has a descriptor: of
+  /// kFileBlocks blocks, then of twice as many after kFilesOfSize of a size. 2 TB are 256 files.
   static constexpr std::uint64_t kFileBlocks = 256;
+  static constexpr std::size_t kFilesOfSize = 32;
+  struct File {
+    std::unique_ptr<ScratchFile> file;
+    std::uint64_t first_block = 0, blocks = 0;
+  };
   void flush();
 
   ExternalMemory memory_;
   std::vector<std::byte> block_;
-  std::vector<std::unique_ptr<ScratchFile>> files_;  ///< Of kFileBlocks blocks each.
+  std::vector<File> files_;
+  std::size_t taking_ = 0;  ///< The file that is being taken from.
   std::uint64_t blocks_ = 0;
   std::uint64_t size_ = 0, taken_ = 0;
 };

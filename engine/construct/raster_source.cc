@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <mutex>
 #include <string_view>
 #include <utility>
+
+#include <sys/resource.h>
 
 #include "engine/construct/crs.h"
 #include "engine/construct/height_fit_internal.h"
@@ -18,8 +21,22 @@
 namespace ptin {
 namespace {
 
-/// Files of a mosaic that are open at once; a process often has 1024 descriptors.
+/// Files of a mosaic that one source has open at once.
 constexpr std::size_t kMostOpenFiles = 64;
+/// Descriptors for all else: GDAL keeps up to 100 files of VRTs open, a build its own.
+constexpr std::size_t kOtherFiles = 256;
+
+/// Files that each of some sources may have open, so that all of them stay within what the process
+/// may open (1024, often).
+std::size_t most_open_files(std::size_t sources) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+    return kMostOpenFiles;
+  }
+  const auto all = static_cast<std::size_t>(limit.rlim_cur);
+  const std::size_t ours = std::max(all / 2, all - std::min(all, kOtherFiles));
+  return std::clamp<std::size_t>(ours / sources, 1, kMostOpenFiles);
+}
 
 /// Samples looked at together by the first reading.
 constexpr std::int64_t kScanSamples = std::int64_t{1} << 20;
@@ -110,6 +127,13 @@ struct RasterSource::Impl {
   std::mutex mutex;  ///< Guards what follows.
   std::vector<PlacedPart> parts;
   std::uint64_t clock = 0;
+  /// This source and its duplicates, which share the descriptors of the process.
+  std::shared_ptr<std::atomic<std::size_t>> sharers = std::make_shared<std::atomic<std::size_t>>(1);
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() { --*sharers; }
 
   [[nodiscard]] std::string context() const {
     return parts.size() == 1
@@ -255,8 +279,14 @@ RasterSource RasterSource::duplicate() const {
   copy->raw = impl_->raw;
   copy->scale = impl_->scale;
   copy->offset = impl_->offset;
-  for (const PlacedPart& p : impl_->parts) {
+  const std::lock_guard lock(impl_->mutex);
+  copy->sharers = impl_->sharers;
+  ++*copy->sharers;
+  for (PlacedPart& p : impl_->parts) {
     copy->parts.push_back({p.part.closed_copy(), p.x, p.y});
+    if (impl_->parts.size() > 1) {  // from now on the copies read, mostly
+      p.part.close();
+    }
   }
   return RasterSource(std::move(copy));
 }
@@ -340,19 +370,24 @@ void RasterSource::Impl::scan(const std::stop_token& stop, const Progress& progr
 // ---------------------------------------------------------------------------------------------------
 // Reading windows.
 
-/// Marks a part as used, and closes the one that was not for longest when too many are open.
+/// Marks a part as used, and closes those that were not for longest where too many are open.
 void RasterSource::Impl::touch(PlacedPart& placed) {
   placed.last_used = ++clock;
-  PlacedPart* oldest = nullptr;
-  std::size_t open_files = placed.part.is_open() ? 0 : 1;
+  std::vector<PlacedPart*> open;
   for (PlacedPart& p : parts) {
-    if (p.part.is_open()) {
-      ++open_files;
-      oldest = oldest == nullptr || p.last_used < oldest->last_used ? &p : oldest;
+    if (p.part.is_open() && &p != &placed) {
+      open.push_back(&p);
     }
   }
-  if (open_files > kMostOpenFiles && oldest != &placed) {
-    oldest->part.close();
+  const std::size_t most_others = most_open_files(sharers->load()) - 1;
+  if (open.size() <= most_others) {
+    return;
+  }
+  std::sort(open.begin(), open.end(),
+            [](const PlacedPart* a, const PlacedPart* b) { return a->last_used < b->last_used; });
+  open.resize(open.size() - most_others);
+  for (PlacedPart* p : open) {
+    p->part.close();
   }
 }
 

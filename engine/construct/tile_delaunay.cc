@@ -4,11 +4,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
 #include "engine/check.h"
+#include "engine/construct/bucket_cache.h"
 #include "engine/construct/delaunay_kernel_internal.h"
 #include "engine/error.h"
 #include "engine/geometry/circumdisc.h"
@@ -25,10 +25,6 @@ using Face_handle = Delaunay::Face_handle;
 /// Spacings of points that the first margin is wide.
 constexpr double kMargin = 6.0;
 constexpr std::size_t kBetweenStops = 4096;
-/// Buckets that were looked into and are kept in memory for the next look.
-constexpr std::size_t kMostLoaded = 1024;
-/// Points of a bucket that have a box of their own while it is in memory.
-constexpr std::size_t kBlock = 32;
 
 /// What must be empty of unseen points for a face to be final: the closed circumdisc of a finite
 /// one; beyond an edge of the hull the open half-plane and the edge itself.
@@ -76,15 +72,18 @@ bool disc_lies_in(const GridBox& box, GridPoint a, GridPoint b, GridPoint c) noe
          a.y + uy - radius > box.min_y && a.y + uy + radius < box.max_y;
 }
 
-/// Which triangles are void.
+/// Which triangles are void. The same from whichever tile an edge is looked at.
 struct LongestEdge {
-  double length = 0.0;  ///< Grid units of x.
-  double aspect = 1.0;  ///< Units of y over units of x.
+  double length;  ///< On the ground.
+  const GroundMetric& ground;
 
   [[nodiscard]] bool is_within(GridPoint a, GridPoint b) const noexcept {
-    const double dx = static_cast<double>(a.x) - b.x;
-    const double dy = (static_cast<double>(a.y) - b.y) * aspect;
-    return dx * dx + dy * dy <= length * length;
+    const GroundStep step = ground.at((static_cast<double>(a.y) + b.y) / 2.0);
+    const double dx = (static_cast<double>(a.x) - b.x) * step.x;
+    const double dy = (static_cast<double>(a.y) - b.y) * step.y;
+    // Decimal steps are rounded to binary: an edge of just this length is not longer.
+    constexpr double kJust = 1.0 + 1e-12;
+    return dx * dx + dy * dy <= length * length * kJust;
   }
   [[nodiscard]] bool is_within(GridPoint a, GridPoint b, GridPoint c) const noexcept {
     return is_within(a, b) && is_within(b, c) && is_within(c, a);
@@ -99,8 +98,12 @@ struct LongestEdge {
 class TileMaker {
  public:
   TileMaker(const PointBuckets& buckets, std::uint64_t first, std::uint64_t count,
-            const std::stop_token& stop)
-      : buckets_(buckets), first_(first), end_(first + count), stop_(stop) {}
+            std::size_t cache_bytes, const std::stop_token& stop)
+      : buckets_(buckets),
+        first_(first),
+        end_(first + count),
+        stop_(stop),
+        cache_(buckets, first, first + count, cache_bytes) {}
 
   void triangulate();
   /// Makes every face at the given vertices final.
@@ -120,12 +123,6 @@ class TileMaker {
   [[nodiscard]] Vertex_handle handle(VertexId v) const noexcept { return handles_[v]; }
 
  private:
-  struct Loaded {
-    std::vector<BucketPoint> points;
-    std::vector<std::uint8_t> is_in;  ///< Beside them: inserted.
-    std::vector<GridBox> boxes;       ///< Of the points not in, kBlock at a time.
-    bool has_more = false;            ///< ... not for the tile or the box alone.
-  };
   void choose_box(const std::vector<BucketPoint>& own);
   struct NewPoint {
     BucketPoint point;
@@ -134,14 +131,12 @@ class TileMaker {
   void insert(const BucketPoint& p, bool own);
   void insert_all(const std::vector<NewPoint>& points);
   void span_area();
-  void forget_unused();
   [[nodiscard]] std::uint64_t bucket_of(std::uint64_t point) const noexcept {
     return point / buckets_.bucket_points();
   }
-  Loaded& load(std::uint64_t bucket);
   [[nodiscard]] bool settle_star(VertexId v);
   [[nodiscard]] bool is_final(const Face_handle& face);
-  [[nodiscard]] bool take_from(Loaded& loaded, const Region& region);
+  [[nodiscard]] bool take_from(BucketCache::Bucket& loaded, const Region& region);
   [[nodiscard]] bool see(const Region& region, GridPoint near);
   void check_stop() const {
     if (stop_.stop_requested()) {
@@ -158,9 +153,8 @@ class TileMaker {
   std::vector<Vertex_handle> handles_;
   std::vector<HeightBits> heights_;
   std::vector<std::uint8_t> own_;
-  std::unordered_map<std::uint64_t, Loaded> loaded_;  ///< Buckets that a region asked for.
-  std::unordered_set<std::uint64_t> whole_;           ///< Buckets all of whose points are in.
-  std::vector<VertexId> inserted_;                    ///< Since it was last cleared.
+  BucketCache cache_;               ///< Of what lies around the box.
+  std::vector<VertexId> inserted_;  ///< Since it was last cleared.
   struct Corners {
     std::array<VertexId, 3> v;
     friend bool operator==(const Corners&, const Corners&) = default;
@@ -215,6 +209,7 @@ void TileMaker::choose_box(const std::vector<BucketPoint>& own) {
         {tight.min_x, tight.min_y}, [&](const GridBox& b) { return meets(b, box_); },
         [&](std::uint64_t) { return ++touched <= most; });
     if (touched <= most || margin == 0.0) {
+      cache_.set_box(box_);
       return;
     }
   }
@@ -248,7 +243,7 @@ void TileMaker::triangulate() {
     const std::uint64_t begin = bucket * buckets_.bucket_points();
     gather(begin, std::min(begin + buckets_.bucket_points(), buckets_.size()));
     if (contains(box_, buckets_.box(bucket))) {
-      whole_.insert(bucket);
+      cache_.set_used_up(bucket);
     }
   }
   insert_all(all);
@@ -264,7 +259,7 @@ void TileMaker::span_area() {
   buckets_.visit_nearest(
       position_of(handles_.front()), [](const GridBox&) { return true; },
       [&](std::uint64_t bucket) {
-        Loaded& loaded = load(bucket);
+        BucketCache::Bucket& loaded = cache_.load(bucket);
         for (std::size_t i = 0; i < loaded.points.size() && delaunay_.dimension() < 2; ++i) {
           if (loaded.is_in[i] == 0) {
             insert(loaded.points[i], false);
@@ -272,36 +267,10 @@ void TileMaker::span_area() {
             loaded.has_more = true;
           }
         }
+        cache_.tidy();
         return delaunay_.dimension() < 2;
       });
   PTIN_CHECK(delaunay_.dimension() == 2);  // the terrain has an area
-}
-
-/// Forgets buckets that nothing was taken from.
-void TileMaker::forget_unused() {
-  if (loaded_.size() > kMostLoaded) {
-    std::erase_if(loaded_, [](const auto& entry) { return !entry.second.has_more; });
-  }
-}
-
-TileMaker::Loaded& TileMaker::load(std::uint64_t bucket) {
-  const auto [found, is_new] = loaded_.try_emplace(bucket);
-  if (is_new) {
-    const std::uint64_t begin = bucket * buckets_.bucket_points();
-    const std::uint64_t end = std::min(begin + buckets_.bucket_points(), buckets_.size());
-    Loaded& loaded = found->second;
-    buckets_.take(begin, end - begin, loaded.points);
-    loaded.is_in.resize(loaded.points.size());
-    loaded.boxes.resize((loaded.points.size() + kBlock - 1) / kBlock);
-    for (std::uint64_t i = begin; i < end; ++i) {
-      const bool own = i >= first_ && i < end_;
-      const GridPoint p = loaded.points[i - begin].position;
-      loaded.is_in[i - begin] = own || contains(box_, p) ? 1 : 0;
-      GridBox& box = loaded.boxes[(i - begin) / kBlock];
-      box = loaded.is_in[i - begin] != 0 ? box : united(box, p);
-    }
-  }
-  return found->second;
 }
 
 /// The round in which a point is inserted: the last with 7 of 8 points, the one before it with 7 of
@@ -329,7 +298,8 @@ void TileMaker::insert_all(const std::vector<NewPoint>& points) {
 
 /// Inserts the points of a bucket that lie in the region and are not in yet. True when there are
 /// any.
-bool TileMaker::take_from(Loaded& loaded, const Region& region) {
+bool TileMaker::take_from(BucketCache::Bucket& loaded, const Region& region) {
+  constexpr std::size_t kBlock = BucketCache::kBlock;
   std::vector<NewPoint> found;
   for (std::size_t block = 0; block < loaded.boxes.size(); ++block) {
     if (is_empty(loaded.boxes[block]) || !region.may_meet(loaded.boxes[block])) {
@@ -363,19 +333,17 @@ bool TileMaker::see(const Region& region, GridPoint near) {
   buckets_.visit_nearest(
       near, [&](const GridBox& b) { return region.may_meet(b); },
       [&](std::uint64_t bucket) {
-        if (whole_.contains(bucket)) {
+        if (cache_.is_used_up(bucket)) {
           return true;
         }
-        Loaded& loaded = load(bucket);
+        BucketCache::Bucket& loaded = cache_.load(bucket);
         found = take_from(loaded, region);
-        if (std::all_of(loaded.boxes.begin(), loaded.boxes.end(),
-                        [](const GridBox& b) { return is_empty(b); })) {
-          loaded_.erase(bucket);
-          whole_.insert(bucket);
+        if (loaded.is_used_up()) {
+          cache_.set_used_up(bucket);
         }
+        cache_.tidy();
         return !found;
       });
-  forget_unused();
   return !found;
 }
 
@@ -584,15 +552,18 @@ void TileMaker::make_voids(DelaunayTile& tile, const LongestEdge& longest) const
 }  // namespace
 
 DelaunayTiler::DelaunayTiler(const PointBuckets& buckets, std::optional<double> longest_edge,
-                             double aspect)
-    : buckets_(buckets), longest_edge_(longest_edge), aspect_(aspect) {}
+                             std::size_t cache_bytes)
+    : buckets_(buckets),
+      longest_edge_(longest_edge),
+      ground_(buckets.frame()),
+      cache_bytes_(cache_bytes) {}
 
 DelaunayTile DelaunayTiler::make(std::uint64_t first, std::uint64_t count,
                                  const std::stop_token& stop) {
   if (count > kNone / 8) {
     throw Error(ErrorCode::resource_exhausted, "more points than one mesh in memory counts");
   }
-  TileMaker maker(buckets_, first, count, stop);
+  TileMaker maker(buckets_, first, count, cache_bytes_, stop);
   maker.triangulate();
   if (!maker.holds_everything()) {
     maker.settle(maker.own_vertices_to_settle());
@@ -606,7 +577,7 @@ DelaunayTile DelaunayTiler::make(std::uint64_t first, std::uint64_t count,
     maker.settle(maker.other_corners(faces));
   }
   DelaunayTile tile = maker.cut_out(maker.own_faces());
-  maker.make_voids(tile, {*longest_edge_, aspect_});
+  maker.make_voids(tile, {*longest_edge_, ground_});
   return tile;
 }
 

@@ -8,6 +8,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "engine/construct/crs.h"
 #include "engine/construct/point_buckets.h"
 #include "engine/mesh/tin.h"
 
@@ -36,10 +37,11 @@ struct DelaunayTile {
 /// Not thread-safe: one for each thread; any number on the same buckets.
 class DelaunayTiler {
  public:
-  /// @param longest_edge  Triangles with a longer edge are void; grid units of x. None: no voids.
-  ///                      `aspect`: units of y over units of x.
+  /// @param longest_edge  Triangles with a longer edge are void; on the ground (crs.h): metres in a
+  ///                      geographic CRS, else CRS units. None: no voids.
+  /// @param cache_bytes   Memory for points that were looked at around a tile and not taken.
   explicit DelaunayTiler(const PointBuckets& buckets, std::optional<double> longest_edge = {},
-                         double aspect = 1.0);
+                         std::size_t cache_bytes = std::size_t{16} << 20);
 
   /// The tile of points first .. first + count - 1 in the order of the buckets.
   /// @throws Error io_error, cancelled
@@ -52,7 +54,8 @@ class DelaunayTiler {
  private:
   const PointBuckets& buckets_;
   std::optional<double> longest_edge_;
-  double aspect_;
+  GroundMetric ground_;
+  std::size_t cache_bytes_;
 };
 
 }  // namespace ptin

@@ -79,6 +79,7 @@ Tile read_pushed(ArrayFileReader& in, const MeasureUnits& units) {
     state.holds_voids = (c.holds & 2U) != 0;
     tile.carried.push_back(state);
   }
+  in.require_undamaged();
   return tile;
 }
 

@@ -28,6 +28,8 @@ class SegmentFile {
   /// @throws Error corruption, io_error
   SegmentFile(const TileId& id, const std::string& path, const ArrayFileFacts& facts);
   [[nodiscard]] const SegmentView& view() const noexcept { return view_; }
+  /// @throws Error corruption  as ArrayFileReader
+  void require_undamaged() const { file_.require_undamaged(); }
 
  private:
   ArrayFileReader file_;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/workspace.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <utility>
 
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/error.h"
@@ -19,10 +22,52 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Times that a folder may vanish under us while others build and discard the same output.
+constexpr int kMostTries = 100;
+
 std::string manifest_in(const std::string& folder) { return folder + "/manifest"; }
+/// In a folder in `--tmp`: holds the path of the folder beside the output that it belongs to.
+std::string owner_in(const std::string& folder) { return folder + "/owner"; }
+std::string whole_path(const std::string& path) {
+  return fs::absolute(path).lexically_normal().string();
+}
+
+bool is_empty_but_for(const std::string& folder, const std::string& name) {
+  const fs::directory_iterator entries(folder);
+  return std::all_of(begin(entries), end(entries),
+                     [&](const fs::directory_entry& e) { return e.path().string() == name; });
+}
+
+/// A name that looks like ours proves nothing: everything in a folder is removed in the end.
+void require_ours(bool is_ours, const std::string& folder) {
+  if (!is_ours) {
+    throw Error(ErrorCode::invalid_argument,
+                "this folder has the name of one for temporary files and holds something else; "
+                "move it away",
+                folder);
+  }
+}
+
+/// True for a folder in `--tmp` that belongs to the workspace `folder`.
+bool is_owned(const std::string& tmp, const std::string& folder) {
+  std::ifstream file(owner_in(tmp));
+  std::string owner;
+  return std::getline(file, owner, '\0') && owner == whole_path(folder);
+}
+
+void write_owner(FileLayer& files, const std::string& tmp, const std::string& folder) {
+  const std::string owner = whole_path(folder);
+  const int failure = files.unlink(owner_in(tmp));  // of a build that was killed early
+  if (failure != 0 && failure != ENOENT) {
+    throw system_error(failure, "cannot remove a temporary file", owner_in(tmp));
+  }
+  ScratchFile file(files, owner_in(tmp), ScratchFile::Kept::kNew);
+  file.write_at(std::as_bytes(std::span(owner)), 0);
+  file.sync();
+}
 
 /// A folder in `tmp` that no other output uses.
-std::string temporary_folder(const std::string& output, const std::string& tmp) {
+std::string folder_in_tmp(const std::string& output, const std::string& tmp) {
   const fs::path whole = fs::absolute(output);
   const std::string text = whole.string();
   const std::uint64_t name = checksum_of(std::as_bytes(std::span(text)));
@@ -45,8 +90,9 @@ void remove_folder(FileLayer& files, const std::string& path) {
     names.push_back(entry.path().string());
   }
   // The manifest goes last: without it nobody would know what the rest is.
-  std::stable_partition(names.begin(), names.end(),
-                        [&](const std::string& n) { return n != manifest_in(path); });
+  std::stable_partition(names.begin(), names.end(), [&](const std::string& n) {
+    return n != manifest_in(path) && n != owner_in(path);
+  });
   for (const std::string& name : names) {
     const int failure = files.unlink(name);
     if (failure != 0 && failure != ENOENT) {
@@ -74,22 +120,33 @@ nlohmann::json first_line(const nlohmann::json& fingerprint, const std::string& 
 /// An exclusive lock on the folder, for as long as this lives.
 class Workspace::Lock {
  public:
-  explicit Lock(const std::string& folder)
-      : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (fd_ < 0) {
+  /// Null when the folder is not there, or was removed while we waited for it.
+  static std::unique_ptr<Lock> of(const std::string& folder) {
+    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0 && errno == ENOENT) {
+      return nullptr;
+    }
+    if (fd < 0) {
       throw system_error(errno, "cannot open the folder of temporary files", folder);
     }
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-      ::close(fd_);
+    std::unique_ptr<Lock> lock(new Lock(fd));
+    if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
       throw Error(ErrorCode::invalid_argument, "another process is building this output right now",
                   folder);
     }
+    // Who had the lock before may have removed the folder, and a third process made it anew.
+    struct stat ours {
+    }, named{};
+    const bool is_same = ::fstat(fd, &ours) == 0 && ::stat(folder.c_str(), &named) == 0 &&
+                         ours.st_dev == named.st_dev && ours.st_ino == named.st_ino;
+    return is_same ? std::move(lock) : nullptr;
   }
   ~Lock() { ::close(fd_); }
   Lock(const Lock&) = delete;
   Lock& operator=(const Lock&) = delete;
 
  private:
+  explicit Lock(int fd) : fd_(fd) {}
   int fd_;
 };
 
@@ -101,20 +158,42 @@ std::string Workspace::folder_of(const std::string& output) {
 
 bool Workspace::discard(FileLayer& files, const std::string& output) {
   const std::string folder = folder_of(output);
-  if (!fs::exists(folder)) {
+  const std::unique_ptr<Lock> lock = Lock::of(folder);
+  if (!lock) {
     return false;
   }
-  const Lock lock(folder);
-  if (fs::exists(manifest_in(folder))) {
+  if (!fs::exists(manifest_in(folder))) {
+    require_ours(fs::is_empty(folder), folder);
+    remove_folder(files, folder);
+    return true;
+  }
+  std::string tmp = folder;
+  {
     const Manifest manifest(files, manifest_in(folder));
-    if (!manifest.entries().empty()) {
-      remove_folder(files, manifest.entries().front().value("tmp", folder));
+    if (manifest.entries().empty()) {
+      require_ours(is_empty_but_for(folder, manifest_in(folder)), folder);
+    } else {
+      tmp = manifest.entries().front().value("tmp", folder);
     }
   }
-  if (fs::exists(folder)) {
-    remove_folder(files, folder);
+  if (tmp != folder && fs::exists(tmp)) {
+    require_ours(fs::exists(owner_in(tmp)), tmp);
+    remove_folder(files, tmp);
   }
+  remove_folder(files, folder);
   return true;
+}
+
+/// Makes the folder where there is none, and locks it.
+void Workspace::lock_folder() {
+  for (int i = 0; lock_ == nullptr; ++i) {
+    if (i == kMostTries) {
+      throw Error(ErrorCode::io_error, "the folder of temporary files vanishes whenever it is made",
+                  folder_);
+    }
+    make_folder(files_, folder_);
+    lock_ = Lock::of(folder_);
+  }
 }
 
 Workspace::Workspace(FileLayer& files, const std::string& output, const std::string& tmp,
@@ -123,13 +202,16 @@ Workspace::Workspace(FileLayer& files, const std::string& output, const std::str
   if (unfinished == Unfinished::kDiscard) {
     discard(files, output);
   }
-  make_folder(files_, folder_);
-  lock_ = std::make_unique<Lock>(folder_);
+  lock_folder();
+  if (!fs::exists(manifest_in(folder_))) {
+    require_ours(fs::is_empty(folder_), folder_);
+  }
   manifest_ = std::make_unique<Manifest>(files_, manifest_in(folder_));
   if (!tmp.empty()) {
-    tmp_ = temporary_folder(output, tmp);
+    tmp_ = folder_in_tmp(output, tmp);
   }
   if (manifest_->entries().empty()) {
+    require_ours(is_empty_but_for(folder_, manifest_in(folder_)), folder_);
     begin(fingerprint);
     return;
   }
@@ -139,12 +221,18 @@ Workspace::Workspace(FileLayer& files, const std::string& output, const std::str
                     " is here; go on with it by --resume, or remove it by --discard",
                 folder_);
   }
+  take_up(fingerprint);
+}
+
+/// Checks that the interrupted build is of the same inputs and options, and all there.
+void Workspace::take_up(const nlohmann::json& fingerprint) {
   const nlohmann::json& first = manifest_->entries().front();
   if (first.value("ptin_build", 0) != 1 ||
       first.value("of", nlohmann::json()) != as_read_back(fingerprint)) {
     throw Error(ErrorCode::invalid_argument,
-                "the unfinished build here is of other inputs or other options; repeat those, or "
-                "remove it by --discard",
+                "the unfinished build here is of other inputs, of inputs that have changed, of "
+                "other options or of another version of ptin; repeat those, or remove it by "
+                "--discard",
                 folder_);
   }
   tmp_ = first.value("tmp", folder_);
@@ -154,15 +242,23 @@ Workspace::Workspace(FileLayer& files, const std::string& output, const std::str
                 "the temporary files of the unfinished build are not there; is their disk mounted?",
                 tmp_);
   }
+  require_ours(tmp_ == folder_ || fs::exists(owner_in(tmp_)), tmp_);
 }
 
 /// The first line; until it is there, there is nothing to resume, and nothing stays behind.
 void Workspace::begin(const nlohmann::json& fingerprint) {
+  bool is_tmp_ours = false;
   try {
-    make_folder(files_, tmp_);
+    if (tmp_ != folder_) {
+      make_folder(files_, tmp_);
+      require_ours(is_empty_but_for(tmp_, owner_in(tmp_)) || is_owned(tmp_, folder_), tmp_);
+      is_tmp_ours = true;
+      write_owner(files_, tmp_, folder_);
+    }
     manifest_->append({first_line(fingerprint, tmp_)});
     sync_names();
   } catch (...) {
+    tmp_ = is_tmp_ours ? tmp_ : folder_;
     remove_all();
     throw;
   }

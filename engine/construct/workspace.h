@@ -33,7 +33,7 @@ class Workspace {
   ///                     build is taken up again only where it is the same.
   /// @throws Error invalid_argument  an interrupted build is there and `unfinished` is kRefuse, or
   ///                                 it is of another input or other options; another process is
-  ///                                 at it
+  ///                                 at it; a folder of that name is not one of ours
   ///               not_found, io_error, resource_exhausted
   Workspace(FileLayer& files, const std::string& output, const std::string& tmp,
             Unfinished unfinished, const nlohmann::json& fingerprint);
@@ -44,11 +44,13 @@ class Workspace {
   /// Where the build of `output` has its folder.
   [[nodiscard]] static std::string folder_of(const std::string& output);
   /// Removes an interrupted build of `output`; false when there is none.
-  /// @throws Error io_error; invalid_argument when another process is at it
+  /// @throws Error io_error; invalid_argument when another process is at it, or the folder is not
+  ///               one of ours
   static bool discard(FileLayer& files, const std::string& output);
 
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
   [[nodiscard]] std::string temporary(const std::string& name) const { return tmp_ + "/" + name; }
+  [[nodiscard]] const std::string& temporary_folder() const noexcept { return tmp_; }
   [[nodiscard]] FileLayer& files() const noexcept { return files_; }
   /// What an interrupted build had done, without the line of the workspace itself.
   [[nodiscard]] std::vector<nlohmann::json> lines() const;
@@ -65,7 +67,9 @@ class Workspace {
 
  private:
   class Lock;
+  void lock_folder();
   void begin(const nlohmann::json& fingerprint);
+  void take_up(const nlohmann::json& fingerprint);
 
   FileLayer& files_;
   std::string folder_, tmp_;

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/source_files.h"
+
+#include <filesystem>
+#include <set>
+
+#include <cpl_vsi.h>
+#include <gdal_priv.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/construct/gdal_session_internal.h"
+#include "engine/construct/point_stream.h"
+#include "engine/construct/tin_soup.h"
+
+namespace ptin {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Absolute where it is a file, so that a build can be resumed from another folder.
+std::string full_name(const std::string& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored) ? fs::absolute(file).lexically_normal().string() : file;
+}
+
+void collect(const std::string& input, std::set<std::string>& files) {
+  if (!files.insert(full_name(input)).second || is_point_file(input) || is_tin_file(input)) {
+    return;
+  }
+  const GDALDatasetUniquePtr data(
+      GDALDataset::Open(input.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
+  if (!data) {
+    return;
+  }
+  const CPLStringList list(data->GetFileList());
+  const bool is_virtual =
+      data->GetDriver() != nullptr && EQUAL(data->GetDriver()->GetDescription(), "VRT");
+  for (int i = 0; i < list.size(); ++i) {
+    if (is_virtual) {
+      collect(list[i], files);
+    } else {
+      files.insert(full_name(list[i]));
+    }
+  }
+}
+
+nlohmann::json facts_of(const std::string& file) {
+  std::error_code failure;
+  const auto bytes = fs::file_size(file, failure);
+  const auto time = fs::last_write_time(file, failure);
+  if (!failure) {
+    return {file, bytes, time.time_since_epoch().count()};
+  }
+  VSIStatBufL status;  // of what only GDAL knows: archives, servers
+  if (VSIStatL(file.c_str(), &status) == 0) {
+    return {file, static_cast<std::uint64_t>(status.st_size),
+            static_cast<std::int64_t>(status.st_mtime)};
+  }
+  return {file, 0, 0};
+}
+
+}  // namespace
+
+std::vector<std::string> files_of_input(const std::string& input) {
+  const GdalSession session;
+  std::set<std::string> files;
+  collect(input, files);
+  return {files.begin(), files.end()};
+}
+
+nlohmann::json input_fingerprint(const std::vector<std::string>& inputs) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const std::string& input : inputs) {
+    nlohmann::json files = nlohmann::json::array();
+    for (const std::string& file : files_of_input(input)) {
+      files.push_back(facts_of(file));
+    }
+    all.push_back({full_name(input), files});
+  }
+  return all;
+}
+
+}  // namespace ptin

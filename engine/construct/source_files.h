@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Which files an input is made of, and whether they are still the same.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace ptin {
+
+/// The files that are read when `input` is: itself, the sources of a VRT (of VRTs in it, too), and
+/// what GDAL reads beside them (.aux.xml, world files, masks, the parts of a shapefile). Sorted.
+/// Inputs that are no files give themselves. Cost: opens the input, and each source of a VRT.
+[[nodiscard]] std::vector<std::string> files_of_input(const std::string& input);
+
+/// Names, sizes and times of change of all files of all inputs: another value means that an input
+/// has changed, or that one of its files was added or removed.
+[[nodiscard]] nlohmann::json input_fingerprint(const std::vector<std::string>& inputs);
+
+}  // namespace ptin
