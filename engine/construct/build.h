@@ -26,7 +26,8 @@ struct BuildOptions {
   std::optional<double> resolution;  ///< Points: grid unit in CRS units.
   std::vector<int> classes;          ///< LAS: keep these classes; empty keeps all.
   std::string layer;                 ///< OGR: the layer of points; "" where there is only one.
-  std::optional<double> max_edge;    ///< Points: triangles with a longer edge are void; CRS units.
+  /// Points: triangles with a longer edge are void; CRS units, or metres where those are degrees.
+  std::optional<double> max_edge;
   std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
   bool repair = false;  ///< TINs: triangulate the vertices anew instead of taking the triangles.
   std::optional<std::array<double, 4>>
@@ -49,13 +50,16 @@ struct BuildResources {
   std::string tmp;  ///< Folder for temporary files; "" means beside the output.
   Unfinished unfinished = Unfinished::kRefuse;  ///< What to do with an interrupted build.
   bool dry_run = false;                         ///< Stop when the plan is made.
-  /// Called once, before the work starts, with what it expects to need.
+  /// Called before the work starts with what it expects to need; over points once more when they
+  /// have been counted.
   std::function<void(const BuildPlan&)> plan;
   std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
   FileLayer* files = nullptr;  ///< Through which to write; null means the system. For tests.
   std::stop_token stop;
   /// Stage name, done and total in its units; called from any thread, but never twice at once.
   std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
+  /// Leaves done and in all, of the stages that go through the tiles; called before `progress`.
+  std::function<void(std::uint64_t done, std::uint64_t total)> tiles;
 };
 
 struct BuildReport {
@@ -75,6 +79,8 @@ struct BuildReport {
   std::uint64_t file_bytes = 0;
   double seconds = 0.0;
   bool resumed = false;  ///< An interrupted build was taken up.
+  /// Why temporary files could not be removed after the output was complete; "" when they were.
+  std::string left_behind;
 };
 
 /// Builds `output` from `inputs` (one raster or several of one grid; or points; or a TIN). The
@@ -82,8 +88,8 @@ struct BuildReport {
 /// @throws Error invalid_argument, not_found: nothing is left behind.
 ///               io_error, resource_exhausted, cancelled: a build over tiles that has begun is kept
 ///               beside the output (workspace.h) and can be resumed; the message names the folder.
-/// Memory: within BuildResources::memory_bytes. Points and triangles are sorted into temporary files
-/// first, which a resumed build makes again.
+/// Memory: within BuildResources::memory_bytes. Points and triangles are sorted into temporary
+/// files first; a resumed build takes up points that were sorted to the end.
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
                   const BuildOptions& options, const BuildResources& resources);
 

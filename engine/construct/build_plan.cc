@@ -70,7 +70,7 @@ std::int64_t side_that_fits(std::uint64_t bytes, const TileTree& tree,
 }
 
 void plan_memory(BuildPlan& plan, const TileTree& tree, const BuildResources& resources,
-                 const TileBytes& tile_bytes) {
+                 const TileBytes& tile_bytes, bool may_refuse) {
   const std::uint64_t present = anonymous_bytes_now();
   const std::uint64_t samples = samples_of_leaf(tree);
   const std::uint64_t one = bytes_of_largest(samples, tree, tile_bytes);
@@ -87,7 +87,7 @@ void plan_memory(BuildPlan& plan, const TileTree& tree, const BuildResources& re
   while (plan.threads > 1 && !fit()) {
     shares = share_memory(plan.memory_limit, present, --plan.threads);
   }
-  if (shares.tiles < one) {
+  if (shares.tiles < one && may_refuse) {
     std::uint64_t enough = plan.memory_limit;
     while (share_memory(enough, present, 1).tiles < one) {
       enough += kMiB;
@@ -119,23 +119,9 @@ bool on_same_disk(const std::string& a, const std::string& b) {
          first.st_dev == second.st_dev;
 }
 
-void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& options,
-               const BuildResources& resources) {
-  const auto vertices = static_cast<double>(plan.vertices);
-  plan.output_bytes = static_cast<std::uint64_t>(vertices * kOutputBytesOfVertex) + kMiB;
-  plan.temporary_bytes =
-      plan.leaves == 1 ? 0 : static_cast<std::uint64_t>(vertices * kTemporaryBytesOfVertex) + kMiB;
-  const std::string folder = folder_of(output);
-  const std::string tmp = resources.tmp.empty() ? folder : resources.tmp;
-  plan.output_free = free_in(folder);
-  plan.temporary_free = free_in(tmp);
-  plan.same_disk = on_same_disk(folder, tmp);
-  if (resources.unfinished != Unfinished::kRefuse &&
-      std::filesystem::exists(Workspace::folder_of(output))) {
-    return;  // much of it is on the disk already
-  }
-  // With --max-error how much is left out is not known before.
-  const std::uint64_t least_output = options.max_error > 0.0 ? 0 : plan.output_bytes;
+/// As much of the output and of temporary files as cannot be there yet must be free.
+void require_disk(const BuildPlan& plan, const std::string& output, const std::string& tmp,
+                  std::uint64_t least_output, std::uint64_t temporary) {
   const auto require = [&](std::uint64_t needed, std::uint64_t free, const std::string& where) {
     if (needed > free) {
       throw Error(ErrorCode::resource_exhausted,
@@ -145,18 +131,42 @@ void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& o
                   output);
     }
   };
+  const std::string folder = folder_of(output);
   if (plan.same_disk) {
-    require(least_output + plan.temporary_bytes, plan.output_free, folder);
+    require(least_output + temporary, plan.output_free, folder);
   } else {
     require(least_output, plan.output_free, folder);
-    require(plan.temporary_bytes, plan.temporary_free, tmp);
+    require(temporary, plan.temporary_free, tmp);
   }
+}
+
+void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& options,
+               const BuildResources& resources, const SourceDisk& source) {
+  const auto vertices = static_cast<double>(plan.vertices);
+  plan.output_bytes = static_cast<std::uint64_t>(vertices * kOutputBytesOfVertex) + kMiB;
+  const std::uint64_t tiles =
+      plan.leaves == 1 ? 0 : static_cast<std::uint64_t>(vertices * kTemporaryBytesOfVertex) + kMiB;
+  plan.temporary_bytes = std::max(source.while_reading, source.kept + tiles);
+  const std::string folder = folder_of(output);
+  const std::string tmp = resources.tmp.empty() ? folder : resources.tmp;
+  plan.output_free = free_in(folder);
+  plan.temporary_free = free_in(tmp);
+  plan.same_disk = on_same_disk(folder, tmp);
+  const bool may_be_taken_up = resources.unfinished != Unfinished::kRefuse && !source.is_there &&
+                               std::filesystem::exists(Workspace::folder_of(output));
+  if (source.may_be_less || may_be_taken_up) {
+    return;  // of what is needed much may be on the disk already, or never come
+  }
+  // With --max-error how much is left out is not known before.
+  const std::uint64_t least_output = options.max_error > 0.0 ? 0 : plan.output_bytes;
+  require_disk(plan, output, tmp, least_output, source.is_there ? tiles : plan.temporary_bytes);
 }
 
 }  // namespace
 
 BuildPlan plan_build(const TileTree& tree, const std::string& output, const BuildOptions& options,
-                     const BuildResources& resources, const TileBytes& tile_bytes) {
+                     const BuildResources& resources, const TileBytes& tile_bytes,
+                     const SourceDisk& source) {
   const SampleRange whole = tree.window(tree.root());
   BuildPlan plan;
   plan.tile_side = tree.side();
@@ -164,8 +174,9 @@ BuildPlan plan_build(const TileTree& tree, const std::string& output, const Buil
   plan.levels = tree.levels();
   plan.vertices =
       static_cast<std::uint64_t>(whole.width) * static_cast<std::uint64_t>(whole.height);
-  plan_memory(plan, tree, resources, tile_bytes);
-  plan_disk(plan, output, options, resources);
+  plan_memory(plan, tree, resources, tile_bytes, !(source.is_estimate && source.may_be_less));
+  plan.is_estimate = source.is_estimate;
+  plan_disk(plan, output, options, resources, source);
   plan.seconds = static_cast<double>(plan.vertices) / kVerticesPerSecond / plan.threads;
   return plan;
 }

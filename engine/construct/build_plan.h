@@ -29,7 +29,19 @@ struct BuildPlan {
   std::uint64_t output_bytes = 0;     ///< At most.
   std::uint64_t temporary_free = 0, output_free = 0;
   bool same_disk = true;
-  double seconds = 0.0;  ///< Roughly.
+  double seconds = 0.0;      ///< Roughly.
+  bool is_estimate = false;  ///< Points that are not counted yet: as many as their files may hold.
+};
+
+/// What a source takes of the disk for temporary files, beside those of the tiles.
+struct SourceDisk {
+  std::uint64_t while_reading = 0;  ///< Bytes, before tiles are begun.
+  std::uint64_t kept = 0;           ///< Until the build ends.
+  bool is_there = false;            ///< It has been read: `kept` is on the disk already.
+  bool is_estimate = false;
+  /// By any part: points that are left out, or work that an interrupted build has done. So it is no
+  /// reason to refuse.
+  bool may_be_less = false;
 };
 
 /// @param tree  Of the terrain's tiles.
@@ -37,6 +49,6 @@ struct BuildPlan {
 ///                                   the --tile that would), or the disk has less free than needed
 [[nodiscard]] BuildPlan plan_build(const TileTree& tree, const std::string& output,
                                    const BuildOptions& options, const BuildResources& resources,
-                                   const TileBytes& tile_bytes);
+                                   const TileBytes& tile_bytes, const SourceDisk& source = {});
 
 }  // namespace ptin

@@ -6,6 +6,7 @@
 
 #include "engine/construct/tile_collapse.h"
 #include "engine/construct/tile_files.h"
+#include "engine/error.h"
 
 namespace ptin {
 
@@ -19,6 +20,7 @@ CollapseStage::CollapseStage(const std::function<LeafStarter()>& make_starter, c
   for (const Batch& batch : order.batches()) {
     if (log.collapsed().contains(batch.top)) {
       samples_done_ += tree.window(batch.top).samples();
+      leaves_done_ += batch.leaves.size();
     }
   }
   for (const auto& [id, tile] : log.collapsed()) {
@@ -54,13 +56,24 @@ std::optional<std::uint64_t> CollapseStage::next_bytes() {
     for (const TileId& child : tree_.children(*ready_.begin())) {
       pushed += log_.collapsed().at(child).pushed.bytes;
     }
-    return options_.tile_bytes.of_join(pushed);
+    const std::uint64_t bytes = options_.tile_bytes.of_join(pushed);
+    if (bytes > options_.bytes) {  // of a terrain that keeps more than the plan expected
+      refuse_join(bytes);
+    }
+    return bytes;
   }
   if (next_batch_ == order_.batches().size()) {
     return std::nullopt;
   }
   return options_.tile_bytes.of_batch(
       BatchOrder::largest_leaf(tree_, order_.batches()[next_batch_]));
+}
+
+void CollapseStage::refuse_join(std::uint64_t bytes) const {
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+  throw Error(ErrorCode::resource_exhausted,
+              "a join of four tiles needs " + std::to_string((bytes - options_.bytes) / kMiB + 1) +
+                  " MiB more than --memory leaves for it; go on with that much more");
 }
 
 Piece CollapseStage::take(int worker) {
@@ -161,6 +174,10 @@ void CollapseStage::commit(const TileId& id, const CollapsedTile& tile) {
 void CollapseStage::report(std::uint64_t samples) {
   const std::lock_guard lock(report_mutex_);
   samples_done_ += samples;
+  ++leaves_done_;
+  if (options_.tiles) {
+    options_.tiles(leaves_done_, tree_.leaves());
+  }
   if (options_.progress) {
     options_.progress("collapsing", samples_done_, tree_.window(tree_.root()).samples());
   }

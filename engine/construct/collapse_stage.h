@@ -44,6 +44,7 @@ class CollapseStage final : public PieceSource {
   void commit(const TileId& id, const CollapsedTile& tile);
   void look_for_parent(const TileId& id);
   void skip_done_batches();
+  [[noreturn]] void refuse_join(std::uint64_t bytes) const;
   void report(std::uint64_t samples);
 
   const TileTree& tree_;
@@ -55,7 +56,7 @@ class CollapseStage final : public PieceSource {
   std::size_t next_batch_ = 0;
   std::set<TileId> ready_;  ///< Above batches: all children are collapsed.
   std::mutex report_mutex_;
-  std::uint64_t samples_done_ = 0;
+  std::uint64_t samples_done_ = 0, leaves_done_ = 0;
 };
 
 }  // namespace ptin

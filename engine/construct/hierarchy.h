@@ -27,6 +27,8 @@ struct HierarchyOptions {
   std::stop_token stop;
   /// Samples done and in all; called by any thread, but never twice at once.
   std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
+  /// Leaves done and in all; called before `progress`.
+  std::function<void(std::uint64_t done, std::uint64_t total)> tiles;
 };
 
 struct BuiltHierarchy {

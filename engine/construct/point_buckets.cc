@@ -124,6 +124,7 @@ class PointBuckets::Writer {
       return;
     }
     std::vector<GridBox>& boxes = to_.boxes_.front();
+    to_.add_to_checksum(std::as_bytes(std::span(bucket_)));
     to_.file_->write_at(std::as_bytes(std::span(bucket_)),
                         boxes.size() * to_.bucket_points_ * sizeof(Stored));
     GridBox box;
@@ -147,7 +148,7 @@ class PointBuckets::Writer {
 
 void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rule,
                         const ExternalMemory& memory, const std::stop_token& stop,
-                        const Progress& progress) {
+                        const Progress& progress, const std::string& keep_as) {
   const std::uint64_t total = spool.size();
   std::uint64_t done = 0;
   const auto report = [&](std::size_t points) {
@@ -172,7 +173,9 @@ void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rul
   while ((total + bucket_points_ - 1) / bucket_points_ > kMostBuckets) {
     bucket_points_ *= 2;
   }
-  file_ = std::make_unique<ScratchFile>(memory.files, memory.folder, "buckets", true);
+  file_ = keep_as.empty()
+              ? std::make_unique<ScratchFile>(memory.files, memory.folder, "buckets", true)
+              : std::make_unique<ScratchFile>(memory.files, keep_as, ScratchFile::Kept::kNew);
   Writer writer(*this, grid, order, rule);
   sorter.merge(
       [&](std::span<const KeyedHeight> points) {
@@ -198,7 +201,7 @@ void PointBuckets::index_boxes() {
 
 PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const SourceOptions& options,
                                 const ExternalMemory& memory, const std::stop_token& stop,
-                                const Progress& progress) {
+                                const Progress& progress, const std::string& keep_as) {
   const std::string context = paths.empty() ? "" : paths[0];
   PointBuckets buckets;
   PointSpool spool(memory);
@@ -213,7 +216,7 @@ PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const Sou
   buckets.frame_.map = reading.grid.map();
   buckets.counts_.source_points = reading.points;
   buckets.counts_.left_out_points = reading.left_out;
-  buckets.sort(spool, reading.grid, options.merge, memory, stop, progress);
+  buckets.sort(spool, reading.grid, options.merge, memory, stop, progress, keep_as);
   check_area(buckets.hull_, buckets.size_, context);
   buckets.index_boxes();
   return buckets;

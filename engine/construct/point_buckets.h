@@ -9,10 +9,13 @@
 #include <functional>
 #include <memory>
 #include <queue>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "engine/construct/array_file.h"
+#include "engine/construct/build_plan.h"
 #include "engine/construct/hull_collector.h"
 #include "engine/construct/point_sorter.h"
 #include "engine/construct/terrain_source.h"
@@ -46,10 +49,24 @@ class PointBuckets {
   /// Reads the sources once (read_points() says what becomes of points, by the same rules) and
   /// sorts what they hold. Disk: 27 bytes a point while it is read, 43 while it is sorted, then 16;
   /// in memory.folder. Memory: memory.bytes, and 16 bytes for each of at most 2^20 buckets.
+  /// @param keep_as  A file that must not exist: the buckets stay in it, so that load() can take
+  ///                 them up; "" keeps them in a file without a name.
   /// @throws Error as read_points(), and resource_exhausted when the disk is full
   static PointBuckets read(const std::vector<std::string>& paths, const SourceOptions& options,
                            const ExternalMemory& memory, const std::stop_token& stop = {},
-                           const Progress& progress = {});
+                           const Progress& progress = {}, const std::string& keep_as = "");
+  /// What read() takes of the disk for so many points.
+  [[nodiscard]] static SourceDisk disk_of(std::uint64_t points) noexcept;
+
+  /// Writes all but the points to `index`, and makes both files durable.
+  /// @throws Error io_error, resource_exhausted
+  [[nodiscard]] ArrayFileFacts save(FileLayer& files, const std::string& index) const;
+  /// Takes up what read() kept and save() wrote.
+  /// @throws Error corruption  a file is not what was written; not_found, io_error, cancelled
+  /// Cost: one reading of the points, to check them.
+  static PointBuckets load(FileLayer& files, const std::string& buckets, const std::string& index,
+                           const ArrayFileFacts& facts, const std::stop_token& stop = {},
+                           const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
 
   [[nodiscard]] const TerrainFrame& frame() const noexcept { return frame_; }
   [[nodiscard]] const PointCounts& counts() const noexcept { return counts_; }
@@ -75,9 +92,14 @@ class PointBuckets {
     double height;  ///< A code where codes_are_whole_, else a height.
   };
   class Writer;
+  struct Kept;
   PointBuckets() = default;
   void sort(class PointSpool& spool, const struct PointGrid& grid, PointMerge rule,
-            const ExternalMemory& memory, const std::stop_token& stop, const Progress& progress);
+            const ExternalMemory& memory, const std::stop_token& stop, const Progress& progress,
+            const std::string& keep_as);
+  void add_to_checksum(std::span<const std::byte> bucket);
+  void check_points(const std::string& path, std::uint64_t expected, const std::stop_token& stop,
+                    const std::function<void(std::uint64_t, std::uint64_t)>& progress);
   void index_boxes();
 
   TerrainFrame frame_;
@@ -87,6 +109,7 @@ class PointBuckets {
   std::uint64_t bucket_points_ = 1024;
   bool codes_are_whole_ = false;
   std::unique_ptr<ScratchFile> file_;
+  std::uint64_t checksum_ = 0;  ///< Of the buckets, each with what came before it.
   static constexpr std::uint64_t kFanOut = 16;
   std::vector<std::vector<GridBox>> boxes_;  ///< Of buckets, of groups of 16 of those, and so on.
 };

@@ -71,6 +71,8 @@ class TextPoints final : public PointStream {
 
 bool is_point_file(const std::string& path) { return is_las(path) || is_text(path); }
 
+bool is_point_text(const std::string& path) { return is_text(path); }
+
 bool is_point_input(const std::string& path, const PointChoice& choice) {
   return is_point_file(path) || is_tin_file(path) || !choice.layer.empty() ||
          !choice.z_field.empty() || OgrPoints::reads(path);

@@ -68,6 +68,8 @@ class PointStream {
 /// True when a name is that of points: as text (.csv, .xyz, .txt, .tsv, in any case, also followed
 /// by .gz) or LAS (.las, .laz).
 [[nodiscard]] bool is_point_file(const std::string& path);
+/// Those of them that are text.
+[[nodiscard]] bool is_point_text(const std::string& path);
 
 /// True when an input is points rather than a raster: by its name, or because a layer or attribute
 /// is chosen, or as a TIN that has vertices, or since OGR reads it and GDAL finds no raster in it.

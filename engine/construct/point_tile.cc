@@ -9,22 +9,13 @@
 
 namespace ptin {
 
-namespace {
-
-std::optional<double> in_grid_units(std::optional<double> length, const AffineMap& map) {
-  return length ? std::optional(*length / map.step_x) : std::nullopt;
-}
-
-}  // namespace
-
 PointTileStarter::PointTileStarter(const PointBuckets& buckets, const TileTree& tree,
                                    const MeasureUnits& units, std::optional<double> longest_edge,
                                    std::stop_token stop)
     : buckets_(buckets),
       tree_(tree),
       units_(units),
-      tiler_(buckets, in_grid_units(longest_edge, buckets.frame().map),
-             buckets.frame().map.step_y / buckets.frame().map.step_x),
+      tiler_(buckets, longest_edge),
       stop_(std::move(stop)) {}
 
 StartedTile PointTileStarter::start(const SampleRange& window) {
@@ -46,12 +37,23 @@ StartedTile PointTileStarter::start(const SampleRange& window) {
   return started;
 }
 
+namespace {
+
+TileTree tree_over(std::uint64_t points, std::optional<std::int64_t> side,
+                   std::shared_ptr<const ConvexHull> hull) {
+  const auto across = static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(points))));
+  return TileTree::over_points(points, side.value_or(TileTree::default_side(across, across)),
+                               std::move(hull));
+}
+
+}  // namespace
+
 TileTree point_tree(const PointBuckets& buckets, std::optional<std::int64_t> side) {
-  const auto across =
-      static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(buckets.size()))));
-  return TileTree::over_points(buckets.size(),
-                               side.value_or(TileTree::default_side(across, across)),
-                               std::make_shared<const ConvexHull>(buckets.hull()));
+  return tree_over(buckets.size(), side, std::make_shared<const ConvexHull>(buckets.hull()));
+}
+
+TileTree expected_point_tree(std::uint64_t points, std::optional<std::int64_t> side) {
+  return tree_over(points, side, nullptr);
 }
 
 }  // namespace ptin

@@ -16,7 +16,7 @@ namespace ptin {
 /// Starts leaf after leaf of points. Threads: one for each; any number on the same buckets.
 class PointTileStarter {
  public:
-  /// @param longest_edge  Triangles with a longer edge are void; CRS units. None: no voids.
+  /// @param longest_edge  As DelaunayTiler.
   /// The buckets and the tree must live as long as this.
   PointTileStarter(const PointBuckets& buckets, const TileTree& tree, const MeasureUnits& units,
                    std::optional<double> longest_edge, std::stop_token stop = {});
@@ -37,5 +37,7 @@ class PointTileStarter {
 /// The tree over the points of buckets. @param side  As TileTree; none means
 /// TileTree::default_side() of a square of as many samples.
 [[nodiscard]] TileTree point_tree(const PointBuckets& buckets, std::optional<std::int64_t> side);
+/// The same for so many points, before they are known: for estimates, since it has no hull.
+[[nodiscard]] TileTree expected_point_tree(std::uint64_t points, std::optional<std::int64_t> side);
 
 }  // namespace ptin

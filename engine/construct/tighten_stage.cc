@@ -48,6 +48,7 @@ TightenStage::TightenStage(const std::function<LeafStarter()>& make_starter, con
   for (std::size_t i = 0; i < turn_; ++i) {
     take_up(order.batches()[i]);
     samples_done_ += tree.window(order.batches()[i].top).samples();
+    leaves_done_ += order.batches()[i].leaves.size();
   }
 }
 
@@ -125,6 +126,9 @@ TightenStage::Replayed TightenStage::replay(const Batch& batch, const LeafStarte
     combine(r);
   }
   result.raises = std::move(raises);
+  for (const SharedSegment& file : files) {
+    file->require_undamaged();
+  }
   ArrayFileWriter file(log_.workspace().files(), log_.path(batch.top, kBounds));
   file.put(result.exported);
   for (const std::vector<BoundsRaise>& r : result.raises) {
@@ -153,6 +157,7 @@ void TightenStage::write(const Batch& batch, Replayed& replayed) {
   log_.remove_later(batch.top, ".segment");
   raise_ancestors(batch, replayed.raises);
   std::vector<VertexSplit> records = replayed.bounds.records();
+  replayed.file->require_undamaged();
   log_.output().add_segment(records);
   hand_to_parent(batch.top, replayed.exported);
   for (const TileId& id : batch.closed) {
@@ -165,6 +170,7 @@ void TightenStage::write_closed(const TileId& id) {
   Open& tile = open(id);
   const std::vector<RecordBounds> exported = tile.bounds.saturate();
   std::vector<VertexSplit> records = tile.bounds.records();
+  tile.file->require_undamaged();
   log_.output().add_segment(records);
   open_.erase(id);
   ArrayFileWriter file(log_.workspace().files(), log_.path(id, kBounds));
@@ -216,6 +222,10 @@ void TightenStage::take_up(const Batch& batch) {
 void TightenStage::report(std::uint64_t samples) {
   const std::lock_guard lock(mutex_);
   samples_done_ += samples;
+  ++leaves_done_;
+  if (options_.tiles) {
+    options_.tiles(leaves_done_, tree_.leaves());
+  }
   if (options_.progress) {
     options_.progress("tightening", samples_done_, tree_.window(tree_.root()).samples());
   }

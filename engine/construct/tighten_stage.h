@@ -69,7 +69,7 @@ class TightenStage final : public PieceSource {
   std::map<TileId, Open> open_;
   std::mutex mutex_;  ///< Guards what follows.
   std::map<TileId, std::weak_ptr<const SegmentFile>> files_;
-  std::uint64_t samples_done_ = 0;
+  std::uint64_t samples_done_ = 0, leaves_done_ = 0;
 };
 
 }  // namespace ptin

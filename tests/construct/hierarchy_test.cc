@@ -17,6 +17,7 @@
 
 #include "engine/construct/raster_surface.h"
 #include "engine/construct/raster_tin.h"
+#include "engine/error.h"
 #include "engine/mesh/validate.h"
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/made_raster.h"
@@ -247,6 +248,29 @@ TEST(Hierarchy, AThinTerrainIsATreeOfTilesInARow) {
   spec.height = 2;
   spec.code = [](int x, int y) { return (x * 7919 % 31) + 3 * y; };
   EXPECT_EQ(check_tiled(oracle::make_raster(spec), 20), "");
+}
+
+/// A terrain that keeps more than the plan counted on.
+TEST(Hierarchy, RefusesAJoinThatTheMemoryDoesNotHold) {
+  const TestTerrain terrain = hills(65, 3, false);
+  const SampledRaster raster(terrain);
+  const oracle::ScratchFolder folder;
+  test::UnsyncedFiles files;
+  Workspace workspace(files, folder.file("t.ptin"), "", Unfinished::kRefuse, {});
+  test::RecordsInMemory output;
+  HierarchyOptions options;
+  options.collapse.units = terrain.tile.units;
+  options.tile_bytes.fixed = 0;
+  const TileTree tree(raster.width(), raster.height(), 8);
+  const LeafStarter start = [&](const SampleRange& w) { return raster.start(w); };
+  options.bytes = options.tile_bytes.of_batch(100);
+  try {
+    static_cast<void>(build_hierarchy([&] { return start; }, tree, options, workspace, output));
+    FAIL() << "the root joins far more than fits";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
+    EXPECT_NE(e.message().find("--memory"), std::string::npos) << e.message();
+  }
 }
 
 }  // namespace

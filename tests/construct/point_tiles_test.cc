@@ -126,6 +126,32 @@ TEST(PointsOverTiles, GiveTheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(oracle::bytes_of(folder.file("1")) == oracle::bytes_of(folder.file("3")));
 }
 
+/// Voids of points in degrees, whose tiles see each edge in the same metres.
+TEST(PointsOverTiles, TakeTheLongestEdgeInMetresWherePlacesAreDegrees) {
+  // At 60 degrees north 0.001 degrees are 111.4 m to the north and 55.8 m to the east.
+  std::string text;
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const int east = x < 20 ? x : 3 * x;  // three times as far apart in the east
+      text += std::to_string(10.0 + 0.001 * east) + "," + std::to_string(60.0 + 0.001 * y) + ",5\n";
+    }
+  }
+  const oracle::ScratchFolder folder;
+  oracle::write_text(folder.file("in.csv"), text);
+  const auto lone = [&](double longest) {
+    BuildOptions options;
+    options.tile = 10;
+    options.a_srs = "EPSG:4326";
+    options.max_edge = longest;
+    BuildResources resources;
+    resources.overwrite = true;
+    return build({folder.file("in.csv")}, folder.file("out.ptin"), options, resources).lone_samples;
+  };
+  EXPECT_EQ(lone(210.0), 0U) << "diagonals of 167 m by 111 m are 201 m long";
+  EXPECT_EQ(lone(130.0), 800U) << "diagonals of 56 m by 111 m are 125 m long";
+  EXPECT_EQ(lone(120.0), 1600U);
+}
+
 // ---------------------------------------------------------------------------------------------------
 // The parts.
 

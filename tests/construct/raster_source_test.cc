@@ -16,8 +16,10 @@
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
+#include <sys/resource.h>
 
 #include "engine/error.h"
+#include "tests/construct/made_raster.h"
 
 namespace ptin {
 namespace {
@@ -624,6 +626,50 @@ TEST(RasterSource, JoinsMoreFilesThanItKeepsOpen) {
   expect_heights(source, expected);
   expect_heights(source, expected);
   expect_heights(source.duplicate(), expected);
+}
+
+/// As many descriptors as this, for as long as it lives.
+class FewDescriptors {
+ public:
+  explicit FewDescriptors(rlim_t count) {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = count;
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+  }
+  ~FewDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(RasterSource, SharesTheDescriptorsOfTheProcessWithItsDuplicates) {
+  constexpr int kFiles = 40;
+  const oracle::ScratchFolder folder;
+  std::vector<std::string> paths;
+  Heights expected;
+  for (int i = 0; i < kFiles; ++i) {
+    Made made = small();
+    made.name = folder.file(std::to_string(i) + ".tif");
+    made.columns = made.rows = 2;
+    made.values = {double(i), double(i), double(i), double(i)};
+    made.geotransform = {100.0 + 20 * i, 10, 0, 230, 0, -10};
+    paths.push_back(write(made));
+  }
+  for (int row = 0; row < 2; ++row) {
+    for (int i = 0; i < 2 * kFiles; ++i) {
+      expected.push_back(i / 2);
+    }
+  }
+  const FewDescriptors limit(128);
+  const RasterSource source = RasterSource::open(paths, {});
+  std::vector<RasterSource> copies;
+  for (int i = 0; i < 16; ++i) {
+    copies.push_back(source.duplicate());
+  }
+  for (const RasterSource& copy : copies) {
+    expect_heights(copy, expected);
+  }
 }
 
 TEST(RasterSource, RefusesToJoinRastersOfDifferentGrids) {

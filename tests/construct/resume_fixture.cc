@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,18 +24,40 @@ oracle::RasterFile hills_with_a_lake() {
   return file;
 }
 
+std::string scattered_points() {
+  std::mt19937 random(7);
+  std::string text;
+  for (int i = 0; i < 1200; ++i) {
+    const auto x = random() % 1000, y = random() % 1000;
+    const std::string line =
+        std::to_string(x) + " " + std::to_string(y) + " " + std::to_string((x * y) % 97) + "\n";
+    text += i % 50 == 0 ? line + line : line;
+  }
+  return text;
+}
+
 }  // namespace
 
-InterruptibleBuild::InterruptibleBuild() : raster_(hills_with_a_lake()) {
+InterruptibleBuild::InterruptibleBuild(SourceKind kind) : kind_(kind) {
+  if (kind == SourceKind::kRaster) {
+    raster_.emplace(hills_with_a_lake());
+    input_ = raster_->path();
+  } else {
+    input_ = source_folder_.file("points.xyz");
+    oracle::write_text(input_, scattered_points());
+  }
   const std::string plain = folder_.file("plain.ptin");
-  build({raster_.path()}, plain, options(), {});
+  build({input_}, plain, options(), {});
   expected_ = oracle::bytes_of(plain);
   std::filesystem::remove(plain);
 }
 
 BuildOptions InterruptibleBuild::options() const {
   BuildOptions options;
-  options.tile = 16;
+  options.tile = kind_ == SourceKind::kRaster ? 16 : 10;
+  if (kind_ == SourceKind::kPoints) {
+    options.max_edge = 60.0;
+  }
   return options;
 }
 
@@ -47,7 +70,7 @@ BuildResources InterruptibleBuild::resources() {
 
 std::optional<ErrorCode> InterruptibleBuild::run(const BuildResources& resources) const {
   try {
-    build({raster_.path()}, output(), options(), resources);
+    build({input_}, output(), options(), resources);
   } catch (const Error& e) {
     return e.code();
   }

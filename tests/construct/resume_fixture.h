@@ -12,14 +12,19 @@
 
 namespace ptin::test {
 
-/// Hills of 65 x 65 samples with a lake, in tiles of 16.
+enum class SourceKind {
+  kRaster,  ///< Hills of 65 x 65 samples with a lake, in tiles of 16.
+  kPoints,  ///< 1200 points as text, some of them twice, with voids, in tiles of 10.
+};
+
 class InterruptibleBuild {
  public:
-  InterruptibleBuild();
+  explicit InterruptibleBuild(SourceKind kind = SourceKind::kRaster);
 
   [[nodiscard]] BuildOptions options() const;
   /// Every note is a checkpoint.
   [[nodiscard]] static BuildResources resources();
+  [[nodiscard]] const std::string& input() const { return input_; }
   [[nodiscard]] std::string output() const { return folder_.file("out.ptin"); }
   [[nodiscard]] const oracle::ScratchFolder& folder() const { return folder_; }
 
@@ -30,8 +35,10 @@ class InterruptibleBuild {
   void expect_resumed_to_the_same_bytes() const;
 
  private:
-  oracle::WrittenRaster raster_;
-  oracle::ScratchFolder folder_;
+  SourceKind kind_;
+  oracle::ScratchFolder source_folder_, folder_;
+  std::optional<oracle::WrittenRaster> raster_;
+  std::string input_;
   std::string expected_;
 };
 

@@ -10,12 +10,14 @@
 namespace ptin {
 namespace {
 
-TEST(ResumeSlow, GivesTheSameBytesWhicheverCallFailed) {
+class ResumeSlow : public testing::TestWithParam<test::SourceKind> {};
+
+TEST_P(ResumeSlow, GivesTheSameBytesWhicheverCallFailed) {
   int nth = 0;
   bool has_failed = true;
   while (has_failed) {
     SCOPED_TRACE(++nth);
-    const test::InterruptibleBuild interrupted;
+    const test::InterruptibleBuild interrupted(GetParam());
     test::FailingFiles files(nth);
     BuildResources resources = test::InterruptibleBuild::resources();
     resources.files = &files;
@@ -25,6 +27,12 @@ TEST(ResumeSlow, GivesTheSameBytesWhicheverCallFailed) {
   }
   EXPECT_GT(nth, 200);
 }
+
+INSTANTIATE_TEST_SUITE_P(OfEachKind, ResumeSlow,
+                         testing::Values(test::SourceKind::kRaster, test::SourceKind::kPoints),
+                         [](const auto& kind) {
+                           return kind.param == test::SourceKind::kRaster ? "Raster" : "Points";
+                         });
 
 }  // namespace
 }  // namespace ptin

@@ -26,6 +26,10 @@ TEST_P(EveryKind, TilesOfFewPointsAreOneTriangulation) {
   }
 }
 
+TEST_P(EveryKind, TilesThatRememberNoPointsAreOneTriangulation) {
+  expect_one_triangulation(buckets_of(GetParam(), 4000, 11), 16, 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(TileDelaunay, EveryKind, testing::ValuesIn(kPointKinds),
                          [](const auto& kind) { return name_of(kind.param); });
 

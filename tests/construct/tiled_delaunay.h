@@ -31,8 +31,9 @@ inline std::vector<Corners> triangles_of(const Tin& tin) {
 }
 
 /// The triangles of all tiles of a set cut into `tiles` parts.
-inline std::vector<Corners> tiled(const PointBuckets& buckets, std::uint64_t tiles) {
-  DelaunayTiler tiler(buckets);
+inline std::vector<Corners> tiled(const PointBuckets& buckets, std::uint64_t tiles,
+                                  std::size_t cache_bytes = std::size_t{16} << 20) {
+  DelaunayTiler tiler(buckets, {}, cache_bytes);
   std::vector<Corners> all;
   for (std::uint64_t i = 0; i < tiles; ++i) {
     const std::uint64_t begin = buckets.size() * i / tiles, end = buckets.size() * (i + 1) / tiles;
@@ -62,8 +63,10 @@ inline Tin whole(const PointBuckets& buckets) {
   return make_delaunay_tin(positions, heights);
 }
 
-inline void expect_one_triangulation(const PointBuckets& buckets, std::uint64_t tiles) {
-  std::vector<Corners> expected = triangles_of(whole(buckets)), found = tiled(buckets, tiles);
+inline void expect_one_triangulation(const PointBuckets& buckets, std::uint64_t tiles,
+                                     std::size_t cache_bytes = std::size_t{16} << 20) {
+  std::vector<Corners> expected = triangles_of(whole(buckets));
+  std::vector<Corners> found = tiled(buckets, tiles, cache_bytes);
   std::sort(expected.begin(), expected.end());
   std::sort(found.begin(), found.end());
   ASSERT_EQ(expected.size(), found.size()) << tiles << " tiles";

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/build_job_internal.h"
+
+#include <filesystem>
+
+#include <sys/stat.h>
+
+#include "engine/construct/hierarchy.h"
+#include "engine/construct/memory_plan.h"
+#include "engine/construct/source_files.h"
+#include "engine/construct/store_output.h"
+#include "engine/error.h"
+
+namespace ptin::build_internal {
+
+namespace {
+
+/// Of the temporary files: to be raised when their bytes mean something else.
+constexpr int kTemporaryFormat = 1;
+
+/// The number of a file on its disk, which stays the same when it gets another name; none when
+/// there is no such file.
+std::optional<std::uint64_t> inode_of(const std::string& path) {
+  struct stat s {};
+  return ::stat(path.c_str(), &s) == 0 ? std::optional<std::uint64_t>(s.st_ino) : std::nullopt;
+}
+
+std::string pages_in(const Workspace& workspace) { return workspace.folder() + "/pages"; }
+
+/// True when an interrupted build had got as far as giving the output its name. Its pages may still
+/// have theirs, too (FileLayer::rename).
+bool is_published(const Job& job, const Workspace& workspace) {
+  const std::vector<nlohmann::json> lines = workspace.lines();
+  if (lines.empty() || !lines.back().contains("publishing")) {
+    return false;
+  }
+  return inode_of(job.output) == lines.back()["publishing"].get<std::uint64_t>();
+}
+
+void report_published(Job& job) {
+  const auto store = StoreFile::open(job.output);
+  job.report.records = store->record_count();
+  job.report.t0_vertices = store->t0().vertices.size();
+  job.report.max_rank = store->max_rank();
+  job.report.file_bytes = std::filesystem::file_size(job.output);
+}
+
+/// Worth keeping: faults of the system, and whatever comes when hours of work may be there.
+bool is_kept(const Workspace& workspace, ErrorCode code) {
+  return workspace.has_work() || code == ErrorCode::cancelled ||
+         code == ErrorCode::resource_exhausted || code == ErrorCode::io_error;
+}
+
+}  // namespace
+
+FileLayer& Job::files() const {
+  return resources.files != nullptr ? *resources.files : FileLayer::system();
+}
+
+std::uint64_t Job::memory() const {
+  return resources.memory_bytes != 0 ? resources.memory_bytes : default_memory();
+}
+
+std::function<void(std::uint64_t, std::uint64_t)> Job::stage(const char* name) const {
+  return [this, name](std::uint64_t done, std::uint64_t total) {
+    if (resources.progress) {
+      resources.progress(name, done, total);
+    }
+  };
+}
+
+SourceOptions Job::source_options() const {
+  SourceOptions source;
+  source.nodata = options.nodata;
+  source.resolution = options.resolution;
+  if (options.bbox) {
+    source.bbox = {(*options.bbox)[0], (*options.bbox)[1], (*options.bbox)[2], (*options.bbox)[3]};
+  }
+  source.a_srs = options.a_srs;
+  source.points = {options.classes, options.layer, options.z_field};
+  source.vertical_crs = options.vertical_crs;
+  return source;
+}
+
+nlohmann::json fingerprint(const Job& job) {
+  return {{"options", options_json(job.options)},
+          {"page_bytes", job.options.page_bytes},
+          {"inputs", input_fingerprint(job.inputs)},
+          {"program", {PTIN_VERSION, kTemporaryFormat}}};
+}
+
+void in_workspace(Job& job, const nlohmann::json& fingerprint,
+                  const std::function<void(Workspace&)>& work) {
+  Workspace workspace(job.files(), job.output, job.resources.tmp, job.resources.unfinished,
+                      fingerprint);
+  job.report.resumed = !workspace.lines().empty();
+  try {
+    work(workspace);
+  } catch (const Error& e) {
+    if (is_kept(workspace, e.code())) {
+      throw Error(e.code(),
+                  e.message() + "; what is done is kept in " + workspace.folder() +
+                      ": go on by --resume, or remove it by --discard",
+                  e.context());
+    }
+    workspace.remove_all();
+    throw;
+  }
+  try {
+    workspace.remove_all();
+  } catch (const Error& e) {  // the output is complete all the same
+    job.report.left_behind = std::string(e.what());
+  }
+}
+
+void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const BuildPlan& plan) {
+  if (is_published(job, workspace)) {
+    report_published(job);
+    return;
+  }
+  StoreOutput store(job.output, job.options, job.resources.overwrite, terrain.frame,
+                    job.resources.files, workspace.folder());
+  HierarchyOptions options;
+  options.collapse.cost = job.options.cost;
+  options.collapse.units = terrain.units;
+  options.threads = plan.threads;
+  options.bytes = plan.tile_bytes;
+  options.checkpoint_interval = job.resources.checkpoint_interval;
+  options.stop = job.resources.stop;
+  options.progress = job.resources.progress;
+  options.tiles = job.resources.tiles;
+  const BuiltHierarchy built =
+      build_hierarchy(terrain.make_starter, terrain.tree, options, workspace, store);
+  job.report.lone_samples = built.lone_samples;
+  job.stage("writing")(0, 1);
+  workspace.append({{{"publishing", inode_of(pages_in(workspace)).value_or(0)}}});
+  store.publish(built.t0, job.inputs, job.report);
+}
+
+}  // namespace ptin::build_internal

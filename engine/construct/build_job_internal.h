@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What builds of every kind of source share: the job, and the work in a folder that can be resumed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/construct/build.h"
+#include "engine/construct/build_plan.h"
+#include "engine/construct/raster_tile.h"
+#include "engine/construct/terrain_source.h"
+#include "engine/construct/tile_bytes.h"
+#include "engine/construct/tile_collapse.h"
+#include "engine/construct/tile_tree.h"
+#include "engine/construct/workspace.h"
+
+namespace ptin::build_internal {
+
+/// What a leaf of points or triangles takes: its triangulation by CGAL goes before its collapses
+/// begin, its copy of the full surface stays.
+inline constexpr TileBytes kPointTileBytes{.collapse_of_sample = 640, .replay_of_sample = 560};
+
+/// One call of build(): what it was asked, and what it reports.
+struct Job {
+  const std::vector<std::string>& inputs;
+  const std::string& output;
+  const BuildOptions& options;
+  const BuildResources& resources;
+  BuildReport report;
+
+  [[nodiscard]] FileLayer& files() const;
+  [[nodiscard]] std::uint64_t memory() const;
+  /// A stage of the caller's progress.
+  [[nodiscard]] std::function<void(std::uint64_t done, std::uint64_t total)> stage(
+      const char* name) const;
+  [[nodiscard]] SourceOptions source_options() const;
+};
+
+/// What a build works on, of whatever kind its source is.
+struct Terrain {
+  TerrainFrame frame;
+  MeasureUnits units;
+  TileTree tree;
+  std::function<LeafStarter()> make_starter;  ///< Called once for each thread.
+};
+
+/// What decides the bytes of the output, that its inputs are still the ones it began with, and the
+/// program, whose temporary files another version may not understand.
+[[nodiscard]] nlohmann::json fingerprint(const Job& job);
+
+/// Opens the job's workspace, works in it, and removes it, or keeps it where there is work to go on
+/// with: the error says so then. @throws Error as Workspace, and what `work` throws
+void in_workspace(Job& job, const nlohmann::json& fingerprint,
+                  const std::function<void(Workspace&)>& work);
+
+/// Collapses, tightens and publishes; or sees that an interrupted build had done all of that.
+void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const BuildPlan& plan);
+
+/// Points, sorted on disk (point_buckets.h); over tiles.
+void build_points(Job& job);
+
+}  // namespace ptin::build_internal

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A build over points: counted first, sorted into buckets, then tiles.
+#include <algorithm>
+#include <memory>
+
+#include "engine/construct/build_job_internal.h"
+#include "engine/construct/memory_plan.h"
+#include "engine/construct/point_buckets.h"
+#include "engine/construct/point_count.h"
+#include "engine/construct/point_tile.h"
+#include "engine/error.h"
+
+namespace ptin::build_internal {
+
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr const char* kBucketFile = "points";
+constexpr const char* kIndexFile = "points.index";
+
+ExternalMemory memory_for_sorting(const Job& job, const Workspace& workspace) {
+  return {job.files(), workspace.temporary_folder(),
+          std::clamp(job.memory() / 8, kMiB, 256 * kMiB)};
+}
+
+/// What is expected before anything but the headers is read. With points that may be left out it is
+/// no reason to refuse.
+void announce(Job& job) {
+  const PointCount count = count_points(job.inputs, job.source_options());
+  if (!count.is_known) {
+    if (job.resources.dry_run) {
+      throw Error(ErrorCode::invalid_argument,
+                  "how much a build from a pipe needs is not known before it is read");
+    }
+    return;
+  }
+  SourceDisk disk = PointBuckets::disk_of(count.points);
+  disk.is_estimate = true;
+  disk.may_be_less = count.may_be_less;
+  const BuildPlan plan = plan_build(expected_point_tree(count.points, job.options.tile), job.output,
+                                    job.options, job.resources, kPointTileBytes, disk);
+  if (job.resources.plan) {
+    job.resources.plan(plan);
+  }
+}
+
+/// The points as an interrupted build had sorted them, or else read and sorted now.
+PointBuckets sorted_points(Job& job, Workspace& workspace) {
+  const std::string buckets = workspace.temporary(kBucketFile);
+  const std::string index = workspace.temporary(kIndexFile);
+  for (const nlohmann::json& line : workspace.lines()) {
+    if (line.contains("points")) {
+      const auto& facts = line["points"];
+      return PointBuckets::load(
+          job.files(), buckets, index,
+          {facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()}, job.resources.stop,
+          job.stage("checking"));
+    }
+  }
+  workspace.remove(kBucketFile);
+  PointBuckets points =
+      PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
+                         job.resources.stop, job.resources.progress, buckets);
+  const ArrayFileFacts facts = points.save(job.files(), index);
+  workspace.sync_names();
+  workspace.append({{{"points", {facts.bytes, facts.checksum}}}});
+  return points;
+}
+
+void report_counts(BuildReport& report, const PointBuckets& points) {
+  report.source_samples = report.vertices = points.size();
+  report.left_out_points = points.counts().left_out_points;
+  report.merged_points = points.counts().merged_points;
+  report.largest_shift_plan = points.counts().largest_shift_plan;
+  report.largest_shift_height = points.counts().largest_shift_height;
+  report.height_rounding = points.frame().height_rounding;
+}
+
+void build_in(Workspace& workspace, Job& job) {
+  const PointBuckets points = sorted_points(job, workspace);
+  report_counts(job.report, points);
+  Terrain terrain{points.frame(),
+                  measure_units(points.frame(), job.options.void_slope),
+                  point_tree(points, job.options.tile),
+                  {}};
+  SourceDisk disk = PointBuckets::disk_of(points.size());
+  disk.is_there = true;
+  disk.may_be_less = job.report.resumed;
+  const BuildPlan plan =
+      plan_build(terrain.tree, job.output, job.options, job.resources, kPointTileBytes, disk);
+  if (job.resources.plan) {
+    job.resources.plan(plan);
+  }
+  terrain.make_starter = [&]() -> LeafStarter {
+    const auto starter = std::make_shared<PointTileStarter>(
+        points, terrain.tree, terrain.units, job.options.max_edge, job.resources.stop);
+    return [starter](const SampleRange& window) { return starter->start(window); };
+  };
+  build_tiles(workspace, job, terrain, plan);
+}
+
+}  // namespace
+
+void build_points(Job& job) {
+  const GdalCacheLimit cache(share_memory(job.memory(), 0, 1).gdal_cache);
+  announce(job);
+  if (job.resources.dry_run) {
+    return;
+  }
+  in_workspace(job, fingerprint(job), [&](Workspace& workspace) { build_in(workspace, job); });
+}
+
+}  // namespace ptin::build_internal
