@@ -18,7 +18,7 @@ ProgressFd::ProgressFd(int fd) : fd_(fd) {
 }
 
 void ProgressFd::report(const char* stage, std::uint64_t done, std::uint64_t total,
-                        std::uint64_t memory) {
+                        const ProgressFacts& facts) {
   const auto now = std::chrono::steady_clock::now();
   if (fd_ < 0 ||
       (stage_ == stage && done < total && now - last_ < std::chrono::milliseconds(200))) {
@@ -26,11 +26,16 @@ void ProgressFd::report(const char* stage, std::uint64_t done, std::uint64_t tot
   }
   stage_ = stage;
   last_ = now;
-  const nlohmann::json json{{"stage", stage},
-                            {"done", done},
-                            {"total", total},
-                            {"seconds", std::chrono::duration<double>(now - begin_).count()},
-                            {"memory", memory}};
+  nlohmann::json json{{"stage", stage},
+                      {"done", done},
+                      {"total", total},
+                      {"seconds", std::chrono::duration<double>(now - begin_).count()},
+                      {"memory", facts.memory},
+                      {"tiles_done", facts.tiles_done},
+                      {"tiles", facts.tiles},
+                      {"per_second", facts.per_second},
+                      {"remaining_seconds", nullptr}};
+  if (facts.remaining_seconds >= 0) json["remaining_seconds"] = facts.remaining_seconds;
   const std::string line = json.dump() + "\n";
   if (::write(fd_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
     fd_ = -1;  // nobody listens any more

@@ -9,15 +9,24 @@
 
 namespace ptin::tools {
 
-/// Writes `{"stage", "done", "total", "seconds", "memory"}` at most five times a second, and at the
-/// beginning and the end of each stage. A reader that went away is no fault.
+/// What is known of a stage besides how far it is.
+struct ProgressFacts {
+  std::uint64_t memory = 0;  ///< Bytes of anonymous memory.
+  std::uint64_t tiles_done = 0, tiles = 0;
+  std::uint64_t per_second = 0;     ///< Units of `done`.
+  double remaining_seconds = -1.0;  ///< Of this stage; < 0 when it is not known.
+};
+
+/// Writes `{"stage", "done", "total", "seconds", "memory", "tiles_done", "tiles", "per_second",
+/// "remaining_seconds"}` at most five times a second, and at the beginning and the end of each
+/// stage. A reader that went away is no fault.
 class ProgressFd {
  public:
   /// @throws Error invalid_argument  the descriptor is not open for writing
   explicit ProgressFd(int fd);
 
-  /// @param memory  Bytes of anonymous memory.
-  void report(const char* stage, std::uint64_t done, std::uint64_t total, std::uint64_t memory);
+  void report(const char* stage, std::uint64_t done, std::uint64_t total,
+              const ProgressFacts& facts);
 
  private:
   int fd_;

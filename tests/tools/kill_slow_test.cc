@@ -23,79 +23,102 @@ using testing::TestFolder;
 
 constexpr int kMoments = 20;
 
-/// A terrain that takes a second or two.
-void make_terrain(const TestFolder& folder) {
-  RasterRecipe recipe;
-  recipe.width = recipe.height = 400;
-  recipe.value = [](int x, int y) { return testing::hills(x, y) + (x * 31 + y * 17) % 23; };
-  make_raster(folder.file("dem.tif"), recipe);
-}
+/// What is built: takes a second or two.
+enum class Source { kRaster, kPoints };
 
-TEST(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
-  const TestFolder folder;
-  make_terrain(folder);
-  const auto build = [&](const std::string& name, std::vector<std::string> more) {
-    more.insert(more.begin(),
-                {"build", folder.file("dem.tif"), "-o", folder.file(name), "--tile", "64", "-q"});
+class KillSlow : public ::testing::TestWithParam<Source> {
+ protected:
+  KillSlow() {
+    if (GetParam() == Source::kRaster) {
+      RasterRecipe recipe;
+      recipe.width = recipe.height = 400;
+      recipe.value = [](int x, int y) { return testing::hills(x, y) + (x * 31 + y * 17) % 23; };
+      make_raster(input(), recipe);
+      return;
+    }
+    std::mt19937 random(5);
+    std::string text;
+    for (int i = 0; i < 120000; ++i) {
+      const auto x = random() % 40000, y = random() % 40000;
+      text += std::to_string(x) + "." + std::to_string(i % 10) + " " + std::to_string(y) + " " +
+              std::to_string((x / 7 + y / 11) % 900) + "\n";
+    }
+    testing::write_file(input(), text);
+  }
+
+  [[nodiscard]] std::string input() const {
+    return folder_.file(GetParam() == Source::kRaster ? "dem.tif" : "points.xyz");
+  }
+  [[nodiscard]] std::vector<std::string> build(const std::string& output,
+                                               std::vector<std::string> more) const {
+    more.insert(more.begin(), {"build", input(), "-o", output, "--tile", "64", "-q"});
     return more;
-  };
+  }
+
+  TestFolder folder_;
+};
+
+INSTANTIATE_TEST_SUITE_P(OfEachKind, KillSlow, ::testing::Values(Source::kRaster, Source::kPoints),
+                         [](const auto& kind) {
+                           return kind.param == Source::kRaster ? "Raster" : "Points";
+                         });
+
+TEST_P(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
   const auto begin = std::chrono::steady_clock::now();
-  ASSERT_EQ(run_ptin(build("plain.ptin", {})).status, 0);
+  ASSERT_EQ(run_ptin(build(folder_.file("plain.ptin"), {})).status, 0);
   const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(
       std::chrono::steady_clock::now() - begin);
-  const std::string expected = read_file(folder.file("plain.ptin"));
+  const std::string expected = read_file(folder_.file("plain.ptin"));
+  const std::vector<std::string> names = folder_.names();
+  const std::string killed_one = folder_.file("k.ptin");
 
   std::mt19937 random(20);
   int killed = 0;
   for (int moment = 0; moment < kMoments; ++moment) {
     const std::chrono::milliseconds after(random() % static_cast<unsigned>(whole.count()));
-    const auto outcome = run_ptin(build("k.ptin", {"--resume", "--threads", "2"}), SIGKILL, after);
+    const auto outcome =
+        run_ptin(build(killed_one, {"--resume", "--threads", "2"}), SIGKILL, after);
     killed += outcome.status == 128 + SIGKILL ? 1 : 0;
     if (outcome.status != 0) {
       EXPECT_EQ(outcome.status, 128 + SIGKILL) << outcome.err;
       // Killed after it was complete and had its name: nothing but tidying is left.
-      const bool is_complete = std::filesystem::exists(folder.file("k.ptin"));
-      EXPECT_TRUE(!is_complete || read_file(folder.file("k.ptin")) == expected);
-      const auto resumed = run_ptin(build("k.ptin", {"--resume", "--threads", "1"}));
+      const bool is_complete = std::filesystem::exists(killed_one);
+      EXPECT_TRUE(!is_complete || read_file(killed_one) == expected);
+      const auto resumed = run_ptin(build(killed_one, {"--resume", "--threads", "1"}));
       EXPECT_TRUE(resumed.status == 0 || (is_complete && resumed.status == 2)) << resumed.err;
     }
-    EXPECT_TRUE(read_file(folder.file("k.ptin")) == expected) << "after " << after.count() << " ms";
-    std::filesystem::remove(folder.file("k.ptin"));
-    EXPECT_EQ(folder.names(), (std::vector<std::string>{"dem.tif", "plain.ptin"}));
+    EXPECT_TRUE(read_file(killed_one) == expected) << "after " << after.count() << " ms";
+    std::filesystem::remove(killed_one);
+    EXPECT_EQ(folder_.names(), names);
   }
   EXPECT_GT(killed, kMoments / 2);
 }
 
-TEST(KillSlow, ADiskThatFillsUpLosesNothing) {
-  const TestFolder folder;
-  make_terrain(folder);
-  const std::string disk = folder.file("disk");
+TEST_P(KillSlow, ADiskThatFillsUpLosesNothing) {
+  const std::string disk = folder_.file("disk");
   std::filesystem::create_directory(disk);
-  ASSERT_EQ(run_ptin({"build", folder.file("dem.tif"), "-o", folder.file("plain.ptin"), "--tile",
-                      "64", "-q"})
-                .status,
-            0);
+  ASSERT_EQ(run_ptin(build(folder_.file("plain.ptin"), {})).status, 0);
   if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=40m") != 0) {
     GTEST_SKIP() << "a tmpfs cannot be mounted here";
   }
-  const std::vector<std::string> build{
-      "build", folder.file("dem.tif"), "-o", disk + "/k.ptin", "--tile", "64", "-q", "--resume"};
-  // The disk is as large as the plan wants it; then somebody else takes all that is left.
+  // The disk is as large as the plan wants it; then somebody else takes all that is left: while
+  // points are read, or when the tiles begin.
+  const std::string begun = GetParam() == Source::kRaster ? "pages" : "manifest";
   std::thread somebody([&] {
-    while (!std::filesystem::exists(disk + "/.k.ptin.ptin-build/pages")) {
+    while (!std::filesystem::exists(disk + "/.k.ptin.ptin-build/" + begun)) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     testing::write_file(disk + "/other", std::string(40U << 20, 'x'));
   });
-  auto outcome = run_ptin(build);
+  auto outcome = run_ptin(build(disk + "/k.ptin", {"--resume"}));
   somebody.join();
   EXPECT_EQ(outcome.status, 7) << outcome.err;
   EXPECT_NE(outcome.err.find("--resume"), std::string::npos) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(disk + "/k.ptin"));
   std::filesystem::remove(disk + "/other");
-  outcome = run_ptin(build);
+  outcome = run_ptin(build(disk + "/k.ptin", {"--resume"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(read_file(disk + "/k.ptin") == read_file(folder.file("plain.ptin")));
+  EXPECT_TRUE(read_file(disk + "/k.ptin") == read_file(folder_.file("plain.ptin")));
   umount(disk.c_str());
 }
 

@@ -11,10 +11,12 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include <malloc.h>
 
 #include "engine/construct/memory_plan.h"
+#include "storage/sigbus_guard.h"
 #include "tools/error_status.h"
 #include "tools/output_file.h"
 #include "tools/progress.h"
@@ -144,18 +146,20 @@ nlohmann::json plan_json(const BuildPlan& p) {
           {"temporary_bytes", p.temporary_bytes},
           {"output_bytes", p.output_bytes},
           {"free_bytes", p.output_free},
+          {"estimated", p.is_estimate},
           {"seconds", p.seconds}};
 }
 
 /// One line of what is to come; a second one when less is used than was asked for.
 void print_plan(const BuildPlan& p) {
   std::fprintf(stderr,
-               "plan: %s vertices in %s tiles of %lld, %d thread%s, at most %s of memory, %s of "
+               "plan: %s%s vertices in %s tiles of %lld, %d thread%s, at most %s of memory, %s of "
                "temporary disk, %s of output, roughly %s\n",
-               grouped(p.vertices).c_str(), grouped(p.leaves).c_str(),
-               static_cast<long long>(p.tile_side), p.threads, p.threads == 1 ? "" : "s",
-               human_bytes(p.memory_expected).c_str(), human_bytes(p.temporary_bytes).c_str(),
-               human_bytes(p.output_bytes).c_str(), human_duration(p.seconds).c_str());
+               p.is_estimate ? "up to about " : "", grouped(p.vertices).c_str(),
+               grouped(p.leaves).c_str(), static_cast<long long>(p.tile_side), p.threads,
+               p.threads == 1 ? "" : "s", human_bytes(p.memory_expected).c_str(),
+               human_bytes(p.temporary_bytes).c_str(), human_bytes(p.output_bytes).c_str(),
+               human_duration(p.seconds).c_str());
   if (p.threads < p.threads_wanted) {
     std::fprintf(stderr, "plan: %d threads instead of %d, since no more tiles fit into %s\n",
                  p.threads, p.threads_wanted, human_bytes(p.memory_limit).c_str());
@@ -166,40 +170,75 @@ void print_plan(const BuildPlan& p) {
 class BuildShow {
  public:
   BuildShow(const BuildCommand& command, const Context& context)
-      : progress_(Progress::style_for(context.quiet, stderr)) {
+      : style_(Progress::style_for(context.quiet, stderr)), progress_(style_) {
     if (command.progress_fd >= 0) {
       std::signal(SIGPIPE, SIG_IGN);  // a reader may go away
       fd_.emplace(command.progress_fd);
     }
   }
+  /// Of the stage that is reported next.
+  void tiles(std::uint64_t done, std::uint64_t all) { next_tiles_ = {done, all}; }
   void report(const char* stage, std::uint64_t done, std::uint64_t total) {
     const auto now = std::chrono::steady_clock::now();
     if (stage_ != stage) {
+      end_stage();
       stage_ = stage;
       begin_ = now;
       first_ = done;
     }
+    if (next_tiles_) {
+      facts_.tiles_done = next_tiles_->first;
+      facts_.tiles = next_tiles_->second;
+      next_tiles_.reset();
+    }
     if (now - looked_ > std::chrono::milliseconds(500)) {
       looked_ = now;
-      memory_ = anonymous_bytes_now();
+      facts_.memory = anonymous_bytes_now();
+      most_memory_ = std::max(most_memory_, facts_.memory);
     }
-    if (fd_) fd_->report(stage, done, total, memory_);
-    const double seconds = std::chrono::duration<double>(now - begin_).count();
-    std::string detail;
-    if (seconds > 1.0 && total > 1) {
-      detail = grouped(static_cast<std::uint64_t>(static_cast<double>(done - first_) / seconds)) +
-               " vertices/s, " + human_bytes(memory_);
-    }
-    progress_.report(stage, done, total, detail);
+    seconds_ = std::chrono::duration<double>(now - begin_).count();
+    facts_.per_second =
+        static_cast<std::uint64_t>(ratio(static_cast<double>(done - first_), seconds_));
+    facts_.remaining_seconds =
+        facts_.per_second > 0 && total >= done
+            ? ratio(static_cast<double>(total - done), static_cast<double>(facts_.per_second))
+            : -1.0;
+    if (fd_) fd_->report(stage, done, total, facts_);
+    progress_.report(stage, done, total, seconds_ > 1.0 && total > 1 ? detail() : "");
   }
-  void finish() { progress_.finish(); }
+  void finish() {
+    end_stage();
+    progress_.finish();
+  }
 
  private:
+  [[nodiscard]] std::string detail() const {
+    const std::string tiles =
+        facts_.tiles > 0 ? grouped(facts_.tiles_done) + " of " + grouped(facts_.tiles) + " tiles, "
+                         : "";
+    return tiles + grouped(facts_.per_second) + " vertices/s, " + human_bytes(facts_.memory);
+  }
+  /// Where lines stay, a stage that took a while says what it came to.
+  void end_stage() {
+    if (!stage_.empty() && style_ == Progress::Style::kSparse && seconds_ > 1.0) {
+      progress_.finish();
+      std::fprintf(stderr, "  %s%s vertices/s, at most %s of memory so far\n",
+                   facts_.tiles > 0 ? (grouped(facts_.tiles) + " tiles, ").c_str() : "",
+                   grouped(facts_.per_second).c_str(), human_bytes(most_memory_).c_str());
+    }
+    stage_.clear();
+    facts_.tiles = facts_.tiles_done = 0;
+  }
+
+  Progress::Style style_;
   Progress progress_;
   std::optional<ProgressFd> fd_;
   std::string stage_;
   std::chrono::steady_clock::time_point begin_{}, looked_{};
-  std::uint64_t first_ = 0, memory_ = 0;
+  std::uint64_t first_ = 0, most_memory_ = 0;
+  double seconds_ = 0.0;
+  ProgressFacts facts_;
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> next_tiles_;
 };
 
 BuildResources resources_of(const BuildCommand& command, const Context& context, BuildShow& show) {
@@ -221,6 +260,7 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
       print_plan(plan);
     }
   };
+  resources.tiles = [&show](std::uint64_t done, std::uint64_t all) { show.tiles(done, all); };
   resources.progress = [&show](const char* stage, std::uint64_t done, std::uint64_t total) {
     show.report(stage, done, total);
   };
@@ -247,12 +287,17 @@ int run_build(BuildCommand& command, const Context& context) {
   }
   check_command(command);
   return_freed_memory(command.threads);
+  install_sigbus_guard();  // a temporary file that loses bytes is an error, not the end
   BuildReport report;
   {
     BuildShow show(command, context);
     report = build(command.inputs, command.output, command.options,
                    resources_of(command, context, show));
     show.finish();
+  }
+  if (!report.left_behind.empty()) {
+    std::fprintf(stderr, "ptin build: the output is complete; what is left behind: %s\n",
+                 report.left_behind.c_str());
   }
   if (command.dry_run) return kExitDone;
   if (context.json) {
@@ -299,8 +344,10 @@ Action declare_build(CLI::App& app, Context& context) {
       ->type_name("NAME");
   app.add_flag("--repair", options.repair,
                "TINs: leave the triangles and triangulate the vertices anew (no voids then)");
-  app.add_option("--max-edge", options.max_edge,
-                 "Points: triangles with an edge longer than this, in CRS units, become void")
+  app.add_option(
+         "--max-edge", options.max_edge,
+         "Points: triangles with an edge longer than this become void; CRS units, or metres\n"
+         "where those are degrees")
       ->type_name("L");
   app.add_option("--bbox", command->bbox, "Leave out samples outside of this box, in CRS units")
       ->expected(4)

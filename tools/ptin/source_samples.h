@@ -25,6 +25,7 @@ struct SampleChoices {
   std::optional<double> nodata;
   std::optional<GridBox> bbox;  ///< Samples outside were left out.
   double void_slope = 0.1;
+  std::optional<double> max_edge;  ///< Points: longer triangles are void; on the ground.
 };
 [[nodiscard]] SampleChoices choices_of(const StoreFile& store);
 

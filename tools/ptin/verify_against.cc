@@ -57,6 +57,8 @@ class Verifier {
   [[nodiscard]] RefinedTin refined_in(const GridBox& box,
                                       const std::optional<double>& tolerance) const;
   [[nodiscard]] std::vector<Finding> findings(const Tin& tin, const SampleWindow& window) const;
+  [[nodiscard]] bool is_too_long(GridPoint a, GridPoint b) const;
+  void drop_lone_points(SampleWindow& window) const;
   void judge(const SampleWindow& window, const GridBox& box, const std::vector<Finding>& found,
              double allowed, ToleranceCheck& check);
   void judge_class(const SampleWindow& window, const Sample& sample, double allowed,
@@ -190,8 +192,47 @@ SampleWindow Verifier::read_with_margin(const GridBox& box) const {
   return window;
 }
 
+bool Verifier::is_too_long(GridPoint a, GridPoint b) const {
+  const GroundSteps steps =
+      ground_steps(facts_.map, geographic_, (static_cast<double>(a.y) + b.y) / 2.0);
+  constexpr double kFormulas = 0.999;  // lengths of a degree, between two formulas
+  return std::hypot((static_cast<double>(a.x) - b.x) * steps.x,
+                    (static_cast<double>(a.y) - b.y) * steps.y) >
+         *choices_.max_edge * (geographic_ ? kFormulas : 1.0 - 1e-9);
+}
+
+/// Points all of whose triangles in the full TIN are void, each for its long edge, have no surface
+/// to be measured against. The triangles are the file's own; that each is long enough is seen here.
+void Verifier::drop_lone_points(SampleWindow& window) const {
+  if (window.is_grid || !choices_.max_edge) return;
+  const Tin tin = refined_in(window.box, std::nullopt).tin;
+  enum : std::uint8_t { kUnseen, kLone, kSurface };
+  std::vector<std::uint8_t> seen(tin.vertices.size(), kUnseen);
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    const auto& v = tin.triangles[t].v;
+    const std::array<GridPoint, 3> p{tin.position(v[0]), tin.position(v[1]), tin.position(v[2])};
+    const bool is_void =
+        tin.classes[t] == TriangleClass::kVoid &&
+        (is_too_long(p[0], p[1]) || is_too_long(p[1], p[2]) || is_too_long(p[2], p[0]));
+    for (const VertexId corner : v) {
+      seen[corner] = is_void && seen[corner] != kSurface ? kLone : kSurface;
+    }
+  }
+  const auto before = [](const Sample& s, GridPoint p) {
+    return s.y != p.y ? s.y < p.y : s.x < p.x;
+  };
+  for (VertexId v = 0; v < tin.vertices.size(); ++v) {
+    const GridPoint p = tin.position(v);
+    const auto it = std::lower_bound(window.samples.begin(), window.samples.end(), p, before);
+    if (seen[v] == kLone && it != window.samples.end() && it->x == p.x && it->y == p.y) {
+      it->is_void = it->is_lone = true;
+    }
+  }
+}
+
 void Verifier::check_window(const GridBox& box) {
-  const SampleWindow window = read_with_margin(box);
+  SampleWindow window = read_with_margin(box);
+  drop_lone_points(window);
   std::vector<Probe> probes;
   place_probes(box, probes);
   if (!probes.empty()) measure_probes(refined_in(box, std::nullopt).tin, probes, &Probe::full);
@@ -299,8 +340,9 @@ void Verifier::judge_class(const SampleWindow& window, const Sample& sample, dou
                            ToleranceCheck& check) {
   const char* what = sample.is_void ? "void" : "a height";
   if (!window.is_grid) {
-    fault(&check,
-          "the point at " + place_text(sample.x, sample.y) + " lies in no surface triangle");
+    fault(&check, "the point at " + place_text(sample.x, sample.y) +
+                      (sample.is_void ? " is lone in the full TIN and lies in a surface triangle"
+                                      : " lies in no surface triangle"));
     return;
   }
   const GroundSteps steps = ground_steps(facts_.map, geographic_, sample.y);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Builds under a limit that the system enforces: RLIMIT_DATA counts every private page that may be
+// written, touched or not, so a build needs --memory and a margin for what is reserved and never
+// used: stacks of threads, arenas of the heap, the data of libraries.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using testing::run_ptin;
+using testing::TestFolder;
+
+constexpr rlim_t kMiB = rlim_t{1} << 20;
+/// What was measured on 4097 x 4097 samples, and a third more; bench/README.md.
+constexpr rlim_t kMargin = 64 * kMiB;
+
+/// A limit on private memory of the programs that are run while it lives.
+class DataLimit {
+ public:
+  explicit DataLimit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_DATA, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    is_set_ = ::setrlimit(RLIMIT_DATA, &limit) == 0;
+  }
+  ~DataLimit() { ::setrlimit(RLIMIT_DATA, &before_); }
+  [[nodiscard]] bool is_set() const { return is_set_; }
+
+ private:
+  rlimit before_{};
+  bool is_set_ = false;
+};
+
+void make_hills(const TestFolder& folder) {
+  testing::RasterRecipe recipe;
+  recipe.width = recipe.height = 1500;
+  recipe.value = [](int x, int y) { return testing::hills(x, y) + (x * 31 + y * 17) % 23; };
+  testing::make_raster(folder.file("dem.tif"), recipe);
+}
+
+TEST(MemoryLimitSlow, ABuildKeepsWithinItsMemoryAndAMarginThatTheSystemEnforces) {
+  const TestFolder folder;
+  make_hills(folder);
+  for (const rlim_t memory : {256, 512}) {
+    SCOPED_TRACE(memory);
+    const DataLimit limit(memory * kMiB + kMargin);
+    if (!limit.is_set()) {
+      GTEST_SKIP() << "RLIMIT_DATA cannot be set here";
+    }
+    const auto outcome =
+        run_ptin({"build", folder.file("dem.tif"), "-o", folder.file("out.ptin"), "--overwrite",
+                  "--threads", "2", "--memory", std::to_string(memory) + "M", "-q"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  }
+}
+
+/// The limit is one that the system enforces.
+TEST(MemoryLimitSlow, TheSystemEnforcesTheLimit) {
+  const TestFolder folder;
+  make_hills(folder);
+  const DataLimit limit(48 * kMiB);
+  if (!limit.is_set()) {
+    GTEST_SKIP() << "RLIMIT_DATA cannot be set here";
+  }
+  const auto outcome = run_ptin({"build", folder.file("dem.tif"), "-o", folder.file("out.ptin"),
+                                 "--threads", "2", "--memory", "512M", "-q"});
+  if (outcome.status == 0) {
+    GTEST_SKIP() << "this system does not enforce RLIMIT_DATA";
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file("out.ptin")));
+}
+
+}  // namespace
+}  // namespace ptin::tools

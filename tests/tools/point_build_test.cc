@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `ptin build` over points: which of them it takes, and that `verify --against` knows what was left
+// out.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/construct/las_file.h"
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using testing::run_ptin;
+using testing::TestFolder;
+using testing::write_file;
+
+nlohmann::json built(const TestFolder& folder, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "build");
+  arguments.insert(arguments.end(), {"-o", folder.file("out.ptin"), "--overwrite", "--json"});
+  const auto outcome = run_ptin(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return nlohmann::json::parse(outcome.out, nullptr, false);
+}
+
+void expect_verified(const TestFolder& folder, const std::string& source) {
+  const auto outcome =
+      run_ptin({"verify", folder.file("out.ptin"), "--against", folder.file(source), "-q"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
+/// Ground (2) on a grid, and trees (5) and water (9) between its points.
+std::string las() {
+  LasFileMaker file;
+  for (int y = 0; y < 12; ++y) {
+    for (int x = 0; x < 12; ++x) {
+      file.points.push_back({100 * x, 100 * y, 10 * x + y, 2});
+      file.points.push_back({100 * x + 50, 100 * y + 50, 500, x % 2 == 0 ? 5 : 9});
+    }
+  }
+  return file.bytes();
+}
+
+TEST(PointBuild, TakesTheClassesOfLasThatAreAskedFor) {
+  const TestFolder folder;
+  write_file(folder.file("a.las"), las());
+  EXPECT_EQ(built(folder, {folder.file("a.las")})["samples"], 288);
+  const auto ground = built(folder, {folder.file("a.las"), "--class", "2"});
+  EXPECT_EQ(ground["samples"], 144);
+  EXPECT_EQ(ground["left_out_points"], 144);
+  expect_verified(folder, "a.las");
+  EXPECT_EQ(built(folder, {folder.file("a.las"), "--class", "2,9"})["samples"], 216);
+  const auto none = run_ptin(
+      {"build", folder.file("a.las"), "--class", "7", "-o", folder.file("none.ptin"), "--json"});
+  EXPECT_EQ(none.status, 2) << none.err;
+  EXPECT_NE(none.err.find("class"), std::string::npos) << none.err;
+}
+
+/// Two layers of points in one file.
+std::string two_layers() {
+  return R"(<?xml version="1.0"?><gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">
+<wpt lat="46.00" lon="7.00"><ele>100</ele></wpt><wpt lat="46.01" lon="7.00"><ele>110</ele></wpt>
+<wpt lat="46.00" lon="7.01"><ele>120</ele></wpt><wpt lat="46.01" lon="7.01"><ele>135</ele></wpt>
+<trk><trkseg><trkpt lat="46.00" lon="7.00"><ele>1</ele></trkpt>
+<trkpt lat="46.02" lon="7.00"><ele>2</ele></trkpt><trkpt lat="46.00" lon="7.02"><ele>3</ele></trkpt>
+</trkseg></trk></gpx>)";
+}
+
+TEST(PointBuild, TakesALayerAndAnAttributeForTheHeights) {
+  const TestFolder folder;
+  write_file(folder.file("a.gpx"), two_layers());
+  const auto points = built(folder, {folder.file("a.gpx"), "--layer", "waypoints", "--z-field",
+                                     "ele", "--resolution", "0.0001"});
+  EXPECT_EQ(points["samples"], 4);
+  expect_verified(folder, "a.gpx");
+  const auto track = built(folder, {folder.file("a.gpx"), "--layer", "track_points", "--z-field",
+                                    "ele", "--resolution", "0.0001"});
+  EXPECT_EQ(track["samples"], 3);
+  const auto wrong = run_ptin({"build", folder.file("a.gpx"), "--layer", "nothing", "--z-field",
+                               "ele", "-o", folder.file("none.ptin")});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("nothing"), std::string::npos) << wrong.err;
+}
+
+TEST(PointBuild, MakesTrianglesWithLongEdgesVoidAndVerifyKnowsTheLonePoints) {
+  const TestFolder folder;
+  std::string text;
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      text += std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(x * y % 7) + "\n";
+    }
+  }
+  text += "100 0 5\n100 100 6\n0 100 7\n";  // far from each other and from all else
+  write_file(folder.file("a.xyz"), text);
+  const auto with_voids = built(folder, {folder.file("a.xyz"), "--max-edge", "2"});
+  EXPECT_EQ(with_voids["lone_samples"], 3);
+  expect_verified(folder, "a.xyz");
+  EXPECT_EQ(built(folder, {folder.file("a.xyz"), "--max-edge", "200"})["lone_samples"], 0);
+  expect_verified(folder, "a.xyz");
+  // Without the lone points in the source, something is wrong.
+  write_file(folder.file("other.xyz"), text.substr(0, text.find("100 0 5")));
+  built(folder, {folder.file("a.xyz"), "--max-edge", "2"});
+  EXPECT_NE(
+      run_ptin({"verify", folder.file("out.ptin"), "--against", folder.file("other.xyz"), "-q"})
+          .status,
+      0);
+}
+
+TEST(PointBuild, SaysBeforeItReadsWhatItExpectsToNeed) {
+  const TestFolder folder;
+  write_file(folder.file("a.las"), las());
+  const auto outcome = run_ptin({"build", folder.file("a.las"), "-o", folder.file("out.ptin"),
+                                 "--tile", "6", "--dry-run", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto plan = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(plan["estimated"], true);
+  EXPECT_GE(plan["temporary_bytes"], 288 * 43);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.las"});
+}
+
+}  // namespace
+}  // namespace ptin::tools
