@@ -41,6 +41,12 @@ class KeyTable {
     }
   }
 
+  /// Empty again, with room for `capacity` keys; what was allocated is used again. Cost: linear.
+  void reset(std::size_t capacity) {
+    slots_.assign(slots_for(capacity), {});
+    size_ = 0;
+  }
+
   /// Adds a key. Returns false, and changes nothing, when it is there already.
   /// REQUIRES: key != kNoVertexKey; size() below the reserved capacity.
   bool insert(VertexKey key, std::uint32_t value) noexcept {

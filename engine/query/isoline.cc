@@ -8,29 +8,15 @@
 #include "engine/error.h"
 #include "engine/query/certificate.h"
 #include "engine/query/isoline_clip.h"
-#include "engine/query/meets_box.h"
-#include "engine/query/refinement.h"
-#include "engine/query/retrieval.h"
+#include "engine/query/isoline_tiles.h"
 
 namespace ptin {
 
 namespace {
 
-constexpr std::int64_t kSmallestTile = 32;  // grid units a side
-constexpr std::uint64_t kTraceBytes = 16;   // a record: bands, marks of two triangles
 constexpr std::uint64_t kSmallestLimit = 1 << 20;
-
-std::pair<GridBox, GridBox> halves(const GridBox& box) {
-  std::pair<GridBox, GridBox> two{box, box};
-  if (std::int64_t{box.max_x} - box.min_x >= std::int64_t{box.max_y} - box.min_y) {
-    two.first.max_x = box.min_x + (box.max_x - box.min_x) / 2;
-    two.second.min_x = two.first.max_x + 1;
-  } else {
-    two.first.max_y = box.min_y + (box.max_y - box.min_y) / 2;
-    two.second.min_y = two.first.max_y + 1;
-  }
-  return two;
-}
+/// A point of a line that is handed out and written: as it is, in a geometry, as bytes of a format.
+constexpr std::uint64_t kBytesAPointOut = 80;
 
 }  // namespace
 
@@ -43,7 +29,7 @@ class IsolineExtraction {
         request_(request),
         levels_(request.levels, store_.facts().heights),
         context_(request.stop, request.memory_limit_bytes, store_.path()),
-        result_(PointStore(request.memory_limit_bytes / 4, request.temporary_folder)) {
+        result_(PointStore(request.memory_limit_bytes / 8, request.temporary_folder)) {
     std::vector<PredicatePtr> parts{levels_.crossing()};
     if (request.window) {
       region_.emplace(*request.window, store_.facts().map);
@@ -57,12 +43,13 @@ class IsolineExtraction {
 
   Isolines run() {
     context_.admit(kSmallestLimit);
-    trace(store_.facts().bounds);
+    trace();
     result_.lines_ = join_pieces(result_.pieces_, context_);
+    admit_lines();
     if (request_.window) {
       cut_at_window();
     }
-    drop_points();
+    drop_single_points(result_.lines_, result_.pieces_, result_.points_);
     if (result_.size() > request_.most_lines) {
       throw Error(ErrorCode::resource_exhausted,
                   "there are " + std::to_string(result_.size()) +
@@ -76,47 +63,46 @@ class IsolineExtraction {
   }
 
  private:
-  /// Traces the triangles of a tile, or of its halves when their records do not fit.
-  void trace(const GridBox& tile) {
-    context_.check_stop();
-    const PredicatePtr predicate = tile == store_.facts().bounds
-                                       ? predicate_
-                                       : all_of({predicate_, std::make_shared<MeetsBox>(tile)});
-    std::vector<PageId> pages;
-    terrain_.index().search(*predicate, pages, context_.cost.io);
-    const std::uint64_t records = most_records(store_, pages);
-    const std::uint64_t bytes =
-        refinement_bytes(terrain_.t0().vertices.size() + records) + records * kTraceBytes;
-    if (bytes > request_.memory_limit_bytes / 2 && half_perimeter(tile) > 2 * kSmallestTile) {
-      const auto [low, high] = halves(tile);
-      trace(low);
-      trace(high);
-      return;
-    }
-    context_.admit(bytes);
-    trace_mesh(tile, *predicate, pages, bytes);
+  /// Tiles take half of the memory; pieces three eighths, since they cannot be put aside; points
+  /// the rest.
+  void trace() {
+    const TileTraceRequest request{levels_,
+                                   predicate_,
+                                   region_ ? &*region_ : nullptr,
+                                   request_.memory_limit_bytes / 2,
+                                   request_.memory_limit_bytes / 8 * 3,
+                                   request_.threads,
+                                   request_.stop};
+    TileTraces traces = trace_tiles(terrain_, request, result_.points_, context_.cost);
+    result_.pieces_ = std::move(traces.pieces);
+    result_.crossed = traces.counts;
+    result_.tiles = traces.tiles;
   }
 
-  void trace_mesh(const GridBox& tile, const AttributePredicate& predicate,
-                  std::span<const PageId> pages, std::uint64_t bytes) {
-    std::vector<PendingSplit> splits;
-    read_pages(store_, pages, predicate, context_, splits);
-    Refinement refinement(terrain_.t0());
-    refinement.apply(splits, context_);
-    splits = {};
-    const StoreFacts& facts = store_.facts();
-    const TraceScope scope{tile, region_ ? &*region_ : nullptr};
-    const TraceCounts counts =
-        trace_isolines(refinement.tin(), levels_, facts.heights, facts.map, scope, bytes, context_,
-                       result_.pieces_, result_.points_);
-    result_.crossed.triangles += counts.triangles;
-    result_.crossed.vertices += counts.vertices;
-    result_.crossed.segments += counts.segments;
-    ++result_.tiles;
+  /// The tiles' memory is free again: lines are joined and written in it.
+  void admit_lines() const {
+    std::uint64_t longest = 0;
+    for (const JoinedLine& line : result_.lines_.lines) {
+      std::uint64_t points = 0;
+      for (std::uint32_t k = 0; k < line.pieces; ++k) {
+        points += result_.pieces_[result_.lines_.order[line.first_piece + k]].count;
+      }
+      longest = std::max(longest, points);
+    }
+    const std::uint64_t bytes = longest * kBytesAPointOut;
+    if (bytes > request_.memory_limit_bytes / (request_.window ? 8 : 2)) {
+      throw Error(
+          ErrorCode::resource_exhausted,
+          "the longest isoline has " + std::to_string(longest) + " points, which take " +
+              std::to_string((bytes + 0xFFFFF) >> 20) +
+              " MiB to write, more than there is beside the others: give more memory, or ask for a "
+              "window or a larger error",
+          store_.path());
+    }
   }
 
   void cut_at_window() {
-    PointStore points(request_.memory_limit_bytes / 4, request_.temporary_folder);
+    PointStore points(request_.memory_limit_bytes / 8, request_.temporary_folder);
     std::vector<IsolinePiece> pieces;
     JoinedLines lines;
     std::vector<MapPoint> line;
@@ -130,6 +116,14 @@ class IsolineExtraction {
         piece.ring = joined.ring && clipped.whole;
         piece.first = points.size();
         piece.count = static_cast<std::uint32_t>(part.size());
+        if ((pieces.size() + 1) * kBytesAPiece > request_.memory_limit_bytes / 4) {
+          throw Error(ErrorCode::resource_exhausted,
+                      "the window cuts the isolines into more than " +
+                          std::to_string(pieces.size()) +
+                          " parts, more than the memory holds: give more memory, or "
+                          "ask for fewer levels",
+                      store_.path());
+        }
         lines.lines.push_back({joined.level, piece.ring, joined.smallest, lines.order.size(), 1});
         lines.order.push_back(static_cast<std::uint32_t>(pieces.size()));
         pieces.push_back(piece);
@@ -139,20 +133,6 @@ class IsolineExtraction {
     result_.points_ = std::move(points);
     result_.pieces_ = std::move(pieces);
     result_.lines_ = std::move(lines);
-  }
-
-  /// Leaves out lines that are one point: all their cuts are at one vertex, a peak at the level.
-  void drop_points() {
-    std::vector<MapPoint> points;
-    std::erase_if(result_.lines_.lines, [&](const JoinedLine& line) {
-      for (std::uint32_t k = 0; k < line.pieces; ++k) {
-        if (result_.pieces_[result_.lines_.order[line.first_piece + k]].count > 1) {
-          return false;  // its points differ in a row
-        }
-      }
-      points_of(line, result_.lines_, result_.pieces_, result_.points_, points);
-      return points.empty();
-    });
   }
 
   void finish() {

@@ -27,6 +27,7 @@ struct IsolineRequest {
   std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
   /// Where points go that do not fit the memory. Empty: nowhere, and the extraction fails then.
   std::string temporary_folder;
+  int threads = 1;  ///< At most; fewer where the memory is small. The lines are the same.
   std::stop_token stop;
 };
 
@@ -64,6 +65,7 @@ class Isolines {
 
  private:
   friend class IsolineExtraction;
+  friend class ProgressiveIsolines;
   explicit Isolines(PointStore points) : points_(std::move(points)) {}
   std::vector<double> levels_;
   JoinedLines lines_;

@@ -35,20 +35,25 @@ int nameless_file(const std::string& folder) {
 }  // namespace
 
 PointStore::PointStore(std::uint64_t budget_bytes, std::string temporary_folder)
-    : budget_points_(std::max<std::uint64_t>(budget_bytes / sizeof(MapPoint), 1)),
+    : block_points_(std::clamp<std::uint64_t>(budget_bytes / (4 * sizeof(MapPoint)), 1, 65536)),
+      most_blocks_(std::max<std::uint64_t>(budget_bytes / sizeof(MapPoint) / block_points_, 1)),
       folder_(std::move(temporary_folder)) {}
 
 PointStore::PointStore(PointStore&& other) noexcept
-    : budget_points_(other.budget_points_),
+    : block_points_(other.block_points_),
+      most_blocks_(other.most_blocks_),
       folder_(std::move(other.folder_)),
-      points_(std::move(other.points_)),
+      blocks_(std::move(other.blocks_)),
+      size_(std::exchange(other.size_, 0)),
       spilled_(std::exchange(other.spilled_, 0)),
       file_(std::exchange(other.file_, -1)) {}
 
 PointStore& PointStore::operator=(PointStore&& other) noexcept {
-  std::swap(budget_points_, other.budget_points_);
+  std::swap(block_points_, other.block_points_);
+  std::swap(most_blocks_, other.most_blocks_);
   std::swap(folder_, other.folder_);
-  std::swap(points_, other.points_);
+  std::swap(blocks_, other.blocks_);
+  std::swap(size_, other.size_);
   std::swap(spilled_, other.spilled_);
   std::swap(file_, other.file_);
   return *this;
@@ -61,12 +66,26 @@ PointStore::~PointStore() {
 }
 
 void PointStore::add(std::span<const MapPoint> points) {
-  if (points_.size() + points.size() > budget_points_) {
-    spill();
+  while (!points.empty()) {
+    const std::uint64_t at = (size_ - spilled_) % block_points_;
+    if (at == 0) {
+      add_block();
+    }
+    const std::size_t n = std::min<std::size_t>(points.size(), block_points_ - at);
+    std::copy_n(points.begin(), n, blocks_.back().get() + at);
+    size_ += n;
+    points = points.subspan(n);
   }
-  points_.insert(points_.end(), points.begin(), points.end());
 }
 
+void PointStore::add_block() {
+  if (blocks_.size() == most_blocks_) {
+    spill();
+  }
+  blocks_.push_back(std::make_unique_for_overwrite<MapPoint[]>(block_points_));
+}
+
+/// Writes all blocks, which are full, behind what is in the file.
 void PointStore::spill() {
   if (folder_.empty()) {
     throw Error(ErrorCode::resource_exhausted,
@@ -76,27 +95,30 @@ void PointStore::spill() {
   if (file_ < 0) {
     file_ = nameless_file(folder_);
   }
-  const char* at = reinterpret_cast<const char*>(points_.data());
-  std::size_t left = points_.size() * sizeof(MapPoint);
-  auto offset = static_cast<off_t>(spilled_ * sizeof(MapPoint));
-  while (left > 0) {
-    const ssize_t n = pwrite(file_, at, left, offset);
-    if (n < 0 && errno == EINTR) {
-      continue;
+  for (const std::unique_ptr<MapPoint[]>& block : blocks_) {
+    const char* at = reinterpret_cast<const char*>(block.get());
+    std::size_t left = block_points_ * sizeof(MapPoint);
+    auto offset = static_cast<off_t>(spilled_ * sizeof(MapPoint));
+    while (left > 0) {
+      const ssize_t n = pwrite(file_, at, left, offset);
+      if (n < 0 && errno == EINTR) {
+        continue;
+      }
+      if (n < 0) {
+        throw system_error(errno, "cannot write temporary isolines", folder_);
+      }
+      at += n, offset += n, left -= static_cast<std::size_t>(n);
     }
-    if (n < 0) {
-      throw system_error(errno, "cannot write temporary isolines", folder_);
-    }
-    at += n, offset += n, left -= static_cast<std::size_t>(n);
+    spilled_ += block_points_;
   }
-  spilled_ += points_.size();
-  points_.clear();
+  blocks_.clear();
 }
 
 void PointStore::read(std::uint64_t first, std::size_t count, std::vector<MapPoint>& out) const {
-  std::uint64_t from_file = first < spilled_ ? std::min<std::uint64_t>(count, spilled_ - first) : 0;
+  const std::uint64_t from_file =
+      first < spilled_ ? std::min<std::uint64_t>(count, spilled_ - first) : 0;
   const std::size_t at = out.size();
-  out.resize(at + from_file);
+  out.resize(at + count);
   auto* to = reinterpret_cast<char*>(out.data() + at);
   auto offset = static_cast<off_t>(first * sizeof(MapPoint));
   for (std::size_t left = from_file * sizeof(MapPoint); left > 0;) {
@@ -109,9 +131,12 @@ void PointStore::read(std::uint64_t first, std::size_t count, std::vector<MapPoi
     }
     to += n, offset += n, left -= static_cast<std::size_t>(n);
   }
-  if (from_file < count) {
-    const auto begin = points_.begin() + static_cast<std::ptrdiff_t>(first + from_file - spilled_);
-    out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(count - from_file));
+  for (std::uint64_t done = from_file; done < count;) {
+    const std::uint64_t place = first + done - spilled_;
+    const std::uint64_t n = std::min(count - done, block_points_ - place % block_points_);
+    std::copy_n(blocks_[place / block_points_].get() + place % block_points_, n,
+                out.data() + at + done);
+    done += n;
   }
 }
 
@@ -236,6 +261,20 @@ void points_of(const JoinedLine& line, const JoinedLines& joined,
   if (out.size() < 2) {
     out.clear();
   }
+}
+
+void drop_single_points(JoinedLines& joined, std::span<const IsolinePiece> pieces,
+                        const PointStore& store) {
+  std::vector<MapPoint> points;
+  std::erase_if(joined.lines, [&](const JoinedLine& line) {
+    for (std::uint32_t k = 0; k < line.pieces; ++k) {
+      if (pieces[joined.order[line.first_piece + k]].count > 1) {
+        return false;  // its points differ in a row
+      }
+    }
+    points_of(line, joined, pieces, store, points);
+    return points.empty();
+  });
 }
 
 }  // namespace ptin

@@ -19,26 +19,29 @@ namespace ptin {
 /// name. Threads: none; one owner.
 class PointStore {
  public:
-  /// @param budget_bytes      Of points kept in memory.
+  /// @param budget_bytes      Of points kept in memory, in blocks of at most a megabyte.
   /// @param temporary_folder  Where the file is made when they do not fit; empty: nowhere.
   PointStore(std::uint64_t budget_bytes, std::string temporary_folder);
   PointStore(PointStore&&) noexcept;
   PointStore& operator=(PointStore&&) noexcept;
   ~PointStore();
 
-  [[nodiscard]] std::uint64_t size() const noexcept { return spilled_ + points_.size(); }
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   /// @throws Error resource_exhausted  over the budget and no folder, or the disk is full; io_error
   void add(std::span<const MapPoint> points);
   /// Appends points [first, first + count) to `out`.  @throws Error io_error
   void read(std::uint64_t first, std::size_t count, std::vector<MapPoint>& out) const;
 
  private:
+  void add_block();
   void spill();
 
-  std::uint64_t budget_points_;
+  std::uint64_t block_points_;  ///< In a block.
+  std::uint64_t most_blocks_;   ///< In memory.
   std::string folder_;
-  std::vector<MapPoint> points_;  ///< The last ones.
-  std::uint64_t spilled_ = 0;     ///< Points in the file, before them.
+  std::vector<std::unique_ptr<MapPoint[]>> blocks_;  ///< The last points; all but the last full.
+  std::uint64_t size_ = 0;
+  std::uint64_t spilled_ = 0;  ///< Points in the file, before those in memory.
   int file_ = -1;
 };
 
@@ -81,5 +84,10 @@ struct JoinedLines {
 void points_of(const JoinedLine& line, const JoinedLines& joined,
                std::span<const IsolinePiece> pieces, const PointStore& store,
                std::vector<MapPoint>& out);
+
+/// Leaves out lines that are one point: all their cuts are at one vertex, a peak at the level.
+/// @throws Error io_error
+void drop_single_points(JoinedLines& joined, std::span<const IsolinePiece> pieces,
+                        const PointStore& store);
 
 }  // namespace ptin

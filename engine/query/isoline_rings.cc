@@ -12,6 +12,9 @@ namespace {
 constexpr std::size_t kStopInterval = 4096;
 constexpr std::uint64_t kTriangleBytes = 12 + 4 + 1 + 3 * 16;  // neighbours, pieces, sides to sort
 constexpr std::uint64_t kPieceBytes = 4 + 1;
+/// A line through a triangle: a point of the polygon above it and one of that below, each as found,
+/// in its polygon, and as whoever writes it needs it once more.
+constexpr std::uint64_t kLineBytes = 2 * (24 + 2 * 16 + 40);
 }  // namespace
 
 BandMesh::BandMesh(const SurfaceArrays& surface, std::span<const double> levels,
@@ -27,7 +30,7 @@ BandMesh::BandMesh(const SurfaceArrays& surface, std::span<const double> levels,
     pieces += high(t) - low(t) + 1;
   }
   context.admit(surface.vertices.size() * 28 + surface.triangles.size() * (12 + kTriangleBytes) +
-                pieces * kPieceBytes);
+                pieces * kPieceBytes + (pieces - surface.triangles.size()) * kLineBytes);
   if (pieces >= kNone) {
     throw Error(ErrorCode::resource_exhausted,
                 "the levels cut the surface into more parts than 32 bits number: ask for fewer "

@@ -15,14 +15,14 @@ namespace {
 
 class CrossesLevel final : public AttributePredicate {
  public:
-  explicit CrossesLevel(std::vector<double> codes) : codes_(std::move(codes)) {}
+  explicit CrossesLevel(std::shared_ptr<const Ladder> codes) : codes_(std::move(codes)) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    const auto above_lowest = std::upper_bound(codes_.begin(), codes_.end(), a.heights.lo);
-    return above_lowest != codes_.end() && *above_lowest <= a.heights.hi;
+    const std::uint32_t above_lowest = codes_->at_or_below(a.heights.lo);
+    return above_lowest < codes_->steps().size() && codes_->steps()[above_lowest] <= a.heights.hi;
   }
 
  private:
-  std::vector<double> codes_;
+  std::shared_ptr<const Ladder> codes_;
 };
 
 /// The code of a level. Converting back and forth carries a few units of rounding of the offset and
@@ -46,6 +46,20 @@ Error too_many() {
 
 }  // namespace
 
+Ladder::Ladder(std::vector<double> steps) : steps_(std::move(steps)) {
+  const double width = steps_.back() - steps_.front();
+  const std::size_t slots = 8 * steps_.size();
+  const double per_slot = static_cast<double>(slots) / width;
+  per_slot_ = std::isfinite(per_slot) ? per_slot : 0;  // one step, or steps that almost touch
+  first_.resize(slots + 1);
+  for (std::size_t s = 0, i = 0; s < first_.size(); ++s) {
+    while (i < steps_.size() && slot(steps_[i]) < s) {
+      ++i;
+    }
+    first_[s] = static_cast<std::uint32_t>(i);
+  }
+}
+
 LevelSet::LevelSet(const std::vector<double>& levels, const HeightEncoding& encoding) {
   if (levels.empty()) {
     throw invalid("no level is given: expected at least one height");
@@ -61,17 +75,14 @@ LevelSet::LevelSet(const std::vector<double>& levels, const HeightEncoding& enco
     pairs.emplace_back(code_of(height, encoding), height);
   }
   std::sort(pairs.begin(), pairs.end());
+  std::vector<double> codes;
   for (const auto& [code, height] : pairs) {
-    if (codes_.empty() || codes_.back() != code) {
-      codes_.push_back(code);
+    if (codes.empty() || codes.back() != code) {
+      codes.push_back(code);
       heights_.push_back(height);
     }
   }
-}
-
-std::uint32_t LevelSet::band_of(double code) const noexcept {
-  return static_cast<std::uint32_t>(std::upper_bound(codes_.begin(), codes_.end(), code) -
-                                    codes_.begin());
+  codes_ = std::make_shared<const Ladder>(std::move(codes));
 }
 
 PredicatePtr LevelSet::crossing() const { return std::make_shared<CrossesLevel>(codes_); }

@@ -101,8 +101,13 @@ std::uint64_t refinement_bytes(std::uint64_t records) noexcept {
   return records * kRecordBytes + KeyTable::bytes_for(records);
 }
 
-Refinement::Refinement(const Tin& t0, bool track_pages) : tin_(t0), track_pages_(track_pages) {
-  ids_.reserve(tin_.vertices.size());
+Refinement::Refinement(const Tin& t0, bool track_pages) : track_pages_(track_pages) { restart(t0); }
+
+void Refinement::restart(const Tin& t0) {
+  tin_ = t0;
+  free_vertices_.clear();
+  free_triangles_.clear();
+  ids_.reset(tin_.vertices.capacity());
   for (VertexId v = 0; v < tin_.vertices.size(); ++v) {
     ids_.insert(key_of(tin_.position(v)), v);
   }

@@ -28,6 +28,9 @@ class Refinement {
   /// @param track_pages  Keep for each triangle the page of the record that made it.
   explicit Refinement(const Tin& t0, bool track_pages = false);
 
+  /// A copy of `t0` again, in the memory that there is: for one refinement after the other.
+  void restart(const Tin& t0);
+
   /// Applies `splits` in order of falling rank; equal ranks keep their order, and with it the
   /// file's locality. Together with what was applied before they must be closed under dependency,
   /// as the records of a monotone predicate are. Result: the TIN does not depend on the order of

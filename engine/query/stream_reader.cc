@@ -195,6 +195,7 @@ void StreamReader::take_start(std::span<const std::byte> payload) {
                    "is not what is");
     }
     tin_ = stream::numbered_by_key(tin_);
+    ++numbering_;
   }
   fingerprint_ = start.fingerprint;
   facts_ = facts;
@@ -239,6 +240,7 @@ void StreamReader::take_t0(std::span<const std::byte> payload) {
     reject("T0 is not what the start of the stream says");
   }
   tin_ = std::move(tin);
+  ++numbering_;
   t0_vertices_ = counts.vertices;
   expects_ = Expects::kSplits;
 }

@@ -43,6 +43,9 @@ class StreamReader {
   /// The mesh: every vertex and triangle is alive, and those that are there keep their ids until
   /// another stream begins.
   [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
+  /// Changes when vertices and triangles that are there get other ids: with T0 and with each stream
+  /// that goes on from another.
+  [[nodiscard]] std::uint64_t numbering() const noexcept { return numbering_; }
   /// What the mesh is certified for, where the stream was asked for; at least base_error.
   [[nodiscard]] const Certificate& certificate() const noexcept { return certificate_; }
   /// Of the file that the stream came from.
@@ -86,6 +89,7 @@ class StreamReader {
   std::string metadata_;
   std::uint64_t base_vertices_ = 0, base_digest_ = 0;
   std::uint64_t t0_vertices_ = 0;
+  std::uint64_t numbering_ = 0;
   std::uint64_t splits_ = 0, splits_in_all_ = 0;
   std::uint64_t digest_ = 0;  ///< Of the mesh.
   Certificate certificate_;

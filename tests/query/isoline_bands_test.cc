@@ -170,7 +170,7 @@ TEST(BandPolygons, RefuseWhatDoesNotFit) {
   for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = static_cast<double>(i) + 0.5;
   const QueryContext small({}, 1000, "test");
   EXPECT_THROW(static_cast<void>(band_polygons({s.vertices, s.triangles}, levels, small)), Error);
-  const QueryContext enough({}, 100000, "test");
+  const QueryContext enough({}, 250000, "test");
   EXPECT_EQ(band_polygons({s.vertices, s.triangles}, levels, enough).size(), 1001U);
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <random>
@@ -263,21 +264,51 @@ TEST(Isolines, DoNotDependOnTilesOrTemporaryFiles) {
   const LargeTerrain terrain;
   std::mt19937_64 random(3);
   IsolineRequest request;
-  request.levels = random_levels(random, terrain.hierarchy, 40);
+  request.levels = random_levels(random, terrain.hierarchy, 20);
   const Isolines whole = isolines(terrain.tin, request);
   EXPECT_EQ(whole.tiles, 1U);
-  request.memory_limit_bytes = 1 << 20;
+  request.memory_limit_bytes = 2 << 20;
   request.temporary_folder = std::filesystem::temp_directory_path().string();
   const Isolines tiled = isolines(terrain.tin, request);
   EXPECT_GT(tiled.tiles, 1U);
-  EXPECT_GT(tiled.points() * sizeof(MapPoint), request.memory_limit_bytes / 4);
+  EXPECT_GT(tiled.points() * sizeof(MapPoint), request.memory_limit_bytes / 8);
   EXPECT_EQ(tiled.crossed.segments, whole.crossed.segments);
   EXPECT_EQ(tiled.crossed.vertices, whole.crossed.vertices);
   EXPECT_TRUE(listing(whole) == listing(tiled));
   EXPECT_TRUE(pieces_of(whole) ==
               brute_force(terrain.hierarchy.full, terrain.hierarchy.facts, request.levels));
+  request.threads = 3;
+  request.memory_limit_bytes = 64 << 20;  // enough for each
+  EXPECT_TRUE(listing(whole) == listing(isolines(terrain.tin, request)));
+  request.memory_limit_bytes = 2 << 20;
   request.temporary_folder.clear();
   EXPECT_THROW(static_cast<void>(isolines(terrain.tin, request)), Error);
+}
+
+/// What is crossed does not fit though the records do: tiles are halved for it, and when that does
+/// not help the refusal says so in one sentence, before anything is handed out.
+TEST(Isolines, FitTheirMemoryWhateverIsCrossedOrAreRefused) {
+  const LargeTerrain terrain;
+  const StoreFacts& facts = terrain.hierarchy.facts;
+  IsolineRequest request;
+  const double step = (facts.max_height - facts.min_height) / 60;
+  for (int i = 0; i < 60; ++i) request.levels.push_back(facts.min_height + (i + 0.5) * step);
+  const Isolines whole = isolines(terrain.tin, request);
+  request.temporary_folder = std::filesystem::temp_directory_path().string();
+  request.memory_limit_bytes = 8 << 20;
+  const Isolines tiled = isolines(terrain.tin, request);
+  EXPECT_GT(tiled.tiles, 1U);
+  EXPECT_TRUE(listing(whole) == listing(tiled));
+  for (const std::uint64_t limit : {std::uint64_t{1} << 20, std::uint64_t{3} << 19}) {
+    request.memory_limit_bytes = limit;
+    try {
+      static_cast<void>(isolines(terrain.tin, request));
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::resource_exhausted);
+      EXPECT_NE(error.message().find("give more memory"), std::string::npos) << error.message();
+    }
+  }
 }
 
 TEST(Isolines, AreCountedBeforeTheyAreHandedOut) {
@@ -324,6 +355,30 @@ TEST(Levels, AreStoredHeightsWhereTheyAreMeant) {
   EXPECT_EQ(levels.band_of(15497.0), 2U);
   EXPECT_EQ(levels.band_of(15496.0), 1U);
   EXPECT_EQ(levels.band_of(-1.0), 0U);
+}
+
+TEST(Levels, LadderCountsWhatLiesAtOrBelow) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> anywhere(-1e4, 1e4);
+  for (int round = 0; round < 200; ++round) {
+    std::set<double> steps;
+    const double scale = std::pow(10.0, double(random() % 24) - 20);
+    for (std::size_t i = 0; i <= random() % 40; ++i) {
+      steps.insert(anywhere(random) * (i % 3 == 0 ? scale : 1));
+    }
+    const std::vector<double> sorted(steps.begin(), steps.end());
+    const Ladder ladder(sorted);
+    std::vector<double> asked = {-HUGE_VAL, HUGE_VAL, 0, 1e300, -1e300};
+    for (int i = 0; i < 200; ++i) asked.push_back(anywhere(random) * (i % 2 == 0 ? scale : 1));
+    for (const double s : sorted) {
+      asked.insert(asked.end(), {s, std::nextafter(s, -HUGE_VAL), std::nextafter(s, HUGE_VAL)});
+    }
+    for (const double v : asked) {
+      ASSERT_EQ(ladder.at_or_below(v),
+                std::upper_bound(sorted.begin(), sorted.end(), v) - sorted.begin())
+          << v;
+    }
+  }
 }
 
 TEST(Levels, AtAnIntervalAreThoseOfTheBase) {

@@ -92,7 +92,9 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin unstream dem.pts -o dem.ply\n"
      "  head -c 100000 dem.pts | ptin unstream - -o coarse.glb\n"
-     "  ptin unstream dem.pts more.pts -o dem.ply --json\n",
+     "  ptin unstream dem.pts more.pts -o dem.ply --json\n"
+     "  ptin unstream isolines.pts --level 500 1000 -o contours.gpkg\n"
+     "  ptin unstream isolines.pts --level 500 --steps -o arriving.gpkg\n",
      declare_unstream},
     {"highest", "Find the highest or lowest point of a window",
      "Exact, of the full TIN. Reads little more than what lies around the answer.\n\n"

@@ -3,10 +3,12 @@
 // ptin isoline: isolines as a vector layer, by gdal_contour's conventions.
 #include "engine/query/isoline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <thread>
 
 #include <ogr_geometry.h>
 
@@ -17,6 +19,7 @@
 #include "tools/output_file.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
+#include "tools/ptin/isoline_layer.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/cut.h"
 #include "tools/region/tin_mesh.h"
@@ -35,6 +38,7 @@ struct IsolineOptions {
   bool z = false;
   bool polygons = false;
   std::uint64_t max_lines = IsolineRequest{}.most_lines;
+  int threads = 0;
   std::string memory, output;
   bool overwrite = false;
 };
@@ -68,42 +72,12 @@ std::vector<double> levels_of(const IsolineOptions& options, const StoreFacts& f
   return levels_at(*options.interval, options.base, facts.min_height, facts.max_height);
 }
 
-struct Written {
-  std::uint64_t features = 0, rings = 0, points = 0;
-};
-
-Written write_lines(const Isolines& lines, const IsolineOptions& options, const std::string& wkt,
-                    const Context& context) {
-  VectorFile file(
-      options.output, options.overwrite,
-      {"contour",
-       options.z ? wkbLineString25D : wkbLineString,
-       {{"ID", VectorFile::FieldType::kInteger}, {"elev", VectorFile::FieldType::kReal}},
-       wkt});
-  Written written;
-  std::vector<MapPoint> points;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (i % 1024 == 0 && context.stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "cancelled while writing", options.output);
-    }
-    const Isoline line = lines.line(i, points);
-    const double elevation = lines.levels()[line.level];
-    const VectorFile::Value values[] = {static_cast<std::int64_t>(i), elevation};
-    file.add(line_geometry(line.points, options.z ? &elevation : nullptr), values);
-    ++written.features;
-    written.rings += line.ring ? 1 : 0;
-    written.points += line.points.size();
-  }
-  file.publish();
-  return written;
-}
-
-void report(const IsolineOptions& options, const Isolines& lines, const Written& written,
-            const CrsFacts& crs, const Context& context) {
+void report(const IsolineOptions& options, const Isolines& lines,
+            const IsolineLayer::Written& written, const CrsFacts& crs, const Context& context) {
   if (context.json) {
     print_json({{"output", options.output},
                 {"levels", lines.levels()},
-                {"lines", written.features},
+                {"lines", written.lines},
                 {"rings", written.rings},
                 {"points", written.points},
                 {"crossed",
@@ -118,7 +92,7 @@ void report(const IsolineOptions& options, const Isolines& lines, const Written&
                 {"cost", cost_json(lines.cost)}});
   } else if (!context.quiet && options.output != "-") {
     std::printf("%s: %s isolines (%s closed) at %zu levels, %s points; certified %s%s\n",
-                options.output.c_str(), grouped(written.features).c_str(),
+                options.output.c_str(), grouped(written.lines).c_str(),
                 grouped(written.rings).c_str(), lines.levels().size(),
                 grouped(written.points).c_str(), short_number(lines.certified_error).c_str(),
                 lines.exact ? "; exact" : "");
@@ -126,11 +100,12 @@ void report(const IsolineOptions& options, const Isolines& lines, const Written&
 }
 
 int run_lines(const IsolineOptions& options, const IsolineRequest& request,
-              const ProgressiveTin& terrain, const Context& context) {
-  const CrsFacts crs = crs_facts(terrain.store());
+              const ProgressiveTin& terrain, const CrsFacts& crs, const Context& context) {
   const Isolines lines = isolines(terrain, request);
-  const Written written = write_lines(lines, options, crs.wkt, context);
-  if (written.features == 0 && !context.quiet) {
+  IsolineLayer layer({options.output, options.overwrite, options.z, false, crs.wkt, context.stop});
+  const IsolineLayer::Written written = layer.add(lines);
+  layer.publish();
+  if (written.lines == 0 && !context.quiet) {
     std::fprintf(stderr, "ptin: warning: no surface crosses these levels; the layer is empty\n");
   }
   report(options, lines, written, crs, context);
@@ -202,9 +177,8 @@ std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelS
 }
 
 int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
-                 const ProgressiveTin& terrain, const Context& context) {
+                 const ProgressiveTin& terrain, const CrsFacts& crs, const Context& context) {
   const StoreFacts& facts = terrain.store().facts();
-  const CrsFacts crs = crs_facts(terrain.store());
   const LevelSet levels(request.levels, facts.heights);
   RefinedTin refined = refine_for_bands(request, levels, terrain);
   const Mesh mesh = request.window ? cut_to_region(refined, facts, *request.window)
@@ -214,6 +188,7 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
   for (std::size_t i = 0; i < levels.size(); ++i) {
     heights.push_back(facts.heights.height_of_code(levels.code(i)));
   }
+  // The refined mesh is gone by now, its cut copy and the polygons are counted together.
   const QueryContext query(request.stop, request.memory_limit_bytes, terrain.store().path());
   const std::vector<BandPolygon> polygons =
       band_polygons({mesh.vertices, mesh.triangles}, heights, query);
@@ -225,13 +200,15 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
                 options.terrain.file);
   }
   const std::uint64_t features = write_bands(polygons, levels, facts, options, crs.wkt);
+  const Certificate certificate = certify_below(terrain.store(), request.tolerance.value_or(-1.0));
   if (context.json) {
     print_json({{"output", options.output},
                 {"levels", levels.heights()},
                 {"features", features},
                 {"polygons", polygons.size()},
-                {"certified_error",
-                 certify_below(terrain.store(), request.tolerance.value_or(-1.0)).error},
+                {"certified_error", certificate.error},
+                {"certified_deviation", certificate.deviation},
+                {"exact", certificate.complete && facts.base_error == 0},
                 {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
                 {"cost", cost_json(refined.cost)}});
   } else if (!context.quiet && options.output != "-") {
@@ -261,9 +238,12 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   request.most_lines = options.max_lines;
   if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
   request.temporary_folder = folder_for_temporaries(options);
+  request.threads = options.threads > 0
+                        ? options.threads
+                        : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   request.stop = context.stop;
-  return options.polygons ? run_polygons(options, request, terrain, context)
-                          : run_lines(options, request, terrain, context);
+  return options.polygons ? run_polygons(options, request, terrain, crs, context)
+                          : run_lines(options, request, terrain, crs, context);
 }
 
 }  // namespace
@@ -300,6 +280,10 @@ Action declare_isoline(CLI::App& app, Context& context) {
                  "Memory for the extraction, as 512M or 2G (default 4G); what does not fit goes to "
                  "--tmp (default: OUT's folder)")
       ->type_name("SIZE");
+  app.add_option("--threads", options->threads,
+                 "Threads (default: all of the machine); the lines are the same for any number")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
   add_common_options(app, context, true);
   return [options, &context] { return run_isoline(*options, context); };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/query/levels.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -53,11 +54,8 @@ PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts) {
   if (const auto window = region_of(region, "")) parts.push_back(meets_region(*window, facts.map));
   if (serving.error) parts.push_back(error_above(*serving.error));
   if (!serving.levels.empty()) {
-    std::vector<PredicatePtr> levels;
-    for (const double level : serving.levels) {
-      levels.push_back(contains_height(level, facts.heights));
-    }
-    parts.push_back(any_of(std::move(levels)));
+    // By the rule of isolines, which knows that 254.97 is the stored height 25497 x 0.01.
+    parts.push_back(LevelSet(serving.levels, facts.heights).crossing());
   }
   return all_of(std::move(parts));
 }

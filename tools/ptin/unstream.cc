@@ -13,6 +13,7 @@
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
+#include "tools/ptin/stream_isolines.h"
 #include "tools/ptin/stream_request.h"
 #include "tools/region/tin_mesh.h"
 
@@ -23,6 +24,7 @@ namespace {
 struct UnstreamOptions {
   std::vector<std::string> inputs;
   std::string output;
+  StreamIsolineOptions isolines;
   bool overwrite = false;
 };
 
@@ -62,17 +64,21 @@ Serving serving_in(const nlohmann::json& metadata) {
 /// Reads streams one after the other, and notes what each brought.
 class Receiver {
  public:
-  explicit Receiver(std::string name) : reader_(std::move(name)) {}
+  /// @param isolines  Borrowed; follows what arrives. May be null.
+  Receiver(std::string name, StreamIsolines* isolines)
+      : reader_(std::move(name)), isolines_(isolines) {}
 
   void read(const std::string& path, const Context& context) {
     const File file = opened(path);
     std::vector<std::byte> buffer(std::size_t{1} << 20);
+    const std::size_t most = isolines_ != nullptr ? StreamIsolines::kFeedBytes : buffer.size();
     bool begun = false;
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
       begun = true;
       if (context.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
       for (std::span<const std::byte> rest(buffer.data(), n); !rest.empty();) {
-        rest = rest.subspan(reader_.feed(rest));
+        rest = rest.subspan(reader_.feed(rest.first(std::min(most, rest.size()))));
+        if (isolines_ != nullptr) isolines_->follow(reader_);
         within_ = !reader_.is_complete();
         if (!within_) note();
       }
@@ -94,6 +100,7 @@ class Receiver {
   }
 
   StreamReader reader_;
+  StreamIsolines* isolines_;
   nlohmann::json have_ = nlohmann::json::array();
   bool within_ = true;  ///< The last stream was not read to its end.
 };
@@ -146,18 +153,54 @@ void print_report(const Receiver& receiver, const RefinedTin& refined) {
   }
 }
 
-int run_unstream(const UnstreamOptions& options, const Context& context) {
-  if (!options.output.empty()) {
-    static_cast<void>(mesh_format_of(options.output));
+/// The isolines instead of the mesh.
+int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
+                   StreamIsolines& isolines, const Context& context) {
+  const nlohmann::json lines = isolines.finish(receiver.reader());
+  const RefinedTin refined = refined_of(receiver.reader());
+  if (context.json) {
+    nlohmann::json answer = answer_of(options, receiver, refined, {});
+    answer.erase("written");
+    answer["isolines"] = lines;
+    print_json(answer);
+  } else if (!context.quiet) {
+    print_report(receiver, refined);
+    std::fprintf(stderr, "%s isolines at %zu levels, kept up to date over %s splits\n",
+                 grouped(lines.at("lines")).c_str(), lines.at("levels").size(),
+                 grouped(lines.at("changed").at("splits")).c_str());
+  }
+  return kExitDone;
+}
+
+void check_options(const UnstreamOptions& options) {
+  if (!options.isolines.given()) {
+    if (options.isolines.steps || options.isolines.z || !options.isolines.window.empty()) {
+      throw Error(ErrorCode::invalid_argument,
+                  "--steps, --window and --3d are for isolines; give --level H... or --interval D");
+    }
+    if (!options.output.empty()) static_cast<void>(mesh_format_of(options.output));
+  } else if (!options.output.empty()) {
+    static_cast<void>(vector_format_of(options.output));
+  }
+  if (!options.output.empty() && options.output != "-") {
     check_output(options.output, options.overwrite);
   }
+}
+
+int run_unstream(const UnstreamOptions& options, const Context& context) {
+  check_options(options);
+  std::optional<StreamIsolines> isolines;
+  if (options.isolines.given()) {
+    isolines.emplace(options.isolines, options.output, options.overwrite, context.stop);
+  }
   std::string name = options.inputs.size() == 1 ? options.inputs.front() : "streams";
-  Receiver receiver(name == "-" ? "stdin" : std::move(name));
+  Receiver receiver(name == "-" ? "stdin" : std::move(name), isolines ? &*isolines : nullptr);
   for (const std::string& input : options.inputs) receiver.read(input, context);
   if (!receiver.reader().has_mesh()) {
     throw Error(ErrorCode::corruption,
                 "the stream ends before T0: nothing of it can be shown; get more of it");
   }
+  if (isolines) return write_isolines(options, receiver, *isolines, context);
   const RefinedTin refined = refined_of(receiver.reader());
   Mesh mesh = surface_mesh(refined, receiver.reader().facts());
   const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
@@ -180,8 +223,10 @@ Action declare_unstream(CLI::App& app, Context& context) {
   app.add_option("IN", options->inputs, "Streams, one after the other; - for stdin")->required();
   app.add_option(
          "-o,--output", options->output,
-         "The mesh to write; its extension chooses the format. None: only tell what arrived")
+         "The mesh to write, or with --level or --interval the layer of isolines; its extension "
+         "chooses the format. None: only tell what arrived")
       ->type_name("OUT");
+  add_stream_isoline_options(app, options->isolines);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
   add_common_options(app, context, true);
   return [options, &context] { return run_unstream(*options, context); };

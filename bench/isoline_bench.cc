@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Isolines (paper, section 5.2). The store: PTIN_BENCH_STORE, else srtm1_bigtujunga.
+//
+// IsolineOne/T      the middle height of the whole terrain, T threads: levels a second of wall
+// time,
+//                   records retrieved per vertex of a crossing triangle
+// IsolineTwenty/T   twenty levels at once
+// IsolineOneMesh    twenty levels where all is one mesh instead of tiles: what tiles are worth
+// ProgressiveSplit  the records of one level applied one by one, isolines kept up to date after
+//                   each: splits a second, triangles looked at a split
+#include <algorithm>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "bench/support/scratch.h"
+#include "engine/query/isoline.h"
+#include "engine/query/isoline_progressive.h"
+#include "engine/query/refinement.h"
+#include "engine/query/retrieval.h"
+#include "engine/query/total_order.h"
+
+namespace {
+
+using namespace ptin;
+
+const ProgressiveTin* terrain() {
+  static const std::string path = bench::bench_store();
+  if (path.empty()) return nullptr;
+  static const ProgressiveTin opened = ProgressiveTin::open(path);
+  return &opened;
+}
+
+bool skipped(benchmark::State& state) {
+  if (terrain() != nullptr) return false;
+  state.SkipWithError("no store: set PTIN_BENCH_STORE");
+  return true;
+}
+
+/// Evenly between the lowest and the highest height.
+std::vector<double> levels_between(int count) {
+  const StoreFacts& f = terrain()->store().facts();
+  std::vector<double> levels;
+  for (int i = 1; i <= count; ++i) {
+    levels.push_back(f.min_height + (f.max_height - f.min_height) * i / (count + 1));
+  }
+  return levels;
+}
+
+void extract(benchmark::State& state, int levels) {
+  if (skipped(state)) return;
+  IsolineRequest request;
+  request.levels = levels_between(levels);
+  request.threads = static_cast<int>(state.range(0));
+  double per_vertex = 0;
+  double segments = 0;
+  for (auto _ : state) {
+    const Isolines lines = isolines(*terrain(), request);
+    segments = static_cast<double>(lines.crossed.segments);
+    per_vertex = static_cast<double>(lines.cost.records_retrieved) /
+                 static_cast<double>(std::max<std::uint64_t>(lines.crossed.vertices, 1));
+  }
+  state.counters["records/vertex"] = per_vertex;
+  state.counters["segments"] = segments;
+  state.counters["segments/s"] =
+      benchmark::Counter(segments, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void IsolineOne(benchmark::State& state) { extract(state, 1); }
+BENCHMARK(IsolineOne)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void IsolineTwenty(benchmark::State& state) { extract(state, 20); }
+BENCHMARK(IsolineTwenty)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void IsolineOneMesh(benchmark::State& state) {
+  if (skipped(state)) return;
+  const StoreFacts& facts = terrain()->store().facts();
+  const LevelSet levels(levels_between(20), facts.heights);
+  const PredicatePtr crossing = levels.crossing();
+  for (auto _ : state) {
+    RefineRequest request;
+    request.also = crossing.get();
+    const RefinedTin refined = terrain()->refine(request);
+    const ProgressiveIsolines lines(refined.tin, levels, facts.heights, facts.map);
+    benchmark::DoNotOptimize(lines.lines(refined.tin, QueryContext({}, ~0ULL, "")).size());
+  }
+}
+BENCHMARK(IsolineOneMesh)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void ProgressiveSplit(benchmark::State& state) {
+  if (skipped(state)) return;
+  const StoreFacts& facts = terrain()->store().facts();
+  const LevelSet levels(levels_between(1), facts.heights);
+  QueryContext context({}, ~0ULL, terrain()->store().path());
+  std::vector<PendingSplit> splits =
+      retrieve({terrain()->store(), terrain()->index()}, *levels.crossing(), 0, context);
+  std::sort(splits.begin(), splits.end(), is_before);
+  IsolineChange all;
+  for (auto _ : state) {
+    state.PauseTiming();
+    Refinement mesh(terrain()->t0());
+    ProgressiveIsolines kept(mesh.tin(), levels, facts.heights, facts.map);
+    all = {};
+    state.ResumeTiming();
+    for (const PendingSplit& split : splits) {
+      mesh.apply({&split, 1}, context);
+      all.triangles += kept.advance(mesh.tin()).triangles;
+    }
+  }
+  const auto count = static_cast<double>(splits.size());
+  state.counters["splits/s"] =
+      benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["triangles/split"] = static_cast<double>(all.triangles) / count;
+}
+BENCHMARK(ProgressiveSplit)->Unit(benchmark::kMillisecond);
+
+}  // namespace

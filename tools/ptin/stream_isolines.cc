@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/stream_isolines.h"
+
+#include <utility>
+
+#include "engine/error.h"
+#include "tools/ptin/crs_facts.h"
+
+namespace ptin::tools {
+
+void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options) {
+  auto* level = app.add_option("--level,--fl", options.levels,
+                               "Write isolines at these heights instead of the mesh")
+                    ->type_name("H...");
+  auto* interval = app.add_option("-i,--interval", options.interval,
+                                  "The same at every multiple of D, from the base")
+                       ->type_name("D")
+                       ->excludes(level);
+  app.add_option("--base,--off", options.base, "Where the intervals are counted from (default 0)")
+      ->type_name("B")
+      ->needs(interval);
+  app.add_option("--window", options.window, "Cut the isolines at a window, in map units")
+      ->expected(4)
+      ->type_name("XMIN YMIN XMAX YMAX");
+  app.add_flag("--3d", options.z, "Points of isolines carry the height of their line");
+  app.add_flag("--steps", options.steps,
+               "The isolines of T0 and after every frame, told apart by the fields step, splits "
+               "and error");
+}
+
+StreamIsolines::StreamIsolines(const StreamIsolineOptions& options, std::string output,
+                               bool overwrite, std::stop_token stop)
+    : options_(options), output_(std::move(output)), overwrite_(overwrite), stop_(std::move(stop)) {
+  RegionOptions region;
+  region.window = options.window;
+  if (const auto window = region_of(region, "")) {
+    window_ = std::get<Window>(*window);
+  }
+}
+
+void StreamIsolines::follow(const StreamReader& reader) {
+  if (!reader.has_mesh()) {
+    return;
+  }
+  if (!isolines_) {
+    begin(reader);
+  } else if (reader.numbering() != numbering_) {
+    isolines_->restart(reader.tin());
+  } else {
+    const IsolineChange change = isolines_->advance(reader.tin());
+    if (change.splits == 0) {
+      return;
+    }
+    change_.splits += change.splits, change_.triangles += change.triangles;
+    change_.removed += change.removed, change_.added += change.added;
+  }
+  numbering_ = reader.numbering();
+  if (options_.steps) {
+    write(reader);
+  }
+}
+
+void StreamIsolines::begin(const StreamReader& reader) {
+  const StoreFacts& facts = reader.facts();
+  const std::vector<double> levels =
+      options_.interval
+          ? levels_at(*options_.interval, options_.base, facts.min_height, facts.max_height)
+          : options_.levels;
+  if (levels.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "no multiple of the interval lies within the heights of the terrain; give a "
+                "smaller --interval, or --base");
+  }
+  isolines_.emplace(reader.tin(), LevelSet(levels, facts.heights), facts.heights, facts.map);
+  if (!output_.empty()) {
+    const nlohmann::json metadata = nlohmann::json::parse(reader.metadata(), nullptr, false);
+    const std::string wkt = metadata.is_object() ? crs_facts_of(metadata).wkt : std::string();
+    layer_ = std::make_unique<IsolineLayer>(
+        IsolineLayer::Options{output_, overwrite_, options_.z, options_.steps, wkt, stop_});
+  }
+}
+
+void StreamIsolines::write(const StreamReader& reader) {
+  const QueryContext context(stop_, std::uint64_t{4} << 30, output_);
+  const Isolines lines = isolines_->lines(reader.tin(), context);
+  const IsolineStep step{steps_.size(), reader.tin().vertices.size() - reader.t0_vertices(),
+                         reader.certificate().error};
+  last_ = {lines.size(), 0, lines.points()};
+  if (layer_) {
+    last_ = layer_->add(lines, step, window_);
+  }
+  steps_.push_back({{"splits", step.splits},
+                    {"certified_error", step.certified_error},
+                    {"lines", last_.lines},
+                    {"points", last_.points}});
+}
+
+nlohmann::json StreamIsolines::finish(const StreamReader& reader) {
+  if (!options_.steps) {
+    write(reader);
+  }
+  if (layer_) {
+    layer_->publish();
+  }
+  return {{"levels", isolines_->levels().heights()},
+          {"lines", last_.lines},
+          {"points", last_.points},
+          {"steps", steps_},
+          {"changed",
+           {{"splits", change_.splits},
+            {"triangles", change_.triangles},
+            {"pieces_removed", change_.removed},
+            {"pieces_added", change_.added}}}};
+}
+
+}  // namespace ptin::tools

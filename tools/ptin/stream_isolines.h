@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The isolines of a stream, kept up to date while it arrives (paper, section 5.2).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/query/isoline_progressive.h"
+#include "engine/query/stream_reader.h"
+#include "tools/ptin/command.h"
+#include "tools/ptin/isoline_layer.h"
+#include "tools/ptin/query_options.h"
+
+namespace ptin::tools {
+
+/// --level, --interval, --base, --window, --3d, --steps.
+struct StreamIsolineOptions {
+  std::vector<double> levels;
+  std::optional<double> interval;
+  double base = 0.0;
+  std::vector<double> window;
+  bool z = false;
+  bool steps = false;
+
+  [[nodiscard]] bool given() const { return !levels.empty() || interval; }
+};
+void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options);
+
+/// Follows a reader and writes the isolines of its mesh: of what arrived in the end, or after T0
+/// and after every frame.
+class StreamIsolines {
+ public:
+  StreamIsolines(const StreamIsolineOptions& options, std::string output, bool overwrite,
+                 std::stop_token stop);
+
+  /// Bytes after which follow() wants to be called: so few that it sees T0, and every frame, alone.
+  static constexpr std::size_t kFeedBytes = 256;
+
+  /// To be called when bytes were fed. Cost: what changed (isoline_progressive.h), and with --steps
+  /// the lines.
+  void follow(const StreamReader& reader);
+  /// Writes what is left to write, publishes, and tells what there was.
+  [[nodiscard]] nlohmann::json finish(const StreamReader& reader);
+
+ private:
+  void begin(const StreamReader& reader);
+  void write(const StreamReader& reader);
+
+  StreamIsolineOptions options_;
+  std::string output_;
+  bool overwrite_;
+  std::stop_token stop_;
+  std::optional<Window> window_;
+  std::optional<ProgressiveIsolines> isolines_;
+  std::unique_ptr<IsolineLayer> layer_;  ///< None without an output.
+  IsolineChange change_;                 ///< Of all splits.
+  std::uint64_t numbering_ = 0;          ///< Of the mesh that isolines_ follow.
+  IsolineLayer::Written last_;
+  nlohmann::json steps_ = nlohmann::json::array();
+};
+
+}  // namespace ptin::tools
