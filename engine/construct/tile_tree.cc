@@ -55,12 +55,12 @@ std::uint64_t TileTree::leaf_number(const SampleRange& window) const noexcept {
 
 std::int64_t TileTree::default_side(std::int64_t width, std::int64_t height) noexcept {
   constexpr std::int64_t kStep = 32;
-  const std::int64_t longer = std::max(width, height);
+  const std::int64_t longer = std::max(width, height) - 1;
   std::int64_t side = 256;
-  while (side * side < 10 * longer) {
+  while (side * side < 4 * longer) {
     side += kStep;
   }
-  return longer <= side + side / 2 ? longer : side;
+  return longer + 1 <= side + side / 2 ? longer + 1 : side;
 }
 
 std::vector<TileId> TileTree::children(const TileId& id) const {

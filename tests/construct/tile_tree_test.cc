@@ -66,8 +66,9 @@ RC_GTEST_PROP(TileTree, LeavesCoverEveryCellOnce,
 TEST(TileTree, TheDefaultSideDependsOnTheRasterAlone) {
   EXPECT_EQ(TileTree::default_side(350, 300), 350);
   EXPECT_EQ(TileTree::default_side(1201, 1201), 256);
-  EXPECT_EQ(TileTree::default_side(16385, 16385), 416);
-  EXPECT_EQ(TileTree::default_side(100000, 100000), 1024);
+  EXPECT_EQ(TileTree::default_side(16385, 16385), 256);
+  EXPECT_EQ(TileTree::default_side(32769, 16385), 384);
+  EXPECT_EQ(TileTree::default_side(100000, 100000), 640);
 }
 
 }  // namespace
