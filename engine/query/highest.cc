@@ -18,6 +18,7 @@ namespace ptin {
 
 namespace {
 
+constexpr std::size_t kStopInterval = 4096;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A vertex that may be among the highest. `value` is its code, negated when the lowest are wanted.
@@ -162,6 +163,14 @@ std::vector<Corner> clipped(std::vector<Corner> polygon, const Rectangle& r) {
   return polygon;
 }
 
+/// A corner of the window in spots; what lies beyond the domain's box does so by two grid units.
+Spot spot_of_clamped(double x, double y, const GridBox& b) {
+  const auto spot = [](double v, std::int32_t low, std::int32_t high) {
+    return std::llround(std::ldexp(std::clamp(v, low - 2.0, high + 2.0), kSpotBits));
+  };
+  return {spot(x, b.min_x, b.max_x), spot(y, b.min_y, b.max_y)};
+}
+
 class Search {
  public:
   Search(const ProgressiveTin& terrain, const HighestRequest& request)
@@ -183,6 +192,9 @@ class Search {
 
   HighestResult run() {
     HighestResult result;
+    result.certified_error = facts_.base_error;
+    result.certified_deviation = facts_.base_deviation;
+    result.exact = facts_.base_error == 0;
     if (region_ && !region_->meets(facts_.bounds)) {
       result.state = HighestResult::State::kOutside;
       return result;
@@ -282,6 +294,9 @@ class Search {
     }
     const Rectangle window = rectangle();
     for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+      if (t % kStopInterval == 0) {
+        context_.check_stop();
+      }
       if (!tin.is_alive(t) || tin.classes[t] != TriangleClass::kSurface) {
         continue;
       }
@@ -306,8 +321,40 @@ class Search {
       }
     }
     if (most == -kInfinity) {
-      result.state = HighestResult::State::kVoid;
+      result.state = meets_domain() ? HighestResult::State::kVoid : HighestResult::State::kOutside;
+      return;
     }
+    result.height_min = result.point.height - facts_.base_deviation;
+    result.height_max = result.point.height + facts_.base_deviation;
+  }
+
+  /// Whether the window and some triangle of T0, which cover the domain, share a point. Exact, of
+  /// corners taken to spots.
+  [[nodiscard]] bool meets_domain() const {
+    const GridBox& b = facts_.bounds;
+    const Rectangle r = rectangle();
+    const Spot low = spot_of_clamped(r.min_x, r.min_y, b);
+    const Spot high = spot_of_clamped(r.max_x, r.max_y, b);
+    const std::array<Spot, 4> corners{low, Spot{high.x, low.y}, high, Spot{low.x, high.y}};
+    const Tin& t0 = terrain_.t0();
+    return std::any_of(t0.triangles.begin(), t0.triangles.end(), [&](const Triangle& t) {
+      GridBox box = box_of(t0.position(t.v[0]));
+      box = united(united(box, box_of(t0.position(t.v[1]))), box_of(t0.position(t.v[2])));
+      const Spot box_low = spot_of(GridPoint{box.min_x, box.min_y});
+      const Spot box_high = spot_of(GridPoint{box.max_x, box.max_y});
+      if (high.x < box_low.x || high.y < box_low.y || box_high.x < low.x || box_high.y < low.y) {
+        return false;
+      }
+      for (int i = 0; i < 3; ++i) {  // no side has all of the window beyond it
+        const GridPoint from = t0.position(t.v[i]);
+        const GridPoint to = t0.position(t.v[next_corner(i)]);
+        if (std::all_of(corners.begin(), corners.end(),
+                        [&](Spot s) { return side(from, to, s) < 0; })) {
+          return false;
+        }
+      }
+      return true;
+    });
   }
 
   const ProgressiveTin& terrain_;

@@ -27,21 +27,29 @@ struct HeightAt {
 };
 
 struct HighestResult {
-  /// Why there is no point: the window lies outside of the domain, or holds nothing but voids.
+  /// Why there is no point: the window lies outside of the domain (its hull, not its box), or holds
+  /// nothing but voids.
   enum class State : std::uint8_t { kSurface, kVoid, kOutside };
   State state = State::kSurface;
   /// The highest point of the surface in the window: one of several, when there are. At a vertex,
   /// or on the window's border, where an edge crosses it or at its corner.
   HeightAt point;
   bool at_vertex = false;
+  /// The source's highest lies between, where its surface is the file's; equal when exact.
+  double height_min = 0, height_max = 0;
   /// The highest vertices in the window, falling; fewer when it holds fewer. Of equal ones those
   /// that are found first: the same for the same file and request.
   std::vector<HeightAt> vertices;
+  /// Of the file from its source, at samples and at any point: its own, since no record that
+  /// matters is left out. 0 when exact.
+  double certified_error = 0, certified_deviation = 0;
+  bool exact = false;  ///< The file left nothing out.
   QueryCost cost;
 };
 
-/// Finds them. Exact: of the full TIN, heights at vertices as stored; on the window's border
-/// interpolated, with the rounding of a few operations.
+/// Finds them. Always of the full TIN (best first, a tolerance would spare next to nothing):
+/// heights at vertices as stored; on the window's border interpolated, with the rounding of a few
+/// operations.
 /// @throws Error invalid_argument    the window is inverted or not finite; no vertex is asked for
 ///               resource_exhausted, corruption, io_error, cancelled
 /// Cost: the pages and nodes whose height interval reaches above the k-th highest vertex of the

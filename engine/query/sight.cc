@@ -24,14 +24,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 }
 
 void check(const SightRequest& r) {
-  if (!(r.curvature >= 0) || !std::isfinite(r.curvature)) {
-    throw_invalid(
-        "the curvature coefficient is negative or not finite: expected 0 (a flat Earth) "
-        "to 1 (no refraction)");
-  }
-  if (!(r.earth_diameter > 0)) {
-    throw_invalid("the Earth's diameter is not positive");
-  }
+  ptin::check(r.curvature);
   if (!(r.wavelength >= 0) || !std::isfinite(r.wavelength)) {
     throw_invalid("the wavelength is negative or not finite");
   }
@@ -211,6 +204,8 @@ double SightSolver::Impl::ground_length(const SightPair& pair) const {
 
 SightResult SightSolver::Impl::solve(const SightPair& pair) {
   const auto start = std::chrono::steady_clock::now();
+  QueryContext context(request_.stop, request_.memory_limit_bytes, terrain_.store().path());
+  context.check_stop();
   const Spot p = spot_of_end(pair.a, pair.height_a);
   const Spot q = spot_of_end(pair.b, pair.height_b);
   SightResult result;
@@ -218,7 +213,6 @@ SightResult SightSolver::Impl::solve(const SightPair& pair) {
     answer_upright(pair, result);
   } else {
     renew_mesh();
-    QueryContext context(request_.stop, request_.memory_limit_bytes, terrain_.store().path());
     is_spoilt_ = true;
     answer(pair, p, q, context, result);
     is_spoilt_ = false;
@@ -233,7 +227,7 @@ SightResult SightSolver::Impl::solve(const SightPair& pair) {
 void SightSolver::Impl::answer(const SightPair& pair, Spot p, Spot q, QueryContext& context,
                                SightResult& result) {
   result.length = ground_length(pair);
-  const double bend = request_.curvature * result.length * result.length / request_.earth_diameter;
+  const double bend = request_.curvature.drop_at(result.length);
   SightSearch search(facts_, request_, *mesh_, context, step_);
   search.begin(p, q, pair, bend, 0);
   if (facts_.has_voids) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stop_token>
 
+#include "engine/query/curvature.h"
 #include "engine/query/locate.h"
 
 namespace ptin {
@@ -24,10 +25,7 @@ struct SightPair {
 
 struct SightRequest {
   bool absolute = false;  ///< Heights of the ends are absolute.
-  /// Share of the Earth's curvature that light feels: GDAL's coefficient, 1 - refraction; 0 is a
-  /// flat Earth.
-  double curvature = 0.85714;
-  double earth_diameter = 2 * 6378137.0;  ///< Height's unit.
+  Curvature curvature;
   /// Ground distance of two map positions in the height's unit (a geographic CRS: along the
   /// ellipsoid). None: the plane distance in map units.
   std::function<double(MapPoint, MapPoint)> ground_distance;

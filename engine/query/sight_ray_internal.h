@@ -35,7 +35,7 @@ struct Lowest {
 /// within intervals.
 struct Ray {
   Interval a, b;      ///< Heights of the ends, height's unit.
-  double bend = 0.0;  ///< curvature * length^2 / diameter.
+  double bend = 0.0;  ///< Curvature::drop_at(length).
 
   [[nodiscard]] double low(double s) const noexcept { return at(a.lo, b.lo, s); }
   [[nodiscard]] double high(double s) const noexcept { return at(a.hi, b.hi, s); }

@@ -9,7 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/query/horizon.h"
-#include "engine/query/walk.h"
+#include "engine/query/viewshed_walk_internal.h"
 
 namespace ptin {
 
@@ -18,6 +18,8 @@ namespace {
 constexpr std::size_t kStopInterval = 4096;
 constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1;
 constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
+constexpr double kMostBuckets = 65536;
+constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few pieces in each
 
 Error invalid(const char* message) { return Error(ErrorCode::invalid_argument, message); }
 
@@ -34,9 +36,9 @@ void check(const ViewshedRequest& r) {
   if (r.pixel_size && !(*r.pixel_size > 0 && std::isfinite(*r.pixel_size))) {
     throw invalid("the pixel size must be a number > 0");
   }
-  if (!std::isfinite(r.curvature) || !(r.earth_radius > 0) || !(r.ground_per_map_x > 0) ||
-      !(r.ground_per_map_y > 0)) {
-    throw invalid("curvature, earth radius or ground units are not what they should be");
+  check(r.curvature);
+  if (!(r.ground_per_map_x > 0) || !(r.ground_per_map_y > 0)) {
+    throw invalid("the ground units of a map unit are not numbers > 0");
   }
 }
 
@@ -63,8 +65,11 @@ class Viewer {
 
   Viewshed run() {
     find_eye_height();
+    if (request_.pixels) {
+      place_pixels();
+    }
+    admit();
     place_vertices();
-    place_pixels();
     sweep();
     collect();
     return std::move(result_);
@@ -72,10 +77,21 @@ class Viewer {
 
  private:
   void find_eye_height();
+  void admit() const;
   void place_vertices();
   void place_pixels();
   void sweep();
+  void walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon);
   void collect();
+  [[nodiscard]] bool sees(const Offset& p, Spot spot, Horizon::Side side, const Horizon& horizon);
+  [[nodiscard]] std::size_t buckets() const noexcept {
+    const double across = std::max(request_.radius / ground_x_, request_.radius / ground_y_);
+    return static_cast<std::size_t>(std::clamp(4 * across, 64.0, kMostBuckets));
+  }
+  [[nodiscard]] Spot spot_at(const Offset& p) const noexcept {
+    return {spot_.x + std::llround(std::ldexp(p.x, kSpotBits)),
+            spot_.y + std::llround(std::ldexp(p.y, kSpotBits))};
+  }
   void look_at(TriangleId t, Horizon& horizon);
   void look_at_pixels(TriangleId t, const Horizon& horizon);
   void look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column, std::int64_t row);
@@ -83,7 +99,7 @@ class Viewer {
   [[nodiscard]] double drop(double x, double y) const noexcept {
     const double gx = x * ground_x_;
     const double gy = y * ground_y_;
-    return request_.curvature * (gx * gx + gy * gy) / (2 * request_.earth_radius);
+    return request_.curvature.drop_at_square(gx * gx + gy * gy);
   }
   [[nodiscard]] bool within(double x, double y) const noexcept {
     const double gx = x * ground_x_;
@@ -109,12 +125,14 @@ class Viewer {
   const QueryContext& context_;
   Spot spot_;
   MapPoint eye_;  ///< The spot in grid units.
+  TriangleId eye_triangle_ = 0;
   double ground_x_ = 1, ground_y_ = 1;
   std::vector<Offset> offsets_;       ///< Beside the vertices: grid units, and height's unit.
   std::vector<Sight> seen_;           ///< Beside the vertices; kNothing: not looked at yet.
   double pixel_x_ = 1, pixel_y_ = 1;  ///< Grid units.
   double first_x_ = 0, first_y_ = 0;  ///< Offset of pixel 0.
   bool pixels_on_grid_ = false;
+  std::optional<WalkedView> walked_;  ///< Once no order is left.
   Viewshed result_;
 };
 
@@ -123,6 +141,7 @@ void Viewer::find_eye_height() {
   if (place.lies == Lies::kOutside) {
     throw invalid("the observer stands outside of the terrain");
   }
+  eye_triangle_ = place.triangle;
   result_.eye_height = request_.eye_height;
   if (request_.absolute) {
     return;
@@ -135,11 +154,20 @@ void Viewer::find_eye_height() {
   result_.eye_height += facts_.heights.height_of_code(code_at(tin_, facts_.heights, footing));
 }
 
+void Viewer::admit() const {
+  context_.admit(std::uint64_t{result_.width} * result_.height +
+                 tin_.vertices.size() * (sizeof(Vertex) + 1 + kVertexBytes +
+                                         (request_.vertices ? sizeof(Viewshed::Target) : 0)) +
+                 tin_.triangles.size() * (sizeof(Triangle) + 1 + kTriangleBytes) +
+                 buckets() * kBucketBytes);
+}
+
 void Viewer::place_vertices() {
-  context_.admit(tin_.vertices.size() * (sizeof(Vertex) + 1 + kVertexBytes) +
-                 tin_.triangles.size() * (sizeof(Triangle) + 1 + kTriangleBytes));
   offsets_.reserve(tin_.vertices.size());
   for (const Vertex& v : tin_.vertices) {
+    if (offsets_.size() % kStopInterval == 0) {
+      context_.check_stop();
+    }
     const double x = v.position.x - eye_.x;
     const double y = v.position.y - eye_.y;
     offsets_.push_back({x, y, facts_.heights.height(v.height) - result_.eye_height - drop(x, y)});
@@ -162,7 +190,7 @@ void Viewer::place_pixels() {
   const double centre_y = pixels_on_grid_ ? std::floor(eye_.y + 0.5) - eye_.y : 0.0;
   result_.width = static_cast<std::uint32_t>(2 * reach_x) + 1;
   result_.height = static_cast<std::uint32_t>(2 * reach_y) + 1;
-  context_.admit(std::uint64_t{result_.width} * result_.height);
+  context_.admit(std::uint64_t{result_.width} * result_.height);  // before it is taken
   first_x_ = centre_x - reach_x * pixel_x_;
   first_y_ = centre_y + reach_y * pixel_y_;
   result_.first = facts_.map.to_map(eye_.x + first_x_, eye_.y + first_y_);
@@ -178,6 +206,9 @@ void Viewer::sweep() {
   std::vector<TriangleId> ready;
   std::size_t left = 0;
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    if (t % kStopInterval == 0) {
+      context_.check_stop();
+    }
     if (!tin_.is_alive(t)) {
       continue;
     }
@@ -194,13 +225,15 @@ void Viewer::sweep() {
       ready.push_back(t);
     }
   }
-  const double across = std::max(request_.radius / ground_x_, request_.radius / ground_y_);
-  Horizon horizon(static_cast<std::size_t>(std::clamp(4 * across, 64.0, 65536.0)));
-  for (std::size_t next = 0; next < ready.size(); ++next) {
-    if (next % kStopInterval == 0) {
+  Horizon horizon(buckets());
+  // The last that became ready comes first: any order that keeps front before back does, and this
+  // one stays where the mesh and the horizon are in the cache.
+  while (!ready.empty()) {
+    if (left % kStopInterval == 0) {
       context_.check_stop();
     }
-    const TriangleId t = ready[next];
+    const TriangleId t = ready.back();
+    ready.pop_back();
     --left;
     look_at(t, horizon);
     const auto o = offsets(t);
@@ -220,13 +253,28 @@ void Viewer::sweep() {
     }
   }
   if (left != 0) {
-    // Triangles can hide one another in a ring only where the mesh is far from Delaunay.
-    throw Error(ErrorCode::invalid_argument,
-                "around this observer some triangles lie in front of one another in a ring, so "
-                "they have no order from front to back: move the observer a little, or ask for "
-                "another error",
-                context_.file());
+    walk_to_others(waits, horizon);
   }
+}
+
+/// Triangles that hide one another in a ring, and all behind: only where the mesh is far from
+/// Delaunay.
+void Viewer::walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon) {
+  walked_.emplace(tin_, offsets_, spot_);
+  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    if (tin_.is_alive(t) && waits[t] != 0) {
+      context_.check_stop();
+      look_at(t, horizon);
+    }
+  }
+}
+
+bool Viewer::sees(const Offset& p, Spot spot, Horizon::Side side, const Horizon& horizon) {
+  if (!walked_) {
+    return horizon.sees(p, side);
+  }
+  ++result_.walked_targets;
+  return walked_->sees(spot, p.z, eye_triangle_);
 }
 
 /// The ray to a corner comes through the triangle when the eye is on the inner side of both sides
@@ -267,10 +315,10 @@ void Viewer::look_at(TriangleId t, Horizon& horizon) {
     const Approach approach = approach_corner(o, i);
     if (approach.from_within) {
       p.z += request_.target_height;
-      see(seen_[v], horizon.sees(p, approach.side));
+      see(seen_[v], sees(p, spot_of(tin_.position(v)), approach.side, horizon));
     }
   }
-  if (is_surface(t)) {
+  if (request_.pixels && is_surface(t)) {
     look_at_pixels(t, horizon);
   }
 }
@@ -344,16 +392,21 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
     p.z += weights[i] / sum * (o[i].z + drop(o[i].x, o[i].y));
   }
   p.z += request_.target_height - drop(p.x, p.y);
-  see(pixel, horizon.sees(p, side));
+  see(pixel, sees(p, walked_ ? spot_at(p) : spot_, side, horizon));
 }
 
 void Viewer::collect() {
   for (VertexId v = 0; v < seen_.size(); ++v) {
+    if (v % kStopInterval == 0) {
+      context_.check_stop();
+    }
     if (seen_[v] == Sight::kNothing || !touches_surface(tin_, v)) {
       continue;
     }
     const Offset& o = offsets_[v];
-    if (pixels_on_grid_) {
+    const bool visible = seen_[v] == Sight::kVisible;
+    ++(visible ? result_.visible_vertices : result_.hidden_vertices);
+    if (request_.pixels && pixels_on_grid_) {
       const auto column = static_cast<std::int64_t>(std::llround(o.x - first_x_));
       const auto row = static_cast<std::int64_t>(std::llround(first_y_ - o.y));
       if (column >= 0 && row >= 0 && column < result_.width && row < result_.height) {
@@ -361,10 +414,11 @@ void Viewer::collect() {
                        static_cast<std::size_t>(column)] = seen_[v];
       }
     }
-    const GridPoint p = tin_.position(v);
-    result_.vertices.push_back({facts_.map.to_map(p.x, p.y),
-                                facts_.heights.height(tin_.vertices[v].height),
-                                seen_[v] == Sight::kVisible});
+    if (request_.vertices) {
+      const GridPoint p = tin_.position(v);
+      result_.vertices.push_back(
+          {facts_.map.to_map(p.x, p.y), facts_.heights.height(tin_.vertices[v].height), visible});
+    }
   }
   for (const Sight s : result_.pixels) {
     result_.visible_pixels += s == Sight::kVisible ? 1 : 0;
@@ -390,6 +444,7 @@ Viewshed viewshed(const ProgressiveTin& terrain, const ViewshedRequest& request)
   const QueryContext context(request.stop, request.memory_limit_bytes, store.path());
   Viewshed result = Viewer(refined.tin, store.facts(), request, context).run();
   result.certified_error = refined.certified_error;
+  result.certified_deviation = refined.certified_deviation;
   result.exact = refined.exact;
   result.cost = refined.cost;
   result.cost.seconds =

@@ -23,7 +23,7 @@ using reference::TemporaryStore;
 struct Brute {
   double most = -INFINITY;       ///< Of the surface in the window.
   std::vector<double> vertices;  ///< Falling.
-  bool surface = false;
+  bool domain = false;           ///< Some triangle, void or not, meets the window.
 };
 
 /// The largest value of a linear function on a triangle within a rectangle lies at a corner, at a
@@ -35,7 +35,11 @@ Brute brute_force(const Hierarchy& h, const Window& w, double sign) {
     return w.min_x <= p.x && p.x <= w.max_x && w.min_y <= p.y && p.y <= w.max_y;
   };
   for (TriangleId t = 0; t < h.full.triangles.size(); ++t) {
-    if (h.full.classes[t] != TriangleClass::kSurface) continue;
+    const bool surface = h.full.classes[t] == TriangleClass::kSurface;
+    const auto reach = [&](double value) {
+      b.domain = true;
+      if (surface) b.most = std::max(b.most, value);
+    };
     MapPoint p[3];
     double z[3];
     for (int i = 0; i < 3; ++i) {
@@ -43,9 +47,9 @@ Brute brute_force(const Hierarchy& h, const Window& w, double sign) {
       p[i] = h.facts.map.to_map(h.full.position(v).x, h.full.position(v).y);
       z[i] = sign * h.facts.heights.height(h.full.vertices[v].height);
       if (inside(p[i])) {
-        b.most = std::max(b.most, z[i]);
-        if (seen[v] == 0) b.vertices.push_back(z[i]);
-        seen[v] = 1;
+        reach(z[i]);
+        if (surface && seen[v] == 0) b.vertices.push_back(z[i]);
+        seen[v] = surface ? 1 : seen[v];
       }
     }
     for (int i = 0; i < 3; ++i) {
@@ -54,7 +58,7 @@ Brute brute_force(const Hierarchy& h, const Window& w, double sign) {
         if ((u0 < at) == (u1 < at) || u0 == u1) return;
         const double s = (at - u0) / (u1 - u0);
         const MapPoint q{x ? at : a.x + s * (c.x - a.x), x ? a.y + s * (c.y - a.y) : at};
-        if (inside(q)) b.most = std::max(b.most, z[i] + s * (z[(i + 1) % 3] - z[i]));
+        if (inside(q)) reach(z[i] + s * (z[(i + 1) % 3] - z[i]));
       };
       cross(w.min_x, a.x, c.x, true), cross(w.max_x, a.x, c.x, true);
       cross(w.min_y, a.y, c.y, false), cross(w.max_y, a.y, c.y, false);
@@ -69,7 +73,7 @@ Brute brute_force(const Hierarchy& h, const Window& w, double sign) {
         weight[i] = ((a.x - q.x) * (c.y - q.y) - (c.x - q.x) * (a.y - q.y)) / area;
       }
       if (std::min({weight[0], weight[1], weight[2]}) >= 0) {
-        b.most = std::max(b.most, weight[0] * z[0] + weight[1] * z[1] + weight[2] * z[2]);
+        reach(weight[0] * z[0] + weight[1] * z[1] + weight[2] * z[2]);
       }
     }
   }
@@ -104,10 +108,13 @@ RC_GTEST_PROP(Highest, IsThatOfAllTriangles, (std::uint64_t seed)) {
     const Brute wanted = brute_force(h, *request.window, sign);
     const HighestResult got = highest(terrain, request);
     if (std::isinf(wanted.most)) {
-      RC_ASSERT(got.state != HighestResult::State::kSurface);
+      RC_ASSERT(got.state ==
+                (wanted.domain ? HighestResult::State::kVoid : HighestResult::State::kOutside));
       RC_ASSERT(got.vertices.empty());
       continue;
     }
+    RC_ASSERT(got.height_min <= got.point.height);
+    RC_ASSERT(got.point.height <= got.height_max);
     RC_ASSERT(got.state == HighestResult::State::kSurface);
     RC_ASSERT(std::abs(sign * got.point.height - wanted.most) <= 1e-9);
     const MapPoint p = got.point.position;

@@ -35,7 +35,7 @@ struct TrueSight {
   std::optional<Rational> clearance;
   double void_share = 0.0;
 };
-/// @param bend  curvature * length^2 / diameter, as the engine rounds it.
+/// @param bend  Curvature::drop_at(length), as the engine rounds it.
 [[nodiscard]] TrueSight true_sight(const SmallTerrain& t, Spot p, double height_p, Spot q,
                                    double height_q, bool absolute, double bend);
 

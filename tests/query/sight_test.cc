@@ -49,14 +49,14 @@ Asked random_question(std::mt19937_64& random, const SmallTerrain& t) {
     asked.q = *map.spot(asked.pair.b);
   } while (asked.p == asked.q);
   asked.request.absolute = random() % 3 == 0;
-  asked.request.curvature = random() % 2 == 0 ? 0.0 : 0.85714;
-  asked.request.earth_diameter = random() % 2 == 0 ? 2 * 6378137.0 : 60.0;
+  asked.request.curvature.coefficient = random() % 2 == 0 ? 0.0 : 0.85714;
+  asked.request.curvature.earth_diameter = random() % 2 == 0 ? 2 * 6378137.0 : 60.0;
   asked.pair.height_a = nasty_end(random, asked.request.absolute);
   asked.pair.height_b = nasty_end(random, asked.request.absolute);
   const double dx = asked.pair.b.x - asked.pair.a.x;
   const double dy = asked.pair.b.y - asked.pair.a.y;
   const double length = std::sqrt(dx * dx + dy * dy);
-  asked.bend = asked.request.curvature * length * length / asked.request.earth_diameter;
+  asked.bend = asked.request.curvature.drop_at(length);
   return asked;
 }
 
@@ -106,7 +106,7 @@ RC_GTEST_PROP(Sight, SolversAgreeWithEveryTriangleWhateverTheyAskedBefore, (std:
   const SmallTerrain t(seed);
   const Asked first = random_question(random, t);
   SightRequest request = first.request;
-  request.curvature = 0.0;
+  request.curvature.coefficient = 0.0;
   request.verdict_only = random() % 2 == 0;
   SightSolver solver(*t.terrain, request, random() % 3 == 0 ? 0 : random() % 100);
   for (int i = 0; i < 5; ++i) {

@@ -12,6 +12,8 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/coarsest.h"
+#include "engine/query/viewshed_walk_internal.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin {
@@ -56,6 +58,15 @@ double clearance(const Hierarchy& h, MapPoint eye, double eye_z, MapPoint target
   return least;
 }
 
+std::vector<Offset> offsets_of(const Hierarchy& h, MapPoint eye, double eye_height) {
+  std::vector<Offset> offsets;
+  for (const Vertex& v : h.full.vertices) {
+    offsets.push_back({v.position.x - eye.x, v.position.y - eye.y,
+                       h.facts.heights.height(v.height) - eye_height});
+  }
+  return offsets;
+}
+
 RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed)) {
   const Hierarchy h = reference::random_hierarchy(seed);
   const TemporaryStore file(h);
@@ -71,6 +82,7 @@ RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed))
   request.absolute = random() % 2 == 0;
   request.eye_height = request.absolute ? h.facts.max_height * 0.7 : double(random() % 3);
   request.target_height = random() % 3 == 0 ? 0.5 : 0.0;
+  request.curvature.coefficient = 0;
   request.radius =
       (1 + double(random() % 30)) / 40 * double(half_perimeter(b)) * h.facts.map.step_x;
   if (random() % 2 == 0) request.pixel_size = h.facts.map.step_x * 0.71;
@@ -78,9 +90,13 @@ RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed))
   try {
     seen = viewshed(terrain, request);
   } catch (const Error& error) {
-    RC_ASSERT(error.code() == ErrorCode::invalid_argument);  // on a void, or a ring of triangles
+    RC_ASSERT(error.code() == ErrorCode::invalid_argument);  // on a void
+    RC_ASSERT(!request.absolute || std::string(error.what()).find("outside") != std::string::npos);
     return;
   }
+  const Spot eye = *SpotMap(h.facts.map, h.facts.bounds).spot(request.eye);
+  const std::vector<Offset> offsets = offsets_of(h, grid_of(eye), seen.eye_height);
+  const WalkedView walked(h.full, offsets, eye);  // what a ring of triangles falls back to
   std::map<std::pair<double, double>, bool> visible;
   for (const Viewshed::Target& v : seen.vertices) {
     visible[{v.position.x, v.position.y}] = v.visible;
@@ -89,6 +105,11 @@ RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed))
         clearance(h, request.eye, seen.eye_height, v.position, v.height + request.target_height);
     // Rounding of this oracle; at whole clearances the answers must agree.
     if (std::abs(c) > 1e-9) RC_ASSERT(v.visible == (c > 0));
+    const MapPoint g = h.facts.map.to_grid(v.position);
+    const GridPoint p{static_cast<std::int32_t>(std::llround(g.x)),
+                      static_cast<std::int32_t>(std::llround(g.y))};
+    const double z = v.height + request.target_height - seen.eye_height;
+    if (std::abs(c) > 1e-9) RC_ASSERT(walked.sees(spot_of(p), z, 0) == (c > 0));
   }
   std::size_t expected = 0;
   for (VertexId v = 0; v < h.full.vertices.size(); ++v) {
@@ -157,11 +178,63 @@ TEST(Viewshed, OfAPlainFromItsOwnHeightTouchesAndSeesEverything) {
   ViewshedRequest request;
   request.eye = h.facts.map.to_map(7, 9);
   request.radius = 1000;
+  request.curvature.coefficient = 0;
   const Viewshed seen = viewshed(ProgressiveTin(file.open()), request);
   EXPECT_EQ(seen.vertices.size(), 441U);
   EXPECT_TRUE(std::all_of(seen.vertices.begin(), seen.vertices.end(),
                           [](const Viewshed::Target& t) { return t.visible; }));
   EXPECT_EQ(seen.hidden_pixels, 0U);
+}
+
+/// A triangle around the eye and a larger one turned by 140 degrees, joined by six that each lie in
+/// front of the next: a ring without order.
+Hierarchy pinwheel(std::mt19937_64& random) {
+  CoarsestTin t;
+  const HeightEncoding heights{HeightType::int32, 0.25, -3.0};
+  const auto add = [&](double radius, double degrees) {
+    const double angle = degrees / 180 * std::acos(-1.0);
+    t.vertices.push_back({{static_cast<std::int32_t>(std::lround(1000 + radius * std::cos(angle))),
+                           static_cast<std::int32_t>(std::lround(1000 + radius * std::sin(angle)))},
+                          heights.bits(static_cast<double>(random() % 160)),
+                          1});
+  };
+  for (int i = 0; i < 3; ++i) add(100, 120 * i + 7);
+  for (int i = 0; i < 3; ++i) add(1000, 120 * i + 147);
+  t.triangles.push_back({{0, 1, 2}, 0});
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const std::uint32_t next = (i + 1) % 3;
+    t.triangles.push_back({{next, i, 3 + i}, 0});
+    t.triangles.push_back({{next, 3 + i, 3 + next}, 0});
+  }
+  reference::Options options;
+  options.left = 1.0;
+  return reference::simplify(mesh_of(t, "pinwheel"), random, options);
+}
+
+TEST(Viewshed, WalksWhereTrianglesHideOneAnotherInARing) {
+  std::mt19937_64 random(3);
+  int hidden = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Hierarchy h = pinwheel(random);
+    const TemporaryStore file(h);
+    ViewshedRequest request;
+    request.eye = h.facts.map.to_map(1003, 996);
+    request.eye_height = 3;
+    request.radius = 1e9;
+    request.pixel_size = h.facts.map.step_x * 90;
+    request.curvature.coefficient = 0;
+    request.target_height = 0.25;
+    request.radius = h.facts.map.step_x * 1000;
+    const Viewshed seen = viewshed(ProgressiveTin(file.open()), request);
+    EXPECT_GT(seen.walked_targets, 20U);
+    for (const Viewshed::Target& v : seen.vertices) {
+      const double c =
+          clearance(h, request.eye, seen.eye_height, v.position, v.height + request.target_height);
+      EXPECT_TRUE(std::abs(c) < 1e-9 || v.visible == (c > 0));
+    }
+    hidden += static_cast<int>(seen.hidden_pixels);
+  }
+  EXPECT_GT(hidden, 100);
 }
 
 TEST(Viewshed, EndsBehindAWall) {
@@ -171,13 +244,14 @@ TEST(Viewshed, EndsBehindAWall) {
   request.eye = h.facts.map.to_map(7, 9);
   request.eye_height = 2;
   request.radius = 1000;
+  request.curvature.coefficient = 0;
   const ProgressiveTin terrain(file.open());
   for (const Viewshed::Target& t : viewshed(terrain, request).vertices) {
     EXPECT_EQ(t.visible, h.facts.map.to_grid(t.position).x < 14.5)
         << h.facts.map.to_grid(t.position).x << " " << h.facts.map.to_grid(t.position).y;
   }
-  request.curvature = 1;
-  request.earth_radius = 1;  // a ball: what is beyond a few units is below the plain's horizon
+  request.curvature = {1.0,
+                       2.0};  // a ball: what is beyond a few units is below the plain's horizon
   EXPECT_LT(viewshed(terrain, request).visible_pixels, 100U);
 }
 

@@ -36,6 +36,9 @@ TEST(HighestProgram, FindsThePeakAndTellsOutsideFromVoid) {
   EXPECT_EQ(peak.at("point").at("x"), 500000.0 + 7.5 * 30);
   EXPECT_EQ(peak.at("point").at("y"), 4000000.0 - 5.5 * 30);
   EXPECT_EQ(peak.at("point").at("at_vertex"), true);
+  EXPECT_EQ(peak.at("point").at("height_min"), 123.0);
+  EXPECT_EQ(peak.at("certified_deviation"), 0.0);
+  EXPECT_EQ(peak.at("exact"), true);
   ASSERT_EQ(peak.at("vertices").size(), 2U);
   EXPECT_EQ(peak.at("vertices").at(1).at("height"), 10.0 + 25 + 32);
   EXPECT_EQ(ask({"--lowest"}).at("point").at("height"), 10.0);
@@ -47,6 +50,27 @@ TEST(HighestProgram, FindsThePeakAndTellsOutsideFromVoid) {
   EXPECT_TRUE(border.at("vertices").empty());
   EXPECT_EQ(run_ptin({"highest", file, "--window", "1", "0", "0", "1"}).status, 2);
   EXPECT_EQ(run_ptin({"highest", file, "-k", "0"}).status, 2);
+}
+
+TEST(HighestProgram, SaysHowFarAFileThatIsNotExactMayBeOff) {
+  const testing::TestFolder folder;
+  testing::RasterRecipe recipe;
+  recipe.value = [](int column, int row) { return (column * 7 + row * 13) % 5 + 0.25 * column; };
+  testing::make_raster(folder.file("r.tif"), recipe);
+  const auto highest = [&](const std::string& file, const std::vector<std::string>& options) {
+    std::vector<std::string> build = {"build", folder.file("r.tif"), "-o", file, "-q"};
+    build.insert(build.end(), options.begin(), options.end());
+    EXPECT_EQ(run_ptin(build).status, 0);
+    const Outcome outcome = run_ptin({"highest", file, "--json"});
+    return json::parse(outcome.out, nullptr, false);
+  };
+  const json truth = highest(folder.file("all.ptin"), {});
+  const json rough = highest(folder.file("rough.ptin"), {"--max-error", "3"});
+  EXPECT_EQ(rough.at("exact"), false);
+  EXPECT_GT(rough.at("certified_deviation").get<double>(), 0.0);
+  const double height = truth.at("point").at("height").get<double>();
+  EXPECT_LE(rough.at("point").at("height_min").get<double>(), height);
+  EXPECT_GE(rough.at("point").at("height_max").get<double>(), height);
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "visible, and voids hide nothing. The surface is the TIN, without interpolation of cells.\n\n"
      "Examples:\n"
      "  ptin viewshed dem.ptin 387500 3792500 1.7 --radius 10000 -o seen.tif\n"
-     "  ptin viewshed dem.ptin 387500 3792500 30 --radius 40000 --curvature 0.85714 -o seen.gpkg\n",
+     "  ptin viewshed dem.ptin 387500 3792500 30 --radius 40000 --curvature 0 -o seen.gpkg\n",
      declare_viewshed},
     {"render", "Draw shaded relief, triangles or pages as a PNG",
      "Examples:\n"

@@ -15,6 +15,19 @@ double metres_per_height(const OGRSpatialReference& srs) {
   return srs.IsCompound() != 0 ? srs.GetTargetLinearUnits("VERT_CS", nullptr) : 1.0;
 }
 
+/// By the radii of curvature across the meridian and along it.
+std::function<MapPoint(MapPoint)> on_ellipsoid(const OGRSpatialReference& srs, double height_unit) {
+  const double a = srs.GetSemiMajor() / height_unit;
+  const double inverse = srs.GetInvFlattening();
+  const double f = inverse > 0 ? 1 / inverse : 0.0;
+  return [a, e2 = f * (2 - f), unit = srs.GetAngularUnits()](MapPoint p) {
+    const double sine = std::sin(p.y * unit);
+    const double w2 = 1 - e2 * sine * sine;
+    const double normal = a / std::sqrt(w2);
+    return MapPoint{unit * normal * std::sqrt(1 - sine * sine), unit * normal * (1 - e2) / w2};
+  };
+}
+
 }  // namespace
 
 Ground ground_of(const std::string& crs_wkt) {
@@ -37,6 +50,8 @@ Ground ground_of(const std::string& crs_wkt) {
                    nullptr, nullptr);
       return metres / scale;
     };
+    ground.per_map_unit = on_ellipsoid(srs, ground.metres_per_height);
+    ground.geographic = true;
     return ground;
   }
   const double scale = (known ? srs.GetLinearUnits() : 1.0) / ground.metres_per_height;
@@ -45,6 +60,7 @@ Ground ground_of(const std::string& crs_wkt) {
     const double dy = b.y - a.y;
     return scale * std::sqrt(dx * dx + dy * dy);
   };
+  ground.per_map_unit = [scale](MapPoint) { return MapPoint{scale, scale}; };
   return ground;
 }
 

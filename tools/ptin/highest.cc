@@ -46,6 +46,10 @@ void print_text(const HighestResult& result, const HighestOptions& options) {
   std::printf("%s %.17g at %.17g %.17g (%s)\n", options.lowest ? "lowest" : "highest",
               result.point.height, result.point.position.x, result.point.position.y,
               result.at_vertex ? "a vertex" : "on the window's border");
+  if (!result.exact) {
+    std::printf("  the source's lies between %.17g and %.17g\n", result.height_min,
+                result.height_max);
+  }
   for (const HeightAt& v : result.vertices) {
     std::printf("  vertex %.17g at %.17g %.17g\n", v.height, v.position.x, v.position.y);
   }
@@ -70,11 +74,16 @@ int run_highest(const HighestOptions& options, const Context& context) {
       {"state", state_name(result.state)},
       {"lowest", options.lowest},
       {"vertices", nlohmann::json::array()},
+      {"certified_error", result.certified_error},
+      {"certified_deviation", result.certified_deviation},
+      {"exact", result.exact},
       {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
       {"cost", cost_json(result.cost)}};
   if (result.state == HighestResult::State::kSurface) {
     answer["point"] = position_json(result.point);
     answer["point"]["at_vertex"] = result.at_vertex;
+    answer["point"]["height_min"] = result.height_min;
+    answer["point"]["height_max"] = result.height_max;
   }
   for (const HeightAt& v : result.vertices) answer["vertices"].push_back(position_json(v));
   print_json(answer);

@@ -76,6 +76,13 @@ std::optional<Region> region_of(const RegionOptions& options, const std::string&
   return std::nullopt;
 }
 
+void add_curvature_option(CLI::App& app, double& coefficient) {
+  app.add_option("--curvature", coefficient,
+                 "The Earth's curvature less refraction: GDAL's coefficient; 0 is a flat Earth")
+      ->type_name("C")
+      ->capture_default_str();
+}
+
 nlohmann::json cost_json(const QueryCost& cost) {
   return {{"records_retrieved", cost.records_retrieved},
           {"records_examined", cost.records_examined},

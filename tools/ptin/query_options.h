@@ -41,6 +41,9 @@ void add_region_options(CLI::App& app, RegionOptions& options, bool window_only 
 [[nodiscard]] std::optional<Region> region_of(const RegionOptions& options,
                                               const std::string& crs_wkt);
 
+/// --curvature, of whatever looks over the ground (engine/query/curvature.h).
+void add_curvature_option(CLI::App& app, double& coefficient);
+
 /// The cost of an answer under the names of DESIGN.md, section 8.
 [[nodiscard]] nlohmann::json cost_json(const QueryCost& cost);
 

@@ -29,7 +29,7 @@ struct SightOptions {
   std::string pairs;
   bool absolute = false;
   bool verdict_only = false;
-  double curvature = 0.85714;
+  double curvature = Curvature{}.coefficient;
   double frequency = 0.0;
   std::optional<double> error;
   std::optional<std::uint64_t> budget;
@@ -54,8 +54,7 @@ SightRequest request_of(const SightOptions& options, const Ground& ground, const
   }
   SightRequest request;
   request.absolute = options.absolute;
-  request.curvature = options.curvature;
-  request.earth_diameter = ground.earth_diameter;
+  request.curvature = {options.curvature, ground.earth_diameter};
   request.ground_distance = ground.distance;
   if (options.frequency > 0) {
     request.wavelength = kSpeedOfLight / options.frequency / ground.metres_per_height;
@@ -164,9 +163,7 @@ Action declare_sight(CLI::App& app, Context& context) {
   app.add_flag("--absolute", options->absolute, "Heights of the ends are absolute");
   app.add_flag("--verdict", options->verdict_only,
                "Only the verdict: faster; obstruction is then any point below ground");
-  app.add_option("--curvature", options->curvature,
-                 "Earth's curvature less refraction, GDAL's coefficient; 0 switches it off")
-      ->capture_default_str();
+  add_curvature_option(app, options->curvature);
   app.add_option("--frequency", options->frequency,
                  "Measure the first Fresnel zone at this frequency, in hertz")
       ->type_name("HZ");

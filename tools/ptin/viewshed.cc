@@ -3,15 +3,13 @@
 // ptin viewshed: what one observer sees, as a raster or as points.
 #include "engine/query/viewshed.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 
 #include <gdal_priv.h>
 #include <ogr_geometry.h>
-#include <ogr_spatialref.h>
 
 #include "tools/error_status.h"
 #include "tools/export/gdal_output.h"
@@ -19,6 +17,7 @@
 #include "tools/output_file.h"
 #include "tools/pending_file.h"
 #include "tools/ptin/crs_facts.h"
+#include "tools/ptin/ground.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
 
@@ -29,12 +28,21 @@ namespace {
 struct ViewshedOptions {
   TerrainOptions terrain;
   double x = 0, y = 0, height = 0;
-  double target_height = 0, radius = 0, curvature = 0;
+  double target_height = 0, radius = 0;
+  double curvature = Curvature{}.coefficient;
   bool absolute = false;
   std::optional<double> pixel_size, error;
   std::string memory, output;
   bool overwrite = false;
 };
+
+constexpr std::uint64_t kLeastCache = std::uint64_t{1} << 20;
+constexpr std::uint64_t kMostCache = std::uint64_t{64} << 20;
+
+std::uint64_t request_memory(const ViewshedOptions& options) {
+  return options.memory.empty() ? ViewshedRequest{}.memory_limit_bytes
+                                : parse_bytes(options.memory);
+}
 
 bool is_raster(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
@@ -53,28 +61,6 @@ void check_options(const ViewshedOptions& options) {
   check_output(options.output, options.overwrite);
 }
 
-/// Ground units (those of heights, taken as metres where the CRS says nothing) in a map unit.
-void set_ground(const CrsFacts& crs, ViewshedRequest& request) {
-  OGRSpatialReference srs;
-  if (crs.wkt.empty() || srs.importFromWkt(crs.wkt.c_str()) != OGRERR_NONE) return;
-  const double height_unit = srs.IsCompound() != 0 ? srs.GetTargetLinearUnits("VERT_CS") : 1.0;
-  const double a = srs.GetSemiMajor();
-  const double flattening = srs.GetInvFlattening();
-  const double f = flattening > 0 ? 1 / flattening : 0.0;
-  request.earth_radius = a * (1 - f / 3) / height_unit;
-  if (!crs.geographic) {
-    request.ground_per_map_x = request.ground_per_map_y = srs.GetLinearUnits() / height_unit;
-    return;
-  }
-  const double unit = srs.GetAngularUnits();
-  const double sine = std::sin(request.eye.y * unit);
-  const double e2 = f * (2 - f);
-  const double w2 = 1 - e2 * sine * sine;
-  const double normal = a / std::sqrt(w2);
-  request.ground_per_map_y = unit * normal * (1 - e2) / w2 / height_unit;
-  request.ground_per_map_x = unit * normal * std::sqrt(1 - sine * sine) / height_unit;
-}
-
 void write_raster(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt) {
   PendingFile pending(options.output, options.overwrite);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
@@ -90,6 +76,9 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
   if (!wkt.empty()) file->SetProjection(wkt.c_str());
   GDALRasterBand* band = file->GetRasterBand(1);
   band->SetNoDataValue(static_cast<double>(Sight::kNothing));
+  // The mesh is gone by now: half of what was for it does for GDAL.
+  const std::uint64_t memory = request_memory(options);
+  const GdalCacheLimit cache(std::clamp<std::uint64_t>(memory / 2, kLeastCache, kMostCache));
   CPLErrorReset();
   const CPLErr written =
       band->RasterIO(GF_Write, 0, 0, width, height, const_cast<Sight*>(seen.pixels.data()), width,
@@ -116,26 +105,33 @@ void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const 
   file.publish();
 }
 
+/// Null: not asked for.
+nlohmann::json counts_json(bool asked, std::uint64_t visible, std::uint64_t hidden) {
+  if (!asked) return nullptr;
+  return {{"visible", visible}, {"hidden", hidden}};
+}
+
 void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts& crs,
             const Context& context) {
-  std::uint64_t visible = 0;
-  for (const Viewshed::Target& v : seen.vertices) visible += v.visible ? 1 : 0;
+  const bool raster = is_raster(options.output);
   if (context.json) {
     print_json({{"output", options.output},
                 {"eye_height", seen.eye_height},
                 {"width", seen.width},
                 {"height", seen.height},
-                {"pixels", {{"visible", seen.visible_pixels}, {"hidden", seen.hidden_pixels}}},
-                {"vertices", {{"visible", visible}, {"hidden", seen.vertices.size() - visible}}},
+                {"pixels", counts_json(raster, seen.visible_pixels, seen.hidden_pixels)},
+                {"vertices", counts_json(!raster, seen.visible_vertices, seen.hidden_vertices)},
                 {"certified_error", seen.certified_error},
+                {"certified_deviation", seen.certified_deviation},
                 {"exact", seen.exact},
                 {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
                 {"cost", cost_json(seen.cost)}});
   } else if (!context.quiet) {
-    std::printf("%s: %s of %s pixels visible, %s of %s vertices\n", options.output.c_str(),
-                grouped(seen.visible_pixels).c_str(),
-                grouped(seen.visible_pixels + seen.hidden_pixels).c_str(), grouped(visible).c_str(),
-                grouped(seen.vertices.size()).c_str());
+    const std::uint64_t visible = raster ? seen.visible_pixels : seen.visible_vertices;
+    const std::uint64_t hidden = raster ? seen.hidden_pixels : seen.hidden_vertices;
+    std::printf("%s: %s of %s %s visible%s\n", options.output.c_str(), grouped(visible).c_str(),
+                grouped(visible + hidden).c_str(), raster ? "pixels" : "vertices",
+                seen.exact ? "" : ", not exact");
   }
 }
 
@@ -148,13 +144,19 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   request.eye_height = options.height;
   request.absolute = options.absolute;
   request.target_height = options.target_height;
-  request.curvature = options.curvature;
+  const Ground ground = ground_of(crs.wkt);
+  request.curvature = {options.curvature, ground.earth_diameter};
+  const MapPoint per_unit = ground.per_map_unit(request.eye);
+  request.ground_per_map_x = per_unit.x;
+  request.ground_per_map_y = per_unit.y;
   request.pixel_size = options.pixel_size;
   request.tolerance = options.error;
   request.stop = context.stop;
-  if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
-  set_ground(crs, request);
-  request.radius = crs.geographic ? options.radius : options.radius * request.ground_per_map_x;
+  request.memory_limit_bytes = request_memory(options);
+  request.radius =
+      ground.geographic ? options.radius / ground.metres_per_height : options.radius * per_unit.x;
+  request.pixels = is_raster(options.output);
+  request.vertices = !request.pixels;
   const Viewshed seen = viewshed(terrain, request);
   if (is_raster(options.output)) {
     write_raster(seen, options, crs.wkt);
@@ -180,10 +182,7 @@ Action declare_viewshed(CLI::App& app, Context& context) {
   app.add_flag("--absolute", options->absolute, "H is a height of itself, not above the surface");
   app.add_option("--target-height", options->target_height, "Height of targets above the surface")
       ->type_name("T");
-  app.add_option("--curvature", options->curvature,
-                 "Coefficient of the earth's curvature with refraction, as 0.85714; 0: flat")
-      ->type_name("C")
-      ->capture_default_str();
+  add_curvature_option(app, options->curvature);
   app.add_option("--pixel-size", options->pixel_size,
                  "Side of a pixel, map units (default: the grid's)")
       ->type_name("S");
