@@ -19,7 +19,6 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
 // Measured on terrains of 4097 to 16385 samples a side (bench/README.md), with some room.
 constexpr double kOutputBytesOfVertex = 66.0;
-constexpr double kTemporaryBytesOfVertex = 55.0;
 constexpr double kVerticesPerSecond = 150000.0;  ///< A thread's, both halves of the build.
 
 std::string folder_of(const std::string& path) {
@@ -145,7 +144,7 @@ void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& o
   const auto vertices = static_cast<double>(plan.vertices);
   plan.output_bytes = static_cast<std::uint64_t>(vertices * kOutputBytesOfVertex) + kMiB;
   const std::uint64_t tiles =
-      plan.leaves == 1 ? 0 : static_cast<std::uint64_t>(vertices * kTemporaryBytesOfVertex) + kMiB;
+      plan.leaves == 1 ? 0 : static_cast<std::uint64_t>(vertices * source.tiles_of_vertex) + kMiB;
   plan.temporary_bytes = std::max(source.while_reading, source.kept + tiles);
   const std::string folder = folder_of(output);
   const std::string tmp = resources.tmp.empty() ? folder : resources.tmp;

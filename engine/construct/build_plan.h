@@ -37,6 +37,7 @@ struct BuildPlan {
 struct SourceDisk {
   std::uint64_t while_reading = 0;  ///< Bytes, before tiles are begun.
   std::uint64_t kept = 0;           ///< Until the build ends.
+  double tiles_of_vertex = 55.0;    ///< Bytes of the files of tiles, by measurement with some room.
   bool is_there = false;            ///< It has been read: `kept` is on the disk already.
   bool is_estimate = false;
   /// By any part: points that are left out, or work that an interrupted build has done. So it is no

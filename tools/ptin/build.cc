@@ -216,15 +216,19 @@ class BuildShow {
     const std::string tiles =
         facts_.tiles > 0 ? grouped(facts_.tiles_done) + " of " + grouped(facts_.tiles) + " tiles, "
                          : "";
-    return tiles + grouped(facts_.per_second) + " vertices/s, " + human_bytes(facts_.memory);
+    return tiles + rate() + human_bytes(facts_.memory);
+  }
+  /// Stages without tiles count in units of their own: bytes of text, samples, passes over points.
+  [[nodiscard]] std::string rate() const {
+    return facts_.tiles > 0 ? grouped(facts_.per_second) + " vertices/s, " : "";
   }
   /// Where lines stay, a stage that took a while says what it came to.
   void end_stage() {
     if (!stage_.empty() && style_ == Progress::Style::kSparse && seconds_ > 1.0) {
       progress_.finish();
-      std::fprintf(stderr, "  %s%s vertices/s, at most %s of memory so far\n",
+      std::fprintf(stderr, "  %s%sat most %s of memory so far\n",
                    facts_.tiles > 0 ? (grouped(facts_.tiles) + " tiles, ").c_str() : "",
-                   grouped(facts_.per_second).c_str(), human_bytes(most_memory_).c_str());
+                   rate().c_str(), human_bytes(most_memory_).c_str());
     }
     stage_.clear();
     facts_.tiles = facts_.tiles_done = 0;
