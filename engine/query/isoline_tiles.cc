@@ -19,9 +19,6 @@ namespace ptin {
 namespace {
 
 constexpr std::int64_t kSmallestTile = 8;  // grid units a side
-/// Of records and mesh: tiles of 16 to 64 MiB are as fast as each other within 5 %, of 8 MiB 18 %
-/// and of 128 MiB 8 % slower.
-constexpr std::uint64_t kTileBytes = 32 << 20;
 
 std::pair<GridBox, GridBox> halves(const GridBox& box) {
   std::pair<GridBox, GridBox> two{box, box};
@@ -167,7 +164,7 @@ class Worker {
     const std::uint64_t records = most_records(store, pages_);
     const std::uint64_t t0_bytes = refinement_bytes(terrain_.t0().vertices.size());
     const std::uint64_t bytes = t0_bytes + refinement_bytes(records);
-    if (bytes > limit_ || refinement_bytes(records) > std::max(kTileBytes, 4 * t0_bytes)) {
+    if (bytes > limit_ || refinement_bytes(records) > std::max(request_.tile_bytes, 4 * t0_bytes)) {
       if (may_halve(tile, bytes)) {
         queue_.put_halves(tile);
         return;
@@ -241,7 +238,7 @@ void add(QueryCost& sum, const QueryCost& c) {
 
 /// As many as asked for, as long as each has room for a tile of a useful size.
 int threads_within(const TileTraceRequest& request, std::size_t t0_vertices) {
-  const std::uint64_t useful = 2 * refinement_bytes(t0_vertices) + (kTileBytes >> 2);
+  const std::uint64_t useful = 2 * refinement_bytes(t0_vertices) + request.tile_bytes / 4;
   const std::uint64_t most = std::max<std::uint64_t>(request.memory_bytes / useful, 1);
   return static_cast<int>(std::min<std::uint64_t>(std::max(request.threads, 1), most));
 }

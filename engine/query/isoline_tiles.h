@@ -24,6 +24,9 @@ struct TileTraceRequest {
   std::uint64_t piece_bytes;   ///< For the pieces, at kBytesAPiece.
   int threads;
   std::stop_token stop;
+  /// Of records and mesh of a tile, where the memory allows. Tiles of 16 to 64 MiB are as fast as
+  /// each other within 5 %, of 8 MiB 18 % and of 128 MiB 8 % slower.
+  std::uint64_t tile_bytes = std::uint64_t{32} << 20;
 };
 
 /// What a piece takes until its line is written: itself, in a line of its own, while it is joined.

@@ -31,7 +31,8 @@ class StreamIsolinesCli : public ::testing::Test {
   [[nodiscard]] std::string file(const std::string& name) const { return folder.file(name); }
   json answer(std::vector<std::string> arguments, const std::vector<std::string>& more = {}) {
     arguments.insert(arguments.end(), more.begin(), more.end());
-    arguments.insert(arguments.end(), {"--json", "--overwrite"});
+    arguments.emplace_back("--json");
+    if (arguments.front() != "info") arguments.emplace_back("--overwrite");
     const Outcome outcome = run_ptin(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out, nullptr, false);
@@ -91,14 +92,11 @@ TEST_F(StreamIsolinesCli, OfAWindowAreCutThereAndOfADeltaBeginAnew) {
   const std::vector<std::string> window = {"--window", std::to_string(x + w / 4),
                                            std::to_string(y + w / 4), std::to_string(x + w / 2),
                                            std::to_string(y + w / 2)};
-  std::vector<std::string> one = {"stream", file("t.ptin"), "--level", "1000", "-o", file("a.pts")};
-  const json a = answer(one, window);
-  one.back() = file("b.pts");
+  answer({"stream", file("t.ptin"), "--level", "1000", "-o", file("a.pts")}, window);
   const json rest =
       answer({"stream", file("t.ptin"), "--level", "1000", "1100", "--have",
               answer({"unstream", file("a.pts")}).at("have").dump(), "-o", file("b.pts")});
   EXPECT_GT(rest.at("splits"), 0);
-  const std::vector<std::string> of_window = {"--level", "1000", "-o", file("u.geojson")};
   answer({"unstream", file("a.pts"), "--level", "1000", "-o", file("u.geojson")}, window);
   answer({"isoline", file("t.ptin"), "--level", "1000", "-o", file("d.geojson")}, window);
   const json ours = json::parse(read_file(file("u.geojson")));
