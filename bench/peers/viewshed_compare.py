@@ -5,6 +5,7 @@
 The judge is a brute force of its own over all edges of the TIN (grid.ply): it shares no code with ptin's sweep.
 usage: viewshed_compare.py X Y EYE_HEIGHT RADIUS, in the folder of grid.tif, ptin.tif, grass.tif, gdal.tif, grid.ply
 """
+import os
 import statistics
 import sys
 
@@ -12,7 +13,7 @@ import numpy
 from osgeo import gdal
 
 gdal.UseExceptions()
-SAMPLE = 100
+SAMPLE = int(os.environ.get("SAMPLE", "100"))
 BEND = 0.85714 / (2 * 6378137.0)
 
 
