@@ -16,8 +16,8 @@ std::uint64_t bytes_of(const Tin& tin) {
 
 }  // namespace
 
-BoundedMesh::BoundedMesh(const ProgressiveTin& terrain)
-    : terrain_(terrain), refinement_(terrain.t0()) {
+BoundedMesh::BoundedMesh(const ProgressiveTin& terrain, const Detail& detail)
+    : terrain_(terrain), detail_(detail), refinement_(terrain.t0()) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   const Made t0{-kAny, kAny, std::numeric_limits<float>::infinity(), kRankOfT0};
   made_.assign(tin().vertices.size(), t0);
@@ -51,7 +51,7 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
     context.cost.records_retrieved += records_.size();
     for (const VertexSplit& r : records_) {
       const PendingSplit split = pending_of(r, page);
-      if (refinement_.find(split.u) != KeyTable::kAbsent) {
+      if (!detail_.keeps(split) || refinement_.find(split.u) != KeyTable::kAbsent) {
         continue;
       }
       splits_.push_back(split);

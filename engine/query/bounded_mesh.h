@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/query/detail.h"
 #include "engine/query/progressive_tin.h"
 #include "engine/query/refinement.h"
 
@@ -28,7 +29,10 @@ struct SurfaceBounds {
 /// fan stands on has a larger rank.) Threads: one owner.
 class BoundedMesh {
  public:
-  explicit BoundedMesh(const ProgressiveTin& terrain);
+  explicit BoundedMesh(const ProgressiveTin& terrain)
+      : BoundedMesh(terrain, Detail(terrain.store())) {}
+  /// @param detail  Records that it leaves out are never added.
+  BoundedMesh(const ProgressiveTin& terrain, const Detail& detail);
 
   [[nodiscard]] const Tin& tin() const noexcept { return refinement_.tin(); }
 
@@ -57,6 +61,7 @@ class BoundedMesh {
   };
 
   const ProgressiveTin& terrain_;
+  Detail detail_;
   Refinement refinement_;
   std::vector<Made> made_;  ///< Beside the vertices.
   std::vector<VertexSplit> records_;

@@ -10,7 +10,7 @@
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/query/bounded_mesh.h"
-#include "engine/query/certificate.h"
+#include "engine/query/detail.h"
 #include "engine/query/retrieval.h"
 #include "engine/query/spot_set.h"
 #include "engine/query/walk.h"
@@ -39,7 +39,8 @@ class Locating {
         facts_(terrain.store().facts()),
         request_(request),
         context_(request.stop, request.memory_limit_bytes, terrain.store().path()),
-        certificate_(certify_below(terrain.store(), request.tolerance.value_or(-1.0))) {}
+        detail_({request.tolerance, request.vertices}, {terrain.store(), terrain.index()},
+                context_) {}
 
   LocateResult run(std::span<const MapPoint> points) {
     result_.points.resize(points.size());
@@ -49,9 +50,9 @@ class Locating {
       locate_group(std::span(ordered).subspan(begin, count));
     }
     terrain_.store().pages().check_unchanged();
-    result_.certified_error = certificate_.error;
-    result_.certified_deviation = certificate_.deviation;
-    result_.exact = certificate_.complete && facts_.base_error == 0;
+    result_.certified_error = detail_.certificate().error;
+    result_.certified_deviation = detail_.certificate().deviation;
+    result_.exact = detail_.is_exact(facts_);
     result_.cost = context_.cost;
     return std::move(result_);
   }
@@ -73,7 +74,7 @@ class Locating {
   const StoreFacts& facts_;
   const LocateRequest& request_;
   QueryContext context_;
-  Certificate certificate_;
+  Detail detail_;
   LocateResult result_;
 };
 
@@ -111,7 +112,7 @@ void Locating::locate_group(std::span<const Ordered> group) {
   spots.reserve(group.size());
   std::transform(group.begin(), group.end(), std::back_inserter(spots),
                  [](const Ordered& o) { return o.spot; });
-  const SpotSet wanted(spots, request_.tolerance.value_or(-1.0));
+  const SpotSet wanted(spots, detail_.tolerance());
   std::vector<PageId> pages;
   terrain_.index().search(wanted, pages, context_.cost.io);
   context_.check_stop();
@@ -124,7 +125,7 @@ void Locating::locate_group(std::span<const Ordered> group) {
     return;
   }
   context_.admit(bytes);
-  if (request_.tolerance) {
+  if (detail_.is_asked()) {
     locate_bounded(group, pages, wanted);
   } else {
     locate_exactly(group, pages, wanted);
@@ -144,11 +145,11 @@ void Locating::locate_exactly(std::span<const Ordered> group, std::span<const Pa
 
 void Locating::locate_bounded(std::span<const Ordered> group, std::span<const PageId> pages,
                               const SpotSet& wanted) {
-  BoundedMesh mesh(terrain_);
+  BoundedMesh mesh(terrain_, detail_);
   mesh.refine(pages, wanted, context_);
   walk_group(mesh.tin(), group, [&](TriangleId t) {
     SurfaceBounds bounds = mesh.bounds(t);
-    bounds.deviation = std::min(bounds.deviation, certificate_.deviation);
+    bounds.deviation = std::min(bounds.deviation, detail_.certificate().deviation);
     return bounds;
   });
 }
@@ -217,11 +218,6 @@ void Locating::set_interval(const SurfaceBounds& bounds, LocatedPoint& point) co
 LocateResult locate(const ProgressiveTin& terrain, std::span<const MapPoint> points,
                     const LocateRequest& request) {
   const auto start = std::chrono::steady_clock::now();
-  if (request.tolerance && !(*request.tolerance >= 0)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the tolerance is negative or not a number: expected a value >= 0 in the height's "
-                "unit");
-  }
   LocateResult result = Locating(terrain, request).run(points);
   result.cost.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -23,6 +23,9 @@ enum class PointState : std::uint8_t { kSurface, kVoid, kOutside };
 struct LocateRequest {
   /// Certified error asked for, in the height's unit, >= 0. None: exact.
   std::optional<double> tolerance;
+  /// Heights of the TIN of the first so many vertices of the terrain (detail.h). Excludes
+  /// `tolerance`.
+  std::optional<std::uint64_t> vertices;
   /// For records, mesh and results together.
   std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
   std::stop_token stop;
@@ -60,11 +63,12 @@ struct LocateResult {
 /// Locates points given in map units. Points are taken along the Hilbert curve in groups that share
 /// one refinement each.
 /// @throws Error invalid_argument    a coordinate is not finite (names the point); tolerance
-/// negative or NaN
+/// negative or NaN; as Detail
 ///               resource_exhausted  one group of points, however small, exceeds the memory limit
 ///               corruption, io_error, cancelled
 /// Cost: one point: the records whose region of influence holds it, O(log n) of them in practice. A
-/// batch: the records that any of its points needs, each read and applied once per group.
+/// batch: the records that any of its points needs, each read and applied once per group. With
+/// `vertices` that of finding the last one is added, once a call (detail.h).
 [[nodiscard]] LocateResult locate(const ProgressiveTin& terrain, std::span<const MapPoint> points,
                                   const LocateRequest& request = {});
 

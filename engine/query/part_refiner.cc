@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -18,18 +19,32 @@ namespace ptin {
 
 namespace {
 
-PredicatePtr wanted_by(const PartRequest& request, const StoreFacts& facts) {
-  std::vector<PredicatePtr> parts;
-  if (request.tolerance) parts.push_back(error_above(*request.tolerance));
+/// Errors above a bound, which may be negative or infinite.
+class AboveError final : public AttributePredicate {
+ public:
+  explicit AboveError(double bound) : bound_(bound) {}
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override { return a.error > bound_; }
+
+ private:
+  double bound_;
+};
+
+Detail detail_of(const PartRequest& request, const ProgressiveTin& terrain) {
+  QueryContext context(request.stop, request.memory_limit_bytes, terrain.store().path());
+  return Detail({request.tolerance, request.vertices}, {terrain.store(), terrain.index()}, context);
+}
+
+PredicatePtr wanted_by(const PartRequest& request, const Detail& detail, const StoreFacts& facts) {
+  std::vector<PredicatePtr> parts = {std::make_shared<AboveError>(detail.tolerance())};
   if (request.region) parts.push_back(meets_region(*request.region, facts.map));
   return all_of(std::move(parts));
 }
 
-std::uint64_t records_above(const StoreFile& store, std::optional<double> tolerance) {
-  if (!tolerance) return store.record_count();
+std::uint64_t records_above(const StoreFile& store, double tolerance) {
+  if (tolerance < 0) return store.record_count();
   std::uint64_t records = 0;
   for (const ErrorBin& bin : store.error_bins()) {
-    if (bin.upper > *tolerance) records += bin.records;
+    if (bin.upper > tolerance) records += bin.records;
   }
   return records;
 }
@@ -110,9 +125,10 @@ class Walk {
 PartRefiner::PartRefiner(const ProgressiveTin& terrain, PartRequest request)
     : terrain_(terrain),
       request_(std::move(request)),
-      wanted_(wanted_by(request_, terrain.store().facts())),
+      detail_(detail_of(request_, terrain)),
+      wanted_(wanted_by(request_, detail_, terrain.store().facts())),
       t0_bytes_(bytes_of_t0(terrain.store().t0())),
-      records_(records_above(terrain.store(), request_.tolerance)) {}
+      records_(records_above(terrain.store(), detail_.tolerance())) {}
 
 std::uint64_t PartRefiner::bytes_for(const GridBox& box) const {
   const StoreFile& store = terrain_.store();
@@ -123,14 +139,30 @@ std::uint64_t PartRefiner::bytes_for(const GridBox& box) const {
 }
 
 RefinedTin PartRefiner::refine(const GridBox& box) const {
-  const MeetsBox in_box(box);
-  RefineRequest request;
-  request.region = request_.region;
-  request.tolerance = request_.tolerance;
-  request.also = &in_box;
-  request.memory_limit_bytes = request_.memory_limit_bytes;
-  request.stop = request_.stop;
-  return terrain_.refine(request);
+  const auto start = std::chrono::steady_clock::now();
+  const StoreFile& store = terrain_.store();
+  QueryContext context(request_.stop, request_.memory_limit_bytes, store.path());
+  const PredicatePtr in_box = all_of({wanted_, std::make_shared<MeetsBox>(box)});
+  std::vector<PendingSplit> splits =
+      retrieve({store, terrain_.index()}, *in_box, t0_bytes_, context);
+  detail_.keep(splits);
+  Refinement refinement(terrain_.t0());
+  refinement.apply(splits, context);
+  store.pages().check_unchanged();
+  RefinedTin result;
+  result.tin = refinement.release_tin();
+  result.vertices = result.tin.vertices.size();
+  result.triangles = result.tin.triangles.size();
+  result.void_vertices = static_cast<std::uint64_t>(
+      std::count(result.tin.has_height.begin(), result.tin.has_height.end(), 0));
+  result.t0_vertices = terrain_.t0().vertices.size();
+  result.certified_error = detail_.certificate().error;
+  result.certified_deviation = detail_.certificate().deviation;
+  result.exact = detail_.is_exact(store.facts());
+  result.cost = context.cost;
+  result.cost.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
 }
 
 GridBox GridCell::box() const noexcept {

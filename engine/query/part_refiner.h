@@ -10,6 +10,7 @@
 #include <stop_token>
 
 #include "engine/geometry/box.h"
+#include "engine/query/detail.h"
 #include "engine/query/progressive_tin.h"
 
 namespace ptin {
@@ -18,6 +19,8 @@ namespace ptin {
 struct PartRequest {
   std::optional<Region> region;     ///< Where to refine at all; none means everywhere.
   std::optional<double> tolerance;  ///< As RefineRequest::tolerance.
+  /// The TIN of the first so many vertices of the whole terrain (detail.h), whatever the region.
+  std::optional<std::uint64_t> vertices;
   std::uint64_t memory_limit_bytes = std::uint64_t{1} << 30;  ///< For one part, as a query's.
   std::stop_token stop;
 };
@@ -27,7 +30,8 @@ struct PartRequest {
 class PartRefiner {
  public:
   /// @param terrain  Borrowed.
-  /// @throws Error invalid_argument as meets_region() and error_above()
+  /// @throws Error invalid_argument as meets_region() and Detail; as Detail
+  /// Cost: that of Detail.
   PartRefiner(const ProgressiveTin& terrain, PartRequest request);
 
   /// Most bytes that refine(box) may take, from the index alone. Cost: its pages.
@@ -38,18 +42,21 @@ class PartRefiner {
   }
 
   /// The whole domain, where every triangle that meets both `box` and the region is one of the TIN
-  /// of the request (P5); coarser elsewhere.
+  /// of the request (P5); coarser elsewhere. Certificates are those of `box`.
   /// @throws Error as ProgressiveTin::refine
   [[nodiscard]] RefinedTin refine(const GridBox& box) const;
 
-  /// Records of the whole file that the tolerance asks for; at most one bin of errors too many.
+  /// Records of the whole file that the level of detail asks for; at most one bin of errors too
+  /// many.
   [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
   [[nodiscard]] const ProgressiveTin& terrain() const noexcept { return terrain_; }
+  [[nodiscard]] const Detail& detail() const noexcept { return detail_; }
   [[nodiscard]] const PartRequest& request() const noexcept { return request_; }
 
  private:
   const ProgressiveTin& terrain_;
   PartRequest request_;
+  Detail detail_;
   PredicatePtr wanted_;  ///< Region and tolerance.
   std::uint64_t t0_bytes_;
   std::uint64_t records_ = 0;

@@ -3,33 +3,31 @@
 
 #include <chrono>
 #include <cmath>
-#include <memory>
-#include <string>
+#include <utility>
 
 #include "engine/error.h"
-#include "engine/query/certificate.h"
-#include "engine/query/predicate.h"
+#include "engine/query/detail.h"
 #include "engine/query/refinement.h"
 #include "engine/query/retrieval.h"
-#include "engine/query/sight_predicate_internal.h"
+#include "engine/query/spot_path.h"
 #include "engine/query/walk.h"
 
 namespace ptin {
 
 namespace {
 
-constexpr double kNothingAtEnds = std::numeric_limits<double>::infinity();
-
 /// The spots of a line, and the plane distance at which each stands.
 struct SpotLine {
+  std::uint32_t number = 0;
   std::vector<Spot> spots;
   std::vector<MapPoint> positions;
   std::vector<double> distances;
 };
 
-SpotLine spot_line(std::span<const MapPoint> line, const StoreFacts& facts) {
+SpotLine spot_line(std::span<const MapPoint> line, std::uint32_t number, const StoreFacts& facts) {
   const SpotMap map(facts.map, facts.bounds);
   SpotLine made;
+  made.number = number;
   for (const MapPoint& p : line) {
     const std::optional<Spot> spot = map.spot(p);
     if (!spot) {
@@ -54,18 +52,6 @@ SpotLine spot_line(std::span<const MapPoint> line, const StoreFacts& facts) {
                 "the line has no length: expected at least two different points");
   }
   return made;
-}
-
-PredicatePtr meets_line(const SpotLine& line, double tolerance) {
-  std::vector<PredicatePtr> parts;
-  for (std::size_t i = 0; i + 1 < line.spots.size(); ++i) {
-    parts.push_back(std::make_shared<SightPredicate>(
-        line.spots[i], line.spots[i + 1],
-        std::vector<SightPredicate::Stretch>{
-            {0.0, 1.0, -1.0, -std::numeric_limits<double>::infinity()}},
-        kNothingAtEnds, tolerance));
-  }
-  return any_of(std::move(parts));
 }
 
 /// Appends the points of one segment. A point that is there already only learns what begins at it.
@@ -119,7 +105,8 @@ class SegmentWriter {
     const MapPoint& b = line_.positions[part_ + 1];
     const double from = line_.distances[part_];
     const double distance = from + share * (line_.distances[part_ + 1] - from);
-    if (points_.empty() || points_.back().distance != distance) {
+    if (points_.empty() || points_.back().line != line_.number ||
+        points_.back().distance != distance) {
       ProfilePoint point;
       point.position =
           share == 1.0 ? b : MapPoint{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
@@ -129,6 +116,7 @@ class SegmentWriter {
     ProfilePoint& point = points_.back();
     point.state = state;
     point.part = part_;
+    point.line = line_.number;
     if (ground != nullptr) {
       point.height = facts_.heights.height_of_code(code_at(tin_, facts_.heights, ground->footing));
     }
@@ -141,40 +129,92 @@ class SegmentWriter {
   std::uint32_t part_ = 0;
 };
 
+/// Walks along the line, in pieces whose records fit the memory.
+class Profiling {
+ public:
+  Profiling(const ProgressiveTin& terrain, const ProfileRequest& request)
+      : terrain_(terrain),
+        request_(request),
+        context_(request.stop, request.memory_limit_bytes, terrain.store().path()),
+        detail_({request.tolerance, request.vertices}, {terrain.store(), terrain.index()},
+                context_) {}
+
+  ProfileResult run(std::span<const std::span<const MapPoint>> lines) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const SpotLine line =
+          spot_line(lines[i], static_cast<std::uint32_t>(i), terrain_.store().facts());
+      walk(line, 0, line.spots.size() - 1);
+    }
+    terrain_.store().pages().check_unchanged();
+    result_.certified_error = detail_.certificate().error;
+    result_.certified_deviation = detail_.certificate().deviation;
+    result_.exact = detail_.is_exact(terrain_.store().facts());
+    result_.cost = context_.cost;
+    return std::move(result_);
+  }
+
+ private:
+  /// The segments from `first` up to `end`.
+  void walk(const SpotLine& line, std::size_t first, std::size_t end) {
+    const StoreFile& store = terrain_.store();
+    const SpotPath path(std::span(line.spots).subspan(first, end - first + 1), detail_.tolerance());
+    std::vector<PageId> pages;
+    terrain_.index().search(path, pages, context_.cost.io);
+    context_.check_stop();
+    const std::uint64_t bytes = refinement_bytes(most_records(store, pages)) + held();
+    if (bytes > request_.memory_limit_bytes && end - first > 1) {
+      const std::size_t middle = first + (end - first) / 2;
+      walk(line, first, middle);
+      walk(line, middle, end);
+      return;
+    }
+    context_.admit(bytes);
+    std::vector<PendingSplit> splits;
+    read_pages(store, pages, path, context_, splits);
+    detail_.keep(splits);
+    Refinement refinement(terrain_.t0());
+    refinement.apply(splits, context_);
+    SegmentWriter writer(refinement.tin(), store.facts(), line, result_.points);
+    TriangleId near = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      context_.check_stop();
+      near = writer.write(static_cast<std::uint32_t>(i), near);
+      context_.admit(held());
+    }
+  }
+
+  [[nodiscard]] std::uint64_t held() const noexcept {
+    return result_.points.capacity() * sizeof(ProfilePoint);
+  }
+
+  const ProgressiveTin& terrain_;
+  const ProfileRequest& request_;
+  QueryContext context_;
+  Detail detail_;
+  ProfileResult result_;
+};
+
+ProfileResult profile_of(const ProgressiveTin& terrain,
+                         std::span<const std::span<const MapPoint>> lines,
+                         const ProfileRequest& request) {
+  const auto start = std::chrono::steady_clock::now();
+  ProfileResult result = Profiling(terrain, request).run(lines);
+  result.cost.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
 }  // namespace
 
 ProfileResult profile(const ProgressiveTin& terrain, std::span<const MapPoint> line,
                       const ProfileRequest& request) {
-  const auto start = std::chrono::steady_clock::now();
-  if (request.tolerance && !(*request.tolerance >= 0)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the tolerance is negative or not a number: expected a value >= 0 in the height's "
-                "unit");
-  }
-  const StoreFile& store = terrain.store();
-  const SpotLine spots = spot_line(line, store.facts());
-  const double tolerance = request.tolerance.value_or(-1.0);
-  QueryContext context(request.stop, request.memory_limit_bytes, store.path());
-  Refinement refinement(terrain.t0());
-  refinement.apply(retrieve({store, terrain.index()}, *meets_line(spots, tolerance), 0, context),
-                   context);
+  return profile_of(terrain, std::span(&line, 1), request);
+}
 
-  ProfileResult result;
-  SegmentWriter writer(refinement.tin(), store.facts(), spots, result.points);
-  TriangleId near = 0;
-  for (std::uint32_t i = 0; i + 1 < spots.spots.size(); ++i) {
-    context.check_stop();
-    near = writer.write(i, near);
-  }
-  store.pages().check_unchanged();
-  const Certificate certificate = certify_below(store, tolerance);
-  result.certified_error = certificate.error;
-  result.certified_deviation = certificate.deviation;
-  result.exact = certificate.complete && store.facts().base_error == 0;
-  result.cost = context.cost;
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+ProfileResult profile(const ProgressiveTin& terrain, std::span<const std::vector<MapPoint>> lines,
+                      const ProfileRequest& request) {
+  const std::vector<std::span<const MapPoint>> all(lines.begin(), lines.end());
+  return profile_of(terrain, all, request);
 }
 
 }  // namespace ptin

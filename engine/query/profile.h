@@ -17,6 +17,10 @@ namespace ptin {
 struct ProfileRequest {
   /// Certified error asked for, in the height's unit, >= 0. None: exact.
   std::optional<double> tolerance;
+  /// The profile of the TIN of the first so many vertices of the terrain (detail.h). Excludes
+  /// `tolerance`.
+  std::optional<std::uint64_t> vertices;
+  /// For records, mesh and points together. A line whose records do not fit is walked in pieces.
   std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
   std::stop_token stop;
 };
@@ -25,28 +29,34 @@ struct ProfileRequest {
 /// of the TIN. Between two points the surface is straight.
 struct ProfilePoint {
   MapPoint position;      ///< Map units.
-  double distance = 0.0;  ///< Along the line, plane, map units.
+  double distance = 0.0;  ///< Along its line, plane, map units.
   /// Height's unit; NaN where no surface touches the line.
   double height = std::numeric_limits<double>::quiet_NaN();
   /// What the stretch that begins here runs over; of a last point, what the one before does.
   PointState state = PointState::kOutside;
-  std::uint32_t part = 0;  ///< Which segment of the line it is on.
+  std::uint32_t part = 0;  ///< Which segment of its line it is on.
+  std::uint32_t line = 0;  ///< Which line.
 };
 
 struct ProfileResult {
-  std::vector<ProfilePoint> points;
+  std::vector<ProfilePoint> points;  ///< Line by line.
   double certified_error = 0.0;      ///< At samples.
   double certified_deviation = 0.0;  ///< Of every height.
   bool exact = false;
   QueryCost cost;
 };
 
-/// Walks along a polyline of at least two points. Segments of no length are left out.
-/// @throws Error invalid_argument    fewer than two points; a coordinate that is not finite, or
-/// more than 2^31 grid units away; a tolerance that is negative or NaN
-///               resource_exhausted, corruption, io_error, cancelled
-/// Cost: the records whose region of influence meets the line, and the triangles on the way.
+/// Walks along polylines of at least two points each. Segments of no length are left out.
+/// @throws Error invalid_argument    a line of fewer than two points; a coordinate that is not
+/// finite, or more than 2^31 grid units away; as Detail
+///               resource_exhausted  one segment, or the points, exceed the memory limit
+///               corruption, io_error, cancelled
+/// Cost: the records whose region of influence meets the line, each test of one the logarithm of
+/// the segments, and the triangles on the way. With `vertices` that of Detail is added.
 [[nodiscard]] ProfileResult profile(const ProgressiveTin& terrain, std::span<const MapPoint> line,
+                                    const ProfileRequest& request = {});
+[[nodiscard]] ProfileResult profile(const ProgressiveTin& terrain,
+                                    std::span<const std::vector<MapPoint>> lines,
                                     const ProfileRequest& request = {});
 
 }  // namespace ptin

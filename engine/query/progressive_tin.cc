@@ -9,6 +9,7 @@
 #include "engine/query/certificate.h"
 #include "engine/query/clip.h"
 #include "engine/query/coarsest.h"
+#include "engine/query/detail.h"
 #include "engine/query/refinement.h"
 #include "engine/query/retrieval.h"
 #include "engine/query/total_order.h"
@@ -39,19 +40,11 @@ PredicatePtr predicate_of(const RefineRequest& request, const StoreFacts& facts)
 }
 
 std::uint64_t records_wanted(const RefineRequest& request, const StoreFile& store) {
-  const std::uint64_t t0 = store.t0().vertices.size();
   if (request.tolerance) {
     throw Error(ErrorCode::invalid_argument,
                 "both a tolerance and a number of vertices are given: give one of them");
   }
-  if (*request.vertices < t0) {
-    throw Error(ErrorCode::invalid_argument,
-                std::to_string(*request.vertices) +
-                    " vertices are asked for, but the coarsest TIN has " + std::to_string(t0) +
-                    ": ask for at least that many",
-                store.path());
-  }
-  return std::min(*request.vertices - t0, store.record_count());
+  return records_of_first(*request.vertices, store);
 }
 
 Selection select(const RefineRequest& request, const RecordSource& source,

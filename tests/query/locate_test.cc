@@ -160,11 +160,9 @@ TEST(Locate, GroupsAreHalvedUntilTheyFitTheMemory) {
 
 /// The exact height lies in every interval that an approximation reports.
 void check_intervals(const ProgressiveTin& exact, const ProgressiveTin& asked,
-                     std::optional<double> tolerance, std::uint64_t seed) {
+                     const LocateRequest& request, std::uint64_t seed) {
   const std::vector<MapPoint> points = random_points(exact.store().facts(), 20000, seed);
   const LocateResult truth = locate(exact, points);
-  LocateRequest request;
-  request.tolerance = tolerance;
   const LocateResult found = locate(asked, points, request);
   std::size_t both = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -181,14 +179,25 @@ void check_intervals(const ProgressiveTin& exact, const ProgressiveTin& asked,
     }
   }
   EXPECT_GT(both, points.size() / 4);
-  EXPECT_TRUE(found.exact == (found.certified_error == 0 && !tolerance));
+  EXPECT_EQ(found.exact, found.certified_error == 0 && !request.tolerance && !request.vertices);
+}
+
+LocateRequest at(double tolerance) {
+  LocateRequest request;
+  request.tolerance = tolerance;
+  return request;
 }
 
 TEST(Locate, IntervalsHoldTheExactHeight) {
   for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
     const ProgressiveTin& terrain = reference::built_terrain(name);
     for (const double tolerance : {0.0, 1.0, 8.0, 60.0, 1000.0}) {
-      check_intervals(terrain, terrain, tolerance, 5);
+      check_intervals(terrain, terrain, at(tolerance), 5);
+    }
+    for (const std::uint64_t records : {2000U, 20000U}) {
+      LocateRequest request;
+      request.vertices = terrain.store().t0().vertices.size() + records;
+      check_intervals(terrain, terrain, request, 8);
     }
   }
 }
@@ -196,8 +205,8 @@ TEST(Locate, IntervalsHoldTheExactHeight) {
 TEST(Locate, FilesThatLeftRecordsOutAnswerWithIntervals) {
   const ProgressiveTin& exact = reference::built_terrain("mountains_257.tif");
   const ProgressiveTin& coarse = reference::built_terrain("mountains_257.tif", 10.0);
-  check_intervals(exact, coarse, std::nullopt, 6);
-  check_intervals(exact, coarse, 20.0, 7);
+  check_intervals(exact, coarse, {}, 6);
+  check_intervals(exact, coarse, at(20.0), 7);
   const LocateResult r = locate(coarse, random_points(coarse.store().facts(), 10, 1));
   EXPECT_FALSE(r.exact);
   EXPECT_GT(r.certified_error, 0.0);

@@ -10,6 +10,8 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/spot_path.h"
+#include "tests/query/built_terrain.h"
 #include "tests/query/line_oracle.h"
 #include "tests/query/reference_hierarchy.h"
 
@@ -71,6 +73,98 @@ TEST(Profile, FollowsALineOfSeveralSegments) {
     EXPECT_LT(found.points[i - 1].distance, found.points[i].distance);
   }
   EXPECT_EQ(found.points.back().part, 1u);
+}
+
+/// The box meets a segment, in rationals: it holds an end, or the segment crosses one of its sides.
+bool meets_segment(const GridBox& box, Spot p, Spot q) {
+  reference::Rational from = 0;
+  reference::Rational to = 1;
+  const auto a = rational_of(p);
+  const auto b = rational_of(q);
+  const auto clip = [&](const reference::Rational& start, const reference::Rational& step,
+                        std::int32_t low, std::int32_t high) {
+    if (step == 0) return low <= start && start <= high;
+    reference::Rational first = (low - start) / step;
+    reference::Rational last = (high - start) / step;
+    if (last < first) std::swap(first, last);
+    from = std::max(from, first);
+    to = std::min(to, last);
+    return from <= to;
+  };
+  return clip(a.x, b.x - a.x, box.min_x, box.max_x) && clip(a.y, b.y - a.y, box.min_y, box.max_y);
+}
+
+RC_GTEST_PROP(SpotPath, HoldsWhereABoxMeetsASegment, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const auto coordinate = [&] {
+    const auto grid = static_cast<std::int64_t>(random() % 40);
+    return (grid << kSpotBits) +
+           (random() % 2 == 0 ? 0 : static_cast<std::int64_t>(random() % (1 << kSpotBits)));
+  };
+  std::vector<Spot> spots(2 + random() % 30);
+  for (Spot& s : spots) {
+    s = {coordinate(), coordinate()};
+    if (random() % 4 == 0) s = {s.x, spots.front().y};
+  }
+  const SpotPath path(spots, 2.0);
+  for (int i = 0; i < 100; ++i) {
+    const auto at = [&] { return static_cast<int>(random() % 44) - 2; };
+    GridBox box = box_of(GridPoint{at(), at()});
+    box = united(box, random() % 4 == 0 ? GridPoint{at(), at()}
+                                        : GridPoint{box.min_x + static_cast<int>(random() % 3),
+                                                    box.min_y + static_cast<int>(random() % 3)});
+    bool wanted = false;
+    for (std::size_t k = 0; k + 1 < spots.size(); ++k) {
+      wanted = wanted || meets_segment(box, spots[k], spots[k + 1]);
+    }
+    RC_ASSERT(path.holds({box, {}, 3.0, 0.0}) == wanted);
+    RC_ASSERT(!path.holds({box, {}, 2.0, 0.0}));
+  }
+}
+
+TEST(Profile, AnswersThePiecesOfALineThatDoesNotFitTheMemory) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  std::mt19937_64 random(5);
+  std::vector<MapPoint> track;
+  for (int i = 0; i < 400; ++i) {
+    track.push_back(f.map.to_map(f.bounds.min_x + static_cast<double>(random() % 1000) * 1e-3 *
+                                                      (f.bounds.max_x - f.bounds.min_x),
+                                 f.bounds.min_y + i * (f.bounds.max_y - f.bounds.min_y) / 400.0));
+  }
+  const ProfileResult free = profile(terrain, track);
+  ProfileRequest request;
+  request.memory_limit_bytes = std::uint64_t{7} << 20;
+  const ProfileResult tight = profile(terrain, track, request);
+  EXPECT_GT(tight.cost.records_applied, free.cost.records_applied) << "it was not cut";
+  ASSERT_EQ(tight.points.size(), free.points.size());
+  for (std::size_t i = 0; i < free.points.size(); ++i) {
+    ASSERT_EQ(tight.points[i].distance, free.points[i].distance);
+    ASSERT_EQ(tight.points[i].height, free.points[i].height);
+  }
+  request.memory_limit_bytes = 1000;
+  EXPECT_THROW(static_cast<void>(profile(terrain, track, request)), Error);
+}
+
+TEST(Profile, KeepsLinesApart) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  const auto at = [&](int x, int y) {
+    return f.map.to_map(f.bounds.min_x + x, f.bounds.min_y + y);
+  };
+  const std::vector<std::vector<MapPoint>> lines = {{at(3, 3), at(40, 9)}, {at(80, 3), at(90, 70)}};
+  const ProfileResult both = profile(terrain, lines);
+  std::size_t i = 0;
+  for (std::uint32_t line = 0; line < 2; ++line) {
+    for (const ProfilePoint& p : profile(terrain, lines[line]).points) {
+      ASSERT_LT(i, both.points.size());
+      EXPECT_EQ(both.points[i].line, line);
+      EXPECT_EQ(both.points[i].distance, p.distance);
+      EXPECT_EQ(both.points[i].height, p.height);
+      ++i;
+    }
+  }
+  EXPECT_EQ(i, both.points.size());
 }
 
 TEST(Profile, RejectsWhatIsNoLine) {

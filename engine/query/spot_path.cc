@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/spot_path.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "engine/check.h"
+
+namespace ptin {
+
+SpotPath::SpotPath(std::span<const Spot> spots, double tolerance)
+    : tolerance_(tolerance), spots_(spots.begin(), spots.end()) {
+  PTIN_CHECK(spots_.size() >= 2);
+  const std::size_t segments = spots_.size() - 1;
+  const std::size_t leaves = std::bit_ceil(segments);
+  first_leaf_ = leaves - 1;
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  around_.assign(first_leaf_ + segments, {kMost, kMost, kLeast, kLeast});
+  for (std::size_t i = 0; i < segments; ++i) {
+    const Spot& a = spots_[i];
+    const Spot& b = spots_[i + 1];
+    around_[first_leaf_ + i] = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x),
+                                std::max(a.y, b.y)};
+  }
+  for (std::size_t i = around_.size(); i-- > 1;) {
+    const SpotBox& child = around_[i];
+    SpotBox& parent = around_[(i - 1) / 2];
+    parent = {std::min(parent.min_x, child.min_x), std::min(parent.min_y, child.min_y),
+              std::max(parent.max_x, child.max_x), std::max(parent.max_y, child.max_y)};
+  }
+}
+
+bool SpotPath::meets(const GridBox& grid) const noexcept {
+  const Spot low = spot_of(GridPoint{grid.min_x, grid.min_y});
+  const Spot high = spot_of(GridPoint{grid.max_x, grid.max_y});
+  const SpotBox box{low.x, low.y, high.x, high.y};
+  std::array<std::size_t, 128> waiting;  // Two a level at most.
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count != 0) {
+    const std::size_t i = waiting[--count];
+    const SpotBox& b = around_[i];
+    if (b.max_x < box.min_x || box.max_x < b.min_x || b.max_y < box.min_y || box.max_y < b.min_y) {
+      continue;  // so does a node without segments
+    }
+    if (box.min_x <= b.min_x && b.max_x <= box.max_x && box.min_y <= b.min_y &&
+        b.max_y <= box.max_y) {
+      return true;
+    }
+    if (i >= first_leaf_) {
+      if (segment_meets(i - first_leaf_, box, grid)) return true;
+      continue;
+    }
+    for (const std::size_t child : {2 * i + 2, 2 * i + 1}) {
+      if (child < around_.size()) waiting[count++] = child;
+    }
+  }
+  return false;
+}
+
+/// REQUIRES: the boxes meet. Then they share a point unless the corners of the box all lie strictly
+/// on one side of the line.
+bool SpotPath::segment_meets(std::size_t segment, const SpotBox& box,
+                             const GridBox& grid) const noexcept {
+  const Spot& p = spots_[segment];
+  const Spot& q = spots_[segment + 1];
+  if (box.min_x <= p.x && p.x <= box.max_x && box.min_y <= p.y && p.y <= box.max_y) return true;
+  // The corners farthest to the left and to the right of the direction of the line.
+  const bool east = q.x >= p.x;
+  const bool north = q.y >= p.y;
+  const GridPoint left{north ? grid.min_x : grid.max_x, east ? grid.max_y : grid.min_y};
+  const GridPoint right{north ? grid.max_x : grid.min_x, east ? grid.min_y : grid.max_y};
+  return side(p, q, left) >= 0 && side(p, q, right) <= 0;
+}
+
+}  // namespace ptin
