@@ -73,6 +73,10 @@ struct Splits {
 static_assert(sizeof(Splits) == 24);
 /// A code of so many bytes holds at most four times as many splits: memory is bounded by input.
 inline constexpr std::uint64_t kMostSplitsPerByte = 4;
+/// A frame has at least a 64th as many splits as the mesh has vertices, or 2^20, unless it is the
+/// stream's last: a receiver numbers the mesh for each frame, so time is bounded by input.
+inline constexpr std::uint64_t kLeastShare = 64;
+inline constexpr std::uint64_t kMostLeastSplits = std::uint64_t{1} << 20;
 
 struct End {
   std::uint64_t splits, vertices, digest;  ///< Of this stream; of the mesh; of its vertices.

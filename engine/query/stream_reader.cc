@@ -49,6 +49,14 @@ StoreFacts facts_of(const stream::Start& s) {
 
 bool is_bound(double v) { return v >= 0; }
 
+/// Most bytes that a mesh of so many vertices takes while it grows, with its vertices along the
+/// curve: arrays that grow hold up to twice what is in them.
+std::uint64_t growing_bytes(std::uint64_t vertices) {
+  constexpr std::uint64_t kMesh = sizeof(Vertex) + 1 + 2 * (sizeof(Triangle) + 1);
+  constexpr std::uint64_t kAlongCurve = 16 + sizeof(std::uint32_t);
+  return vertices * 2 * (kMesh + kAlongCurve);
+}
+
 }  // namespace
 
 std::string StreamReader::place() const {
@@ -57,6 +65,19 @@ std::string StreamReader::place() const {
 
 void StreamReader::reject(const std::string& why) const {
   throw Error(ErrorCode::corruption, why + "; what came before it is sound and can be kept",
+              place());
+}
+
+void StreamReader::check_stop() const {
+  if (options_.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled", name_);
+}
+
+void StreamReader::admit(std::uint64_t bytes) const {
+  if (bytes <= options_.memory_limit_bytes) return;
+  throw Error(ErrorCode::resource_exhausted,
+              "what the stream brings may take " + std::to_string(bytes) +
+                  " bytes, and the limit is " + std::to_string(options_.memory_limit_bytes) +
+                  "; raise it, or ask the sender for less (a larger error, a window)",
               place());
 }
 
@@ -79,6 +100,7 @@ std::size_t StreamReader::wanted() const {
   if (head.bytes > stream::kMaxFrameBytes || head.reserved != 0 || head.sequence != sequence_) {
     reject("the head of the frame holds values that no program wrote");
   }
+  admit(growing_bytes(tin_.vertices.size()) + head.bytes);
   return sizeof(stream::FrameHead) + head.bytes;
 }
 
@@ -194,6 +216,8 @@ void StreamReader::take_start(std::span<const std::byte> payload) {
                  : "the stream goes on from another mesh than this one: what was said to be there "
                    "is not what is");
     }
+    check_stop();
+    admit(growing_bytes(tin_.vertices.size()) * 3 / 2);
     tin_ = stream::numbered_by_key(tin_);
     ++numbering_;
   }
@@ -220,6 +244,7 @@ void StreamReader::take_t0(std::span<const std::byte> payload) {
       vertex_bytes + std::uint64_t{counts.triangles} * sizeof(layout::T0Triangle) != rest.size()) {
     reject("the counts of T0 are not those of its bytes");
   }
+  admit(growing_bytes(counts.vertices) + 4 * payload.size());  // read, checked, and as a mesh
   CoarsestTin t0;
   for (const auto& v : read_array<layout::T0Vertex>(rest, counts.vertices)) {
     if (!t0.vertices.empty() && key_of(t0.vertices.back().position) >= key_of({v.x, v.y})) {
@@ -257,9 +282,16 @@ void StreamReader::take_splits(std::span<const std::byte> payload) {
       !is_bound(now.deviation)) {
     reject("the frame holds a number of splits or bounds that no program wrote");
   }
+  const std::uint64_t vertices = tin_.vertices.size();
+  if (head.count < std::min(vertices / stream::kLeastShare, stream::kMostLeastSplits) &&
+      head.count != splits_in_all_ - splits_) {
+    reject("the frame holds fewer splits than a frame for so large a mesh has");
+  }
+  admit(growing_bytes(vertices + head.count) + payload.size());
   RangeDecoder coder(bytes);
   code_->begin_block(tin_);
   for (std::uint32_t i = 0; i < head.count; ++i) {
+    if (i % kStopInterval == 0) check_stop();
     LocalSplit split;
     if (const char* fault = code_->decode(coder, tin_, split); fault != nullptr) {
       reject("split " + std::to_string(i) + " " + fault);

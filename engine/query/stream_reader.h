@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,18 @@
 
 namespace ptin {
 
+struct StreamReaderOptions {
+  /// For frames that wait and the mesh; asked for before either grows.
+  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
+  std::stop_token stop;  ///< Looked at while splits are applied.
+};
+
 /// Follows a stream, and after it streams that go on from it. Threads: one owner.
 class StreamReader {
  public:
   /// @param name  Of the stream, in errors.
-  explicit StreamReader(std::string name) : name_(std::move(name)) {}
+  explicit StreamReader(std::string name, StreamReaderOptions options = {})
+      : name_(std::move(name)), options_(std::move(options)) {}
 
   /// Takes the next bytes, however they were cut, and applies every frame that is whole by now.
   /// @return How many were taken: all, unless the stream ended before. What is fed behind the end
@@ -32,7 +40,12 @@ class StreamReader {
   /// reject"), a stream that does not go on from this mesh; names frame and byte. The mesh stays
   /// valid, its certificate that of the last whole frame; nothing more can be fed.
   ///               unsupported_version
-  /// Cost: linear; a frame that is not whole waits in memory, nothing is reserved before it came.
+  ///               resource_exhausted  what comes would exceed the memory limit
+  ///               cancelled
+  /// Cost: linear in the bytes and, where stars are of bounded degree, in the splits; a stream that
+  /// goes on from another costs O(n log n) on a mesh of n vertices, however few splits it brings
+  /// (so a caller who does not trust the sender limits how many there are). A frame that is not
+  /// whole waits in memory, nothing is reserved before it came.
   std::size_t feed(std::span<const std::byte> bytes);
 
   /// Gives up the rest of a stream that was cut: what is fed next is the head of another one.
@@ -75,9 +88,13 @@ class StreamReader {
   void take_end(std::span<const std::byte> payload);
   void apply(const LocalSplit& split);
   [[nodiscard]] std::string place() const;
+  void check_stop() const;
+  /// @throws Error resource_exhausted when `bytes` exceed the limit
+  void admit(std::uint64_t bytes) const;
   [[noreturn]] void reject(const std::string& why) const;
 
   std::string name_;
+  StreamReaderOptions options_;
   std::vector<std::byte> waiting_;  ///< Of a frame that is not whole.
   std::uint64_t offset_ = 0;
   std::uint32_t sequence_ = 0;

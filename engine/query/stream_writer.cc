@@ -24,6 +24,7 @@ namespace {
 constexpr std::uint64_t kLeastSplits = 256;
 constexpr std::uint64_t kMostSplits = std::uint64_t{1} << 20;
 constexpr std::uint64_t kShare = 8;
+static_assert(kShare <= stream::kLeastShare && kMostSplits >= stream::kMostLeastSplits);
 constexpr std::size_t kMostMetadata = std::size_t{1} << 20;
 
 /// A mesh that grows split by split, and the place of each vertex.

@@ -479,6 +479,67 @@ TEST_F(StreamReaderRejects, MoreSplitsThanTheirBytesCanHold) {
 TEST_F(StreamReaderRejects, AFrameWithoutASplit) {
   frames.edit<stream::Splits>(2, [](auto& s) { s.count = 0; }), expect();
 }
+TEST(StreamReader, RejectsAFrameTooSmallForItsMesh) {
+  std::mt19937_64 random(7);
+  const Hierarchy h = reference::simplify(reference::random_grid(random, 40, 40, 1, 0.0), random);
+  const TemporaryStore file(h);
+  Frames frames(sent(*file.open(), {}));
+  ASSERT_GT(frames.frames.size(), 5u) << "start, T0, three of splits, end";
+  frames.edit<stream::Splits>(3, [](auto& s) { s.count = 1; });
+  StreamReader reader("stream");
+  try {
+    reader.feed(frames.sealed());
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::corruption);
+    EXPECT_NE(e.message().find("fewer splits"), std::string::npos) << e.message();
+  }
+  EXPECT_EQ(validate(reader.tin()), "");
+}
+
+TEST(StreamReader, KeepsToItsMemoryAndTellsBefore) {
+  std::mt19937_64 random(8);
+  const Hierarchy h = reference::simplify(reference::random_grid(random, 60, 60, 1, 0.0), random);
+  const TemporaryStore file(h);
+  const Bytes bytes = sent(*file.open(), {});
+  std::size_t least = 0;
+  for (const std::uint64_t limit : {0U, 20'000U, 100'000U, 400'000U}) {
+    StreamReader reader("stream", {limit, {}});
+    try {
+      reader.feed(bytes);
+      FAIL() << limit;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::resource_exhausted) << e.what();
+    }
+    EXPECT_GE(reader.tin().vertices.size(), least) << "more memory holds no less";
+    EXPECT_LE(reader.tin().vertices.capacity() * sizeof(Vertex) +
+                  reader.tin().triangles.capacity() * sizeof(Triangle),
+              limit);
+    least = reader.tin().vertices.size();
+  }
+  EXPECT_GT(least, 300u);
+  StreamReader free("stream", {std::uint64_t{4} << 20, {}});
+  free.feed(bytes);
+  EXPECT_TRUE(free.is_complete());
+}
+
+TEST(StreamReader, StopsWhenCancelled) {
+  std::stop_source stop;
+  StreamReader reader("stream", {std::uint64_t{1} << 30, stop.get_token()});
+  const Asked asked(5);
+  const Bytes bytes = sent(*asked.store, {});
+  const std::size_t half = bytes.size() / 2;
+  reader.feed(first(bytes, half));
+  stop.request_stop();
+  try {
+    reader.feed(std::span(bytes).subspan(half));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::cancelled);
+  }
+  EXPECT_EQ(validate(reader.tin()), "");
+}
+
 TEST_F(StreamReaderRejects, ABoundThatIsNoNumber) {
   frames.edit<stream::Splits>(2, [](auto& s) { s.deviation = UINT64_MAX; }), expect();
 }
