@@ -14,19 +14,14 @@
 
 #include <benchmark/benchmark.h>
 
-#include "bench/support/scratch.h"
+#include "bench/support/opened_store.h"
 #include "engine/query/locate.h"
 
 namespace {
 
 using namespace ptin;
-
-const ProgressiveTin* terrain() {
-  static const std::string path = bench::bench_store();
-  if (path.empty()) return nullptr;
-  static const ProgressiveTin opened = ProgressiveTin::open(path);
-  return &opened;
-}
+using bench::skipped;
+using bench::terrain;
 
 std::vector<MapPoint> random_points(std::size_t count) {
   const StoreFacts& f = terrain()->store().facts();
@@ -36,12 +31,6 @@ std::vector<MapPoint> random_points(std::size_t count) {
   std::vector<MapPoint> points(count);
   for (MapPoint& p : points) p = f.map.to_map(x(random), y(random));
   return points;
-}
-
-bool skipped(benchmark::State& state) {
-  if (terrain() != nullptr) return false;
-  state.SkipWithError("no store: set PTIN_BENCH_STORE");
-  return true;
 }
 
 void locate_one(benchmark::State& state, const LocateRequest& request) {

@@ -15,19 +15,14 @@
 
 #include <benchmark/benchmark.h>
 
-#include "bench/support/scratch.h"
+#include "bench/support/opened_store.h"
 #include "engine/query/sight.h"
 
 namespace {
 
 using namespace ptin;
-
-const ProgressiveTin* terrain() {
-  static const std::string path = bench::bench_store();
-  if (path.empty()) return nullptr;
-  static const ProgressiveTin opened = ProgressiveTin::open(path);
-  return &opened;
-}
+using bench::skipped;
+using bench::terrain;
 
 std::vector<SightPair> random_pairs(std::size_t count) {
   const StoreFacts& f = terrain()->store().facts();
@@ -39,12 +34,6 @@ std::vector<SightPair> random_pairs(std::size_t count) {
     p = {f.map.to_map(x(random), y(random)), 2.0, f.map.to_map(x(random), y(random)), 2.0};
   }
   return pairs;
-}
-
-bool skipped(benchmark::State& state) {
-  if (terrain() != nullptr) return false;
-  state.SkipWithError("no store: set PTIN_BENCH_STORE");
-  return true;
 }
 
 void solve_pairs(benchmark::State& state, bool verdict_only) {

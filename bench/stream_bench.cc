@@ -12,27 +12,15 @@
 
 #include <benchmark/benchmark.h>
 
-#include "bench/support/scratch.h"
+#include "bench/support/opened_store.h"
 #include "engine/query/stream_reader.h"
 #include "engine/query/stream_writer.h"
 
 namespace {
 
 using namespace ptin;
-
-const std::shared_ptr<const StoreFile>& store() {
-  static const std::shared_ptr<const StoreFile> file =
-      bench::bench_store().empty() ? nullptr : StoreFile::open(bench::bench_store());
-  return file;
-}
-
-bool skipped(benchmark::State& state) {
-  if (store() == nullptr) {
-    state.SkipWithError("needs PTIN_BENCH_STORE or srtm1_bigtujunga_utm_1197x643.tif");
-    return true;
-  }
-  return false;
-}
+using bench::skipped;
+using bench::store;
 
 StreamSummary send(std::int64_t error, std::vector<std::byte>& bytes) {
   StreamRequest request;

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The store that benchmarks of queries ask, opened once.
+#pragma once
+
+#include <memory>
+
+#include <benchmark/benchmark.h>
+
+#include "bench/support/scratch.h"
+#include "engine/query/progressive_tin.h"
+
+namespace ptin::bench {
+
+/// bench_store(); null when there is none.
+inline const std::shared_ptr<const StoreFile>& store() {
+  static const std::shared_ptr<const StoreFile> file =
+      bench_store().empty() ? nullptr : StoreFile::open(bench_store());
+  return file;
+}
+
+/// The same, to be asked; null when there is none.
+inline const ProgressiveTin* terrain() {
+  if (store() == nullptr) return nullptr;
+  static const ProgressiveTin opened(store());
+  return &opened;
+}
+
+/// True, and said in the results, when there is none.
+inline bool skipped(benchmark::State& state) {
+  if (store() != nullptr) return false;
+  state.SkipWithError("needs PTIN_BENCH_STORE or srtm1_bigtujunga_utm_1197x643.tif");
+  return true;
+}
+
+}  // namespace ptin::bench
