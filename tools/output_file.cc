@@ -54,6 +54,11 @@ void check_output(const std::string& path, bool overwrite) {
   if (stat(path.c_str(), &status) == 0) {
     if (S_ISDIR(status.st_mode))
       throw Error(ErrorCode::invalid_argument, "is a folder; give a file name", path);
+    if (!S_ISREG(status.st_mode)) {
+      throw Error(ErrorCode::invalid_argument,
+                  "is a device or a pipe, which a finished file cannot replace; give a file name",
+                  path);
+    }
     if (!overwrite) throw exists_already(path);
   } else if (stat(folder_of(path).c_str(), &status) != 0) {
     throw Error(ErrorCode::not_found, "the folder of the output does not exist; make it first",

@@ -7,21 +7,13 @@
 #include <string>
 
 #include "engine/error.h"
+#include "engine/query/above_error.h"
 
 namespace ptin {
 
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-class AboveError final : public AttributePredicate {
- public:
-  explicit AboveError(double bound) : bound_(bound) {}
-  [[nodiscard]] bool holds(const Attributes& a) const noexcept override { return a.error > bound_; }
-
- private:
-  double bound_;
-};
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/key_table.h"
+#include "engine/query/above_error.h"
 #include "engine/query/meets_box.h"
 #include "engine/query/refinement.h"
 #include "engine/query/retrieval.h"
@@ -18,16 +19,6 @@
 namespace ptin {
 
 namespace {
-
-/// Errors above a bound, which may be negative or infinite.
-class AboveError final : public AttributePredicate {
- public:
-  explicit AboveError(double bound) : bound_(bound) {}
-  [[nodiscard]] bool holds(const Attributes& a) const noexcept override { return a.error > bound_; }
-
- private:
-  double bound_;
-};
 
 Detail detail_of(const PartRequest& request, const ProgressiveTin& terrain) {
   QueryContext context(request.stop, request.memory_limit_bytes, terrain.store().path());

@@ -54,7 +54,7 @@ std::string small_store(const TestFolder& folder) {
 
 TEST(CliBadUse, IsStatus2WithOneSentence) {
   expect_refusal(run_ptin({}), 2, "--help");
-  expect_refusal(run_ptin({"frobnicate"}), 2, "--help");
+  expect_refusal(run_ptin({"frobnicate"}), 2, "frobnicate; see ptin --help");
   expect_refusal(run_ptin({"build"}), 2, "ptin build --help");
   expect_refusal(run_ptin({"refine", "a.ptin", "--window", "1", "2", "3", "-o", "x.ply"}), 2,
                  "--window");
@@ -161,6 +161,43 @@ TEST(CliBadInput, OutputThatCannotBe) {
   expect_refusal(run_ptin({"refine", store, "-o", folder.file("none/a.ply")}), 3, "none");
   const std::vector<std::string> left = {"a.ply", "hills.ptin", "hills.tif"};
   EXPECT_EQ(folder.names(), left);
+}
+
+TEST(CliBadInput, OutputThatIsADeviceOrAPipe) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  ASSERT_EQ(mkfifo(folder.file("pipe.ply").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/null", folder.file("null.ply"));
+  for (const char* name : {"pipe.ply", "null.ply"}) {
+    expect_refusal(run_ptin({"refine", store, "--overwrite", "-o", folder.file(name)}), 2,
+                   "device or a pipe");
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(folder.file("pipe.ply")));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("null.ply")));
+}
+
+TEST(CliBadInput, AnswerThatStdoutDoesNotTake) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const std::string line = "LINESTRING(500100 3999900, 500700 3999300)";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", store},
+        {"info", store, "--json"},
+        {"locate", store, "500100", "3999900"},
+        {"profile", store, "--line", line},
+        {"profile", store, "--line", line, "-o", "-"},
+        {"sight", store, "500100", "3999900", "2", "500700", "3999300", "2"},
+        {"highest", store},
+        {"isoline", store, "--interval", "20", "-o", "-", "-q"},
+        {"stream", store, "-o", "-"},
+        {"verify", store, "-q", "--json"},
+        {"completion", "bash"},
+        {"--help"}}) {
+    const Outcome outcome = testing::run_ptin_into("/dev/full", arguments);
+    EXPECT_TRUE(outcome.status == 7 || outcome.status == 6) << arguments[0] << outcome.status;
+    EXPECT_NE(outcome.err.find("standard output"), std::string::npos)
+        << arguments[0] << outcome.err;
+  }
 }
 
 TEST(CliBadInput, FolderWithoutWritePermission) {
@@ -277,6 +314,11 @@ TEST(CliBadInput, FullDisk) {
     std::vector<std::string> arguments = {"export", store, "-q", "-o", disk.path + name};
     if (name == std::string("/a.tif")) arguments.insert(arguments.end(), {"--pixel-size", "4"});
     expect_refusal(run_ptin(arguments), 7, name);
+    EXPECT_TRUE(std::filesystem::is_empty(disk.path)) << name;
+  }
+  for (const char* name : {"/a.gpkg", "/a.fgb", "/a.geojson", "/a.shp"}) {
+    expect_refusal(run_ptin({"isoline", store, "--interval", "5", "-q", "-o", disk.path + name}), 7,
+                   name);
     EXPECT_TRUE(std::filesystem::is_empty(disk.path)) << name;
   }
   expect_refusal(

@@ -234,16 +234,18 @@ TEST(Export, DoesNotDependOnTheCells) {
   const TestFolder folder;
   for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
     const ProgressiveTin terrain = ProgressiveTin::open(built(folder, name));
-    for (const std::optional<double> tolerance : {std::optional<double>(), {1.0}}) {
-      PartRequest request;
-      request.tolerance = tolerance;
+    std::array<PartRequest, 3> levels;
+    levels[1].tolerance = 1.0;
+    levels[2].vertices = terrain.store().t0().vertices.size() + 200;
+    for (const PartRequest& request : levels) {
       const Joined whole = joined_under(terrain, request, std::uint64_t{1} << 30);
       EXPECT_EQ(whole.cells, 1U);
       const bool is_raster = terrain.store().record_count() > 10'000;
       for (const std::uint64_t limit :
            {std::uint64_t{is_raster ? 4'000'000U : 700'000U}, tightest_limit(terrain, request)}) {
         const Joined parts = joined_under(terrain, request, limit);
-        EXPECT_GT(parts.cells, tolerance ? 0U : 3U) << name;
+        const bool is_full = !request.tolerance && !request.vertices;
+        EXPECT_GT(parts.cells, is_full ? 3U : 0U) << name;
         EXPECT_EQ(parts.vertices, whole.vertices);
         EXPECT_EQ(parts.triangles, whole.triangles);
       }
@@ -274,6 +276,18 @@ TEST(Export, RefusesMemoryThatASinglePositionDoesNotFit) {
   const TestFolder folder;
   const ProgressiveTin terrain = ProgressiveTin::open(built(folder, "coast_257.tif"));
   EXPECT_THROW(static_cast<void>(joined_under(terrain, {}, 20'000)), Error);
+}
+
+TEST(Export, WritesTheFirstVerticesAsRefineDoes) {
+  const TestFolder folder;
+  const std::string file = built(folder, "mountains_257.tif");
+  for (const char* vertices : {"300", "5000"}) {
+    expect_done({"export", file, "--vertices", vertices, "--memory", "32M", "-q", "--overwrite",
+                 "-o", folder.file("a.ply")});
+    expect_done(
+        {"refine", file, "--vertices", vertices, "--overwrite", "-o", folder.file("b.ply")});
+    EXPECT_EQ(facets_in(folder.file("a.ply")), facets_in(folder.file("b.ply"))) << vertices;
+  }
 }
 
 TEST(Export, WritesTheSameTrianglesAsFeatures) {

@@ -149,6 +149,56 @@ TEST(ProfileCommand, BreaksAtEveryEdgeAndWritesThreeFormats) {
   EXPECT_EQ(run_ptin({"profile", terrain, "--line", line, "-o", folder.file("p.doc")}).status, 2);
 }
 
+TEST(ProfileCommand, TakesExtensionsInCapitalsAndStdout) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string line =
+      "LINESTRING(" + east(14) + " " + south(20) + "," + east(18) + " " + south(20) + ")";
+  for (const char* name : {"P.CSV", "P.GeoJSON", "P.PNG"}) {
+    EXPECT_EQ(run_ptin({"profile", terrain, "--line", line, "-o", folder.file(name)}).status, 0);
+  }
+  EXPECT_EQ(testing::read_file(folder.file("P.CSV")),
+            run_ptin({"profile", terrain, "--line", line}).out);
+  EXPECT_EQ(testing::read_file(folder.file("P.GeoJSON")),
+            run_ptin({"profile", terrain, "--line", line, "-o", "-"}).out);
+  EXPECT_EQ(run_ptin({"profile", terrain, "--line", line, "-o", "-", "--json"}).status, 2);
+}
+
+TEST(PointQuestions, AnswerAtTheFirstVertices) {
+  const TestFolder folder;
+  const std::string terrain = folder.file("m.ptin");
+  ASSERT_EQ(
+      run_ptin({"build", testing::test_data("mountains_257.tif"), "-o", terrain, "-q"}).status, 0);
+  const json info = answer_of({"info", terrain, "--json"});
+  const double x =
+      (info["bounds"]["min_x"].get<double>() + info["bounds"]["max_x"].get<double>()) / 2;
+  const double y =
+      (info["bounds"]["min_y"].get<double>() + info["bounds"]["max_y"].get<double>()) / 2;
+  const std::string at_x = std::to_string(x + 7);
+  const std::string at_y = std::to_string(y + 11);
+  const json some = answer_of({"locate", terrain, at_x, at_y, "--vertices", "500", "--json"});
+  const json refined =
+      answer_of({"refine", terrain, "--vertices", "500", "-o", folder.file("m.ply"), "--json"});
+  EXPECT_NEAR(some.at("certified_error").get<double>(), refined.at("certified_error").get<double>(),
+              refined.at("certified_error").get<double>() / 8);
+  EXPECT_EQ(some.at("exact"), false);
+  const json exact = answer_of({"locate", terrain, at_x, at_y, "--json"});
+  EXPECT_LE(some["points"][0]["height_min"], exact["points"][0]["height"]);
+  EXPECT_GE(some["points"][0]["height_max"], exact["points"][0]["height"]);
+  const std::string line =
+      "LINESTRING(" + at_x + " " + at_y + "," + std::to_string(x) + " " + std::to_string(y) + ")";
+  const json walked =
+      answer_of({"profile", terrain, "--line", line, "--vertices", "500", "--json"});
+  EXPECT_EQ(walked["points"][0]["height"], some["points"][0]["height"]);
+  EXPECT_EQ(walked.at("certified_error"), some.at("certified_error"));
+  EXPECT_EQ(run_ptin({"locate", terrain, at_x, at_y, "--vertices", "1"}).status, 2);
+  EXPECT_EQ(run_ptin({"locate", terrain, at_x, at_y, "--vertices", "-5"}).status, 2);
+  EXPECT_EQ(run_ptin({"locate", terrain, at_x, at_y, "--vertices", "500", "--error", "1"}).status,
+            2);
+  EXPECT_EQ(run_ptin({"locate", terrain, at_x, at_y, "--memory", "1K"}).status, 7);
+  EXPECT_EQ(run_ptin({"profile", terrain, "--line", line, "--memory", "1K"}).status, 7);
+}
+
 TEST(SightCommand, SeesOverAndNotThroughAWall) {
   const TestFolder folder;
   const std::string terrain = wall(folder);

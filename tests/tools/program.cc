@@ -40,11 +40,11 @@ std::vector<std::string> TestFolder::names() const {
   return names;
 }
 
-Outcome run_ptin(const std::vector<std::string>& arguments, std::optional<int> signal,
-                 std::chrono::milliseconds after) {
-  const TestFolder folder;
-  const std::string out = folder.file("out");
-  const std::string err = folder.file("err");
+namespace {
+
+/// Starts the program with stdout and stderr in files; returns its process.
+pid_t start_ptin(const std::vector<std::string>& arguments, const std::string& out,
+                 const std::string& err) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
@@ -57,16 +57,37 @@ Outcome run_ptin(const std::vector<std::string>& arguments, std::optional<int> s
   const int spawned = posix_spawn(&child, PTIN_PROGRAM, &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (spawned != 0) throw std::runtime_error("cannot run " PTIN_PROGRAM);
+  return child;
+}
+
+int status_of(pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+
+Outcome run_ptin(const std::vector<std::string>& arguments, std::optional<int> signal,
+                 std::chrono::milliseconds after) {
+  const TestFolder folder;
+  const pid_t child = start_ptin(arguments, folder.file("out"), folder.file("err"));
   if (signal) {
     std::this_thread::sleep_for(after);
     kill(child, *signal);
   }
-  int status = 0;
-  waitpid(child, &status, 0);
   Outcome outcome;
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  outcome.out = read_file(out);
-  outcome.err = read_file(err);
+  outcome.status = status_of(child);
+  outcome.out = read_file(folder.file("out"));
+  outcome.err = read_file(folder.file("err"));
+  return outcome;
+}
+
+Outcome run_ptin_into(const std::string& output, const std::vector<std::string>& arguments) {
+  const TestFolder folder;
+  Outcome outcome;
+  outcome.status = status_of(start_ptin(arguments, output, folder.file("err")));
+  outcome.err = read_file(folder.file("err"));
   return outcome;
 }
 

@@ -36,6 +36,10 @@ struct Outcome {
   std::string err;
 };
 
+/// Runs `ptin ARGUMENTS` with its output going to a file that is there. Only status and err are
+/// set.
+Outcome run_ptin_into(const std::string& output, const std::vector<std::string>& arguments);
+
 /// Runs `ptin ARGUMENTS`. With `signal`, sends it `after` the start.
 Outcome run_ptin(const std::vector<std::string>& arguments,
                  std::optional<int> signal = std::nullopt,

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/formats/mesh_writer.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
-#include <filesystem>
 
 #include "engine/error.h"
+#include "tools/file_name.h"
 
 namespace ptin::tools {
 
@@ -19,20 +17,13 @@ constexpr std::array<MeshFormat, 4> kFormats = {{
     {"glb", "glTF 2.0 binary, around a local origin (viewers, Blender, web)", write_glb},
 }};
 
-std::string lower_extension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  if (!extension.empty()) extension.erase(0, 1);
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 }  // namespace
 
 std::span<const MeshFormat> mesh_formats() noexcept { return kFormats; }
 
 const MeshFormat& mesh_format_of(const std::string& path) {
-  const std::string extension = lower_extension(path);
+  std::string extension = lower_extension(path);
+  if (!extension.empty()) extension.erase(0, 1);
   std::string known;
   for (const MeshFormat& format : kFormats) {
     if (format.extension == extension) return format;

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 
 #include <cpl_conv.h>
 #include <gdal_priv.h>
@@ -14,6 +15,8 @@
 #include <unistd.h>
 
 #include "engine/error.h"
+#include "tools/export/gdal_output.h"
+#include "tools/file_name.h"
 #include "tools/output_file.h"
 
 namespace ptin::tools {
@@ -25,11 +28,6 @@ namespace fs = std::filesystem;
 constexpr std::array<VectorFormat, 4> kFormats = {
     {{"gpkg", "GPKG"}, {"fgb", "FlatGeobuf"}, {"geojson", "GeoJSON"}, {"shp", "ESRI Shapefile"}}};
 constexpr const VectorFormat& kGeoJson = kFormats[2];
-
-Error gdal_error(const std::string& what, const std::string& path) {
-  const std::string reason = CPLGetLastErrorMsg();
-  return {ErrorCode::io_error, reason.empty() ? what : what + ": " + reason, path};
-}
 
 /// What SQLite does for the safety of a file that nobody knows of yet, and whose parts nobody
 /// keeps, is switched off: the finished file is synced before it gets its name.
@@ -59,9 +57,22 @@ void create_fields(OGRLayer& layer, const VectorFile::Layer& wanted, const std::
     OGRFieldDefn field(f.name, f.type == VectorFile::FieldType::kInteger ? OFTInteger : OFTReal);
     if (f.type == VectorFile::FieldType::kInteger) field.SetWidth(8);
     if (layer.CreateField(&field) != OGRERR_NONE) {
-      throw gdal_error(std::string("cannot create the field ") + f.name, path);
+      throw gdal_failure(std::string("cannot create the field ") + f.name, path);
     }
   }
+}
+
+/// GDAL's GeoJSON driver tells nobody when the disk takes no more: a whole file ends "]\n}".
+bool ends_as_geojson(const std::string& path) {
+  constexpr std::streamoff kTail = 16;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in.tellg();
+  in.seekg(std::max<std::streamoff>(0, size - kTail));
+  std::string tail;
+  for (char c = 0; in.get(c);) {
+    if (std::isspace(static_cast<unsigned char>(c)) == 0) tail += c;
+  }
+  return tail.ends_with("]}");
 }
 
 }  // namespace
@@ -77,9 +88,7 @@ std::string known_vector_extensions() {
 
 const VectorFormat& vector_format_of(const std::string& path) {
   if (path == "-") return kGeoJson;
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_extension(path);
   if (extension == ".json") return kGeoJson;
   for (const VectorFormat& f : kFormats) {
     if (extension == std::string(".").append(f.extension)) return f;
@@ -122,7 +131,7 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     if (dataset_) {
       layer_ = dataset_->CreateLayer(layer.name, reference.get(), layer.geometry, nullptr);
     }
-    if (layer_ == nullptr) throw gdal_error("cannot create the output", path_);
+    if (layer_ == nullptr) throw gdal_failure("cannot create the output", path_);
     create_fields(*layer_, layer, path_);
     if (dataset_->TestCapability(ODsCTransactions) != 0) dataset_->StartTransaction();
   } catch (...) {
@@ -155,7 +164,7 @@ void VectorFile::add(std::unique_ptr<OGRGeometry> geometry, std::span<const Valu
   }
   feature.SetGeometryDirectly(geometry.release());
   if (layer_->CreateFeature(&feature) != OGRERR_NONE) {
-    throw gdal_error("cannot write a feature", path_);
+    throw gdal_failure("cannot write a feature", path_);
   }
 }
 
@@ -166,10 +175,14 @@ void VectorFile::close() {
   CPLErrorReset();
   if (dataset_->TestCapability(ODsCTransactions) != 0 &&
       dataset_->CommitTransaction() != OGRERR_NONE) {
-    throw gdal_error("cannot write the output", path_);
+    throw gdal_failure("cannot write the output", path_);
   }
   dataset_.reset();
-  if (CPLGetLastErrorType() == CE_Failure) throw gdal_error("cannot write the output", path_);
+  if (CPLGetLastErrorType() == CE_Failure) throw gdal_failure("cannot write the output", path_);
+  if (!folder_.empty() && &vector_format_of(path_) == &kGeoJson &&
+      !ends_as_geojson((fs::path(folder_) / fs::path(path_).filename()).string())) {
+    throw gdal_failure("cannot write the output", path_);
+  }
 }
 
 void VectorFile::publish() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/cli.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <iostream>
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/error_status.h"
+#include "tools/standard_output.h"
 
 namespace ptin::tools {
 
@@ -108,12 +110,14 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin locate dem.ptin 387500 3792500 --json\n"
      "  ptin locate dem.ptin --points wells.gpkg --error 5\n"
+     "  ptin locate dem.ptin --points wells.gpkg --vertices 20000\n"
      "  cut -d, -f2,3 track.csv | ptin locate dem.ptin --points - > heights.csv\n",
      declare_locate},
     {"profile", "Tell the height along a line, with a break at every edge crossed",
      "Examples:\n"
      "  ptin profile dem.ptin --line 'LINESTRING(385000 3790000, 390000 3795000)'\n"
-     "  ptin profile dem.ptin --line road.geojson --error 1 -o road.png\n",
+     "  ptin profile dem.ptin --line road.geojson --error 1 -o road.png\n"
+     "  ptin profile dem.ptin --line tracks.gpkg -o - | jq .features[0].properties\n",
      declare_profile},
     {"sight", "Tell whether one point sees another, and what is in the way",
      "Hidden: some inner point of the line lies below the surface. Touching is visible; voids do "
@@ -153,11 +157,22 @@ constexpr const char* kExitStatuses =
     "5 file of a newer version; 6 input/output error; 7 out of memory or disk; 8 cancelled; 70 a "
     "fault of ours.\n";
 
+/// The first word, where it is meant as a subcommand and is none; else empty.
+std::string unknown_subcommand(int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  const std::string word = argv[1];
+  const bool known = std::any_of(kCommands.begin(), kCommands.end(),
+                                 [&](const Command& command) { return word == command.name; });
+  return known ? std::string() : word;
+}
+
 /// What CLI11 has to say about wrong use, with the way to the help.
-int report_wrong_use(const CLI::App& app, const CLI::ParseError& error, bool json) {
+int report_wrong_use(const CLI::App& app, const CLI::ParseError& error, const std::string& unknown,
+                     bool json) {
   std::string name;
   for (const CLI::App* sub : app.get_subcommands()) name = sub->get_name();
-  std::string message = error.what();
+  std::string message = unknown.empty() ? std::string(error.what())
+                                        : std::string("there is no subcommand ").append(unknown);
   for (char& c : message) {
     if (c == '\n') c = ' ';
   }
@@ -202,12 +217,17 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
   try {
     line.app->parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
-    return line.app->exit(success);
+    const int status = line.app->exit(success);
+    finish_stdout();
+    return status;
   } catch (const CLI::ParseError& error) {
-    return report_wrong_use(*line.app, error, json);
+    return report_wrong_use(*line.app, error, unknown_subcommand(argc, argv), json);
   }
   for (std::size_t i = 0; i < kCommands.size(); ++i) {
-    if (line.app->got_subcommand(kCommands[i].name)) return line.actions[i]();
+    if (!line.app->got_subcommand(kCommands[i].name)) continue;
+    const int status = line.actions[i]();
+    finish_stdout();
+    return status;
   }
   return status_of(ErrorCode::internal).exit;
 }

@@ -28,6 +28,9 @@ struct CrsFacts {
   }
 };
 
+/// `units` of every answer.
+[[nodiscard]] nlohmann::json units_json(const CrsFacts& crs);
+
 /// The facts of a WKT text. One that GDAL does not understand gives facts with the text alone.
 [[nodiscard]] CrsFacts crs_facts(const std::string& wkt);
 

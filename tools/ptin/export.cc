@@ -9,10 +9,11 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/query/certificate.h"
+#include "engine/query/part_refiner.h"
 #include "tools/error_status.h"
 #include "tools/export/raster_export.h"
 #include "tools/export/tin_sink.h"
+#include "tools/file_name.h"
 #include "tools/output_file.h"
 #include "tools/progress.h"
 #include "tools/ptin/crs_facts.h"
@@ -26,7 +27,7 @@ namespace {
 struct ExportOptions {
   TerrainOptions terrain;
   RegionOptions region;
-  std::optional<double> error;
+  DetailOptions detail;
   std::vector<double> pixel_size;
   std::optional<double> nodata;
   std::vector<std::string> creation_options;
@@ -57,7 +58,7 @@ std::string lower(std::string text) {
 }
 
 const ExportFormat& format_of(const ExportOptions& options) {
-  const std::string extension = lower(std::filesystem::path(options.output).extension().string());
+  const std::string extension = lower_extension(options.output);
   for (const ExportFormat& format : kFormats) {
     if (options.format.empty() ? (!extension.empty() && (extension == format.extension ||
                                                          (extension == ".tiff" &&
@@ -87,17 +88,14 @@ struct MemoryShares {
 
 MemoryShares memory_of(const ExportOptions& options) {
   constexpr std::uint64_t kLeast = std::uint64_t{32} << 20;
-  const std::uint64_t bytes =
-      options.memory.empty() ? std::uint64_t{1} << 30 : parse_bytes(options.memory);
+  const std::uint64_t bytes = memory_limit_of(options.memory, std::uint64_t{1} << 30);
   if (bytes < kLeast)
     throw Error(ErrorCode::invalid_argument, "--memory must be at least 32M", options.memory);
   return MemoryShares(bytes);
 }
 
 void check_options(const ExportOptions& options, const ExportFormat& format) {
-  if (options.error && !(*options.error >= 0)) {
-    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
-  }
+  check_detail(options.detail);
   for (const double size : options.pixel_size) {
     if (!(size > 0 && std::isfinite(size)))
       throw Error(ErrorCode::invalid_argument, "--pixel-size must be a number > 0, in map units");
@@ -139,6 +137,7 @@ std::array<double, 2> pixel_size_of(const ExportOptions& options, const StoreFil
 struct Exported {
   std::uint64_t vertices = 0, triangles = 0, cells = 0;
   std::int64_t columns = 0, rows = 0;
+  Certificate certificate;
 };
 
 using Report = std::function<void(double)>;
@@ -190,7 +189,8 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options,
   const MemoryShares memory = memory_of(options);
   PartRequest request;
   if (format.make_sink != nullptr) request.region = region_of(options.region, crs.wkt);
-  request.tolerance = options.error;
+  request.tolerance = options.detail.error;
+  request.vertices = options.detail.vertices;
   request.memory_limit_bytes = memory.part;
   request.stop = context.stop;
   const PartRefiner refiner(terrain, request);
@@ -219,6 +219,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options,
     made = export_pixels(refiner, options, target, report);
   }
   progress.finish();
+  made.certificate = refiner.detail().certificate();
   return made;
 }
 
@@ -230,14 +231,17 @@ int run_export(const ExportOptions& options, const Context& context) {
   const Exported made = export_as(format, options, terrain, context);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const Certificate certificate = certify_below(terrain.store(), options.error.value_or(-1.0));
+  const Certificate& certificate = made.certificate;
   const std::uint64_t bytes = std::filesystem::file_size(options.output);
   const bool is_raster = format.make_sink == nullptr;
+  const StoreFacts& facts = terrain.store().facts();
   if (context.json) {
     nlohmann::json answer = {{"output", options.output},
                              {"format", format.name},
                              {"certified_error", certificate.error},
                              {"certified_deviation", certificate.deviation},
+                             {"exact", certificate.complete && facts.base_error == 0},
+                             {"units", units_json(crs_facts(terrain.store()))},
                              {"bytes", bytes},
                              {"seconds", seconds}};
     if (is_raster) {
@@ -270,9 +274,8 @@ Action declare_export(CLI::App& app, Context& context) {
   add_terrain_options(app, options->terrain, false);
   add_region_options(app, options->region);
   app.remove_option(app.get_option("--point"));
-  app.add_option("--error", options->error,
-                 "Certified error allowed, in the height's unit (default: the full TIN)")
-      ->type_name("E");
+  add_detail_options(app, options->detail, " (default: the full TIN)",
+                     "The TIN of the terrain's N most important vertices");
   app.add_option("-o,--output", options->output,
                  "The file to write; its extension chooses the format: .ply, .gpkg, .fgb, .tif")
       ->type_name("OUT")

@@ -4,7 +4,6 @@
 #include "engine/query/locate.h"
 
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "engine/error.h"
@@ -14,6 +13,7 @@
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/number_rows.h"
 #include "tools/ptin/query_options.h"
+#include "tools/standard_output.h"
 
 namespace ptin::tools {
 
@@ -23,7 +23,8 @@ struct LocateOptions {
   TerrainOptions terrain;
   std::vector<double> point;
   std::string points;
-  std::optional<double> error;
+  DetailOptions detail;
+  std::string memory;
 };
 
 nlohmann::json point_json(const MapPoint& at, const LocatedPoint& p, const StoreFacts& facts) {
@@ -59,37 +60,39 @@ void print_rows(const std::vector<MapPoint>& points, const LocateResult& result)
     }
     text += '\n';
     if (text.size() > 65536) {
-      std::fwrite(text.data(), 1, text.size(), stdout);
+      write_to_stdout(text);
       text.clear();
     }
   }
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  write_to_stdout(text);
 }
 
 int run_locate(const LocateOptions& options, const Context& context) {
   if (options.point.empty() == options.points.empty()) {
     throw Error(ErrorCode::invalid_argument, "give either X Y or --points FILE");
   }
+  check_detail(options.detail);
+  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const CrsFacts crs = crs_facts(terrain.store());
   const std::vector<MapPoint> points =
       options.points.empty() ? std::vector<MapPoint>{{options.point[0], options.point[1]}}
-                             : read_points(options.points);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+                             : read_points(options.points, crs.wkt);
   LocateRequest request;
-  request.tolerance = options.error;
+  request.tolerance = options.detail.error;
+  request.vertices = options.detail.vertices;
+  request.memory_limit_bytes = memory_limit_of(options.memory);
   request.stop = context.stop;
   const LocateResult result = locate(terrain, points, request);
   if (!context.json) {
     print_rows(points, result);
     return kExitDone;
   }
-  const CrsFacts crs = crs_facts(terrain.store());
-  nlohmann::json answer = {
-      {"certified_error", result.certified_error},
-      {"certified_deviation", result.certified_deviation},
-      {"exact", result.exact},
-      {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
-      {"cost", cost_json(result.cost)},
-      {"points", nlohmann::json::array()}};
+  nlohmann::json answer = {{"certified_error", result.certified_error},
+                           {"certified_deviation", result.certified_deviation},
+                           {"exact", result.exact},
+                           {"units", units_json(crs)},
+                           {"cost", cost_json(result.cost)},
+                           {"points", nlohmann::json::array()}};
   for (std::size_t i = 0; i < points.size(); ++i) {
     answer["points"].push_back(point_json(points[i], result.points[i], terrain.store().facts()));
   }
@@ -105,11 +108,12 @@ Action declare_locate(CLI::App& app, Context& context) {
   app.add_option("X_Y", options->point, "A point in map units")->expected(2)->type_name("X Y");
   app.add_option("--points", options->points,
                  "Points: text with x and y in the first columns (- reads standard input), or a "
-                 "vector file")
+                 "vector file (transformed to the terrain's CRS)")
       ->type_name("FILE");
-  app.add_option("--error", options->error,
-                 "Certified error allowed, in the height's unit; heights come with intervals")
-      ->type_name("E");
+  add_detail_options(app, options->detail, "; heights come with intervals",
+                     "Ask the TIN of the terrain's N most important vertices; heights come with "
+                     "intervals");
+  add_memory_option(app, options->memory);
   add_common_options(app, context, false);
   return [options, &context] { return run_locate(*options, context); };
 }

@@ -7,16 +7,17 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <system_error>
 
-#include <ogrsf_frmts.h>
+#include <ogr_geometry.h>
 
 #include "engine/error.h"
+#include "tools/file_name.h"
+#include "tools/region/vector_input.h"
 
 namespace ptin::tools {
 
@@ -114,42 +115,25 @@ void require_file(const std::string& path) {
   throw Error(ErrorCode::not_found, "no such file", path);
 }
 
-using DatasetPtr = std::unique_ptr<GDALDataset>;
-
-DatasetPtr open_vectors(const std::string& path) {
-  require_file(path);
-  DatasetPtr data(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr,
-                                    nullptr, nullptr));
-  if (!data || data->GetLayer(0) == nullptr) {
-    throw Error(ErrorCode::invalid_argument,
-                "neither text of numbers nor a vector file that GDAL reads", path);
-  }
-  return data;
-}
-
 bool is_text(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
+  const std::string extension = lower_extension(path);
   return path == "-" || extension == ".csv" || extension == ".txt" || extension == ".xyz" ||
          extension.empty();
 }
 
-std::vector<MapPoint> line_of(const OGRGeometry& geometry) {
-  std::vector<MapPoint> points;
+void add_lines(const OGRGeometry& geometry, std::vector<std::vector<MapPoint>>& lines) {
   const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
   if (type == wkbLineString) {
     const OGRLineString* line = geometry.toLineString();
+    std::vector<MapPoint> points;
     for (int i = 0; i < line->getNumPoints(); ++i) points.push_back({line->getX(i), line->getY(i)});
-  } else if (type == wkbMultiLineString && !geometry.IsEmpty()) {
-    return line_of(*geometry.toMultiLineString()->getGeometryRef(0));
+    if (!points.empty()) lines.push_back(std::move(points));
+  } else if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection) != 0) {
+    for (const OGRGeometry* part : *geometry.toGeometryCollection()) add_lines(*part, lines);
+  } else if (OGR_GT_IsSubClassOf(type, wkbCurve) != 0) {
+    const std::unique_ptr<OGRGeometry> straight(geometry.getLinearGeometry());
+    if (straight) add_lines(*straight, lines);
   }
-  return points;
-}
-
-std::vector<MapPoint> line_of_wkt(const std::string& wkt) {
-  OGRGeometry* raw = nullptr;
-  const OGRErr status = OGRGeometryFactory::createFromWkt(wkt.c_str(), nullptr, &raw);
-  const std::unique_ptr<OGRGeometry> geometry(raw);
-  return status == OGRERR_NONE && geometry ? line_of(*geometry) : std::vector<MapPoint>();
 }
 
 }  // namespace
@@ -166,46 +150,33 @@ std::vector<double> read_rows(const std::string& path, std::size_t columns) {
   return rows_of(in, path, columns);
 }
 
-std::vector<MapPoint> read_points(const std::string& path) {
+std::vector<MapPoint> read_points(const std::string& path, const std::string& crs_wkt) {
   std::vector<MapPoint> points;
   if (is_text(path)) {
     const std::vector<double> rows = read_rows(path, 2);
     for (std::size_t i = 0; i + 1 < rows.size(); i += 2) points.push_back({rows[i], rows[i + 1]});
     return points;
   }
-  const DatasetPtr data = open_vectors(path);
-  for (const auto& feature : *data->GetLayer(0)) {
-    const OGRGeometry* geometry = feature->GetGeometryRef();
+  for_each_geometry(path, crs_wkt, [&](long long id, const OGRGeometry* geometry) {
     if (geometry == nullptr || wkbFlatten(geometry->getGeometryType()) != wkbPoint ||
         geometry->IsEmpty()) {
-      throw Error(ErrorCode::invalid_argument,
-                  "feature " + std::to_string(feature->GetFID()) + " is no point", path);
+      throw Error(ErrorCode::invalid_argument, "feature " + std::to_string(id) + " is no point",
+                  path);
     }
     points.push_back({geometry->toPoint()->getX(), geometry->toPoint()->getY()});
-  }
+  });
   return points;
 }
 
-std::vector<MapPoint> read_line(const std::string& text) {
-  std::vector<MapPoint> points = line_of_wkt(text);
-  if (!points.empty()) return points;
-  if (!std::filesystem::exists(text)) {
-    throw Error(ErrorCode::not_found,
-                "no such file, and not WKT either; write LINESTRING(x y, x y) or name a file",
-                text);
+std::vector<std::vector<MapPoint>> read_lines(const std::string& text, const std::string& crs_wkt) {
+  std::vector<std::vector<MapPoint>> lines;
+  read_geometries(text, {"LINESTRING", "MULTILINESTRING"}, "LINESTRING(x y, x y)", crs_wkt,
+                  [&](const OGRGeometry& geometry) { add_lines(geometry, lines); });
+  if (lines.empty()) {
+    const std::string where = text.size() > 64 ? text.substr(0, 64) + "..." : text;
+    throw Error(ErrorCode::invalid_argument, "holds no line", where);
   }
-  std::ifstream in(text);
-  std::string start(65536, '\0');
-  in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(in.gcount()));
-  points = line_of_wkt(start);
-  if (!points.empty()) return points;
-  const DatasetPtr data = open_vectors(text);
-  for (const auto& feature : *data->GetLayer(0)) {
-    if (feature->GetGeometryRef() != nullptr) points = line_of(*feature->GetGeometryRef());
-    if (!points.empty()) return points;
-  }
-  throw Error(ErrorCode::invalid_argument, "holds no line", text);
+  return lines;
 }
 
 }  // namespace ptin::tools

@@ -20,11 +20,14 @@ namespace ptin::tools {
 [[nodiscard]] std::vector<double> read_rows(const std::string& path, std::size_t columns);
 
 /// The points of a text file as read_rows(), or of the first layer of a vector file that GDAL
-/// reads.
-[[nodiscard]] std::vector<MapPoint> read_points(const std::string& path);
+/// reads, transformed to the terrain's CRS (region/vector_input.h).
+[[nodiscard]] std::vector<MapPoint> read_points(const std::string& path,
+                                                const std::string& crs_wkt);
 
-/// A line: WKT (LINESTRING), a file with it, or the first line of a vector file.
+/// Lines: WKT (LINESTRING, MULTILINESTRING), a file with it, or all lines of the first layer of a
+/// vector file, transformed to the terrain's CRS. Each part of a line of several is one of its own.
 /// @throws Error not_found, invalid_argument
-[[nodiscard]] std::vector<MapPoint> read_line(const std::string& text);
+[[nodiscard]] std::vector<std::vector<MapPoint>> read_lines(const std::string& text,
+                                                            const std::string& crs_wkt);
 
 }  // namespace ptin::tools

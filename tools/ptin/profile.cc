@@ -4,14 +4,19 @@
 #include "engine/query/profile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/error.h"
 #include "tools/error_status.h"
+#include "tools/file_name.h"
 #include "tools/formats/number_text.h"
 #include "tools/output_file.h"
 #include "tools/ptin/answers.h"
@@ -19,6 +24,7 @@
 #include "tools/ptin/number_rows.h"
 #include "tools/ptin/query_options.h"
 #include "tools/render/overlay.h"
+#include "tools/standard_output.h"
 
 namespace ptin::tools {
 
@@ -27,20 +33,41 @@ namespace {
 struct ProfileOptions {
   TerrainOptions terrain;
   std::string line;
-  std::optional<double> error;
+  DetailOptions detail;
+  std::string memory;
   std::string output;
   bool overwrite = false;
 };
 
+/// The points of each line.
+std::vector<std::span<const ProfilePoint>> lines_of(const ProfileResult& profile) {
+  std::vector<std::span<const ProfilePoint>> lines;
+  const std::span<const ProfilePoint> all(profile.points);
+  for (std::size_t begin = 0, i = 1; i <= all.size(); ++i) {
+    if (i < all.size() && all[i].line == all[begin].line) continue;
+    lines.push_back(all.subspan(begin, i - begin));
+    begin = i;
+  }
+  return lines;
+}
+
+/// Of all lines together.
+double length_of(const ProfileResult& profile) {
+  double length = 0.0;
+  for (const auto& line : lines_of(profile)) length += line.back().distance;
+  return length;
+}
+
 std::string csv_of(const ProfileResult& profile) {
-  std::string text = "distance,x,y,height,state\n";
+  std::string text = "distance,x,y,height,state,line\n";
   for (const ProfilePoint& p : profile.points) {
     for (const double value : {p.distance, p.position.x, p.position.y}) {
       append_number(text, value);
       text += ',';
     }
     if (std::isfinite(p.height)) append_number(text, p.height);
-    text.append(",").append(name_of(p.state)).append("\n");
+    text.append(",").append(name_of(p.state)).append(",");
+    text.append(std::to_string(p.line)).append("\n");
   }
   return text;
 }
@@ -55,35 +82,54 @@ void add_crs(const CrsFacts& crs, nlohmann::json& collection) {
   collection["crs"] = {{"type", "name"}, {"properties", {{"name", name}}}};
 }
 
-/// A MultiLineString of the stretches over ground, with heights.
-nlohmann::json geojson_of(const ProfileResult& profile, const CrsFacts& crs) {
+/// The stretches of one line over ground, with heights: the coordinates of a MultiLineString.
+nlohmann::json stretches_of(std::span<const ProfilePoint> points) {
   nlohmann::json lines = nlohmann::json::array();
   nlohmann::json line = nlohmann::json::array();
-  for (const ProfilePoint& p : profile.points) {
+  const auto end_line = [&] {
+    if (line.size() > 1) lines.push_back(std::move(line));
+    line = nlohmann::json::array();
+  };
+  for (const ProfilePoint& p : points) {
     const bool ground = std::isfinite(p.height);
     if (ground) line.push_back({p.position.x, p.position.y, p.height});
-    if (!ground || p.state != PointState::kSurface) {
-      if (line.size() > 1) lines.push_back(line);
-      line = nlohmann::json::array();
-    }
+    if (!ground || p.state != PointState::kSurface) end_line();
   }
-  if (line.size() > 1) lines.push_back(line);
-  const nlohmann::json properties = {{"certified_error", profile.certified_error},
-                                     {"certified_deviation", profile.certified_deviation},
-                                     {"exact", profile.exact}};
-  const nlohmann::json feature = {
-      {"type", "Feature"},
-      {"properties", properties},
-      {"geometry", {{"type", "MultiLineString"}, {"coordinates", lines}}}};
-  nlohmann::json collection = {{"type", "FeatureCollection"},
-                               {"features", nlohmann::json::array({feature})}};
+  end_line();
+  return lines;
+}
+
+/// A feature for each line.
+nlohmann::json geojson_of(const ProfileResult& profile, const CrsFacts& crs) {
+  nlohmann::json features = nlohmann::json::array();
+  for (const std::span<const ProfilePoint> line : lines_of(profile)) {
+    const nlohmann::json properties = {{"line", line.front().line},
+                                       {"length", line.back().distance},
+                                       {"certified_error", profile.certified_error},
+                                       {"certified_deviation", profile.certified_deviation},
+                                       {"exact", profile.exact}};
+    features.push_back(
+        {{"type", "Feature"},
+         {"properties", properties},
+         {"geometry", {{"type", "MultiLineString"}, {"coordinates", stretches_of(line)}}}});
+  }
+  nlohmann::json collection = {{"type", "FeatureCollection"}, {"features", features}};
   add_crs(crs, collection);
   return collection;
 }
 
-/// Distance to the right, height upwards, both filling the picture; a line at each end of the
-/// heights.
-Image plot_of(const ProfileResult& profile) {
+/// A number for a plot, with its unit where that has a short name.
+std::string label_of(double value, const std::string& unit) {
+  const bool metres = unit == "metre" || unit == "m" || unit == "meter";
+  const bool kilo = metres && std::abs(value) >= 10'000;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.5g", kilo ? value / 1000 : value);
+  return std::string(text.data()).append(metres ? (kilo ? " km" : " m") : "");
+}
+
+/// Distance to the right, height upwards, both filling the picture, lines one behind the other; a
+/// grey line at each end of the heights, which are written there, as is the length.
+Image plot_of(const ProfileResult& profile, const CrsFacts& crs) {
   constexpr int kWidth = 1200, kHeight = 400, kMargin = 20;
   constexpr Colour kPaper{255, 255, 255}, kLine{150, 60, 30}, kFrame{200, 200, 200};
   Image image(kWidth, kHeight, kPaper);
@@ -93,9 +139,10 @@ Image plot_of(const ProfileResult& profile) {
     if (std::isfinite(p.height)) low = std::min(low, p.height), high = std::max(high, p.height);
   }
   const double range = high > low ? high - low : 1.0;
-  const double length = profile.points.back().distance;
+  const double length = length_of(profile);
+  double before = 0.0;
   const auto x = [&](const ProfilePoint& p) {
-    return kMargin + (kWidth - 2 * kMargin) * p.distance / length;
+    return kMargin + (kWidth - 2 * kMargin) * (before + p.distance) / length;
   };
   const auto y = [&](const ProfilePoint& p) {
     return kHeight - kMargin - (kHeight - 2 * kMargin) * (p.height - low) / range;
@@ -103,19 +150,32 @@ Image plot_of(const ProfileResult& profile) {
   for (const int row : {kMargin, kHeight - kMargin}) {
     draw_line(image, kMargin, row, kWidth - kMargin, row, kFrame, 1.0);
   }
-  for (std::size_t i = 0; i + 1 < profile.points.size(); ++i) {
-    const ProfilePoint& a = profile.points[i];
-    const ProfilePoint& b = profile.points[i + 1];
-    if (a.state == PointState::kSurface) draw_line(image, x(a), y(a), x(b), y(b), kLine, 1.0);
+  for (const std::span<const ProfilePoint> line : lines_of(profile)) {
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      if (line[i].state != PointState::kSurface) continue;
+      draw_line(image, x(line[i]), y(line[i]), x(line[i + 1]), y(line[i + 1]), kLine, 1.0);
+    }
+    before += line.back().distance;
   }
+  if (low <= high) {
+    draw_text(image, kMargin, kMargin - 12, label_of(high, crs.vertical_unit));
+    draw_text(image, kMargin, kHeight - kMargin + 6, label_of(low, crs.vertical_unit));
+  }
+  const std::string end = label_of(length, crs.horizontal_unit);
+  draw_text(image, kWidth - kMargin - text_width(end), kHeight - kMargin + 6, end);
   return image;
 }
 
+/// Into a file, or with "-" as GeoJSON to stdout.
 void write_profile(const ProfileOptions& options, const ProfileResult& profile,
                    const CrsFacts& crs) {
-  const std::string extension = std::filesystem::path(options.output).extension().string();
+  if (options.output == "-") {
+    write_to_stdout(geojson_of(profile, crs).dump() + "\n");
+    return;
+  }
+  const std::string extension = lower_extension(options.output);
   if (extension == ".png") {
-    write_png(plot_of(profile), options.output, options.overwrite);
+    write_png(plot_of(profile, crs), options.output, options.overwrite);
     return;
   }
   OutputFile out(options.output, options.overwrite);
@@ -123,47 +183,64 @@ void write_profile(const ProfileOptions& options, const ProfileResult& profile,
   out.publish();
 }
 
-void check_output_name(const ProfileOptions& options) {
+void check_output_name(const ProfileOptions& options, bool json) {
   if (options.output.empty()) return;
-  const std::string extension = std::filesystem::path(options.output).extension().string();
+  if (options.output == "-") {
+    if (!json) return;
+    throw Error(ErrorCode::invalid_argument,
+                "--json and -o - both write to stdout; give the profile a file name");
+  }
+  const std::string extension = lower_extension(options.output);
   if (extension != ".png" && extension != ".csv" && extension != ".geojson" &&
       extension != ".json") {
     throw Error(ErrorCode::invalid_argument,
-                "unknown format; end the name in .csv, .geojson or .png", options.output);
+                "unknown format; end the name in .csv, .geojson or .png, or write - for GeoJSON on "
+                "stdout",
+                options.output);
   }
   check_output(options.output, options.overwrite);
 }
 
+nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& result,
+                         const CrsFacts& crs) {
+  nlohmann::json answer = {
+      {"output", options.output.empty() ? nlohmann::json() : nlohmann::json(options.output)},
+      {"lines", lines_of(result).size()},
+      {"length", length_of(result)},
+      {"certified_error", result.certified_error},
+      {"certified_deviation", result.certified_deviation},
+      {"exact", result.exact},
+      {"units", units_json(crs)},
+      {"cost", cost_json(result.cost)},
+      {"points", nlohmann::json::array()}};
+  for (const ProfilePoint& p : result.points) {
+    answer["points"].push_back({{"line", p.line},
+                                {"distance", p.distance},
+                                {"x", p.position.x},
+                                {"y", p.position.y},
+                                {"height", p.height},
+                                {"state", name_of(p.state)}});
+  }
+  return answer;
+}
+
 int run_profile(const ProfileOptions& options, const Context& context) {
-  check_output_name(options);
-  const std::vector<MapPoint> line = read_line(options.line);
+  check_output_name(options, context.json);
+  check_detail(options.detail);
   const ProgressiveTin terrain = open_terrain(options.terrain);
   const CrsFacts crs = crs_facts(terrain.store());
+  const std::vector<std::vector<MapPoint>> lines = read_lines(options.line, crs.wkt);
   ProfileRequest request;
-  request.tolerance = options.error;
+  request.tolerance = options.detail.error;
+  request.vertices = options.detail.vertices;
+  request.memory_limit_bytes = memory_limit_of(options.memory);
   request.stop = context.stop;
-  const ProfileResult result = profile(terrain, line, request);
+  const ProfileResult result = profile(terrain, lines, request);
   if (!options.output.empty()) write_profile(options, result, crs);
   if (context.json) {
-    nlohmann::json answer = {
-        {"certified_error", result.certified_error},
-        {"certified_deviation", result.certified_deviation},
-        {"exact", result.exact},
-        {"length", result.points.back().distance},
-        {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
-        {"cost", cost_json(result.cost)},
-        {"points", nlohmann::json::array()}};
-    for (const ProfilePoint& p : result.points) {
-      answer["points"].push_back({{"distance", p.distance},
-                                  {"x", p.position.x},
-                                  {"y", p.position.y},
-                                  {"height", p.height},
-                                  {"state", name_of(p.state)}});
-    }
-    print_json(answer);
+    print_json(answer_of(options, result, crs));
   } else if (options.output.empty()) {
-    const std::string text = csv_of(result);
-    std::fwrite(text.data(), 1, text.size(), stdout);
+    write_to_stdout(csv_of(result));
   }
   return kExitDone;
 }
@@ -173,13 +250,18 @@ int run_profile(const ProfileOptions& options, const Context& context) {
 Action declare_profile(CLI::App& app, Context& context) {
   const auto options = std::make_shared<ProfileOptions>();
   add_terrain_options(app, options->terrain, true);
-  app.add_option("--line", options->line, "A line: WKT, or a file that holds it")
+  app.add_option("--line", options->line,
+                 "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector file "
+                 "(transformed to the terrain's CRS)")
       ->type_name("WKT_OR_FILE")
       ->required();
-  app.add_option("--error", options->error, "Certified error allowed, in the height's unit")
-      ->type_name("E");
+  add_detail_options(app, options->detail, "",
+                     "Ask the TIN of the terrain's N most important vertices");
+  add_memory_option(app, options->memory);
   app.add_option("-o,--output", options->output,
-                 "Write .csv, .geojson (with heights) or .png (a plot); default: CSV to stdout")
+                 "Write .csv, .geojson (with heights) or .png (a plot), or - for GeoJSON on "
+                 "stdout; default: "
+                 "CSV to stdout")
       ->type_name("OUT");
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
   add_common_options(app, context, false);

@@ -2,12 +2,14 @@
 #include "tools/ptin/query_options.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "engine/error.h"
 #include "storage/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"
+#include "tools/ptin/counts.h"
+#include "tools/ptin/human.h"
 #include "tools/region/region_input.h"
+#include "tools/standard_output.h"
 
 namespace ptin::tools {
 
@@ -83,6 +85,32 @@ void add_curvature_option(CLI::App& app, double& coefficient) {
       ->capture_default_str();
 }
 
+void add_detail_options(CLI::App& app, DetailOptions& options, const std::string& error_help,
+                        const std::string& vertices_help) {
+  auto* error = app.add_option("--error", options.error,
+                               "Certified error allowed, in the height's unit" + error_help)
+                    ->type_name("E");
+  app.add_option("--vertices", options.vertices, vertices_help)
+      ->type_name("N")
+      ->check(counts())
+      ->excludes(error);
+}
+
+void check_detail(const DetailOptions& options) {
+  if (options.error && !(*options.error >= 0)) {
+    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
+  }
+}
+
+void add_memory_option(CLI::App& app, std::string& memory) {
+  app.add_option("--memory", memory, "Memory that the answer may take, as 512M or 2G (default 4G)")
+      ->type_name("SIZE");
+}
+
+std::uint64_t memory_limit_of(const std::string& memory, std::uint64_t otherwise) {
+  return memory.empty() ? otherwise : parse_bytes(memory);
+}
+
 nlohmann::json cost_json(const QueryCost& cost) {
   return {{"records_retrieved", cost.records_retrieved},
           {"records_examined", cost.records_examined},
@@ -94,8 +122,7 @@ nlohmann::json cost_json(const QueryCost& cost) {
 }
 
 void print_json(const nlohmann::json& json) {
-  const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
-  std::fprintf(stdout, "%s\n", text.c_str());
+  write_to_stdout(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace ptin::tools

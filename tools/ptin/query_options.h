@@ -4,6 +4,7 @@
 // level of detail.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,10 +45,28 @@ void add_region_options(CLI::App& app, RegionOptions& options, bool window_only 
 /// --curvature, of whatever looks over the ground (engine/query/curvature.h).
 void add_curvature_option(CLI::App& app, double& coefficient);
 
+/// --error and --vertices: how finely the terrain is looked at; at most one.
+struct DetailOptions {
+  std::optional<double> error;
+  std::optional<std::uint64_t> vertices;
+};
+/// @param error_help, vertices_help  What each means here, after the words that are always true.
+void add_detail_options(CLI::App& app, DetailOptions& options, const std::string& error_help,
+                        const std::string& vertices_help);
+/// @throws Error invalid_argument  --error negative or not a number
+void check_detail(const DetailOptions& options);
+
+/// --memory SIZE
+void add_memory_option(CLI::App& app, std::string& memory);
+/// @throws Error invalid_argument as parse_bytes
+[[nodiscard]] std::uint64_t memory_limit_of(const std::string& memory,
+                                            std::uint64_t otherwise = std::uint64_t{4} << 30);
+
 /// The cost of an answer under the names of DESIGN.md, section 8.
 [[nodiscard]] nlohmann::json cost_json(const QueryCost& cost);
 
 /// Prints JSON, indented, and a newline to stdout. Infinite numbers become null.
+/// @throws Error as write_to_stdout
 void print_json(const nlohmann::json& json);
 
 }  // namespace ptin::tools

@@ -20,8 +20,7 @@ namespace {
 struct RefineOptions {
   TerrainOptions terrain;
   RegionOptions region;
-  std::optional<double> error;
-  std::optional<std::uint64_t> vertices;
+  DetailOptions detail;
   bool clip = false;
   bool cut = false;
   std::string memory;
@@ -39,9 +38,7 @@ void check_options(const RefineOptions& options) {
     throw Error(ErrorCode::invalid_argument,
                 "--cut needs an area; a point has none (--clip keeps its triangle)");
   }
-  if (options.error && !(*options.error >= 0)) {
-    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
-  }
+  check_detail(options.detail);
   static_cast<void>(mesh_format_of(options.output));
   check_output(options.output, options.overwrite);
 }
@@ -57,7 +54,7 @@ nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined
           {"certified_error", refined.certified_error},
           {"certified_deviation", refined.certified_deviation},
           {"exact", refined.exact},
-          {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+          {"units", units_json(crs)},
           {"cost", cost_json(refined.cost)}};
 }
 
@@ -86,11 +83,11 @@ int run_refine(const RefineOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request;
   request.region = region_of(options.region, crs.wkt);
-  request.tolerance = options.error;
-  request.vertices = options.vertices;
+  request.tolerance = options.detail.error;
+  request.vertices = options.detail.vertices;
   request.form = options.clip ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
   request.stop = context.stop;
-  if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
+  request.memory_limit_bytes = memory_limit_of(options.memory);
   const RefinedTin refined = terrain.refine(request);
 
   const StoreFacts& facts = terrain.store().facts();
@@ -118,13 +115,8 @@ Action declare_refine(CLI::App& app, Context& context) {
   const auto options = std::make_shared<RefineOptions>();
   add_terrain_options(app, options->terrain, true);
   add_region_options(app, options->region);
-  auto* error =
-      app.add_option("--error", options->error, "Certified error allowed, in the height's unit")
-          ->type_name("E");
-  app.add_option("--vertices", options->vertices,
-                 "Exactly this many vertices, the most important ones")
-      ->type_name("N")
-      ->excludes(error);
+  add_detail_options(app, options->detail, "",
+                     "Exactly this many vertices, the most important ones (of the region)");
   auto* clip =
       app.add_flag("--clip", options->clip, "Keep only the triangles that meet the region, whole");
   app.add_flag("--cut", options->cut, "Cut the triangles at the border of the region")
@@ -138,9 +130,7 @@ Action declare_refine(CLI::App& app, Context& context) {
       ->type_name("OUT")
       ->required();
   app.add_flag("--stats", options->stats, "Print what the answer is and what it cost");
-  app.add_option("--memory", options->memory,
-                 "Memory that the answer may take, as 512M or 2G (default 4G)")
-      ->type_name("SIZE");
+  add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
   add_common_options(app, context, true);
   return [options, &context] { return run_refine(*options, context); };

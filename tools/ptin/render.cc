@@ -130,6 +130,9 @@ int run_render(const RenderOptions& options, const Context& context) {
       {"vertices", refined.vertices},
       {"triangles", refined.triangles},
       {"certified_error", refined.certified_error},
+      {"certified_deviation", refined.certified_deviation},
+      {"exact", refined.exact},
+      {"units", units_json(crs)},
       {"exaggeration", style.exaggeration},
       {"cost", cost_json(refined.cost)}};
   if (context.json) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin stream: a terrain as bytes of which the first few are a coarse terrain.
-#include <cerrno>
 #include <cstdio>
 #include <memory>
 
@@ -10,10 +9,12 @@
 #include "engine/query/stream_writer.h"
 #include "tools/error_status.h"
 #include "tools/output_file.h"
+#include "tools/ptin/counts.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
 #include "tools/ptin/stream_request.h"
+#include "tools/standard_output.h"
 
 namespace ptin::tools {
 
@@ -64,17 +65,14 @@ std::vector<StreamHeld> held_of(const StreamOptions& options, const StoreFacts& 
   return held;
 }
 
-void write_to_stdout(std::span<const std::byte> bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size()) {
-    throw system_error(errno, "cannot write", "stdout");
-  }
-}
-
 StreamSummary send(const StreamOptions& options, const StoreFile& store,
                    const StreamRequest& request) {
   if (options.output == "-") {
-    const StreamSummary summary = write_stream(store, request, write_to_stdout);
-    if (std::fflush(stdout) != 0) throw system_error(errno, "cannot write", "stdout");
+    const StreamSummary summary =
+        write_stream(store, request, [](std::span<const std::byte> bytes) {
+          write_to_stdout({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        });
+    finish_stdout();
     return summary;
   }
   OutputFile out(options.output, options.overwrite);
@@ -112,7 +110,7 @@ int run_stream(const StreamOptions& options, const Context& context) {
   if (options.wanted.splits) request.most_splits = *options.wanted.splits;
   request.metadata = metadata_for(store, options.wanted);
   request.stop = context.stop;
-  if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
+  request.memory_limit_bytes = memory_limit_of(options.memory);
   const StreamSummary summary = send(options, store, request);
   if (context.json) {
     print_json({{"output", options.output},
@@ -123,6 +121,8 @@ int run_stream(const StreamOptions& options, const Context& context) {
                 {"split_bytes", summary.split_bytes},
                 {"certified_error", summary.certificate.error},
                 {"certified_deviation", summary.certificate.deviation},
+                {"exact", summary.certificate.complete && store.facts().base_error == 0},
+                {"units", units_json(crs_facts(store))},
                 {"cost", cost_json(summary.cost)}});
   } else if (options.stats) {
     print_stats(options, summary);
@@ -145,7 +145,8 @@ void add_serving(CLI::App& app, Serving& serving, const std::string& prefix,
       ->type_name("H...");
   app.add_option("--" + prefix + "splits", serving.splits,
                  what + " number of splits: only the first so many, the most important ones")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(counts());
 }
 
 }  // namespace
@@ -162,8 +163,7 @@ Action declare_stream(CLI::App& app, Context& context) {
       ->type_name("OUT")
       ->required();
   app.add_flag("--stats", options->stats, "Print, on stderr, what was sent and what it cost");
-  app.add_option("--memory", options->memory, "Memory that it may take, as 512M or 2G (default 4G)")
-      ->type_name("SIZE");
+  add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
   add_common_options(app, context, true);
   return [options, &context] { return run_stream(*options, context); };

@@ -23,7 +23,7 @@ namespace {
 
 struct UnstreamOptions {
   std::vector<std::string> inputs;
-  std::string output;
+  std::string output, memory;
   StreamIsolineOptions isolines;
   bool overwrite = false;
 };
@@ -65,8 +65,8 @@ Serving serving_in(const nlohmann::json& metadata) {
 class Receiver {
  public:
   /// @param isolines  Borrowed; follows what arrives. May be null.
-  Receiver(std::string name, StreamIsolines* isolines)
-      : reader_(std::move(name)), isolines_(isolines) {}
+  Receiver(std::string name, StreamReaderOptions options, StreamIsolines* isolines)
+      : reader_(std::move(name), std::move(options)), isolines_(isolines) {}
 
   void read(const std::string& path, const Context& context) {
     const File file = opened(path);
@@ -91,6 +91,11 @@ class Receiver {
   [[nodiscard]] const StreamReader& reader() const { return reader_; }
   [[nodiscard]] const nlohmann::json& have() const { return have_; }
   [[nodiscard]] bool complete() const { return !within_ && reader_.has_mesh(); }
+  /// The last stream came whole, and what it was asked for is as the source has it.
+  [[nodiscard]] bool exact() const {
+    return complete() && reader_.facts().base_error == 0 && !have_.back().contains("error") &&
+           !have_.back().contains("splits");
+  }
 
  private:
   void note() {
@@ -119,7 +124,7 @@ RefinedTin refined_of(const StreamReader& reader) {
 }
 
 nlohmann::json answer_of(const UnstreamOptions& options, const Receiver& receiver,
-                         const RefinedTin& refined, const Mesh& mesh) {
+                         const RefinedTin& refined, const Mesh& mesh, const CrsFacts& crs) {
   const StreamReader& reader = receiver.reader();
   return {{"output", options.output.empty() ? nlohmann::json() : nlohmann::json(options.output)},
           {"complete", receiver.complete()},
@@ -132,6 +137,8 @@ nlohmann::json answer_of(const UnstreamOptions& options, const Receiver& receive
           {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
           {"certified_error", refined.certified_error},
           {"certified_deviation", refined.certified_deviation},
+          {"exact", receiver.exact()},
+          {"units", units_json(crs)},
           {"bytes_used", reader.bytes_used()},
           {"have", receiver.have()}};
 }
@@ -194,7 +201,10 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
     isolines.emplace(options.isolines, options.output, options.overwrite, context.stop);
   }
   std::string name = options.inputs.size() == 1 ? options.inputs.front() : "streams";
-  Receiver receiver(name == "-" ? "stdin" : std::move(name), isolines ? &*isolines : nullptr);
+  // Half for what arrives, half for what is written of it.
+  Receiver receiver(name == "-" ? "stdin" : std::move(name),
+                    {memory_limit_of(options.memory) / 2, context.stop},
+                    isolines ? &*isolines : nullptr);
   for (const std::string& input : options.inputs) receiver.read(input, context);
   if (!receiver.reader().has_mesh()) {
     throw Error(ErrorCode::corruption,
@@ -209,7 +219,7 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   mesh.geographic = crs.geographic;
   if (!options.output.empty()) write_mesh(mesh, options.output, options.overwrite);
   if (context.json) {
-    print_json(answer_of(options, receiver, refined, mesh));
+    print_json(answer_of(options, receiver, refined, mesh, crs));
   } else if (!context.quiet) {
     print_report(receiver, refined);
   }
@@ -227,6 +237,7 @@ Action declare_unstream(CLI::App& app, Context& context) {
          "chooses the format. None: only tell what arrived")
       ->type_name("OUT");
   add_stream_isoline_options(app, options->isolines);
+  add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
   add_common_options(app, context, true);
   return [options, &context] { return run_unstream(*options, context); };

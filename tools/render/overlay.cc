@@ -65,6 +65,8 @@ constexpr std::array<Glyph, 16> kGlyphs = {{{'0', {14, 17, 19, 21, 25, 17, 14}},
 constexpr int kLetterWidth = 6;
 constexpr int kLetterHeight = 7;
 
+}  // namespace
+
 void draw_text(Image& image, int x, int y, std::string_view text) {
   for (const char letter : text) {
     for (const Glyph& glyph : kGlyphs) {
@@ -86,6 +88,8 @@ int text_width(std::string_view text) {
   for (const char letter : text) width += letter == ' ' ? 4 : kLetterWidth;
   return width;
 }
+
+namespace {
 
 /// The largest of 1, 2, 5, 10 ... that is not above `value`.
 double round_below(double value) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "tools/render/image.h"
 #include "tools/render/relief.h"
@@ -14,6 +15,12 @@ namespace ptin::tools {
 /// A straight line one pixel wide, anti-aliased, of the given opacity (0 to 1).
 void draw_line(Image& image, double x0, double y0, double x1, double y1, const Colour& colour,
                double opacity);
+
+/// Digits, and the letters of units ("-12.5 km"), 7 pixels high, from the upper left (x, y); others
+/// are blank.
+void draw_text(Image& image, int x, int y, std::string_view text);
+/// Pixels that it takes.
+[[nodiscard]] int text_width(std::string_view text);
 
 /// Every edge of the TIN once. Opacity falls where edges are closer than a few pixels, so that
 /// dense parts stay legible.

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Points and lines as callers give them: layers in any CRS, WKT of any length, lines of several
+// parts.
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <ogr_spatialref.h>
+
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using nlohmann::json;
+using testing::Outcome;
+using testing::run_ptin;
+using testing::TestFolder;
+using testing::write_file;
+
+constexpr double kWest = 500015.0;    // centre of the western column
+constexpr double kNorth = 3999985.0;  // centre of the northern row
+
+/// A plane that rises by 1 a column and 10 a row to the south, in EPSG:32611.
+std::string plane(const TestFolder& folder) {
+  testing::RasterRecipe recipe;
+  recipe.value = [](int column, int row) { return column + 10.0 * row; };
+  testing::make_raster(folder.file("plane.tif"), recipe);
+  const Outcome built =
+      run_ptin({"build", folder.file("plane.tif"), "-o", folder.file("plane.ptin"), "-q"});
+  EXPECT_EQ(built.status, 0) << built.err;
+  return folder.file("plane.ptin");
+}
+
+json answer_of(const std::vector<std::string>& arguments) {
+  const Outcome outcome = run_ptin(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return json::parse(outcome.out, nullptr, false);
+}
+
+/// Longitude and latitude of a sample.
+json degrees_at(double column, double row) {
+  OGRSpatialReference from;
+  OGRSpatialReference to;
+  from.importFromEPSG(32611);
+  to.importFromEPSG(4326);
+  to.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const std::unique_ptr<OGRCoordinateTransformation> transform(
+      OGRCreateCoordinateTransformation(&from, &to));
+  double x = kWest + 30 * column;
+  double y = kNorth - 30 * row;
+  EXPECT_TRUE(transform->Transform(1, &x, &y));
+  return json::array({x, y});
+}
+
+std::string geojson(const json& type, const json& coordinates) {
+  const json feature = {{"type", "Feature"},
+                        {"properties", json::object()},
+                        {"geometry", {{"type", type}, {"coordinates", coordinates}}}};
+  return json({{"type", "FeatureCollection"}, {"features", json::array({feature})}}).dump();
+}
+
+std::string sample(double column, double row) {
+  return std::to_string(kWest + 30 * column) + " " + std::to_string(kNorth - 30 * row);
+}
+
+TEST(VectorInput, TransformsPointsToTheTerrainsCrs) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  write_file(folder.file("p.geojson"), geojson("Point", degrees_at(7, 20)));
+  const json point = answer_of({"locate", terrain, "--points", folder.file("p.geojson"), "--json"})
+                         .at("points")[0];
+  EXPECT_EQ(point.at("state"), "surface");
+  EXPECT_NEAR(point.at("height").get<double>(), 207.0, 1e-6);
+  EXPECT_NEAR(point.at("x").get<double>(), kWest + 210, 1e-6) << "told in the terrain's CRS";
+}
+
+TEST(VectorInput, TransformsLinesAndTakesAllTheirParts) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  const json first = json::array({degrees_at(2, 3), degrees_at(2, 9)});
+  const json second = json::array({degrees_at(20, 3), degrees_at(28, 3)});
+  write_file(folder.file("l.geojson"), geojson("MultiLineString", json::array({first, second})));
+  const json all = answer_of({"profile", terrain, "--line", folder.file("l.geojson"), "--json"});
+  EXPECT_EQ(all.at("lines"), 2);
+  EXPECT_NEAR(all.at("length").get<double>(), 30 * (6 + 8), 1e-3);
+  EXPECT_NEAR(all.at("points").front().at("height").get<double>(), 32.0, 1e-6);
+  EXPECT_NEAR(all.at("points").back().at("height").get<double>(), 58.0, 1e-6);
+  EXPECT_EQ(all.at("points").back().at("line"), 1);
+}
+
+TEST(VectorInput, TakesWktOfAnyLengthAndOfSeveralParts) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  std::string track;
+  for (int i = 0; i < 4000; ++i) {
+    track.append(track.empty() ? "" : ",").append(sample(2 + i % 2, 1 + i * 0.005));
+  }
+  ASSERT_GT(track.size(), 65536u);
+  write_file(folder.file("t.wkt"), "  linestring (" + track + ")\n");
+  EXPECT_EQ(answer_of({"profile", terrain, "--line", folder.file("t.wkt"), "--json"}).at("lines"),
+            1);
+  const std::string two = "MULTILINESTRING((" + sample(1, 1) + "," + sample(3, 1) + "),(" +
+                          sample(8, 1) + "," + sample(9, 1) + "))";
+  EXPECT_EQ(answer_of({"profile", terrain, "--line", two, "--json"}).at("length"), 90.0);
+}
+
+TEST(VectorInput, SaysWhatIsNoLine) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  const auto status = [&](const std::string& line, const std::string& words) {
+    const Outcome outcome = run_ptin({"profile", terrain, "--line", line});
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+    EXPECT_EQ(testing::lines_in(outcome.err), 1u) << outcome.err;
+    return outcome.status;
+  };
+  EXPECT_EQ(status("LINESTRING(1 2", "WKT"), 2);
+  EXPECT_EQ(status("LINESTRING(1 2)", "two"), 2);
+  EXPECT_EQ(status(std::string(5000, 'x'), "no such file"), 3);
+  EXPECT_EQ(status(folder.file("none.gpkg"), "no such file"), 3);
+  EXPECT_EQ(status(folder.path().string(), "vector file"), 2);
+  write_file(folder.file("p.geojson"), geojson("Point", degrees_at(7, 20)));
+  EXPECT_EQ(status(folder.file("p.geojson"), "holds no line"), 2);
+}
+
+}  // namespace
+}  // namespace ptin::tools

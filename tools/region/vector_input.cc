@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/region/vector_input.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <cpl_error.h>
+#include <ogrsf_frmts.h>
+
+#include "engine/error.h"
+
+namespace ptin::tools {
+
+namespace {
+
+constexpr std::size_t kLongestWord = 64;
+
+/// False when nothing is there; a name too long for a file is none.
+bool exists(const std::string& path) {
+  std::error_code fault;
+  if (std::filesystem::exists(path, fault)) return true;
+  if (fault && fault != std::errc::filename_too_long && fault != std::errc::not_a_directory) {
+    throw system_error(fault.value(), "cannot open", path);
+  }
+  return false;
+}
+
+using Transformation = std::unique_ptr<OGRCoordinateTransformation>;
+
+/// From the layer's CRS to the terrain's; null when there is nothing to do.
+Transformation transformation(OGRLayer& layer, const std::string& crs_wkt,
+                              const std::string& path) {
+  const OGRSpatialReference* from = layer.GetSpatialRef();
+  if (from == nullptr || crs_wkt.empty()) return nullptr;
+  OGRSpatialReference source(*from);
+  OGRSpatialReference target;
+  if (target.importFromWkt(crs_wkt.c_str()) != OGRERR_NONE) return nullptr;
+  for (OGRSpatialReference* plane : {&source, &target}) {
+    plane->DemoteTo2D(nullptr);
+    plane->StripVertical();
+    plane->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  }
+  if (source.IsSame(&target) != 0) return nullptr;
+  Transformation made(OGRCreateCoordinateTransformation(&source, &target));
+  if (!made) {
+    throw Error(ErrorCode::invalid_argument,
+                "its CRS cannot be transformed to the terrain's; give it in the terrain's CRS",
+                path);
+  }
+  return made;
+}
+
+/// The first bytes of a file, enough to tell WKT from other things.
+std::string first_bytes(std::ifstream& in) {
+  std::string start(kLongestWord, '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(in.gcount()));
+  return start;
+}
+
+std::unique_ptr<OGRGeometry> wkt_or_refuse(const std::string& wkt, const std::string& example,
+                                           const std::string& where) {
+  std::unique_ptr<OGRGeometry> geometry = geometry_of_wkt(wkt);
+  if (geometry) return geometry;
+  throw Error(ErrorCode::invalid_argument, "this is no sound WKT; write it as " + example, where);
+}
+
+}  // namespace
+
+std::unique_ptr<OGRGeometry> geometry_of_wkt(const std::string& text) {
+  OGRGeometry* raw = nullptr;
+  const OGRErr status = OGRGeometryFactory::createFromWkt(text.c_str(), nullptr, &raw);
+  std::unique_ptr<OGRGeometry> geometry(raw);
+  if (status != OGRERR_NONE) geometry.reset();
+  return geometry;
+}
+
+bool begins_with_word(const std::string& text, std::initializer_list<const char*> words) {
+  std::string start;
+  for (const char c : text.substr(0, kLongestWord)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isspace(byte) == 0) start += static_cast<char>(std::toupper(byte));
+  }
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* word) { return start.starts_with(word); });
+}
+
+void for_each_geometry(const std::string& path, const std::string& crs_wkt,
+                       const std::function<void(long long, const OGRGeometry*)>& visit) {
+  if (!exists(path)) throw Error(ErrorCode::not_found, "no such file", path);
+  const std::unique_ptr<GDALDataset> data(GDALDataset::Open(
+      path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  OGRLayer* layer = data ? data->GetLayer(0) : nullptr;
+  if (layer == nullptr) {
+    throw Error(ErrorCode::invalid_argument,
+                "neither text that is understood here nor a vector file that GDAL reads", path);
+  }
+  const Transformation transform = transformation(*layer, crs_wkt, path);
+  CPLErrorReset();
+  layer->ResetReading();
+  while (const std::unique_ptr<OGRFeature> feature{layer->GetNextFeature()}) {
+    OGRGeometry* geometry = feature->GetGeometryRef();
+    if (geometry != nullptr && transform && geometry->transform(transform.get()) != OGRERR_NONE) {
+      throw Error(ErrorCode::invalid_argument,
+                  "feature " + std::to_string(feature->GetFID()) +
+                      " cannot be transformed to the terrain's CRS; give it in that CRS",
+                  path);
+    }
+    visit(feature->GetFID(), geometry);
+  }
+  if (CPLGetLastErrorType() >= CE_Failure) {
+    throw Error(ErrorCode::invalid_argument,
+                std::string("cannot be read to its end: ") + CPLGetLastErrorMsg(), path);
+  }
+}
+
+void read_geometries(const std::string& text, std::initializer_list<const char*> words,
+                     const std::string& example, const std::string& crs_wkt,
+                     const std::function<void(const OGRGeometry&)>& visit) {
+  if (begins_with_word(text, words)) {
+    visit(*wkt_or_refuse(text, example, ""));
+    return;
+  }
+  if (!exists(text)) {
+    throw Error(ErrorCode::not_found,
+                "no such file, and not WKT either; write " + example + " or name a file", text);
+  }
+  errno = 0;
+  std::ifstream in(text);
+  if (!in) throw system_error(errno, "cannot open", text);
+  std::string start = first_bytes(in);
+  if (begins_with_word(start, words)) {
+    start.append(std::istreambuf_iterator<char>(in), {});
+    visit(*wkt_or_refuse(start, example, text));
+    return;
+  }
+  for_each_geometry(text, crs_wkt, [&](long long, const OGRGeometry* geometry) {
+    if (geometry != nullptr) visit(*geometry);
+  });
+}
+
+}  // namespace ptin::tools
