@@ -116,6 +116,7 @@ TEST_F(JsonNames, AreThoseOfTheTable) {
   ask({"stream", store, "--window", "500100", "3999300", "500700", "3999900", "--error", "1",
        "--level", "90", "--splits", "40", "-o", file("d.pts")});
   ask({"unstream", file("d.pts")});
+  ask({"unstream", file("a.pts"), "--interval", "20", "--steps", "-o", file("steps.geojson")});
   tools::testing::write_file(file("pairs.txt"), "500100 3999900 2 500700 3999300 2\n");
   ask({"sight", store, "--pairs", file("pairs.txt")});
 

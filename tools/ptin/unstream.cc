@@ -166,7 +166,8 @@ int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
   const nlohmann::json lines = isolines.finish(receiver.reader());
   const RefinedTin refined = refined_of(receiver.reader());
   if (context.json) {
-    nlohmann::json answer = answer_of(options, receiver, refined, {});
+    const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
+    nlohmann::json answer = answer_of(options, receiver, refined, {}, crs);
     answer.erase("written");
     answer["isolines"] = lines;
     print_json(answer);
