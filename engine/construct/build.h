@@ -26,7 +26,8 @@ struct BuildOptions {
   std::optional<double> resolution;  ///< Points: grid unit in CRS units.
   std::vector<int> classes;          ///< LAS: keep these classes; empty keeps all.
   std::string layer;                 ///< OGR: the layer of points; "" where there is only one.
-  /// Points: triangles with a longer edge are void; CRS units, or metres where those are degrees.
+  /// Points, repaired TINs: triangles with a longer edge are void; CRS units, or metres where those
+  /// are degrees.
   std::optional<double> max_edge;
   std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
   bool repair = false;  ///< TINs: triangulate the vertices anew instead of taking the triangles.

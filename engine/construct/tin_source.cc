@@ -14,6 +14,7 @@
 #include "engine/construct/tin_link.h"
 #include "engine/construct/tin_mend.h"
 #include "engine/construct/tin_soup.h"
+#include "engine/construct/void_sweep.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -54,65 +55,99 @@ MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory
   return mesh;
 }
 
-/// The border of a mesh, in memory.
-TinBorder border_of(const RecordFile<GridTriangle>& triangles, const AffineMap& map,
-                    const ExternalMemory& memory, const std::string& path, TinFaults& faults,
-                    const std::stop_token& stop) {
-  BorderFinder finder({memory.files, memory.folder, memory.bytes / 4});
-  triangles.visit([&](const GridTriangle& t) { finder.add(t); });
-  std::vector<GridEdge> edges;
-  std::uint64_t count = 0;
-  const std::uint64_t most =
-      std::max<std::uint64_t>(memory.bytes / TinTriangles::kBytesOfBorderEdge, 64);
-  finder.finish(
-      faults,
-      [&](const GridEdge& e) {
-        if (++count <= most) {
-          edges.push_back(e);
-        }
-      },
-      stop);
-  // Of triangles that are wrong one by one, the border says nothing more.
-  faults.refuse(map, path);
-  if (count > most) {
-    throw Error(ErrorCode::resource_exhausted,
-                "the border of this TIN, with all its holes, has " + std::to_string(count) +
-                    " edges, and the memory given is enough for " + std::to_string(most) +
-                    "; give " + std::to_string(count / most + 1) + " times as much --memory",
-                path);
-  }
-  return border_in_memory(edges);
-}
+/// Borders of so many edges are triangulated in memory, which gives better triangles. Whatever the
+/// memory, since it decides the bytes of the output.
+constexpr std::uint64_t kMostInMemory = std::uint64_t{1} << 18;
 
-/// Fills the hull, and writes the triangles that do. Returns the hull.
-ConvexHull fill(const TinBorder& border, const PointOrder& order, const AffineMap& map,
-                const ExternalMemory& memory, const std::string& path, RecordFile<GridTriangle>& to,
-                TinFaults& faults, const std::stop_token& stop) {
-  check_border(border.positions, border.edges, faults);
-  faults.refuse(map, path);
-  const std::vector<Corners> filling = fill_hull(border.positions, border.edges, faults, stop);
-  faults.refuse(map, path);
-  const auto vertex = [&](VertexId v) {
-    return GridVertex{border.positions[v], border.heights[v]};
-  };
-  TriangleSorter sorter({memory.files, memory.folder, memory.bytes / 8}, "voids");
-  for (const Corners& t : filling) {
-    sorter.add(grid_triangle({vertex(t[0]), vertex(t[1]), vertex(t[2])}, order));
+/// A mesh on its way to a convex one.
+class HullFiller {
+ public:
+  HullFiller(const PointOrder& order, const AffineMap& map, const ExternalMemory& memory,
+             std::string path, TinFaults& faults, const std::stop_token& stop)
+      : map_(map),
+        memory_(memory),
+        path_(std::move(path)),
+        faults_(faults),
+        stop_(stop),
+        order_(order),
+        border_(memory, "border"),
+        voids_({memory.files, memory.folder, memory.bytes / 8}, "voids") {}
+
+  /// Writes the triangles that fill the hull of the others. Returns the hull.
+  ConvexHull fill(const RecordFile<GridTriangle>& triangles, RecordFile<GridTriangle>& to) {
+    find_border(triangles);
+    if (border_.size() <= kMostInMemory) {
+      fill_in_memory();
+    } else {
+      sweep_voids(
+          border_, memory_, [&](const auto& corners) { add(corners); }, faults_, stop_);
+      faults_.refuse(map_, path_);
+    }
+    voids_.merge(
+        [&](std::span<const GridTriangle> batch) {
+          for (const GridTriangle& t : batch) {
+            to.add(t);
+          }
+        },
+        stop_);
+    to.finish();
+    return hull_.hull();
   }
-  sorter.merge(
-      [&](std::span<const GridTriangle> batch) {
-        for (const GridTriangle& t : batch) {
-          to.add(t);
-        }
-      },
-      stop);
-  to.finish();
-  HullCollector hull;
-  for (const GridPoint p : border.positions) {
-    hull.add(p);
+
+ private:
+  void find_border(const RecordFile<GridTriangle>& triangles) {
+    BorderFinder finder({memory_.files, memory_.folder, memory_.bytes / 4});
+    triangles.visit([&](const GridTriangle& t) { finder.add(t); });
+    finder.finish(
+        faults_,
+        [&](const GridEdge& e) {
+          border_.add(e);
+          hull_.add(e.from.position);
+        },
+        stop_);
+    border_.finish();
+    // Of triangles that are wrong one by one, the border says nothing more.
+    faults_.refuse(map_, path_);
   }
-  return hull.hull();
-}
+
+  void fill_in_memory() {
+    const std::uint64_t needed = border_.size() * TinTriangles::kBytesOfBorderEdge;
+    if (needed > std::max<std::uint64_t>(memory_.bytes, 1U << 16)) {
+      throw Error(
+          ErrorCode::resource_exhausted,
+          "the border of this TIN, with all its holes, has " + std::to_string(border_.size()) +
+              " edges, which take " + std::to_string((needed >> 20) + 1) + "M of memory, and " +
+              std::to_string(memory_.bytes >> 20) + "M are free for them; give more --memory",
+          path_);
+    }
+    std::vector<GridEdge> edges;
+    border_.take(0, border_.size(), edges);
+    const TinBorder border = border_in_memory(edges);
+    edges = {};
+    check_border(border.positions, border.edges, faults_);
+    faults_.refuse(map_, path_);
+    const std::vector<Corners> filling = fill_hull(border.positions, border.edges, faults_, stop_);
+    faults_.refuse(map_, path_);
+    const auto vertex = [&](VertexId v) {
+      return GridVertex{border.positions[v], border.heights[v]};
+    };
+    for (const Corners& t : filling) {
+      add({vertex(t[0]), vertex(t[1]), vertex(t[2])});
+    }
+  }
+
+  void add(const std::array<GridVertex, 3>& corners) { voids_.add(grid_triangle(corners, order_)); }
+
+  const AffineMap& map_;
+  const ExternalMemory& memory_;
+  std::string path_;
+  TinFaults& faults_;
+  const std::stop_token& stop_;
+  const PointOrder& order_;
+  RecordFile<GridEdge> border_;
+  TriangleSorter voids_;
+  HullCollector hull_;
+};
 
 /// The first record whose place is not before `place`.
 std::uint64_t first_from(const RecordFile<GridTriangle>& triangles, std::uint64_t place) {
@@ -172,9 +207,9 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   faults.heights = tin.heights_differ;
   const PointOrder order(tin.grid.largest());
   MeshOnDisk mesh = mesh_of(tin, order, memory, path, to.counts_, faults, stop);
-  const TinBorder border = border_of(mesh.triangles, to.frame_.map, memory, path, faults, stop);
   to.voids_ = std::make_unique<RecordFile<GridTriangle>>(memory, "voids");
-  to.hull_ = fill(border, order, to.frame_.map, memory, path, *to.voids_, faults, stop);
+  to.hull_ =
+      HullFiller(order, to.frame_.map, memory, path, faults, stop).fill(mesh.triangles, *to.voids_);
   to.surface_ = std::make_unique<RecordFile<GridTriangle>>(std::move(mesh.triangles));
   to.places_ = std::make_unique<RecordFile<std::uint64_t>>(std::move(mesh.places));
   to.counts_.vertices = to.places_->size();

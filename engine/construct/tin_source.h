@@ -55,12 +55,11 @@ class TinTriangles {
   ///                                    heights, T-junctions; the message counts each kind and
   ///                                    names its first place. An id that no vertex has, or that
   ///                                    two have. A bbox is asked for. The CRS is not understood
-  ///                resource_exhausted  the disk is full; the border alone (not the triangles) is
-  ///                                    more than fits into `whole_memory` bytes
+  ///                resource_exhausted  the disk is full; the border does not fit into memory.bytes
   ///                io_error, cancelled
   /// Cost: O(n log n), about 2 us a triangle. Disk: about 500 bytes a vertex while it is sorted,
-  /// 130 in the end; in memory.folder. Memory: memory.bytes, then kBytesOfBorderEdge for an edge of
-  /// the border.
+  /// 130 in the end; in memory.folder. Memory: memory.bytes, of which the border takes
+  /// kBytesOfBorderEdge for an edge; beyond 2^18 edges it is swept over (void_sweep.h).
   static TinTriangles read(const std::string& path, const SourceOptions& options,
                            const ExternalMemory& memory, const std::stop_token& stop = {},
                            const Progress& progress = {});
@@ -78,7 +77,7 @@ class TinTriangles {
   [[nodiscard]] Tin part(std::uint64_t i, std::uint64_t n) const;
 
   /// What an edge of the border takes in memory while pockets and holes are triangulated.
-  static constexpr std::uint64_t kBytesOfBorderEdge = 480;
+  static constexpr std::uint64_t kBytesOfBorderEdge = 320;
 
  private:
   TinTriangles() = default;

@@ -14,6 +14,8 @@
 #include <unistd.h>
 
 #include "engine/construct/delaunay.h"
+#include "engine/construct/tin_link.h"
+#include "engine/construct/void_sweep.h"
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/validate.h"
@@ -316,9 +318,109 @@ TEST(TinSource, RefusesABoxAndABorderThatDoesNotFit) {
     FAIL() << "accepted";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
-    EXPECT_NE(e.message().find("has 9000 edges"), std::string::npos) << e.message();
+    EXPECT_NE(e.message().find("has 9000 edges, which take 3M"), std::string::npos) << e.message();
     EXPECT_NE(e.message().find("--memory"), std::string::npos);
   }
+}
+
+/// The border of what is not left out, swept over: fills the hull as exactly.
+void expect_swept_to_a_convex_tin(const Tin& whole) {
+  const ExternalMemory memory{FileLayer::system(), std::filesystem::temp_directory_path()};
+  const auto vertex = [&](VertexId v) {
+    return GridVertex{whole.position(v), static_cast<double>(whole.vertices[v].height)};
+  };
+  RecordFile<GridEdge> border(memory, "border");
+  Tin swept;
+  swept.vertices = whole.vertices;
+  swept.has_height = whole.has_height;
+  const auto put = [&](const std::array<VertexId, 3>& v, TriangleClass c) {
+    swept.triangles.push_back({{v[0], v[1], v[2]}, {kNone, kNone, kNone}});
+    swept.classes.push_back(c);
+  };
+  for (TriangleId t = 0; t < whole.triangles.size(); ++t) {
+    if (whole.classes[t] != TriangleClass::kSurface) continue;
+    const Triangle& triangle = whole.triangles[t];
+    put({triangle.v[0], triangle.v[1], triangle.v[2]}, TriangleClass::kSurface);
+    for (int i = 0; i < 3; ++i) {
+      const TriangleId n = triangle.n[i];
+      if (n == kNone || whole.classes[n] != TriangleClass::kSurface) {
+        border.add({vertex(triangle.v[next_corner(i)]), vertex(triangle.v[previous_corner(i)])});
+      }
+    }
+  }
+  border.finish();
+  TinFaults faults;
+  const auto number = [&](const GridVertex& v) {
+    const auto at =
+        std::lower_bound(whole.vertices.begin(), whole.vertices.end(), key_of(v.position),
+                         [](const Vertex& a, VertexKey key) { return key_of(a.position) < key; });
+    EXPECT_EQ(v.height, static_cast<double>(at->height));
+    return static_cast<VertexId>(at - whole.vertices.begin());
+  };
+  sweep_voids(
+      border, memory,
+      [&](const std::array<GridVertex, 3>& c) {
+        put({number(c[0]), number(c[1]), number(c[2])}, TriangleClass::kVoid);
+      },
+      faults);
+  faults.refuse({}, "swept");
+  for (Vertex& v : swept.vertices) v.triangle = kNone;
+  link_tin(swept);
+  EXPECT_EQ(validate(swept), "");
+}
+
+TEST(TinSource, SweepsOverRandomHoles) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 300; ++round) {
+    const int side = 3 + static_cast<int>(random() % 30);
+    std::vector<GridPoint> positions;
+    const int count = 4 + static_cast<int>(random() % 200);
+    for (int i = 0; i < count; ++i) {
+      positions.push_back(
+          {static_cast<std::int32_t>(random() % side), static_cast<std::int32_t>(random() % side)});
+    }
+    std::sort(positions.begin(), positions.end(),
+              [](GridPoint a, GridPoint b) { return key_of(a) < key_of(b); });
+    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    const auto share = random() % 10;
+    Tin full;
+    try {
+      full = make_delaunay_tin(positions, std::vector<HeightBits>(positions.size(), 7));
+    } catch (const Error&) {
+      continue;  // collinear
+    }
+    std::vector<Vertex3> vertices;
+    for (const GridPoint p : positions) vertices.push_back({double(p.x), double(p.y), 0.0});
+    std::vector<Face> faces;
+    for (const Triangle& t : full.triangles) {
+      if (random() % 10 >= share) faces.push_back({int(t.v[0]), int(t.v[1]), int(t.v[2])});
+    }
+    if (!faces.empty()) expect_swept_to_a_convex_tin(read(vertices, faces).tin);
+  }
+}
+
+TEST(TinSource, SweepFindsFaults) {
+  const auto fault_of = [](const std::vector<std::array<GridPoint, 3>>& triangles) -> std::string {
+    const ExternalMemory memory{FileLayer::system(), std::filesystem::temp_directory_path()};
+    RecordFile<GridEdge> border(memory, "border");
+    for (const auto& t : triangles) {
+      for (std::size_t i = 0; i < 3; ++i) border.add({{t[i], 0.0}, {t[(i + 1) % 3], 0.0}});
+    }
+    border.finish();
+    TinFaults faults;
+    sweep_voids(
+        border, memory, [](const auto&) {}, faults);
+    return faults.t_junctions.count > 0 ? "T-junction"
+           : faults.crossings.count > 0 ? "crossing"
+           : faults.covered.count > 0   ? "covered"
+                                        : "none";
+  };
+  using Three = std::array<GridPoint, 3>;
+  const auto three = [](GridPoint a, GridPoint b, GridPoint c) { return Three{a, b, c}; };
+  EXPECT_EQ(fault_of({three({0, 0}, {4, 0}, {0, 4}), three({4, 4}, {0, 5}, {5, 0})}), "none");
+  EXPECT_EQ(fault_of({three({0, 4}, {8, 4}, {4, 9}), three({4, 4}, {3, 0}, {5, 0})}), "T-junction");
+  EXPECT_EQ(fault_of({three({0, 1}, {8, 1}, {4, 9}), three({3, 0}, {5, 0}, {4, 4})}), "crossing");
+  EXPECT_EQ(fault_of({three({0, 0}, {9, 0}, {0, 9}), three({2, 2}, {3, 2}, {2, 3})}), "covered");
 }
 
 TEST(TinSource, NamesVerticesThatAreNotThereOrTwice) {

@@ -347,11 +347,11 @@ Action declare_build(CLI::App& app, Context& context) {
                  "The attribute that holds the height of a layer's points (default: their z)")
       ->type_name("NAME");
   app.add_flag("--repair", options.repair,
-               "TINs: leave the triangles and triangulate the vertices anew (no voids then)");
-  app.add_option(
-         "--max-edge", options.max_edge,
-         "Points: triangles with an edge longer than this become void; CRS units, or metres\n"
-         "where those are degrees")
+               "TINs: leave the triangles and triangulate the vertices anew; voids by --max-edge");
+  app.add_option("--max-edge", options.max_edge,
+                 "Points, --repair: triangles with an edge longer than this become void; CRS "
+                 "units, or metres\n"
+                 "where those are degrees")
       ->type_name("L");
   app.add_option("--bbox", command->bbox, "Leave out samples outside of this box, in CRS units")
       ->expected(4)
