@@ -61,6 +61,72 @@ TEST(TinInput, IsRefusedWhenBrokenAndRepairedWhenAsked) {
   EXPECT_EQ(run_ptin({"build", folder.file("no.ply"), "-o", folder.file("n.ptin")}).status, 3);
 }
 
+/// The triangles of the file are those of the terrain, however many tiles they are built in.
+TEST(TinInput, IsTheSameTinInAnyTiles) {
+  const TestFolder folder;
+  expect_done({"build", test_data("coast_257.tif"), "-o", folder.file("a.ptin"), "-q"});
+  expect_done({"export", folder.file("a.ptin"), "--error", "2", "-o", folder.file("a.ply"), "-q"});
+  const auto built = [&](const std::string& name, const std::vector<std::string>& options) {
+    std::vector<std::string> all = {"build", folder.file("a.ply"), "-o", folder.file(name), "-q"};
+    all.insert(all.end(), options.begin(), options.end());
+    expect_done(all);
+    expect_done({"export", folder.file(name), "-o", folder.file(name + ".ply"), "-q"});
+    return read_file(folder.file(name + ".ply"));
+  };
+  const std::string whole = built("whole.ptin", {});
+  EXPECT_TRUE(built("tiles.ptin", {"--tile", "16", "--threads", "1"}) == whole);
+  EXPECT_TRUE(built("again.ptin", {"--tile", "16", "--threads", "2", "--memory", "128M"}) == whole);
+  EXPECT_TRUE(read_file(folder.file("tiles.ptin")) == read_file(folder.file("again.ptin")));
+  expect_done({"verify", folder.file("tiles.ptin"), "--against", folder.file("a.ply"), "-q"});
+}
+
+/// Two strips far apart, one triangle turned over: repaired, the gap is surface unless edges are
+/// too long for it.
+TEST(TinInput, IsRepairedWithVoidsWhereEdgesAreLong) {
+  const TestFolder folder;
+  testing::write_file(folder.file("m.2dm"),
+                      "MESH2D\nND 7 0 0 0\nND 2 4 0 1\nND 3 4 4 2\nND 4 0 4 3\nND 10 100 0 1\n"
+                      "ND 11 104 0 1\nND 12 104 4 2\nND 13 100 4 1\nE3T 1 7 2 3 1\nE3T 2 7 4 3 1\n"
+                      "E3T 3 10 11 12 1\nE3T 4 10 12 13 1\n");
+  const auto state_between = [&](const std::vector<std::string>& options) -> std::string {
+    std::vector<std::string> all = {"build", folder.file("m.2dm"), "-o",      folder.file("m.ptin"),
+                                    "-q",    "--overwrite",        "--repair"};
+    all.insert(all.end(), options.begin(), options.end());
+    expect_done(all);
+    const Outcome located = run_ptin({"locate", folder.file("m.ptin"), "50", "2", "--json"});
+    return json::parse(located.out).at("points").at(0).at("state");
+  };
+  EXPECT_EQ(state_between({}), "surface");
+  EXPECT_EQ(state_between({"--max-edge", "20"}), "void");
+}
+
+TEST(TinInput, IsRefusedForWhatItNames) {
+  const TestFolder folder;
+  const auto refusal = [&](const std::string& mesh, const std::vector<std::string>& options) {
+    testing::write_file(folder.file("m.2dm"), mesh);
+    std::vector<std::string> all = {"build", folder.file("m.2dm"), "-o", folder.file("m.ptin"),
+                                    "-q"};
+    all.insert(all.end(), options.begin(), options.end());
+    const Outcome outcome = run_ptin(all);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"m.2dm"});
+    return outcome.err;
+  };
+  const auto says = [](const std::string& text, const std::string& words) {
+    return text.find(words) != std::string::npos;
+  };
+  const std::string square = "MESH2D\nND 1 0 0 0\nND 2 4 0 1\nND 3 4 4 2\nND 4 0 4 3\n";
+  const std::string missing = refusal(square + "E3T 1 1 2 3 1\nE3T 2 1 3 9 1\n", {});
+  EXPECT_TRUE(says(missing, "triangle 1 names vertex 9, which is not there")) << missing;
+  const std::string twice = refusal(square + "ND 4 1 1 1\nE3T 1 1 2 3 1\n", {});
+  EXPECT_TRUE(says(twice, "two vertices have the id 4")) << twice;
+  const std::string box = refusal(square + "E3T 1 1 2 3 1\n", {"--bbox", "0", "0", "1", "1"});
+  EXPECT_TRUE(says(box, "not cut by --bbox")) << box;
+  const std::string over =
+      refusal(square + "ND 5 9 9 0\nE3T 1 1 2 3 1\nE3T 2 1 3 4 1\nE3T 3 1 5 4 1\n", {});
+  EXPECT_TRUE(says(over, "1 edge has two triangles on one side (it is at 0 0)")) << over;
+}
+
 TEST(TinInput, RealOnes) {
   const std::string data = PTIN_SHARED_DATA;
   if (!std::filesystem::exists(data + "/landxml_total_topp.xml")) {
