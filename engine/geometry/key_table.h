@@ -9,6 +9,7 @@
 
 #include "engine/geometry/point.h"
 #include "engine/large_array.h"
+#include "engine/prefetch.h"
 
 namespace ptin {
 
@@ -87,7 +88,9 @@ class KeyTable {
   }
 
   /// Asks the processor to fetch the slot that find() or insert() will look at.
-  void prefetch(VertexKey key) const noexcept { __builtin_prefetch(&slots_[home(key)]); }
+  void prefetch(VertexKey key) const noexcept {
+    ptin::prefetch(&slots_[home(key)]);
+  }
 
   /// Bytes of a table that was reserved for `capacity` keys.
   [[nodiscard]] static std::size_t bytes_for(std::size_t capacity) noexcept {

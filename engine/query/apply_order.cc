@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <utility>
 
 #include "engine/query/refinement_internal.h"
 
@@ -37,10 +38,10 @@ class Cells {
     }
   }
 
+  /// Few splits are one cell.
+  [[nodiscard]] bool is_one() const noexcept { return depth_ == 0; }
   /// Numbers below this.
-  [[nodiscard]] std::size_t numbers() const noexcept {
-    return (std::size_t{16} << (2 * depth_)) + 1;
-  }
+  [[nodiscard]] std::size_t numbers() const noexcept { return std::size_t{16} << (2 * depth_); }
   /// The number of the smallest cell that holds a box; above those of the cells that hold it.
   [[nodiscard]] std::uint32_t number_of(const GridBox& box) const noexcept {
     const std::uint32_t low_x = column(box.min_x, origin_x_);
@@ -88,35 +89,43 @@ class Cells {
   std::int64_t origin_x_ = 0, origin_y_ = 0;
 };
 
+/// A split on its way through the two sorts.
+struct Sorted {
+  std::uint32_t split, cell;
+};
+
+/// Counts become the places where each one's splits begin.
+void begin_each(std::vector<std::uint32_t>& next) {
+  std::uint32_t before = 0;
+  for (std::uint32_t& n : next) {
+    before += std::exchange(n, before);
+  }
+}
+
 }  // namespace
 
-std::vector<std::uint32_t> places_of(std::span<const PendingSplit> splits) {
-  RankOrder ranks(splits);
-  std::vector<std::uint32_t> places(splits.size());
-  for (std::size_t i = 0; i < splits.size(); ++i) {
-    places[i] = ranks.take(splits[i].rank);
-  }
-  if (splits.size() <= kSplitsInCell) {
-    return places;
-  }
+std::vector<std::uint32_t> order_of(std::span<const PendingSplit> splits) {
   const Cells cells(splits);
-  std::vector<std::uint32_t> cell(splits.size());  // in the order by rank
+  RankOrder ranks(splits);
+  std::vector<std::uint32_t> order(splits.size());
+  if (cells.is_one()) {
+    for (std::uint32_t i = 0; i < splits.size(); ++i) {
+      order[ranks.take(splits[i].rank)] = i;
+    }
+    return order;
+  }
+  std::vector<Sorted> by_rank(splits.size());
   std::vector<std::uint32_t> next(cells.numbers(), 0);
-  for (std::size_t i = 0; i < splits.size(); ++i) {
-    const std::uint32_t number = cells.number_of(splits[i].roi);
-    cell[places[i]] = number;
-    ++next[number + 1];
+  for (std::uint32_t i = 0; i < splits.size(); ++i) {
+    const std::uint32_t cell = cells.number_of(splits[i].roi);
+    ++next[cell];
+    by_rank[ranks.take(splits[i].rank)] = {i, cell};
   }
-  for (std::size_t i = 1; i < next.size(); ++i) {
-    next[i] += next[i - 1];
+  begin_each(next);
+  for (const Sorted& s : by_rank) {
+    order[next[s.cell]++] = s.split;
   }
-  for (std::uint32_t& c : cell) {
-    c = next[c]++;
-  }
-  for (std::uint32_t& place : places) {
-    place = cell[place];
-  }
-  return places;
+  return order;
 }
 
 }  // namespace ptin

@@ -11,7 +11,7 @@
 
 namespace ptin {
 
-/// Beside `splits`: the place of each in an order in which every split comes after what it needs.
+/// The indices of `splits` in an order in which every split comes after what it needs.
 ///
 /// Each split belongs to the smallest cell of a quadtree that holds its roi; cells come before
 /// their children, and in a cell splits come by falling rank. What a split needs has a larger roi
@@ -19,6 +19,6 @@ namespace ptin {
 /// cell's part of the mesh fits into the caches, where an order by rank alone walks the whole mesh
 /// once a rank. Few splits are one cell: the order by rank. Equal ones keep their order, and with
 /// it the file's. Cost: O(k + largest rank) time and memory, by two counting sorts.
-[[nodiscard]] std::vector<std::uint32_t> places_of(std::span<const PendingSplit> splits);
+[[nodiscard]] std::vector<std::uint32_t> order_of(std::span<const PendingSplit> splits);
 
 }  // namespace ptin

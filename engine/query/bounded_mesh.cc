@@ -43,6 +43,7 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
   context.admit(bytes_of(tin()) + refinement_bytes(most) + most * sizeof(Made));
   store.pages().announce(pages, context.cost.io);
   splits_.clear();
+  entering_.clear();
   for (const PageId page : pages) {
     context.check_stop();
     records_.clear();
@@ -55,10 +56,13 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
         continue;
       }
       splits_.push_back(split);
-      made_.push_back({heights.code(r.height_lo), heights.code(r.height_hi), r.deviation, r.rank});
+      entering_.push_back({heights.code(r.height_lo), heights.code(r.height_hi), r.deviation, r.rank});
     }
   }
   refinement_.apply(splits_, context);
+  for (const std::uint32_t i : refinement_.applied_order()) {
+    made_.push_back(entering_[i]);
+  }
   return splits_.size();
 }
 

@@ -63,7 +63,8 @@ class BoundedMesh {
   const ProgressiveTin& terrain_;
   Detail detail_;
   Refinement refinement_;
-  std::vector<Made> made_;  ///< Beside the vertices.
+  std::vector<Made> made_;      ///< Beside the vertices.
+  std::vector<Made> entering_;  ///< Beside `splits_`.
   std::vector<VertexSplit> records_;
   std::vector<PendingSplit> splits_;
 };

@@ -2,20 +2,20 @@
 #include "engine/query/refinement.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/large_array.h"
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
+#include "engine/prefetch.h"
 #include "engine/query/apply_order.h"
 #include "engine/query/refinement_internal.h"
 
 namespace ptin {
 
 namespace {
-
-constexpr std::size_t kLookAhead = 16;  // Records ahead whose hash slots are fetched.
 
 bool has_heights(const Tin& tin, VertexId a, VertexId b, VertexId c) noexcept {
   return (tin.has_height[a] & tin.has_height[b] & tin.has_height[c]) != 0;
@@ -36,20 +36,33 @@ bool classes_fit(const Tin& tin, const SplitSite& s, const SplitResult& made) {
   return left && right;
 }
 
-/// Fetches ahead of the splits what they will touch: one step along the star of w at a time, so
-/// that no step waits for memory. Looks at the mesh as it is now; what changes until the split
-/// comes costs a miss and nothing else.
+/// Fetches ahead of the splits what they will touch: the record, its slots in the table of keys,
+/// and one step along the star of w at a time, so that no step waits for memory. Looks at the mesh
+/// as it is now; what changes until the split comes costs a miss and nothing else.
 class StarFetcher {
  public:
   explicit StarFetcher(const Tin& tin) : tin_(tin) {}
 
-  /// Distances in splits at which the steps are taken.
-  static constexpr std::size_t kVertex = 24, kTriangle = 16, kNeighbours = 10, kBeyond = 5;
+  /// How many splits after the record is fetched the other steps are taken; in the end it is
+  /// applied.
+  static constexpr std::size_t kSlots = 8, kEnter = 16, kTriangle = 24, kNeighbours = 30,
+                               kBeyond = 35, kApply = 40;
 
+  static void fetch_record(const PendingSplit& s) noexcept {
+    const auto* const bytes = reinterpret_cast<const char*>(&s);  // may lie across two lines
+    prefetch(bytes);
+    prefetch(bytes + sizeof s - 1);
+  }
+  static void fetch_slots(const PendingSplit& s, const KeyTable& ids) noexcept {
+    ids.prefetch(s.u);
+    ids.prefetch(s.w);
+    ids.prefetch(s.vl);
+    ids.prefetch(s.vr);
+  }
   void fetch_vertices(VertexId w, VertexId vl, VertexId vr) const noexcept {
-    __builtin_prefetch(&tin_.vertices[w]);
-    __builtin_prefetch(&tin_.vertices[vl]);
-    __builtin_prefetch(&tin_.vertices[vr]);
+    prefetch(&tin_.vertices[w]);
+    prefetch(&tin_.vertices[vl]);
+    prefetch(&tin_.vertices[vr]);
   }
   void fetch_triangle(VertexId w) const noexcept { fetch(tin_.vertices[w].triangle); }
   void fetch_neighbours(VertexId w) const noexcept {
@@ -80,12 +93,12 @@ class StarFetcher {
       fetch(n);
     }
     for (const VertexId v : triangle.v) {
-      __builtin_prefetch(&tin_.vertices[v]);
+      prefetch(&tin_.vertices[v]);
     }
   }
   void fetch(TriangleId t) const noexcept {
     // kNone is fetched from triangle 0's line.
-    __builtin_prefetch(&tin_.triangles[t == kNone ? 0 : t], 1);
+    prefetch(&tin_.triangles[t == kNone ? 0 : t]);
   }
 
   const Tin& tin_;
@@ -117,26 +130,52 @@ void Refinement::restart(const Tin& t0) {
   }
 }
 
+/// In a pipeline: while one split is applied, others behind it are looked up and fetched. A split's
+/// w, vl and vr are looked up after those before it were entered, so they are there.
 void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& context) {
+  order_ = order_of(splits);
   const Batch batch = reserve(splits, context);
-  add_vertices(splits, batch, context);
-  const std::vector<Resolved> resolved = resolve(splits, batch, context);
   const StarFetcher fetcher(tin_);
-  for (std::size_t i = 0; i < resolved.size(); ++i) {
-    if (i % kStopInterval == 0) {
+  using F = StarFetcher;
+  constexpr std::size_t kRing = 32;
+  static_assert(F::kApply - F::kEnter < kRing);
+  std::array<Resolved, kRing> ring;
+  std::uint32_t triangles = 0;
+  const std::size_t count = splits.size();
+  for (std::size_t step = 0; step < count + F::kApply; ++step) {
+    if (step % kStopInterval == 0) {
       context.check_stop();
     }
-    if (resolved.size() - i > StarFetcher::kVertex) {
-      const Resolved& r = resolved[i + StarFetcher::kVertex];
-      fetcher.fetch_vertices(r.w, r.vl, r.vr);
-      fetcher.fetch_triangle(resolved[i + StarFetcher::kTriangle].w);
-      fetcher.fetch_neighbours(resolved[i + StarFetcher::kNeighbours].w);
-      fetcher.fetch_beyond(resolved[i + StarFetcher::kBeyond].w);
+    // The number of the split that has come so far; none (beyond count) before the first, too.
+    const auto at = [step](std::size_t distance) { return step - distance; };
+    if (step < count) {
+      F::fetch_record(splits[order_[step]]);
     }
-    apply_one(resolved[i], batch, splits, context);
+    if (const std::size_t i = at(F::kSlots); i < count) {
+      F::fetch_slots(splits[order_[i]], ids_);
+    }
+    if (const std::size_t i = at(F::kEnter); i < count) {
+      Resolved& r = ring[i % kRing];
+      r = enter(splits[order_[i]], vertex_place(batch, i), context);
+      r.triangle = triangles;
+      triangles += triangles_of(r.flags);
+      fetcher.fetch_vertices(r.w, r.vl, r.vr);
+    }
+    if (const std::size_t i = at(F::kTriangle); i < count) {
+      fetcher.fetch_triangle(ring[i % kRing].w);
+    }
+    if (const std::size_t i = at(F::kNeighbours); i < count) {
+      fetcher.fetch_neighbours(ring[i % kRing].w);
+    }
+    if (const std::size_t i = at(F::kBeyond); i < count) {
+      fetcher.fetch_beyond(ring[i % kRing].w);
+    }
+    if (const std::size_t i = at(F::kApply); i < count) {
+      apply_one(ring[i % kRing], batch, splits, context);
+    }
   }
   forget_places(batch);
-  context.cost.records_applied += resolved.size();
+  context.cost.records_applied += count;
 }
 
 /// Makes room for the vertices and triangles to come; triangles stay removed until their split is
@@ -186,61 +225,23 @@ void Refinement::forget_places(const Batch& batch) {
   drop(free_triangles_, batch.triangles);
 }
 
-/// Vertices and triangles keep the order of the file, along its Hilbert curves: so what lies near
-/// in the terrain mostly lies near in memory, whatever its rank.
-void Refinement::add_vertices(std::span<const PendingSplit> splits, const Batch& batch,
-                              const QueryContext& context) {
-  for (std::size_t i = 0; i < splits.size(); ++i) {
-    if (i % kStopInterval == 0) {
-      context.check_stop();
-    }
-    if (i + kLookAhead < splits.size()) {
-      ids_.prefetch(splits[i + kLookAhead].u);
-    }
-    const PendingSplit& s = splits[i];
-    const VertexId u = vertex_place(batch, i);
-    if (!ids_.insert(s.u, u)) {
-      throw_refused(s, "its vertex is in the mesh already", context);
-    }
-    tin_.vertices[u] = {point_of(s.u), s.height, kNone};
-    tin_.has_height[u] = (s.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0;
-    if (track_pages_) {
-      vertex_pages_[u] = s.page;
-    }
+/// Puts the new vertex in its place, in no triangle yet, and looks up those that the split names.
+Refinement::Resolved Refinement::enter(const PendingSplit& s, VertexId u,
+                                       const QueryContext& context) {
+  if (!ids_.insert(s.u, u)) [[unlikely]] {
+    throw_refused(s, "its vertex is in the mesh already", context);
   }
-}
-
-/// The splits in order of falling rank. All references are looked up here, in the order of the file
-/// and before the first split is made, so that look-ups do not wait for one another. A reference to
-/// a vertex that comes later in the order is found here and refused by apply_one().
-std::vector<Refinement::Resolved> Refinement::resolve(std::span<const PendingSplit> splits,
-                                                      const Batch& batch,
-                                                      const QueryContext& context) const {
-  const std::vector<std::uint32_t> places = places_of(splits);
-  std::vector<Resolved> resolved;
-  reserve_large(resolved, splits.size());
-  resolved.resize(splits.size());
-  Resolved r{};
-  for (std::size_t i = 0; i < splits.size(); ++i) {
-    if (i % kStopInterval == 0) {
-      context.check_stop();
-    }
-    if (i + kLookAhead < splits.size()) {
-      const PendingSplit& ahead = splits[i + kLookAhead];
-      ids_.prefetch(ahead.w);
-      ids_.prefetch(ahead.vl);
-      ids_.prefetch(ahead.vr);
-    }
-    const PendingSplit& s = splits[i];
-    r.u = vertex_place(batch, i);
-    r.w = ids_.find(s.w), r.vl = ids_.find(s.vl), r.vr = ids_.find(s.vr), r.flags = s.flags;
-    if (r.w == KeyTable::kAbsent || r.vl == KeyTable::kAbsent || r.vr == KeyTable::kAbsent) {
-      throw_refused(s, "it names a vertex that no retrieved record makes", context);
-    }
-    resolved[places[i]] = r;
-    r.triangle += triangles_of(s.flags);
+  tin_.vertices[u] = {point_of(s.u), s.height, kNone};
+  tin_.has_height[u] = (s.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0;
+  if (track_pages_) {
+    vertex_pages_[u] = s.page;
   }
-  return resolved;
+  const Resolved r{u, ids_.find(s.w), ids_.find(s.vl), ids_.find(s.vr), 0, s.flags};
+  if (r.w == KeyTable::kAbsent || r.vl == KeyTable::kAbsent || r.vr == KeyTable::kAbsent)
+      [[unlikely]] {
+    throw_refused(s, "it names a vertex that no retrieved record makes before it", context);
+  }
+  return r;
 }
 
 void Refinement::apply_one(const Resolved& s, const Batch& batch,

@@ -31,10 +31,11 @@ class Refinement {
   /// A copy of `t0` again, in the memory that there is: for one refinement after the other.
   void restart(const Tin& t0);
 
-  /// Applies `splits` in order of falling rank; equal ranks keep their order, and with it the
-  /// file's locality. Together with what was applied before they must be closed under dependency,
-  /// as the records of a monotone predicate are. Result: the TIN does not depend on the order of
-  /// `splits` (the theorem), but its numbering does.
+  /// Applies `splits` in the order of apply_order.h, and numbers vertices and triangles along it:
+  /// so what lies near in the terrain mostly lies near in memory. Together with what was applied
+  /// before they must be closed under dependency, as the records of a monotone predicate are.
+  /// Result: the TIN does not depend on the order of `splits` (the theorem), but its numbering
+  /// does.
   /// @throws Error corruption  a vertex comes twice, or a record does not find its w, vl, vr and
   /// fan; names page and vertex.
   ///                           Throw the refinement away then.
@@ -52,6 +53,10 @@ class Refinement {
   ///               cancelled
   /// Cost: O(k + largest rank) expected for k splits of bounded degree.
   void undo(std::span<const PendingSplit> splits, QueryContext& context);
+
+  /// The splits of the last apply() as indices, in the order in which they were applied. As long as
+  /// nothing was undone, their vertices are the last ones of the mesh, in this order.
+  [[nodiscard]] std::span<const std::uint32_t> applied_order() const noexcept { return order_; }
 
   /// After undo() with removed vertices and triangles among the others (mesh/tin.h).
   [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
@@ -73,11 +78,10 @@ class Refinement {
   }
 
  private:
-  /// A split in local indices. `triangle` is the number of its first new triangle among those of
-  /// its batch.
+  /// A split in local indices.
   struct Resolved {
     VertexId u, w, vl, vr;
-    std::uint32_t triangle;
+    std::uint32_t triangle;  ///< Number of its first new triangle among those of its batch.
     std::uint32_t flags;
   };
   /// Where a batch puts its new vertices and triangles: in the places of removed ones, then behind
@@ -98,11 +102,7 @@ class Refinement {
                : batch.first_triangle + static_cast<TriangleId>(i - free_triangles_.size());
   }
   [[nodiscard]] Batch reserve(std::span<const PendingSplit> splits, const QueryContext& context);
-  void add_vertices(std::span<const PendingSplit> splits, const Batch& batch,
-                    const QueryContext& context);
-  [[nodiscard]] std::vector<Resolved> resolve(std::span<const PendingSplit> splits,
-                                              const Batch& batch,
-                                              const QueryContext& context) const;
+  [[nodiscard]] Resolved enter(const PendingSplit& split, VertexId u, const QueryContext& context);
   void apply_one(const Resolved& split, const Batch& batch, std::span<const PendingSplit> splits,
                  const QueryContext& context);
   void forget_places(const Batch& batch);
@@ -110,6 +110,7 @@ class Refinement {
 
   Tin tin_;
   KeyTable ids_;
+  std::vector<std::uint32_t> order_;
   std::vector<VertexId> free_vertices_;  ///< Removed: their places are used again.
   std::vector<TriangleId> free_triangles_;
   bool track_pages_;
