@@ -1,54 +1,268 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A page is read for a point when its box holds it, and for a tolerance when its largest error is
+// above it. So we cut as builders of bounding volume hierarchies do (surface area heuristic, in
+// bins: Wald 2007), by what a cut makes pages cost: the share of the area that they cover, and the
+// octaves of error that they reach up to. Position, size and error are axes alike. Only integers
+// are compared and added up, and records are drawn by a hash of their vertex: so every machine cuts
+// alike.
 #include "storage/record_order.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
-#include <tuple>
+#include <limits>
+#include <utility>
 #include <vector>
 
-#include "engine/geometry/hilbert.h"
+#include "storage/lanes_internal.h"
 #include "storage/layout.h"
 
 namespace ptin {
 
 namespace {
 
-struct Place {
-  std::uint32_t group;  // ascending: coarse first, wide before narrow
-  std::uint64_t curve;
-  VertexKey key;
-  std::size_t record;
+constexpr std::size_t kAxes = 4;
+constexpr int kBinBits = 5;
+constexpr std::size_t kBins = std::size_t{1} << kBinBits;
+constexpr std::size_t kSample = 1024;  // Records that decide about a cut; about.
+constexpr std::uint32_t kOctave = 64;  // Steps of error in an octave.
+// An octave of error of a page costs as much as so many times the area that is one page's when all
+// have the same.
+constexpr std::uint64_t kPagesAnOctave = 8;
 
-  friend bool operator<(const Place& a, const Place& b) {
-    return std::tie(a.group, a.curve, a.key, a.record) <
-           std::tie(b.group, b.curve, b.key, b.record);
+// A part of a cut is at least this fraction, so that no segment takes a cut for each of its pages.
+constexpr std::size_t kMostUneven = 64;
+
+using lanes::Int4;
+
+/// What a record is placed by.
+struct Item {
+  Int4 roi;  ///< min x, min y, -max x, -max y: a union is four minima.
+  VertexKey key;
+  std::uint32_t error;  ///< Steps above the least that is not 0; 0 is an octave below.
+  std::uint32_t record;
+};
+
+std::uint32_t hash_of(VertexKey key) {
+  constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15u;  // 2^64 / phi, odd
+  return static_cast<std::uint32_t>(((key ^ (key >> 27)) * kGoldenRatio) >> 32);
+}
+
+/// Large and coarse ones have small numbers.
+std::uint32_t along(const Item& item, std::size_t axis) {
+  const Int4& b = item.roi;
+  switch (axis) {
+    case 0:
+      return static_cast<std::uint32_t>(b[0]) - static_cast<std::uint32_t>(b[2]);
+    case 1:
+      return static_cast<std::uint32_t>(b[1]) - static_cast<std::uint32_t>(b[3]);
+    case 2: {
+      const std::int64_t size = -(std::int64_t{b[0]} + b[1] + b[2] + b[3]) + 1;
+      return layout::kInfinityBits - layout::to_bits(static_cast<float>(size));
+    }
+    default:
+      return std::numeric_limits<std::uint32_t>::max() - item.error;
+  }
+}
+
+/// The union of some records.
+struct Cover {
+  Int4 box{INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX};
+  std::uint32_t error = 0;
+  std::uint32_t records = 0;
+
+  void add(Int4 roi, std::uint32_t most_error, std::uint32_t count) {
+    box = roi < box ? roi : box;
+    error = std::max(error, most_error);
+    records += count;
+  }
+  void add(const Cover& other) { add(other.box, other.error, other.records); }
+  [[nodiscard]] std::uint64_t area() const {
+    return static_cast<std::uint64_t>(1 - std::int64_t{box[0]} - box[2]) *
+           static_cast<std::uint64_t>(1 - std::int64_t{box[1]} - box[3]);
   }
 };
 
-Place place_of(const VertexSplit& r, std::size_t index) {
-  const std::uint32_t octave = layout::to_bits(r.error) >> 23;  // 255 for +infinity, 0 for 0
-  const std::uint32_t narrow = kind_of(r) == RecordKind::kNarrow ? 1 : 0;
-  // Twice the centre, which is a whole number.
-  const std::uint32_t x =
-      static_cast<std::uint32_t>(r.roi.min_x) + static_cast<std::uint32_t>(r.roi.max_x);
-  const std::uint32_t y =
-      static_cast<std::uint32_t>(r.roi.min_y) + static_cast<std::uint32_t>(r.roi.max_y);
-  return {(255U - octave) * 2 + narrow, hilbert_position(x, y), key_of(r.u), index};
+class Cutter {
+ public:
+  Cutter(std::span<Item> items, std::size_t a_page) : items_(items), a_page_(a_page) {
+    if (items.empty()) {
+      return;
+    }
+    Cover all;
+    for (const Item& item : items) {
+      all.add(item.roi, item.error, 1);
+    }
+    an_area_ = static_cast<double>(kUnit) / static_cast<double>(all.area());
+    const std::uint64_t pages = items.size() / a_page + 1;
+    error_step_ = std::max<std::uint64_t>((kUnit / pages) * kPagesAnOctave / kOctave, 1);
+  }
+  void run() { cut(0, items_.size()); }
+
+ private:
+  static constexpr std::uint64_t kUnit = std::uint64_t{1} << 32;  // The area of all.
+
+  struct Choice {
+    std::size_t axis = 0;
+    std::uint64_t before = 0, of = 0;  // The part of the records drawn that goes first.
+    bool is_made = false;
+  };
+
+  void cut(std::size_t begin, std::size_t end);
+  [[nodiscard]] Choice choose(std::size_t begin, std::size_t end);
+  void part(std::size_t begin, std::size_t middle, std::size_t end, std::size_t axis);
+
+  /// What pages with these records drawn, each for `weight`, cost.
+  [[nodiscard]] std::uint64_t cost(const Cover& c, std::uint64_t weight) const {
+    const auto area = static_cast<std::uint64_t>(static_cast<double>(c.area()) * an_area_);
+    const std::uint64_t pages = (c.records * weight + a_page_ - 1) / a_page_;
+    return pages * (area + c.error * error_step_);
+  }
+
+  std::span<Item> items_;
+  std::size_t a_page_;
+  std::vector<Item> drawn_;
+  double an_area_ = 1.0;
+  std::uint64_t error_step_ = 1;
+};
+
+void Cutter::cut(std::size_t begin, std::size_t end) {
+  while (end - begin > a_page_) {
+    const Choice choice = choose(begin, end);
+    const std::size_t pages = (end - begin - 1) / a_page_ + 1;
+    std::size_t first = pages / 2;
+    if (choice.is_made) {
+      const std::size_t wanted = (end - begin) * choice.before / choice.of;
+      const std::size_t least = std::max<std::size_t>(pages / kMostUneven, 1);
+      first = std::clamp((wanted + a_page_ / 2) / a_page_, least, pages - least);
+    }
+    const std::size_t middle = begin + first * a_page_;
+    part(begin, middle, end, choice.axis);
+    if (middle - begin <= end - middle) {  // the smaller part, so that calls nest log n deep
+      cut(begin, middle);
+      begin = middle;
+    } else {
+      cut(middle, end);
+      end = middle;
+    }
+  }
+  std::sort(items_.begin() + static_cast<std::ptrdiff_t>(begin),
+            items_.begin() + static_cast<std::ptrdiff_t>(end),
+            [](const Item& a, const Item& b) { return a.key < b.key; });
 }
+
+/// The cut with the least cost of those between bins.
+Cutter::Choice Cutter::choose(std::size_t begin, std::size_t end) {
+  int shift = 32;
+  while (((end - begin) >> (32 - shift)) > kSample) {
+    --shift;
+  }
+  const std::uint64_t weight = std::uint64_t{1} << (32 - shift);
+  drawn_.clear();
+  std::array<std::uint32_t, kAxes> low;
+  std::array<std::uint32_t, kAxes> high;
+  low.fill(std::numeric_limits<std::uint32_t>::max());
+  high.fill(0);
+  for (const Item& item : items_.subspan(begin, end - begin)) {
+    if (shift == 32 || (hash_of(item.key) >> shift) == 0) {
+      drawn_.push_back(item);
+      for (std::size_t axis = 0; axis < kAxes; ++axis) {
+        low[axis] = std::min(low[axis], along(item, axis));
+        high[axis] = std::max(high[axis], along(item, axis));
+      }
+    }
+  }
+  Choice best;
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    if (low[axis] >= high[axis]) {
+      continue;
+    }
+    std::array<Cover, kBins> bins{};
+    const int fine =
+        std::max(static_cast<int>(std::bit_width(high[axis] - low[axis])) - kBinBits, 0);
+    for (const Item& item : drawn_) {
+      bins[(along(item, axis) - low[axis]) >> fine].add(item.roi, item.error, 1);
+    }
+    std::array<Cover, kBins> behind;  // and with this one
+    Cover sum;
+    for (std::size_t i = kBins; i-- > 0;) {
+      sum.add(bins[i]);
+      behind[i] = sum;
+    }
+    sum = {};
+    for (std::size_t i = 1; i < kBins; ++i) {
+      sum.add(bins[i - 1]);
+      if (bins[i - 1].records == 0 || behind[i].records == 0) {
+        continue;
+      }
+      const std::uint64_t both = cost(sum, weight) + cost(behind[i], weight);
+      if (both < least) {
+        least = both;
+        best = {axis, sum.records, drawn_.size(), true};
+      }
+    }
+  }
+  return best;
+}
+
+/// Puts first those that come before along the axis; ties by the vertex.
+void Cutter::part(std::size_t begin, std::size_t middle, std::size_t end, std::size_t axis) {
+  const auto at = [this](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(begin), at(middle), at(end), [&](const Item& a, const Item& b) {
+    const std::uint32_t of_a = along(a, axis);
+    const std::uint32_t of_b = along(b, axis);
+    return of_a != of_b ? of_a < of_b : a.key < b.key;
+  });
+}
+
+/// Errors as steps of the logarithm: the bits of a float are nearly that.
+class ErrorSteps {
+ public:
+  explicit ErrorSteps(std::span<const VertexSplit> records) {
+    for (const VertexSplit& r : records) {
+      const std::uint32_t bits = layout::to_bits(r.error);
+      if (bits != 0) {
+        least_ = std::min(least_, bits);
+      }
+    }
+  }
+  [[nodiscard]] std::uint32_t of(float error) const {
+    constexpr std::uint32_t kShift = 23 - std::bit_width(kOctave) + 1;
+    const std::uint32_t bits = layout::to_bits(error);
+    return bits == 0 ? 0 : ((bits - least_) >> kShift) + kOctave;
+  }
+
+ private:
+  std::uint32_t least_ = layout::kInfinityBits;
+};
 
 }  // namespace
 
-void order_segment(std::span<VertexSplit> records) {
-  std::vector<Place> places;
-  places.reserve(records.size());
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    places.push_back(place_of(records[i], i));
-  }
-  std::sort(places.begin(), places.end());
+void order_segment(std::span<VertexSplit> records, std::size_t page_bytes) {
+  std::vector<Item> items;
+  items.reserve(records.size());
+  const ErrorSteps steps(records);
+  const auto add = [&](RecordKind kind) {
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const VertexSplit& r = records[i];
+      if (kind_of(r) == kind) {
+        const Int4 roi{r.roi.min_x, r.roi.min_y, -r.roi.max_x, -r.roi.max_y};
+        items.push_back({roi, key_of(r.u), steps.of(r.error), static_cast<std::uint32_t>(i)});
+      }
+    }
+  };
+  add(RecordKind::kWide);
+  const std::size_t wide = items.size();
+  add(RecordKind::kNarrow);
+  Cutter(std::span(items).first(wide), page_bytes / kWideRecordBytes).run();
+  Cutter(std::span(items).subspan(wide), page_bytes / kNarrowRecordBytes).run();
   std::vector<VertexSplit> ordered;
   ordered.reserve(records.size());
-  for (const Place& p : places) {
-    ordered.push_back(records[p.record]);
+  for (const Item& item : items) {
+    ordered.push_back(records[item.record]);
   }
   std::copy(ordered.begin(), ordered.end(), records.begin());
 }

@@ -244,7 +244,7 @@ void StoreWriterImpl::start(const HeightEncoding& heights) {
 void StoreWriterImpl::add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) {
   PTIN_CHECK(!published_);
   start(heights);
-  order_segment(records);
+  order_segment(records, options_.page_bytes);
   for (const VertexSplit& r : records) {
     add(r);
   }

@@ -34,8 +34,7 @@ struct StoreWriterOptions {
 /// publish(), it removes what it wrote: the target's name never shows a part. (A process that is
 /// killed leaves a file named .TARGET.PID-N.tmp.)
 /// Segments arrive in any order of dependency; the file keeps the order of segments, each on pages
-/// of its own, and inside a segment orders records by error class (one octave, coarse first), wide
-/// before narrow, then along the Hilbert curve of the box centre, then by key. The bytes depend on
+/// of its own, and inside a segment orders records by record_order.h. The bytes depend on
 /// nothing but what is given. Memory: one segment twice and 32 bytes for each of its records while
 /// it is ordered; 2 MiB; less than one byte for a hundred records (leaves of the index go to a
 /// nameless side file).
