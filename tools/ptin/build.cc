@@ -245,6 +245,25 @@ class BuildShow {
   std::optional<std::pair<std::uint64_t, std::uint64_t>> next_tiles_;
 };
 
+/// Big blocks go back to the system as soon as they are freed, so that the limit holds between
+/// tiles too.
+void return_freed_memory(int threads) {
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  mallopt(M_TRIM_THRESHOLD, 4 << 20);
+  mallopt(M_ARENA_MAX, std::max(threads, 1) + 1);
+}
+
+/// Where the limit leaves room for it, freed blocks are kept for the next tile: giving them back
+/// and taking fresh ones, page by page, is a sixth of the time of a build.
+void keep_freed_memory(const BuildPlan& plan) {
+  constexpr std::uint64_t kKeptByThread = std::uint64_t{128} << 20;  // measured: half of it
+  const std::uint64_t kept = kKeptByThread * static_cast<std::uint64_t>(plan.threads + 1);
+  if (plan.memory_expected + kept <= plan.memory_limit) {
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that malloc takes
+    mallopt(M_TRIM_THRESHOLD, 32 << 20);
+  }
+}
+
 BuildResources resources_of(const BuildCommand& command, const Context& context, BuildShow& show) {
   BuildResources resources;
   resources.overwrite = command.overwrite;
@@ -258,6 +277,7 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
   resources.dry_run = command.dry_run;
   resources.plan = [&command, &context, &show](const BuildPlan& plan) {
     show.finish();
+    keep_freed_memory(plan);
     if (command.dry_run && context.json) {
       print_json(plan_json(plan));
     } else if (!context.quiet) {
@@ -269,14 +289,6 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
     show.report(stage, done, total);
   };
   return resources;
-}
-
-/// Big blocks go back to the system as soon as they are freed, so that the limit holds between
-/// tiles too.
-void return_freed_memory(int threads) {
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  mallopt(M_TRIM_THRESHOLD, 4 << 20);
-  mallopt(M_ARENA_MAX, std::max(threads, 1) + 1);
 }
 
 int run_build(BuildCommand& command, const Context& context) {
