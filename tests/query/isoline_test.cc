@@ -185,6 +185,7 @@ RC_GTEST_PROP(Isolines, EndOnlyWhereTheSurfaceEnds, (std::uint64_t seed)) {
 
 RC_GTEST_PROP(Isolines, AtAnErrorAreThoseOfTheTinAtThatError, (std::uint64_t seed)) {
   const Hierarchy h = reference::random_hierarchy(seed);
+  RC_PRE(!h.records.empty());
   const TemporaryStore file(h);
   const ProgressiveTin terrain(file.open());
   std::mt19937_64 random(seed);
