@@ -88,9 +88,7 @@ class KeyTable {
   }
 
   /// Asks the processor to fetch the slot that find() or insert() will look at.
-  void prefetch(VertexKey key) const noexcept {
-    ptin::prefetch(&slots_[home(key)]);
-  }
+  void prefetch(VertexKey key) const noexcept { ptin::prefetch(&slots_[home(key)]); }
 
   /// Bytes of a table that was reserved for `capacity` keys.
   [[nodiscard]] static std::size_t bytes_for(std::size_t capacity) noexcept {

@@ -56,7 +56,8 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
         continue;
       }
       splits_.push_back(split);
-      entering_.push_back({heights.code(r.height_lo), heights.code(r.height_hi), r.deviation, r.rank});
+      entering_.push_back(
+          {heights.code(r.height_lo), heights.code(r.height_hi), r.deviation, r.rank});
     }
   }
   refinement_.apply(splits_, context);
