@@ -20,4 +20,6 @@ extern "C" const char* __tsan_default_options() { return "ignore_noninstrumented
 
 /// oneTBB establishes order inside its library, where the thread sanitizer does not see it.
 extern "C" const char* __tsan_default_suppressions();
-extern "C" const char* __tsan_default_suppressions() { return "race:tbb::detail\n"; }
+extern "C" const char* __tsan_default_suppressions() {
+  return "race:tbb::detail\nrace:task_ptr_or_nullptr\n";
+}
