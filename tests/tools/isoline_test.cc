@@ -171,6 +171,7 @@ TEST(IsolineProgram, RefusesWhatCannotBeAnswered) {
   };
   refused({}, 2, "--level");
   refused({"--interval", "-5"}, 2, "interval");
+  refused({"--interval", "5", "--max-lines", "-1"}, 2, "count");
   refused({"--interval", "0.0000001"}, 2, "levels");
   refused({"--interval", "100000", "--base", "99000"}, 2, "--interval");
   refused({"--level", "1000", "--error", "-1"}, 2, "--error");

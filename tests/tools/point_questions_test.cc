@@ -245,6 +245,9 @@ TEST(SightCommand, KeepsToItsBudgetAlsoOverVoidsAndInTheFresnelZone) {
   EXPECT_GT(records(few), 0);
   EXPECT_LT(records(few), records(whole));
   EXPECT_FALSE(few.at("exact").get<bool>());
+  std::vector<std::string> negative = pair;
+  negative.insert(negative.end(), {"--budget", "-1"});
+  EXPECT_EQ(run_ptin(negative).status, 2);
 }
 
 TEST(SightCommand, AnEndOnTheBorderStandsOnGround) {

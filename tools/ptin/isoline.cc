@@ -17,6 +17,7 @@
 #include "tools/error_status.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output_file.h"
+#include "tools/ptin/counts.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/isoline_layer.h"
@@ -275,6 +276,7 @@ Action declare_isoline(CLI::App& app, Context& context) {
   app.add_option("--max-lines", options->max_lines,
                  "Refuse, before anything is written, when there are more lines, or polygons")
       ->type_name("N")
+      ->check(counts())
       ->capture_default_str();
   app.add_option("--memory", options->memory,
                  "Memory for the extraction, as 512M or 2G (default 4G); what does not fit goes to "

@@ -11,6 +11,7 @@
 #include "tools/error_status.h"
 #include "tools/formats/number_text.h"
 #include "tools/ptin/answers.h"
+#include "tools/ptin/counts.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/ground.h"
 #include "tools/ptin/number_rows.h"
@@ -172,7 +173,8 @@ Action declare_sight(CLI::App& app, Context& context) {
       ->type_name("E");
   app.add_option("--budget", options->budget,
                  "Stop after this many records for a pair; may answer undecided")
-      ->type_name("RECORDS");
+      ->type_name("RECORDS")
+      ->check(counts());
   add_common_options(app, context, false);
   return [options, &context] { return run_sight(*options, context); };
 }
