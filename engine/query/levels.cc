@@ -13,6 +13,8 @@ namespace ptin {
 
 namespace {
 
+constexpr double kMostSteps = 9007199254740992.0;  // 2^53: from there on n + 1 may be n
+
 class CrossesLevel final : public AttributePredicate {
  public:
   explicit CrossesLevel(std::shared_ptr<const Ladder> codes) : codes_(std::move(codes)) {}
@@ -91,14 +93,23 @@ std::vector<double> levels_at(double interval, double base, double low, double h
   if (!(interval > 0) || !std::isfinite(interval) || !std::isfinite(base)) {
     throw invalid("the interval must be a number > 0 and the base a number");
   }
+  if (low > high) {
+    return {};  // all is void
+  }
   const double first = std::ceil((low - base) / interval);
   const double last = std::floor((high - base) / interval);
+  if (!(std::abs(first) <= kMostSteps) || !(std::abs(last) <= kMostSteps)) {
+    throw invalid(
+        "the heights lie more than 2^53 intervals from the base: give a larger interval, or a base "
+        "nearer to the heights");
+  }
   if (last - first >= static_cast<double>(kMostLevels)) {
     throw too_many();
   }
+  const auto count = static_cast<std::int64_t>(last - first) + 1;
   std::vector<double> levels;
-  for (double n = first; n <= last; ++n) {  // none when all is void: low > high
-    levels.push_back(base + n * interval);
+  for (std::int64_t n = 0; n < count; ++n) {
+    levels.push_back(base + (first + static_cast<double>(n)) * interval);
   }
   return levels;
 }

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -388,6 +389,14 @@ TEST(Levels, AtAnIntervalAreThoseOfTheBase) {
   EXPECT_TRUE(levels_at(10, 0, 5, -5).empty());
   EXPECT_THROW(static_cast<void>(levels_at(0, 0, 0, 1)), Error);
   EXPECT_THROW(static_cast<void>(levels_at(1e-9, 0, 0, 1)), Error);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(levels_at(10, 0, kInfinity, -kInfinity).empty());
+  // Where n + 1 is n, or the heights are none: refused, not counted for ever.
+  EXPECT_THROW(static_cast<void>(levels_at(1, 1e17, 0, 100)), Error);
+  EXPECT_THROW(static_cast<void>(levels_at(1, -1e17, 0, 100)), Error);
+  EXPECT_THROW(static_cast<void>(levels_at(1, 0, 1e30, 1e30)), Error);
+  EXPECT_THROW(static_cast<void>(levels_at(1, 0, -kInfinity, kInfinity)), Error);
+  EXPECT_THROW(static_cast<void>(levels_at(1, 0, 0, kInfinity)), Error);
 }
 
 TEST(ClipLine, KeepsRingsAndJoinsThePartThatHoldsTheirFirstPoint) {
