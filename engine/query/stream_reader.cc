@@ -104,7 +104,7 @@ std::size_t StreamReader::wanted() const {
   return sizeof(stream::FrameHead) + head.bytes;
 }
 
-std::size_t StreamReader::feed(std::span<const std::byte> bytes) {
+std::size_t StreamReader::feed(std::span<const std::byte> bytes, bool one_frame) {
   const std::size_t given = bytes.size();
   if (expects_ == Expects::kNothing) {
     reject("the stream was rejected before");
@@ -127,7 +127,7 @@ std::size_t StreamReader::feed(std::span<const std::byte> bytes) {
         take(waiting_);
         offset_ += waiting_.size();
         waiting_.clear();
-        if (is_complete()) {
+        if (one_frame || is_complete()) {
           return given - bytes.size();
         }
       }

@@ -46,7 +46,11 @@ class StreamReader {
   /// goes on from another costs O(n log n) on a mesh of n vertices, however few splits it brings
   /// (so a caller who does not trust the sender limits how many there are). A frame that is not
   /// whole waits in memory, nothing is reserved before it came.
-  std::size_t feed(std::span<const std::byte> bytes);
+  std::size_t feed(std::span<const std::byte> bytes) { return feed(bytes, false); }
+
+  /// As feed(), but takes nothing behind the head, or the frame, that `bytes` make whole: for who
+  /// wants to see the mesh after each frame.
+  std::size_t feed_frame(std::span<const std::byte> bytes) { return feed(bytes, true); }
 
   /// Gives up the rest of a stream that was cut: what is fed next is the head of another one.
   void begin_next();
@@ -79,6 +83,7 @@ class StreamReader {
 
   /// Bytes of what comes next, as far as is known.
   [[nodiscard]] std::size_t wanted() const;
+  std::size_t feed(std::span<const std::byte> bytes, bool one_frame);
   void take(std::span<const std::byte> bytes);
   void take_head(std::span<const std::byte> bytes);
   void take_frame(const stream::FrameHead& head, std::span<const std::byte> payload);

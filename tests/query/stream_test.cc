@@ -95,6 +95,26 @@ RC_GTEST_PROP(Stream, GivesTheRefinementByWhatWasWanted, (std::uint64_t seed)) {
   RC_ASSERT(reader.facts() == facts);
 }
 
+RC_GTEST_PROP(Stream, ComesFrameByFrameWhenWanted, (std::uint64_t seed)) {
+  Asked asked(seed);
+  StreamSummary summary;
+  const Bytes bytes = sent(*asked.store, {}, &summary);
+  const std::size_t most = asked.random() % 2 == 0 ? bytes.size() : 1 + asked.random() % 700;
+  StreamReader reader("stream");
+  std::size_t grown = 0;
+  for (std::span<const std::byte> rest(bytes); !rest.empty();) {
+    const std::uint64_t used = reader.bytes_used();
+    const std::size_t before = reader.tin().vertices.size();
+    rest = rest.subspan(reader.feed_frame(rest.first(std::min(most, rest.size()))));
+    grown += reader.tin().vertices.size() != before ? 1 : 0;
+    // What was taken ends with the frame, or waits for the rest of one.
+    RC_ASSERT(reader.bytes_used() == used || reader.bytes_used() == bytes.size() - rest.size());
+  }
+  RC_ASSERT(reader.is_complete());
+  RC_ASSERT(grown == summary.frames - 2);  // but for start and end
+  RC_ASSERT(canonical(reader.tin()) == canonical(asked.fresh(nullptr).tin));
+}
+
 /// Heights too, which canonical() leaves out.
 std::vector<std::tuple<VertexKey, HeightBits, std::uint8_t>> vertices_of(const Tin& tin) {
   std::vector<std::tuple<VertexKey, HeightBits, std::uint8_t>> all;
