@@ -5,7 +5,10 @@
 #include "engine/query/isoline_progressive.h"
 
 #include <algorithm>
+#include <optional>
 #include <random>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -229,6 +232,37 @@ TEST(ProgressiveIsolines, BeginAnewWithAnotherNumbering) {
   EXPECT_EQ(listing(kept.lines(other, query)), asked.of_the_terrain());
   const QueryContext small({}, 100, "test");
   EXPECT_THROW(static_cast<void>(kept.lines(other, small)), Error);
+}
+
+TEST(ProgressiveIsolines, KeepToTheirLimitAndStop) {
+  const Asked asked(5);
+  const auto fault = [&](std::uint64_t limit, std::stop_token stop) {
+    QueryContext query = context();
+    Refinement mesh(asked.terrain.t0());
+    try {
+      ProgressiveIsolines kept(mesh.tin(), asked.levels, asked.hierarchy.facts.heights,
+                               asked.hierarchy.facts.map, {std::move(stop), limit, "test"});
+      mesh.apply(asked.splits(), query);
+      kept.advance(mesh.tin());
+      EXPECT_LE(kept.bytes(), limit);
+      return ErrorCode::internal;  // none
+    } catch (const Error& e) {
+      return e.code();
+    }
+  };
+  ProgressiveIsolines whole = asked.over(Refinement(asked.terrain.t0()).tin());
+  QueryContext query = context();
+  Refinement mesh(asked.terrain.t0());
+  mesh.apply(asked.splits(), query);
+  const std::uint64_t before = whole.bytes();
+  whole.advance(mesh.tin());
+  ASSERT_GT(whole.bytes(), before);
+  EXPECT_EQ(fault(4 * whole.bytes(), {}), ErrorCode::internal);
+  EXPECT_EQ(fault(whole.bytes() - 1, {}), ErrorCode::resource_exhausted);  // in advance()
+  EXPECT_EQ(fault(before - 1, {}), ErrorCode::resource_exhausted);         // in restart()
+  std::stop_source stopped;
+  stopped.request_stop();
+  EXPECT_EQ(fault(4 * whole.bytes(), stopped.get_token()), ErrorCode::cancelled);
 }
 
 }  // namespace

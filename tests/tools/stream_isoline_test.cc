@@ -85,6 +85,27 @@ TEST_F(StreamIsolinesCli, StepsShowThemCome) {
   }
 }
 
+TEST_F(StreamIsolinesCli, StepsAreAsManyAsFramesOfSplitsHoweverSmallAndOverDeltas) {
+  testing::RasterRecipe recipe;  // a plane: little to tell of a split
+  recipe.value = [](int column, int row) { return column + 10.0 * row; };
+  testing::make_raster(file("plane.tif"), recipe);
+  answer({"build", file("plane.tif"), "-o", file("t.ptin")});
+  const json few = answer({"stream", file("t.ptin"), "--splits", "3", "-o", file("a.pts")});
+  const json rest =
+      answer({"stream", file("t.ptin"), "--have",
+              answer({"unstream", file("a.pts")}).at("have").dump(), "-o", file("b.pts")});
+  ASSERT_GT(rest.at("splits"), 256);
+  const json steps = answer({"unstream", file("a.pts"), file("b.pts"), "--level", "100", "--steps"})
+                         .at("isolines")
+                         .at("steps");
+  // Start and end of a stream are no steps.
+  EXPECT_EQ(steps.size(),
+            few.at("frames").get<std::size_t>() - 2 + rest.at("frames").get<std::size_t>() - 2);
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    EXPECT_GT(steps[i].at("splits"), steps[i - 1].at("splits"));
+  }
+}
+
 TEST_F(StreamIsolinesCli, OfAWindowAreCutThereAndOfADeltaBeginAnew) {
   build("mountains_257.tif");
   const json b = answer({"info", file("t.ptin")}).at("bounds");
@@ -125,8 +146,15 @@ TEST_F(StreamIsolinesCli, AreRefusedWhereTheyMeanNothing) {
   refused({"--steps"}, "--level");
   refused({"--level", "1000", "-o", file("x.ply")}, ".gpkg");
   refused({"--interval", "100000", "--base", "99000", "-o", file("x.gpkg")}, "--interval");
+  refused({"--level", "1000", "-o", "-", "--json"}, "stdout");
+  refused({"--interval", "1", "--base", "1e17"}, "2^53");
   refused({"--level", "nan", "-o", file("x.gpkg")}, "finite");
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"s.pts", "t.ptin"}));
+  // What the mesh leaves of --memory is for the isolines.
+  const Outcome outcome = run_ptin(
+      {"unstream", file("s.pts"), "--memory", "2M", "--interval", "0.1", "-o", file("x.gpkg")});
+  EXPECT_EQ(outcome.status, 7) << outcome.err;
+  EXPECT_EQ(run_ptin({"unstream", file("s.pts"), "--memory", "2M", "-o", file("x.ply")}).status, 0);
 }
 
 }  // namespace

@@ -29,8 +29,13 @@ void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options) {
 }
 
 StreamIsolines::StreamIsolines(const StreamIsolineOptions& options, std::string output,
-                               bool overwrite, std::stop_token stop)
-    : options_(options), output_(std::move(output)), overwrite_(overwrite), stop_(std::move(stop)) {
+                               bool overwrite, std::uint64_t memory_limit_bytes,
+                               std::stop_token stop)
+    : options_(options),
+      output_(std::move(output)),
+      overwrite_(overwrite),
+      stop_(stop),
+      context_(std::move(stop), memory_limit_bytes, output_) {
   RegionOptions region;
   region.window = options.window;
   if (const auto window = region_of(region, "")) {
@@ -46,6 +51,8 @@ void StreamIsolines::follow(const StreamReader& reader) {
     begin(reader);
   } else if (reader.numbering() != numbering_) {
     isolines_->restart(reader.tin());
+    numbering_ = reader.numbering();
+    return;  // a stream that goes on from this one begins: the same mesh, numbered anew
   } else {
     const IsolineChange change = isolines_->advance(reader.tin());
     if (change.splits == 0) {
@@ -71,7 +78,8 @@ void StreamIsolines::begin(const StreamReader& reader) {
                 "no multiple of the interval lies within the heights of the terrain; give a "
                 "smaller --interval, or --base");
   }
-  isolines_.emplace(reader.tin(), LevelSet(levels, facts.heights), facts.heights, facts.map);
+  isolines_.emplace(reader.tin(), LevelSet(levels, facts.heights), facts.heights, facts.map,
+                    context_);
   if (!output_.empty()) {
     const nlohmann::json metadata = nlohmann::json::parse(reader.metadata(), nullptr, false);
     const std::string wkt = metadata.is_object() ? crs_facts_of(metadata).wkt : std::string();
@@ -81,8 +89,7 @@ void StreamIsolines::begin(const StreamReader& reader) {
 }
 
 void StreamIsolines::write(const StreamReader& reader) {
-  const QueryContext context(stop_, std::uint64_t{4} << 30, output_);
-  const Isolines lines = isolines_->lines(reader.tin(), context);
+  const Isolines lines = isolines_->lines(reader.tin(), context_);
   const IsolineStep step{steps_.size(), reader.tin().vertices.size() - reader.t0_vertices(),
                          reader.certificate().error};
   last_ = {lines.size(), 0, lines.points()};

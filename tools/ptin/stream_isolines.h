@@ -33,17 +33,15 @@ struct StreamIsolineOptions {
 void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options);
 
 /// Follows a reader and writes the isolines of its mesh: of what arrived in the end, or after T0
-/// and after every frame.
+/// and after every frame of splits.
 class StreamIsolines {
  public:
+  /// @param memory_limit_bytes  For what is kept of the isolines and for writing them.
   StreamIsolines(const StreamIsolineOptions& options, std::string output, bool overwrite,
-                 std::stop_token stop);
+                 std::uint64_t memory_limit_bytes, std::stop_token stop);
 
-  /// Bytes after which follow() wants to be called: so few that it sees T0, and every frame, alone.
-  static constexpr std::size_t kFeedBytes = 256;
-
-  /// To be called when bytes were fed. Cost: what changed (isoline_progressive.h), and with --steps
-  /// the lines.
+  /// To be called after every StreamReader::feed_frame(). Cost: what changed
+  /// (isoline_progressive.h), and with --steps the lines.
   void follow(const StreamReader& reader);
   /// Writes what is left to write, publishes, and tells what there was.
   [[nodiscard]] nlohmann::json finish(const StreamReader& reader);
@@ -56,6 +54,7 @@ class StreamIsolines {
   std::string output_;
   bool overwrite_;
   std::stop_token stop_;
+  QueryContext context_;
   std::optional<Window> window_;
   std::optional<ProgressiveIsolines> isolines_;
   std::unique_ptr<IsolineLayer> layer_;  ///< None without an output.

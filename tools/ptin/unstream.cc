@@ -71,13 +71,12 @@ class Receiver {
   void read(const std::string& path, const Context& context) {
     const File file = opened(path);
     std::vector<std::byte> buffer(std::size_t{1} << 20);
-    const std::size_t most = isolines_ != nullptr ? StreamIsolines::kFeedBytes : buffer.size();
     bool begun = false;
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
       begun = true;
       if (context.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
       for (std::span<const std::byte> rest(buffer.data(), n); !rest.empty();) {
-        rest = rest.subspan(reader_.feed(rest.first(std::min(most, rest.size()))));
+        rest = rest.subspan(isolines_ != nullptr ? reader_.feed_frame(rest) : reader_.feed(rest));
         if (isolines_ != nullptr) isolines_->follow(reader_);
         within_ = !reader_.is_complete();
         if (!within_) note();
@@ -110,13 +109,14 @@ class Receiver {
   bool within_ = true;  ///< The last stream was not read to its end.
 };
 
-RefinedTin refined_of(const StreamReader& reader) {
+/// All but the mesh itself.
+RefinedTin counts_of(const StreamReader& reader) {
+  const Tin& tin = reader.tin();
   RefinedTin refined;
-  refined.tin = reader.tin();
-  refined.vertices = refined.tin.vertices.size();
-  refined.triangles = refined.tin.triangles.size();
-  refined.void_vertices = static_cast<std::uint64_t>(
-      std::count(refined.tin.has_height.begin(), refined.tin.has_height.end(), 0));
+  refined.vertices = tin.vertices.size();
+  refined.triangles = tin.triangles.size();
+  refined.void_vertices =
+      static_cast<std::uint64_t>(std::count(tin.has_height.begin(), tin.has_height.end(), 0));
   refined.t0_vertices = reader.t0_vertices();
   refined.certified_error = reader.certificate().error;
   refined.certified_deviation = reader.certificate().deviation;
@@ -164,7 +164,7 @@ void print_report(const Receiver& receiver, const RefinedTin& refined) {
 int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
                    StreamIsolines& isolines, const Context& context) {
   const nlohmann::json lines = isolines.finish(receiver.reader());
-  const RefinedTin refined = refined_of(receiver.reader());
+  const RefinedTin refined = counts_of(receiver.reader());
   if (context.json) {
     const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
     nlohmann::json answer = answer_of(options, receiver, refined, {}, crs);
@@ -180,7 +180,7 @@ int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
   return kExitDone;
 }
 
-void check_options(const UnstreamOptions& options) {
+void check_options(const UnstreamOptions& options, bool json) {
   if (!options.isolines.given()) {
     if (options.isolines.steps || options.isolines.z || !options.isolines.window.empty()) {
       throw Error(ErrorCode::invalid_argument,
@@ -189,6 +189,10 @@ void check_options(const UnstreamOptions& options) {
     if (!options.output.empty()) static_cast<void>(mesh_format_of(options.output));
   } else if (!options.output.empty()) {
     static_cast<void>(vector_format_of(options.output));
+    if (options.output == "-" && json) {
+      throw Error(ErrorCode::invalid_argument,
+                  "--json and -o - both write to stdout; give the isolines a file name");
+    }
   }
   if (!options.output.empty() && options.output != "-") {
     check_output(options.output, options.overwrite);
@@ -196,15 +200,15 @@ void check_options(const UnstreamOptions& options) {
 }
 
 int run_unstream(const UnstreamOptions& options, const Context& context) {
-  check_options(options);
+  check_options(options, context.json);
+  const std::uint64_t memory = memory_limit_of(options.memory);
   std::optional<StreamIsolines> isolines;
   if (options.isolines.given()) {
-    isolines.emplace(options.isolines, options.output, options.overwrite, context.stop);
+    isolines.emplace(options.isolines, options.output, options.overwrite, memory / 2, context.stop);
   }
   std::string name = options.inputs.size() == 1 ? options.inputs.front() : "streams";
   // Half for what arrives, half for what is written of it.
-  Receiver receiver(name == "-" ? "stdin" : std::move(name),
-                    {memory_limit_of(options.memory) / 2, context.stop},
+  Receiver receiver(name == "-" ? "stdin" : std::move(name), {memory / 2, context.stop},
                     isolines ? &*isolines : nullptr);
   for (const std::string& input : options.inputs) receiver.read(input, context);
   if (!receiver.reader().has_mesh()) {
@@ -212,7 +216,8 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
                 "the stream ends before T0: nothing of it can be shown; get more of it");
   }
   if (isolines) return write_isolines(options, receiver, *isolines, context);
-  const RefinedTin refined = refined_of(receiver.reader());
+  RefinedTin refined = counts_of(receiver.reader());
+  refined.tin = receiver.reader().tin();
   Mesh mesh = surface_mesh(refined, receiver.reader().facts());
   const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
   mesh.crs = crs.horizontal_text();
