@@ -3,6 +3,7 @@
 // Points and lines as callers give them: layers in any CRS, WKT of any length, lines of several
 // parts.
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -105,6 +106,48 @@ TEST(VectorInput, TakesWktOfAnyLengthAndOfSeveralParts) {
   const std::string two = "MULTILINESTRING((" + sample(1, 1) + "," + sample(3, 1) + "),(" +
                           sample(8, 1) + "," + sample(9, 1) + "))";
   EXPECT_EQ(answer_of({"profile", terrain, "--line", two, "--json"}).at("length"), 90.0);
+}
+
+TEST(VectorInput, TakesFilesWhoseNamesBeginAsWktDoes) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  const std::string here = std::filesystem::current_path();
+  const std::string line = geojson("LineString", json::array({degrees_at(2, 3), degrees_at(2, 9)}));
+  std::filesystem::current_path(folder.path());
+  for (const std::string name : {"LineString_roads.geojson", "linestring.geojson", "linestringz",
+                                 "linestring(1).geojson", "LINESTRING EMPTY.geojson"}) {
+    write_file(name, line);
+    EXPECT_EQ(answer_of({"profile", terrain, "--line", name, "--json"}).at("lines"), 1) << name;
+  }
+  const std::string wkt = "linestring zm (" + sample(1, 1) + " 0 0," + sample(3, 1) + " 0 0)";
+  EXPECT_EQ(answer_of({"profile", terrain, "--line", wkt, "--json"}).at("length"), 60.0);
+  std::filesystem::current_path(here);
+}
+
+TEST(VectorInput, SkipsLinesWithoutLengthAmongOthersAndSaysHowMany) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  const std::string none = "(" + sample(2, 2) + "," + sample(2, 2) + ")";
+  const std::string line = "(" + sample(1, 1) + "," + sample(3, 1) + ")";
+  const auto run = [&](const std::string& wkt, const char* more) {
+    return run_ptin({"profile", terrain, "--line", wkt, more});
+  };
+  const std::string some = "MULTILINESTRING(" + none + "," + line + "," + none + ")";
+  const json answer = json::parse(run(some, "--json").out);
+  EXPECT_EQ(answer.at("lines"), 1);
+  EXPECT_EQ(answer.at("skipped_lines"), 2);
+  EXPECT_EQ(answer.at("length"), 60.0);
+  EXPECT_EQ(answer.at("points").front().at("line"), 1) << "numbered as they were given";
+  EXPECT_NE(run_ptin({"profile", terrain, "--line", some}).err.find("2 of 3 lines"),
+            std::string::npos);
+  const auto refused = [&](const std::string& wkt, const char* words) {
+    const Outcome outcome = run(wkt, "--json");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  };
+  refused("LINESTRING" + none, "the line has no length");
+  refused("MULTILINESTRING(" + none + "," + none + ")", "none of the 2 lines");
+  refused("MULTILINESTRING(" + line + ",(1e30 0, 0 0))", "line 2 of 2");
 }
 
 TEST(VectorInput, SaysWhatIsNoLine) {

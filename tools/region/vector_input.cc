@@ -2,11 +2,13 @@
 #include "tools/region/vector_input.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <system_error>
 
 #include <cpl_error.h>
@@ -19,6 +21,8 @@ namespace ptin::tools {
 namespace {
 
 constexpr std::size_t kLongestWord = 64;
+/// What may follow the word of a geometry, without blanks.
+constexpr std::array kAfterWord = {"(", "Z(", "M(", "ZM(", "EMPTY", "ZEMPTY", "MEMPTY", "ZMEMPTY"};
 
 /// False when nothing is there; a name too long for a file is none.
 bool exists(const std::string& path) {
@@ -80,14 +84,19 @@ std::unique_ptr<OGRGeometry> geometry_of_wkt(const std::string& text) {
   return geometry;
 }
 
-bool begins_with_word(const std::string& text, std::initializer_list<const char*> words) {
+bool begins_as_wkt(const std::string& text, std::initializer_list<const char*> words) {
   std::string start;
   for (const char c : text.substr(0, kLongestWord)) {
     const auto byte = static_cast<unsigned char>(c);
     if (std::isspace(byte) == 0) start += static_cast<char>(std::toupper(byte));
   }
-  return std::any_of(words.begin(), words.end(),
-                     [&](const char* word) { return start.starts_with(word); });
+  const auto opens = [&](std::string_view word) {
+    if (!start.starts_with(word)) return false;
+    const std::string_view rest = std::string_view(start).substr(word.size());
+    return std::any_of(kAfterWord.begin(), kAfterWord.end(),
+                       [&](const char* after) { return rest.starts_with(after); });
+  };
+  return std::any_of(words.begin(), words.end(), opens);
 }
 
 void for_each_geometry(const std::string& path, const std::string& crs_wkt,
@@ -122,7 +131,7 @@ void for_each_geometry(const std::string& path, const std::string& crs_wkt,
 void read_geometries(const std::string& text, std::initializer_list<const char*> words,
                      const std::string& example, const std::string& crs_wkt,
                      const std::function<void(const OGRGeometry&)>& visit) {
-  if (begins_with_word(text, words)) {
+  if (begins_as_wkt(text, words) && !exists(text)) {  // "Polygon (1).gpkg" may be a file
     visit(*wkt_or_refuse(text, example, ""));
     return;
   }
@@ -134,7 +143,7 @@ void read_geometries(const std::string& text, std::initializer_list<const char*>
   std::ifstream in(text);
   if (!in) throw system_error(errno, "cannot open", text);
   std::string start = first_bytes(in);
-  if (begins_with_word(start, words)) {
+  if (begins_as_wkt(start, words)) {
     start.append(std::istreambuf_iterator<char>(in), {});
     visit(*wkt_or_refuse(start, example, text));
     return;
