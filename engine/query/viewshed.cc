@@ -69,6 +69,7 @@ class Viewer {
       place_pixels();
     }
     admit();
+    result_.pixels.assign(std::size_t{result_.width} * result_.height, Sight::kNothing);
     place_vertices();
     sweep();
     collect();
@@ -154,6 +155,7 @@ void Viewer::find_eye_height() {
   result_.eye_height += facts_.heights.height_of_code(code_at(tin_, facts_.heights, footing));
 }
 
+/// Mesh, raster and horizon together, before any of them is taken.
 void Viewer::admit() const {
   context_.admit(std::uint64_t{result_.width} * result_.height +
                  tin_.vertices.size() * (sizeof(Vertex) + 1 + kVertexBytes +
@@ -190,13 +192,11 @@ void Viewer::place_pixels() {
   const double centre_y = pixels_on_grid_ ? std::floor(eye_.y + 0.5) - eye_.y : 0.0;
   result_.width = static_cast<std::uint32_t>(2 * reach_x) + 1;
   result_.height = static_cast<std::uint32_t>(2 * reach_y) + 1;
-  context_.admit(std::uint64_t{result_.width} * result_.height);  // before it is taken
   first_x_ = centre_x - reach_x * pixel_x_;
   first_y_ = centre_y + reach_y * pixel_y_;
   result_.first = facts_.map.to_map(eye_.x + first_x_, eye_.y + first_y_);
   result_.step_x = pixel_x_ * facts_.map.step_x;
   result_.step_y = pixel_y_ * facts_.map.step_y;
-  result_.pixels.assign(std::size_t{result_.width} * result_.height, Sight::kNothing);
 }
 
 /// Front to back: a triangle comes when all neighbours across the sides that face the eye have

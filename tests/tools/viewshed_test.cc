@@ -49,6 +49,7 @@ TEST_F(ViewshedCommand, EndsBehindAWallAndSaysThatItIsExact) {
   EXPECT_EQ(visible % 17, 0);  // columns 0 to 16
   EXPECT_EQ(hidden % 16, 0);   // the others
   EXPECT_EQ(visible / 17, hidden / 16);
+  EXPECT_EQ(answer({}, "SEEN.TIF").at("pixels"), seen.at("pixels"));
   const json listed = answer({}, "seen.gpkg");
   EXPECT_TRUE(listed.at("pixels").is_null());
   EXPECT_EQ(listed.at("vertices").at("visible"), visible);

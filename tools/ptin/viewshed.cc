@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include <gdal_priv.h>
@@ -13,6 +12,7 @@
 
 #include "tools/error_status.h"
 #include "tools/export/gdal_output.h"
+#include "tools/file_name.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output_file.h"
 #include "tools/pending_file.h"
@@ -45,7 +45,7 @@ std::uint64_t request_memory(const ViewshedOptions& options) {
 }
 
 bool is_raster(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
+  const std::string extension = lower_extension(path);
   return extension == ".tif" || extension == ".tiff";
 }
 
