@@ -75,7 +75,13 @@ void Detail::cut_behind(std::uint64_t records, const RecordSource& source, Query
       break;
     }
   }
-  static_cast<void>(cut_between(-1.0, kInfinity, records, source, context));
+  if (!cut_between(-1.0, kInfinity, records, source, context)) {
+    throw Error(ErrorCode::corruption,
+                "the index finds fewer than " + std::to_string(records) + " of the " +
+                    std::to_string(source.store.record_count()) +
+                    " records that the file counts: see `ptin verify`, and build it again",
+                source.store.path());
+  }
 }
 
 /// Looks for the last record among those of error in (low, high]. False when it is not there.
