@@ -9,11 +9,6 @@ namespace {
 
 constexpr std::uint32_t kRankOfT0 = std::uint32_t{1} << 16;  // above every record's
 
-std::uint64_t bytes_of(const Tin& tin) {
-  return tin.vertices.size() * (sizeof(Vertex) + 1) +
-         tin.triangles.size() * (sizeof(Triangle) + 1) + KeyTable::bytes_for(tin.vertices.size());
-}
-
 }  // namespace
 
 BoundedMesh::BoundedMesh(const ProgressiveTin& terrain, const Detail& detail)

@@ -118,7 +118,7 @@ void Locating::locate_group(std::span<const Ordered> group) {
   context_.check_stop();
   const std::uint64_t records = most_records(terrain_.store(), pages);
   const std::uint64_t held = result_.points.size() * (sizeof(LocatedPoint) + sizeof(Ordered));
-  const std::uint64_t bytes = held + refinement_bytes(records);
+  const std::uint64_t bytes = held + bytes_of(terrain_.t0()) + refinement_bytes(records);
   if (group.size() > 1 && (records > kGroupRecords || bytes > request_.memory_limit_bytes)) {
     locate_group(group.first(group.size() / 2));
     locate_group(group.subspan(group.size() / 2));

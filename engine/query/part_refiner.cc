@@ -10,7 +10,6 @@
 
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
-#include "engine/geometry/key_table.h"
 #include "engine/query/above_error.h"
 #include "engine/query/meets_box.h"
 #include "engine/query/refinement.h"
@@ -38,11 +37,6 @@ std::uint64_t records_above(const StoreFile& store, double tolerance) {
     if (bin.upper > tolerance) records += bin.records;
   }
   return records;
-}
-
-std::uint64_t bytes_of_t0(const CoarsestTin& t0) {
-  return t0.vertices.size() * (sizeof(Vertex) + 1) + t0.triangles.size() * (sizeof(Triangle) + 1) +
-         KeyTable::bytes_for(t0.vertices.size());
 }
 
 /// The walk over the quadtree of cells.
@@ -118,7 +112,7 @@ PartRefiner::PartRefiner(const ProgressiveTin& terrain, PartRequest request)
       request_(std::move(request)),
       detail_(detail_of(request_, terrain)),
       wanted_(wanted_by(request_, detail_, terrain.store().facts())),
-      t0_bytes_(bytes_of_t0(terrain.store().t0())),
+      t0_bytes_(bytes_of(terrain.t0())),
       records_(records_above(terrain.store(), detail_.tolerance())) {}
 
 std::uint64_t PartRefiner::bytes_for(const GridBox& box) const {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "engine/error.h"
@@ -24,15 +25,35 @@ struct SpotLine {
   std::vector<double> distances;
 };
 
-SpotLine spot_line(std::span<const MapPoint> line, std::uint32_t number, const StoreFacts& facts) {
+/// "line 3 of 7"; where there is one only, "the line".
+std::string name_of_line(std::size_t number, std::size_t count) {
+  if (count == 1) return "the line";
+  std::string name = "line ";
+  return name.append(std::to_string(number + 1)).append(" of ").append(std::to_string(count));
+}
+
+std::string no_length(std::size_t count) {
+  std::string text = "the line has no length";
+  if (count > 1) {
+    text = "none of the ";
+    text.append(std::to_string(count)).append(" lines has a length");
+  }
+  return text.append(": expected at least two different points");
+}
+
+/// With fewer than two spots when the line has no length.
+/// @param count  Of the lines.
+SpotLine spot_line(std::span<const MapPoint> line, std::size_t number, std::size_t count,
+                   const StoreFacts& facts) {
   const SpotMap map(facts.map, facts.bounds);
   SpotLine made;
-  made.number = number;
+  made.number = static_cast<std::uint32_t>(number);
   for (const MapPoint& p : line) {
     const std::optional<Spot> spot = map.spot(p);
     if (!spot) {
       throw Error(ErrorCode::invalid_argument,
-                  "a point of the line lies too far from the terrain: give map units of its CRS");
+                  "a point of " + name_of_line(number, count) +
+                      " lies too far from the terrain: give map units of its CRS");
     }
     if (!made.spots.empty() && made.spots.back() == *spot) {
       continue;
@@ -46,10 +67,6 @@ SpotLine spot_line(std::span<const MapPoint> line, std::uint32_t number, const S
     made.spots.push_back(*spot);
     made.positions.push_back(p);
     made.distances.push_back(distance);
-  }
-  if (made.spots.size() < 2) {
-    throw Error(ErrorCode::invalid_argument,
-                "the line has no length: expected at least two different points");
   }
   return made;
 }
@@ -141,9 +158,15 @@ class Profiling {
 
   ProfileResult run(std::span<const std::span<const MapPoint>> lines) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      const SpotLine line =
-          spot_line(lines[i], static_cast<std::uint32_t>(i), terrain_.store().facts());
+      const SpotLine line = spot_line(lines[i], i, lines.size(), terrain_.store().facts());
+      if (line.spots.size() < 2) {
+        ++result_.skipped_lines;
+        continue;
+      }
       walk(line, 0, line.spots.size() - 1);
+    }
+    if (!lines.empty() && result_.skipped_lines == lines.size()) {
+      throw Error(ErrorCode::invalid_argument, no_length(lines.size()));
     }
     terrain_.store().pages().check_unchanged();
     result_.certified_error = detail_.certificate().error;
@@ -161,7 +184,8 @@ class Profiling {
     std::vector<PageId> pages;
     terrain_.index().search(path, pages, context_.cost.io);
     context_.check_stop();
-    const std::uint64_t bytes = refinement_bytes(most_records(store, pages)) + held();
+    const std::uint64_t bytes =
+        bytes_of(terrain_.t0()) + refinement_bytes(most_records(store, pages)) + held();
     if (bytes > request_.memory_limit_bytes && end - first > 1) {
       const std::size_t middle = first + (end - first) / 2;
       walk(line, first, middle);

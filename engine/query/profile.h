@@ -40,15 +40,17 @@ struct ProfilePoint {
 
 struct ProfileResult {
   std::vector<ProfilePoint> points;  ///< Line by line.
+  std::uint64_t skipped_lines = 0;   ///< Of several: those without length, which have no points.
   double certified_error = 0.0;      ///< At samples.
   double certified_deviation = 0.0;  ///< Of every height.
   bool exact = false;
   QueryCost cost;
 };
 
-/// Walks along polylines of at least two points each. Segments of no length are left out.
-/// @throws Error invalid_argument    a line of fewer than two points; a coordinate that is not
-/// finite, or more than 2^31 grid units away; as Detail
+/// Walks along polylines. Segments of no length are left out, and of several lines those without
+/// any length.
+/// @throws Error invalid_argument    no line has a length; a coordinate that is not finite, or more
+/// than 2^31 grid units away (names the line); as Detail
 ///               resource_exhausted  one segment, or the points, exceed the memory limit
 ///               corruption, io_error, cancelled
 /// Cost: the records whose region of influence meets the line, each test of one the logarithm of

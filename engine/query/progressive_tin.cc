@@ -66,11 +66,6 @@ Selection select(const RefineRequest& request, const RecordSource& source,
   return selection;
 }
 
-std::uint64_t bytes_of(const Tin& tin) {
-  return tin.vertices.size() * (sizeof(Vertex) + 1) +
-         tin.triangles.size() * (sizeof(Triangle) + 1) + KeyTable::bytes_for(tin.vertices.size());
-}
-
 void count_parts(RefinedTin& result) {
   result.vertices = result.tin.vertices.size();
   result.triangles = result.tin.triangles.size();

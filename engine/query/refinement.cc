@@ -106,6 +106,11 @@ class StarFetcher {
 
 }  // namespace
 
+std::uint64_t bytes_of(const Tin& tin) noexcept {
+  return tin.vertices.size() * (sizeof(Vertex) + 1) +
+         tin.triangles.size() * (sizeof(Triangle) + 1) + KeyTable::bytes_for(tin.vertices.size());
+}
+
 std::uint64_t refinement_bytes(std::uint64_t records) noexcept {
   constexpr std::uint64_t kVertexBytes = sizeof(Vertex) + sizeof(std::uint8_t);
   constexpr std::uint64_t kTriangleBytes = sizeof(Triangle) + sizeof(TriangleClass);

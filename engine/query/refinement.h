@@ -19,6 +19,8 @@ namespace ptin {
 
 /// Bytes that reading and applying `records` records may take: records, mesh and key table.
 [[nodiscard]] std::uint64_t refinement_bytes(std::uint64_t records) noexcept;
+/// Bytes of a mesh and its key table: what a refinement begins with, of T0.
+[[nodiscard]] std::uint64_t bytes_of(const Tin& tin) noexcept;
 
 /// A mesh that splits are applied to and taken back from. Later questions keep one, apply what
 /// enters and undo what leaves. Threads: one owner.

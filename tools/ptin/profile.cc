@@ -21,6 +21,7 @@
 #include "tools/output_file.h"
 #include "tools/ptin/answers.h"
 #include "tools/ptin/crs_facts.h"
+#include "tools/ptin/human.h"
 #include "tools/ptin/number_rows.h"
 #include "tools/ptin/query_options.h"
 #include "tools/render/overlay.h"
@@ -206,6 +207,7 @@ nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& res
   nlohmann::json answer = {
       {"output", options.output.empty() ? nlohmann::json() : nlohmann::json(options.output)},
       {"lines", lines_of(result).size()},
+      {"skipped_lines", result.skipped_lines},
       {"length", length_of(result)},
       {"certified_error", result.certified_error},
       {"certified_deviation", result.certified_deviation},
@@ -236,6 +238,10 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   request.memory_limit_bytes = memory_limit_of(options.memory);
   request.stop = context.stop;
   const ProfileResult result = profile(terrain, lines, request);
+  if (result.skipped_lines > 0 && !context.json) {
+    std::fprintf(stderr, "%s of %s lines have no length and are skipped\n",
+                 grouped(result.skipped_lines).c_str(), grouped(lines.size()).c_str());
+  }
   if (!options.output.empty()) write_profile(options, result, crs);
   if (context.json) {
     print_json(answer_of(options, result, crs));
