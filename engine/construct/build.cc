@@ -23,27 +23,19 @@ using namespace build_internal;
 
 namespace {
 
-/// A build whose source has been read.
-/// @param samples  Of the source, with a height.
-void plan_and_build(Job& job, const Terrain& terrain, const TileBytes& tile_bytes,
-                    std::uint64_t samples) {
-  const BuildPlan plan =
-      plan_build(terrain.tree, job.output, job.options, job.resources, tile_bytes);
+/// What a source that has been read needs, said to the caller.
+BuildPlan announced_plan(const Job& job, const Terrain& terrain, const TileBytes& tile_bytes,
+                         const SourceDisk& disk) {
+  BuildPlan plan =
+      plan_build(terrain.tree, job.output, job.options, job.resources, tile_bytes, disk);
   if (job.resources.plan) {
     job.resources.plan(plan);
   }
-  if (job.resources.dry_run) {
-    return;
-  }
-  const SampleRange whole = terrain.tree.window(terrain.tree.root());
-  nlohmann::json known = fingerprint(job);
-  known["size"] = {whole.width, whole.height, terrain.tree.side()};
-  known["samples"] = samples;
-  in_workspace(job, known,
-               [&](Workspace& workspace) { build_tiles(workspace, job, terrain, plan); });
+  return plan;
 }
 
 void build_raster(Job& job) {
+  nlohmann::json began_with = fingerprint(job);  // before the first look into the inputs
   const GdalCacheLimit cache(share_memory(job.memory(), 0, 1).gdal_cache);
   const RasterSource source = RasterSource::open(job.inputs, job.source_options(),
                                                  job.resources.stop, job.stage("reading"));
@@ -62,17 +54,21 @@ void build_raster(Job& job) {
       job.options.tile.value_or(TileTree::default_side(source.width(), source.height()));
   const Terrain terrain{source.frame(), units, TileTree(source.width(), source.height(), side),
                         make_starter};
-  plan_and_build(job, terrain, TileBytes{}, source.valid_samples());
+  const BuildPlan plan = announced_plan(job, terrain, TileBytes{}, {});
+  if (job.resources.dry_run) {
+    return;
+  }
+  // Of a source that is no file, this much at least can be compared.
+  began_with["size"] = {source.width(), source.height(), terrain.tree.side()};
+  began_with["samples"] = source.valid_samples();
+  in_workspace(job, began_with,
+               [&](Workspace& workspace) { build_tiles(workspace, job, terrain, plan); });
 }
 
-/// Somebody else's triangles.
-void build_tin(Job& job) {
-  if (job.inputs.size() != 1) {
-    throw Error(ErrorCode::invalid_argument, "several inputs, a TIN among them; build a TIN alone");
-  }
+TinTriangles read_tin(Job& job) {
   const std::string parent = std::filesystem::path(job.output).parent_path().string();
   const std::string beside = parent.empty() ? "." : parent;
-  const TinTriangles triangles =
+  TinTriangles triangles =
       TinTriangles::read(job.inputs[0], job.source_options(),
                          {job.files(), job.resources.tmp.empty() ? beside : job.resources.tmp,
                           std::max<std::uint64_t>(job.memory() / 2, 1U << 20)},
@@ -85,16 +81,42 @@ void build_tin(Job& job) {
   job.report.merged_points = counts.merged_vertices;
   job.report.largest_shift_plan = counts.largest_shift_plan;
   job.report.height_rounding = triangles.frame().height_rounding;
+  return triangles;
+}
+
+/// @param workspace  None for a dry run.
+void build_tin_in(Workspace* workspace, Job& job) {
+  job.begins_anew = true;
+  const TinTriangles triangles = read_tin(job);
   Terrain terrain{triangles.frame(),
                   measure_units(triangles.frame(), job.options.void_slope),
                   tin_tree(triangles, job.options.tile),
                   {}};
+  SourceDisk disk = TinTriangles::disk_of(triangles.counts().vertices);
+  disk.is_there = true;
+  disk.may_be_less = job.report.resumed;
+  const BuildPlan plan = announced_plan(job, terrain, kPointTileBytes, disk);
+  job.begins_anew = false;
   terrain.make_starter = [&]() -> LeafStarter {
     return [&](const SampleRange& window) {
       return start_tin_tile(triangles, terrain.tree, window, terrain.units);
     };
   };
-  plan_and_build(job, terrain, kPointTileBytes, counts.vertices);
+  if (workspace != nullptr) {
+    build_tiles(*workspace, job, terrain, plan);
+  }
+}
+
+/// Somebody else's triangles.
+void build_tin(Job& job) {
+  if (job.inputs.size() != 1) {
+    throw Error(ErrorCode::invalid_argument, "several inputs, a TIN among them; build a TIN alone");
+  }
+  if (job.resources.dry_run) {
+    build_tin_in(nullptr, job);
+    return;
+  }
+  in_workspace(job, fingerprint(job), [&](Workspace& workspace) { build_tin_in(&workspace, job); });
 }
 
 /// @throws Error invalid_argument for options that mean nothing

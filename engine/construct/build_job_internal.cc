@@ -46,9 +46,22 @@ void report_published(Job& job) {
 }
 
 /// Worth keeping: faults of the system, and whatever comes when hours of work may be there.
-bool is_kept(const Workspace& workspace, ErrorCode code) {
-  return workspace.has_work() || code == ErrorCode::cancelled ||
-         code == ErrorCode::resource_exhausted || code == ErrorCode::io_error;
+bool is_kept(const Workspace& workspace, const Job& job, ErrorCode code) {
+  return workspace.has_work() || (!job.begins_anew && (code == ErrorCode::cancelled ||
+                                                       code == ErrorCode::resource_exhausted ||
+                                                       code == ErrorCode::io_error));
+}
+
+/// Removes what a failed build began, and throws its error on, whatever becomes of that.
+[[noreturn]] void give_up(Workspace& workspace, const Error& error) {
+  const std::string folder = workspace.folder();
+  std::string left;
+  try {
+    workspace.remove_all();
+  } catch (const Error& e) {
+    left = "; and " + folder + " could not be removed: " + e.message();
+  }
+  throw Error(error.code(), error.message() + left, error.context());
 }
 
 }  // namespace
@@ -97,14 +110,13 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   try {
     work(workspace);
   } catch (const Error& e) {
-    if (is_kept(workspace, e.code())) {
+    if (is_kept(workspace, job, e.code())) {
       throw Error(e.code(),
                   e.message() + "; what is done is kept in " + workspace.folder() +
                       ": go on by --resume, or remove it by --discard",
                   e.context());
     }
-    workspace.remove_all();
-    throw;
+    give_up(workspace, e);
   }
   try {
     workspace.remove_all();

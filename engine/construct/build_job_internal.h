@@ -32,6 +32,8 @@ struct Job {
   const BuildOptions& options;
   const BuildResources& resources;
   BuildReport report;
+  /// While nothing is done that a resumed build would not do again: an error then leaves no folder.
+  bool begins_anew = false;
 
   [[nodiscard]] FileLayer& files() const;
   [[nodiscard]] std::uint64_t memory() const;
@@ -50,7 +52,8 @@ struct Terrain {
 };
 
 /// What decides the bytes of the output, that its inputs are still the ones it began with, and the
-/// program, whose temporary files another version may not understand.
+/// program, whose temporary files another version may not understand. To be taken before anything
+/// is read: a file that is replaced meanwhile is another one then.
 [[nodiscard]] nlohmann::json fingerprint(const Job& job);
 
 /// Opens the job's workspace, works in it, and removes it, or keeps it where there is work to go on

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/build_plan.h"
 #include "engine/construct/external_sorter.h"
 #include "engine/construct/hull_collector.h"
 #include "engine/construct/point_stream.h"
@@ -63,6 +64,9 @@ class TinTriangles {
   static TinTriangles read(const std::string& path, const SourceOptions& options,
                            const ExternalMemory& memory, const std::stop_token& stop = {},
                            const Progress& progress = {});
+
+  /// What read() takes of the disk for so many vertices.
+  [[nodiscard]] static SourceDisk disk_of(std::uint64_t vertices) noexcept;
 
   [[nodiscard]] const TerrainFrame& frame() const noexcept { return frame_; }
   [[nodiscard]] const TinCounts& counts() const noexcept { return counts_; }

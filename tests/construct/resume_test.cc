@@ -125,6 +125,97 @@ TEST(Resume, RefusesAnInputThatHasChanged) {
   EXPECT_EQ(interrupted.run(resuming()), ErrorCode::invalid_argument);
 }
 
+/// Builds, makes the input another file once it is being read, and stops later on.
+void change_while_reading(const std::string& input, const std::string& output,
+                          const BuildOptions& options) {
+  std::stop_source source;
+  BuildResources resources = InterruptibleBuild::resources();
+  resources.stop = source.get_token();
+  bool has_changed = false;
+  int calls = 0;
+  resources.progress = [&](const char* name, std::uint64_t, std::uint64_t) {
+    if (!has_changed) {
+      has_changed = true;
+      std::filesystem::last_write_time(
+          input, std::filesystem::last_write_time(input) - std::chrono::hours(1));
+    }
+    if (std::string(name) == "collapsing" && ++calls == 2) {
+      source.request_stop();
+    }
+  };
+  EXPECT_THROW(build({input}, output, options, resources), Error);
+  ASSERT_TRUE(std::filesystem::exists(Workspace::folder_of(output)));
+}
+
+TEST(Resume, RefusesARasterThatWasReplacedWhileItWasRead) {
+  const ScratchFolder folder;
+  const std::string input = folder.file("in.asc"), output = folder.file("out.ptin");
+  std::string text = "ncols 33\nnrows 33\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+  for (int i = 0; i < 33 * 33; ++i) {
+    text += std::to_string(i * i % 13) + (i % 33 == 32 ? "\n" : " ");
+  }
+  oracle::write_text(input, text);
+  BuildOptions options;
+  options.tile = 8;
+  change_while_reading(input, output, options);
+  try {
+    build({input}, output, options, resuming());
+    ADD_FAILURE() << "went on";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
+  }
+}
+
+/// A grid of 24 x 24 vertices as a TIN.
+std::string grid_tin() {
+  std::string text;
+  for (int y = 0; y < 24; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      text += "v " + std::to_string(x) + " " + std::to_string(y) + " " +
+              std::to_string((x * x + 7 * y) % 13) + "\n";
+    }
+  }
+  const auto face = [&](int a, int b, int c) {
+    text += "f " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
+  };
+  for (int v = 1; v <= 23 * 24; ++v) {
+    if (v % 24 != 0) {
+      face(v, v + 1, v + 25);
+      face(v, v + 25, v + 24);
+    }
+  }
+  return text;
+}
+
+TEST(Resume, RefusesATinThatWasReplacedWhileItWasRead) {
+  const ScratchFolder folder;
+  const std::string input = folder.file("in.obj"), output = folder.file("out.ptin");
+  oracle::write_text(input, grid_tin());
+  BuildOptions options;
+  options.tile = 8;
+  change_while_reading(input, output, options);
+  try {
+    build({input}, output, options, resuming());
+    ADD_FAILURE() << "went on";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
+  }
+}
+
+TEST(Build, OfATinSaysBeforeItReadsThatAnUnfinishedOneIsThere) {
+  const ScratchFolder folder;
+  const std::string input = folder.file("in.obj"), output = folder.file("out.ptin");
+  oracle::write_text(input, grid_tin());
+  BuildOptions options;
+  options.tile = 8;
+  change_while_reading(input, output, options);
+  BuildResources resources;
+  int calls = 0;
+  resources.progress = [&](const char*, std::uint64_t, std::uint64_t) { ++calls; };
+  EXPECT_THROW(build({input}, output, options, resources), Error);
+  EXPECT_EQ(calls, 0);
+}
+
 TEST(Resume, IsOfferedAndRefusedAsItShould) {
   const InterruptibleBuild interrupted;
   test::FailingFiles files(250);
@@ -235,6 +326,37 @@ TEST(Build, IsDoneThoughItsFolderCannotBeRemovedAndSaysSo) {
   EXPECT_NE(report.left_behind.find(".out.ptin.ptin-build"), std::string::npos)
       << report.left_behind;
   EXPECT_TRUE(std::filesystem::exists(build_it.output()));
+}
+
+TEST(Build, SaysWhatWentWrongThoughItsFolderCannotBeRemoved) {
+  const ScratchFolder folder;
+  const std::string input = folder.file("in.obj");
+  oracle::write_text(input, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  NoFolderIsRemoved files;
+  BuildResources resources;
+  resources.files = &files;
+  try {
+    build({input}, folder.file("out.ptin"), {}, resources);
+    ADD_FAILURE() << "built";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
+    EXPECT_NE(e.message().find("which is not there; and "), std::string::npos) << e.message();
+    EXPECT_NE(e.message().find(".out.ptin.ptin-build"), std::string::npos) << e.message();
+    EXPECT_EQ(e.context(), input);
+  }
+}
+
+/// What begins a build anew leaves nothing to go on with.
+TEST(Build, OfATinThatIsRefusedLeavesNoFolder) {
+  const ScratchFolder folder;
+  const std::string input = folder.file("in.obj");
+  oracle::write_text(input, grid_tin());
+  BuildResources resources;
+  std::stop_source source;
+  source.request_stop();
+  resources.stop = source.get_token();
+  EXPECT_THROW(build({input}, folder.file("out.ptin"), {}, resources), Error);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"in.obj"});
 }
 
 TEST(Workspace, LeavesAFolderAloneThatIsNotOneOfOurs) {
