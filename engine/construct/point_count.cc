@@ -73,7 +73,7 @@ PointCount count_points(const std::vector<std::string>& inputs, const SourceOpti
       count.is_known = false;
       return count;
     }
-    const auto stream = open_point_stream(input, options.points);
+    const auto stream = open_point_stream(input, options.points, options.nodata);
     count.points +=
         is_point_text(input) && !by_ogr ? points_of_text(input, *stream) : stream->total();
   }

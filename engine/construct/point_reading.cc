@@ -46,7 +46,7 @@ PointReading read_sources(const std::vector<std::string>& paths, const SourceOpt
   std::vector<SourcePoint> batch;
   std::uint64_t count = 0;
   for (const std::string& path : paths) {
-    const auto stream = open_point_stream(path, options.points);
+    const auto stream = open_point_stream(path, options.points, options.nodata);
     if (options.a_srs.empty()) {
       crs.add(stream->facts().crs, path);
     }

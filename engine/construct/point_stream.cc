@@ -78,7 +78,8 @@ bool is_point_input(const std::string& path, const PointChoice& choice) {
          !choice.z_field.empty() || OgrPoints::reads(path);
 }
 
-std::unique_ptr<PointStream> open_point_stream(const std::string& path, const PointChoice& choice) {
+std::unique_ptr<PointStream> open_point_stream(const std::string& path, const PointChoice& choice,
+                                               std::optional<double> nodata) {
   const bool ogr = !choice.layer.empty() || !choice.z_field.empty();
   if (!choice.classes.empty() && (ogr || !is_las(path))) {
     throw Error(ErrorCode::invalid_argument,
@@ -86,7 +87,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::string& path, const Po
                 path);
   }
   if (is_tin_file(path)) {
-    return std::make_unique<TinVertices>(path, choice);
+    return std::make_unique<TinVertices>(path, choice, nodata);
   }
   if (is_las(path)) {
     if (ogr) {

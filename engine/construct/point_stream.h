@@ -79,10 +79,14 @@ class PointStream {
 /// Opens a file of points by its name: LAS (las_reader.h), a TIN for its vertices (tin_source.h),
 /// text (xyz_reader.h), anything else as a layer of OGR's (ogr_points.h); with a layer or z-field
 /// chosen, OGR always.
+/// @param nodata  This height means none: such points are handed out all the same, but that
+/// vertices
+///                of a TIN stay only where a triangle has three heights, as when it is built.
 /// @throws Error  not_found, io_error, invalid_argument, unsupported_version  as those; a choice
 /// that
 ///                means nothing for the kind of file
 [[nodiscard]] std::unique_ptr<PointStream> open_point_stream(const std::string& path,
-                                                             const PointChoice& choice);
+                                                             const PointChoice& choice,
+                                                             std::optional<double> nodata = {});
 
 }  // namespace ptin

@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "engine/construct/external_sorter.h"
+#include "engine/error.h"
 #include "storage/file_layer.h"
 
 namespace ptin {
@@ -52,10 +54,14 @@ class RecordFile {
     return record;
   }
   /// Calls visit(record) for all of them, in their order.
+  /// @throws Error io_error, cancelled, and what `visit` throws
   template <class Visit>
-  void visit(const Visit& visit) const {
+  void visit(const Visit& visit, const std::stop_token& stop) const {
     std::vector<Record> records;
     for (std::uint64_t i = 0; i < size(); i += records.size()) {
+      if (stop.stop_requested()) {
+        throw Error(ErrorCode::cancelled, "reading temporary files was cancelled");
+      }
       take(i, std::min<std::uint64_t>(kBlock, size() - i), records);
       for (const Record& record : records) {
         visit(record);

@@ -13,7 +13,10 @@ namespace ptin {
 
 namespace {
 
-constexpr std::size_t kMostAround = 1 << 20;
+constexpr std::uint64_t kMostAround = 1 << 20;
+
+/// What a triangle of a patch takes in memory while it is made and mended.
+constexpr std::uint64_t kBytesOfPatchTriangle = 256;
 
 using KeySet = std::unordered_set<VertexKey>;
 
@@ -41,23 +44,45 @@ bool touches(const GridTriangle& t, const KeySet& vertices) {
                      [&](const GridVertex& v) { return vertices.contains(key_of(v.position)); });
 }
 
+bool fits(std::uint64_t triangles, const ExternalMemory& memory) {
+  return triangles <= kMostAround &&
+         triangles * kBytesOfPatchTriangle <= std::max<std::uint64_t>(memory.bytes, 1U << 16);
+}
+
+void require_fit(std::uint64_t triangles, const ExternalMemory& memory, const std::string& path) {
+  if (fits(triangles, memory)) {
+    return;
+  }
+  const std::string found = "so many triangles are flattened by the grid that " +
+                            std::to_string(triangles) + " lie around them, ";
+  if (triangles > kMostAround) {
+    throw Error(ErrorCode::resource_exhausted,
+                found + "and " + std::to_string(kMostAround) +
+                    " can be mended; give a finer --resolution, or let --repair triangulate the "
+                    "points anew",
+                path);
+  }
+  throw Error(ErrorCode::resource_exhausted,
+              found + "which take " +
+                  std::to_string((triangles * kBytesOfPatchTriangle >> 20) + 1) +
+                  "M of memory, and " + std::to_string(memory.bytes >> 20) +
+                  "M are free for them; give more --memory, or a finer --resolution",
+              path);
+}
+
 Patch patch_around(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
-                   const std::string& path) {
+                   const ExternalMemory& memory, const std::string& path,
+                   const std::stop_token& stop) {
   std::vector<GridTriangle> found;
-  mesh.visit([&](const GridTriangle& t) {
-    if (!touches(t, wanted)) {
-      return;
-    }
-    if (found.size() == kMostAround) {
-      throw Error(ErrorCode::resource_exhausted,
-                  "so many triangles are flattened by the grid that more than " +
-                      std::to_string(kMostAround) +
-                      " lie around them; give a finer --resolution, or let --repair triangulate "
-                      "the points anew",
-                  path);
-    }
-    found.push_back(t);
-  });
+  std::uint64_t around = 0;  // counted on where they do not fit, to say what would
+  mesh.visit(
+      [&](const GridTriangle& t) {
+        if (touches(t, wanted) && fits(++around, memory)) {
+          found.push_back(t);
+        }
+      },
+      stop);
+  require_fit(around, memory, path);
   Patch patch;
   for (const GridTriangle& t : found) {
     patch.vertices.insert(patch.vertices.end(), t.corners.begin(), t.corners.end());
@@ -69,6 +94,7 @@ Patch patch_around(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
       std::unique(patch.vertices.begin(), patch.vertices.end(),
                   [&](const GridVertex& a, const GridVertex& b) { return key(a) == key(b); }),
       patch.vertices.end());
+  patch.vertices.shrink_to_fit();
   for (const GridVertex& v : patch.vertices) {
     patch.positions.push_back(v.position);
     patch.is_complete.push_back(wanted.contains(key(v)) ? 1 : 0);
@@ -82,7 +108,7 @@ Patch patch_around(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
 /// The mesh with the patch in the place of what was there.
 RecordFile<GridTriangle> replaced(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
                                   const std::vector<GridTriangle>& patch,
-                                  const ExternalMemory& memory) {
+                                  const ExternalMemory& memory, const std::stop_token& stop) {
   RecordFile<GridTriangle> to(memory, "triangles");
   std::size_t next = 0;
   const auto add_before = [&](const GridTriangle* t) {
@@ -90,12 +116,14 @@ RecordFile<GridTriangle> replaced(const RecordFile<GridTriangle>& mesh, const Ke
       to.add(patch[next]);
     }
   };
-  mesh.visit([&](const GridTriangle& t) {
-    if (!touches(t, wanted)) {
-      add_before(&t);
-      to.add(t);
-    }
-  });
+  mesh.visit(
+      [&](const GridTriangle& t) {
+        if (!touches(t, wanted)) {
+          add_before(&t);
+          to.add(t);
+        }
+      },
+      stop);
   add_before(nullptr);
   to.finish();
   return to;
@@ -103,7 +131,7 @@ RecordFile<GridTriangle> replaced(const RecordFile<GridTriangle>& mesh, const Ke
 
 /// Vertices that have lost all their triangles go.
 void drop_lone(RecordFile<std::uint64_t>& places, const Patch& patch, const PointOrder& order,
-               const ExternalMemory& memory) {
+               const ExternalMemory& memory, const std::stop_token& stop) {
   std::vector<std::uint8_t> is_used(patch.vertices.size(), 0);
   for (const Corners& t : patch.triangles) {
     is_used[t[0]] = is_used[t[1]] = is_used[t[2]] = 1;
@@ -118,24 +146,24 @@ void drop_lone(RecordFile<std::uint64_t>& places, const Patch& patch, const Poin
     return;
   }
   RecordFile<std::uint64_t> kept(memory, "places");
-  places.visit([&](std::uint64_t place) {
-    if (!lone.contains(place)) {
-      kept.add(place);
-    }
-  });
+  places.visit(
+      [&](std::uint64_t place) {
+        if (!lone.contains(place)) {
+          kept.add(place);
+        }
+      },
+      stop);
   kept.finish();
   places = std::move(kept);
 }
 
 /// Flips in a patch that grows until it holds all that is asked for.
 SliverFlips mend(const RecordFile<GridTriangle>& mesh, const std::vector<GridTriangle>& slivers,
-                 KeySet& wanted, Patch& patch, const std::string& path,
-                 const std::stop_token& stop) {
+                 KeySet& wanted, Patch& patch, const ExternalMemory& memory,
+                 const std::string& path, const std::stop_token& stop) {
   while (true) {
-    if (stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "mending slivers was cancelled", path);
-    }
-    patch = patch_around(mesh, wanted, path);
+    patch = {};
+    patch = patch_around(mesh, wanted, memory, path, stop);
     std::vector<Corners> bad;
     for (const GridTriangle& t : slivers) {
       bad.push_back(patch.numbers(t));
@@ -173,7 +201,7 @@ std::uint64_t mend_slivers(MeshOnDisk& mesh, const std::vector<GridTriangle>& sl
     }
   }
   Patch patch;
-  const SliverFlips flips = mend(mesh.triangles, slivers, wanted, patch, path, stop);
+  const SliverFlips flips = mend(mesh.triangles, slivers, wanted, patch, memory, path, stop);
   std::vector<GridTriangle> mended;
   for (const Corners& t : patch.triangles) {
     mended.push_back(
@@ -184,8 +212,8 @@ std::uint64_t mend_slivers(MeshOnDisk& mesh, const std::vector<GridTriangle>& sl
     }
   }
   std::sort(mended.begin(), mended.end(), ByPlace());
-  mesh.triangles = replaced(mesh.triangles, wanted, mended, memory);
-  drop_lone(mesh.places, patch, order, memory);
+  mesh.triangles = replaced(mesh.triangles, wanted, mended, memory, stop);
+  drop_lone(mesh.places, patch, order, memory, stop);
   return flips.mended;
 }
 

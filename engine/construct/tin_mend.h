@@ -23,8 +23,9 @@ struct MeshOnDisk {
 /// Flips slivers away (sliver_flips.h), with what surrounds them in memory, as much as that takes;
 /// counts those that could not be mended.
 /// @return  How many triangles were bad on the way.
-/// @throws Error resource_exhausted  what surrounds them is more than 2^20 triangles; io_error,
-///               cancelled
+/// @throws Error resource_exhausted  what surrounds them is more than 2^20 triangles, or takes
+///                                   more than memory.bytes at 256 bytes each
+///               io_error, cancelled
 /// Cost: nothing without slivers; else some passes over the triangles.
 std::uint64_t mend_slivers(MeshOnDisk& mesh, const std::vector<GridTriangle>& slivers,
                            const PointOrder& order, const ExternalMemory& memory, TinFaults& faults,

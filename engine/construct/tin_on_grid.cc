@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -11,8 +10,7 @@
 #include "engine/construct/point_order_internal.h"
 #include "engine/construct/point_sorter.h"
 #include "engine/construct/tin_digits.h"
-#include "engine/construct/tin_soup.h"
-#include "engine/error.h"
+#include "engine/construct/tin_names_internal.h"
 #include "engine/geometry/orient.h"
 
 namespace ptin {
@@ -22,50 +20,8 @@ namespace {
 /// Slivers that are mended at once; more are refused.
 constexpr std::size_t kMostSlivers = 1 << 16;
 
-[[noreturn]] void refuse(const std::string& path, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence, path);
-}
-
-/// As the file has it.
-struct RawVertex {
-  std::int64_t id = 0;
-  std::array<std::int64_t, 3> mantissa{};
-  std::array<std::int8_t, 3> decimals{};
-
-  RawVertex() = default;
-  RawVertex(std::int64_t number, const SourcePoint& p)
-      : id(number),
-        mantissa{p.x.mantissa, p.y.mantissa, p.z.mantissa},
-        decimals{static_cast<std::int8_t>(p.x.decimals), static_cast<std::int8_t>(p.y.decimals),
-                 static_cast<std::int8_t>(p.z.decimals)} {}
-  [[nodiscard]] SourcePoint point() const noexcept {
-    return {{mantissa[0], decimals[0]}, {mantissa[1], decimals[1]}, {mantissa[2], decimals[2]}};
-  }
-};
-
-/// On the grid, and how far from its place in the file, grid units.
-struct SnappedVertex {
-  std::int64_t id = 0;
-  GridVertex vertex;  ///< Height NaN: none.
-  float off_x = 0.0F, off_y = 0.0F;
-};
-struct ById {
-  bool operator()(const SnappedVertex& a, const SnappedVertex& b) const noexcept {
-    return a.id < b.id;
-  }
-};
-
-/// A corner of a triangle by the id of its vertex ...
-struct NamedCorner {
-  std::int64_t id = 0;
-  std::uint64_t place = 0;  ///< Four times the triangle's number, and which corner it is.
-};
-struct ByName {
-  bool operator()(const NamedCorner& a, const NamedCorner& b) const noexcept {
-    return a.id != b.id ? a.id < b.id : a.place < b.place;
-  }
-};
-/// ... and with the vertex itself.
+/// A corner of a triangle with its vertex, and how far that is from its place in the file, grid
+/// units.
 struct JoinedCorner {
   std::uint64_t place = 0;
   GridVertex vertex;
@@ -77,59 +33,7 @@ struct ByCorner {
   }
 };
 
-using VertexSorter = ExternalSorter<SnappedVertex, ById>;
-using NameSorter = ExternalSorter<NamedCorner, ByName>;
 using CornerSorter = ExternalSorter<JoinedCorner, ByCorner>;
-
-/// One record after the other of what is sorted.
-template <class Record, class Before>
-class Sorted {
- public:
-  Sorted(ExternalSorter<Record, Before>& sorter, const std::stop_token& stop)
-      : sorter_(sorter), stop_(stop) {
-    next();
-  }
-  [[nodiscard]] const Record* now() const noexcept {
-    return at_ < batch_.size() ? &batch_[at_] : nullptr;
-  }
-  void next() {
-    if (++at_ >= batch_.size()) {
-      at_ = 0;
-      static_cast<void>(sorter_.take(batch_, stop_));
-    }
-  }
-
- private:
-  ExternalSorter<Record, Before>& sorter_;
-  const std::stop_token& stop_;
-  std::vector<Record> batch_;
-  std::size_t at_ = 0;
-};
-
-/// The file on disk: vertices in their order, corners to be sorted by name.
-class FileOnDisk final : public TinSink {
- public:
-  explicit FileOnDisk(const ExternalMemory& memory)
-      : vertices(memory, "vertices"), corners(memory, "corners") {}
-
-  void add_vertex(std::int64_t id, const SourcePoint& p) override {
-    digits.add(p);
-    vertices.add(RawVertex(id, p));
-  }
-  void add_triangle(const std::array<std::int64_t, 3>& ids) override {
-    for (std::size_t i = 0; i < 3; ++i) {
-      corners.add({ids[i], 4 * triangles_ + i});
-    }
-    ++triangles_;
-  }
-
-  RecordFile<RawVertex> vertices;
-  NameSorter corners;
-  TinDigits digits;
-
- private:
-  std::uint64_t triangles_ = 0;
-};
 
 /// Twice the area of a triangle of the file; its sign is right but for the flattest of all.
 long double source_area(const std::array<JoinedCorner, 3>& c) {
@@ -190,19 +94,15 @@ class GridReader {
  private:
   static constexpr std::uint64_t kSorters = 5;  ///< That hold memory at the same time.
 
-  void read_file();
   void choose_grid();
-  void snap();
   void join();
+  [[nodiscard]] JoinedCorner snapped(const NamedVertex& v);
   void assemble();
   void number_vertices();
   void report(std::uint64_t done) const {
     if (reading_.progress) {
       reading_.progress("sorting", done, kSteps);
     }
-  }
-  [[nodiscard]] bool is_given(Decimal z) const {
-    return !reading_.options.nodata || to_double(z) != *reading_.options.nodata;
   }
   static constexpr std::uint64_t kSteps = 5;
 
@@ -212,105 +112,67 @@ class GridReader {
   TinOnGrid tin_;
   int decimals_ = 0;
   std::optional<PointOrder> order_;
-  std::unique_ptr<FileOnDisk> file_;
-  std::unique_ptr<VertexSorter> vertices_;
+  std::optional<NamedTin> named_;
   std::unique_ptr<CornerSorter> corners_;
-  std::unique_ptr<PointSorter> points_;       ///< Vertices that a triangle names.
-  std::unique_ptr<PointSorter> kept_points_;  ///< Of those of kept triangles, where some may go.
+  std::unique_ptr<PointSorter> points_;  ///< Vertices.
 };
 
-void GridReader::read_file() {
-  file_ = std::make_unique<FileOnDisk>(memory_);
-  const auto progress = [&](std::uint64_t done, std::uint64_t total) {
-    if (reading_.progress) {
-      reading_.progress("reading", done, total);
-    }
-  };
-  const TinFileFacts facts =
-      read_tin_file(path_, {reading_.options.points.layer, reading_.stop, progress}, *file_);
-  file_->vertices.finish();
-  tin_.crs = facts.crs;
-  tin_.vertical_crs = facts.vertical_crs;
-  tin_.left_out_triangles = facts.hidden_triangles;
-}
-
 void GridReader::choose_grid() {
-  decimals_ = file_->digits.kept();
+  TinDigits digits;
+  named_->vertices.visit([&](const NamedVertex& v) { digits.add(v.point()); }, reading_.stop);
+  decimals_ = digits.kept();
   PointGridScan scan(reading_.options.resolution, path_);
   scan.add_source({});
-  file_->vertices.visit([&](const RawVertex& v) {
-    SourcePoint p = v.point();
-    static_cast<void>(drop_digits(p, decimals_));
-    scan.add(p);
-  });
+  named_->vertices.visit(
+      [&](const NamedVertex& v) {
+        SourcePoint p = v.point();
+        static_cast<void>(drop_digits(p, decimals_));
+        scan.add(p);
+      },
+      reading_.stop);
   tin_.grid = scan.grid();
   order_.emplace(tin_.grid.largest());
 }
 
-void GridReader::snap() {
-  vertices_ = std::make_unique<VertexSorter>(memory_, "vertices");
+JoinedCorner GridReader::snapped(const NamedVertex& v) {
   const PointGrid& grid = tin_.grid;
   const AffineMap map = grid.map();
-  file_->vertices.visit([&](const RawVertex& v) {
-    SourcePoint p = v.point();
-    const DroppedDigits dropped = drop_digits(p, decimals_);
-    SnappedVertex snapped;
-    snapped.id = v.id;
-    snapped.vertex.position = grid.position(p);
-    snapped.vertex.height =
-        is_given(p.z) ? grid.height(p.z) : std::numeric_limits<double>::quiet_NaN();
-    double x = dropped.x, y = dropped.y;
-    if (!grid.x.is_exact()) {
-      x += to_double(p.x) - grid.x.coordinate(grid.west + snapped.vertex.position.x);
-      y += to_double(p.y) - grid.y.coordinate(grid.south + snapped.vertex.position.y);
-    }
-    snapped.off_x = static_cast<float>(x / map.step_x);
-    snapped.off_y = static_cast<float>(y / map.step_y);
-    tin_.largest_shift_plan = std::max(tin_.largest_shift_plan, std::sqrt(x * x + y * y));
-    vertices_->add(snapped);
-  });
+  SourcePoint p = v.point();
+  const DroppedDigits dropped = drop_digits(p, decimals_);
+  JoinedCorner corner;
+  corner.vertex = {grid.position(p), grid.height(p.z)};
+  double x = dropped.x, y = dropped.y;
+  if (!grid.x.is_exact()) {
+    x += to_double(p.x) - grid.x.coordinate(grid.west + corner.vertex.position.x);
+    y += to_double(p.y) - grid.y.coordinate(grid.south + corner.vertex.position.y);
+  }
+  corner.off_x = static_cast<float>(x / map.step_x);
+  corner.off_y = static_cast<float>(y / map.step_y);
+  tin_.largest_shift_plan = std::max(tin_.largest_shift_plan, std::sqrt(x * x + y * y));
+  return corner;
 }
 
 /// Gives every corner its vertex.
 void GridReader::join() {
   corners_ = std::make_unique<CornerSorter>(memory_, "corners");
   points_ = std::make_unique<PointSorter>(memory_, "points");
-  Sorted vertices(*vertices_, reading_.stop);
-  Sorted names(file_->corners, reading_.stop);
-  while (const SnappedVertex* found = vertices.now()) {
-    const SnappedVertex v = *found;
-    vertices.next();
-    if (vertices.now() != nullptr && vertices.now()->id == v.id) {
-      refuse(path_, "two vertices have the id " + std::to_string(v.id));
-    }
-    if (names.now() != nullptr && names.now()->id < v.id) {
-      break;
-    }
-    bool is_used = false;
-    for (; names.now() != nullptr && names.now()->id == v.id; names.next()) {
-      corners_->add({names.now()->place, v.vertex, v.off_x, v.off_y});
-      is_used = true;
-    }
-    if (is_used && !std::isnan(v.vertex.height)) {
-      points_->add({order_->key(v.vertex.position), v.vertex.height});
-    } else {
-      ++tin_.unused_vertices;
-    }
-  }
-  if (const NamedCorner* left = names.now()) {
-    refuse(path_, "triangle " + std::to_string(left->place / 4) + " names vertex " +
-                      std::to_string(left->id) + ", which is not there");
-  }
-  vertices_.reset();
-  file_.reset();
+  InOrder names = in_order(named_->corners, reading_.stop);
+  named_->vertices.visit(
+      [&](const NamedVertex& v) {
+        JoinedCorner corner = snapped(v);
+        points_->add({order_->key(corner.vertex.position), corner.vertex.height});
+        for (; names.now() != nullptr && names.now()->id == v.id; names.next()) {
+          corner.place = names.now()->place;
+          corners_->add(corner);
+        }
+      },
+      reading_.stop);
+  named_.reset();
 }
 
 /// Puts corners together to triangles.
 void GridReader::assemble() {
   tin_.triangles = std::make_unique<TriangleSorter>(memory_, "triangles");
-  if (reading_.options.nodata) {
-    kept_points_ = std::make_unique<PointSorter>(memory_, "points");
-  }
   Orientations orientations;
   std::array<JoinedCorner, 3> corners;
   corners_->merge(
@@ -322,23 +184,13 @@ void GridReader::assemble() {
           }
           const std::array<GridVertex, 3> v{corners[0].vertex, corners[1].vertex,
                                             corners[2].vertex};
-          if (std::isnan(v[0].height) || std::isnan(v[1].height) || std::isnan(v[2].height)) {
-            ++tin_.left_out_triangles;
-            continue;
-          }
           const GridTriangle t = grid_triangle(v, *order_);
           orientations.add(t, sign_of(source_area(corners)));
           tin_.triangles->add(t);
-          for (std::size_t i = 0; kept_points_ && i < 3; ++i) {
-            kept_points_->add({order_->key(v[i].position), v[i].height});
-          }
         }
       },
       reading_.stop);
   corners_.reset();
-  if (tin_.triangles->size() == 0) {
-    refuse(path_, "no triangle has a height");
-  }
   tin_.is_clockwise = orientations.is_clockwise();
   tin_.faults = orientations.take();
 }
@@ -347,49 +199,39 @@ void GridReader::assemble() {
 void GridReader::number_vertices() {
   tin_.places = std::make_unique<RecordFile<std::uint64_t>>(memory_, "places");
   HeightFinder heights(tin_.grid.whole, tin_.grid.heights.unit());
-  const auto add = [&](PointSorter& points) {
-    std::optional<KeyedHeight> last;
-    bool has_conflict = false;
-    std::uint64_t distinct = 0;
-    points.merge(
-        [&](std::span<const KeyedHeight> batch) {
-          for (const KeyedHeight& p : batch) {
-            if (last && last->key == p.key) {
-              if (last->height != p.height && !has_conflict) {
-                tin_.heights_differ.add(order_->point(p.key));
-                has_conflict = true;
-              }
-              continue;
-            }
-            last = p;
-            has_conflict = false;
-            ++distinct;
-            if (&points == kept_points_.get() || !kept_points_) {
-              tin_.places->add(p.key);
-              heights.add(p.height);
-            }
-          }
-        },
-        reading_.stop);
-    return distinct;
-  };
+  std::optional<KeyedHeight> last;
+  bool has_conflict = false;
   const std::uint64_t named = points_->size();
-  const std::uint64_t distinct = add(*points_);
-  tin_.merged_vertices = named - distinct;
-  if (kept_points_) {
-    tin_.heights_differ = {};
-    tin_.unused_vertices += distinct - add(*kept_points_);
-  }
+  points_->merge(
+      [&](std::span<const KeyedHeight> batch) {
+        for (const KeyedHeight& p : batch) {
+          if (last && last->key == p.key) {
+            if (last->height != p.height && !has_conflict) {
+              tin_.heights_differ.add(order_->point(p.key));
+              has_conflict = true;
+            }
+            continue;
+          }
+          last = p;
+          has_conflict = false;
+          tin_.places->add(p.key);
+          heights.add(p.height);
+        }
+      },
+      reading_.stop);
   tin_.places->finish();
+  tin_.merged_vertices = named - tin_.places->size();
   tin_.heights = heights.fit();
 }
 
 TinOnGrid GridReader::read() {
-  read_file();
-  report(0);
-  choose_grid();
-  snap();
+  named_.emplace(read_named_tin(path_, reading_, memory_));
+  tin_.crs = named_->facts.crs;
+  tin_.vertical_crs = named_->facts.vertical_crs;
+  tin_.left_out_triangles = named_->facts.hidden_triangles + named_->left_out_triangles;
+  tin_.unused_vertices = named_->unused_vertices;
   report(1);
+  choose_grid();
   join();
   report(2);
   assemble();

@@ -80,7 +80,7 @@ class HullFiller {
       fill_in_memory();
     } else {
       sweep_voids(
-          border_, memory_, [&](const auto& corners) { add(corners); }, faults_, stop_);
+          border_, memory_, [&](const auto& corners) { add(corners); }, faults_, path_, stop_);
       faults_.refuse(map_, path_);
     }
     voids_.merge(
@@ -97,7 +97,7 @@ class HullFiller {
  private:
   void find_border(const RecordFile<GridTriangle>& triangles) {
     BorderFinder finder({memory_.files, memory_.folder, memory_.bytes / 4});
-    triangles.visit([&](const GridTriangle& t) { finder.add(t); });
+    triangles.visit([&](const GridTriangle& t) { finder.add(t); }, stop_);
     finder.finish(
         faults_,
         [&](const GridEdge& e) {
@@ -276,10 +276,17 @@ Tin TinTriangles::part(std::uint64_t i, std::uint64_t n) const {
   return tin;
 }
 
-TinVertices::TinVertices(const std::string& path, const PointChoice& choice) {
+TinVertices::TinVertices(const std::string& path, const PointChoice& choice,
+                         std::optional<double> nodata) {
   TinSoup soup = read_tin_soup(path, {choice.layer, {}, {}});
   std::vector<std::uint8_t> is_used(soup.vertices.size(), 0);
+  const auto has_height = [&](std::uint32_t v) {
+    return !nodata || to_double(soup.vertices[v].z) != *nodata;
+  };
   for (const auto& t : soup.triangles) {
+    if (!std::all_of(t.begin(), t.end(), has_height)) {
+      continue;
+    }
     for (const std::uint32_t v : t) {
       is_used[v] = 1;
     }

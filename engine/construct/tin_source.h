@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -97,11 +98,14 @@ class TinTriangles {
   std::unique_ptr<RecordFile<std::uint64_t>> places_;
 };
 
-/// The vertices of a TIN's triangles as points: to verify against. In memory.
+/// The vertices of a TIN's triangles as points, on the digits that TinTriangles keeps: to verify
+/// against. In memory.
 class TinVertices final : public PointStream {
  public:
+  /// @param nodata  Triangles with a corner of this height are left out.
   /// @throws Error as read_tin_soup()
-  TinVertices(const std::string& path, const PointChoice& choice);
+  TinVertices(const std::string& path, const PointChoice& choice,
+              std::optional<double> nodata = {});
 
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;

@@ -175,10 +175,12 @@ struct LeftToRight {
 
 class Sweep {
  public:
-  Sweep(const ExternalMemory& memory, const Triangles& visit, TinFaults& faults)
+  Sweep(const ExternalMemory& memory, const Triangles& visit, TinFaults& faults,
+        const std::string& path)
       : most_(std::max<std::uint64_t>(memory.bytes / kBytes, 1024)),
         chains_(visit),
-        faults_(faults) {}
+        faults_(faults),
+        path_(path) {}
 
   /// All edges that begin at a vertex. False when a fault ends the work.
   [[nodiscard]] bool pass(const GridVertex& v, const std::vector<Event>& beginning);
@@ -205,6 +207,7 @@ class Sweep {
   std::uint64_t most_;
   Chains chains_;
   TinFaults& faults_;
+  const std::string& path_;
   Line line_;
   Gap outside_;  ///< To the left of all edges.
 };
@@ -308,7 +311,8 @@ bool Sweep::pass(const GridVertex& v, const std::vector<Event>& beginning) {
     throw Error(ErrorCode::resource_exhausted,
                 "a line across this TIN meets " + std::to_string(line_.size()) +
                     " edges of its border, more than fit into the memory given; give more "
-                    "--memory");
+                    "--memory",
+                path_);
   }
   return true;
 }
@@ -317,15 +321,17 @@ bool Sweep::pass(const GridVertex& v, const std::vector<Event>& beginning) {
 
 void sweep_voids(const RecordFile<GridEdge>& border, const ExternalMemory& memory,
                  const std::function<void(const std::array<GridVertex, 3>&)>& visit,
-                 TinFaults& faults, const std::stop_token& stop) {
+                 TinFaults& faults, const std::string& path, const std::stop_token& stop) {
   ExternalSorter<Event, ByKeys> events({memory.files, memory.folder, memory.bytes / 4}, "border");
-  border.visit([&](const GridEdge& e) {
-    const VertexKey from = key_of(e.from.position), to = key_of(e.to.position);
-    const std::uint32_t is_upward = from < to ? 1 : 0;
-    events.add({from, to, e.from.height, e.to.height, is_upward});
-    events.add({to, from, e.to.height, e.from.height, is_upward});
-  });
-  Sweep sweep({memory.files, memory.folder, memory.bytes / 2}, visit, faults);
+  border.visit(
+      [&](const GridEdge& e) {
+        const VertexKey from = key_of(e.from.position), to = key_of(e.to.position);
+        const std::uint32_t is_upward = from < to ? 1 : 0;
+        events.add({from, to, e.from.height, e.to.height, is_upward});
+        events.add({to, from, e.to.height, e.from.height, is_upward});
+      },
+      stop);
+  Sweep sweep({memory.files, memory.folder, memory.bytes / 2}, visit, faults, path);
   std::vector<Event> beginning;
   GridVertex at;
   bool has_vertex = false, is_sound = true;

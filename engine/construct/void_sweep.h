@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <stop_token>
+#include <string>
 
 #include "engine/construct/tin_border.h"
 
@@ -23,10 +24,11 @@ namespace ptin {
 /// @param visit   Receives counter-clockwise triangles.
 /// @param faults  Receives the first T-junction, crossing or piece that is covered twice: then the
 ///                work ends.
+/// @param path    Of the TIN, for errors.
 /// @throws Error cancelled, io_error; resource_exhausted  the line crosses more edges than fit
 /// Cost: O(b log b).
 void sweep_voids(const RecordFile<GridEdge>& border, const ExternalMemory& memory,
                  const std::function<void(const std::array<GridVertex, 3>&)>& visit,
-                 TinFaults& faults, const std::stop_token& stop = {});
+                 TinFaults& faults, const std::string& path, const std::stop_token& stop = {});
 
 }  // namespace ptin

@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <random>
 #include <set>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "engine/construct/delaunay.h"
 #include "engine/construct/tin_link.h"
@@ -19,103 +17,12 @@
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/validate.h"
+#include "tests/construct/tin_fixture.h"
 
 namespace ptin {
 namespace {
 
-using Vertex3 = std::array<double, 3>;
-using Face = std::array<int, 3>;
-
-/// A file that goes with the test.
-class TestFile {
- public:
-  TestFile(const std::string& extension, const std::string& content)
-      : path_(
-            std::filesystem::temp_directory_path() /
-            ("ptin_tin_" + std::to_string(getpid()) + "_" + std::to_string(count_++) + extension)) {
-    std::ofstream(path_, std::ios::binary) << content;
-  }
-  ~TestFile() { std::filesystem::remove(path_); }
-  TestFile(const TestFile&) = delete;
-  TestFile& operator=(const TestFile&) = delete;
-  [[nodiscard]] std::string path() const { return path_.string(); }
-
- private:
-  static inline int count_ = 0;
-  std::filesystem::path path_;
-};
-
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
-
-std::string obj_of(const std::vector<Vertex3>& vertices, const std::vector<Face>& faces) {
-  std::string text = "# a mesh\n";
-  for (const Vertex3& v : vertices) {
-    text += "v " + number(v[0]) + " " + number(v[1]) + " " + number(v[2]) + "\n";
-  }
-  for (const Face& f : faces) {
-    text += "f " + std::to_string(f[0] + 1) + " " + std::to_string(f[1] + 1) + "/7 " +
-            std::to_string(f[2] + 1) + "/7/7\n";
-  }
-  return text;
-}
-
-/// Everything at once.
-struct TinTerrain : TinCounts {
-  TinTerrain(const TinTriangles& triangles, std::uint64_t parts = 1)
-      : TinCounts(triangles.counts()), frame(triangles.frame()), tin(triangles.part(0, parts)) {}
-  TerrainFrame frame;
-  Tin tin;
-};
-
-TinTriangles triangles_in(const std::string& path, const SourceOptions& options = {},
-                          std::uint64_t memory = std::uint64_t{64} << 20) {
-  return TinTriangles::read(path, options,
-                            {FileLayer::system(), std::filesystem::temp_directory_path(), memory});
-}
-
-TinTerrain read(const std::vector<Vertex3>& vertices, const std::vector<Face>& faces,
-                const SourceOptions& options = {}) {
-  const TestFile file(".obj", obj_of(vertices, faces));
-  return triangles_in(file.path(), options);
-}
-
-std::string refusal(const std::vector<Vertex3>& vertices, const std::vector<Face>& faces) {
-  try {
-    static_cast<void>(read(vertices, faces));
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
-    return e.message();
-  }
-  return "accepted";
-}
-
-using KeyTriangle = std::array<VertexKey, 3>;
-
-std::set<KeyTriangle> triangles_of(const Tin& tin, TriangleClass wanted) {
-  std::set<KeyTriangle> set;
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    if (tin.classes[t] != wanted) continue;
-    KeyTriangle keys{};
-    for (std::size_t i = 0; i < 3; ++i) keys[i] = key_of(tin.position(tin.triangles[t].v[i]));
-    std::rotate(keys.begin(), std::min_element(keys.begin(), keys.end()), keys.end());
-    EXPECT_TRUE(set.insert(keys).second);
-  }
-  return set;
-}
-
-void expect_sound(const TinTerrain& terrain, std::size_t surface, std::size_t filling) {
-  EXPECT_EQ(validate(terrain.tin), "");
-  EXPECT_EQ(triangles_of(terrain.tin, TriangleClass::kSurface).size(), surface);
-  EXPECT_EQ(triangles_of(terrain.tin, TriangleClass::kVoid).size(), filling);
-  EXPECT_EQ(terrain.surface_triangles, surface);
-}
-
-const std::vector<Vertex3> kSquare = {{0, 0, 1}, {10, 0, 2}, {10, 10, 3}, {0, 10, 4}};
-const std::vector<Face> kTwo = {{0, 1, 2}, {0, 2, 3}};
+using namespace tin_test;
 
 TEST(TinSource, TakesAConvexTinAsItIs) {
   const TinTerrain terrain = read(kSquare, kTwo);
@@ -226,6 +133,29 @@ TEST(TinSource, KeepsWhatDigitsTheGridHoldsAndFlipsSpoiledSlivers) {
   EXPECT_GE(terrain.mended_triangles, 2U);
   EXPECT_EQ(triangles_of(terrain.tin, TriangleClass::kVoid).size(), 0U);
   EXPECT_EQ(terrain.tin.vertices.size(), 6U);
+}
+
+TEST(TinSource, MendsNoMoreSliversThanFitIntoTheMemory) {
+  // Two slivers, one of them with many triangles around a corner.
+  std::vector<Vertex3> vertices = {{0, 0, 0}, {300, 0, 0}, {300, 300, 0}, {0, 300, 0}};
+  vertices.push_back({100.12345600123, 0.00000000017, 1});
+  vertices.push_back({200.00000000456, 0.00000000031, 2});
+  std::vector<Face> faces = {{0, 1, 5}, {0, 5, 4}, {0, 4, 3}, {4, 5, 3}, {5, 2, 3}, {5, 1, 2}};
+  for (int y = 0; y <= 300; ++y) {
+    vertices.push_back({600, double(y), 0});
+    faces.push_back({1, 6 + y, y < 300 ? 7 + y : 2});
+  }
+  const TestFile file(".obj", obj_of(vertices, faces));
+  EXPECT_GE(triangles_in(file.path()).counts().mended_triangles, 2U);
+  try {
+    static_cast<void>(triangles_in(file.path(), {}, 1));
+    FAIL() << "mended";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
+    EXPECT_NE(e.message().find("which take 1M of memory"), std::string::npos) << e.message();
+    EXPECT_NE(e.message().find("--memory"), std::string::npos) << e.message();
+    EXPECT_EQ(e.context(), file.path());
+  }
 }
 
 /// Every triangle is in one part.
@@ -362,7 +292,7 @@ void expect_swept_to_a_convex_tin(const Tin& whole) {
       [&](const std::array<GridVertex, 3>& c) {
         put({number(c[0]), number(c[1]), number(c[2])}, TriangleClass::kVoid);
       },
-      faults);
+      faults, "swept");
   faults.refuse({}, "swept");
   for (Vertex& v : swept.vertices) v.triangle = kNone;
   link_tin(swept);
@@ -409,7 +339,7 @@ TEST(TinSource, SweepFindsFaults) {
     border.finish();
     TinFaults faults;
     sweep_voids(
-        border, memory, [](const auto&) {}, faults);
+        border, memory, [](const auto&) {}, faults, "here");
     return faults.t_junctions.count > 0 ? "T-junction"
            : faults.crossings.count > 0 ? "crossing"
            : faults.covered.count > 0   ? "covered"
@@ -434,18 +364,6 @@ TEST(TinSource, NamesVerticesThatAreNotThereOrTwice) {
   } catch (const Error& e) {
     EXPECT_EQ(e.message(), "two vertices have the id 5");
   }
-}
-
-TEST(TinVertices, AreThoseThatTrianglesUse) {
-  std::vector<Vertex3> vertices = kSquare;
-  vertices.push_back({50, 50, 50});
-  const TestFile file(".obj", obj_of(vertices, kTwo));
-  TinVertices points(file.path(), {});
-  std::vector<SourcePoint> batch;
-  ASSERT_TRUE(points.next(batch));
-  EXPECT_EQ(batch.size(), 4U);
-  EXPECT_EQ(points.left_out(), 1U);
-  EXPECT_FALSE(points.next(batch));
 }
 
 }  // namespace

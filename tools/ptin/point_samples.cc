@@ -155,7 +155,7 @@ void PointSamples::read_file(const std::string& path, const StoreFacts& facts) {
 }
 
 void PointSamples::read_stream(const std::string& path, const StoreFacts& facts) {
-  const auto stream = open_point_stream(path, choices_.points);
+  const auto stream = open_point_stream(path, choices_.points, choices_.nodata);
   std::vector<SourcePoint> batch;
   std::uint64_t number = 0;
   while (stream->next(batch)) {
