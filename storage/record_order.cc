@@ -149,8 +149,7 @@ void Cutter::cut(std::size_t begin, std::size_t end) {
     }
   }
   std::sort(items_.begin() + static_cast<std::ptrdiff_t>(begin),
-            items_.begin() + static_cast<std::ptrdiff_t>(end),
-            [](const Item& a, const Item& b) {
+            items_.begin() + static_cast<std::ptrdiff_t>(end), [](const Item& a, const Item& b) {
               return a.error != b.error ? a.error > b.error : a.key < b.key;
             });
 }
