@@ -3,7 +3,6 @@
 // The table of JSON names in tools/API.md against what every subcommand prints: no name that the
 // table does not have, none of the table that never comes, and the same words for the same things.
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -31,10 +30,14 @@ std::map<std::string, Names> documented_names() {
     const std::size_t middle = line.find(" | ");
     if (!within || !line.starts_with("| ") || middle == std::string::npos) continue;
     const auto words_in = [](const std::string& cell) {
-      static const std::regex word("`([a-z0-9_]+)`");
       Names words;
-      for (std::sregex_iterator i(cell.begin(), cell.end(), word), end; i != end; ++i) {
-        words.insert((*i)[1]);
+      std::istringstream parts(cell);
+      std::string part;
+      for (bool is_code = false; std::getline(parts, part, '`'); is_code = !is_code) {
+        if (is_code &&
+            part.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == part.npos) {
+          words.insert(part);
+        }
       }
       return words;
     };
