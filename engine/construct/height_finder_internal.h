@@ -10,9 +10,11 @@
 
 namespace ptin {
 
+/// The height encoding of points that come one by one. Threads: one. Cost: constant a height.
 class HeightFinder {
  public:
   /// @param whole  Heights are codes: whole steps of `step` (PointGrid).
+  /// @param step  Of a code, map units of height.
   HeightFinder(bool whole, double step) : whole_(whole), step_(step) {}
 
   void add(double height) {

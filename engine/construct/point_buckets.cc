@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/construct/crs.h"
-#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/height_finder_internal.h"
 #include "engine/construct/point_grid.h"
 #include "engine/construct/point_merge.h"
 #include "engine/construct/point_order_internal.h"
@@ -22,39 +22,6 @@ constexpr std::uint64_t kMostBuckets = std::uint64_t{1} << 20;
 [[noreturn]] void refuse(const std::string& context, const std::string& sentence) {
   throw Error(ErrorCode::invalid_argument, sentence, context);
 }
-
-/// What the codes or heights of a terrain are, found while they come.
-class HeightFinder {
- public:
-  HeightFinder(bool whole, double step) : whole_(whole), step_(step) {}
-
-  void add(double height) {
-    if (whole_) {
-      low_ = std::min(low_, height);
-      high_ = std::max(high_, height);
-    } else {
-      scan_.add(height);
-    }
-  }
-  [[nodiscard]] HeightFit fit() const {
-    if (!whole_) {
-      return scan_.fit();
-    }
-    HeightFit fit;
-    fit.encoding = {HeightType::int32, step_, 0.0};
-    fit.quantum = step_;
-    fit.min_height = fit.encoding.height_of_code(low_);
-    fit.max_height = fit.encoding.height_of_code(high_);
-    return fit;
-  }
-
- private:
-  bool whole_;
-  double step_;
-  HeightScan scan_{HeightScan::Given::kFloat64};
-  double low_ = std::numeric_limits<double>::infinity();
-  double high_ = -std::numeric_limits<double>::infinity();
-};
 
 void check_area(const ConvexHull& hull, std::uint64_t points, const std::string& context) {
   if (points < 3) {
