@@ -54,7 +54,7 @@ class TileTree {
   /// The side that is used unless the caller names one: 256 (with which a leaf stays in the
   /// processor's caches: a third faster than 512, for half a percent of vertices), or, beyond 16385
   /// samples, the root of four times the raster's longer side, so that seams weigh little
-  /// (engine/DESIGN.md, section 4); the whole raster when it is no longer than one and a half of
+  /// (side / S^2 in tiles of S); the whole raster when it is no longer than one and a half of
   /// that. Ten times, as the plan has it, would need 416 at 16385 samples and more than 256 MiB.
   [[nodiscard]] static std::int64_t default_side(std::int64_t width, std::int64_t height) noexcept;
 
