@@ -32,7 +32,7 @@ using NameSorter = ExternalSorter<NamedCorner, ByName>;
 using NumberSorter = ExternalSorter<std::uint64_t, std::less<>>;
 
 /// What the reader finds, to be sorted.
-class NameSink final : public TinSink {
+class NameSink final : public SoupSink {
  public:
   explicit NameSink(const ExternalMemory& memory)
       : vertices(memory, "vertices"), corners(memory, "corners") {}

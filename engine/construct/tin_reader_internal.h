@@ -27,7 +27,7 @@ void split_words(std::string_view line, std::vector<std::string_view>& words);
 /// Counts what goes to the sink, and looks at the stop token now and then.
 class TinReceiver {
  public:
-  TinReceiver(const ByteReader& in, const TinReading& reading, TinSink& sink)
+  TinReceiver(const ByteReader& in, const TinReading& reading, SoupSink& sink)
       : in_(in), reading_(reading), sink_(sink) {}
 
   /// The next vertex, numbered from 0.  @throws Error cancelled, and what the sink throws
@@ -60,7 +60,7 @@ class TinReceiver {
 
   const ByteReader& in_;
   const TinReading& reading_;
-  TinSink& sink_;
+  SoupSink& sink_;
   TinFileFacts facts_;
   std::uint64_t added_ = 0;
 };

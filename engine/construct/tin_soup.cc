@@ -45,7 +45,7 @@ const TinFormat* format_of(std::string_view path) {
 
 bool is_tin_file(std::string_view path) { return format_of(path) != nullptr; }
 
-TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, TinSink& sink) {
+TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink) {
   const TinFormat* format = format_of(path);
   if (format == nullptr) {
     refuse("this is no TIN by its name; known are .ply, .obj, .2dm, .xml, .landxml", path);
@@ -129,7 +129,7 @@ TinFileFacts TinReceiver::finish() {
 namespace {
 
 /// Everything in memory, ids still to be found.
-class SoupCollector final : public TinSink {
+class SoupCollector final : public SoupSink {
  public:
   explicit SoupCollector(std::string path) : path_(std::move(path)) {}
 

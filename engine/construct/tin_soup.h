@@ -18,12 +18,12 @@
 namespace ptin {
 
 /// Takes what a reader finds, in the order of the file.
-class TinSink {
+class SoupSink {
  public:
-  TinSink() = default;
-  TinSink(const TinSink&) = delete;
-  TinSink& operator=(const TinSink&) = delete;
-  virtual ~TinSink() = default;
+  SoupSink() = default;
+  SoupSink(const SoupSink&) = delete;
+  SoupSink& operator=(const SoupSink&) = delete;
+  virtual ~SoupSink() = default;
 
   /// `id` is the file's own, or the vertex's number from 0 where the format has none. May be there
   /// twice.
@@ -64,7 +64,7 @@ struct TinReading {
 ///                                    finite numbers; no vertex, or no triangle
 ///                cancelled           and what the sink throws
 /// Memory: some hundred KiB, whatever the file's size.
-TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, TinSink& sink);
+TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink);
 
 /// The same into memory.
 /// @throws Error  as read_tin_file(); invalid_argument  an id that no vertex has, or that two have
@@ -73,7 +73,7 @@ TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, T
 [[nodiscard]] TinSoup read_tin_soup(const std::string& path, const TinReading& reading);
 
 // The readers. Each documents its own conventions.
-using TinReader = TinFileFacts(ByteReader& in, const TinReading& reading, TinSink& sink);
+using TinReader = TinFileFacts(ByteReader& in, const TinReading& reading, SoupSink& sink);
 TinReader read_ply, read_obj, read_two_dm, read_land_xml;
 
 /// What one of them reads, in memory.
