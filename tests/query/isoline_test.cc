@@ -18,12 +18,14 @@
 
 #include "engine/error.h"
 #include "engine/query/isoline_clip.h"
-#include "tests/query/reference_hierarchy.h"
+#include "tests/query/isoline_listing.h"
 
 namespace ptin {
 namespace {
 
 using reference::Hierarchy;
+using reference::listing;
+using reference::random_levels;
 using reference::TemporaryStore;
 
 /// Level, then from and to in map units.
@@ -93,29 +95,6 @@ Pieces pieces_of(const Isolines& lines) {
     }
   }
   return all;
-}
-
-/// Everything about the lines, in their order.
-std::vector<std::vector<double>> listing(const Isolines& lines) {
-  std::vector<std::vector<double>> all;
-  std::vector<MapPoint> points;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const Isoline line = lines.line(i, points);
-    all.push_back({double(line.level), double(line.ring)});
-    for (const MapPoint& p : line.points) all.back().insert(all.back().end(), {p.x, p.y});
-  }
-  return all;
-}
-
-/// Heights of vertices, heights between, and such as no vertex reaches.
-std::vector<double> random_levels(std::mt19937_64& random, const Hierarchy& h, int count) {
-  std::vector<double> levels;
-  std::uniform_real_distribution<double> anywhere(h.facts.min_height - 1, h.facts.max_height + 1);
-  for (int i = 0; i < count; ++i) {
-    const Vertex& v = h.full.vertices[random() % h.full.vertices.size()];
-    levels.push_back(i % 2 == 0 ? h.facts.heights.height(v.height) : anywhere(random));
-  }
-  return levels;
 }
 
 Window window_in(std::mt19937_64& random, const StoreFacts& facts) {
