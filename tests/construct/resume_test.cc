@@ -147,6 +147,16 @@ void change_while_reading(const std::string& input, const std::string& output,
   ASSERT_TRUE(std::filesystem::exists(Workspace::folder_of(output)));
 }
 
+void expect_refused(const std::string& input, const std::string& output,
+                    const BuildOptions& options) {
+  try {
+    build({input}, output, options, resuming());
+    ADD_FAILURE() << "went on";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
+  }
+}
+
 TEST(Resume, RefusesARasterThatWasReplacedWhileItWasRead) {
   const ScratchFolder folder;
   const std::string input = folder.file("in.asc"), output = folder.file("out.ptin");
@@ -158,12 +168,7 @@ TEST(Resume, RefusesARasterThatWasReplacedWhileItWasRead) {
   BuildOptions options;
   options.tile = 8;
   change_while_reading(input, output, options);
-  try {
-    build({input}, output, options, resuming());
-    ADD_FAILURE() << "went on";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
-  }
+  expect_refused(input, output, options);
 }
 
 /// A grid of 24 x 24 vertices as a TIN.
@@ -194,12 +199,7 @@ TEST(Resume, RefusesATinThatWasReplacedWhileItWasRead) {
   BuildOptions options;
   options.tile = 8;
   change_while_reading(input, output, options);
-  try {
-    build({input}, output, options, resuming());
-    ADD_FAILURE() << "went on";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
-  }
+  expect_refused(input, output, options);
 }
 
 TEST(Build, OfATinSaysBeforeItReadsThatAnUnfinishedOneIsThere) {
