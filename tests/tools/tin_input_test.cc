@@ -75,7 +75,12 @@ TEST(TinInput, IsTheSameTinInAnyTiles) {
   };
   const std::string whole = built("whole.ptin", {});
   EXPECT_TRUE(built("tiles.ptin", {"--tile", "16", "--threads", "1"}) == whole);
-  EXPECT_TRUE(built("again.ptin", {"--tile", "16", "--threads", "2", "--memory", "256M"}) == whole);
+#ifdef __SANITIZE_ADDRESS__  // What it keeps of freed memory counts.
+  const std::string little = "256M";
+#else
+  const std::string little = "128M";
+#endif
+  EXPECT_TRUE(built("again.ptin", {"--tile", "16", "--threads", "2", "--memory", little}) == whole);
   EXPECT_TRUE(read_file(folder.file("tiles.ptin")) == read_file(folder.file("again.ptin")));
   expect_done({"verify", folder.file("tiles.ptin"), "--against", folder.file("a.ply"), "-q"});
 }
