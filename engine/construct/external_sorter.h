@@ -6,14 +6,17 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <iterator>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "engine/construct/run_merger.h"
 #include "engine/error.h"
 #include "storage/file_layer.h"
 
@@ -26,30 +29,52 @@ struct ExternalMemory {
   std::uint64_t bytes = std::uint64_t{64} << 20;
 };
 
+/// What sorting took.
+struct SortCounts {
+  std::uint64_t runs = 0;     ///< Sorted in memory and written.
+  std::uint64_t merges = 0;   ///< Of runs to longer ones on disk, before the one that hands out.
+  std::uint64_t written = 0;  ///< Records, each as often as it was.
+  std::size_t widest = 0;     ///< Most runs merged at a time.
+  std::size_t held = 0;       ///< Most records in memory at a time.
+};
+
 /// add() in any order, then take() or merge() everything once. With `Before` a total order on what
 /// the records hold, the result depends on the set of records alone.
+///
+/// Runs of as many records as fit into memory are sorted and written. So many are merged at a time
+/// as can have kLeastOfRun records each in that memory: as soon as there are more, all of them
+/// become one run of the next level, whose runs are treated likewise. Sorting n records in the
+/// memory of m thus writes each of them 1 + log(n / m) / log(m / 256) times, rounded down: once up
+/// to n = m^2 / 256.
 template <class Record, class Before>
 class ExternalSorter {
   static_assert(std::is_trivially_copyable_v<Record>);
 
  public:
-  /// @param stem  Of the names of its files, for errors.
-  explicit ExternalSorter(const ExternalMemory& memory, std::string stem = "sorted")
+  /// @param memory  Of which records for kLeastRecords are taken where it is less.
+  /// @param stem    Of the names of its files, for errors.
+  /// @param stop    Looked at where add() merges.
+  explicit ExternalSorter(const ExternalMemory& memory, std::string stem = "sorted",
+                          std::stop_token stop = {})
       : memory_(memory),
         stem_(std::move(stem)),
-        capacity_(std::max<std::size_t>(memory.bytes / sizeof(Record), kBatch)) {}
+        stop_(std::move(stop)),
+        capacity_(std::max<std::size_t>(memory.bytes / sizeof(Record), kLeastRecords) - kBatch) {}
 
-  /// @throws Error io_error, resource_exhausted (the disk is full)
+  /// @throws Error io_error, resource_exhausted (the disk is full), cancelled
   void add(const Record& record) {
-    if (buffer_.size() == capacity_) {
+    if (buffer_.size() == buffer_.capacity() && !grow()) {
       write_run();
-    }
-    if (buffer_.size() == buffer_.capacity()) {  // doubled, but never beyond what it may take
-      buffer_.reserve(std::clamp<std::size_t>(2 * buffer_.size(), kBatch, capacity_));
+      if (levels_.front().runs.size() == most_runs()) {  // and there will be one more
+        lift(0);
+      }
+      static_cast<void>(grow());
     }
     buffer_.push_back(record);
+    ++size_;
   }
-  [[nodiscard]] std::uint64_t size() const noexcept { return written_ + buffer_.size(); }
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  [[nodiscard]] const SortCounts& counts() const noexcept { return counts_; }
 
   /// The next records in ascending order, some thousands; false when there is none left. No add()
   /// after the first call.
@@ -57,14 +82,12 @@ class ExternalSorter {
   /// Cost of all: O(n log n); nothing is written unless there is more than fits in memory.
   [[nodiscard]] bool take(std::vector<Record>& batch, const std::stop_token& stop = {}) {
     if (!is_merging_) {
-      begin_merge();
+      begin_merge(stop);
     }
-    if (stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "sorting was cancelled");
-    }
+    check(stop);
     batch.clear();
-    if (file_) {
-      merge_runs(batch);
+    if (last_) {
+      last_->take(batch, kBatch);
     } else {
       const std::size_t end = std::min(buffer_.size(), taken_ + kBatch);
       batch.assign(buffer_.begin() + static_cast<std::ptrdiff_t>(taken_),
@@ -72,10 +95,9 @@ class ExternalSorter {
       taken_ = end;
     }
     if (batch.empty()) {
-      buffer_ = {};
-      runs_ = {};
-      file_.reset();
-      written_ = 0;
+      buffer_ = std::vector<Record>();
+      last_.reset();
+      size_ = 0;
       taken_ = 0;
     }
     return !batch.empty();
@@ -90,99 +112,136 @@ class ExternalSorter {
     }
   }
 
- private:
   static constexpr std::size_t kBatch = 4096;
+  /// Of a run, in memory while it is merged.
   static constexpr std::size_t kLeastOfRun = 256;
+  static constexpr std::size_t kLeastRecords = 2 * kBatch;
 
-  struct Run {
-    std::uint64_t next = 0, end = 0;  ///< In the file: what is not in memory yet.
-    std::vector<Record> buffer;
-    std::size_t at = 0;
-    std::size_t capacity = 0;
-    [[nodiscard]] const Record& front() const { return buffer[at]; }
+ private:
+  using Merger = RunMerger<Record, Before>;
+
+  /// Runs of about one length, in one file.
+  struct Level {
+    std::shared_ptr<ScratchFile> file;
+    std::uint64_t written = 0;
+    std::vector<SortedRun> runs;
   };
 
-  void write_run() {
-    if (!file_) {
-      file_ = std::make_unique<ScratchFile>(memory_.files, memory_.folder, stem_, true);
+  static void check(const std::stop_token& stop) {
+    if (stop.stop_requested()) {
+      throw Error(ErrorCode::cancelled, "sorting was cancelled");
     }
+  }
+  [[nodiscard]] std::size_t most_runs() const noexcept { return capacity_ / kLeastOfRun; }
+  void note_held(std::size_t records) { counts_.held = std::max(counts_.held, records); }
+
+  /// False when the buffer is as large as it may be. Where it moves, both places count.
+  bool grow() {
+    const std::size_t now = buffer_.capacity();
+    const std::size_t most = capacity_ - now;
+    const std::size_t wanted = levels_.empty() ? std::min(most, std::max(2 * now, kBatch)) : most;
+    if (wanted <= now) {
+      return false;
+    }
+    buffer_.reserve(wanted);
+    note_held(now + wanted);
+    return true;
+  }
+
+  void write_run() {
     std::sort(buffer_.begin(), buffer_.end(), before_);
-    file_->write_at(std::as_bytes(std::span(buffer_)), written_ * sizeof(Record));
-    written_ += buffer_.size();
-    run_ends_.push_back(written_);
-    buffer_.clear();
+    if (levels_.empty()) {
+      levels_.emplace_back();
+    }
+    begin_run(levels_.front());
+    append(levels_.front(), buffer_);
+    ++counts_.runs;
+    buffer_ = std::vector<Record>();  // the next one takes all memory at once; {} would keep it
   }
 
-  void fill(Run& run) const {
-    const std::uint64_t count = std::min<std::uint64_t>(run.capacity, run.end - run.next);
-    run.buffer.resize(count);
-    run.at = 0;
-    file_->read_at(std::as_writable_bytes(std::span(run.buffer)), run.next * sizeof(Record));
-    run.next += count;
+  void begin_run(Level& level) {
+    if (!level.file) {
+      level.file = std::make_shared<ScratchFile>(memory_.files, memory_.folder, stem_, true);
+    }
+    level.runs.push_back({level.file, level.written, level.written});
+  }
+  void append(Level& level, const std::vector<Record>& records) {
+    level.file->write_at(std::as_bytes(std::span(records)), level.written * sizeof(Record));
+    level.written += records.size();
+    level.runs.back().end = level.written;
+    counts_.written += records.size();
   }
 
-  void begin_merge() {
+  /// Merges all runs of a level to one of the next. REQUIRES: the buffer is empty.
+  void lift(std::size_t level) {
+    if (level + 1 == levels_.size()) {
+      levels_.emplace_back();
+    }
+    std::vector<SortedRun> runs = std::exchange(levels_[level], Level()).runs;
+    merge_to(levels_[level + 1], std::move(runs), stop_);
+    if (levels_[level + 1].runs.size() == most_runs()) {
+      lift(level + 1);
+    }
+  }
+
+  void merge_to(Level& to, std::vector<SortedRun> runs, const std::stop_token& stop) {
+    note_merge(runs.size());
+    ++counts_.merges;
+    Merger merger(std::move(runs), capacity_);
+    begin_run(to);
+    std::vector<Record> batch;
+    do {
+      check(stop);
+      batch.clear();
+      merger.take(batch, kBatch);
+      append(to, batch);
+    } while (!batch.empty());
+  }
+  void note_merge(std::size_t runs) {
+    counts_.widest = std::max(counts_.widest, runs);
+    note_held(capacity_ + kBatch);
+  }
+
+  void begin_merge(const std::stop_token& stop) {
     is_merging_ = true;
-    if (!file_) {
+    if (levels_.empty()) {
       std::sort(buffer_.begin(), buffer_.end(), before_);
       return;
     }
     if (!buffer_.empty()) {
       write_run();
     }
-    buffer_ = {};
-    runs_.resize(run_ends_.size());
-    for (std::size_t i = 0; i < runs_.size(); ++i) {
-      runs_[i].next = i == 0 ? 0 : run_ends_[i - 1];
-      runs_[i].end = run_ends_[i];
-      runs_[i].capacity = std::max<std::size_t>(capacity_ / runs_.size(), kLeastOfRun);
-      fill(runs_[i]);
-      heap_.push_back(i);
+    std::vector<SortedRun> runs;  // the shortest first
+    for (Level& level : levels_) {
+      std::move(level.runs.begin(), level.runs.end(), std::back_inserter(runs));
     }
-    std::make_heap(heap_.begin(), heap_.end(), After{*this});
-  }
-
-  /// For a heap of the runs' smallest records.
-  struct After {
-    const ExternalSorter& sorter;
-    bool operator()(std::size_t a, std::size_t b) const {
-      return sorter.before_(sorter.runs_[b].front(), sorter.runs_[a].front());
+    levels_.clear();
+    while (runs.size() > most_runs()) {  // as few as leave what can be merged at a time
+      const std::size_t count = std::min(most_runs(), runs.size() - most_runs() + 1);
+      const auto end = runs.begin() + static_cast<std::ptrdiff_t>(count);
+      std::vector<SortedRun> first(std::make_move_iterator(runs.begin()),
+                                   std::make_move_iterator(end));
+      runs.erase(runs.begin(), end);
+      Level merged;
+      merge_to(merged, std::move(first), stop);
+      runs.push_back(std::move(merged.runs.front()));
     }
-  };
-
-  void merge_runs(std::vector<Record>& out) {
-    const After after{*this};
-    while (!heap_.empty() && out.size() < kBatch) {
-      std::pop_heap(heap_.begin(), heap_.end(), after);
-      Run& run = runs_[heap_.back()];
-      // The run goes on as long as it is ahead of all others.
-      do {
-        out.push_back(run.buffer[run.at++]);
-        if (run.at == run.buffer.size()) {
-          fill(run);
-        }
-      } while (!run.buffer.empty() && out.size() < kBatch &&
-               (heap_.size() == 1 || !before_(runs_[heap_.front()].front(), run.front())));
-      if (run.buffer.empty()) {
-        heap_.pop_back();
-      } else {
-        std::push_heap(heap_.begin(), heap_.end(), after);
-      }
-    }
+    note_merge(runs.size());
+    last_.emplace(std::move(runs), capacity_);
   }
 
   ExternalMemory memory_;
   std::string stem_;
-  std::size_t capacity_;
+  std::stop_token stop_;
+  std::size_t capacity_;  ///< Of the buffer, or of those of the runs that are merged; records.
   [[no_unique_address]] Before before_;
   std::vector<Record> buffer_;
-  std::unique_ptr<ScratchFile> file_;
-  std::vector<std::uint64_t> run_ends_;  ///< In records, in the file.
-  std::uint64_t written_ = 0;
+  std::vector<Level> levels_;
+  std::uint64_t size_ = 0;
+  SortCounts counts_;
   bool is_merging_ = false;
   std::size_t taken_ = 0;
-  std::vector<Run> runs_;
-  std::vector<std::size_t> heap_;
+  std::optional<Merger> last_;
 };
 
 }  // namespace ptin

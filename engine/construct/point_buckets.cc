@@ -128,7 +128,7 @@ void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rul
     }
   };
   const PointOrder order(grid.largest());
-  PointSorter sorter(memory);
+  PointSorter sorter(memory, "points", stop);
   std::vector<SourcePoint> batch;
   while (spool.take(batch)) {
     for (const SourcePoint& p : batch) {

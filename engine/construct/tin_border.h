@@ -31,7 +31,8 @@ struct TinBorder {
 /// same pieces: then the border is one that winds twice around what lies beside it.
 class BorderFinder {
  public:
-  explicit BorderFinder(const ExternalMemory& memory) : edges_(memory, "edges") {}
+  explicit BorderFinder(const ExternalMemory& memory, const std::stop_token& stop = {})
+      : edges_(memory, "edges", stop) {}
 
   /// @throws Error io_error, resource_exhausted (the disk is full)
   void add(const GridTriangle& t);

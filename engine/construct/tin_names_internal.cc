@@ -34,8 +34,8 @@ using NumberSorter = ExternalSorter<std::uint64_t, std::less<>>;
 /// What the reader finds, to be sorted.
 class NameSink final : public SoupSink {
  public:
-  explicit NameSink(const ExternalMemory& memory)
-      : vertices(memory, "vertices"), corners(memory, "corners") {}
+  NameSink(const ExternalMemory& memory, const std::stop_token& stop)
+      : vertices(memory, "vertices", stop), corners(memory, "corners", stop) {}
 
   void add_vertex(std::int64_t id, const SourcePoint& p) override {
     vertices.add(NamedVertex(id, p));
@@ -63,7 +63,7 @@ class NameReader {
         tin_{RecordFile<NamedVertex>(memory, "vertices"),
              RecordFile<NamedCorner>(memory, "corners"),
              {}},
-        without_height_(memory, "triangles") {}
+        without_height_(memory, "triangles", reading.stop) {}
 
   NamedTin read() {
     match();
@@ -94,7 +94,7 @@ class NameReader {
 
 /// Every corner finds its vertex; vertices that are named stay.
 void NameReader::match() {
-  NameSink file(memory_);
+  NameSink file(memory_, reading_.stop);
   const auto progress = [&](std::uint64_t done, std::uint64_t total) {
     if (reading_.progress) {
       reading_.progress("reading", done, total);
@@ -135,9 +135,9 @@ void NameReader::match() {
 }
 
 void NameReader::leave_out_triangles() {
-  ExternalSorter<NamedCorner, ByTriangle> by_triangle(memory_, "corners");
+  ExternalSorter<NamedCorner, ByTriangle> by_triangle(memory_, "corners", reading_.stop);
   tin_.corners.visit([&](const NamedCorner& c) { by_triangle.add(c); }, reading_.stop);
-  NameSorter kept(memory_, "corners");
+  NameSorter kept(memory_, "corners", reading_.stop);
   InOrder out = in_order(without_height_, reading_.stop);
   const auto advance = [&](std::uint64_t to) {
     while (out.now() != nullptr && *out.now() < to) {

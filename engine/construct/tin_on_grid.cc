@@ -154,8 +154,8 @@ JoinedCorner GridReader::snapped(const NamedVertex& v) {
 
 /// Gives every corner its vertex.
 void GridReader::join() {
-  corners_ = std::make_unique<CornerSorter>(memory_, "corners");
-  points_ = std::make_unique<PointSorter>(memory_, "points");
+  corners_ = std::make_unique<CornerSorter>(memory_, "corners", reading_.stop);
+  points_ = std::make_unique<PointSorter>(memory_, "points", reading_.stop);
   InOrder names = in_order(named_->corners, reading_.stop);
   named_->vertices.visit(
       [&](const NamedVertex& v) {
@@ -172,7 +172,7 @@ void GridReader::join() {
 
 /// Puts corners together to triangles.
 void GridReader::assemble() {
-  tin_.triangles = std::make_unique<TriangleSorter>(memory_, "triangles");
+  tin_.triangles = std::make_unique<TriangleSorter>(memory_, "triangles", reading_.stop);
   Orientations orientations;
   std::array<JoinedCorner, 3> corners;
   corners_->merge(

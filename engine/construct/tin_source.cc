@@ -55,10 +55,6 @@ MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory
   return mesh;
 }
 
-/// Borders of so many edges are triangulated in memory, which gives better triangles. Whatever the
-/// memory, since it decides the bytes of the output.
-constexpr std::uint64_t kMostInMemory = std::uint64_t{1} << 18;
-
 /// A mesh on its way to a convex one.
 class HullFiller {
  public:
@@ -71,12 +67,12 @@ class HullFiller {
         stop_(stop),
         order_(order),
         border_(memory, "border"),
-        voids_({memory.files, memory.folder, memory.bytes / 8}, "voids") {}
+        voids_({memory.files, memory.folder, memory.bytes / 8}, "voids", stop) {}
 
   /// Writes the triangles that fill the hull of the others. Returns the hull.
   ConvexHull fill(const RecordFile<GridTriangle>& triangles, RecordFile<GridTriangle>& to) {
     find_border(triangles);
-    if (border_.size() <= kMostInMemory) {
+    if (border_.size() <= TinTriangles::kMostBorderInMemory) {
       fill_in_memory();
     } else {
       sweep_voids(
@@ -96,7 +92,7 @@ class HullFiller {
 
  private:
   void find_border(const RecordFile<GridTriangle>& triangles) {
-    BorderFinder finder({memory_.files, memory_.folder, memory_.bytes / 4});
+    BorderFinder finder({memory_.files, memory_.folder, memory_.bytes / 4}, stop_);
     triangles.visit([&](const GridTriangle& t) { finder.add(t); }, stop_);
     finder.finish(
         faults_,
@@ -123,7 +119,7 @@ class HullFiller {
     std::vector<GridEdge> edges;
     border_.take(0, border_.size(), edges);
     const TinBorder border = border_in_memory(edges);
-    edges = {};
+    edges = std::vector<GridEdge>();  // {} would keep its memory
     check_border(border.positions, border.edges, faults_);
     faults_.refuse(map_, path_);
     const std::vector<Corners> filling = fill_hull(border.positions, border.edges, faults_, stop_);
@@ -247,7 +243,7 @@ Tin TinTriangles::part(std::uint64_t i, std::uint64_t n) const {
   take(*voids_, begin, end, voids);
   const std::size_t surface = triangles.size();
   triangles.insert(triangles.end(), voids.begin(), voids.end());
-  voids = {};
+  voids = std::vector<GridTriangle>();  // {} would keep its memory
   const std::vector<GridVertex> vertices = vertices_of(triangles);
   Tin tin;
   tin.vertices.reserve(vertices.size());

@@ -61,7 +61,8 @@ class TinTriangles {
   ///                io_error, cancelled
   /// Cost: O(n log n), about 2 us a triangle. Disk: about 500 bytes a vertex while it is sorted,
   /// 130 in the end; in memory.folder. Memory: memory.bytes, of which the border takes
-  /// kBytesOfBorderEdge for an edge; beyond 2^18 edges it is swept over (void_sweep.h).
+  /// kBytesOfBorderEdge for an edge; beyond kMostBorderInMemory edges it is swept over
+  /// (void_sweep.h).
   static TinTriangles read(const std::string& path, const SourceOptions& options,
                            const ExternalMemory& memory, const std::stop_token& stop = {},
                            const Progress& progress = {});
@@ -83,6 +84,10 @@ class TinTriangles {
 
   /// What an edge of the border takes in memory while pockets and holes are triangulated.
   static constexpr std::uint64_t kBytesOfBorderEdge = 320;
+  /// Borders of so many edges are triangulated in memory, which gives better triangles; larger ones
+  /// are swept over. Whatever the memory, since it decides the bytes of the output: so few that
+  /// their 20 MiB are less than the half of what any build needs for its smallest tile.
+  static constexpr std::uint64_t kMostBorderInMemory = std::uint64_t{1} << 16;
 
  private:
   TinTriangles() = default;

@@ -322,7 +322,8 @@ bool Sweep::pass(const GridVertex& v, const std::vector<Event>& beginning) {
 void sweep_voids(const RecordFile<GridEdge>& border, const ExternalMemory& memory,
                  const std::function<void(const std::array<GridVertex, 3>&)>& visit,
                  TinFaults& faults, const std::string& path, const std::stop_token& stop) {
-  ExternalSorter<Event, ByKeys> events({memory.files, memory.folder, memory.bytes / 4}, "border");
+  ExternalSorter<Event, ByKeys> events({memory.files, memory.folder, memory.bytes / 4}, "border",
+                                       stop);
   border.visit(
       [&](const GridEdge& e) {
         const VertexKey from = key_of(e.from.position), to = key_of(e.to.position);

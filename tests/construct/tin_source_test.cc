@@ -253,6 +253,54 @@ TEST(TinSource, RefusesABoxAndABorderThatDoesNotFit) {
   }
 }
 
+/// A strip upwards with teeth on both sides; its border has as many edges as it has vertices.
+TestFile strip_of(std::uint64_t border) {
+  std::vector<Vertex3> vertices;
+  std::vector<Face> faces;
+  for (int i = 0; i < static_cast<int>(border); ++i) {
+    const double tooth = i / 2 % 2;
+    vertices.push_back({i % 2 == 0 ? tooth : 10.0 + tooth, static_cast<double>(i), 0.0});
+    if (i >= 2) {
+      faces.push_back(i % 2 == 0 ? Face{i - 2, i - 1, i} : Face{i - 2, i, i - 1});
+    }
+  }
+  return {".obj", obj_of(vertices, faces)};
+}
+
+/// Twice the area of a polygon.
+std::int64_t area_of(const std::vector<GridPoint>& corners) {
+  std::int64_t sum = 0;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    sum += orient(corners[0], corners[i], corners[i + 1]);
+  }
+  return sum;
+}
+
+TEST(TinSource, FillsBordersOfEverySizeWhateverTheMemory) {
+  constexpr std::uint64_t kMost = TinTriangles::kMostBorderInMemory;
+  constexpr std::uint64_t kEnough = kMost * TinTriangles::kBytesOfBorderEdge;
+  for (const std::uint64_t border : {kMost - 1, kMost, kMost + 1, kMost + 2}) {
+    SCOPED_TRACE(border);
+    const TestFile file = strip_of(border);
+    const TinTriangles triangles = triangles_in(file.path(), {}, kEnough);
+    const Tin tin = triangles.part(0, 1);
+    ASSERT_EQ(validate(tin), "");
+    std::int64_t area = 0;
+    for (const Triangle& t : tin.triangles) {
+      area += orient(tin.position(t.v[0]), tin.position(t.v[1]), tin.position(t.v[2]));
+    }
+    EXPECT_EQ(area, area_of(triangles.hull().corners()));
+    EXPECT_GT(triangles.counts().void_triangles, border / 3);
+    if (border > kMost) {
+      const Tin small = triangles_in(file.path(), {}, 4 << 20).part(0, 1);
+      EXPECT_TRUE(triangles_of(small, TriangleClass::kVoid) ==
+                  triangles_of(tin, TriangleClass::kVoid));
+    }
+  }
+  // Half of the least memory that a build takes is enough.
+  EXPECT_LE(kEnough, std::uint64_t{20} << 20);
+}
+
 /// The border of what is not left out, swept over: fills the hull as exactly.
 void expect_swept_to_a_convex_tin(const Tin& whole) {
   const ExternalMemory memory{FileLayer::system(), std::filesystem::temp_directory_path()};
