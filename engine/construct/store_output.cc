@@ -40,7 +40,19 @@ nlohmann::json value_or_null(const std::optional<T>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
-nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildReport& r) {
+constexpr std::uint16_t kAnyVoid =
+    VertexSplit::kLeftVoid | VertexSplit::kRightVoid | VertexSplit::kVertexVoid;
+
+/// Classes change by splits alone, so what neither T0 nor a record shows is nowhere.
+bool has_void(const CoarsestTin& t0) {
+  return std::any_of(t0.triangles.begin(), t0.triangles.end(),
+                     [](const auto& t) { return t.is_void != 0; }) ||
+         std::any_of(t0.vertices.begin(), t0.vertices.end(),
+                     [](const auto& v) { return v.has_height == 0; });
+}
+
+nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildReport& r,
+                           bool voids) {
   nlohmann::json files = nlohmann::json::array();
   for (const std::string& input : inputs) {
     files.push_back(std::filesystem::path(input).filename().string());
@@ -48,6 +60,7 @@ nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildRe
   return {{"files", files},
           {"samples", r.source_samples},
           {"void_samples", r.void_samples},
+          {"voids", voids},
           {"lone_samples", r.lone_samples},
           {"left_out_points", r.left_out_points},
           {"merged_points", r.merged_points},
@@ -131,6 +144,10 @@ void StoreOutput::add_segment(std::span<VertexSplit> records) {
       r.deviation = rounded_up(static_cast<double>(r.deviation) + frame_.height_rounding);
     }
   }
+  // Of the source's TIN: before records are left out.
+  void_records_ += static_cast<std::uint64_t>(
+      std::count_if(records.begin(), records.end(),
+                    [](const VertexSplit& r) { return (r.flags & kAnyVoid) != 0; }));
   if (options_.max_error > 0.0) {
     // The records kept are those of the monotone predicate error > max_error: closed under
     // dependency.
@@ -156,6 +173,7 @@ nlohmann::json StoreOutput::position() const {
           {"chain", end.chain},
           {"records", records_},
           {"rank", max_rank_},
+          {"void_records", void_records_},
           // As bits: JSON knows no infinity.
           {"base_error", std::bit_cast<std::uint64_t>(base_error_)},
           {"base_deviation", std::bit_cast<std::uint64_t>(base_deviation_)}};
@@ -167,6 +185,7 @@ void StoreOutput::resume(const nlohmann::json& position) {
       frame_.heights);
   records_ = position.at("records").get<std::uint64_t>();
   max_rank_ = position.at("rank").get<std::uint16_t>();
+  void_records_ = position.at("void_records").get<std::uint64_t>();
   base_error_ = std::bit_cast<double>(position.at("base_error").get<std::uint64_t>());
   base_deviation_ = std::bit_cast<double>(position.at("base_deviation").get<std::uint64_t>());
 }
@@ -189,7 +208,7 @@ void StoreOutput::publish(const Tin& t0, const std::vector<std::string>& inputs,
       {"units", {{"horizontal", frame_.horizontal_unit}, {"height", frame_.vertical_unit}}},
       {"height_quantum", frame_.height_quantum},
       {"options", options_json(options_)},
-      {"source", source_json(inputs, report)}};
+      {"source", source_json(inputs, report, void_records_ > 0 || has_void(coarsest))}};
   writer_->publish(facts, coarsest,
                    metadata.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   report.records = records_;

@@ -49,6 +49,7 @@ class StoreOutput final : public SegmentOutput {
   double base_deviation_ = 0.0;
   std::uint64_t records_ = 0;
   std::uint16_t max_rank_ = 0;
+  std::uint64_t void_records_ = 0;  ///< Records that make a void triangle or vertex.
 };
 
 /// The options that decide the bytes of a file, as its metadata has them.

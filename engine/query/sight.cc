@@ -12,6 +12,7 @@
 #include "engine/query/certificate.h"
 #include "engine/query/fresnel_internal.h"
 #include "engine/query/sight_search_internal.h"
+#include "engine/query/voids.h"
 
 namespace ptin {
 
@@ -33,19 +34,6 @@ void check(const SightRequest& r) {
         "the tolerance is negative or not a number: expected a value >= 0 in the "
         "height's unit");
   }
-}
-
-/// Whether the full TIN may have void triangles: a vertex without height, a void triangle in T0, or
-/// a change of class that no tolerance allows.
-bool may_have_voids(const StoreFile& store) {
-  const CoarsestTin& t0 = store.t0();
-  return std::any_of(t0.vertices.begin(), t0.vertices.end(),
-                     [](const auto& v) { return v.has_height == 0; }) ||
-         std::any_of(t0.triangles.begin(), t0.triangles.end(),
-                     [](const auto& t) { return t.is_void != 0; }) ||
-         std::any_of(store.error_bins().begin(), store.error_bins().end(), [](const auto& bin) {
-           return bin.void_vertices > 0 || (std::isinf(bin.upper) && bin.records > 0);
-         });
 }
 
 /// The error that about `records` records exceed, by the file's table; infinite when none do.

@@ -20,7 +20,7 @@ struct SmallTerrain {
   std::unique_ptr<ProgressiveTin> terrain;
   Tin full;
 
-  /// A raster of whole heights: plateaus, steps, spikes, noise; sometimes with voids. Or points.
+  /// A raster of whole heights: plateaus, steps, spikes, noise; or points. Sometimes with voids.
   explicit SmallTerrain(std::uint64_t seed, double max_error = 0.0);
   ~SmallTerrain();
   SmallTerrain(const SmallTerrain&) = delete;
