@@ -5,6 +5,17 @@
 
 namespace ptin {
 
+void QueryCost::add_counts(const QueryCost& part) noexcept {
+  records_retrieved += part.records_retrieved;
+  records_examined += part.records_examined;
+  records_applied += part.records_applied;
+  io.index_nodes += part.io.index_nodes;
+  io.pages += part.io.pages;
+  io.bytes_read += part.io.bytes_read;
+  io.pages_verified += part.io.pages_verified;
+  io.ranges_announced += part.io.ranges_announced;
+}
+
 void QueryContext::throw_cancelled() const {
   throw Error(ErrorCode::cancelled, "the query was cancelled by its caller", file_);
 }

@@ -20,6 +20,9 @@ struct QueryCost {
   std::uint64_t records_applied = 0;   ///< Splits made.
   IoCounters io;
   double seconds = 0.0;
+
+  /// Adds what a part of the answer cost; `seconds` is the whole answer's, and left alone.
+  void add_counts(const QueryCost& part) noexcept;
 };
 
 /// The context of one query. Every step of it is handed the same one; nothing of it is shared

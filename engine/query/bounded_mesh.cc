@@ -26,12 +26,13 @@ std::vector<PageId> BoundedMesh::search(const AttributePredicate& predicate,
   return pages;
 }
 
-std::size_t BoundedMesh::refine(const AttributePredicate& predicate, QueryContext& context) {
-  return refine(search(predicate, context), predicate, context);
+std::size_t BoundedMesh::refine(const AttributePredicate& predicate, QueryContext& context,
+                                const AttributePredicate* beyond) {
+  return refine(search(predicate, context), predicate, context, beyond);
 }
 
 std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePredicate& predicate,
-                                QueryContext& context) {
+                                QueryContext& context, const AttributePredicate* beyond) {
   const StoreFile& store = terrain_.store();
   const HeightEncoding& heights = store.facts().heights;
   const std::uint64_t most = most_records(store, pages);
@@ -47,7 +48,9 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
     context.cost.records_retrieved += records_.size();
     for (const VertexSplit& r : records_) {
       const PendingSplit split = pending_of(r, page);
-      if (!detail_.keeps(split) || refinement_.find(split.u) != KeyTable::kAbsent) {
+      const bool is_wanted =
+          detail_.keeps(split) || (beyond != nullptr && beyond->holds(attributes_of(r, heights)));
+      if (!is_wanted || refinement_.find(split.u) != KeyTable::kAbsent) {
         continue;
       }
       splits_.push_back(split);

@@ -31,20 +31,23 @@ class BoundedMesh {
  public:
   explicit BoundedMesh(const ProgressiveTin& terrain)
       : BoundedMesh(terrain, Detail(terrain.store())) {}
-  /// @param detail  Records that it leaves out are never added.
+  /// @param detail  Records that it leaves out are not added, unless a question goes beyond it.
   BoundedMesh(const ProgressiveTin& terrain, const Detail& detail);
 
   [[nodiscard]] const Tin& tin() const noexcept { return refinement_.tin(); }
 
   /// Adds the records for which a monotone predicate is true and that are not there yet.
+  /// @param beyond  Monotone; records for which it is true come in although the detail leaves them
+  ///                out. None: null.
   /// @returns how many were added
   /// @throws Error resource_exhausted (before anything is read), corruption, cancelled, io_error;
   /// after an error the mesh must be thrown away
-  std::size_t refine(const AttributePredicate& predicate, QueryContext& context);
+  std::size_t refine(const AttributePredicate& predicate, QueryContext& context,
+                     const AttributePredicate* beyond = nullptr);
 
   /// As refine(), for pages that the caller searched with the same predicate.
   std::size_t refine(std::span<const PageId> pages, const AttributePredicate& predicate,
-                     QueryContext& context);
+                     QueryContext& context, const AttributePredicate* beyond = nullptr);
 
   /// Pages whose attributes satisfy the predicate.  @throws Error corruption
   [[nodiscard]] std::vector<PageId> search(const AttributePredicate& predicate,

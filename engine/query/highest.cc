@@ -6,13 +6,16 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <utility>
 
 #include "engine/error.h"
+#include "engine/query/above_error.h"
+#include "engine/query/detail.h"
+#include "engine/query/highest_gather_internal.h"
+#include "engine/query/locate.h"
 #include "engine/query/refinement.h"
-#include "engine/query/retrieval.h"
-#include "engine/query/walk.h"
-#include "storage/packed_rtree.h"
+#include "engine/query/spot.h"
+#include "engine/query/voids.h"
 
 namespace ptin {
 
@@ -20,110 +23,7 @@ namespace {
 
 constexpr std::size_t kStopInterval = 4096;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// A vertex that may be among the highest. `value` is its code, negated when the lowest are wanted.
-struct Candidate {
-  double value;
-  VertexKey key;
-};
-
-/// Gathers the best vertices and the records that reach above them.
-class Gatherer final : public BestFirstVisitor {
- public:
-  Gatherer(const ProgressiveTin& terrain, const HighestRequest& request,
-           const AttributePredicate& predicate, const GridRegion* window, QueryContext& context)
-      : store_(terrain.store()),
-        request_(request),
-        predicate_(predicate),
-        window_(window),
-        context_(context) {}
-
-  /// Vertices that are none of the surface's: found again, they do not count.
-  std::set<VertexKey> rejected;
-
-  void start() {
-    best_.clear();
-    splits_.clear();
-    bounds_.clear();
-    for (const CoarsestTin::V& v : store_.t0().vertices) {
-      if (v.has_height != 0) {
-        offer(v.position, v.height);
-      }
-    }
-  }
-
-  [[nodiscard]] double bound(const Attributes& a) const override {
-    if (!predicate_.holds(a) || is_empty(a.heights)) {
-      return -kInfinity;
-    }
-    return request_.lowest ? -a.heights.lo : a.heights.hi;
-  }
-
-  double visit(PageId page) override {
-    context_.check_stop();
-    records_.clear();
-    context_.cost.records_examined +=
-        store_.read_matching(page, predicate_, records_, context_.cost.io);
-    for (const VertexSplit& r : records_) {
-      if ((r.flags & VertexSplit::kVertexVoid) == 0) {
-        offer(r.u, r.height);
-      }
-      const double bound = this->bound(attributes_of(r, store_.facts().heights));
-      if (bound > cut_off()) {
-        splits_.push_back(pending_of(r, page));
-        bounds_.push_back(bound);
-      }
-    }
-    context_.admit(refinement_bytes(splits_.size()));
-    // The next larger number: pages that reach no higher than the last of the best are not needed.
-    return std::nextafter(cut_off(), kInfinity);
-  }
-
-  /// Nothing below or at this is wanted: the value of the last of the best.
-  [[nodiscard]] double cut_off() const noexcept {
-    return best_.size() == request_.vertices ? best_.back().value : -kInfinity;
-  }
-  [[nodiscard]] const std::vector<Candidate>& best() const noexcept { return best_; }
-
-  /// The records that reach above the cut-off, a set closed under dependency.
-  [[nodiscard]] std::vector<PendingSplit> take_splits() {
-    std::vector<PendingSplit> wanted;
-    for (std::size_t i = 0; i < splits_.size(); ++i) {
-      if (bounds_[i] > cut_off()) {
-        wanted.push_back(splits_[i]);
-      }
-    }
-    context_.cost.records_retrieved += wanted.size();
-    return wanted;
-  }
-
- private:
-  void offer(GridPoint p, HeightBits height) {
-    const double code = store_.facts().heights.code(height);
-    const Candidate c{request_.lowest ? -code : code, key_of(p)};
-    if (!(c.value > cut_off()) || (window_ != nullptr && !window_->meets(box_of(p))) ||
-        rejected.contains(c.key)) {
-      return;
-    }
-    const auto place =
-        std::upper_bound(best_.begin(), best_.end(), c,
-                         [](const Candidate& a, const Candidate& b) { return a.value > b.value; });
-    best_.insert(place, c);
-    if (best_.size() > request_.vertices) {
-      best_.pop_back();
-    }
-  }
-
-  const StoreFile& store_;
-  const HighestRequest& request_;
-  const AttributePredicate& predicate_;
-  const GridRegion* window_;
-  QueryContext& context_;
-  std::vector<Candidate> best_;  ///< Falling.
-  std::vector<PendingSplit> splits_;
-  std::vector<double> bounds_;  ///< Beside splits_.
-  std::vector<VertexSplit> records_;
-};
+constexpr std::size_t kFirstSpare = 16;  // vertices looked up beyond those asked for
 
 /// A rectangle on the grid, in real numbers.
 struct Rectangle {
@@ -179,38 +79,40 @@ class Search {
         facts_(store_.facts()),
         request_(request),
         context_(request.stop, request.memory_limit_bytes, store_.path()) {
-    if (request.vertices == 0) {
+    if (request.listed == 0) {
       throw Error(ErrorCode::invalid_argument, "no vertex is asked for: expected at least one");
     }
     if (request.window) {
       region_.emplace(*request.window, facts_.map);
-      predicate_ = meets_region(*request.window, facts_.map);
-    } else {
-      predicate_ = everything();
     }
   }
 
   HighestResult run() {
+    const Detail detail({request_.tolerance, request_.vertices}, {store_, terrain_.index()},
+                        context_);
     HighestResult result;
-    result.certified_error = facts_.base_error;
-    result.certified_deviation = facts_.base_deviation;
-    result.exact = facts_.base_error == 0;
+    result.certified_error = detail.certificate().error;
+    result.certified_deviation = detail.certificate().deviation;
+    result.exact = detail.is_exact(facts_);
     if (region_ && !region_->meets(facts_.bounds)) {
       result.state = HighestResult::State::kOutside;
+      result.cost = context_.cost;
       return result;
     }
-    Gatherer gatherer(terrain_, request_, *predicate_, region_ ? &*region_ : nullptr, context_);
-    do {
-      gatherer.start();
-      gather(gatherer);
-    } while (has_void_vertices() && reject_lone(gatherer));
-    for (const Candidate& c : gatherer.best()) {
+    const PredicatePtr predicate = predicate_of(detail);
+    HighGatherer gatherer(store_, *predicate, detail, region_ ? &*region_ : nullptr,
+                          request_.lowest, context_);
+    // At a level of detail a vertex may be of the surface later, and of none yet.
+    const bool any_rejected = detail.is_asked() || may_have_voids(store_);
+    const std::vector<HighCandidate> best =
+        any_rejected ? find_on_surface(gatherer) : find(gatherer, request_.listed);
+    for (const HighCandidate& c : best) {
       const GridPoint p = point_of(c.key);
       result.vertices.push_back(at(p.x, p.y, c.value));
     }
     Refinement refinement(terrain_.t0());
     refinement.apply(gatherer.take_splits(), context_);
-    find_point(refinement.tin(), gatherer.best(), result);
+    find_point(refinement.tin(), best, result);
     store_.pages().check_unchanged();
     result.cost = context_.cost;
     return result;
@@ -222,13 +124,31 @@ class Search {
             facts_.heights.height_of_code(request_.lowest ? -value : value)};
   }
 
-  void gather(Gatherer& gatherer) {
+  [[nodiscard]] PredicatePtr predicate_of(const Detail& detail) const {
+    std::vector<PredicatePtr> parts;
+    if (request_.window) {
+      parts.push_back(meets_region(*request_.window, facts_.map));
+    }
+    if (detail.is_asked()) {
+      parts.push_back(std::make_shared<AboveError>(detail.tolerance()));
+    }
+    return all_of(std::move(parts));
+  }
+
+  std::vector<HighCandidate> find(HighGatherer& gatherer, std::size_t wanted) {
+    gatherer.start(wanted);
     if (const auto* tree = dynamic_cast<const PackedRTree*>(&terrain_.index())) {
       tree->search_best_first(gatherer, context_.cost.io);
-      return;
+    } else {
+      search_in_order(gatherer);
     }
-    std::vector<PageId> pages;  // another index: the same order, after a whole search
-    terrain_.index().search(*predicate_, pages, context_.cost.io);
+    return gatherer.take_best();
+  }
+
+  /// With another index: the same order, after a whole search.
+  void search_in_order(HighGatherer& gatherer) {
+    std::vector<PageId> pages;
+    terrain_.index().search(*predicate_of_pages(), pages, context_.cost.io);
     std::vector<std::pair<double, PageId>> order;
     for (const PageId page : pages) {
       order.emplace_back(gatherer.bound(store_.page_info(page).attributes), page);
@@ -244,34 +164,53 @@ class Search {
     }
   }
 
-  [[nodiscard]] bool has_void_vertices() const {
-    const auto bins = store_.error_bins();
-    const auto& t0 = store_.t0().vertices;
-    return std::any_of(bins.begin(), bins.end(),
-                       [](const ErrorBin& b) { return b.void_vertices > 0; }) ||
-           std::any_of(t0.begin(), t0.end(),
-                       [](const CoarsestTin::V& v) { return v.has_height == 0; });
+  [[nodiscard]] PredicatePtr predicate_of_pages() const {
+    return request_.window ? meets_region(*request_.window, facts_.map) : everything();
   }
 
-  /// A sample whose neighbours are all void has a height, but no surface. Returns true when one was
-  /// among the best.
-  bool reject_lone(Gatherer& gatherer) {
-    std::vector<PredicatePtr> around;
-    for (const Candidate& c : gatherer.best()) {
-      const GridPoint p = point_of(c.key);
-      around.push_back(meets_region(facts_.map.to_map(p.x, p.y), facts_.map));
+  /// A vertex whose triangles are all void has a height, but no surface. Searches until enough are
+  /// left, each time with more to spare, and the best, above which records were gathered, is one
+  /// of them.
+  std::vector<HighCandidate> find_on_surface(HighGatherer& gatherer) {
+    std::unordered_set<VertexKey> confirmed;
+    std::size_t spare = 0;
+    while (true) {
+      std::vector<HighCandidate> best = find(gatherer, request_.listed + spare);
+      const bool are_all = best.size() < request_.listed + spare;
+      const VertexKey first = best.empty() ? kNoVertexKey : best.front().key;
+      look_up(best, confirmed, gatherer.rejected);
+      std::erase_if(best,
+                    [&](const HighCandidate& c) { return gatherer.rejected.contains(c.key); });
+      if ((are_all || best.size() >= request_.listed) && !gatherer.rejected.contains(first)) {
+        best.resize(std::min<std::size_t>(best.size(), request_.listed));
+        return best;
+      }
+      spare = std::max<std::size_t>(2 * spare, kFirstSpare);
     }
-    const RecordSource source{store_, terrain_.index()};
-    Refinement refinement(terrain_.t0());
-    refinement.apply(retrieve(source, *any_of(std::move(around)), 0, context_), context_);
-    bool any = false;
-    for (const Candidate& c : gatherer.best()) {
-      if (!touches_surface(refinement.tin(), refinement.find(c.key))) {
-        gatherer.rejected.insert(c.key);
-        any = true;
+  }
+
+  /// Sorts candidates that are in neither set into one of the two.
+  void look_up(const std::vector<HighCandidate>& best, std::unordered_set<VertexKey>& confirmed,
+               std::unordered_set<VertexKey>& rejected) {
+    std::vector<VertexKey> keys;
+    std::vector<MapPoint> points;
+    for (const HighCandidate& c : best) {
+      if (!confirmed.contains(c.key)) {
+        const GridPoint p = point_of(c.key);
+        keys.push_back(c.key);
+        points.push_back(facts_.map.to_map(p.x, p.y));
       }
     }
-    return any;
+    LocateRequest request;
+    request.tolerance = request_.tolerance;
+    request.vertices = request_.vertices;
+    request.memory_limit_bytes = request_.memory_limit_bytes;
+    request.stop = request_.stop;
+    const LocateResult located = locate(terrain_, points, request);
+    context_.cost.add_counts(located.cost);
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      (located.points[i].state == PointState::kSurface ? confirmed : rejected).insert(keys[i]);
+    }
   }
 
   [[nodiscard]] Rectangle rectangle() const {
@@ -286,7 +225,7 @@ class Search {
   }
 
   /// The highest vertex, or a point on the window's border above it.
-  void find_point(const Tin& tin, const std::vector<Candidate>& best, HighestResult& result) {
+  void find_point(const Tin& tin, const std::vector<HighCandidate>& best, HighestResult& result) {
     double most = best.empty() ? -kInfinity : best.front().value;
     if (!best.empty()) {
       result.point = result.vertices.front();
@@ -324,8 +263,14 @@ class Search {
       result.state = meets_domain() ? HighestResult::State::kVoid : HighestResult::State::kOutside;
       return;
     }
-    result.height_min = result.point.height - facts_.base_deviation;
-    result.height_max = result.point.height + facts_.base_deviation;
+    // Widened by the rounding of the height and of the sum.
+    const double deviation = result.certified_deviation;
+    const double rounding =
+        16 * std::numeric_limits<double>::epsilon() *
+        (std::abs(result.point.height) + std::abs(facts_.heights.offset) + deviation);
+    const double reach = deviation == 0 ? 0.0 : deviation + rounding;
+    result.height_min = result.point.height - reach;
+    result.height_max = result.point.height + reach;
   }
 
   /// Whether the window and some triangle of T0, which cover the domain, share a point. Exact, of
@@ -363,7 +308,6 @@ class Search {
   const HighestRequest& request_;
   QueryContext context_;
   std::optional<GridRegion> region_;
-  PredicatePtr predicate_;
 };
 
 }  // namespace

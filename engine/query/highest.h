@@ -16,7 +16,12 @@ namespace ptin {
 struct HighestRequest {
   std::optional<Window> window;  ///< Map units, closed. None: the whole terrain.
   bool lowest = false;           ///< The lowest instead; "highest" below then means that.
-  std::uint32_t vertices = 1;    ///< How many of the highest vertices, >= 1.
+  std::uint32_t listed = 1;      ///< How many of the highest vertices to list, >= 1.
+  /// Certified error asked for, in the height's unit, >= 0. None: exact.
+  std::optional<double> tolerance;
+  /// The highest of the TIN of the first so many vertices of the terrain (detail.h). Excludes
+  /// `tolerance`.
+  std::optional<std::uint64_t> vertices;
   std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
   std::stop_token stop;
 };
@@ -35,27 +40,29 @@ struct HighestResult {
   /// or on the window's border, where an edge crosses it or at its corner.
   HeightAt point;
   bool at_vertex = false;
-  /// The source's highest lies between, where its surface is the file's; equal when exact.
+  /// The source's highest lies between, where both are surface; equal when exact.
   double height_min = 0, height_max = 0;
-  /// The highest vertices in the window, falling; fewer when it holds fewer. Of equal ones those
-  /// that are found first: the same for the same file and request.
+  /// The highest vertices in the window that touch the surface, falling; fewer when it holds fewer.
+  /// Of equal ones those that are found first: the same for the same file and request.
   std::vector<HeightAt> vertices;
-  /// Of the file from its source, at samples and at any point: its own, since no record that
-  /// matters is left out. 0 when exact.
+  /// Of the TIN that was asked from the source, at samples and at any point. 0 when exact.
   double certified_error = 0, certified_deviation = 0;
-  bool exact = false;  ///< The file left nothing out.
+  bool exact = false;  ///< Nothing was left out, and the file's base error is 0.
   QueryCost cost;
 };
 
-/// Finds them. Always of the full TIN (best first, a tolerance would spare next to nothing):
-/// heights at vertices as stored; on the window's border interpolated, with the rounding of a few
-/// operations.
-/// @throws Error invalid_argument    the window is inverted or not finite; no vertex is asked for
+/// Finds them. Heights at vertices are as stored; on the window's border they are interpolated,
+/// with the rounding of a few operations.
+/// @throws Error invalid_argument    the window is inverted or not finite; no vertex is asked for;
+/// as
+///               Detail
 ///               resource_exhausted, corruption, io_error, cancelled
-/// Cost: the pages and nodes whose height interval reaches above the k-th highest vertex of the
-/// window: those around it, and coarse records that reach out to higher ground outside. With voids,
-/// a point location for each vertex besides. An index other than the packed R-tree reads the same
-/// pages after a search of all that meet the window.
+/// Cost: the pages and nodes whose height interval reaches above the last of the highest vertices:
+/// those around them, and coarse records that reach out to higher ground outside; n log n for n
+/// vertices. With voids, or at a level of detail, a point location (locate.h) for each vertex
+/// besides, in batches; of V vertices that touch no surface and are higher, in O(log V) searches.
+/// An index other than the packed R-tree reads the same pages after a search of all that meet the
+/// window. With `vertices` that of finding the last one is added (detail.h).
 [[nodiscard]] HighestResult highest(const ProgressiveTin& terrain, const HighestRequest& request);
 
 }  // namespace ptin

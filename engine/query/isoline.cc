@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/query/certificate.h"
+#include "engine/query/above_error.h"
+#include "engine/query/detail.h"
 #include "engine/query/isoline_clip.h"
 #include "engine/query/isoline_tiles.h"
 
@@ -29,14 +30,15 @@ class IsolineExtraction {
         request_(request),
         levels_(request.levels, store_.facts().heights),
         context_(request.stop, request.memory_limit_bytes, store_.path()),
+        detail_({request.tolerance, request.vertices}, {store_, terrain.index()}, context_),
         result_(PointStore(request.memory_limit_bytes / 8, request.temporary_folder)) {
     std::vector<PredicatePtr> parts{levels_.crossing()};
     if (request.window) {
       region_.emplace(*request.window, store_.facts().map);
       parts.push_back(meets_region(*request.window, store_.facts().map));
     }
-    if (request.tolerance) {
-      parts.push_back(error_above(*request.tolerance));
+    if (detail_.is_asked()) {
+      parts.push_back(std::make_shared<AboveError>(detail_.tolerance()));
     }
     predicate_ = all_of(std::move(parts));
   }
@@ -68,6 +70,7 @@ class IsolineExtraction {
   void trace() {
     const TileTraceRequest request{levels_,
                                    predicate_,
+                                   detail_,
                                    region_ ? &*region_ : nullptr,
                                    request_.memory_limit_bytes / 2,
                                    request_.memory_limit_bytes / 8 * 3,
@@ -136,11 +139,10 @@ class IsolineExtraction {
   }
 
   void finish() {
-    const Certificate certificate = certify_below(store_, request_.tolerance.value_or(-1.0));
     result_.levels_ = levels_.heights();
-    result_.certified_error = certificate.error;
-    result_.certified_deviation = certificate.deviation;
-    result_.exact = certificate.complete && store_.facts().base_error == 0;
+    result_.certified_error = detail_.certificate().error;
+    result_.certified_deviation = detail_.certificate().deviation;
+    result_.exact = detail_.is_exact(store_.facts());
     result_.cost = context_.cost;
   }
 
@@ -151,6 +153,7 @@ class IsolineExtraction {
   std::optional<GridRegion> region_;
   PredicatePtr predicate_;
   QueryContext context_;
+  Detail detail_;
   Isolines result_;
 };
 

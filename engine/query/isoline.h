@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Isolines of a terrain: joined polylines and rings (paper, section 5.2), at full detail or at a
-// certified error, of any size within a memory limit.
+// Isolines of a terrain: joined polylines and rings (paper, section 5.2), at full detail, at a
+// certified error or of the first vertices, of any size within a memory limit.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +23,9 @@ struct IsolineRequest {
   std::vector<double> levels;       ///< Height's unit; sorted, and repetitions dropped (levels.h).
   std::optional<Window> window;     ///< Map units; lines are cut at its border. None: everywhere.
   std::optional<double> tolerance;  ///< Certified error; none: the isolines of the full TIN.
+  /// The isolines of the TIN of the first so many vertices of the terrain (detail.h). Excludes
+  /// `tolerance`.
+  std::optional<std::uint64_t> vertices;
   std::uint64_t most_lines = 10'000'000;
   std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
   /// Where points go that do not fit the memory. Empty: nowhere, and the extraction fails then.
@@ -76,11 +79,12 @@ class Isolines {
 /// Extracts isolines. All levels share one refinement. The terrain is processed in tiles that fit
 /// the memory, known from the index before their pages are read; lines are joined exactly across
 /// them.
-/// @throws Error invalid_argument    levels, window or tolerance mean nothing
+/// @throws Error invalid_argument    levels, window or tolerance mean nothing; as Detail
 ///               resource_exhausted  more than most_lines lines, told before any is handed out; a
 ///               tile that cannot be made small enough; no room for points
 ///               corruption, io_error, cancelled
-/// Cost: records whose height interval holds a level; O(n log n) in the lines.
+/// Cost: records whose height interval holds a level; O(n log n) in the lines. With `vertices` that
+/// of finding the last one is added (detail.h).
 [[nodiscard]] Isolines isolines(const ProgressiveTin& terrain, const IsolineRequest& request);
 
 }  // namespace ptin

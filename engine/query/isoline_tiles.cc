@@ -195,6 +195,7 @@ class Worker {
     splits_.clear();
     splits_.reserve(records);
     read_pages(terrain_.store(), pages_, predicate, context_, splits_);
+    request_.detail.keep(splits_);
     refinement_.restart(terrain_.t0());
     refinement_.apply(splits_, context_);
   }
@@ -225,17 +226,6 @@ class Worker {
   std::vector<PendingSplit> splits_;
 };
 
-void add(QueryCost& sum, const QueryCost& c) {
-  sum.records_retrieved += c.records_retrieved;
-  sum.records_examined += c.records_examined;
-  sum.records_applied += c.records_applied;
-  sum.io.index_nodes += c.io.index_nodes;
-  sum.io.pages += c.io.pages;
-  sum.io.bytes_read += c.io.bytes_read;
-  sum.io.pages_verified += c.io.pages_verified;
-  sum.io.ranges_announced += c.io.ranges_announced;
-}
-
 /// As many as asked for, as long as each has room for a tile of a useful size.
 int threads_within(const TileTraceRequest& request, std::size_t t0_vertices) {
   const std::uint64_t useful = 2 * refinement_bytes(t0_vertices) + request.tile_bytes / 4;
@@ -265,7 +255,7 @@ TileTraces trace_tiles(const ProgressiveTin& terrain, const TileTraceRequest& re
   }
   queue.rethrow();
   for (const auto& worker : workers) {
-    add(cost, worker->cost());
+    cost.add_counts(worker->cost());
   }
   return collected.release();
 }

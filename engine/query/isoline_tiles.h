@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/query/accounting.h"
+#include "engine/query/detail.h"
 #include "engine/query/isoline_pieces.h"
 #include "engine/query/isoline_trace.h"
 #include "engine/query/levels.h"
@@ -18,7 +19,8 @@ namespace ptin {
 
 struct TileTraceRequest {
   const LevelSet& levels;
-  PredicatePtr predicate;      ///< Which records are needed; monotone.
+  PredicatePtr predicate;      ///< Which records are needed; monotone. With the detail's tolerance.
+  const Detail& detail;        ///< Records that it leaves out are dropped.
   const GridRegion* region;    ///< Triangles that meet it are traced; null: all.
   std::uint64_t memory_bytes;  ///< For the tiles in work, on all threads together.
   std::uint64_t piece_bytes;   ///< For the pieces, at kBytesAPiece.

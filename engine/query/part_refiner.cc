@@ -27,6 +27,7 @@ Detail detail_of(const PartRequest& request, const ProgressiveTin& terrain) {
 PredicatePtr wanted_by(const PartRequest& request, const Detail& detail, const StoreFacts& facts) {
   std::vector<PredicatePtr> parts = {std::make_shared<AboveError>(detail.tolerance())};
   if (request.region) parts.push_back(meets_region(*request.region, facts.map));
+  if (request.also) parts.push_back(request.also);
   return all_of(std::move(parts));
 }
 

@@ -21,6 +21,7 @@ struct PartRequest {
   std::optional<double> tolerance;  ///< As RefineRequest::tolerance.
   /// The TIN of the first so many vertices of the whole terrain (detail.h), whatever the region.
   std::optional<std::uint64_t> vertices;
+  PredicatePtr also;  ///< Any further monotone predicate; none: nothing further.
   std::uint64_t memory_limit_bytes = std::uint64_t{1} << 30;  ///< For one part, as a query's.
   std::stop_token stop;
 };

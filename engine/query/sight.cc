@@ -10,6 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/query/certificate.h"
+#include "engine/query/detail.h"
 #include "engine/query/fresnel_internal.h"
 #include "engine/query/sight_search_internal.h"
 #include "engine/query/voids.h"
@@ -28,11 +29,6 @@ void check(const SightRequest& r) {
   ptin::check(r.curvature);
   if (!(r.wavelength >= 0) || !std::isfinite(r.wavelength)) {
     throw_invalid("the wavelength is negative or not finite");
-  }
-  if (r.tolerance && !(*r.tolerance >= 0)) {
-    throw_invalid(
-        "the tolerance is negative or not a number: expected a value >= 0 in the "
-        "height's unit");
   }
 }
 
@@ -118,6 +114,7 @@ class SightSolver::Impl {
   SightFacts facts_;
   SpotMap map_;
   double step_ = 0.0;
+  Detail detail_;
   std::optional<BoundedMesh> base_;  ///< As it was built; not kept when it is T0.
   std::optional<BoundedMesh> mesh_;
   std::size_t base_vertices_ = 0;
@@ -129,11 +126,16 @@ SightSolver::Impl::Impl(const ProgressiveTin& terrain, SightRequest request,
     : terrain_(terrain),
       request_(std::move(request)),
       store_facts_(terrain.store().facts()),
-      map_(store_facts_.map, store_facts_.bounds) {
+      map_(store_facts_.map, store_facts_.bounds),
+      detail_(terrain.store()) {
   check(request_);
   const StoreFile& store = terrain.store();
+  QueryContext context(request_.stop, request_.memory_limit_bytes, store.path());
+  detail_ = Detail({request_.tolerance, request_.vertices}, {store, terrain.index()}, context);
+  facts_.tolerance = detail_.tolerance();
+  facts_.is_level_asked = detail_.is_asked();
   facts_.heights = store_facts_.heights;
-  const Certificate finest = certify_below(store, request_.tolerance.value_or(-1.0));
+  const Certificate finest = detail_.certificate();
   facts_.file_deviation = store_facts_.base_deviation;
   facts_.finest_deviation = finest.deviation;
   facts_.max_height = store_facts_.max_height;
@@ -146,17 +148,15 @@ SightSolver::Impl::Impl(const ProgressiveTin& terrain, SightRequest request,
   step_ =
       std::max(range / 4096,
                store_facts_.heights.type == HeightType::int32 ? store_facts_.heights.step : 0.0);
-  base_.emplace(terrain);
+  base_.emplace(terrain, detail_);
   if (base_records > 0) {
     facts_.base_deviation = error_of_first(store, base_records);
-    QueryContext context(request_.stop, request_.memory_limit_bytes, store.path());
-    base_->refine(DeviationAbove(facts_.base_deviation, request_.tolerance.value_or(-1.0)),
-                  context);
-    base_cost = context.cost;
-    if (request_.tolerance) {
+    base_->refine(DeviationAbove(facts_.base_deviation, facts_.tolerance), context);
+    if (detail_.is_asked()) {
       facts_.base_deviation = std::max(facts_.base_deviation, facts_.finest_deviation);
     }
   }
+  base_cost = context.cost;
   base_vertices_ = base_->tin().vertices.size();
   mesh_.emplace(*base_);
 }
@@ -399,7 +399,10 @@ SightResult SightSolver::solve(const SightPair& pair) { return impl_->solve(pair
 
 SightResult sight(const ProgressiveTin& terrain, const SightPair& pair,
                   const SightRequest& request) {
-  return SightSolver(terrain, request, 0).solve(pair);
+  SightSolver solver(terrain, request, 0);
+  SightResult result = solver.solve(pair);
+  result.cost.add_counts(solver.base_cost());
+  return result;
 }
 
 }  // namespace ptin

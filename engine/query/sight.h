@@ -33,6 +33,9 @@ struct SightRequest {
   /// Leave out records of error at or below this (height's unit), but not below the ends, nor at a
   /// point that hides the line unless it is a void; none: exact.
   std::optional<double> tolerance;
+  /// Leave out, with the same exceptions, what is not among the first so many vertices of the
+  /// terrain (detail.h). Excludes `tolerance`.
+  std::optional<std::uint64_t> vertices;
   /// Stop once this many records were retrieved for one pair: looked at before each step, so that
   /// the last one may overrun it.
   std::optional<std::uint64_t> budget;
@@ -94,14 +97,15 @@ class SightSolver {
   /// @param terrain       Borrowed for the life of the solver.
   /// @param base_records  Records of the coarse mesh: more decides more lines without reading, but
   ///                      each walks farther. 0: none, best for one pair.
-  /// @throws Error invalid_argument, resource_exhausted, corruption, io_error, cancelled
+  /// @throws Error invalid_argument (as Detail too), resource_exhausted, corruption, io_error,
+  /// cancelled
   SightSolver(const ProgressiveTin& terrain, SightRequest request,
               std::uint64_t base_records = std::uint64_t{1} << 15);
   ~SightSolver();
   SightSolver(SightSolver&&) noexcept;
   SightSolver& operator=(SightSolver&&) noexcept;
 
-  /// Cost of the coarse mesh; not part of any result's.
+  /// Cost of the coarse mesh, and of finding the last of `vertices`; not part of any result's.
   [[nodiscard]] const QueryCost& base_cost() const noexcept;
 
   /// @throws Error invalid_argument (a number is not finite, a position more than 2^31 grid units
@@ -113,7 +117,7 @@ class SightSolver {
   std::unique_ptr<Impl> impl_;
 };
 
-/// One pair.  @throws Error as SightSolver
+/// One pair; its cost is all of it.  @throws Error as SightSolver
 [[nodiscard]] SightResult sight(const ProgressiveTin& terrain, const SightPair& pair,
                                 const SightRequest& request = {});
 

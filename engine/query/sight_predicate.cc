@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "engine/query/sight_predicate_internal.h"
@@ -55,6 +56,13 @@ bool SightPredicate::holds(const Attributes& a) const noexcept {
     }
   }
   return false;
+}
+
+SightPredicate SightPredicate::beyond() const {
+  std::vector<Stretch> stretches;
+  std::copy_if(stretches_.begin(), stretches_.end(), std::back_inserter(stretches),
+               [](const Stretch& s) { return s.beyond; });
+  return {p_, q_, std::move(stretches), end_deviation_, tolerance_};
 }
 
 /// The corners of the box do not all lie strictly on one side of the line through p and q.

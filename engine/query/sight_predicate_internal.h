@@ -29,6 +29,9 @@ class SightPredicate final : public AttributePredicate {
 
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override;
 
+  /// What it wants whatever the level of detail: at the ends, and of stretches that say so.
+  [[nodiscard]] SightPredicate beyond() const;
+
  private:
   [[nodiscard]] bool meets_line(const GridBox& b) const noexcept;
 

@@ -96,11 +96,11 @@ void SightSearch::refine(std::vector<Stretch> stretches, double end_deviation, d
   for (const Stretch& s : stretches) {
     view_.known.push_back({s.from, s.to, s.deviation,
                            std::isinf(s.lowest_code) ? kInfinity : margin,
-                           s.beyond || !request_.tolerance});
+                           s.beyond || !facts_.is_level_asked});
   }
-  const SightPredicate wanted(p_, q_, std::move(stretches), ends,
-                              request_.tolerance.value_or(-1.0));
-  mesh_.refine(wanted, context_);
+  const SightPredicate wanted(p_, q_, std::move(stretches), ends, facts_.tolerance);
+  const SightPredicate beyond = wanted.beyond();
+  mesh_.refine(wanted, context_, facts_.is_level_asked ? &beyond : nullptr);
   if (asks_ends) {
     for (SightEnd* end : {&view_.a, &view_.b}) {
       end->deviation = std::min(end->deviation, ends);

@@ -50,6 +50,8 @@ struct SightFacts {
   double finest_deviation = 0.0;  ///< Of what is final: the file's, or that of the tolerance.
   double base_deviation = 0.0;    ///< Of the coarse mesh; applied everywhere.
   double max_height = 0.0;        ///< Of the whole terrain.
+  double tolerance = -1.0;        ///< Of the level of detail; negative: all records.
+  bool is_level_asked = false;    ///< Else there is nothing beyond it.
   bool has_voids = false;
   bool final_settles = true;  ///< Where the mesh is final, its voids are those of the source.
   bool exact_settles = true;  ///< Where it is exact, they are.

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
 #include "storage/spatialindex_rtree.h"
+#include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin {
@@ -28,14 +30,14 @@ struct Brute {
 
 /// The largest value of a linear function on a triangle within a rectangle lies at a corner, at a
 /// corner of the rectangle, or where their sides cross: all are tried.
-Brute brute_force(const Hierarchy& h, const Window& w, double sign) {
+Brute brute_force(const Tin& tin, const StoreFacts& facts, const Window& w, double sign) {
   Brute b;
-  std::vector<std::uint8_t> seen(h.full.vertices.size());
+  std::vector<std::uint8_t> seen(tin.vertices.size());
   const auto inside = [&](MapPoint p) {
     return w.min_x <= p.x && p.x <= w.max_x && w.min_y <= p.y && p.y <= w.max_y;
   };
-  for (TriangleId t = 0; t < h.full.triangles.size(); ++t) {
-    const bool surface = h.full.classes[t] == TriangleClass::kSurface;
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    const bool surface = tin.classes[t] == TriangleClass::kSurface;
     const auto reach = [&](double value) {
       b.domain = true;
       if (surface) b.most = std::max(b.most, value);
@@ -43,9 +45,9 @@ Brute brute_force(const Hierarchy& h, const Window& w, double sign) {
     MapPoint p[3];
     double z[3];
     for (int i = 0; i < 3; ++i) {
-      const VertexId v = h.full.triangles[t].v[i];
-      p[i] = h.facts.map.to_map(h.full.position(v).x, h.full.position(v).y);
-      z[i] = sign * h.facts.heights.height(h.full.vertices[v].height);
+      const VertexId v = tin.triangles[t].v[i];
+      p[i] = facts.map.to_map(tin.position(v).x, tin.position(v).y);
+      z[i] = sign * facts.heights.height(tin.vertices[v].height);
       if (inside(p[i])) {
         reach(z[i]);
         if (surface && seen[v] == 0) b.vertices.push_back(z[i]);
@@ -94,6 +96,31 @@ Window window_in(std::mt19937_64& random, const StoreFacts& facts) {
   return {std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x), std::max(p.y, q.y)};
 }
 
+/// Against all triangles of `tin`, which is what the request asks for.
+void check(const HighestResult& got, const HighestRequest& request, const Tin& tin,
+           const StoreFacts& facts) {
+  const double sign = request.lowest ? -1.0 : 1.0;
+  const Window& w = *request.window;
+  const Brute wanted = brute_force(tin, facts, w, sign);
+  RC_ASSERT(got.vertices.size() == std::min<std::size_t>(request.listed, wanted.vertices.size()));
+  for (std::size_t k = 0; k < got.vertices.size(); ++k) {
+    RC_ASSERT(sign * got.vertices[k].height == wanted.vertices[k]);
+  }
+  if (std::isinf(wanted.most)) {
+    RC_ASSERT(got.state ==
+              (wanted.domain ? HighestResult::State::kVoid : HighestResult::State::kOutside));
+    return;
+  }
+  RC_ASSERT(got.height_min <= got.point.height);
+  RC_ASSERT(got.point.height <= got.height_max);
+  RC_ASSERT(got.state == HighestResult::State::kSurface);
+  RC_ASSERT(std::abs(sign * got.point.height - wanted.most) <= 1e-9);
+  const MapPoint p = got.point.position;
+  RC_ASSERT((w.min_x - 1e-9 <= p.x && p.x <= w.max_x + 1e-9));
+  RC_ASSERT((w.min_y - 1e-9 <= p.y && p.y <= w.max_y + 1e-9));
+  if (got.at_vertex) RC_ASSERT(got.point.height == got.vertices.front().height);
+}
+
 RC_GTEST_PROP(Highest, IsThatOfAllTriangles, (std::uint64_t seed)) {
   const Hierarchy h = reference::random_hierarchy(seed);
   const TemporaryStore file(h);
@@ -103,31 +130,121 @@ RC_GTEST_PROP(Highest, IsThatOfAllTriangles, (std::uint64_t seed)) {
     HighestRequest request;
     request.window = window_in(random, h.facts);
     request.lowest = random() % 2 == 0;
-    request.vertices = 1 + static_cast<std::uint32_t>(random() % 5);
-    const double sign = request.lowest ? -1.0 : 1.0;
-    const Brute wanted = brute_force(h, *request.window, sign);
-    const HighestResult got = highest(terrain, request);
-    if (std::isinf(wanted.most)) {
-      RC_ASSERT(got.state ==
-                (wanted.domain ? HighestResult::State::kVoid : HighestResult::State::kOutside));
-      RC_ASSERT(got.vertices.empty());
-      continue;
-    }
-    RC_ASSERT(got.height_min <= got.point.height);
-    RC_ASSERT(got.point.height <= got.height_max);
-    RC_ASSERT(got.state == HighestResult::State::kSurface);
-    RC_ASSERT(std::abs(sign * got.point.height - wanted.most) <= 1e-9);
-    const MapPoint p = got.point.position;
-    const Window& w = *request.window;
-    RC_ASSERT((w.min_x - 1e-9 <= p.x && p.x <= w.max_x + 1e-9));
-    RC_ASSERT((w.min_y - 1e-9 <= p.y && p.y <= w.max_y + 1e-9));
-    RC_ASSERT(got.vertices.size() ==
-              std::min<std::size_t>(request.vertices, wanted.vertices.size()));
-    for (std::size_t k = 0; k < got.vertices.size(); ++k) {
-      RC_ASSERT(sign * got.vertices[k].height == wanted.vertices[k]);
-    }
-    if (got.at_vertex) RC_ASSERT(got.point.height == got.vertices.front().height);
+    request.listed = 1 + static_cast<std::uint32_t>(random() % 5);
+    check(highest(terrain, request), request, h.full, h.facts);
   }
+}
+
+RC_GTEST_PROP(Highest, AtALevelOfDetailIsThatOfItsTriangles, (std::uint64_t seed)) {
+  const Hierarchy h = reference::random_hierarchy(seed);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 6; ++i) {
+    RefineRequest level;
+    HighestRequest request;
+    if (random() % 2 == 0) {
+      request.tolerance = level.tolerance = double(random() % 1000) / 100;
+    } else {
+      request.vertices = level.vertices = h.t0.vertices.size() + random() % (h.records.size() + 3);
+    }
+    request.window = window_in(random, h.facts);
+    request.lowest = random() % 2 == 0;
+    request.listed = 1 + static_cast<std::uint32_t>(random() % 20);
+    const RefinedTin refined = terrain.refine(level);
+    const HighestResult got = highest(terrain, request);
+    check(got, request, refined.tin, h.facts);
+    // Of a number of vertices up to the end of a bin of errors.
+    RC_ASSERT(got.certified_error >= refined.certified_error);
+    RC_ASSERT(got.certified_deviation >= refined.certified_deviation);
+    RC_ASSERT(got.exact == refined.exact);
+  }
+}
+
+TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& facts = terrain.store().facts();
+  const Tin full = terrain.refine({}).tin;
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 40; ++i) {
+    HighestRequest request;
+    request.window = window_in(random, facts);
+    request.lowest = i % 2 == 0;
+    if (i % 3 == 0) {
+      request.vertices = 100 + random() % 20000;
+    } else {
+      request.tolerance = double(random() % 4000) / 100;
+    }
+    const HighestResult got = highest(terrain, request);
+    if (got.state != HighestResult::State::kSurface) continue;
+    const double sign = request.lowest ? -1.0 : 1.0;
+    const double truth = sign * brute_force(full, facts, *request.window, sign).most;
+    EXPECT_LE(got.height_min, truth);
+    EXPECT_GE(got.height_max, truth);
+    EXPECT_EQ(got.height_max - got.height_min > 0, got.certified_deviation > 0);
+  }
+}
+
+/// A grid in which single samples, cut off from all others by voids, are the highest.
+Hierarchy hierarchy_with_lone_samples(std::mt19937_64& random, int side) {
+  Tin full = reference::random_grid(random, side, side, 4, 0.15);
+  std::vector<std::uint8_t> on_surface(full.vertices.size());
+  std::vector<std::uint8_t> lone(full.vertices.size());
+  const auto corners = [&](TriangleId t) { return std::span(full.triangles[t].v, 3); };
+  for (VertexId v = 0; v < lone.size(); ++v)
+    lone[v] = random() % 12 == 0 && full.has_height[v] != 0;
+  for (TriangleId t = 0; t < full.triangles.size(); ++t) {
+    for (const VertexId v : corners(t)) {
+      if (lone[v] != 0) full.classes[t] = TriangleClass::kVoid;
+    }
+  }
+  for (TriangleId t = 0; t < full.triangles.size(); ++t) {
+    for (const VertexId v : corners(t)) {
+      if (full.classes[t] == TriangleClass::kSurface) on_surface[v] = 1;
+    }
+  }
+  for (VertexId v = 0; v < lone.size(); ++v) {
+    if (full.has_height[v] != 0 && on_surface[v] == 0) {
+      full.vertices[v].height += 1000000;  // of codes: above all others
+    }
+  }
+  reference::Options options;
+  options.measured = false;
+  return reference::simplify(std::move(full), random, options);
+}
+
+TEST(Highest, ListsAnyNumberOfVerticesOverVoids) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    std::mt19937_64 random(seed);
+    const Hierarchy h = hierarchy_with_lone_samples(random, 40);
+    const TemporaryStore file(h);
+    const ProgressiveTin terrain(file.open());
+    HighestRequest request;
+    request.window = Window{-1e9, -1e9, 1e9, 1e9};
+    for (const std::uint32_t listed : {1, 2, 3, 7, 30, 31, 100, 500, 1000, 1400, 1600, 100000}) {
+      for (const bool lowest : {false, true}) {
+        request.listed = listed;
+        request.lowest = lowest;
+        check(highest(terrain, request), request, h.full, h.facts);
+      }
+    }
+  }
+}
+
+TEST(Highest, TakesStepsInProportionToTheVerticesListedOverVoids) {
+  std::mt19937_64 random(9);
+  reference::Options options;
+  options.measured = false;
+  const Hierarchy h =
+      reference::simplify(reference::random_grid(random, 90, 90, 4, 0.05), random, options);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  HighestRequest request;
+  request.listed = 8000;
+  const QueryCost cost = highest(terrain, request).cost;
+  // Each record is looked at by the search, and once by a batch of points.
+  EXPECT_LE(cost.records_examined, 3 * h.records.size());
+  EXPECT_LE(cost.records_applied, 2 * h.records.size());
 }
 
 TEST(Highest, OfALargeTerrainReadsFewPagesOfIt) {
@@ -154,9 +271,15 @@ TEST(Highest, RefusesWhatMeansNothing) {
   const TemporaryStore file(h);
   const ProgressiveTin terrain(file.open());
   HighestRequest request;
-  request.vertices = 0;
+  request.listed = 0;
   EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
-  request.vertices = 1;
+  request.listed = 1;
+  request.tolerance = -1;
+  EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
+  request.tolerance = 1;
+  request.vertices = 100;
+  EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
+  request.vertices.reset();
   request.window = Window{1, 0, 0, 1};
   EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
 }

@@ -42,8 +42,9 @@ std::pair<std::vector<std::vector<MapPoint>>, std::uint64_t> traced(
     const Terrain& terrain, int threads, std::uint64_t tile_bytes,
     std::uint64_t piece_bytes = 64 << 20) {
   const LevelSet levels(terrain.levels(), terrain.hierarchy.facts.heights);
-  const TileTraceRequest request{levels,      levels.crossing(), nullptr, 256 << 20,
-                                 piece_bytes, threads,           {},      tile_bytes};
+  const Detail detail(terrain.tin.store());
+  const TileTraceRequest request{levels,      levels.crossing(), detail, nullptr,   256 << 20,
+                                 piece_bytes, threads,           {},     tile_bytes};
   PointStore points(64 << 20, {});
   QueryCost cost;
   const TileTraces traces = trace_tiles(terrain.tin, request, points, cost);

@@ -163,20 +163,31 @@ RC_GTEST_PROP(Isolines, EndOnlyWhereTheSurfaceEnds, (std::uint64_t seed)) {
   }
 }
 
-RC_GTEST_PROP(Isolines, AtAnErrorAreThoseOfTheTinAtThatError, (std::uint64_t seed)) {
+RC_GTEST_PROP(Isolines, AtALevelOfDetailAreThoseOfItsTin, (std::uint64_t seed)) {
   const Hierarchy h = reference::random_hierarchy(seed);
   RC_PRE(!h.records.empty());
   const TemporaryStore file(h);
   const ProgressiveTin terrain(file.open());
   std::mt19937_64 random(seed);
   RefineRequest whole;
-  whole.tolerance = h.records[random() % h.records.size()].error * (random() % 2 == 0 ? 1.0 : 0.5);
+  if (random() % 2 == 0) {
+    whole.tolerance =
+        h.records[random() % h.records.size()].error * (random() % 2 == 0 ? 1.0 : 0.5);
+  } else {
+    whole.vertices = h.t0.vertices.size() + random() % (h.records.size() + 2);
+  }
   IsolineRequest request;
   request.levels = random_levels(random, h, 3);
   request.tolerance = whole.tolerance;
+  request.vertices = whole.vertices;
   const Isolines lines = isolines(terrain, request);
-  RC_ASSERT(pieces_of(lines) == brute_force(terrain.refine(whole).tin, h.facts, request.levels));
-  RC_ASSERT(lines.certified_error <= *whole.tolerance);
+  const RefinedTin refined = terrain.refine(whole);
+  RC_ASSERT(pieces_of(lines) == brute_force(refined.tin, h.facts, request.levels));
+  // Of a number of vertices up to the end of a bin of errors.
+  RC_ASSERT(lines.certified_error >= refined.certified_error);
+  RC_ASSERT(lines.certified_deviation >= refined.certified_deviation);
+  RC_ASSERT(lines.exact == refined.exact);
+  if (whole.tolerance) RC_ASSERT(lines.certified_error <= *whole.tolerance);
 }
 
 RC_GTEST_PROP(Isolines, OfAWindowAreThoseOfTheTerrainCut, (std::uint64_t seed)) {

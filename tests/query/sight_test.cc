@@ -151,10 +151,14 @@ RC_GTEST_PROP(Sight, IsNeverWrongWhenItStopsEarly, (std::uint64_t seed)) {
                                        asked.pair.height_b, asked.request.absolute, asked.bend);
     asked.request.verdict_only = random() % 2 == 0;
     asked.request.wavelength = random() % 3 == 0 ? 1.0 : 0.0;
-    if (random() % 2 == 0) {
+    const bool is_level = random() % 2 == 0;
+    if (is_level && random() % 2 == 0) {
       asked.request.tolerance = static_cast<double>(random() % 8);
+    } else if (is_level) {
+      const StoreFile& store = t.terrain->store();
+      asked.request.vertices = store.t0().vertices.size() + random() % (store.record_count() + 2);
     }
-    if (!asked.request.tolerance || random() % 3 == 0) {
+    if (!is_level || random() % 3 == 0) {
       asked.request.budget = random() % 60;
     }
     const SightResult found = sight(*t.terrain, asked.pair, asked.request);
@@ -169,6 +173,19 @@ RC_GTEST_PROP(Sight, IsNeverWrongWhenItStopsEarly, (std::uint64_t seed)) {
 }
 
 /// The truth is that of a file that holds everything.
+RC_GTEST_PROP(Sight, OfAllVerticesIsExact, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const SmallTerrain t(seed);
+  Asked asked = random_question(random, t);
+  const SightResult exact = sight(*t.terrain, asked.pair, asked.request);
+  asked.request.vertices = std::uint64_t{1} << 40;
+  const SightResult all = sight(*t.terrain, asked.pair, asked.request);
+  RC_ASSERT(all.verdict == exact.verdict);
+  RC_ASSERT(all.exact == exact.exact);
+  RC_ASSERT(all.clearance_at.has_value() == exact.clearance_at.has_value());
+  if (all.clearance_at) RC_ASSERT(all.clearance_min == exact.clearance_min);
+}
+
 RC_GTEST_PROP(Sight, IsNeverWrongOfAFileThatIsNotExact, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const SmallTerrain t(seed);

@@ -18,8 +18,10 @@ namespace {
 struct HighestOptions {
   TerrainOptions terrain;
   RegionOptions region;
+  DetailOptions detail;
   bool lowest = false;
-  std::uint32_t vertices = 1;
+  std::uint32_t listed = 1;
+  std::string memory;
 };
 
 const char* state_name(HighestResult::State state) {
@@ -56,6 +58,7 @@ void print_text(const HighestResult& result, const HighestOptions& options) {
 }
 
 int run_highest(const HighestOptions& options, const Context& context) {
+  check_detail(options.detail);
   const ProgressiveTin terrain = open_terrain(options.terrain);
   const CrsFacts crs = crs_facts(terrain.store());
   HighestRequest request;
@@ -63,7 +66,10 @@ int run_highest(const HighestOptions& options, const Context& context) {
     request.window = std::get<Window>(*region);
   }
   request.lowest = options.lowest;
-  request.vertices = options.vertices;
+  request.listed = options.listed;
+  request.tolerance = options.detail.error;
+  request.vertices = options.detail.vertices;
+  request.memory_limit_bytes = memory_limit_of(options.memory);
   request.stop = context.stop;
   const HighestResult result = highest(terrain, request);
   if (!context.json) {
@@ -97,10 +103,15 @@ Action declare_highest(CLI::App& app, Context& context) {
   add_terrain_options(app, options->terrain, true);
   add_region_options(app, options->region, true);
   app.add_flag("--lowest", options->lowest, "The lowest point instead");
-  app.add_option("-k", options->vertices, "How many of the highest vertices to list")
+  app.add_option("-k", options->listed, "How many of the highest vertices to list")
       ->type_name("K")
       ->check(CLI::Range(1U, 1000000U))
       ->capture_default_str();
+  add_detail_options(
+      app, options->detail, "; the height comes with an interval",
+      "The highest of the TIN of the terrain's N most important vertices; its height "
+      "comes with an interval");
+  add_memory_option(app, options->memory);
   add_common_options(app, context, false);
   return [options, &context] { return run_highest(*options, context); };
 }

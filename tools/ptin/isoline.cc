@@ -12,8 +12,8 @@
 
 #include <ogr_geometry.h>
 
-#include "engine/query/certificate.h"
 #include "engine/query/isoline_bands.h"
+#include "engine/query/part_refiner.h"
 #include "tools/error_status.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output_file.h"
@@ -35,7 +35,7 @@ struct IsolineOptions {
   std::vector<double> levels;
   std::optional<double> interval;
   double base = 0.0;
-  std::optional<double> error;
+  DetailOptions detail;
   bool z = false;
   bool polygons = false;
   std::uint64_t max_lines = IsolineRequest{}.most_lines;
@@ -49,9 +49,7 @@ void check_options(const IsolineOptions& options, const Context& context) {
     throw Error(ErrorCode::invalid_argument,
                 "the levels are given by --level H... or by --interval D; give one of them");
   }
-  if (options.error && !(*options.error >= 0)) {
-    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
-  }
+  check_detail(options.detail);
   static_cast<void>(vector_format_of(options.output));
   if (options.output != "-") {
     check_output(options.output, options.overwrite);
@@ -125,14 +123,14 @@ bool has_straight_border(const StoreFile& store) {
 
 RefinedTin refine_for_bands(const IsolineRequest& request, const LevelSet& levels,
                             const ProgressiveTin& terrain) {
-  const PredicatePtr crossing = levels.crossing();
-  RefineRequest refine;
-  if (request.window) refine.region = *request.window;
-  refine.tolerance = request.tolerance;
-  refine.memory_limit_bytes = request.memory_limit_bytes / 2;
-  refine.stop = request.stop;
-  if (has_straight_border(terrain.store())) refine.also = crossing.get();
-  return terrain.refine(refine);
+  PartRequest part;
+  if (request.window) part.region = *request.window;
+  part.tolerance = request.tolerance;
+  part.vertices = request.vertices;
+  part.memory_limit_bytes = request.memory_limit_bytes / 2;
+  part.stop = request.stop;
+  if (has_straight_border(terrain.store())) part.also = levels.crossing();
+  return PartRefiner(terrain, part).refine(terrain.store().facts().bounds);
 }
 
 std::unique_ptr<OGRGeometry> polygon_geometry(const BandPolygon& polygon) {
@@ -201,15 +199,14 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
                 options.terrain.file);
   }
   const std::uint64_t features = write_bands(polygons, levels, facts, options, crs.wkt);
-  const Certificate certificate = certify_below(terrain.store(), request.tolerance.value_or(-1.0));
   if (context.json) {
     print_json({{"output", options.output},
                 {"levels", levels.heights()},
                 {"features", features},
                 {"polygons", polygons.size()},
-                {"certified_error", certificate.error},
-                {"certified_deviation", certificate.deviation},
-                {"exact", certificate.complete && facts.base_error == 0},
+                {"certified_error", refined.certified_error},
+                {"certified_deviation", refined.certified_deviation},
+                {"exact", refined.exact},
                 {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
                 {"cost", cost_json(refined.cost)}});
   } else if (!context.quiet && options.output != "-") {
@@ -235,7 +232,8 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   if (const auto region = region_of(options.region, crs.wkt)) {
     request.window = std::get<Window>(*region);
   }
-  request.tolerance = options.error;
+  request.tolerance = options.detail.error;
+  request.vertices = options.detail.vertices;
   request.most_lines = options.max_lines;
   if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
   request.temporary_folder = folder_for_temporaries(options);
@@ -262,8 +260,8 @@ Action declare_isoline(CLI::App& app, Context& context) {
       ->type_name("B")
       ->needs(interval);
   add_region_options(app, options->region, true);
-  app.add_option("--error", options->error, "Certified error allowed, in the height's unit")
-      ->type_name("E");
+  add_detail_options(app, options->detail, "",
+                     "The isolines of the TIN of the terrain's N most important vertices");
   auto* z = app.add_flag("--3d", options->z, "Points carry the height of their line");
   app.add_flag("-p,--polygons", options->polygons,
                "Polygons between the levels, with elev_min and elev_max, instead of lines")

@@ -16,6 +16,7 @@
 #include "tools/ptin/ground.h"
 #include "tools/ptin/number_rows.h"
 #include "tools/ptin/query_options.h"
+#include "tools/standard_output.h"
 
 namespace ptin::tools {
 
@@ -32,8 +33,9 @@ struct SightOptions {
   bool verdict_only = false;
   double curvature = Curvature{}.coefficient;
   double frequency = 0.0;
-  std::optional<double> error;
+  DetailOptions detail;
   std::optional<std::uint64_t> budget;
+  std::string memory;
 };
 
 std::vector<SightPair> pairs_of(const SightOptions& options) {
@@ -60,7 +62,9 @@ SightRequest request_of(const SightOptions& options, const Ground& ground, const
   if (options.frequency > 0) {
     request.wavelength = kSpeedOfLight / options.frequency / ground.metres_per_height;
   }
-  request.tolerance = options.error;
+  request.tolerance = options.detail.error;
+  request.vertices = options.detail.vertices;
+  request.memory_limit_bytes = memory_limit_of(options.memory);
   request.budget = options.budget;
   request.verdict_only = options.verdict_only;
   request.stop = context.stop;
@@ -116,6 +120,7 @@ void append_row(std::string& text, const SightResult& r) {
 }
 
 int run_sight(const SightOptions& options, const Context& context) {
+  check_detail(options.detail);
   const std::vector<SightPair> pairs = pairs_of(options);
   const ProgressiveTin terrain = open_terrain(options.terrain);
   const CrsFacts crs = crs_facts(terrain.store());
@@ -126,7 +131,8 @@ int run_sight(const SightOptions& options, const Context& context) {
       "verdict,length,obstruction_x,obstruction_y,obstruction_distance,clearance_min,"
       "clearance_max,clearance_distance,void_length,fresnel_ratio\n";
   for (const SightPair& pair : pairs) {
-    const SightResult result = solver.solve(pair);
+    SightResult result = solver.solve(pair);
+    if (options.pairs.empty()) result.cost.add_counts(solver.base_cost());
     if (context.json) {
       answers.push_back(json_of(result));
     } else {
@@ -134,7 +140,7 @@ int run_sight(const SightOptions& options, const Context& context) {
     }
   }
   if (!context.json) {
-    std::fwrite(text.data(), 1, text.size(), stdout);
+    write_to_stdout(text);
     return kExitDone;
   }
   const nlohmann::json units = {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}};
@@ -168,13 +174,14 @@ Action declare_sight(CLI::App& app, Context& context) {
   app.add_option("--frequency", options->frequency,
                  "Measure the first Fresnel zone at this frequency, in hertz")
       ->type_name("HZ");
-  app.add_option("--error", options->error,
-                 "Leave out records of error at or below this; may answer undecided")
-      ->type_name("E");
+  add_detail_options(app, options->detail, ": finer records are left out; may answer undecided",
+                     "Leave out what is not among the terrain's N most important vertices; may "
+                     "answer undecided");
   app.add_option("--budget", options->budget,
                  "Stop after this many records for a pair; may answer undecided")
       ->type_name("RECORDS")
       ->check(counts());
+  add_memory_option(app, options->memory);
   add_common_options(app, context, false);
   return [options, &context] { return run_sight(*options, context); };
 }
