@@ -48,11 +48,22 @@ void require_ours(bool is_ours, const std::string& folder) {
   }
 }
 
-/// True for a folder in `--tmp` that belongs to the workspace `folder`.
-bool is_owned(const std::string& tmp, const std::string& folder) {
+std::uint64_t checksum_of_text(const std::string& text) {
+  return checksum_of(std::as_bytes(std::span(text)));
+}
+
+/// True for a folder in `--tmp` that belongs to the workspace of this path, or that holds nothing
+/// yet: of a build that was killed early.
+/// @param owner  Checksum of the path that the workspace had when its build began.
+bool is_owned(const std::string& tmp, std::uint64_t owner) {
   std::ifstream file(owner_in(tmp));
-  std::string owner;
-  return std::getline(file, owner, '\0') && owner == whole_path(folder);
+  std::string path;
+  return (std::getline(file, path, '\0') && checksum_of_text(path) == owner) ||
+         is_empty_but_for(tmp, owner_in(tmp));
+}
+/// The owner that a manifest names.
+std::uint64_t owner_of(const nlohmann::json& first, const std::string& folder) {
+  return first.value("owner", checksum_of_text(whole_path(folder)));
 }
 
 void write_owner(FileLayer& files, const std::string& tmp, const std::string& folder) {
@@ -70,7 +81,7 @@ void write_owner(FileLayer& files, const std::string& tmp, const std::string& fo
 std::string folder_in_tmp(const std::string& output, const std::string& tmp) {
   const fs::path whole = fs::absolute(output);
   const std::string text = whole.string();
-  const std::uint64_t name = checksum_of(std::as_bytes(std::span(text)));
+  const std::uint64_t name = checksum_of_text(text);
   return fs::absolute(tmp).string() + "/." + whole.filename().string() + ".ptin-build-" +
          std::to_string(name);
 }
@@ -111,8 +122,12 @@ nlohmann::json as_read_back(const nlohmann::json& json) {
   return nlohmann::json::parse(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-nlohmann::json first_line(const nlohmann::json& fingerprint, const std::string& tmp) {
-  return {{"ptin_build", 1}, {"of", fingerprint}, {"tmp", tmp}};
+nlohmann::json first_line(const nlohmann::json& fingerprint, const std::string& tmp,
+                          const std::string& folder) {
+  return {{"ptin_build", 1},
+          {"of", fingerprint},
+          {"tmp", tmp},
+          {"owner", checksum_of_text(whole_path(folder))}};
 }
 
 }  // namespace
@@ -168,16 +183,18 @@ bool Workspace::discard(FileLayer& files, const std::string& output) {
     return true;
   }
   std::string tmp = folder;
+  std::uint64_t owner = 0;
   {
     const Manifest manifest(files, manifest_in(folder));
     if (manifest.entries().empty()) {
       require_ours(is_empty_but_for(folder, manifest_in(folder)), folder);
     } else {
       tmp = manifest.entries().front().value("tmp", folder);
+      owner = owner_of(manifest.entries().front(), folder);
     }
   }
   if (tmp != folder && fs::exists(tmp)) {
-    require_ours(fs::exists(owner_in(tmp)), tmp);
+    require_ours(is_owned(tmp, owner), tmp);
     remove_folder(files, tmp);
   }
   remove_folder(files, folder);
@@ -237,28 +254,40 @@ void Workspace::take_up(const nlohmann::json& fingerprint) {
   }
   tmp_ = first.value("tmp", folder_);
   has_work_ = manifest_->entries().size() > 1;
+  if (tmp_ == folder_) {
+    return;
+  }
+  if (!has_work_) {  // it may have been killed before the folder was there
+    take_tmp(owner_of(first, folder_));
+    return;
+  }
   if (!fs::exists(tmp_)) {
     throw Error(ErrorCode::not_found,
                 "the temporary files of the unfinished build are not there; is their disk mounted?",
                 tmp_);
   }
-  require_ours(tmp_ == folder_ || fs::exists(owner_in(tmp_)), tmp_);
+  require_ours(is_owned(tmp_, owner_of(first, folder_)), tmp_);
 }
 
-/// The first line; until it is there, there is nothing to resume, and nothing stays behind.
+/// Makes the folder in `--tmp`, or finds that it is ours.
+void Workspace::take_tmp(std::uint64_t owner) {
+  make_folder(files_, tmp_);
+  require_ours(is_owned(tmp_, owner), tmp_);
+  is_tmp_ours_ = true;
+  write_owner(files_, tmp_, folder_);
+}
+
+/// The first line, which names the folder in `--tmp`, before that is made: whenever the process is
+/// killed, what there is can be found. An error leaves nothing behind.
 void Workspace::begin(const nlohmann::json& fingerprint) {
-  bool is_tmp_ours = false;
   try {
+    manifest_->append({first_line(fingerprint, tmp_, folder_)});
     if (tmp_ != folder_) {
-      make_folder(files_, tmp_);
-      require_ours(is_empty_but_for(tmp_, owner_in(tmp_)) || is_owned(tmp_, folder_), tmp_);
-      is_tmp_ours = true;
-      write_owner(files_, tmp_, folder_);
+      take_tmp(checksum_of_text(whole_path(folder_)));
     }
-    manifest_->append({first_line(fingerprint, tmp_)});
     sync_names();
   } catch (...) {
-    tmp_ = is_tmp_ours ? tmp_ : folder_;
+    tmp_ = is_tmp_ours_ ? tmp_ : folder_;
     remove_all();
     throw;
   }

@@ -70,12 +70,14 @@ class Workspace {
   void lock_folder();
   void begin(const nlohmann::json& fingerprint);
   void take_up(const nlohmann::json& fingerprint);
+  void take_tmp(std::uint64_t owner);
 
   FileLayer& files_;
   std::string folder_, tmp_;
   std::unique_ptr<Lock> lock_;
   std::unique_ptr<Manifest> manifest_;
   bool has_work_ = false;
+  bool is_tmp_ours_ = false;
 };
 
 }  // namespace ptin
