@@ -13,8 +13,6 @@
 #include "engine/construct/raster_tile.h"
 #include "engine/construct/store_output.h"
 #include "engine/construct/tin_soup.h"
-#include "engine/construct/tin_source.h"
-#include "engine/construct/tin_tile.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -22,17 +20,6 @@ namespace ptin {
 using namespace build_internal;
 
 namespace {
-
-/// What a source that has been read needs, said to the caller.
-BuildPlan announced_plan(const Job& job, const Terrain& terrain, const TileBytes& tile_bytes,
-                         const SourceDisk& disk) {
-  BuildPlan plan =
-      plan_build(terrain.tree, job.output, job.options, job.resources, tile_bytes, disk);
-  if (job.resources.plan) {
-    job.resources.plan(plan);
-  }
-  return plan;
-}
 
 void build_raster(Job& job) {
   nlohmann::json began_with = fingerprint(job);  // before the first look into the inputs
@@ -54,7 +41,11 @@ void build_raster(Job& job) {
       job.options.tile.value_or(TileTree::default_side(source.width(), source.height()));
   const Terrain terrain{source.frame(), units, TileTree(source.width(), source.height(), side),
                         make_starter};
-  const BuildPlan plan = announced_plan(job, terrain, TileBytes{}, {});
+  const BuildPlan plan =
+      plan_build(terrain.tree, job.output, job.options, job.resources, TileBytes{}, {});
+  if (job.resources.plan) {
+    job.resources.plan(plan);
+  }
   if (job.resources.dry_run) {
     return;
   }
@@ -63,60 +54,6 @@ void build_raster(Job& job) {
   began_with["samples"] = source.valid_samples();
   in_workspace(job, began_with,
                [&](Workspace& workspace) { build_tiles(workspace, job, terrain, plan); });
-}
-
-TinTriangles read_tin(Job& job) {
-  const std::string parent = std::filesystem::path(job.output).parent_path().string();
-  const std::string beside = parent.empty() ? "." : parent;
-  TinTriangles triangles =
-      TinTriangles::read(job.inputs[0], job.source_options(),
-                         {job.files(), job.resources.tmp.empty() ? beside : job.resources.tmp,
-                          std::max<std::uint64_t>(job.memory() / 2, 1U << 20)},
-                         job.resources.stop, job.resources.progress);
-  const TinCounts& counts = triangles.counts();
-  job.report.source_samples = job.report.vertices = counts.vertices;
-  job.report.left_out_points = counts.unused_vertices;
-  job.report.left_out_triangles = counts.left_out_triangles;
-  job.report.void_triangles = counts.void_triangles;
-  job.report.merged_points = counts.merged_vertices;
-  job.report.largest_shift_plan = counts.largest_shift_plan;
-  job.report.height_rounding = triangles.frame().height_rounding;
-  return triangles;
-}
-
-/// @param workspace  None for a dry run.
-void build_tin_in(Workspace* workspace, Job& job) {
-  job.begins_anew = true;
-  const TinTriangles triangles = read_tin(job);
-  Terrain terrain{triangles.frame(),
-                  measure_units(triangles.frame(), job.options.void_slope),
-                  tin_tree(triangles, job.options.tile),
-                  {}};
-  SourceDisk disk = TinTriangles::disk_of(triangles.counts().vertices);
-  disk.is_there = true;
-  disk.may_be_less = job.report.resumed;
-  const BuildPlan plan = announced_plan(job, terrain, kPointTileBytes, disk);
-  job.begins_anew = false;
-  terrain.make_starter = [&]() -> LeafStarter {
-    return [&](const SampleRange& window) {
-      return start_tin_tile(triangles, terrain.tree, window, terrain.units);
-    };
-  };
-  if (workspace != nullptr) {
-    build_tiles(*workspace, job, terrain, plan);
-  }
-}
-
-/// Somebody else's triangles.
-void build_tin(Job& job) {
-  if (job.inputs.size() != 1) {
-    throw Error(ErrorCode::invalid_argument, "several inputs, a TIN among them; build a TIN alone");
-  }
-  if (job.resources.dry_run) {
-    build_tin_in(nullptr, job);
-    return;
-  }
-  in_workspace(job, fingerprint(job), [&](Workspace& workspace) { build_tin_in(&workspace, job); });
 }
 
 /// @throws Error invalid_argument for options that mean nothing

@@ -7,6 +7,7 @@
 
 #include "engine/construct/hierarchy.h"
 #include "engine/construct/memory_plan.h"
+#include "engine/construct/point_tile.h"
 #include "engine/construct/source_files.h"
 #include "engine/construct/store_output.h"
 #include "engine/error.h"
@@ -16,7 +17,7 @@ namespace ptin::build_internal {
 namespace {
 
 /// Of the temporary files: to be raised when their bytes mean something else.
-constexpr int kTemporaryFormat = 1;
+constexpr int kTemporaryFormat = 2;
 
 /// The number of a file on its disk, which stays the same when it gets another name; none when
 /// there is no such file.
@@ -100,6 +101,25 @@ nlohmann::json fingerprint(const Job& job) {
           {"page_bytes", job.options.page_bytes},
           {"inputs", input_fingerprint(job.inputs)},
           {"program", {PTIN_VERSION, kTemporaryFormat}}};
+}
+
+void announce(const Job& job, const std::function<SourceDisk(const PointCount&)>& disk_of) {
+  const PointCount count = count_points(job.inputs, job.source_options());
+  if (!count.is_known) {
+    if (job.resources.dry_run) {
+      throw Error(ErrorCode::invalid_argument,
+                  "how much a build from a pipe needs is not known before it is read");
+    }
+    return;
+  }
+  SourceDisk disk = disk_of(count);
+  disk.is_estimate = true;
+  disk.may_be_less = count.may_be_less;
+  const BuildPlan plan = plan_build(expected_point_tree(count.points, job.options.tile), job.output,
+                                    job.options, job.resources, kPointTileBytes, disk);
+  if (job.resources.plan) {
+    job.resources.plan(plan);
+  }
 }
 
 void in_workspace(Job& job, const nlohmann::json& fingerprint,

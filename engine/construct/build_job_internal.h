@@ -12,6 +12,7 @@
 
 #include "engine/construct/build.h"
 #include "engine/construct/build_plan.h"
+#include "engine/construct/point_count.h"
 #include "engine/construct/raster_tile.h"
 #include "engine/construct/terrain_source.h"
 #include "engine/construct/tile_bytes.h"
@@ -64,7 +65,15 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
 /// Collapses, tightens and publishes; or sees that an interrupted build had done all of that.
 void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const BuildPlan& plan);
 
+/// Says what is expected before anything but headers and first lines is read, and refuses what
+/// cannot do. With points that may be left out it is no reason to refuse.
+/// @param disk_of  What the source takes.
+/// @throws Error as count_points() and plan_build()
+void announce(const Job& job, const std::function<SourceDisk(const PointCount&)>& disk_of);
+
 /// Points, sorted on disk (point_buckets.h); over tiles.
 void build_points(Job& job);
+/// Somebody else's triangles, likewise (tin_source.h).
+void build_tin(Job& job);
 
 }  // namespace ptin::build_internal

@@ -9,6 +9,7 @@
 #include "engine/construct/point_buckets.h"
 #include "engine/construct/point_count.h"
 #include "engine/construct/point_tile.h"
+#include "engine/construct/tin_vertices.h"
 #include "engine/error.h"
 
 namespace ptin::build_internal {
@@ -24,25 +25,14 @@ ExternalMemory memory_for_sorting(const Job& job, const Workspace& workspace) {
           std::clamp(job.memory() / 8, kMiB, 256 * kMiB)};
 }
 
-/// What is expected before anything but the headers is read. With points that may be left out it is
-/// no reason to refuse.
-void announce(Job& job) {
-  const PointCount count = count_points(job.inputs, job.source_options());
-  if (!count.is_known) {
-    if (job.resources.dry_run) {
-      throw Error(ErrorCode::invalid_argument,
-                  "how much a build from a pipe needs is not known before it is read");
-    }
-    return;
-  }
+/// Vertices of TINs are sorted before they are points.
+SourceDisk disk_of(const Job& job, const PointCount& count) {
   SourceDisk disk = PointBuckets::disk_of(count.points);
-  disk.is_estimate = true;
-  disk.may_be_less = count.may_be_less;
-  const BuildPlan plan = plan_build(expected_point_tree(count.points, job.options.tile), job.output,
-                                    job.options, job.resources, kPointTileBytes, disk);
-  if (job.resources.plan) {
-    job.resources.plan(plan);
-  }
+  disk.while_reading =
+      std::max(disk.while_reading,
+               disk.spooled + count.of_largest_tin *
+                                  TinVertices::disk_of_vertex(job.options.nodata.has_value()));
+  return disk;
 }
 
 /// The points as an interrupted build had sorted them, or else read and sorted now.
@@ -104,7 +94,7 @@ void build_in(Workspace& workspace, Job& job) {
 
 void build_points(Job& job) {
   const GdalCacheLimit cache(share_memory(job.memory(), 0, 1).gdal_cache);
-  announce(job);
+  announce(job, [&](const PointCount& count) { return disk_of(job, count); });
   if (job.resources.dry_run) {
     return;
   }

@@ -303,6 +303,7 @@ std::array<std::size_t, 3> axes_of(const Element& element, const ByteReader& in)
 
 void read_vertices(const Element& element, const ByteReader& in, Values& values, TinReceiver& tin) {
   const auto axes = axes_of(element, in);
+  tin.expect_vertices(element.count);
   for (std::uint64_t row = 0; row < element.count; ++row) {
     values.begin_row();
     std::array<Decimal, 3> p;

@@ -6,6 +6,7 @@
 
 #include "engine/construct/crs.h"
 #include "engine/construct/height_finder_internal.h"
+#include "engine/construct/packed_bucket.h"
 #include "engine/construct/point_grid.h"
 #include "engine/construct/point_merge.h"
 #include "engine/construct/point_order_internal.h"
@@ -91,13 +92,15 @@ class PointBuckets::Writer {
       return;
     }
     std::vector<GridBox>& boxes = to_.boxes_.front();
-    to_.add_to_checksum(std::as_bytes(std::span(bucket_)));
-    to_.file_->write_at(std::as_bytes(std::span(bucket_)),
-                        boxes.size() * to_.bucket_points_ * sizeof(Stored));
     GridBox box;
-    for (const Stored& p : bucket_) {
+    for (const PlacedHeight& p : bucket_) {
       box = united(box, p.position);
     }
+    pack_bucket(bucket_, box, packed_);
+    to_.add_to_checksum(packed_);
+    const std::uint64_t begin = to_.begin_of(boxes.size());
+    to_.file_->write_at(packed_, begin);
+    to_.ends_.push_back(begin + packed_.size());
     boxes.push_back(box);
     bucket_.clear();
   }
@@ -108,7 +111,8 @@ class PointBuckets::Writer {
   PointMerge rule_;
   HeightFinder heights_;
   HullCollector hull_;
-  std::vector<Stored> bucket_;
+  std::vector<PlacedHeight> bucket_;
+  std::vector<std::byte> packed_;
   std::uint64_t key_ = 0;
   std::optional<MergedHeight> merged_;
 };
@@ -178,7 +182,8 @@ PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const Sou
         if (progress) {
           progress("reading", done, total);
         }
-      });
+      },
+      &memory);
   set_crs(buckets.frame_, resolve_crs(reading.crs, options.a_srs, options.vertical_crs));
   buckets.frame_.map = reading.grid.map();
   buckets.counts_.source_points = reading.points;
@@ -191,13 +196,24 @@ PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const Sou
 
 void PointBuckets::take(std::uint64_t first, std::uint64_t count,
                         std::vector<BucketPoint>& points) const {
-  std::vector<Stored> stored(count);
-  file_->read_at(std::as_writable_bytes(std::span(stored)), first * sizeof(Stored));
-  points.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    points[i] = {stored[i].position, codes_are_whole_
-                                         ? frame_.heights.bits(stored[i].height)
-                                         : encode_height(frame_.heights, stored[i].height)};
+  points.clear();
+  points.reserve(count);
+  std::vector<std::byte> packed;
+  std::vector<PlacedHeight> bucket;
+  for (std::uint64_t at = first; at < first + count;) {
+    const std::uint64_t number = at / bucket_points_;
+    const std::uint64_t begin = number * bucket_points_;
+    const std::uint64_t end = std::min(begin + bucket_points_, first + count);
+    const std::uint64_t bytes = ends_[number] - begin_of(number);
+    packed.resize(bytes + kUnpackSlack);
+    file_->read_at(std::span(packed).first(bytes), begin_of(number));
+    bucket.resize(end - begin);
+    unpack_bucket(std::span(packed).first(bytes), box(number), bucket);
+    for (; at < end; ++at) {
+      const PlacedHeight& p = bucket[at - begin];
+      points.push_back({p.position, codes_are_whole_ ? frame_.heights.bits(p.height)
+                                                     : encode_height(frame_.heights, p.height)});
+    }
   }
 }
 

@@ -47,8 +47,9 @@ class PointBuckets {
   using Progress = std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)>;
 
   /// Reads the sources once (read_points() says what becomes of points, by the same rules) and
-  /// sorts what they hold. Disk: 27 bytes a point while it is read, 43 while it is sorted, then 16;
-  /// in memory.folder. Memory: memory.bytes, and 16 bytes for each of at most 2^20 buckets.
+  /// sorts what they hold. Disk: 27 bytes a point while it is read, 43 while it is sorted, then
+  /// at most 16, mostly half of that (packed_bucket.h); in memory.folder. Memory: memory.bytes, and
+  /// 24 bytes for each of at most 2^20 buckets.
   /// @param keep_as  A file that must not exist: the buckets stay in it, so that load() can take
   ///                 them up; "" keeps them in a file without a name.
   /// @throws Error as read_points(), and resource_exhausted when the disk is full
@@ -87,10 +88,6 @@ class PointBuckets {
   void visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const;
 
  private:
-  struct Stored {
-    GridPoint position;
-    double height;  ///< A code where codes_are_whole_, else a height.
-  };
   class Writer;
   struct Kept;
   PointBuckets() = default;
@@ -101,15 +98,20 @@ class PointBuckets {
   void check_points(const std::string& path, std::uint64_t expected, const std::stop_token& stop,
                     const std::function<void(std::uint64_t, std::uint64_t)>& progress);
   void index_boxes();
+  /// Where a bucket begins in the file.
+  [[nodiscard]] std::uint64_t begin_of(std::uint64_t bucket) const noexcept {
+    return bucket == 0 ? 0 : ends_[bucket - 1];
+  }
 
   TerrainFrame frame_;
   PointCounts counts_;
   ConvexHull hull_;
   std::uint64_t size_ = 0;
   std::uint64_t bucket_points_ = 1024;
-  bool codes_are_whole_ = false;
+  bool codes_are_whole_ = false;  ///< Heights on disk are codes.
   std::unique_ptr<ScratchFile> file_;
-  std::uint64_t checksum_ = 0;  ///< Of the buckets, each with what came before it.
+  std::vector<std::uint64_t> ends_;  ///< Of each bucket, in the file.
+  std::uint64_t checksum_ = 0;       ///< Of the buckets, each with what came before it.
   static constexpr std::uint64_t kFanOut = 16;
   std::vector<std::vector<GridBox>> boxes_;  ///< Of buckets, of groups of 16 of those, and so on.
 };

@@ -8,6 +8,8 @@
 #include <fstream>
 
 #include "engine/construct/point_stream.h"
+#include "engine/construct/tin_count.h"
+#include "engine/construct/tin_soup.h"
 
 namespace ptin {
 
@@ -72,6 +74,12 @@ PointCount count_points(const std::vector<std::string>& inputs, const SourceOpti
     if (can_be_read_once_only(input)) {
       count.is_known = false;
       return count;
+    }
+    if (is_tin_file(input)) {
+      const std::uint64_t vertices = count_tin_vertices(input, options.points.layer);
+      count.points += vertices;
+      count.of_largest_tin = std::max(count.of_largest_tin, vertices);
+      continue;
     }
     const auto stream = open_point_stream(input, options.points, options.nodata);
     count.points +=

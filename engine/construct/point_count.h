@@ -12,7 +12,8 @@
 namespace ptin {
 
 struct PointCount {
-  std::uint64_t points = 0;  ///< At most, or nearly so: text is counted by its first lines.
+  std::uint64_t points = 0;          ///< At most, or nearly so: text is counted by its first lines.
+  std::uint64_t of_largest_tin = 0;  ///< Vertices: TINs are sorted one at a time.
   bool is_known = true;      ///< false: an input is no file (a pipe), and can be read only once.
   bool may_be_less = false;  ///< Classes, bounds or nodata may leave out any part of them.
 };

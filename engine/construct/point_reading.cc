@@ -39,14 +39,16 @@ class CommonCrs {
 PointReading read_sources(const std::vector<std::string>& paths, const SourceOptions& options,
                           const std::function<void(const SourcePoint&)>& take,
                           const std::stop_token& stop,
-                          const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+                          const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                          const ExternalMemory* memory) {
   PointReading reading;
   PointGridScan scan(options.resolution, paths.empty() ? "" : paths[0]);
   CommonCrs crs;
   std::vector<SourcePoint> batch;
   std::uint64_t count = 0;
   for (const std::string& path : paths) {
-    const auto stream = open_point_stream(path, options.points, options.nodata);
+    const auto stream =
+        open_point_stream(path, options.points, options.nodata, {memory, stop, progress});
     if (options.a_srs.empty()) {
       crs.add(stream->facts().crs, path);
     }

@@ -10,7 +10,7 @@
 #include "engine/construct/las_reader.h"
 #include "engine/construct/ogr_points.h"
 #include "engine/construct/tin_soup.h"
-#include "engine/construct/tin_source.h"
+#include "engine/construct/tin_vertices.h"
 #include "engine/construct/xyz_reader.h"
 #include "engine/error.h"
 
@@ -79,7 +79,8 @@ bool is_point_input(const std::string& path, const PointChoice& choice) {
 }
 
 std::unique_ptr<PointStream> open_point_stream(const std::string& path, const PointChoice& choice,
-                                               std::optional<double> nodata) {
+                                               std::optional<double> nodata,
+                                               const StreamResources& resources) {
   const bool ogr = !choice.layer.empty() || !choice.z_field.empty();
   if (!choice.classes.empty() && (ogr || !is_las(path))) {
     throw Error(ErrorCode::invalid_argument,
@@ -87,7 +88,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::string& path, const Po
                 path);
   }
   if (is_tin_file(path)) {
-    return std::make_unique<TinVertices>(path, choice, nodata);
+    return std::make_unique<TinVertices>(path, choice, nodata, resources);
   }
   if (is_las(path)) {
     if (ogr) {

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -43,6 +45,15 @@ struct PointStreamFacts {
   std::optional<SourceLattice> lattice;
 };
 
+struct ExternalMemory;
+
+/// What a source may take that is sorted before its first point comes.
+struct StreamResources {
+  const ExternalMemory* memory = nullptr;  ///< While the stream is opened; null: its own choice.
+  std::stop_token stop;
+  std::function<void(std::uint64_t done, std::uint64_t total)> progress;  ///< May be empty.
+};
+
 /// One input file as a stream. Not thread-safe; files stay open as long as it lives.
 class PointStream {
  public:
@@ -76,7 +87,7 @@ class PointStream {
 /// Cost: opens other files than those known by name.
 [[nodiscard]] bool is_point_input(const std::string& path, const PointChoice& choice);
 
-/// Opens a file of points by its name: LAS (las_reader.h), a TIN for its vertices (tin_source.h),
+/// Opens a file of points by its name: LAS (las_reader.h), a TIN for its vertices (tin_vertices.h),
 /// text (xyz_reader.h), anything else as a layer of OGR's (ogr_points.h); with a layer or z-field
 /// chosen, OGR always.
 /// @param nodata  This height means none: such points are handed out all the same, but that
@@ -87,6 +98,7 @@ class PointStream {
 ///                means nothing for the kind of file
 [[nodiscard]] std::unique_ptr<PointStream> open_point_stream(const std::string& path,
                                                              const PointChoice& choice,
-                                                             std::optional<double> nodata = {});
+                                                             std::optional<double> nodata = {},
+                                                             const StreamResources& resources = {});
 
 }  // namespace ptin

@@ -3,8 +3,11 @@
 // Records of one size on disk: written one after the other, read from anywhere.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <stop_token>
@@ -14,6 +17,7 @@
 
 #include "engine/construct/external_sorter.h"
 #include "engine/error.h"
+#include "storage/checksum.h"
 #include "storage/file_layer.h"
 
 namespace ptin {
@@ -28,6 +32,11 @@ class RecordFile {
   RecordFile(const ExternalMemory& memory, const std::string& stem)
       : file_(std::make_unique<ScratchFile>(memory.files, memory.folder, stem, true)) {}
 
+  /// In a file of this name, which stays when the object goes.
+  /// @throws Error as above, and when a new one exists already
+  RecordFile(FileLayer& files, const std::string& path, ScratchFile::Kept kept)
+      : file_(std::make_unique<ScratchFile>(files, path, kept)) {}
+
   /// @throws Error io_error, resource_exhausted (the disk is full)
   void add(const Record& record) {
     block_.push_back(record);
@@ -38,8 +47,32 @@ class RecordFile {
   /// To be called when the last record has been added.
   void finish() {
     file_->write_at(std::as_bytes(std::span(block_)), written_ * sizeof(Record));
+    add_to_checksum(block_);
     written_ += block_.size();
     block_.clear();
+  }
+  /// Of all blocks in their order.
+  [[nodiscard]] std::uint64_t checksum() const noexcept { return checksum_; }
+  /// @throws Error io_error, resource_exhausted
+  void sync() { file_->sync(); }
+  /// Reads what an earlier process left in the file. False when it is not what was written.
+  /// @throws Error io_error, cancelled
+  [[nodiscard]] bool take_up(const std::string& path, std::uint64_t records, std::uint64_t checksum,
+                             const std::stop_token& stop) {
+    std::error_code ignored;
+    if (std::filesystem::file_size(path, ignored) != records * sizeof(Record)) {
+      return false;
+    }
+    written_ = records;
+    std::vector<Record> block;
+    for (std::uint64_t i = 0; i < records; i += block.size()) {
+      if (stop.stop_requested()) {
+        throw Error(ErrorCode::cancelled, "reading temporary files was cancelled");
+      }
+      take(i, std::min<std::uint64_t>(kBlock, records - i), block);
+      add_to_checksum(block);
+    }
+    return checksum_ == checksum;
   }
   [[nodiscard]] std::uint64_t size() const noexcept { return written_ + block_.size(); }
 
@@ -71,9 +104,17 @@ class RecordFile {
 
  private:
   static constexpr std::size_t kBlock = 1 << 13;
+  void add_to_checksum(const std::vector<Record>& block) {
+    if (!block.empty()) {
+      const std::array<std::uint64_t, 2> link{checksum_,
+                                              checksum_of(std::as_bytes(std::span(block)))};
+      checksum_ = checksum_of_object(link);
+    }
+  }
   std::unique_ptr<ScratchFile> file_;
   std::vector<Record> block_;
   std::uint64_t written_ = 0;
+  std::uint64_t checksum_ = 0;
 };
 
 }  // namespace ptin

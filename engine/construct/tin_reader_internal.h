@@ -30,6 +30,7 @@ class TinReceiver {
   TinReceiver(const ByteReader& in, const TinReading& reading, SoupSink& sink)
       : in_(in), reading_(reading), sink_(sink) {}
 
+  void expect_vertices(std::uint64_t count) { sink_.expect_vertices(count); }
   /// The next vertex, numbered from 0.  @throws Error cancelled, and what the sink throws
   void add_vertex(const SourcePoint& p) {
     add_vertex(static_cast<std::int64_t>(facts_.vertices), p);

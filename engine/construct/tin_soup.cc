@@ -45,13 +45,18 @@ const TinFormat* format_of(std::string_view path) {
 
 bool is_tin_file(std::string_view path) { return format_of(path) != nullptr; }
 
-TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink) {
+TinReader& tin_reader_of(const std::string& path) {
   const TinFormat* format = format_of(path);
   if (format == nullptr) {
     refuse("this is no TIN by its name; known are .ply, .obj, .2dm, .xml, .landxml", path);
   }
+  return *format->read;
+}
+
+TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink) {
+  TinReader& read = tin_reader_of(path);
   ByteReader in(path);
-  return format->read(in, reading, sink);
+  return read(in, reading, sink);
 }
 
 void split_words(std::string_view line, std::vector<std::string_view>& words) {

@@ -25,6 +25,8 @@ class SoupSink {
   SoupSink& operator=(const SoupSink&) = delete;
   virtual ~SoupSink() = default;
 
+  /// How many vertices a header says that there will be; not every format does.
+  virtual void expect_vertices(std::uint64_t /*count*/) {}
   /// `id` is the file's own, or the vertex's number from 0 where the format has none. May be there
   /// twice.
   virtual void add_vertex(std::int64_t id, const SourcePoint& p) = 0;
@@ -75,6 +77,8 @@ TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, S
 // The readers. Each documents its own conventions.
 using TinReader = TinFileFacts(ByteReader& in, const TinReading& reading, SoupSink& sink);
 TinReader read_ply, read_obj, read_two_dm, read_land_xml;
+/// The one for a name's extension.  @throws Error invalid_argument  there is none
+[[nodiscard]] TinReader& tin_reader_of(const std::string& path);
 
 /// What one of them reads, in memory.
 [[nodiscard]] TinSoup read_soup(TinReader& reader, ByteReader& in, const TinReading& reading);

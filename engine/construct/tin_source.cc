@@ -2,7 +2,6 @@
 #include "engine/construct/tin_source.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "engine/construct/crs.h"
@@ -10,10 +9,8 @@
 #include "engine/construct/hull_delaunay.h"
 #include "engine/construct/point_order_internal.h"
 #include "engine/construct/tin_border.h"
-#include "engine/construct/tin_digits.h"
 #include "engine/construct/tin_link.h"
 #include "engine/construct/tin_mend.h"
-#include "engine/construct/tin_soup.h"
 #include "engine/construct/void_sweep.h"
 #include "engine/error.h"
 
@@ -26,11 +23,33 @@ GridTriangle turned(GridTriangle t) {
   return t;
 }
 
+template <class Record>
+RecordFile<Record> new_file(const ExternalMemory& memory, const std::string& name) {
+  return name.empty() ? RecordFile<Record>(memory, "tin")
+                      : RecordFile<Record>(memory.files, name, ScratchFile::Kept::kNew);
+}
+
+/// The same under its own name, where it is to have one.
+template <class Record>
+RecordFile<Record> named(RecordFile<Record> file, const ExternalMemory& memory,
+                         const std::string& name, const std::stop_token& stop) {
+  if (name.empty()) {
+    return file;
+  }
+  RecordFile<Record> to = new_file<Record>(memory, name);
+  file.visit([&](const Record& record) { to.add(record); }, stop);
+  to.finish();
+  return to;
+}
+
 /// The file's triangles in their order, the right way round.
+/// @param kept_as  Name of the file of triangles.
 MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory& memory,
-                   const std::string& path, TinCounts& counts, TinFaults& faults,
-                   const std::stop_token& stop) {
-  MeshOnDisk mesh{RecordFile<GridTriangle>(memory, "triangles"), std::move(*tin.places)};
+                   const std::string& path, const std::string& kept_as, TinCounts& counts,
+                   TinFaults& faults, const std::stop_token& stop) {
+  // Triangles that are still to be mended are written again.
+  const bool is_final = tin.faults.slivers.empty();
+  MeshOnDisk mesh{new_file<GridTriangle>(memory, is_final ? kept_as : ""), std::move(*tin.places)};
   tin.triangles->merge(
       [&](std::span<const GridTriangle> batch) {
         for (const GridTriangle& t : batch) {
@@ -52,6 +71,9 @@ MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory
     t = tin.is_clockwise ? turned(t) : t;
   }
   counts.mended_triangles = mend_slivers(mesh, slivers, order, memory, faults, path, stop);
+  if (!is_final) {
+    mesh.triangles = named(std::move(mesh.triangles), memory, kept_as, stop);
+  }
   return mesh;
 }
 
@@ -180,7 +202,7 @@ std::vector<GridVertex> vertices_of(const std::vector<GridTriangle>& triangles) 
 
 TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& options,
                                 const ExternalMemory& memory, const std::stop_token& stop,
-                                const Progress& progress) {
+                                const Progress& progress, const std::string& keep_as) {
   if (options.bbox) {
     throw Error(ErrorCode::invalid_argument,
                 "a TIN is not cut by --bbox; build it whole, then refine or export a window", path);
@@ -202,12 +224,15 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   faults.turned_over = tin.faults.turned_over;
   faults.heights = tin.heights_differ;
   const PointOrder order(tin.grid.largest());
-  MeshOnDisk mesh = mesh_of(tin, order, memory, path, to.counts_, faults, stop);
-  to.voids_ = std::make_unique<RecordFile<GridTriangle>>(memory, "voids");
+  const std::array<std::string, 3> names =
+      keep_as.empty() ? std::array<std::string, 3>() : kept_files(keep_as);
+  MeshOnDisk mesh = mesh_of(tin, order, memory, path, names[0], to.counts_, faults, stop);
+  to.voids_ = std::make_unique<RecordFile<GridTriangle>>(new_file<GridTriangle>(memory, names[1]));
   to.hull_ =
       HullFiller(order, to.frame_.map, memory, path, faults, stop).fill(mesh.triangles, *to.voids_);
   to.surface_ = std::make_unique<RecordFile<GridTriangle>>(std::move(mesh.triangles));
-  to.places_ = std::make_unique<RecordFile<std::uint64_t>>(std::move(mesh.places));
+  to.places_ = std::make_unique<RecordFile<std::uint64_t>>(
+      named(std::move(mesh.places), memory, names[2], stop));
   to.counts_.vertices = to.places_->size();
   to.counts_.surface_triangles = to.surface_->size();
   to.counts_.void_triangles = to.voids_->size();
@@ -270,45 +295,6 @@ Tin TinTriangles::part(std::uint64_t i, std::uint64_t n) const {
   std::fill_n(tin.classes.begin(), surface, TriangleClass::kSurface);
   link_tin(tin);
   return tin;
-}
-
-TinVertices::TinVertices(const std::string& path, const PointChoice& choice,
-                         std::optional<double> nodata) {
-  TinSoup soup = read_tin_soup(path, {choice.layer, {}, {}});
-  std::vector<std::uint8_t> is_used(soup.vertices.size(), 0);
-  const auto has_height = [&](std::uint32_t v) {
-    return !nodata || to_double(soup.vertices[v].z) != *nodata;
-  };
-  for (const auto& t : soup.triangles) {
-    if (!std::all_of(t.begin(), t.end(), has_height)) {
-      continue;
-    }
-    for (const std::uint32_t v : t) {
-      is_used[v] = 1;
-    }
-  }
-  facts_.crs = soup.facts.crs;
-  TinDigits digits;
-  for (std::size_t v = 0; v < is_used.size(); ++v) {
-    if (is_used[v] != 0) {
-      points_.push_back(soup.vertices[v]);
-      digits.add(points_.back());
-    }
-  }
-  left_out_ = soup.vertices.size() - points_.size();
-  const int decimals = digits.kept();
-  for (SourcePoint& p : points_) {
-    static_cast<void>(drop_digits(p, decimals));
-  }
-}
-
-bool TinVertices::next(std::vector<SourcePoint>& batch) {
-  constexpr std::size_t kBatchPoints = 4096;
-  const std::size_t end = std::min<std::size_t>(points_.size(), next_ + kBatchPoints);
-  batch.assign(points_.begin() + static_cast<std::ptrdiff_t>(next_),
-               points_.begin() + static_cast<std::ptrdiff_t>(end));
-  next_ = end;
-  return !batch.empty();
 }
 
 }  // namespace ptin

@@ -4,18 +4,18 @@
 // convex, and taken tile by tile.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "engine/construct/array_file.h"
 #include "engine/construct/build_plan.h"
 #include "engine/construct/external_sorter.h"
 #include "engine/construct/hull_collector.h"
-#include "engine/construct/point_stream.h"
 #include "engine/construct/record_file.h"
 #include "engine/construct/terrain_source.h"
 #include "engine/construct/tin_on_grid.h"
@@ -50,6 +50,9 @@ class TinTriangles {
   using Progress = std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)>;
 
   /// Reads one TIN (tin_soup.h says from what) once.
+  /// @param keep_as  Stem of kept_files(), which must not exist: the triangles stay in them, so
+  /// that
+  ///                 load() can take them up; "" keeps them in files without names.
   /// @throws Error  as read_tin_file()
   ///                invalid_argument    this is no terrain: triangles without area (after
   ///                snapping),
@@ -65,7 +68,18 @@ class TinTriangles {
   /// (void_sweep.h).
   static TinTriangles read(const std::string& path, const SourceOptions& options,
                            const ExternalMemory& memory, const std::stop_token& stop = {},
-                           const Progress& progress = {});
+                           const Progress& progress = {}, const std::string& keep_as = "");
+
+  [[nodiscard]] static std::array<std::string, 3> kept_files(const std::string& stem);
+  /// Writes all but the triangles to `index`, and makes all files durable.
+  /// @throws Error io_error, resource_exhausted
+  [[nodiscard]] ArrayFileFacts save(FileLayer& files, const std::string& index);
+  /// Takes up what read() kept and save() wrote.
+  /// @throws Error corruption  a file is not what was written; not_found, io_error, cancelled
+  /// Cost: one reading of the triangles, to check them.
+  static TinTriangles load(FileLayer& files, const std::string& kept_as, const std::string& index,
+                           const ArrayFileFacts& facts, const std::stop_token& stop = {},
+                           const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
 
   /// What read() takes of the disk for so many vertices.
   [[nodiscard]] static SourceDisk disk_of(std::uint64_t vertices) noexcept;
@@ -90,6 +104,7 @@ class TinTriangles {
   static constexpr std::uint64_t kMostBorderInMemory = std::uint64_t{1} << 16;
 
  private:
+  struct Kept;
   TinTriangles() = default;
   [[nodiscard]] std::uint64_t place_of_part(std::uint64_t i, std::uint64_t n) const;
   void take(const RecordFile<GridTriangle>& from, std::uint64_t begin, std::uint64_t end,
@@ -101,28 +116,6 @@ class TinTriangles {
   bool codes_are_whole_ = false;
   std::unique_ptr<RecordFile<GridTriangle>> surface_, voids_;
   std::unique_ptr<RecordFile<std::uint64_t>> places_;
-};
-
-/// The vertices of a TIN's triangles as points, on the digits that TinTriangles keeps: to verify
-/// against. In memory.
-class TinVertices final : public PointStream {
- public:
-  /// @param nodata  Triangles with a corner of this height are left out.
-  /// @throws Error as read_tin_soup()
-  TinVertices(const std::string& path, const PointChoice& choice,
-              std::optional<double> nodata = {});
-
-  [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
-  [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
-  [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
-  [[nodiscard]] std::uint64_t done() const noexcept override { return next_; }
-  [[nodiscard]] std::uint64_t total() const noexcept override { return points_.size(); }
-
- private:
-  PointStreamFacts facts_;
-  std::vector<SourcePoint> points_;
-  std::uint64_t next_ = 0;
-  std::uint64_t left_out_ = 0;
 };
 
 }  // namespace ptin

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/construct/resume_fixture.h"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -36,15 +37,41 @@ std::string scattered_points() {
   return text;
 }
 
+std::string triangles_with_holes() {
+  constexpr int kSide = 35;
+  std::mt19937 random(11);
+  std::string text;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const auto x = static_cast<unsigned>(i % kSide) * 20 + random() % 8;
+    const auto y = static_cast<unsigned>(i / kSide) * 20 + random() % 8;
+    text += "v " + std::to_string(x) + " " + std::to_string(y) + " " +
+            std::to_string((x * y) % 97) + "\n";
+  }
+  for (int i = 0; i < kSide * (kSide - 1); ++i) {
+    if (i % kSide == kSide - 1 || random() % 7 == 0) {
+      continue;
+    }
+    const int a = i + 1, b = i + 2, c = i + 2 + kSide, d = i + 1 + kSide;
+    for (const auto& f : {std::array{a, b, c}, std::array{a, c, d}}) {
+      text += "f " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " +
+              std::to_string(f[2]) + "\n";
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 InterruptibleBuild::InterruptibleBuild(SourceKind kind) : kind_(kind) {
   if (kind == SourceKind::kRaster) {
     raster_.emplace(hills_with_a_lake());
     input_ = raster_->path();
-  } else {
+  } else if (kind == SourceKind::kPoints) {
     input_ = source_folder_.file("points.xyz");
     oracle::write_text(input_, scattered_points());
+  } else {
+    input_ = source_folder_.file("mesh.obj");
+    oracle::write_text(input_, triangles_with_holes());
   }
   const std::string plain = folder_.file("plain.ptin");
   build({input_}, plain, options(), {});

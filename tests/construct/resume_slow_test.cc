@@ -29,9 +29,12 @@ TEST_P(ResumeSlow, GivesTheSameBytesWhicheverCallFailed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEachKind, ResumeSlow,
-                         testing::Values(test::SourceKind::kRaster, test::SourceKind::kPoints),
+                         testing::Values(test::SourceKind::kRaster, test::SourceKind::kPoints,
+                                         test::SourceKind::kTin),
                          [](const auto& kind) {
-                           return kind.param == test::SourceKind::kRaster ? "Raster" : "Points";
+                           return kind.param == test::SourceKind::kRaster   ? "Raster"
+                                  : kind.param == test::SourceKind::kPoints ? "Points"
+                                                                            : "Tin";
                          });
 
 }  // namespace

@@ -5,12 +5,14 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "engine/construct/array_file.h"
@@ -92,22 +94,27 @@ BuildResources resuming() {
   return resources;
 }
 
-TEST(Resume, ReadsPointsNoMoreOnceTheyAreSorted) {
-  const InterruptibleBuild interrupted(SourceKind::kPoints);
-  stop_in(interrupted, "collapsing");
-  BuildResources resources = resuming();
-  std::set<std::string> stages;
-  resources.progress = [&](const char* name, std::uint64_t, std::uint64_t) { stages.insert(name); };
-  EXPECT_EQ(interrupted.run(resources), std::nullopt);
-  EXPECT_FALSE(stages.contains("reading"));
-  EXPECT_FALSE(stages.contains("sorting"));
-  interrupted.expect_resumed_to_the_same_bytes();
+TEST(Resume, ReadsPointsAndTrianglesNoMoreOnceTheyAreSorted) {
+  for (const SourceKind kind : {SourceKind::kPoints, SourceKind::kTin}) {
+    const InterruptibleBuild interrupted(kind);
+    stop_in(interrupted, "collapsing");
+    BuildResources resources = resuming();
+    std::map<std::string, int> stages;
+    resources.progress = [&](const char* name, std::uint64_t, std::uint64_t) { ++stages[name]; };
+    EXPECT_EQ(interrupted.run(resources), std::nullopt);
+    EXPECT_EQ(stages["reading"], 0);
+    EXPECT_EQ(stages["sorting"], 0);
+    EXPECT_GT(stages["checking"], 0);
+    interrupted.expect_resumed_to_the_same_bytes();
+  }
 }
 
-TEST(Resume, RefusesSortedPointsThatAreDamaged) {
-  for (const char* name : {"points", "points.index"}) {
+TEST(Resume, RefusesSortedPointsAndTrianglesThatAreDamaged) {
+  for (const std::string name :
+       {"points", "points.index", "tin.surface", "tin.voids", "tin.places", "tin.index"}) {
     SCOPED_TRACE(name);
-    const InterruptibleBuild interrupted(SourceKind::kPoints);
+    const InterruptibleBuild interrupted(name.starts_with("tin") ? SourceKind::kTin
+                                                                 : SourceKind::kPoints);
     stop_in(interrupted, "collapsing");
     const std::string file = interrupted.folder().file(".out.ptin.ptin-build/") + name;
     std::string bytes = oracle::bytes_of(file);
@@ -390,6 +397,105 @@ TEST(Workspace, LeavesAFolderAloneThatIsNotOneOfOurs) {
   EXPECT_THROW(Workspace(files, output, in, Unfinished::kRefuse, {{"of", 1}}), Error);
   EXPECT_EQ(oracle::bytes_of(name + "/letters.txt"), "dear");
   EXPECT_TRUE(folder.names().empty());
+}
+
+/// The system's files, until the process dies with one of the calls that change something.
+class DyingFiles : public FileLayer {
+ public:
+  explicit DyingFiles(int calls) : left_(calls) {}
+  int create(const std::string& path, int& fd) noexcept override {
+    count();
+    return FileLayer::create(path, fd);
+  }
+  int write_at(int fd, std::span<const std::byte> bytes, std::uint64_t offset,
+               std::size_t& written) noexcept override {
+    count();
+    return FileLayer::write_at(fd, bytes, offset, written);
+  }
+  int sync(int fd) noexcept override {
+    count();
+    return FileLayer::sync(fd);
+  }
+  int unlink(const std::string& path) noexcept override {
+    count();
+    return FileLayer::unlink(path);
+  }
+  int make_folder(const std::string& path) noexcept override {
+    count();
+    return FileLayer::make_folder(path);
+  }
+  int sync_folder(const std::string& path) noexcept override {
+    count();
+    return FileLayer::sync_folder(path);
+  }
+
+ private:
+  void count() noexcept {
+    if (left_-- == 0) {
+      ::_exit(7);
+    }
+  }
+  int left_;
+};
+
+/// Begins a build in a process of its own that dies with its n-th call. False when it lived.
+bool dies_beginning(const std::string& output, const std::string& tmp, int calls) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    DyingFiles files(calls);
+    const Workspace workspace(files, output, tmp, Unfinished::kRefuse, {{"of", 1}});
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 7;
+}
+
+TEST(Workspace, IsFoundWheneverItsProcessWasKilled) {
+  const ScratchFolder folder, tmp;
+  FileLayer& files = FileLayer::system();
+  const std::string output = folder.file("a.ptin");
+  const std::string in = std::filesystem::path(tmp.file("x")).parent_path().string();
+  int calls = 0;
+  for (; dies_beginning(output, in, calls); ++calls) {
+    SCOPED_TRACE(calls);
+    Workspace::discard(files, output);
+    EXPECT_TRUE(folder.names().empty());
+    EXPECT_TRUE(tmp.names().empty());
+    ASSERT_TRUE(dies_beginning(output, in, calls));
+    // A build that has not begun is begun, whatever it is asked; one that has is resumed.
+    Workspace again(files, output, in, Unfinished::kResume, {{"of", 1}});
+    EXPECT_EQ(tmp.names().size(), 1U);
+    again.remove_all();
+    EXPECT_TRUE(folder.names().empty());
+    EXPECT_TRUE(tmp.names().empty());
+  }
+  EXPECT_GT(calls, 6);
+  EXPECT_TRUE(Workspace::discard(files, output));
+  EXPECT_TRUE(tmp.names().empty());
+}
+
+TEST(Workspace, TakesUpAndDiscardsOnlyAFolderThatIsItsOwn) {
+  const ScratchFolder folder, tmp;
+  FileLayer& files = FileLayer::system();
+  const std::string output = folder.file("a.ptin");
+  const std::string in = std::filesystem::path(tmp.file("x")).parent_path().string();
+  std::string name;
+  {
+    Workspace workspace(files, output, in, Unfinished::kRefuse, {{"of", 1}});
+    name = workspace.temporary_folder();
+    workspace.append({{{"work", 1}}});
+  }
+  const std::string owner = oracle::bytes_of(name + "/owner");
+  oracle::write_text(name + "/owner", "/of/somebody/else");
+  oracle::write_text(name + "/letters.txt", "dear");
+  EXPECT_THROW(Workspace(files, output, in, Unfinished::kResume, {{"of", 1}}), Error);
+  EXPECT_THROW(Workspace::discard(files, output), Error);
+  EXPECT_EQ(oracle::bytes_of(name + "/letters.txt"), "dear");
+  oracle::write_text(name + "/owner", owner);
+  { const Workspace workspace(files, output, in, Unfinished::kResume, {{"of", 1}}); }
+  EXPECT_TRUE(Workspace::discard(files, output));
+  EXPECT_TRUE(tmp.names().empty());
 }
 
 TEST(ArrayFile, SaysThatItWasCutShortWhileItWasRead) {

@@ -2,6 +2,7 @@
 //
 // Which vertices of a TIN decide its grid: those of triangles that are kept.
 #include <algorithm>
+#include <numeric>
 #include <random>
 #include <set>
 #include <vector>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/construct/tin_source.h"
+#include "engine/construct/tin_vertices.h"
 #include "tests/construct/tin_fixture.h"
 
 namespace ptin {
@@ -99,6 +101,50 @@ TEST(TinGrid, LeavesOutRandomTrianglesOfNoHeight) {
     for (const TriangleClass wanted : {TriangleClass::kSurface, TriangleClass::kVoid}) {
       EXPECT_TRUE(triangles_of(all.tin, wanted) == triangles_of(some.tin, wanted));
     }
+  }
+}
+
+/// Against the definition, with memory for some of them and for all.
+TEST(TinVertices, AreTheSameInAnyMemory) {
+  std::mt19937 random(8);
+  constexpr int kSide = 150;
+  std::vector<int> ids(kSide * kSide);
+  std::iota(ids.begin(), ids.end(), 0);
+  std::shuffle(ids.begin(), ids.end(), random);
+  std::vector<Vertex3> vertices(ids.size());
+  for (int v = 0; v < kSide * kSide; ++v) {
+    const double z = random() % 50 == 0 ? -1.0 : double(random() % 100);
+    vertices[std::size_t(ids[std::size_t(v)])] = {0.25 * (v % kSide), 0.5 * (v / kSide), z};
+  }
+  std::vector<Face> faces;
+  std::set<int> used;
+  for (int v = 0; v < kSide * (kSide - 1); ++v) {
+    if (v % kSide == kSide - 1 || random() % 2 == 0) continue;
+    const auto id = [&](int n) { return ids[std::size_t(n)]; };
+    faces.push_back({id(v), id(v + 1), id(v + kSide)});
+    if (std::all_of(faces.back().begin(), faces.back().end(),
+                    [&](int c) { return vertices[std::size_t(c)][2] >= 0.0; })) {
+      used.insert(faces.back().begin(), faces.back().end());
+    }
+  }
+  const TestFile file(".obj", obj_of(vertices, faces));
+  for (const std::uint64_t bytes : {std::uint64_t{1}, std::uint64_t{1} << 26}) {
+    const ExternalMemory memory{FileLayer::system(),
+                                std::filesystem::temp_directory_path().string(), bytes};
+    TinVertices points(file.path(), {}, -1.0, {&memory, {}, {}});
+    EXPECT_EQ(points.total(), used.size());
+    EXPECT_EQ(points.left_out(), vertices.size() - used.size());
+    auto next = used.begin();
+    for (std::vector<SourcePoint> batch; points.next(batch);) {
+      for (const SourcePoint& p : batch) {
+        ASSERT_NE(next, used.end());
+        const Vertex3& v = vertices[std::size_t(*next++)];
+        EXPECT_EQ(to_double(p.x), v[0]);
+        EXPECT_EQ(to_double(p.y), v[1]);
+        EXPECT_EQ(to_double(p.z), v[2]);
+      }
+    }
+    EXPECT_EQ(next, used.end());
   }
 }
 

@@ -3,6 +3,9 @@
 // Builds under a limit that the system enforces: RLIMIT_DATA counts every private page that may be
 // written, touched or not, so a build needs --memory and a margin for what is reserved and never
 // used: stacks of threads, arenas of the heap, the data of libraries.
+#include <array>
+#include <fstream>
+
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -54,6 +57,53 @@ TEST(MemoryLimitSlow, ABuildKeepsWithinItsMemoryAndAMarginThatTheSystemEnforces)
     const auto outcome =
         run_ptin({"build", folder.file("dem.tif"), "-o", folder.file("out.ptin"), "--overwrite",
                   "--threads", "2", "--memory", std::to_string(memory) + "M", "-q"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  }
+}
+
+/// A mesh of 1000 x 1000 vertices as binary PLY: read into memory, its 150 bytes a vertex
+/// would be all that the limit leaves.
+void make_mesh(const std::string& path) {
+  constexpr int kSide = 1000;
+  std::ofstream file(path, std::ios::binary);
+  file << "ply\nformat binary_little_endian 1.0\nelement vertex " << kSide * kSide
+       << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+       << 2 * (kSide - 1) * (kSide - 1) << "\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto put = [&](const auto& value) {
+    file.write(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const int x = i % kSide, y = i / kSide;
+    put(static_cast<float>(x));
+    put(static_cast<float>(y));
+    put(static_cast<float>((x * 31 + y * 17) % 23));
+  }
+  for (int i = 0; i < kSide * (kSide - 1); ++i) {
+    if (i % kSide == kSide - 1) {
+      continue;
+    }
+    for (const std::array<int, 3>& corners :
+         {std::array{i, i + 1, i + kSide + 1}, std::array{i, i + kSide + 1, i + kSide}}) {
+      put(std::uint8_t{3});
+      put(corners);
+    }
+  }
+}
+
+/// As they are, and repaired: neither takes memory for all vertices.
+TEST(MemoryLimitSlow, ATinKeepsWithinItsMemoryToo) {
+  const TestFolder folder;
+  make_mesh(folder.file("mesh.ply"));
+  constexpr rlim_t kMemory = 96;
+  const DataLimit limit(kMemory * kMiB + kMargin);
+  if (!limit.is_set()) {
+    GTEST_SKIP() << "RLIMIT_DATA cannot be set here";
+  }
+  for (const char* repair : {"--overwrite", "--repair"}) {
+    SCOPED_TRACE(repair);
+    const auto outcome = run_ptin({"build", folder.file("mesh.ply"), "-o", folder.file("out.ptin"),
+                                   "--overwrite", "--threads", "1", "--tile", "128", "--memory",
+                                   std::to_string(kMemory) + "M", "-q", repair});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
 }
