@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/profile.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/geometry/hilbert.h"
 #include "engine/query/detail.h"
 #include "engine/query/refinement.h"
 #include "engine/query/retrieval.h"
@@ -146,7 +148,19 @@ class SegmentWriter {
   std::uint32_t part_ = 0;
 };
 
-/// Walks along the line, in pieces whose records fit the memory.
+/// A line on its way along the Hilbert curve.
+struct OrderedLine {
+  std::uint64_t along;  ///< Of the middle of its first segment.
+  std::size_t index;    ///< In the request.
+};
+
+/// Segments of a line: those from `first` up to `end`.
+struct LinePart {
+  const SpotLine* line;
+  std::size_t first, end;
+};
+
+/// Walks along lines, in groups whose records fit the memory.
 class Profiling {
  public:
   Profiling(const ProgressiveTin& terrain, const ProfileRequest& request)
@@ -154,57 +168,156 @@ class Profiling {
         request_(request),
         context_(request.stop, request.memory_limit_bytes, terrain.store().path()),
         detail_({request.tolerance, request.vertices}, {terrain.store(), terrain.index()},
-                context_) {}
+                context_),
+        refinement_(terrain.t0()) {}
 
   ProfileResult run(std::span<const std::span<const MapPoint>> lines) {
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const SpotLine line = spot_line(lines[i], i, lines.size(), terrain_.store().facts());
-      if (line.spots.size() < 2) {
-        ++result_.skipped_lines;
-        continue;
+    const std::vector<OrderedLine> order = order_of(lines);
+    begins_.resize(lines.size() + 1);
+    std::vector<SpotLine> group;
+    std::size_t segments = 0;
+    for (const OrderedLine& next : order) {
+      SpotLine line = spot_line(lines[next.index], next.index, lines.size(), facts());
+      const std::size_t own = line.spots.size() - 1;
+      if (!group.empty() && segments + own > kGroupSegments) {
+        walk_group(group);
+        group.clear();
+        segments = 0;
       }
-      walk(line, 0, line.spots.size() - 1);
+      segments += own;
+      group.push_back(std::move(line));
     }
-    if (!lines.empty() && result_.skipped_lines == lines.size()) {
-      throw Error(ErrorCode::invalid_argument, no_length(lines.size()));
-    }
+    walk_group(group);
+    put_in_order(order, lines.size());
     terrain_.store().pages().check_unchanged();
     result_.certified_error = detail_.certificate().error;
     result_.certified_deviation = detail_.certificate().deviation;
-    result_.exact = detail_.is_exact(terrain_.store().facts());
+    result_.exact = detail_.is_exact(facts());
     result_.cost = context_.cost;
     return std::move(result_);
   }
 
  private:
-  /// The segments from `first` up to `end`.
-  void walk(const SpotLine& line, std::size_t first, std::size_t end) {
-    const StoreFile& store = terrain_.store();
-    const SpotPath path(std::span(line.spots).subspan(first, end - first + 1), detail_.tolerance());
+  /// Segments refined together at most: their boxes stay in the processor's caches.
+  static constexpr std::size_t kGroupSegments = 8192;
+  static constexpr std::uint64_t kGroupRecords = std::uint64_t{1} << 18;
+
+  [[nodiscard]] const StoreFacts& facts() const noexcept { return terrain_.store().facts(); }
+
+  /// The lines that have a length; counts the others.
+  std::vector<OrderedLine> order_of(std::span<const std::span<const MapPoint>> lines) {
+    std::vector<OrderedLine> order;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      context_.check_stop();
+      const SpotLine line = spot_line(lines[i], i, lines.size(), facts());
+      if (line.spots.size() < 2) {
+        ++result_.skipped_lines;
+        continue;
+      }
+      const GridBox& b = facts().bounds;
+      const MapPoint p = grid_of(line.spots[0]);
+      const MapPoint q = grid_of(line.spots[1]);
+      const double x = std::clamp<double>((p.x + q.x) / 2, b.min_x, b.max_x);
+      const double y = std::clamp<double>((p.y + q.y) / 2, b.min_y, b.max_y);
+      order.push_back(
+          {hilbert_position(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)), i});
+    }
+    if (!lines.empty() && order.empty()) {
+      throw Error(ErrorCode::invalid_argument, no_length(lines.size()));
+    }
+    std::sort(order.begin(), order.end(), [](const OrderedLine& a, const OrderedLine& b) {
+      return a.along != b.along ? a.along < b.along : a.index < b.index;
+    });
+    return order;
+  }
+
+  void walk_group(std::span<const SpotLine> lines) {
+    std::vector<LinePart> parts;
+    for (const SpotLine& line : lines) {
+      parts.push_back({&line, 0, line.spots.size() - 1});
+    }
+    if (!parts.empty()) {
+      walk(parts);
+    }
+  }
+
+  /// Halves what does not fit: lines, then the segments of one.
+  void walk(std::span<const LinePart> parts) {
+    std::vector<SpotSegment> segments;
+    for (const LinePart& part : parts) {
+      for (std::size_t i = part.first; i < part.end; ++i) {
+        segments.push_back({part.line->spots[i], part.line->spots[i + 1]});
+      }
+    }
+    const bool is_one = segments.size() == 1;
+    const SpotPath path(std::move(segments), detail_.tolerance());
     std::vector<PageId> pages;
     terrain_.index().search(path, pages, context_.cost.io);
     context_.check_stop();
-    const std::uint64_t bytes =
-        bytes_of(terrain_.t0()) + refinement_bytes(most_records(store, pages)) + held();
-    if (bytes > request_.memory_limit_bytes && end - first > 1) {
+    const std::uint64_t records = most_records(terrain_.store(), pages);
+    const std::uint64_t bytes = bytes_of(terrain_.t0()) + refinement_bytes(records) + held();
+    const bool fits = bytes <= request_.memory_limit_bytes;
+    if (parts.size() > 1 && (!fits || records > kGroupRecords)) {
+      walk(parts.first(parts.size() / 2));
+      walk(parts.subspan(parts.size() / 2));
+    } else if (!fits && !is_one) {
+      const auto& [line, first, end] = parts.front();
       const std::size_t middle = first + (end - first) / 2;
-      walk(line, first, middle);
-      walk(line, middle, end);
+      const LinePart halves[] = {{line, first, middle}, {line, middle, end}};
+      walk({&halves[0], 1});
+      walk({&halves[1], 1});
+    } else {
+      context_.admit(bytes);
+      refine(path, pages);
+      write(parts);
+    }
+  }
+
+  void refine(const SpotPath& path, std::span<const PageId> pages) {
+    std::vector<PendingSplit> splits;
+    read_pages(terrain_.store(), pages, path, context_, splits);
+    detail_.keep(splits);
+    refinement_.restart(terrain_.t0());
+    refinement_.apply(splits, context_);
+  }
+
+  void write(std::span<const LinePart> parts) {
+    TriangleId near = 0;
+    for (const LinePart& part : parts) {
+      if (part.first == 0) {
+        begins_[part.line->number] = result_.points.size();
+      }
+      SegmentWriter writer(refinement_.tin(), facts(), *part.line, result_.points);
+      for (std::size_t i = part.first; i < part.end; ++i) {
+        context_.check_stop();
+        near = writer.write(static_cast<std::uint32_t>(i), near);
+        context_.admit(held());
+      }
+    }
+  }
+
+  /// From the order along the curve to that of the request.
+  void put_in_order(std::span<const OrderedLine> order, std::size_t lines) {
+    if (std::is_sorted(order.begin(), order.end(),
+                       [](const auto& a, const auto& b) { return a.index < b.index; })) {
       return;
     }
-    context_.admit(bytes);
-    std::vector<PendingSplit> splits;
-    read_pages(store, pages, path, context_, splits);
-    detail_.keep(splits);
-    Refinement refinement(terrain_.t0());
-    refinement.apply(splits, context_);
-    SegmentWriter writer(refinement.tin(), store.facts(), line, result_.points);
-    TriangleId near = 0;
-    for (std::size_t i = first; i < end; ++i) {
-      context_.check_stop();
-      near = writer.write(static_cast<std::uint32_t>(i), near);
-      context_.admit(held());
+    context_.admit(held() + result_.points.size() * sizeof(ProfilePoint));
+    std::vector<std::size_t> ends(lines);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      ends[order[i].index] =
+          i + 1 < order.size() ? begins_[order[i + 1].index] : result_.points.size();
     }
+    std::vector<ProfilePoint> points;
+    points.reserve(result_.points.size());
+    for (std::size_t line = 0; line < lines; ++line) {
+      if (ends[line] > 0) {  // not skipped: a line has points
+        points.insert(points.end(),
+                      result_.points.begin() + static_cast<std::ptrdiff_t>(begins_[line]),
+                      result_.points.begin() + static_cast<std::ptrdiff_t>(ends[line]));
+      }
+    }
+    result_.points = std::move(points);
   }
 
   [[nodiscard]] std::uint64_t held() const noexcept {
@@ -215,6 +328,9 @@ class Profiling {
   const ProfileRequest& request_;
   QueryContext context_;
   Detail detail_;
+  Refinement refinement_;  ///< Of the group at hand.
+  std::vector<std::size_t>
+      begins_;  ///< First point of each line of the request, once it is walked.
   ProfileResult result_;
 };
 

@@ -20,7 +20,8 @@ struct ProfileRequest {
   /// The profile of the TIN of the first so many vertices of the terrain (detail.h). Excludes
   /// `tolerance`.
   std::optional<std::uint64_t> vertices;
-  /// For records, mesh and points together. A line whose records do not fit is walked in pieces.
+  /// For records, mesh and points together. Lines whose records do not fit are walked one by one,
+  /// or in pieces.
   std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
   std::stop_token stop;
 };
@@ -53,8 +54,10 @@ struct ProfileResult {
 /// than 2^31 grid units away (names the line); as Detail
 ///               resource_exhausted  one segment, or the points, exceed the memory limit
 ///               corruption, io_error, cancelled
-/// Cost: the records whose region of influence meets the line, each test of one the logarithm of
-/// the segments, and the triangles on the way. With `vertices` that of Detail is added.
+/// Cost: the records whose region of influence meets a line, each test of one the logarithm of the
+/// segments, and the triangles on the way. Lines are taken along the Hilbert curve, in groups that
+/// share one refinement each, so what several need is read and applied once a group. With
+/// `vertices` that of Detail is added.
 [[nodiscard]] ProfileResult profile(const ProgressiveTin& terrain, std::span<const MapPoint> line,
                                     const ProfileRequest& request = {});
 [[nodiscard]] ProfileResult profile(const ProgressiveTin& terrain,

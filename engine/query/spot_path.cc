@@ -5,23 +5,38 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "engine/check.h"
 
 namespace ptin {
 
+namespace {
+
+std::vector<SpotSegment> segments_of(std::span<const Spot> spots) {
+  std::vector<SpotSegment> segments;
+  for (std::size_t i = 1; i < spots.size(); ++i) {
+    segments.push_back({spots[i - 1], spots[i]});
+  }
+  return segments;
+}
+
+}  // namespace
+
 SpotPath::SpotPath(std::span<const Spot> spots, double tolerance)
-    : tolerance_(tolerance), spots_(spots.begin(), spots.end()) {
-  PTIN_CHECK(spots_.size() >= 2);
-  const std::size_t segments = spots_.size() - 1;
+    : SpotPath(segments_of(spots), tolerance) {}
+
+SpotPath::SpotPath(std::vector<SpotSegment> given, double tolerance)
+    : tolerance_(tolerance), segments_(std::move(given)) {
+  PTIN_CHECK(!segments_.empty());
+  const std::size_t segments = segments_.size();
   const std::size_t leaves = std::bit_ceil(segments);
   first_leaf_ = leaves - 1;
   constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
   around_.assign(first_leaf_ + segments, {kMost, kMost, kLeast, kLeast});
   for (std::size_t i = 0; i < segments; ++i) {
-    const Spot& a = spots_[i];
-    const Spot& b = spots_[i + 1];
+    const auto& [a, b] = segments_[i];
     around_[first_leaf_ + i] = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x),
                                 std::max(a.y, b.y)};
   }
@@ -65,8 +80,7 @@ bool SpotPath::meets(const GridBox& grid) const noexcept {
 /// on one side of the line.
 bool SpotPath::segment_meets(std::size_t segment, const SpotBox& box,
                              const GridBox& grid) const noexcept {
-  const Spot& p = spots_[segment];
-  const Spot& q = spots_[segment + 1];
+  const auto& [p, q] = segments_[segment];
   if (box.min_x <= p.x && p.x <= box.max_x && box.min_y <= p.y && p.y <= box.max_y) return true;
   // The corners farthest to the left and to the right of the direction of the line.
   const bool east = q.x >= p.x;

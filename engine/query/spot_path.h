@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The predicate of a polyline: the region of influence meets it.
+// The predicate of polylines: the region of influence meets one of them.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,20 @@
 
 namespace ptin {
 
-/// True for boxes that share a point with a polyline, and errors above a tolerance. Exact, so
+/// A straight piece of a line, closed.
+struct SpotSegment {
+  Spot a, b;
+};
+
+/// True for boxes that share a point with some segment, and errors above a tolerance. Exact, so
 /// monotone. Threads: immutable.
 class SpotPath final : public AttributePredicate {
  public:
-  /// @param spots      Two at least. Copied.
+  /// @param segments   One at least; those that lie near each other best follow one another.
   /// @param tolerance  Errors at or below it are left out; negative: none are.
-  /// Cost: O(spots); 32 bytes more for each.
+  /// Cost: O(segments); 64 bytes for each besides.
+  SpotPath(std::vector<SpotSegment> segments, double tolerance);
+  /// A polyline.  @param spots  Two at least. Copied.
   SpotPath(std::span<const Spot> spots, double tolerance);
 
   /// Cost: constant for boxes that hold a long piece of the line or lie away from it; otherwise the
@@ -37,7 +44,7 @@ class SpotPath final : public AttributePredicate {
                                    const GridBox& grid) const noexcept;
 
   double tolerance_;
-  std::vector<Spot> spots_;
+  std::vector<SpotSegment> segments_;
   /// A binary heap of boxes: around node i of a balanced tree over the segments in their order,
   /// children 2 i + 1 and 2 i + 2; leaves hold one segment each.
   std::vector<SpotBox> around_;

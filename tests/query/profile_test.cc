@@ -167,6 +167,46 @@ TEST(Profile, KeepsLinesApart) {
   EXPECT_EQ(i, both.points.size());
 }
 
+TEST(Profile, SharesRefinementsAndKeepsTheOrderOfManyLines) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  std::mt19937_64 random(8);
+  const auto at = [&](double x, double y) {
+    return f.map.to_map(f.bounds.min_x + x, f.bounds.min_y + y);
+  };
+  std::vector<std::vector<MapPoint>> lines;
+  for (int i = 0; i < 300; ++i) {
+    const double x = double(random() % 2700) / 10 - 5;
+    const double y = double(random() % 2700) / 10 - 5;
+    lines.push_back({at(x, y), at(x + double(random() % 200) / 10, y + 7.5), at(x, y + 9)});
+    if (i % 50 == 0) lines.push_back({at(x, y), at(x, y)});  // without length
+  }
+  ProfileRequest request;
+  for (const std::uint64_t memory : {std::uint64_t{1} << 32, std::uint64_t{5} << 20}) {
+    request.memory_limit_bytes = memory;
+    const ProfileResult all = profile(terrain, lines, request);
+    EXPECT_EQ(all.skipped_lines, 6U);
+    std::size_t i = 0;
+    std::uint64_t alone = 0;
+    for (std::uint32_t line = 0; line < lines.size(); ++line) {
+      if (lines[line][0] == lines[line][1]) continue;
+      const ProfileResult one = profile(terrain, lines[line]);
+      alone += one.cost.records_applied;
+      for (const ProfilePoint& p : one.points) {
+        ASSERT_LT(i, all.points.size());
+        ASSERT_EQ(all.points[i].line, line);
+        ASSERT_EQ(all.points[i].distance, p.distance);
+        ASSERT_EQ(all.points[i].position, p.position);
+        ASSERT_EQ(all.points[i].state, p.state);
+        if (!std::isnan(p.height)) ASSERT_EQ(all.points[i].height, p.height);
+        ++i;
+      }
+    }
+    EXPECT_EQ(i, all.points.size());
+    EXPECT_LT(all.cost.records_applied, alone / 3);
+  }
+}
+
 TEST(Profile, RejectsWhatIsNoLine) {
   const Hierarchy h = reference::random_hierarchy(12);
   const reference::TemporaryStore file(h);
