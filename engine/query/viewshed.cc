@@ -2,24 +2,22 @@
 #include "engine/query/viewshed.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <utility>
+#include <memory>
+#include <optional>
 
 #include "engine/error.h"
-#include "engine/query/horizon.h"
-#include "engine/query/viewshed_walk_internal.h"
+#include "engine/query/above_error.h"
+#include "engine/query/bounded_mesh.h"
+#include "engine/query/detail.h"
+#include "engine/query/spot.h"
+#include "engine/query/viewshed_sweep_internal.h"
+#include "engine/query/voids.h"
 
 namespace ptin {
 
 namespace {
-
-constexpr std::size_t kStopInterval = 4096;
-constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1;
-constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
-constexpr double kMostBuckets = 65536;
-constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few pieces in each
 
 Error invalid(const char* message) { return Error(ErrorCode::invalid_argument, message); }
 
@@ -42,411 +40,149 @@ void check(const ViewshedRequest& r) {
   }
 }
 
-/// Whether a corner of a triangle, or a point of it, is looked at from within the triangle.
-struct Approach {
-  bool from_within = false;
-  Horizon::Side side = Horizon::Side::kBoth;
-};
-
-class Viewer {
+/// True for records that may deviate by more than `slope` times their distance from the eye, and
+/// for all that hold it. Monotone: a larger box is no farther.
+class DeviationTowards final : public AttributePredicate {
  public:
-  Viewer(const Tin& tin, const StoreFacts& facts, const ViewshedRequest& request,
-         const QueryContext& context)
-      : tin_(tin), facts_(facts), request_(request), context_(context) {
-    const auto spot = SpotMap(facts.map, facts.bounds).spot(request.eye);
-    if (!spot) {
-      throw invalid("the observer stands outside of the terrain");
-    }
-    spot_ = *spot;
-    eye_ = grid_of(spot_);
-    ground_x_ = facts.map.step_x * request.ground_per_map_x;
-    ground_y_ = facts.map.step_y * request.ground_per_map_y;
-  }
-
-  Viewshed run() {
-    find_eye_height();
-    if (request_.pixels) {
-      place_pixels();
-    }
-    admit();
-    result_.pixels.assign(std::size_t{result_.width} * result_.height, Sight::kNothing);
-    place_vertices();
-    sweep();
-    collect();
-    return std::move(result_);
+  /// @param eye  Grid units.  @param ground_x, ground_y  Ground units of a grid unit.
+  DeviationTowards(MapPoint eye, double ground_x, double ground_y, double slope)
+      : eye_(eye), ground_x_(ground_x), ground_y_(ground_y), slope_(slope) {}
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
+    const double x = ground_x_ * std::max({a.roi.min_x - eye_.x, eye_.x - a.roi.max_x, 0.0});
+    const double y = ground_y_ * std::max({a.roi.min_y - eye_.y, eye_.y - a.roi.max_y, 0.0});
+    const double distance = std::sqrt(x * x + y * y);
+    return distance == 0 || a.deviation > slope_ * distance;
   }
 
  private:
-  void find_eye_height();
-  void admit() const;
-  void place_vertices();
-  void place_pixels();
-  void sweep();
-  void walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon);
-  void collect();
-  [[nodiscard]] bool sees(const Offset& p, Spot spot, Horizon::Side side, const Horizon& horizon);
-  [[nodiscard]] std::size_t buckets() const noexcept {
-    const double across = std::max(request_.radius / ground_x_, request_.radius / ground_y_);
-    return static_cast<std::size_t>(std::clamp(4 * across, 64.0, kMostBuckets));
-  }
-  [[nodiscard]] Spot spot_at(const Offset& p) const noexcept {
-    return {spot_.x + std::llround(std::ldexp(p.x, kSpotBits)),
-            spot_.y + std::llround(std::ldexp(p.y, kSpotBits))};
-  }
-  void look_at(TriangleId t, Horizon& horizon);
-  void look_at_pixels(TriangleId t, const Horizon& horizon);
-  void look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column, std::int64_t row);
-  [[nodiscard]] Approach approach_corner(const std::array<Offset, 3>& o, int corner) const noexcept;
-  [[nodiscard]] double drop(double x, double y) const noexcept {
-    const double gx = x * ground_x_;
-    const double gy = y * ground_y_;
-    return request_.curvature.drop_at_square(gx * gx + gy * gy);
-  }
-  [[nodiscard]] bool within(double x, double y) const noexcept {
-    const double gx = x * ground_x_;
-    const double gy = y * ground_y_;
-    return gx * gx + gy * gy <= request_.radius * request_.radius;
-  }
-  [[nodiscard]] std::array<Offset, 3> offsets(TriangleId t) const noexcept {
-    const auto& v = tin_.triangles[t].v;
-    return {offsets_[v[0]], offsets_[v[1]], offsets_[v[2]]};
-  }
-  [[nodiscard]] bool is_surface(TriangleId t) const noexcept {
-    return t != kNone && tin_.classes[t] == TriangleClass::kSurface;
-  }
-  /// A target in line with an edge is looked at along it from both sides, each when its triangle
-  /// comes: only then is what was raised on that side in front of the target.
-  static void see(Sight& target, bool visible) noexcept {
-    target = visible && target != Sight::kHidden ? Sight::kVisible : Sight::kHidden;
-  }
-
-  const Tin& tin_;
-  const StoreFacts& facts_;
-  const ViewshedRequest& request_;
-  const QueryContext& context_;
-  Spot spot_;
-  MapPoint eye_;  ///< The spot in grid units.
-  TriangleId eye_triangle_ = 0;
-  double ground_x_ = 1, ground_y_ = 1;
-  std::vector<Offset> offsets_;       ///< Beside the vertices: grid units, and height's unit.
-  std::vector<Sight> seen_;           ///< Beside the vertices; kNothing: not looked at yet.
-  double pixel_x_ = 1, pixel_y_ = 1;  ///< Grid units.
-  double first_x_ = 0, first_y_ = 0;  ///< Offset of pixel 0.
-  bool pixels_on_grid_ = false;
-  std::optional<WalkedView> walked_;  ///< Once no order is left.
-  Viewshed result_;
+  MapPoint eye_;
+  double ground_x_, ground_y_, slope_;
 };
 
-void Viewer::find_eye_height() {
-  const Place place = find_spot(tin_, spot_, 0);
-  if (place.lies == Lies::kOutside) {
-    throw invalid("the observer stands outside of the terrain");
-  }
-  eye_triangle_ = place.triangle;
-  result_.eye_height = request_.eye_height;
-  if (request_.absolute) {
-    return;
-  }
-  if (!is_surface(answering_triangle(tin_, place))) {
-    throw invalid(
-        "the observer stands on a void, where no height is known; give an absolute height");
-  }
-  const Footing footing = footing_of(tin_, spot_, place);
-  result_.eye_height += facts_.heights.height_of_code(code_at(tin_, facts_.heights, footing));
-}
-
-/// Mesh, raster and horizon together, before any of them is taken.
-void Viewer::admit() const {
-  context_.admit(std::uint64_t{result_.width} * result_.height +
-                 tin_.vertices.size() * (sizeof(Vertex) + 1 + kVertexBytes +
-                                         (request_.vertices ? sizeof(Viewshed::Target) : 0)) +
-                 tin_.triangles.size() * (sizeof(Triangle) + 1 + kTriangleBytes) +
-                 buckets() * kBucketBytes);
-}
-
-void Viewer::place_vertices() {
-  offsets_.reserve(tin_.vertices.size());
-  for (const Vertex& v : tin_.vertices) {
-    if (offsets_.size() % kStopInterval == 0) {
-      context_.check_stop();
+/// Puts what two biased sweeps are certain of into the plain one.
+class Certainty {
+ public:
+  explicit Certainty(Viewshed& seen) : seen_(seen) {
+    for (Sight& s : seen_.pixels) {
+      s = s == Sight::kVisible  ? Sight::kPerhapsVisible
+          : s == Sight::kHidden ? Sight::kPerhapsHidden
+                                : s;
     }
-    const double x = v.position.x - eye_.x;
-    const double y = v.position.y - eye_.y;
-    offsets_.push_back({x, y, facts_.heights.height(v.height) - result_.eye_height - drop(x, y)});
-  }
-  seen_.assign(tin_.vertices.size(), Sight::kNothing);
-}
-
-void Viewer::place_pixels() {
-  pixel_x_ = request_.pixel_size ? *request_.pixel_size / facts_.map.step_x : 1.0;
-  pixel_y_ = request_.pixel_size ? *request_.pixel_size / facts_.map.step_y : 1.0;
-  pixels_on_grid_ = !request_.pixel_size;
-  const double reach_x = std::floor(request_.radius / (ground_x_ * pixel_x_));
-  const double reach_y = std::floor(request_.radius / (ground_y_ * pixel_y_));
-  constexpr double kMostPixels = 1e5;
-  if (reach_x > kMostPixels || reach_y > kMostPixels) {
-    throw invalid("the raster has more than 200 000 pixels a side: give a larger pixel size");
-  }
-  // On the grid: centres are the grid points, whatever the eye.
-  const double centre_x = pixels_on_grid_ ? std::floor(eye_.x + 0.5) - eye_.x : 0.0;
-  const double centre_y = pixels_on_grid_ ? std::floor(eye_.y + 0.5) - eye_.y : 0.0;
-  result_.width = static_cast<std::uint32_t>(2 * reach_x) + 1;
-  result_.height = static_cast<std::uint32_t>(2 * reach_y) + 1;
-  first_x_ = centre_x - reach_x * pixel_x_;
-  first_y_ = centre_y + reach_y * pixel_y_;
-  result_.first = facts_.map.to_map(eye_.x + first_x_, eye_.y + first_y_);
-  result_.step_x = pixel_x_ * facts_.map.step_x;
-  result_.step_y = pixel_y_ * facts_.map.step_y;
-}
-
-/// Front to back: a triangle comes when all neighbours across the sides that face the eye have
-/// come. A side that turns its back to the eye is raised when its triangle has been looked at.
-void Viewer::sweep() {
-  std::vector<std::uint8_t> waits(tin_.triangles.size());
-  std::vector<TriangleId> ready;
-  std::size_t left = 0;
-  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
-    if (t % kStopInterval == 0) {
-      context_.check_stop();
+    for (Viewshed::Target& t : seen_.vertices) {
+      t.certain = false;
     }
-    if (!tin_.is_alive(t)) {
-      continue;
-    }
-    ++left;
-    const auto o = offsets(t);
-    for (int i = 0; i < 3; ++i) {
-      const bool faces = turn(o[static_cast<std::size_t>(next_corner(i))],
-                              o[static_cast<std::size_t>(previous_corner(i))]) < 0;
-      if (faces && tin_.triangles[t].n[i] != kNone) {
-        ++waits[t];
+  }
+
+  /// What a sweep answers that was biased against `certain`.
+  void add(const Viewshed& biased, Sight certain) {
+    for (std::size_t i = 0; i < seen_.pixels.size(); ++i) {
+      if (biased.pixels[i] == certain) {
+        seen_.pixels[i] = certain;
       }
     }
-    if (waits[t] == 0) {
-      ready.push_back(t);
-    }
-  }
-  Horizon horizon(buckets());
-  // The last that became ready comes first: any order that keeps front before back does, and this
-  // one stays where the mesh and the horizon are in the cache.
-  while (!ready.empty()) {
-    if (left % kStopInterval == 0) {
-      context_.check_stop();
-    }
-    const TriangleId t = ready.back();
-    ready.pop_back();
-    --left;
-    look_at(t, horizon);
-    const auto o = offsets(t);
-    for (int i = 0; i < 3; ++i) {
-      const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
-      const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
-      if (!(turn(a, b) > 0)) {
-        continue;
-      }
-      const TriangleId n = tin_.triangles[t].n[i];
-      if (is_surface(t) || is_surface(n)) {
-        horizon.raise(a, b);
-      }
-      if (n != kNone && --waits[n] == 0) {
-        ready.push_back(n);
+    for (std::size_t i = 0; i < seen_.vertices.size(); ++i) {
+      if (biased.vertices[i].visible == is_visible(certain)) {
+        seen_.vertices[i].visible = biased.vertices[i].visible;
+        seen_.vertices[i].certain = true;
       }
     }
   }
-  if (left != 0) {
-    walk_to_others(waits, horizon);
-  }
-}
 
-/// Triangles that hide one another in a ring, and all behind: only where the mesh is far from
-/// Delaunay.
-void Viewer::walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon) {
-  walked_.emplace(tin_, offsets_, spot_);
-  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
-    if (tin_.is_alive(t) && waits[t] != 0) {
-      context_.check_stop();
-      look_at(t, horizon);
+  void count() {
+    seen_.visible_pixels = seen_.hidden_pixels = seen_.undecided_pixels = 0;
+    seen_.visible_vertices = seen_.hidden_vertices = seen_.undecided_vertices = 0;
+    for (const Sight s : seen_.pixels) {
+      seen_.visible_pixels += s == Sight::kVisible ? 1 : 0;
+      seen_.hidden_pixels += s == Sight::kHidden ? 1 : 0;
+      seen_.undecided_pixels += s == Sight::kPerhapsVisible || s == Sight::kPerhapsHidden ? 1 : 0;
+    }
+    for (const Viewshed::Target& t : seen_.vertices) {
+      ++(!t.certain  ? seen_.undecided_vertices
+         : t.visible ? seen_.visible_vertices
+                     : seen_.hidden_vertices);
     }
   }
-}
 
-bool Viewer::sees(const Offset& p, Spot spot, Horizon::Side side, const Horizon& horizon) {
-  if (!walked_) {
-    return horizon.sees(p, side);
-  }
-  ++result_.walked_targets;
-  return walked_->sees(spot, p.z, eye_triangle_);
-}
+ private:
+  Viewshed& seen_;
+};
 
-/// The ray to a corner comes through the triangle when the eye is on the inner side of both sides
-/// at that corner; along a side when it is in line with it.
-Approach Viewer::approach_corner(const std::array<Offset, 3>& o, int corner) const noexcept {
-  const Offset& at = o[static_cast<std::size_t>(corner)];
-  const Offset& next = o[static_cast<std::size_t>(next_corner(corner))];
-  const Offset& previous = o[static_cast<std::size_t>(previous_corner(corner))];
-  const double leaving = turn(at, next);
-  const double coming = turn(previous, at);
-  if (leaving < 0 || coming < 0) {
-    return {};
-  }
-  if (leaving == 0) {
-    return {true, turn(at, previous) > 0 ? Horizon::Side::kLeft : Horizon::Side::kRight};
-  }
-  if (coming == 0) {
-    return {true, turn(at, next) > 0 ? Horizon::Side::kLeft : Horizon::Side::kRight};
-  }
-  return {true, Horizon::Side::kBoth};
-}
+/// The mesh of a request, and what it leaves open.
+class ViewshedSearch {
+ public:
+  ViewshedSearch(const ProgressiveTin& terrain, const ViewshedRequest& request)
+      : store_(terrain.store()),
+        request_(request),
+        context_(request.stop, request.memory_limit_bytes, store_.path()),
+        detail_({request.tolerance, request.vertices}, {store_, terrain.index()}, context_),
+        mesh_(terrain, detail_) {}
 
-void Viewer::look_at(TriangleId t, Horizon& horizon) {
-  const auto o = offsets(t);
-  for (int i = 0; i < 3; ++i) {
-    const VertexId v = tin_.triangles[t].v[i];
-    if (tin_.has_height[v] == 0) {
-      continue;
-    }
-    Offset p = o[static_cast<std::size_t>(i)];
-    if (!within(p.x, p.y)) {
-      continue;
-    }
-    if (p.x == 0 && p.y == 0) {
-      seen_[v] = Sight::kVisible;
-      continue;
-    }
-    const Approach approach = approach_corner(o, i);
-    if (approach.from_within) {
-      p.z += request_.target_height;
-      see(seen_[v], sees(p, spot_of(tin_.position(v)), approach.side, horizon));
-    }
-  }
-  if (request_.pixels && is_surface(t)) {
-    look_at_pixels(t, horizon);
-  }
-}
-
-/// Pixel centres in the box of the triangle, but for those on its corners, which are vertices.
-void Viewer::look_at_pixels(TriangleId t, const Horizon& horizon) {
-  const auto& v = tin_.triangles[t].v;
-  const GridPoint a = tin_.position(v[0]);
-  const GridPoint b = tin_.position(v[1]);
-  const GridPoint c = tin_.position(v[2]);
-  if (pixels_on_grid_ && (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
-                                 (std::int64_t{c.x} - a.x) * (std::int64_t{b.y} - a.y) ==
-                             1) {
-    return;  // the smallest triangle of a grid has no grid point but its corners
-  }
-  const auto o = offsets(t);
-  const auto [left, right] = std::minmax({o[0].x, o[1].x, o[2].x});
-  const auto [low, high] = std::minmax({o[0].y, o[1].y, o[2].y});
-  const auto clamp = [](double value, std::uint32_t size) {
-    return static_cast<std::int64_t>(std::clamp(value, -1.0, static_cast<double>(size)));
-  };
-  const std::int64_t from_column = clamp(std::ceil((left - first_x_) / pixel_x_), result_.width);
-  const std::int64_t to_column = clamp(std::floor((right - first_x_) / pixel_x_), result_.width);
-  const std::int64_t from_row = clamp(std::ceil((first_y_ - high) / pixel_y_), result_.height);
-  const std::int64_t to_row = clamp(std::floor((first_y_ - low) / pixel_y_), result_.height);
-  for (std::int64_t row = std::max<std::int64_t>(from_row, 0);
-       row <= std::min<std::int64_t>(to_row, result_.height - 1); ++row) {
-    context_.check_stop();
-    for (std::int64_t column = std::max<std::int64_t>(from_column, 0);
-         column <= std::min<std::int64_t>(to_column, result_.width - 1); ++column) {
-      look_at_pixel(t, horizon, column, row);
-    }
-  }
-}
-
-void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column,
-                           std::int64_t row) {
-  Sight& pixel =
-      result_
-          .pixels[static_cast<std::size_t>(row) * result_.width + static_cast<std::size_t>(column)];
-  Offset p{first_x_ + static_cast<double>(column) * pixel_x_,
-           first_y_ - static_cast<double>(row) * pixel_y_, 0};
-  if (!within(p.x, p.y)) {
-    return;
-  }
-  const auto o = offsets(t);
-  double weights[3];
-  double sum = 0;
-  Horizon::Side side = Horizon::Side::kBoth;
-  for (int i = 0; i < 3; ++i) {
-    const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
-    const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
-    const double w = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-    const double faces = turn(a, b);
-    if (w < 0 || (w == 0 && faces < 0)) {
-      return;  // outside, or on a side that the ray reaches from beyond
-    }
-    if (w == 0 && faces == 0) {
-      side = turn(p, o[static_cast<std::size_t>(i)]) > 0 ? Horizon::Side::kLeft
-                                                         : Horizon::Side::kRight;
-    }
-    weights[i] = w;
-    sum += w;
-  }
-  if (p.x == 0 && p.y == 0) {
-    pixel = Sight::kVisible;
-    return;
-  }
-  // On the plane of the triangle, and lowered as a point of its own: the corners' were lowered too.
-  for (std::size_t i = 0; i < 3; ++i) {
-    p.z += weights[i] / sum * (o[i].z + drop(o[i].x, o[i].y));
-  }
-  p.z += request_.target_height - drop(p.x, p.y);
-  see(pixel, sees(p, walked_ ? spot_at(p) : spot_, side, horizon));
-}
-
-void Viewer::collect() {
-  for (VertexId v = 0; v < seen_.size(); ++v) {
-    if (v % kStopInterval == 0) {
-      context_.check_stop();
-    }
-    if (seen_[v] == Sight::kNothing || !touches_surface(tin_, v)) {
-      continue;
-    }
-    const Offset& o = offsets_[v];
-    const bool visible = seen_[v] == Sight::kVisible;
-    ++(visible ? result_.visible_vertices : result_.hidden_vertices);
-    if (request_.pixels && pixels_on_grid_) {
-      const auto column = static_cast<std::int64_t>(std::llround(o.x - first_x_));
-      const auto row = static_cast<std::int64_t>(std::llround(first_y_ - o.y));
-      if (column >= 0 && row >= 0 && column < result_.width && row < result_.height) {
-        result_.pixels[static_cast<std::size_t>(row) * result_.width +
-                       static_cast<std::size_t>(column)] = seen_[v];
+  Viewshed run() {
+    const bool is_open = detail_.is_asked() && !detail_.certificate().complete;
+    refine(is_open);
+    Viewshed result = sweep({});
+    if (is_open) {
+      Certainty certainty(result);
+      const bool voids = may_have_voids(store_);
+      certainty.add(sweep({1, slope_, voids}), Sight::kVisible);
+      if (!voids) {
+        certainty.add(sweep({-1, slope_, false}), Sight::kHidden);
       }
+      certainty.count();
     }
-    if (request_.vertices) {
-      const GridPoint p = tin_.position(v);
-      result_.vertices.push_back(
-          {facts_.map.to_map(p.x, p.y), facts_.heights.height(tin_.vertices[v].height), visible});
+    store_.pages().check_unchanged();
+    result.certified_error = detail_.certificate().error;
+    result.certified_deviation = is_open ? std::max(allowed(), store_.facts().base_deviation)
+                                         : detail_.certificate().deviation;
+    result.exact = detail_.is_exact(store_.facts());
+    result.cost = context_.cost;
+    return result;
+  }
+
+ private:
+  void refine(bool is_open) {
+    const AffineMap& map = store_.facts().map;
+    const double reach_x = request_.radius / request_.ground_per_map_x;
+    const double reach_y = request_.radius / request_.ground_per_map_y;
+    const MapPoint eye = request_.eye;
+    const PredicatePtr near = meets_region(
+        Window{eye.x - reach_x, eye.y - reach_y, eye.x + reach_x, eye.y + reach_y}, map);
+    if (!is_open) {
+      mesh_.refine(*all_of({near, std::make_shared<AboveError>(detail_.tolerance())}), context_);
+      return;
     }
+    slope_ = allowed() / request_.radius;
+    const auto spot = SpotMap(map, store_.facts().bounds).spot(eye);
+    const MapPoint at = spot ? grid_of(*spot) : map.to_grid(eye);  // outside is found out later
+    const auto towards = std::make_shared<DeviationTowards>(
+        at, map.step_x * request_.ground_per_map_x, map.step_y * request_.ground_per_map_y, slope_);
+    const auto level = std::make_shared<AboveError>(detail_.tolerance());
+    mesh_.refine(*all_of({near, any_of({level, towards})}), context_, towards.get());
   }
-  for (const Sight s : result_.pixels) {
-    result_.visible_pixels += s == Sight::kVisible ? 1 : 0;
-    result_.hidden_pixels += s == Sight::kHidden ? 1 : 0;
+
+  /// The deviation at the radius: what is asked for, at any point.
+  [[nodiscard]] double allowed() const noexcept {
+    return request_.tolerance.value_or(detail_.certificate().error);
   }
-}
+
+  Viewshed sweep(const SightBias& bias) {
+    return sweep_viewshed(mesh_.tin(), store_.facts(), request_, context_, bias);
+  }
+
+  const StoreFile& store_;
+  const ViewshedRequest& request_;
+  QueryContext context_;
+  Detail detail_;
+  BoundedMesh mesh_;
+  double slope_ = 0;
+};
 
 }  // namespace
 
 Viewshed viewshed(const ProgressiveTin& terrain, const ViewshedRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   check(request);
-  const double reach_x = request.radius / request.ground_per_map_x;
-  const double reach_y = request.radius / request.ground_per_map_y;
-  RefineRequest refine;
-  refine.region = Window{request.eye.x - reach_x, request.eye.y - reach_y, request.eye.x + reach_x,
-                         request.eye.y + reach_y};
-  refine.tolerance = request.tolerance;
-  refine.memory_limit_bytes = request.memory_limit_bytes;
-  refine.stop = request.stop;
-  const RefinedTin refined = terrain.refine(refine);
-  const StoreFile& store = terrain.store();
-  const QueryContext context(request.stop, request.memory_limit_bytes, store.path());
-  Viewshed result = Viewer(refined.tin, store.facts(), request, context).run();
-  result.certified_error = refined.certified_error;
-  result.certified_deviation = refined.certified_deviation;
-  result.exact = refined.exact;
-  result.cost = refined.cost;
+  Viewshed result = ViewshedSearch(terrain, request).run();
   result.cost.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

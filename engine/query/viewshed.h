@@ -30,13 +30,30 @@ struct ViewshedRequest {
   /// on the eye.
   std::optional<double> pixel_size;
   bool pixels = true;               ///< Fill the raster.
-  bool vertices = true;             ///< List the vertices.
+  bool list_vertices = true;        ///< List the vertices.
   std::optional<double> tolerance;  ///< Certified error; none: the full TIN.
+  /// The TIN of the first so many vertices of the terrain (detail.h). Excludes `tolerance`. With
+  /// either the TIN is finer towards the eye: records of a deviation above certified_deviation *
+  /// distance / radius are kept too.
+  std::optional<std::uint64_t> vertices;
   std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
   std::stop_token stop;
 };
 
-enum class Sight : std::uint8_t { kHidden = 0, kNothing = 128, kVisible = 255 };
+/// The two in the middle: at a level of detail, what is seen of its TIN, where the full TIN may
+/// answer otherwise. The other two are its answers. Above kNothing is visible.
+enum class Sight : std::uint8_t {
+  kHidden = 0,
+  kPerhapsHidden = 64,
+  kNothing = 128,
+  kPerhapsVisible = 192,
+  kVisible = 255
+};
+
+[[nodiscard]] constexpr bool is_visible(Sight s) noexcept { return s > Sight::kNothing; }
+[[nodiscard]] constexpr bool is_certain(Sight s) noexcept {
+  return s == Sight::kHidden || s == Sight::kVisible;
+}
 
 /// Targets are vertices with a height, and pixel centres on the surface, within the radius.
 struct Viewshed {
@@ -44,17 +61,19 @@ struct Viewshed {
     MapPoint position;
     double height = 0;
     bool visible = false;
+    bool certain = true;  ///< The full TIN answers so.
   };
   std::vector<Target> vertices;
-  std::uint64_t visible_vertices = 0, hidden_vertices = 0;
+  /// For certain; always, of the full TIN.
+  std::uint64_t visible_vertices = 0, hidden_vertices = 0, undecided_vertices = 0;
   std::uint32_t width = 0, height = 0;
   MapPoint first;  ///< Centre of pixel 0: the north-western one. Rows go south.
   double step_x = 0, step_y = 0;
   std::vector<Sight> pixels;  ///< kNothing beyond the radius, on voids and outside.
-  std::uint64_t visible_pixels = 0, hidden_pixels = 0;
+  std::uint64_t visible_pixels = 0, hidden_pixels = 0, undecided_pixels = 0;
   double eye_height = 0;  ///< Of itself.
-  /// Of the surface that it was computed on, from the source: targets that clear it by more are
-  /// seen for certain, none is told apart. 0 when exact.
+  /// Of the surface that was swept from the source. At a level of detail the deviation is that at
+  /// the radius, no larger than the error asked for. 0 when exact.
   double certified_error = 0, certified_deviation = 0;
   bool exact = false;  ///< On the full TIN, of a file that left nothing out.
   /// Targets in triangles that hide one another in a ring, which have no order: by lines of their
@@ -69,10 +88,20 @@ struct Viewshed {
 /// (horizon.h), so the answer is that of a sight line to each: exact for an eye on the grid, while
 /// products of offsets fit 53 bits; else up to rounding. Memory, the raster included, is known
 /// before the sweep begins.
-/// @throws Error invalid_argument    the eye is outside of the terrain or on a void without an
+///
+/// At a level of detail the full TIN lies within certified_deviation * distance / radius of the TIN
+/// that is swept. A target is hidden for certain when it is although all before it is lowered by
+/// that and itself raised; visible for certain when it is although all before it is raised and
+/// itself lowered, and its height is twice that: a bump that the level leaves out may always hide
+/// the ground itself. A void may be filled there: in a terrain with voids nothing is hidden for
+/// certain, and voids of the level may hold ground of any of the terrain's heights. With curvature
+/// both are for certain up to the straightness of edges above.
+/// @throws Error invalid_argument    as Detail; the eye is outside of the terrain or on a void
+/// without an
 ///               absolute height; a length means nothing
 ///               resource_exhausted, corruption, io_error, cancelled
-/// Cost: linear in the triangles within the radius, and in practice a few pieces of horizon each.
+/// Cost: linear in the triangles within the radius, and in practice a few pieces of horizon each;
+/// at a level of detail three times that.
 [[nodiscard]] Viewshed viewshed(const ProgressiveTin& terrain, const ViewshedRequest& request);
 
 }  // namespace ptin

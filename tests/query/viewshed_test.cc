@@ -14,7 +14,9 @@
 #include "engine/error.h"
 #include "engine/query/coarsest.h"
 #include "engine/query/viewshed_walk_internal.h"
+#include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
+#include "tests/query/sight_oracle.h"
 
 namespace ptin {
 namespace {
@@ -235,6 +237,91 @@ TEST(Viewshed, WalksWhereTrianglesHideOneAnotherInARing) {
     hidden += static_cast<int>(seen.hidden_pixels);
   }
   EXPECT_GT(hidden, 100);
+}
+
+/// Whatever a level of detail is certain of is what the full TIN answers. @returns how many pixels
+/// it is certain of.
+std::uint64_t check_certainty(const Viewshed& exact, const Viewshed& level) {
+  EXPECT_EQ(exact.width, level.width);
+  EXPECT_EQ(exact.height, level.height);
+  EXPECT_EQ(exact.undecided_pixels, 0U);
+  std::uint64_t certain = 0, undecided = 0, wrong = 0;
+  for (std::size_t i = 0; i < level.pixels.size(); ++i) {
+    const Sight s = level.pixels[i];
+    const bool is_target = exact.pixels[i] != Sight::kNothing;  // not a void that is filled
+    certain += is_certain(s) ? 1 : 0;
+    undecided += s != Sight::kNothing && !is_certain(s) ? 1 : 0;
+    wrong += is_target && is_certain(s) && s != exact.pixels[i] ? 1 : 0;
+  }
+  EXPECT_EQ(certain, level.visible_pixels + level.hidden_pixels);
+  EXPECT_EQ(undecided, level.undecided_pixels);
+  EXPECT_EQ(wrong, 0U);
+  std::map<std::pair<double, double>, bool> truth;
+  for (const Viewshed::Target& t : exact.vertices) {
+    truth[{t.position.x, t.position.y}] = t.visible;
+  }
+  for (const Viewshed::Target& t : level.vertices) {
+    const auto at = truth.find({t.position.x, t.position.y});
+    EXPECT_TRUE(!t.certain || at == truth.end() || at->second == t.visible);
+  }
+  return certain;
+}
+
+RC_GTEST_PROP(Viewshed, AtALevelOfDetailIsNeverWrongWhereItIsCertain, (std::uint64_t seed)) {
+  const reference::SmallTerrain t(seed);
+  const StoreFacts& f = t.terrain->store().facts();
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 3; ++i) {
+    ViewshedRequest request;
+    const GridBox& b = f.bounds;
+    request.eye =
+        f.map.to_map(b.min_x + double(random() % std::uint64_t(b.max_x - b.min_x + 1)),
+                     b.min_y + double(random() % std::uint64_t(b.max_y - b.min_y + 1)) * 0.999);
+    request.absolute = random() % 3 == 0;
+    request.eye_height = request.absolute ? f.max_height : double(random() % 5);
+    request.target_height = double(random() % 4);
+    request.curvature.coefficient = 0;
+    request.radius = f.map.step_x * (3 + double(random() % 50));
+    if (random() % 2 == 0) request.pixel_size = f.map.step_x * 0.71;
+    try {
+      const Viewshed exact = viewshed(*t.terrain, request);
+      if (random() % 2 == 0) {
+        request.tolerance = double(random() % 60) / 10;
+      } else {
+        request.vertices = t.terrain->store().t0().vertices.size() +
+                           random() % (t.terrain->store().record_count() + 2);
+      }
+      static_cast<void>(check_certainty(exact, viewshed(*t.terrain, request)));
+    } catch (const Error& error) {
+      RC_ASSERT(error.code() == ErrorCode::invalid_argument);  // outside, or on a void
+    }
+    RC_ASSERT(!::testing::Test::HasFailure());
+  }
+}
+
+TEST(Viewshed, OfMountainsIsMostlyCertainAtAnError) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  std::uint64_t hidden = 0, visible = 0, targets = 0;
+  for (int i = 0; i < 6; ++i) {
+    ViewshedRequest request;
+    request.eye = f.map.to_map(40 + 37 * i, 200 - 31 * i);
+    request.eye_height = 10;
+    request.target_height = i % 2 == 0 ? 0 : 30;
+    request.radius = 60 * f.map.step_x;
+    const Viewshed exact = viewshed(terrain, request);
+    request.tolerance = 2;
+    const Viewshed level = viewshed(terrain, request);
+    static_cast<void>(check_certainty(exact, level));
+    EXPECT_FALSE(level.exact);
+    hidden += level.hidden_pixels;
+    visible += level.visible_pixels;
+    targets += level.hidden_pixels + level.visible_pixels + level.undecided_pixels;
+    EXPECT_LT(level.cost.records_applied, exact.cost.records_applied);
+    if (request.target_height == 0) EXPECT_LE(level.visible_pixels, 1U);  // the eye's own
+  }
+  EXPECT_GT(hidden, targets / 5);
+  EXPECT_GT(visible, targets / 50);
 }
 
 TEST(Viewshed, EndsBehindAWall) {

@@ -31,7 +31,8 @@ struct ViewshedOptions {
   double target_height = 0, radius = 0;
   double curvature = Curvature{}.coefficient;
   bool absolute = false;
-  std::optional<double> pixel_size, error;
+  std::optional<double> pixel_size;
+  DetailOptions detail;
   std::string memory, output;
   bool overwrite = false;
 };
@@ -50,9 +51,7 @@ bool is_raster(const std::string& path) {
 }
 
 void check_options(const ViewshedOptions& options) {
-  if (options.error && !(*options.error >= 0)) {
-    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
-  }
+  check_detail(options.detail);
   if (options.output == "-") {
     throw Error(ErrorCode::invalid_argument, "the output must be a file: .tif for a raster, " +
                                                  known_vector_extensions() + " for vertices");
@@ -92,23 +91,26 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
 }
 
 void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt) {
-  VectorFile file(
-      options.output, options.overwrite,
-      {"viewshed",
-       wkbPoint,
-       {{"height", VectorFile::FieldType::kReal}, {"visible", VectorFile::FieldType::kInteger}},
-       wkt});
+  VectorFile file(options.output, options.overwrite,
+                  {"viewshed",
+                   wkbPoint,
+                   {{"height", VectorFile::FieldType::kReal},
+                    {"visible", VectorFile::FieldType::kInteger},
+                    {"certain", VectorFile::FieldType::kInteger}},
+                   wkt});
   for (const Viewshed::Target& v : seen.vertices) {
-    const VectorFile::Value values[] = {v.height, static_cast<std::int64_t>(v.visible ? 1 : 0)};
+    const VectorFile::Value values[] = {v.height, static_cast<std::int64_t>(v.visible ? 1 : 0),
+                                        static_cast<std::int64_t>(v.certain ? 1 : 0)};
     file.add(std::make_unique<OGRPoint>(v.position.x, v.position.y), values);
   }
   file.publish();
 }
 
 /// Null: not asked for.
-nlohmann::json counts_json(bool asked, std::uint64_t visible, std::uint64_t hidden) {
+nlohmann::json counts_json(bool asked, std::uint64_t visible, std::uint64_t hidden,
+                           std::uint64_t undecided) {
   if (!asked) return nullptr;
-  return {{"visible", visible}, {"hidden", hidden}};
+  return {{"visible", visible}, {"hidden", hidden}, {"undecided", undecided}};
 }
 
 void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts& crs,
@@ -119,8 +121,10 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts
                 {"eye_height", seen.eye_height},
                 {"width", seen.width},
                 {"height", seen.height},
-                {"pixels", counts_json(raster, seen.visible_pixels, seen.hidden_pixels)},
-                {"vertices", counts_json(!raster, seen.visible_vertices, seen.hidden_vertices)},
+                {"pixels", counts_json(raster, seen.visible_pixels, seen.hidden_pixels,
+                                       seen.undecided_pixels)},
+                {"vertices", counts_json(!raster, seen.visible_vertices, seen.hidden_vertices,
+                                         seen.undecided_vertices)},
                 {"certified_error", seen.certified_error},
                 {"certified_deviation", seen.certified_deviation},
                 {"exact", seen.exact},
@@ -129,9 +133,12 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts
   } else if (!context.quiet) {
     const std::uint64_t visible = raster ? seen.visible_pixels : seen.visible_vertices;
     const std::uint64_t hidden = raster ? seen.hidden_pixels : seen.hidden_vertices;
-    std::printf("%s: %s of %s %s visible%s\n", options.output.c_str(), grouped(visible).c_str(),
-                grouped(visible + hidden).c_str(), raster ? "pixels" : "vertices",
-                seen.exact ? "" : ", not exact");
+    const std::uint64_t undecided = raster ? seen.undecided_pixels : seen.undecided_vertices;
+    const std::string open =
+        undecided == 0 ? "" : " for certain, " + grouped(undecided) + " undecided";
+    std::printf("%s: %s of %s %s visible%s%s\n", options.output.c_str(), grouped(visible).c_str(),
+                grouped(visible + hidden + undecided).c_str(), raster ? "pixels" : "vertices",
+                open.c_str(), seen.exact ? "" : ", not exact");
   }
 }
 
@@ -150,13 +157,14 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   request.ground_per_map_x = per_unit.x;
   request.ground_per_map_y = per_unit.y;
   request.pixel_size = options.pixel_size;
-  request.tolerance = options.error;
+  request.tolerance = options.detail.error;
+  request.vertices = options.detail.vertices;
   request.stop = context.stop;
   request.memory_limit_bytes = request_memory(options);
   request.radius =
       ground.geographic ? options.radius / ground.metres_per_height : options.radius * per_unit.x;
   request.pixels = is_raster(options.output);
-  request.vertices = !request.pixels;
+  request.list_vertices = !request.pixels;
   const Viewshed seen = viewshed(terrain, request);
   if (is_raster(options.output)) {
     write_raster(seen, options, crs.wkt);
@@ -186,12 +194,17 @@ Action declare_viewshed(CLI::App& app, Context& context) {
   app.add_option("--pixel-size", options->pixel_size,
                  "Side of a pixel, map units (default: the grid's)")
       ->type_name("S");
-  app.add_option("--error", options->error, "Certified error allowed, in the height's unit")
-      ->type_name("E");
-  app.add_option(
-         "-o,--output", options->output,
-         "A raster (.tif: visible 255, hidden 0, else 128), or the vertices with `visible` (" +
-             known_vector_extensions() + ")")
+  add_detail_options(
+      app, options->detail,
+      " at the radius, less towards the observer; where the full TIN may answer otherwise, a "
+      "target is undecided (192 seems visible, 64 hidden; `certain` is 0)",
+      "Of the TIN of the terrain's N most important vertices, and more towards the "
+      "observer; undecided targets as with --error");
+  app.add_option("-o,--output", options->output,
+                 "A raster (.tif: visible 255, hidden 0, no target 128), or the vertices with "
+                 "`visible` and "
+                 "`certain` (" +
+                     known_vector_extensions() + ")")
       ->type_name("OUT")
       ->required();
   app.add_option("--memory", options->memory, "Memory for the answer, as 512M or 2G (default 4G)")
