@@ -17,7 +17,9 @@ class Stepper {
   Stepper(std::int64_t numerator, std::int64_t denominator, std::int64_t first) noexcept
       : denominator_(denominator) {
     divide(numerator, quotient_step_, remainder_step_);
-    divide(numerator * (first - 1), quotient_, remainder_);
+    if (first != 1) {
+      divide(numerator * (first - 1), quotient_, remainder_);
+    }
   }
   void step() noexcept {
     quotient_ += quotient_step_;
@@ -59,10 +61,14 @@ struct RasterSurface::Line {
 
   /// The crossings to look at, of `n` - 1 equally spaced ones: those near the window.
   [[nodiscard]] std::int64_t first(std::int64_t n) const noexcept {
-    return std::max<std::int64_t>(static_cast<std::int64_t>(enter * static_cast<double>(n)) - 1, 1);
+    return enter <= 0.0 ? 1
+                        : std::max<std::int64_t>(
+                              static_cast<std::int64_t>(enter * static_cast<double>(n)) - 1, 1);
   }
   [[nodiscard]] std::int64_t end(std::int64_t n) const noexcept {
-    return std::min<std::int64_t>(static_cast<std::int64_t>(leave * static_cast<double>(n)) + 2, n);
+    return leave >= 1.0 ? n
+                        : std::min<std::int64_t>(
+                              static_cast<std::int64_t>(leave * static_cast<double>(n)) + 2, n);
   }
   void clip(std::int64_t from, std::int64_t length, std::int64_t size) noexcept {
     if (length == 0) {
@@ -80,27 +86,43 @@ RasterSurface::RasterSurface(std::vector<HeightBits> heights, std::vector<std::u
                              std::int32_t width, std::int32_t height,
                              const HeightEncoding& encoding, GridPoint origin)
     : heights_(std::move(heights)),
-      valid_(std::move(valid)),
+      flags_(std::move(valid)),
       width_(width),
       height_(height),
       encoding_(encoding),
-      origin_(origin) {}
+      origin_(origin) {
+  for (std::uint8_t& flags : flags_) {
+    flags = flags != 0 ? kValid : 0;
+  }
+  mark_rising();
+}
 
-bool RasterSurface::rises(std::int64_t x, std::int64_t y) const noexcept {
-  const std::size_t a = at(x, y);
-  const std::size_t d = at(x, y + 1);
-  const RasterCell cell{{code(a), code(a + 1), code(d + 1), code(d)},
-                        {valid_[a], valid_[a + 1], valid_[d + 1], valid_[d]}};
-  const GridPoint corner{static_cast<std::int32_t>(origin_.x + x),
-                         static_cast<std::int32_t>(origin_.y + y)};
-  return cell_diagonal(cell, corner) == Diagonal::kRising;
+/// Diagonals are asked for many times each.
+void RasterSurface::mark_rising() {
+  const auto valid = [this](std::size_t i) {
+    return static_cast<std::uint8_t>(flags_[i] & kValid);
+  };
+  for (std::int32_t y = 0; y + 1 < height_; ++y) {
+    for (std::int32_t x = 0; x + 1 < width_; ++x) {
+      const std::size_t a = at(x, y);
+      const std::size_t d = at(x, y + 1);
+      const RasterCell cell{{code(a), code(a + 1), code(d + 1), code(d)},
+                            {valid(a), valid(a + 1), valid(d + 1), valid(d)}};
+      if (cell_diagonal(cell, {origin_.x + x, origin_.y + y}) == Diagonal::kRising) {
+        flags_[a] |= kRises;
+      }
+    }
+  }
 }
 
 /// Crossings with the lines x = constant: between two samples of a column, or at a sample.
 void RasterSurface::cross_columns(const Line& l, GapMaximum& gap) const {
   const std::int64_t n = std::abs(l.dx);
-  const double inverse = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  Stepper y(l.dy, std::max<std::int64_t>(n, 1), l.first(n));
+  if (n < 2) {
+    return;
+  }
+  const double inverse = 1.0 / static_cast<double>(n);
+  Stepper y(l.dy, n, l.first(n));
   for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
     y.step();
     const std::int64_t column = l.x + sign(l.dx) * i;
@@ -118,8 +140,11 @@ void RasterSurface::cross_columns(const Line& l, GapMaximum& gap) const {
 /// Crossings with the lines y = constant.
 void RasterSurface::cross_rows(const Line& l, GapMaximum& gap) const {
   const std::int64_t n = std::abs(l.dy);
-  const double inverse = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  Stepper x(l.dx, std::max<std::int64_t>(n, 1), l.first(n));
+  if (n < 2) {
+    return;
+  }
+  const double inverse = 1.0 / static_cast<double>(n);
+  Stepper x(l.dx, n, l.first(n));
   for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
     x.step();
     const std::int64_t column = l.x + x.floor();
@@ -138,8 +163,11 @@ void RasterSurface::cross_rows(const Line& l, GapMaximum& gap) const {
 void RasterSurface::cross_rising(const Line& l, GapMaximum& gap) const {
   const std::int64_t d = l.dy - l.dx;
   const std::int64_t n = std::abs(d);
-  const double inverse = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  Stepper x(l.dx, std::max<std::int64_t>(n, 1), l.first(n));
+  if (n < 2) {
+    return;
+  }
+  const double inverse = 1.0 / static_cast<double>(n);
+  Stepper x(l.dx, n, l.first(n));
   for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
     x.step();
     if (x.remainder() == 0) {
@@ -159,8 +187,11 @@ void RasterSurface::cross_rising(const Line& l, GapMaximum& gap) const {
 void RasterSurface::cross_falling(const Line& l, GapMaximum& gap) const {
   const std::int64_t d = l.dy + l.dx;
   const std::int64_t n = std::abs(d);
-  const double inverse = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  Stepper x(l.dx, std::max<std::int64_t>(n, 1), l.first(n));
+  if (n < 2) {
+    return;
+  }
+  const double inverse = 1.0 / static_cast<double>(n);
+  Stepper x(l.dx, n, l.first(n));
   for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
     x.step();
     if (x.remainder() == 0) {
@@ -178,12 +209,19 @@ void RasterSurface::cross_falling(const Line& l, GapMaximum& gap) const {
   }
 }
 
-double RasterSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
+RasterSurface::Line RasterSurface::line_of(const EdgeEnd& a, const EdgeEnd& b) const noexcept {
   Line line{std::int64_t{a.position.x} - origin_.x, std::int64_t{a.position.y} - origin_.y,
             std::int64_t{b.position.x} - a.position.x, std::int64_t{b.position.y} - a.position.y,
             b.code - a.code};
-  line.clip(line.x, line.dx, width_);
-  line.clip(line.y, line.dy, height_);
+  if (!holds(line.x, line.y) || !holds(line.x + line.dx, line.y + line.dy)) {
+    line.clip(line.x, line.dx, width_);
+    line.clip(line.y, line.dy, height_);
+  }
+  return line;
+}
+
+double RasterSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
+  const Line line = line_of(a, b);
   GapMaximum gap(a.code);
   if (line.enter > line.leave) {
     return 0.0;

@@ -30,19 +30,26 @@ class RasterSurface final : public FullSurface {
   [[nodiscard]] bool holds(std::int64_t x, std::int64_t y) const noexcept {
     return x >= 0 && y >= 0 && x < width_ && y < height_;
   }
-  [[nodiscard]] bool rises(std::int64_t x, std::int64_t y) const noexcept;
+  void mark_rising();
+  [[nodiscard]] bool rises(std::int64_t x, std::int64_t y) const noexcept {
+    return (flags_[at(x, y)] & kRises) != 0;
+  }
+  [[nodiscard]] Line line_of(const EdgeEnd& a, const EdgeEnd& b) const noexcept;
   void cross_columns(const Line& line, GapMaximum& gap) const;
   void cross_rows(const Line& line, GapMaximum& gap) const;
   void cross_rising(const Line& line, GapMaximum& gap) const;
   void cross_falling(const Line& line, GapMaximum& gap) const;
   void add(std::size_t p, std::size_t q, double fraction, double edge, GapMaximum& gap) const {
-    if (valid_[p] != 0 && valid_[q] != 0) {
+    if ((flags_[p] & flags_[q] & kValid) != 0) {
       gap.add(code(p), code(q), fraction, edge);
     }
   }
 
   std::vector<HeightBits> heights_;
-  std::vector<std::uint8_t> valid_;
+  static constexpr std::uint8_t kValid = 1;  ///< The sample has a height.
+  /// The cell whose lower left sample it is, is cut along its rising diagonal.
+  static constexpr std::uint8_t kRises = 2;
+  std::vector<std::uint8_t> flags_;
   std::int32_t width_;
   std::int32_t height_;
   HeightEncoding encoding_;

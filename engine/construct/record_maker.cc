@@ -10,6 +10,7 @@
 #include "engine/construct/fan_deviation.h"
 #include "engine/construct/rounding.h"
 #include "engine/construct/saturation.h"
+#include "engine/prefetch.h"
 
 namespace ptin {
 
@@ -100,11 +101,22 @@ void RecordMaker::note_dependencies(const Star& star) {
   tile_.dependency_end.push_back(static_cast<std::uint32_t>(all.size()));
 }
 
+void RecordMaker::prefetch_records(const Star& star) const {
+  for (const TriangleId t : star.triangles) {
+    if (const std::uint32_t r = tile_.carried[t].record; r != kNone) {
+      const auto* bytes = reinterpret_cast<const char*>(&tile_.records[r]);
+      prefetch(bytes);
+      prefetch(bytes + sizeof(VertexSplit) - 1);
+    }
+  }
+}
+
 void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {
   PTIN_CHECK(make_fan(s, j, fan_));
   if (s.count == 0) {
     gather_samples(tile_, s);
   }
+  prefetch_records(s.star);  // wanted after the measuring
   gather_sources(tile_, s);
   const FanError own = measure_fan(tile_, s, fan_, assignment_);
   const CollapseSite site = collapse_site(s.star, j);

@@ -35,6 +35,7 @@ class RecordMaker {
   [[nodiscard]] VertexSplit make_record(const StarSamples& s, const FanError& own,
                                         const CollapseSite& site);
   void note_dependencies(const Star& star);
+  void prefetch_records(const Star& star) const;
 
   Tile& tile_;
   const FullSurface* full_;

@@ -63,9 +63,19 @@ class Layout {
     z_[n_] = z;
     largest_ = std::max(largest_, std::abs(z));
     if (s.side_log != 0) [[unlikely]] {
-      const auto reach = static_cast<double>((std::int64_t{1} << s.side_log) - 1);
-      out_.blocks.push_back({x_[n_], y_[n_], x_[n_] + reach, y_[n_] + reach, z, s.depth,
-                             static_cast<std::uint32_t>(n_), 0});
+      add_block(s);
+    }
+    ++n_;
+  }
+  /// As add(), for samples that have heights.
+  void add_surface(const Sample& s) {
+    const double z = code_of<type>(s.height) - origin_code_;
+    x_[n_] = static_cast<double>(s.position.x - origin_.x);
+    y_[n_] = static_cast<double>(s.position.y - origin_.y);
+    z_[n_] = z;
+    largest_ = std::max(largest_, std::abs(z));
+    if (s.side_log != 0) [[unlikely]] {
+      add_block(s);
     }
     ++n_;
   }
@@ -102,6 +112,11 @@ class Layout {
   [[nodiscard]] double largest() const noexcept { return largest_; }
 
  private:
+  void add_block(const Sample& s) {
+    const auto reach = static_cast<double>((std::int64_t{1} << s.side_log) - 1);
+    out_.blocks.push_back({x_[n_], y_[n_], x_[n_] + reach, y_[n_] + reach, z_[n_], s.depth,
+                           static_cast<std::uint32_t>(n_), 0});
+  }
   void put(double x, double y, double z) {
     x_[n_] = x;
     y_[n_] = y;
@@ -149,7 +164,7 @@ void lay_out_samples(const Tile& tile, GridPoint origin, double origin_code, Sta
   out.z.resize(count);
   Layout<type> layout(tile.units, origin, origin_code, out);
   if (out.surface_only) {
-    for_each_sample(tile, out, [&](const Sample& s) { layout.add(s); });
+    for_each_sample(tile, out, [&](const Sample& s) { layout.add_surface(s); });
   } else {
     out.charge.resize(count);
     out.is_void.resize(count);
