@@ -108,23 +108,24 @@ std::function<void()> CollapseStage::collapse_batch(std::size_t number, const Le
                                                     const std::stop_token& stop) {
   const Batch& batch = order_.batches()[number];
   CollapsedTile result;
-  std::vector<Tile> parts;
+  std::vector<CollapsedLeaf> leaves;
   for (const TileId& id : batch.leaves) {
     CollapsedLeaf leaf = collapse_leaf(id, tree_, start, options_.collapse, stop);
     segments_.add(number, leaf.records);
     result.lone_samples += leaf.lone_samples;
-    parts.push_back(std::move(leaf.pushed.tile));
+    std::vector<VertexSplit>().swap(leaf.records);
+    leaves.push_back(std::move(leaf));
     report(tree_.window(id).samples());
   }
-  const ArrayFileFacts records = segments_.end(number);
-  const std::uint64_t lone_samples = result.lone_samples;
   if (batch.top.level == 0) {
-    result.pushed = write(batch.top, parts.front());
+    result.pushed = write(batch.top, leaves.front().pushed);
   } else {
-    result = write(collapse_inner(batch.top, tree_, std::move(parts), options_.collapse, stop));
+    CollapsedGroup group =
+        collapse_group(batch.top, tree_, std::move(leaves), options_.collapse, stop);
+    segments_.add(number, group.records);
+    result.pushed = write(batch.top, group.pushed);
   }
-  result.records = records;
-  result.lone_samples = lone_samples;
+  result.records = segments_.end(number);
   return [this, id = batch.top, result] { commit(id, result); };
 }
 

@@ -38,9 +38,9 @@ struct BuiltHierarchy {
 };
 
 /// Builds everything, or the rest of it when the workspace holds an interrupted build. Segments go
-/// to `output` in the order of the tree. Those of leaves are final when the leaf is collapsed,
-/// since a leaf measures all its samples; those of inner tiles, a quarter of all records, lie in
-/// the workspace until tightening.
+/// to `output` in the order of the tree. Those of leaves and of level 1 are final when the tile is
+/// collapsed, since they measure all their samples; those of tiles above, a sixteenth of all
+/// records, lie in the workspace until tightening.
 /// @param make_starter  Called once for each thread.
 /// @throws Error as simplify(), the starters and the output; resource_exhausted, io_error; after
 /// the last two, and cancelled, the workspace can be taken up again.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The records of a tile above the leaves, on their way to final attributes.
+// The records of a tile of level 2 or more, on their way to final attributes.
 #pragma once
 
 #include <cstdint>
@@ -25,11 +25,12 @@ struct BoundsRaise {
   RecordBounds bounds;
 };
 
-/// The segment of an inner tile after its collapses. Its records are numbered behind the foreign
-/// ones, those that its children pushed up: record i of `records` has number foreign.size() + i.
+/// The segment of a tile of level 2 or more after its collapses. Its records are numbered behind
+/// the foreign ones, those that its children pushed up: record i of `records` has number
+/// foreign.size() + i.
 struct InnerSegment {
   TileId id;
-  std::vector<RecordBounds> foreign;  ///< In the order of the children; final for those of leaves.
+  std::vector<RecordBounds> foreign;  ///< In the order of the children; final for those of level 1.
   std::vector<std::uint32_t> child_begin;  ///< Where each child's begin in `foreign`.
   std::vector<VertexSplit>
       records;  ///< In the order of the collapses; error and deviation own parts so far.

@@ -101,12 +101,11 @@ Piece TightenStage::take(int worker) {
 TightenStage::Replayed TightenStage::replay(const Batch& batch, const LeafStarter& start,
                                             const std::stop_token& stop) {
   std::vector<SharedSegment> files;
-  std::vector<std::vector<BoundsRaise>> raises(batch.ancestors.size() + 1);
+  std::vector<std::vector<BoundsRaise>> raises(batch.ancestors.size());
   std::vector<ReplaySegment> chain;
   for (const TileId& id : batch.ancestors) {
     files.push_back(segment_of(id));
   }
-  files.push_back(segment_of(batch.top));
   for (std::size_t i = 0; i < files.size(); ++i) {
     chain.push_back({files[i]->view().records, &raises[i]});
   }
@@ -118,10 +117,7 @@ TightenStage::Replayed TightenStage::replay(const Batch& batch, const LeafStarte
     replay_over_leaf(chain, t0_, start(window));
     report(window.samples());
   }
-  Replayed result{files.back(), SegmentBounds(files.back()->view()), {}, {}, {}};
-  result.bounds.raise(raises.back());
-  result.exported = result.bounds.saturate();
-  raises.pop_back();
+  Replayed result;
   for (std::vector<BoundsRaise>& r : raises) {
     combine(r);
   }
@@ -130,7 +126,6 @@ TightenStage::Replayed TightenStage::replay(const Batch& batch, const LeafStarte
     file->require_undamaged();
   }
   ArrayFileWriter file(log_.workspace().files(), log_.path(batch.top, kBounds));
-  file.put(result.exported);
   for (const std::vector<BoundsRaise>& r : result.raises) {
     file.put(r);
   }
@@ -154,12 +149,7 @@ void TightenStage::commit(std::size_t batch, Replayed&& replayed) {
 
 void TightenStage::write(const Batch& batch, Replayed& replayed) {
   log_.note_tightened(batch.top, replayed.facts);
-  log_.remove_later(batch.top, ".segment");
   raise_ancestors(batch, replayed.raises);
-  std::vector<VertexSplit> records = replayed.bounds.records();
-  replayed.file->require_undamaged();
-  log_.output().add_segment(records);
-  hand_to_parent(batch.top, replayed.exported);
   for (const TileId& id : batch.closed) {
     write_closed(id);
   }
@@ -201,15 +191,11 @@ void TightenStage::take_up(const Batch& batch) {
     return;
   }
   ArrayFileReader file(log_.path(batch.top, kBounds), log_.tightened().at(batch.top));
-  const auto exported = file.take<RecordBounds>();
   for (const TileId& id : batch.ancestors) {
     const auto raises = file.take<BoundsRaise>();
     if (!is_written(id)) {
       open(id).bounds.raise(raises);
     }
-  }
-  if (!is_written(BatchOrder::parent_of(batch.top))) {
-    hand_to_parent(batch.top, exported);
   }
   for (const TileId& id : batch.closed) {
     if (id != tree_.root() && !is_written(BatchOrder::parent_of(id))) {

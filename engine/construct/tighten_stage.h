@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The second half of a build: every leaf shows the records above it their true errors, and segments
-// above the leaves get their final bounds and are written.
+// of level 2 and above get their final bounds and are written.
 #pragma once
 
 #include <map>
@@ -40,11 +40,8 @@ class TightenStage final : public PieceSource {
   };
   /// What replaying the leaves of a batch gave.
   struct Replayed {
-    SharedSegment file;
-    SegmentBounds bounds;                          ///< Final.
-    std::vector<RecordBounds> exported;            ///< Likewise, of what was pushed up.
     std::vector<std::vector<BoundsRaise>> raises;  ///< For each ancestor, the root first.
-    ArrayFileFacts facts;                          ///< Of the file that keeps the last two.
+    ArrayFileFacts facts;                          ///< Of the file that keeps them.
   };
 
   Replayed replay(const Batch& batch, const LeafStarter& start, const std::stop_token& stop);

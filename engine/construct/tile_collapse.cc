@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/construct/joined_surface.h"
 #include "engine/construct/simplify.h"
 
 namespace ptin {
@@ -36,11 +37,30 @@ CollapsedLeaf collapse_leaf(const TileId& id, const TileTree& tree, const LeafSt
   lock_seams(leaf.tile, tree, id);
   simplify(leaf.tile, *leaf.full,
            simplify_options(options, vertices_to_keep(leaf.tile, tree, id), stop));
-  leaf.full.reset();
   CollapsedLeaf result;
   result.lone_samples = leaf.lone_samples;
   result.records = leaf.tile.records;
-  result.pushed = push_up(std::move(leaf.tile));
+  result.pushed = push_up(std::move(leaf.tile), PushedSamples::kAll).tile;
+  result.full = std::move(leaf.full);
+  result.box = leaf.box;
+  return result;
+}
+
+CollapsedGroup collapse_group(const TileId& id, const TileTree& tree,
+                              std::vector<CollapsedLeaf>&& leaves, const CollapseOptions& options,
+                              const std::stop_token& stop) {
+  JoinedSurface full;
+  std::vector<Tile> parts;
+  for (CollapsedLeaf& leaf : leaves) {
+    full.add(std::move(leaf.full), leaf.box);
+    parts.push_back(std::move(leaf.pushed));
+  }
+  Tile tile = join_tiles(std::move(parts), tree, id);
+  const auto foreign = static_cast<std::ptrdiff_t>(tile.records.size());
+  simplify(tile, full, simplify_options(options, vertices_to_keep(tile, tree, id), stop));
+  CollapsedGroup result;
+  result.records.assign(tile.records.begin() + foreign, tile.records.end());
+  result.pushed = push_up(std::move(tile), PushedSamples::kWitnesses).tile;
   return result;
 }
 
@@ -61,7 +81,7 @@ CollapsedInner collapse_inner(const TileId& id, const TileTree& tree, std::vecto
                          tile.records.end());
   segment.dependencies = std::move(tile.dependencies);
   segment.dependency_end = std::move(tile.dependency_end);
-  PushedTile pushed = push_up(std::move(tile));
+  PushedTile pushed = push_up(std::move(tile), PushedSamples::kWitnesses);
   segment.exported = std::move(pushed.exported);
   result.pushed = std::move(pushed.tile);
   return result;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -29,11 +30,19 @@ struct CollapseOptions {
 /// A leaf after its collapses.
 struct CollapsedLeaf {
   std::vector<VertexSplit> records;  ///< Final.
-  PushedTile pushed;
+  Tile pushed;                       ///< With all samples.
+  std::unique_ptr<FullSurface> full;
+  GridBox box;  ///< Of all samples and the full surface.
   std::uint64_t lone_samples = 0;
 };
 
-/// An inner tile after its collapses.
+/// A tile of level 1 after its collapses.
+struct CollapsedGroup {
+  std::vector<VertexSplit> records;  ///< Final.
+  Tile pushed;                       ///< With witnesses.
+};
+
+/// A tile of level 2 or more after its collapses.
 struct CollapsedInner {
   InnerSegment segment;  ///< To be tightened.
   Tile pushed;
@@ -44,6 +53,14 @@ struct CollapsedInner {
 [[nodiscard]] CollapsedLeaf collapse_leaf(const TileId& id, const TileTree& tree,
                                           const LeafStarter& start, const CollapseOptions& options,
                                           const std::stop_token& stop);
+
+/// The same for a tile of level 1, which measures all samples of its leaves too. The leaves' pushed
+/// tiles and surfaces are used up.
+/// @param leaves  In the order of TileTree::children().
+[[nodiscard]] CollapsedGroup collapse_group(const TileId& id, const TileTree& tree,
+                                            std::vector<CollapsedLeaf>&& leaves,
+                                            const CollapseOptions& options,
+                                            const std::stop_token& stop);
 
 /// The same for a tile whose children pushed `parts`, in the order of TileTree::children(). Their
 /// records are foreign to the segment.

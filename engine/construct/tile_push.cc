@@ -56,8 +56,14 @@ std::uint32_t mapped(const Renumbering& place, std::uint32_t i) {
   return i == kNone ? kNone : place[i];
 }
 
-void keep_samples(const Tile& from, TriangleId t, std::vector<Sample>& scratch, CarriedState& state,
-                  Tile& to) {
+void keep_all_samples(const Tile& from, TriangleId t, CarriedState& state, Tile& to) {
+  const auto samples = from.samples.samples(from.carried[t].samples);
+  state.samples = to.samples.take(static_cast<std::uint32_t>(samples.size()));
+  std::copy(samples.begin(), samples.end(), to.samples.samples(state.samples).begin());
+}
+
+void keep_witnesses(const Tile& from, TriangleId t, std::vector<Sample>& scratch,
+                    CarriedState& state, Tile& to) {
   const auto samples = from.samples.samples(from.carried[t].samples);
   scratch.assign(samples.begin(), samples.end());
   choose_witnesses(from, t, scratch);
@@ -155,7 +161,7 @@ void settle_vertices(Tile& tile) {
 
 }  // namespace
 
-PushedTile push_up(Tile&& tile) {
+PushedTile push_up(Tile&& tile, PushedSamples samples) {
   PushedTile pushed;
   Tile& to = pushed.tile;
   to.units = tile.units;
@@ -183,7 +189,11 @@ PushedTile push_up(Tile&& tile) {
     to.tin.classes.push_back(tile.tin.classes[t]);
     CarriedState state = tile.carried[t];
     state.record = mapped(records, state.record);
-    keep_samples(tile, t, scratch, state, to);
+    if (samples == PushedSamples::kAll) {
+      keep_all_samples(tile, t, state, to);
+    } else {
+      keep_witnesses(tile, t, scratch, state, to);
+    }
     to.carried.push_back(state);
   }
   for (Vertex& v : to.tin.vertices) {
