@@ -21,12 +21,13 @@ void QueryContext::throw_cancelled() const {
 }
 
 void QueryContext::throw_exhausted(std::uint64_t bytes) const {
-  const auto mebibytes = [](std::uint64_t b) {
-    return std::to_string((b + 0xFFFFF) >> 20) + " MiB";
+  const auto size = [](std::uint64_t b) {
+    return b < (16 << 20) ? std::to_string((b + 0x3FF) >> 10) + " KiB"
+                          : std::to_string((b + 0xFFFFF) >> 20) + " MiB";
   };
   throw Error(ErrorCode::resource_exhausted,
-              "the answer may take " + mebibytes(bytes) + ", more than the limit of " +
-                  mebibytes(memory_limit_bytes_) +
+              "the answer may take " + size(bytes) + ", more than the limit of " +
+                  size(memory_limit_bytes_) +
                   ": ask for a smaller region, a larger tolerance or fewer vertices, raise the "
                   "limit, or use export",
               file_);

@@ -296,6 +296,56 @@ struct SmallDisk {
   bool mounted = false;
 };
 
+TEST(CliBadInput, QuestionsThatMeanNothing) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const auto before = folder.names();
+  const std::string tif = folder.file("v.tif");
+  const std::string gpkg = folder.file("v.gpkg");
+  const auto refuse = [&](std::vector<std::string> arguments, int status,
+                          const std::string& words) {
+    arguments.insert(arguments.begin() + 1, store);
+    expect_refusal(run_ptin(arguments), status, words);
+    EXPECT_EQ(folder.names(), before);
+  };
+  for (const std::vector<std::string>& question :
+       {std::vector<std::string>{"locate", "0", "0"},
+        {"profile", "--line", "LINESTRING(0 0, 1 1)"},
+        {"sight", "0", "0", "1", "1", "1", "1"},
+        {"highest"},
+        {"isoline", "-i", "10", "-o", gpkg},
+        {"viewshed", "0", "0", "1", "--radius", "9", "-o", tif}}) {
+    const auto with = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> arguments = question;
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return arguments;
+    };
+    refuse(with({"--error", "-1"}), 2, "--error must be a number >= 0");
+    refuse(with({"--error", "nan"}), 2, "--error must be a number >= 0");
+    refuse(with({"--error", "1", "--vertices", "9"}), 2, "--vertices");
+    refuse(with({"--vertices", "1"}), 2, "ask for at least that many");
+    refuse(with({"--vertices", "-1"}), 2, "--vertices");
+    refuse(with({"--memory", "0"}), 2, "not a size");
+  }
+  refuse({"highest", "--memory", "1K"}, 7, "more than the limit of 1 KiB");
+  refuse({"highest", "-k", "0"}, 2, "-k");
+  refuse({"highest", "--window", "3", "2", "1", "4"}, 2, "inverted");
+  refuse({"viewshed", "0", "0", "1", "--radius", "9", "-o", folder.file("v.png")}, 2,
+         "must end in .tif for a raster");
+}
+
+TEST(CliOutput, KeepsTheCapitalsOfAShapefile) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const Outcome outcome =
+      run_ptin({"isoline", store, "-i", "10", "-o", folder.file("X.SHP"), "-q"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const auto names = folder.names();
+  for (const std::string name : {"X.SHP", "X.SHX", "X.DBF"}) {
+    EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+  }
+}
+
 TEST(CliBadInput, FullDisk) {
   const TestFolder folder;
   const SmallDisk disk(folder.file("disk"));

@@ -75,6 +75,20 @@ bool ends_as_geojson(const std::string& path) {
   return tail.ends_with("]}");
 }
 
+/// The name that a file of the output gets: the caller's own for the one asked for. GDAL writes
+/// X.shp, X.shx and X.dbf for X.SHP; those beside it are in capitals too then.
+std::string published_name(const fs::path& written, const fs::path& wanted) {
+  std::string extension = written.extension().string();
+  if (extension == lower_extension(wanted.string())) return wanted.filename().string();
+  const std::string asked = wanted.extension().string();
+  const bool in_capitals = std::none_of(asked.begin(), asked.end(),
+                                        [](unsigned char c) { return std::islower(c) != 0; });
+  if (!in_capitals) return written.filename().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return written.stem().string() + extension;
+}
+
 }  // namespace
 
 std::span<const VectorFormat> vector_formats() noexcept { return kFormats; }
@@ -190,15 +204,17 @@ void VectorFile::publish() {
   if (folder_.empty()) return;
   // A shapefile is several files: its own name last, so that what is there is complete.
   const fs::path target(path_);
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder_)) files.push_back(entry.path());
-  std::sort(files.begin(), files.end(), [&](const fs::path& a, const fs::path& b) {
-    const bool a_last = a.filename() == target.filename();
-    const bool b_last = b.filename() == target.filename();
+  std::vector<std::pair<std::string, fs::path>> files;  // by the names that they get
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    files.emplace_back(published_name(entry.path(), target), entry.path());
+  }
+  std::sort(files.begin(), files.end(), [&](const auto& a, const auto& b) {
+    const bool a_last = a.first == target.filename();
+    const bool b_last = b.first == target.filename();
     return a_last != b_last ? b_last : a < b;
   });
-  for (const fs::path& file : files) {
-    move_into_place(file.string(), (target.parent_path() / file.filename()).string(), overwrite_);
+  for (const auto& [name, file] : files) {
+    move_into_place(file.string(), (target.parent_path() / name).string(), overwrite_);
   }
 }
 

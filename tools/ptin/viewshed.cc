@@ -56,7 +56,14 @@ void check_options(const ViewshedOptions& options) {
     throw Error(ErrorCode::invalid_argument, "the output must be a file: .tif for a raster, " +
                                                  known_vector_extensions() + " for vertices");
   }
-  if (!is_raster(options.output)) static_cast<void>(vector_format_of(options.output));
+  const std::string extension = lower_extension(options.output);
+  if (!is_raster(options.output) && extension != ".json" &&
+      (extension.empty() || known_vector_extensions().find(extension) == std::string::npos)) {
+    throw Error(ErrorCode::invalid_argument,
+                "the name must end in .tif for a raster, or in one of " +
+                    known_vector_extensions() + " for vertices",
+                options.output);
+  }
   check_output(options.output, options.overwrite);
 }
 
