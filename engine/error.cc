@@ -60,6 +60,10 @@ Error::Error(ErrorCode code, std::string_view message, std::string_view context)
       message_(message),
       context_(context) {}
 
+void refuse(std::string_view message, std::string_view context) {
+  throw Error(ErrorCode::invalid_argument, message, context);
+}
+
 Error system_error(int errno_value, std::string_view action, std::string_view path) {
   std::string message(action);
   message.append(": ").append(std::generic_category().message(errno_value));

@@ -46,6 +46,10 @@ class Error : public std::runtime_error {
   std::string context_;
 };
 
+/// The commonest error: what was given cannot be used.
+/// @throws Error invalid_argument, always.
+[[noreturn]] void refuse(std::string_view message, std::string_view context = {});
+
 /// An io_error, not_found (ENOENT) or resource_exhausted (ENOSPC, EDQUOT) made from `errno_value`.
 /// @param action  What was attempted, for the message: "cannot open", "cannot write".
 /// @param path    The file concerned.

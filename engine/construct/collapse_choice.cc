@@ -9,13 +9,12 @@
 #include "engine/construct/lanes_internal.h"
 #include "engine/construct/sample_blocks.h"
 #include "engine/construct/void_measure.h"
+#include "engine/geometry/infinity.h"
 #include "engine/mesh/collapse.h"
 
 namespace ptin {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The link of a closed star, relative to u, padded with zeros to `stride` = a multiple of
 /// kSampleLanes; and room for what screening finds.

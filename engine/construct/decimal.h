@@ -17,6 +17,15 @@ struct Decimal {
   friend bool operator==(const Decimal&, const Decimal&) = default;
 };
 
+/// REQUIRES: exponent <= 18.
+[[nodiscard]] constexpr std::int64_t power_of_ten(int exponent) noexcept {
+  std::int64_t power = 1;
+  for (; exponent > 0; --exponent) {
+    power *= 10;
+  }
+  return power;
+}
+
 /// The double nearest to a decimal, but for one rounding more where its mantissa exceeds 2^53.
 [[nodiscard]] double to_double(Decimal d) noexcept;
 

@@ -16,14 +16,6 @@ constexpr std::int64_t kMostMantissa = 1'000'000'000'000'000'000;
 /// Scales with more decimals are binary fractions of something, not decimals.
 constexpr int kMostScaleDecimals = 9;
 
-std::int64_t power_of_ten(int exponent) {
-  std::int64_t power = 1;
-  for (; exponent > 0; --exponent) {
-    power *= 10;
-  }
-  return power;
-}
-
 }  // namespace
 
 struct LasReader::File : LasFile {

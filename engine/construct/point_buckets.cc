@@ -20,17 +20,13 @@ namespace {
 
 constexpr std::uint64_t kMostBuckets = std::uint64_t{1} << 20;
 
-[[noreturn]] void refuse(const std::string& context, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence, context);
-}
-
 void check_area(const ConvexHull& hull, std::uint64_t points, const std::string& context) {
   if (points < 3) {
-    refuse(context,
-           "there are " + std::to_string(points) + " distinct points; a terrain needs at least 3");
+    refuse("there are " + std::to_string(points) + " distinct points; a terrain needs at least 3",
+           context);
   }
   if (hull.corners().size() < 3) {
-    refuse(context, "all points lie on one line; a terrain needs an area");
+    refuse("all points lie on one line; a terrain needs an area", context);
   }
 }
 

@@ -16,14 +16,6 @@ __extension__ using Int128 = __int128;
 constexpr double kInt32Max = 2147483647.0;
 
 /// 10^exponent. REQUIRES: 0 <= exponent <= 18.
-constexpr std::int64_t power_of_ten(int exponent) {
-  std::int64_t power = 1;
-  for (; exponent > 0; --exponent) {
-    power *= 10;
-  }
-  return power;
-}
-
 /// Refuses an extent beyond the grid, and names the power of ten that would do.
 void check_extent(double extent, double unit, const std::string& context) {
   if (extent / unit <= kGridMax) {

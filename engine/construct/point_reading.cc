@@ -8,18 +8,14 @@
 namespace ptin {
 namespace {
 
-[[noreturn]] void refuse(const std::string& context, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence, context);
-}
-
 /// The CRS that all files share.
 class CommonCrs {
  public:
   void add(const std::string& crs, const std::string& path) {
     if (first_ && !is_same_crs(crs_, crs)) {
-      refuse(path, "this file has another CRS than '" + path_ +
-                       "', or one of them has none; transform " +
-                       "it first, or say with --a-srs what all of them are in");
+      refuse("this file has another CRS than '" + path_ + "', or one of them has none; transform " +
+                 "it first, or say with --a-srs what all of them are in",
+             path);
     }
     if (!first_) {
       first_ = true;
@@ -71,11 +67,11 @@ PointReading read_sources(const std::vector<std::string>& paths, const SourceOpt
     reading.left_out += stream->left_out();
   }
   if (scan.points() == 0) {
-    refuse(paths.empty() ? "" : paths[0],
-           count + reading.left_out == 0
+    refuse(count + reading.left_out == 0
                ? "there is no point in this file"
                : "every point is left out: none lies in the bounds, with a height and of a chosen "
-                 "class");
+                 "class",
+           paths.empty() ? "" : paths[0]);
   }
   reading.left_out += count - scan.points();
   reading.points = scan.points();

@@ -16,10 +16,6 @@ namespace {
 
 using Progress = std::function<void(std::uint64_t, std::uint64_t)>;
 
-[[noreturn]] void refuse(const std::string& context, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence, context);
-}
-
 // ---------------------------------------------------------------------------------------------------
 // Reading.
 
@@ -101,13 +97,14 @@ void add_points(const std::vector<SourcePoint>& points, const PointGrid& grid, P
 
 void check_area(const PointSet& set, const std::string& context) {
   if (set.positions.size() < 3) {
-    refuse(context, "there are " + std::to_string(set.positions.size()) +
-                        " distinct points; a terrain needs at least 3");
+    refuse("there are " + std::to_string(set.positions.size()) +
+               " distinct points; a terrain needs at least 3",
+           context);
   }
   const GridPoint first = set.positions.front(), last = set.positions.back();
   if (std::all_of(set.positions.begin(), set.positions.end(),
                   [&](GridPoint p) { return orient(first, last, p) == 0; })) {
-    refuse(context, "all points lie on one line; a terrain needs an area");
+    refuse("all points lie on one line; a terrain needs an area", context);
   }
 }
 

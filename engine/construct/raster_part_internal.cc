@@ -19,10 +19,6 @@
 namespace ptin {
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence, path);
-}
-
 GDALDatasetUniquePtr open_dataset(const std::string& path) {
   const GdalSession session;
   static constexpr unsigned kFlags = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
@@ -44,9 +40,9 @@ GDALDatasetUniquePtr open_dataset(const std::string& path) {
       VSIFCloseL(file);
     }
   }
-  refuse(path,
-         session.explain("this is not a raster that GDAL reads; points as text are known by a "
-                         "name that ends in .csv, .xyz or .txt"));
+  refuse(session.explain("this is not a raster that GDAL reads; points as text are known by a "
+                         "name that ends in .csv, .xyz or .txt"),
+         path);
 }
 
 /// The band with the heights: the only one, or the one beside an alpha band.
@@ -54,16 +50,18 @@ GDALRasterBand* height_band(GDALDataset& data, const std::string& path) {
   const int bands = data.GetRasterCount();
   if (bands == 0) {
     const char* subset = data.GetMetadataItem("SUBDATASET_1_NAME", "SUBDATASETS");
-    refuse(path, subset == nullptr
-                     ? std::string("this raster has no band")
-                     : "this file holds several rasters; name one, such as " + std::string(subset));
+    refuse(subset == nullptr
+               ? std::string("this raster has no band")
+               : "this file holds several rasters; name one, such as " + std::string(subset),
+           path);
   }
   const bool with_alpha =
       bands == 2 && data.GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand;
   if (bands > 1 && !with_alpha) {
-    refuse(path, "this raster has " + std::to_string(bands) +
-                     " bands where one of heights is expected; take it out with "
-                     "'gdal_translate -b NUMBER'");
+    refuse("this raster has " + std::to_string(bands) +
+               " bands where one of heights is expected; take it out with "
+               "'gdal_translate -b NUMBER'",
+           path);
   }
   return data.GetRasterBand(1);
 }
@@ -94,12 +92,12 @@ void describe_values(GDALRasterBand& band, const std::string& path, RasterShape&
   const GDALDataType type = band.GetRasterDataType();
   shape.type_name = GDALGetDataTypeName(type);
   if (GDALDataTypeIsComplex(type)) {
-    refuse(path, "this raster holds complex numbers (" + shape.type_name + "), not heights");
+    refuse("this raster holds complex numbers (" + shape.type_name + "), not heights", path);
   }
   shape.scale = band.GetScale();
   shape.offset = band.GetOffset();
   if (!std::isfinite(shape.scale) || !std::isfinite(shape.offset) || shape.scale == 0.0) {
-    refuse(path, "the raster's scale must be finite and not 0, and its offset finite");
+    refuse("the raster's scale must be finite and not 0, and its offset finite", path);
   }
   const bool scaled = shape.scale != 1.0 || shape.offset != 0.0;
   const bool fits_int32 =
@@ -121,27 +119,28 @@ void describe_place(GDALDataset& data, const std::string& path, RasterShape& sha
   shape.width = data.GetRasterXSize();
   shape.height = data.GetRasterYSize();
   if (shape.width - 1 > kGridMax || shape.height - 1 > kGridMax) {
-    refuse(path, "this raster has more than 2^30 columns or rows, which is the limit of the grid");
+    refuse("this raster has more than 2^30 columns or rows, which is the limit of the grid", path);
   }
   double t[6];
   const bool plain = data.GetGeoTransform(t) != CE_None ||
                      std::equal(t, t + 6, std::array<double, 6>{0, 1, 0, 0, 0, 1}.begin());
   if (plain) {
     if (data.GetGCPCount() > 0) {
-      refuse(path,
-             "this raster is placed by ground control points alone; warp it with 'gdalwarp' "
-             "first");
+      refuse(
+          "this raster is placed by ground control points alone; warp it with 'gdalwarp' "
+          "first",
+          path);
     }
     return;  // the identity, in pixels
   }
   shape.georeferenced = true;
   if (!std::all_of(t, t + 6, [](double v) { return std::isfinite(v); }) || t[1] == 0 || t[5] == 0) {
-    refuse(path, "this raster has an impossible geotransform");
+    refuse("this raster has an impossible geotransform", path);
   }
   const double skew = std::max(std::abs(t[2] / t[1]) * static_cast<double>(shape.height),
                                std::abs(t[4] / t[5]) * static_cast<double>(shape.width));
   if (skew > 1e-3) {
-    refuse(path, "this raster is rotated or sheared; make it north-up with 'gdalwarp' first");
+    refuse("this raster is rotated or sheared; make it north-up with 'gdalwarp' first", path);
   }
   shape.columns_from_east = t[1] < 0;
   shape.rows_from_south = t[5] > 0;
@@ -275,9 +274,10 @@ void check_heights(const SampleWindow& w, std::span<const T> values,
     const std::int64_t y = w.y + static_cast<std::int64_t>(i) / w.width;
     const std::int64_t column = shape.columns_from_east ? shape.width - 1 - x : x;
     const std::int64_t row = shape.rows_from_south ? y : shape.height - 1 - y;
-    refuse(path, "the height at column " + std::to_string(column) + ", row " + std::to_string(row) +
-                     " (counted from 0, as stored) is infinite or beyond 3.4e38; if such values "
-                     "mean no data, say so with nodata");
+    refuse("the height at column " + std::to_string(column) + ", row " + std::to_string(row) +
+               " (counted from 0, as stored) is infinite or beyond 3.4e38; if such values "
+               "mean no data, say so with nodata",
+           path);
   }
 }
 

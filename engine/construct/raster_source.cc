@@ -51,10 +51,6 @@ struct PlacedPart {
   std::uint64_t last_used = 0;
 };
 
-[[noreturn]] void refuse(const std::string& context, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence, context);
-}
-
 /// One name for each unit, as the CRS would give it.
 std::string normal_unit(const std::string& unit) {
   if (unit.empty()) {
@@ -105,12 +101,13 @@ std::string mismatch(const RasterShape& a, const RasterShape& b, bool compare_cr
 std::int64_t steps_between(double a, double b, double step, const std::string& path) {
   const double steps = (b - a) / step;
   if (!(std::abs(steps) <= 2.0 * kGridMax)) {
-    refuse(path, "it lies more than 2^30 pixels from the first raster");
+    refuse("it lies more than 2^30 pixels from the first raster", path);
   }
   if (std::abs(steps - std::nearbyint(steps)) > kFileSlack) {
-    refuse(path,
-           "its samples lie between those of the first raster; warp it onto that grid with "
-           "'gdalwarp -tap' or '-te'");
+    refuse(
+        "its samples lie between those of the first raster; warp it onto that grid with "
+        "'gdalwarp -tap' or '-te'",
+        path);
   }
   return std::llround(steps);
 }
@@ -164,7 +161,7 @@ struct RasterSource::Impl {
 void RasterSource::Impl::open_parts(const std::vector<std::string>& paths,
                                     const SourceOptions& options) {
   if (paths.empty()) {
-    refuse("", "no raster was named");
+    refuse("no raster was named", "");
   }
   parts.reserve(paths.size());
   for (const std::string& path : paths) {
@@ -175,7 +172,7 @@ void RasterSource::Impl::open_parts(const std::vector<std::string>& paths,
             ? ""
             : mismatch(parts[0].part.shape(), parts.back().part.shape(), options.a_srs.empty());
     if (!problem.empty()) {
-      refuse(path, problem);
+      refuse(problem, path);
     }
   }
   const RasterShape& first = parts[0].part.shape();
@@ -216,14 +213,15 @@ void RasterSource::Impl::place() {
 void RasterSource::Impl::crop(const SourceOptions::Bounds& b) {
   const auto range = [&](double low, double high, double origin, double step, std::int64_t count) {
     if (!(std::isfinite(low) && std::isfinite(high) && low <= high)) {
-      refuse(context(), "the bounds must be finite, and each minimum at most its maximum");
+      refuse("the bounds must be finite, and each minimum at most its maximum", context());
     }
     const double last = static_cast<double>(count - 1);
     const double first_step = std::ceil((low - origin) / step - kBoundsSlack);
     const double last_step = std::floor((high - origin) / step + kBoundsSlack);
     if (first_step > last || last_step < 0 || first_step > last_step) {
-      refuse(context(), "no sample lies in the bounds; samples reach from " +
-                            std::to_string(origin) + " to " + std::to_string(origin + step * last));
+      refuse("no sample lies in the bounds; samples reach from " + std::to_string(origin) + " to " +
+                 std::to_string(origin + step * last),
+             context());
     }
     return std::pair{static_cast<std::int64_t>(std::max(first_step, 0.0)),
                      static_cast<std::int64_t>(std::min(last_step, last))};
@@ -243,13 +241,13 @@ void RasterSource::Impl::crop(const SourceOptions::Bounds& b) {
 
 void RasterSource::Impl::check_size() const {
   if (width < 2 || height < 2) {
-    refuse(context(),
-           "a terrain of " + std::to_string(width) + " x " + std::to_string(height) +
-               " samples has no area: all of them are collinear; at least 2 x 2 are needed");
+    refuse("a terrain of " + std::to_string(width) + " x " + std::to_string(height) +
+               " samples has no area: all of them are collinear; at least 2 x 2 are needed",
+           context());
   }
   if (width - 1 > kGridMax || height - 1 > kGridMax) {
-    refuse(context(),
-           "the terrain has more than 2^30 columns or rows, which is the limit of the grid");
+    refuse("the terrain has more than 2^30 columns or rows, which is the limit of the grid",
+           context());
   }
 }
 

@@ -2,7 +2,6 @@
 #include "engine/construct/record_maker.h"
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "engine/construct/fan_deviation.h"
 #include "engine/construct/rounding.h"
 #include "engine/construct/saturation.h"
+#include "engine/geometry/infinity.h"
 #include "engine/prefetch.h"
 
 namespace ptin {
@@ -24,7 +24,6 @@ std::pair<HeightBits, HeightBits> bits_of(const Interval& codes, const HeightEnc
   if (heights.type == HeightType::int32) {
     return {heights.bits(INT32_MAX), heights.bits(INT32_MIN)};
   }
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return {heights.bits(kInfinity), heights.bits(-kInfinity)};
 }
 

@@ -7,10 +7,6 @@ namespace ptin {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence, path);
-}
-
 std::uint64_t triangle_of(const NamedCorner& c) { return c.place / 4; }
 
 struct ById {
@@ -72,7 +68,7 @@ class NameReader {
       leave_out_vertices();
     }
     if (tin_.corners.size() == 0) {
-      refuse(path_, "no triangle has a height");
+      refuse("no triangle has a height", path_);
     }
     return std::move(tin_);
   }
@@ -107,7 +103,7 @@ void NameReader::match() {
     const NamedVertex v = *vertices.now();
     vertices.next();
     if (vertices.now() != nullptr && vertices.now()->id == v.id) {
-      refuse(path_, "two vertices have the id " + std::to_string(v.id));
+      refuse("two vertices have the id " + std::to_string(v.id), path_);
     }
     if (corners.now() != nullptr && corners.now()->id < v.id) {
       break;
@@ -127,8 +123,9 @@ void NameReader::match() {
     }
   }
   if (const NamedCorner* left = corners.now()) {
-    refuse(path_, "triangle " + std::to_string(triangle_of(*left)) + " names vertex " +
-                      std::to_string(left->id) + ", which is not there");
+    refuse("triangle " + std::to_string(triangle_of(*left)) + " names vertex " +
+               std::to_string(left->id) + ", which is not there",
+           path_);
   }
   tin_.vertices.finish();
   tin_.corners.finish();

@@ -37,10 +37,6 @@ const TinFormat* format_of(std::string_view path) {
   return nullptr;
 }
 
-[[noreturn]] void refuse(const std::string& sentence, const std::string& place) {
-  throw Error(ErrorCode::invalid_argument, sentence, place);
-}
-
 }  // namespace
 
 bool is_tin_file(std::string_view path) { return format_of(path) != nullptr; }

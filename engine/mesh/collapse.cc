@@ -28,13 +28,6 @@ void remove_triangle(Tin& tin, TriangleId t) {
   triangle.n[0] = triangle.n[1] = triangle.n[2] = kNone;
 }
 
-void replace_neighbour(Tin& tin, TriangleId t, TriangleId was, TriangleId now) {
-  if (t != kNone) {
-    Triangle& triangle = tin.triangles[t];
-    triangle.n[side_of(triangle, was)] = now;
-  }
-}
-
 /// Joins `kept` with what lies beyond `gone`, on the far side from the centre.
 void bridge(Tin& tin, VertexId center, TriangleId gone, TriangleId kept) {
   const Triangle& triangle = tin.triangles[gone];

@@ -130,13 +130,6 @@ TriangleId put(Tin& tin, TriangleId id, const Triangle& triangle, TriangleClass 
   return id;
 }
 
-void replace_neighbour(Tin& tin, TriangleId t, TriangleId was, TriangleId now) {
-  if (t != kNone) {
-    Triangle& triangle = tin.triangles[t];
-    triangle.n[place_of(triangle.n, was)] = now;
-  }
-}
-
 }  // namespace
 
 SplitResult split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId right) {

@@ -15,4 +15,19 @@ std::size_t Tin::alive_triangles() const noexcept {
                                                 [](const Triangle& t) { return t.v[0] != kNone; }));
 }
 
+void point_vertices(Tin& tin) {
+  for (Vertex& v : tin.vertices) {
+    v.triangle = kNone;
+  }
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    const Triangle& triangle = tin.triangles[t];
+    for (int c = 0; c < 3; ++c) {
+      TriangleId& slot = tin.vertices[triangle.v[c]].triangle;
+      if (slot == kNone || triangle.n[previous_corner(c)] == kNone) {
+        slot = t;
+      }
+    }
+  }
+}
+
 }  // namespace ptin

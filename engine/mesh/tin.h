@@ -64,8 +64,23 @@ struct Tin {
 
 /// Place of neighbour `n` in triangle `t`. REQUIRES: it is a neighbour.
 [[nodiscard]] inline int side_of(const Triangle& t, TriangleId n) noexcept {
-  return t.n[0] == n ? 0 : (t.n[1] == n ? 1 : 2);
+  const bool beyond_first = t.n[0] != n;
+  return static_cast<int>(beyond_first) + static_cast<int>(beyond_first & (t.n[1] != n));
 }
+
+/// Neighbour `was` of triangle `t` becomes `now`. Does nothing where `t` is kNone, beyond the
+/// border. REQUIRES: `was` is a neighbour.
+inline void replace_neighbour(Tin& tin, TriangleId t, TriangleId was, TriangleId now) noexcept {
+  if (t != kNone) {
+    Triangle& triangle = tin.triangles[t];
+    triangle.n[side_of(triangle, was)] = now;
+  }
+}
+
+/// Points each vertex at one of its triangles: on the border at the first of the counter-clockwise
+/// walk (invariant I6). Vertices of no triangle point at kNone. REQUIRES: no removed triangle.
+/// Cost: linear.
+void point_vertices(Tin& tin);
 
 [[nodiscard]] inline constexpr int next_corner(int i) noexcept { return i == 2 ? 0 : i + 1; }
 [[nodiscard]] inline constexpr int previous_corner(int i) noexcept { return i == 0 ? 2 : i - 1; }

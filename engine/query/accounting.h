@@ -3,6 +3,7 @@
 // What a query carries along: its costs, its limits and its stop token.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <stop_token>
 #include <string>
@@ -24,6 +25,9 @@ struct QueryCost {
   /// Adds what a part of the answer cost; `seconds` is the whole answer's, and left alone.
   void add_counts(const QueryCost& part) noexcept;
 };
+
+/// Steps of a long loop between two looks at the stop token.
+inline constexpr std::size_t kStopInterval = 4096;
 
 /// The context of one query. Every step of it is handed the same one; nothing of it is shared
 /// between queries. Threads: none; one query, one thread.

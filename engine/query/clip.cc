@@ -7,8 +7,6 @@ namespace ptin {
 
 namespace {
 
-constexpr TriangleId kStopInterval = 4096;
-
 /// New number of each triangle, kNone for those that go.
 std::vector<TriangleId> number_meeting(const Tin& tin, const GridRegion& region,
                                        const QueryContext& context) {
@@ -50,23 +48,6 @@ void keep_triangles(Tin& tin, const std::vector<TriangleId>& number,
   tin.classes.resize(kept);
   if (!pages.empty()) {
     pages.resize(kept);
-  }
-}
-
-/// Points each vertex at a triangle that stayed: one that begins a walk where there is one
-/// (invariant I6).
-void point_vertices(Tin& tin) {
-  for (Vertex& v : tin.vertices) {
-    v.triangle = kNone;
-  }
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    const Triangle& triangle = tin.triangles[t];
-    for (int c = 0; c < 3; ++c) {
-      TriangleId& slot = tin.vertices[triangle.v[c]].triangle;
-      if (slot == kNone || triangle.n[previous_corner(c)] == kNone) {
-        slot = t;
-      }
-    }
   }
 }
 

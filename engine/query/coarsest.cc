@@ -66,19 +66,6 @@ void join_neighbours(Tin& tin) {
   }
 }
 
-/// One triangle for each vertex; on the border the first of the counter-clockwise walk (I6).
-void point_vertices(Tin& tin) {
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    const Triangle& triangle = tin.triangles[t];
-    for (int c = 0; c < 3; ++c) {
-      TriangleId& slot = tin.vertices[triangle.v[c]].triangle;
-      if (slot == kNone || triangle.n[previous_corner(c)] == kNone) {
-        slot = t;
-      }
-    }
-  }
-}
-
 }  // namespace
 
 Tin mesh_of(const CoarsestTin& t0, const std::string& file) {

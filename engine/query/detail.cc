@@ -3,19 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
 #include "engine/query/above_error.h"
 
 namespace ptin {
 
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 std::uint64_t records_of_first(std::uint64_t vertices, const StoreFile& store) {
   const std::uint64_t t0 = store.t0().vertices.size();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
 #include "engine/query/above_error.h"
 #include "engine/query/detail.h"
 #include "engine/query/highest_gather_internal.h"
@@ -21,8 +22,6 @@ namespace ptin {
 
 namespace {
 
-constexpr std::size_t kStopInterval = 4096;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFirstSpare = 16;  // vertices looked up beyond those asked for
 
 /// A rectangle on the grid, in real numbers.

@@ -8,8 +8,6 @@ namespace ptin {
 
 namespace {
 
-constexpr std::size_t kStopInterval = 4096;
-
 /// Finds the triangles that each level crosses.
 class Collector {
  public:

@@ -15,8 +15,6 @@ namespace ptin {
 
 namespace {
 
-constexpr std::size_t kStopInterval = 4096;
-
 /// A file in `folder` that has no name any more.
 int nameless_file(const std::string& folder) {
   const int file = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);

@@ -9,7 +9,6 @@
 namespace ptin {
 
 namespace {
-constexpr std::size_t kStopInterval = 4096;
 constexpr std::uint64_t kTriangleBytes = 12 + 4 + 1 + 3 * 16;  // neighbours, pieces, sides to sort
 constexpr std::uint64_t kPieceBytes = 4 + 1;
 /// A line through a triangle: a point of the polygon above it and one of that below, each as found,

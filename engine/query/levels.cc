@@ -39,11 +39,9 @@ double code_of(double height, const HeightEncoding& encoding) {
   return stored ? nearest : code;
 }
 
-Error invalid(const std::string& message) { return Error(ErrorCode::invalid_argument, message); }
-
-Error too_many() {
-  return invalid("there are more than " + std::to_string(kMostLevels) +
-                 " levels: ask for fewer, or a larger interval");
+[[noreturn]] void refuse_more_levels() {
+  refuse("there are more than " + std::to_string(kMostLevels) +
+         " levels: ask for fewer, or a larger interval");
 }
 
 }  // namespace
@@ -64,15 +62,15 @@ Ladder::Ladder(std::vector<double> steps) : steps_(std::move(steps)) {
 
 LevelSet::LevelSet(const std::vector<double>& levels, const HeightEncoding& encoding) {
   if (levels.empty()) {
-    throw invalid("no level is given: expected at least one height");
+    refuse("no level is given: expected at least one height");
   }
   if (levels.size() > kMostLevels) {
-    throw too_many();
+    refuse_more_levels();
   }
   std::vector<std::pair<double, double>> pairs;
   for (const double height : levels) {
     if (!std::isfinite(height)) {
-      throw invalid("a level is not a finite number: expected heights in the height's unit");
+      refuse("a level is not a finite number: expected heights in the height's unit");
     }
     pairs.emplace_back(code_of(height, encoding), height);
   }
@@ -91,7 +89,7 @@ PredicatePtr LevelSet::crossing() const { return std::make_shared<CrossesLevel>(
 
 std::vector<double> levels_at(double interval, double base, double low, double high) {
   if (!(interval > 0) || !std::isfinite(interval) || !std::isfinite(base)) {
-    throw invalid("the interval must be a number > 0 and the base a number");
+    refuse("the interval must be a number > 0 and the base a number");
   }
   if (low > high) {
     return {};  // all is void
@@ -99,12 +97,12 @@ std::vector<double> levels_at(double interval, double base, double low, double h
   const double first = std::ceil((low - base) / interval);
   const double last = std::floor((high - base) / interval);
   if (!(std::abs(first) <= kMostSteps) || !(std::abs(last) <= kMostSteps)) {
-    throw invalid(
+    refuse(
         "the heights lie more than 2^53 intervals from the base: give a larger interval, or a base "
         "nearer to the heights");
   }
   if (last - first >= static_cast<double>(kMostLevels)) {
-    throw too_many();
+    refuse_more_levels();
   }
   const auto count = static_cast<std::int64_t>(last - first) + 1;
   std::vector<double> levels;

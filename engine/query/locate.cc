@@ -23,7 +23,6 @@ namespace {
 /// near the processor.
 constexpr std::size_t kGroupPoints = 8192;
 constexpr std::uint64_t kGroupRecords = std::uint64_t{1} << 18;
-constexpr std::size_t kStopInterval = 4096;
 
 /// A point of the request on its way along the curve.
 struct Ordered {

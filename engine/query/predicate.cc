@@ -176,11 +176,9 @@ class AnyOf final : public BoundedPredicate {
   std::vector<const BoundedPredicate*> bounded_;  ///< Beside the parts.
 };
 
-Error invalid(const char* message) { return Error(ErrorCode::invalid_argument, message); }
-
 void check_parts(const std::vector<PredicatePtr>& parts) {
   if (std::find(parts.begin(), parts.end(), nullptr) != parts.end()) {
-    throw invalid("a part of a composed predicate is null");
+    refuse("a part of a composed predicate is null");
   }
 }
 
@@ -194,22 +192,21 @@ PredicatePtr meets_region(const Region& region, const AffineMap& map) {
 
 PredicatePtr error_above(double tolerance) {
   if (!(tolerance >= 0)) {
-    throw invalid(
-        "the tolerance is negative or not a number: expected a value >= 0 in the height's unit");
+    refuse("the tolerance is negative or not a number: expected a value >= 0 in the height's unit");
   }
   return std::make_shared<ErrorAbove>(tolerance);
 }
 
 PredicatePtr contains_height(double height, const HeightEncoding& heights) {
   if (!std::isfinite(height)) {
-    throw invalid("the height is not a finite number");
+    refuse("the height is not a finite number");
   }
   return std::make_shared<HeightsMeet>(height, height, heights);
 }
 
 PredicatePtr heights_meet(double low, double high, const HeightEncoding& heights) {
   if (!(low <= high)) {
-    throw invalid("the height interval is inverted or not a number: expected low <= high");
+    refuse("the height interval is inverted or not a number: expected low <= high");
   }
   return std::make_shared<HeightsMeet>(low, high, heights);
 }
@@ -217,15 +214,14 @@ PredicatePtr heights_meet(double low, double high, const HeightEncoding& heights
 PredicatePtr seen_from(const View& view, const AffineMap& map, const HeightEncoding& heights) {
   if (!std::isfinite(view.eye.x) || !std::isfinite(view.eye.y) ||
       !std::isfinite(view.eye_height.value_or(0.0))) {
-    throw invalid("the eye's position is not finite");
+    refuse("the eye's position is not finite");
   }
   if (!(view.tau >= 0) || !std::isfinite(view.tau)) {
-    throw invalid(
-        "the view's tau is negative or not finite: expected the error allowed at distance 1");
+    refuse("the view's tau is negative or not finite: expected the error allowed at distance 1");
   }
   const auto positive = [](double v) { return v > 0 && std::isfinite(v); };
   if (!positive(view.ground_per_map_x) || !positive(view.ground_per_map_y)) {
-    throw invalid("the view's ground units in a map unit are not positive and finite");
+    refuse("the view's ground units in a map unit are not positive and finite");
   }
   return std::make_shared<SeenFrom>(view, map, heights);
 }

@@ -16,8 +16,6 @@
 
 namespace ptin {
 
-inline constexpr std::size_t kStopInterval = 4096;  ///< Splits between two looks at the stop token.
-
 /// Where each rank's records begin when sorted by falling rank: the counting sort (paper, section
 /// 4).
 class RankOrder {

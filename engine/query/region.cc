@@ -16,8 +16,6 @@ constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;  // unit ro
 constexpr double kFarthest = 1e100;                                   // products of two stay finite
 constexpr std::size_t kMostSlabs = 4096;
 
-Error invalid(const std::string& message) { return Error(ErrorCode::invalid_argument, message); }
-
 /// One coordinate of a map position on the grid. `slack` bounds the distance to the true preimage
 /// of every map position that rounds to the same double: (X - o) / s carries at most 2u |g| (1 + u)
 /// of rounding, and X itself, when it was computed as o + s g, at most u (|X| + |X - o|) of its
@@ -26,7 +24,7 @@ double to_grid(double map_value, double origin, double step, double& slack) {
   const double grid = (map_value - origin) / step;
   slack = 4 * kUnit * ((std::abs(map_value) + std::abs(origin)) / step + std::abs(grid));
   if (!(std::abs(grid) <= kFarthest) || !(slack <= kFarthest)) {
-    throw invalid("a coordinate of the region is not a finite number near the terrain");
+    refuse("a coordinate of the region is not a finite number near the terrain");
   }
   return grid;
 }
@@ -53,8 +51,7 @@ GridBox box_of(const GridPoint (&t)[3]) noexcept {
 GridRegion::GridRegion(const Region& region, const AffineMap& map) {
   if (const auto* window = std::get_if<Window>(&region)) {
     if (!(window->min_x <= window->max_x && window->min_y <= window->max_y)) {
-      throw invalid(
-          "the window is inverted or not a number: expected min_x <= max_x and min_y <= max_y");
+      refuse("the window is inverted or not a number: expected min_x <= max_x and min_y <= max_y");
     }
     set_rectangle(spot_of({window->min_x, window->min_y}, map),
                   spot_of({window->max_x, window->max_y}, map));
@@ -68,7 +65,7 @@ GridRegion::GridRegion(const Region& region, const AffineMap& map) {
     kind_ = Kind::kPolygon;
     const auto& rings = std::get<Polygon>(region).rings;
     if (rings.empty()) {
-      throw invalid("the polygon has no ring");
+      refuse("the polygon has no ring");
     }
     for (const auto& ring : rings) {
       add_ring(ring, map);
@@ -120,7 +117,7 @@ void GridRegion::add_ring(const std::vector<MapPoint>& ring, const AffineMap& ma
     --size;
   }
   if (size < 3) {
-    throw invalid("a ring of the polygon has fewer than three points");
+    refuse("a ring of the polygon has fewer than three points");
   }
   for (std::size_t i = 0; i < size; ++i) {
     add_edge(spot_of(ring[i], map), spot_of(ring[i + 1 == size ? 0 : i + 1], map));

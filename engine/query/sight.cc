@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
 #include "engine/query/certificate.h"
 #include "engine/query/detail.h"
 #include "engine/query/fresnel_internal.h"
@@ -18,8 +19,6 @@
 namespace ptin {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 [[noreturn]] void throw_invalid(const std::string& what) {
   throw Error(ErrorCode::invalid_argument, what);

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "engine/geometry/infinity.h"
 #include "engine/query/sight_search_internal.h"
 
 namespace ptin {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEverything = -1.0;  ///< As a deviation: no record is left out.
 
 }  // namespace

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/geometry/infinity.h"
 #include "engine/query/sight_view_internal.h"
 
 namespace ptin {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What is known of a stretch holds of the triangles that it touches. Where records were left out
 /// because they end below the line, it holds only inside: beyond, the line may be lower.

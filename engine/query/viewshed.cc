@@ -19,24 +19,22 @@ namespace ptin {
 
 namespace {
 
-Error invalid(const char* message) { return Error(ErrorCode::invalid_argument, message); }
-
 void check(const ViewshedRequest& r) {
   if (!std::isfinite(r.eye.x) || !std::isfinite(r.eye.y) || !std::isfinite(r.eye_height)) {
-    throw invalid("the observer's position or height is not a finite number");
+    refuse("the observer's position or height is not a finite number");
   }
   if (!(r.radius > 0) || !std::isfinite(r.radius)) {
-    throw invalid("the radius must be a number > 0");
+    refuse("the radius must be a number > 0");
   }
   if (!(r.target_height >= 0) || !std::isfinite(r.target_height)) {
-    throw invalid("the target's height must be a number >= 0");
+    refuse("the target's height must be a number >= 0");
   }
   if (r.pixel_size && !(*r.pixel_size > 0 && std::isfinite(*r.pixel_size))) {
-    throw invalid("the pixel size must be a number > 0");
+    refuse("the pixel size must be a number > 0");
   }
   check(r.curvature);
   if (!(r.ground_per_map_x > 0) || !(r.ground_per_map_y > 0)) {
-    throw invalid("the ground units of a map unit are not numbers > 0");
+    refuse("the ground units of a map unit are not numbers > 0");
   }
 }
 

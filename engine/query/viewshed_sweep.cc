@@ -13,13 +13,10 @@ namespace ptin {
 
 namespace {
 
-constexpr std::size_t kStopInterval = 4096;
 constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1;
 constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
 constexpr double kMostBuckets = 65536;
 constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few pieces in each
-
-Error invalid(const char* message) { return Error(ErrorCode::invalid_argument, message); }
 
 /// Whether a corner of a triangle, or a point of it, is looked at from within the triangle.
 struct Approach {
@@ -34,7 +31,7 @@ class Viewer {
       : tin_(tin), facts_(facts), request_(request), context_(context), bias_(bias) {
     const auto spot = SpotMap(facts.map, facts.bounds).spot(request.eye);
     if (!spot) {
-      throw invalid("the observer stands outside of the terrain");
+      refuse("the observer stands outside of the terrain");
     }
     spot_ = *spot;
     eye_ = grid_of(spot_);
@@ -128,7 +125,7 @@ class Viewer {
 void Viewer::find_eye_height() {
   const Place place = find_spot(tin_, spot_, 0);
   if (place.lies == Lies::kOutside) {
-    throw invalid("the observer stands outside of the terrain");
+    refuse("the observer stands outside of the terrain");
   }
   eye_triangle_ = place.triangle;
   result_.eye_height = request_.eye_height;
@@ -136,8 +133,7 @@ void Viewer::find_eye_height() {
     return;
   }
   if (!is_surface(answering_triangle(tin_, place))) {
-    throw invalid(
-        "the observer stands on a void, where no height is known; give an absolute height");
+    refuse("the observer stands on a void, where no height is known; give an absolute height");
   }
   const Footing footing = footing_of(tin_, spot_, place);
   result_.eye_height += facts_.heights.height_of_code(code_at(tin_, facts_.heights, footing));
@@ -174,7 +170,7 @@ void Viewer::place_pixels() {
   const double reach_y = std::floor(request_.radius / (ground_y_ * pixel_y_));
   constexpr double kMostPixels = 1e5;
   if (reach_x > kMostPixels || reach_y > kMostPixels) {
-    throw invalid("the raster has more than 200 000 pixels a side: give a larger pixel size");
+    refuse("the raster has more than 200 000 pixels a side: give a larger pixel size");
   }
   // On the grid: centres are the grid points, whatever the eye.
   const double centre_x = pixels_on_grid_ ? std::floor(eye_.x + 0.5) - eye_.x : 0.0;

@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
 #include "engine/mesh/validate.h"
 #include "engine/query/progressive_tin.h"
 #include "storage/verify.h"
@@ -303,7 +304,6 @@ TEST(Build, RefusesInfiniteHeightsAndOneRow) {
 
 TEST(Build, RefusesOptionsThatMeanNothing) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const WrittenRaster raster(plain(GDT_Int16));
   const ScratchFolder folder;
   const auto refused = [&](const BuildOptions& options) {

@@ -19,9 +19,8 @@ namespace {
 
 using oracle::Bound;
 using oracle::Gap;
+using oracle::kInt;
 using oracle::StarTile;
-
-constexpr HeightEncoding kInt{HeightType::int32, 1.0, 0.0};
 
 /// Fills the triangles around `u` with at most `most` blocks, some void where `voids`; returns
 /// their number.

@@ -16,16 +16,10 @@
 namespace ptin {
 namespace {
 
+using oracle::kFloat;
+using oracle::kInt;
+using oracle::noise;
 using oracle::StarTile;
-
-constexpr HeightEncoding kInt{HeightType::int32, 1.0, 0.0};
-constexpr HeightEncoding kFloat{HeightType::float32, 1.0, 0.0};
-
-std::uint32_t noise(GridPoint p) {
-  auto h = static_cast<std::uint32_t>(p.x) * 0x9E3779B1U ^ static_cast<std::uint32_t>(p.y);
-  h = (h ^ (h >> 15)) * 0x2C1B3C6DU;
-  return h ^ (h >> 13);
-}
 
 /// The largest gap of the star's samples to the fan into link[j]; nothing when it is not allowed.
 std::optional<long double> error_into(const Tile& tile, const StarSamples& s, std::size_t j) {

@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "engine/geometry/infinity.h"
+
 namespace ptin {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(ErrorClass, IsAQuarterOfAnOctaveWide) {
   EXPECT_EQ(error_class(0.0), 0U);

@@ -20,17 +20,13 @@ namespace {
 
 using oracle::Bound;
 using oracle::Gap;
+using oracle::kFloat;
+using oracle::kInt;
+using oracle::noise;
 using oracle::StarTile;
 
-constexpr HeightEncoding kInt{HeightType::int32, 1.0, 0.0};
-constexpr HeightEncoding kFloat{HeightType::float32, 1.0, 0.0};
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-std::uint32_t noise(GridPoint p) {
-  auto h = static_cast<std::uint32_t>(p.x) * 0x9E3779B1U ^ static_cast<std::uint32_t>(p.y);
-  h = (h ^ (h >> 15)) * 0x2C1B3C6DU;
-  return h ^ (h >> 13);
-}
 double small_int(GridPoint p) { return noise(p) % 500; }
 double any_int(GridPoint p) { return static_cast<double>(noise(p)) - 2147483648.0; }
 double fraction(GridPoint p) { return static_cast<double>(static_cast<float>(noise(p)) * 1e-5F); }

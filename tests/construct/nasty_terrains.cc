@@ -15,7 +15,6 @@ using Make = std::function<TestTerrain()>;
 using CodeAt = std::function<double(int, int)>;
 using ValidAt = std::function<bool(int, int)>;
 
-constexpr HeightEncoding kFloat{HeightType::float32, 1.0, 0.0};
 constexpr HeightEncoding kCentimetres{HeightType::int32, 0.01, -50.0};
 
 double hills(int x, int y) {

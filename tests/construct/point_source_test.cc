@@ -34,8 +34,8 @@ std::vector<double> heights_of(const PointSet& set) {
 using Positions = std::vector<GridPoint>;
 using Heights = std::vector<double>;
 
-void expect_refused(const std::string& text, const std::string& word,
-                    const SourceOptions& options = {}) {
+void expect_source_refused(const std::string& text, const std::string& word,
+                           const SourceOptions& options = {}) {
   try {
     std::ignore = read(text, options);
     FAIL() << "accepted";
@@ -80,7 +80,7 @@ TEST(PointSource, SnapsToAResolution) {
   EXPECT_EQ(set.positions, (Positions{{0, 0}, {2, 1}, {6, 4}}));
   EXPECT_NEAR(set.largest_shift_plan, std::hypot(0.1, 0.24), 1e-9);
   options.resolution = 0;
-  expect_refused("0 0 0\n1 0 0\n0 1 0\n", "resolution must be", options);
+  expect_source_refused("0 0 0\n1 0 0\n0 1 0\n", "resolution must be", options);
 }
 
 TEST(PointSource, SnapsNegativeCoordinatesLikeOthers) {
@@ -92,8 +92,8 @@ TEST(PointSource, SnapsNegativeCoordinatesLikeOthers) {
 }
 
 TEST(PointSource, NamesAResolutionWhereTheExtentIsBeyondTheGrid) {
-  expect_refused("0 0 0\n1000000 0 0\n0 0.0001 0\n", "such as 0.001");
-  expect_refused("0 0 0\n123456789012345678 0 0\n0 1e-18 0\n", "2^30");
+  expect_source_refused("0 0 0\n1000000 0 0\n0 0.0001 0\n", "such as 0.001");
+  expect_source_refused("0 0 0\n123456789012345678 0 0\n0 1e-18 0\n", "2^30");
   SourceOptions options;
   options.resolution = 0.001;
   EXPECT_EQ(read("0 0 0\n1000000 0 0\n0 0.0001 0\n0 5 0", options).positions.size(), 3U);
@@ -102,7 +102,7 @@ TEST(PointSource, NamesAResolutionWhereTheExtentIsBeyondTheGrid) {
 TEST(PointSource, HoldsTheLargestExtent) {
   const PointSet set = read("0 0 0\n1073741824 0 0\n0 1073741824 0\n");
   EXPECT_EQ(set.positions.back(), (GridPoint{0, kGridMax}));
-  expect_refused("0 0 0\n1073741825 0 0\n0 1 0\n", "2^30");
+  expect_source_refused("0 0 0\n1073741825 0 0\n0 1 0\n", "2^30");
 }
 
 TEST(PointSource, MergesPointsThatFallTogether) {
@@ -129,14 +129,14 @@ TEST(PointSource, LeavesOutPointsBeyondTheBoundsOrWithoutAHeight) {
   const PointSet set = read("0 0 1\n10 0 2\n0 10 3\n11 0 4\n5 5 -9999.00\n", options);
   EXPECT_EQ(set.source_points, 3U);
   options.bbox = {100, 100, 200, 200};
-  expect_refused("0 0 1\n10 0 2\n0 10 3\n", "every point is left out", options);
+  expect_source_refused("0 0 1\n10 0 2\n0 10 3\n", "every point is left out", options);
 }
 
 TEST(PointSource, RefusesWhatHasNoArea) {
-  expect_refused("", "no point");
-  expect_refused("0 0 1\n1 0 1\n", "2 distinct points");
-  expect_refused("0 0 1\n1 0 1\n0 0 5\n1 0 2\n", "2 distinct points");
-  expect_refused("0 0 1\n1 1 1\n5 5 5\n100 100 2\n", "one line");
+  expect_source_refused("", "no point");
+  expect_source_refused("0 0 1\n1 0 1\n", "2 distinct points");
+  expect_source_refused("0 0 1\n1 0 1\n0 0 5\n1 0 2\n", "2 distinct points");
+  expect_source_refused("0 0 1\n1 1 1\n5 5 5\n100 100 2\n", "one line");
 }
 
 TEST(PointSource, TakesItsCrsFromTheCaller) {

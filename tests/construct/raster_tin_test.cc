@@ -10,12 +10,13 @@
 
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
+#include "tests/construct/test_terrain.h"
 
 namespace ptin {
 namespace {
 
-constexpr HeightEncoding kInt{HeightType::int32, 1.0, 0.0};
-constexpr HeightEncoding kFloat{HeightType::float32, 1.0, 0.0};
+using oracle::kFloat;
+using oracle::kInt;
 
 struct Grid {
   std::int32_t width, height;

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <sstream>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "engine/geometry/infinity.h"
 #include "engine/mesh/collapse.h"
 #include "engine/mesh/validate.h"
 #include "tests/construct/surface_oracle.h"
@@ -17,8 +17,6 @@
 namespace ptin::oracle {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a triangle carries.
 struct Carried {

@@ -16,6 +16,13 @@
 
 namespace ptin::oracle {
 
+/// A number without a pattern, the same for the same position.
+[[nodiscard]] inline std::uint32_t noise(GridPoint p) {
+  auto h = static_cast<std::uint32_t>(p.x) * 0x9E3779B1U ^ static_cast<std::uint32_t>(p.y);
+  h = (h ^ (h >> 15)) * 0x2C1B3C6DU;
+  return h ^ (h >> 13);
+}
+
 /// A Delaunay triangulation of scattered points, with removed samples at random places inside of
 /// its triangles.
 struct StarTile {

@@ -3,19 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "engine/construct/delaunay.h"
 #include "engine/construct/raster_surface.h"
 #include "engine/construct/raster_tin.h"
 #include "engine/construct/tin_surface.h"
+#include "engine/geometry/infinity.h"
 
 namespace ptin::oracle {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kCutOff = 64;
 
 MeasureUnits units_of(const HeightEncoding& heights, double slope) {

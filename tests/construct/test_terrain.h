@@ -17,6 +17,9 @@
 
 namespace ptin::oracle {
 
+inline constexpr HeightEncoding kInt{HeightType::int32, 1.0, 0.0};
+inline constexpr HeightEncoding kFloat{HeightType::float32, 1.0, 0.0};
+
 /// A sample as its source has it.
 struct PlainSample {
   GridPoint position;

@@ -16,14 +16,14 @@
 
 namespace ptin {
 
-using Corners = std::array<std::uint64_t, 3>;
+using KeyTriangle = std::array<std::uint64_t, 3>;
 
 /// The triangles of a TIN by the keys of their corners, the smallest first.
-inline std::vector<Corners> triangles_of(const Tin& tin) {
-  std::vector<Corners> all;
+inline std::vector<KeyTriangle> triangles_of(const Tin& tin) {
+  std::vector<KeyTriangle> all;
   for (const Triangle& t : tin.triangles) {
-    Corners c{key_of(tin.position(t.v[0])), key_of(tin.position(t.v[1])),
-              key_of(tin.position(t.v[2]))};
+    KeyTriangle c{key_of(tin.position(t.v[0])), key_of(tin.position(t.v[1])),
+                  key_of(tin.position(t.v[2]))};
     std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
     all.push_back(c);
   }
@@ -31,17 +31,17 @@ inline std::vector<Corners> triangles_of(const Tin& tin) {
 }
 
 /// The triangles of all tiles of a set cut into `tiles` parts.
-inline std::vector<Corners> tiled(const PointBuckets& buckets, std::uint64_t tiles,
-                                  std::size_t cache_bytes = std::size_t{16} << 20) {
+inline std::vector<KeyTriangle> tiled(const PointBuckets& buckets, std::uint64_t tiles,
+                                      std::size_t cache_bytes = std::size_t{16} << 20) {
   DelaunayTiler tiler(buckets, {}, cache_bytes);
-  std::vector<Corners> all;
+  std::vector<KeyTriangle> all;
   for (std::uint64_t i = 0; i < tiles; ++i) {
     const std::uint64_t begin = buckets.size() * i / tiles, end = buckets.size() * (i + 1) / tiles;
     if (begin == end) {
       continue;
     }
     const DelaunayTile tile = tiler.make(begin, end - begin);
-    const std::vector<Corners> part = triangles_of(tile.tin);
+    const std::vector<KeyTriangle> part = triangles_of(tile.tin);
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;
@@ -65,8 +65,8 @@ inline Tin whole(const PointBuckets& buckets) {
 
 inline void expect_one_triangulation(const PointBuckets& buckets, std::uint64_t tiles,
                                      std::size_t cache_bytes = std::size_t{16} << 20) {
-  std::vector<Corners> expected = triangles_of(whole(buckets));
-  std::vector<Corners> found = tiled(buckets, tiles, cache_bytes);
+  std::vector<KeyTriangle> expected = triangles_of(whole(buckets));
+  std::vector<KeyTriangle> found = tiled(buckets, tiles, cache_bytes);
   std::sort(expected.begin(), expected.end());
   std::sort(found.begin(), found.end());
   ASSERT_EQ(expected.size(), found.size()) << tiles << " tiles";

@@ -39,7 +39,8 @@ std::vector<Row> read(const std::string& text, const std::string& name = "points
   return rows;
 }
 
-void expect_refused(const std::string& text, const std::string& line, const std::string& word) {
+void expect_line_refused(const std::string& text, const std::string& line,
+                         const std::string& word) {
   try {
     read(text);
     FAIL() << "accepted " << text;
@@ -129,26 +130,26 @@ TEST(XyzReader, FindsNoPointInAnEmptyFile) {
 }
 
 TEST(XyzReader, NamesTheLineOfAFault) {
-  expect_refused("1 2 3\n4 5\n", "2", "2 fields where the first line has 3");
-  expect_refused("1 2 3\n\n#\n4 5 6 7\n", "4", "4 fields");
-  expect_refused("1 2\n", "1", "x, y and z are expected");
-  expect_refused("1 2 3\n1 nan 3\n", "2", "y of this point is NaN");
-  expect_refused("nan 2 3\n", "1", "x of this point is NaN");
-  expect_refused("1 2 3\n1 2 -inf\n", "2", "z of this point is infinite");
-  expect_refused("1 2 3\n1 2 1e40\n", "2", "10^18");
-  expect_refused("1 2 3\n1 2 high\n", "2", "'high'");
-  expect_refused("1;2;3\n1,5;2,5;3,5\n", "2", "decimal point");
-  expect_refused("1,2,3\n1,,3\n", "2", "''");
+  expect_line_refused("1 2 3\n4 5\n", "2", "2 fields where the first line has 3");
+  expect_line_refused("1 2 3\n\n#\n4 5 6 7\n", "4", "4 fields");
+  expect_line_refused("1 2\n", "1", "x, y and z are expected");
+  expect_line_refused("1 2 3\n1 nan 3\n", "2", "y of this point is NaN");
+  expect_line_refused("nan 2 3\n", "1", "x of this point is NaN");
+  expect_line_refused("1 2 3\n1 2 -inf\n", "2", "z of this point is infinite");
+  expect_line_refused("1 2 3\n1 2 1e40\n", "2", "10^18");
+  expect_line_refused("1 2 3\n1 2 high\n", "2", "'high'");
+  expect_line_refused("1;2;3\n1,5;2,5;3,5\n", "2", "decimal point");
+  expect_line_refused("1,2,3\n1,,3\n", "2", "''");
 }
 
 TEST(XyzReader, SaysWhichColumnAHeaderLacks) {
-  expect_refused("x,y,depth\n1,2,3\n", "1", "names no column for z");
-  expect_refused("Dear Sir, I write to you\n", "1", "taken for a header");
+  expect_line_refused("x,y,depth\n1,2,3\n", "1", "names no column for z");
+  expect_line_refused("Dear Sir, I write to you\n", "1", "taken for a header");
 }
 
 TEST(XyzReader, RefusesEndlessLines) {
-  expect_refused("1 2 3\n" + std::string(100'000, '7'), "2", "64 KiB");
-  expect_refused(std::string(3'000'000, '\0'), "1", "64 KiB");
+  expect_line_refused("1 2 3\n" + std::string(100'000, '7'), "2", "64 KiB");
+  expect_line_refused(std::string(3'000'000, '\0'), "1", "64 KiB");
 }
 
 TEST(XyzReader, ReadsLinesAcrossItsBuffer) {

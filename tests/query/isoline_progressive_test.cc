@@ -32,8 +32,8 @@ using reference::listing;
 using reference::random_levels;
 using reference::TemporaryStore;
 
-struct Asked {
-  explicit Asked(std::uint64_t seed)
+struct IsolineCase {
+  explicit IsolineCase(std::uint64_t seed)
       : random(seed),
         hierarchy(reference::random_hierarchy(seed)),
         file(hierarchy),
@@ -86,7 +86,7 @@ struct Asked {
 QueryContext context() { return {{}, std::uint64_t{1} << 30, "test"}; }
 
 RC_GTEST_PROP(ProgressiveIsolines, FollowEverySplit, (std::uint64_t seed)) {
-  const Asked asked(seed);
+  const IsolineCase asked(seed);
   QueryContext query = context();
   Refinement mesh(asked.terrain.t0());
   ProgressiveIsolines kept = asked.over(mesh.tin());
@@ -111,7 +111,7 @@ RC_GTEST_PROP(ProgressiveIsolines, FollowEverySplit, (std::uint64_t seed)) {
 }
 
 RC_GTEST_PROP(ProgressiveIsolines, OfAStreamAreThoseOfTheTerrainInTheEnd, (std::uint64_t seed)) {
-  Asked asked(seed);
+  IsolineCase asked(seed);
   StreamRequest request;
   request.wanted = asked.levels.crossing();
   std::optional<double> tolerance;
@@ -145,7 +145,7 @@ RC_GTEST_PROP(ProgressiveIsolines, OfAStreamAreThoseOfTheTerrainInTheEnd, (std::
 
 /// The law that makes `stream --level` enough: what is not sent changes no isoline.
 RC_GTEST_PROP(ProgressiveIsolines, NeedOnlyTheSplitsOfTheirLevels, (std::uint64_t seed)) {
-  const Asked asked(seed);
+  const IsolineCase asked(seed);
   QueryContext query = context();
   Refinement mesh(asked.terrain.t0());
   const std::vector<PendingSplit> needed = asked.splits();
@@ -201,7 +201,7 @@ TEST(ProgressiveIsolines, CostWhatChanges) {
 }
 
 TEST(ProgressiveIsolines, BeginAnewWithAnotherNumbering) {
-  const Asked asked(5);
+  const IsolineCase asked(5);
   QueryContext query = context();
   Refinement mesh(asked.terrain.t0());
   ProgressiveIsolines kept = asked.over(mesh.tin());
@@ -214,7 +214,7 @@ TEST(ProgressiveIsolines, BeginAnewWithAnotherNumbering) {
 }
 
 TEST(ProgressiveIsolines, KeepToTheirLimitAndStop) {
-  const Asked asked(5);
+  const IsolineCase asked(5);
   const auto fault = [&](std::uint64_t limit, std::stop_token stop) {
     QueryContext query = context();
     Refinement mesh(asked.terrain.t0());

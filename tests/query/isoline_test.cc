@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -17,6 +16,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
 #include "engine/query/isoline_clip.h"
 #include "tests/query/isoline_listing.h"
 
@@ -97,7 +97,7 @@ Pieces pieces_of(const Isolines& lines) {
   return all;
 }
 
-Window window_in(std::mt19937_64& random, const StoreFacts& facts) {
+Window isoline_window(std::mt19937_64& random, const StoreFacts& facts) {
   const auto coordinate = [&](std::int32_t low, std::int32_t high) {
     const double on_grid = low + double(random() % (std::uint64_t(high - low) + 1));
     return random() % 2 == 0 ? on_grid : on_grid + 0.37;
@@ -198,7 +198,7 @@ RC_GTEST_PROP(Isolines, OfAWindowAreThoseOfTheTerrainCut, (std::uint64_t seed)) 
   for (int i = 0; i < 4; ++i) {
     IsolineRequest request;
     request.levels = random_levels(random, h, 3);
-    request.window = window_in(random, h.facts);
+    request.window = isoline_window(random, h.facts);
     RC_ASSERT(pieces_of(isolines(terrain, request)) ==
               brute_force(h.full, h.facts, request.levels, &*request.window));
   }
@@ -379,7 +379,6 @@ TEST(Levels, AtAnIntervalAreThoseOfTheBase) {
   EXPECT_TRUE(levels_at(10, 0, 5, -5).empty());
   EXPECT_THROW(static_cast<void>(levels_at(0, 0, 0, 1)), Error);
   EXPECT_THROW(static_cast<void>(levels_at(1e-9, 0, 0, 1)), Error);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(levels_at(10, 0, kInfinity, -kInfinity).empty());
   // Where n + 1 is n, or the heights are none: refused, not counted for ever.
   EXPECT_THROW(static_cast<void>(levels_at(1, 1e17, 0, 100)), Error);

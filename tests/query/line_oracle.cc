@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+
 namespace ptin::reference {
 
 namespace {
@@ -63,6 +65,17 @@ std::vector<TriangleId> triangles_at(const Tin& tin, const RationalPoint& p) {
     }
   }
   return all;
+}
+
+TriangleId answering_among(const Tin& tin, const std::vector<TriangleId>& at) {
+  const auto rank = [&](TriangleId t) {
+    std::array<VertexKey, 3> keys{};
+    for (std::size_t i = 0; i < 3; ++i) keys[i] = key_of(tin.position(tin.triangles[t].v[i]));
+    std::sort(keys.begin(), keys.end());
+    return std::pair(tin.classes[t], keys);
+  };
+  return *std::min_element(at.begin(), at.end(),
+                           [&](TriangleId a, TriangleId b) { return rank(a) < rank(b); });
 }
 
 Rational code_on(const Tin& tin, const HeightEncoding& heights, TriangleId t,

@@ -29,6 +29,9 @@ struct RationalPoint {
 
 /// Closed triangles that hold the point.
 [[nodiscard]] std::vector<TriangleId> triangles_at(const Tin& tin, const RationalPoint& p);
+/// Which of several triangles that hold a point answers for it: surface before void, then the
+/// smallest keys.
+[[nodiscard]] TriangleId answering_among(const Tin& tin, const std::vector<TriangleId>& at);
 
 /// Height code of the plane of a triangle. REQUIRES: its corners have heights.
 [[nodiscard]] Rational code_on(const Tin& tin, const HeightEncoding& heights, TriangleId t,

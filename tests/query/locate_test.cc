@@ -26,25 +26,13 @@ using reference::Rational;
 using reference::rational_of;
 using reference::TemporaryStore;
 
-/// Surface before void, then the smallest keys.
-TriangleId wanted_answer(const Tin& tin, const std::vector<TriangleId>& at) {
-  const auto rank = [&](TriangleId t) {
-    std::array<VertexKey, 3> keys{};
-    for (std::size_t i = 0; i < 3; ++i) keys[i] = key_of(tin.position(tin.triangles[t].v[i]));
-    std::sort(keys.begin(), keys.end());
-    return std::pair(tin.classes[t], keys);
-  };
-  return *std::min_element(at.begin(), at.end(),
-                           [&](TriangleId a, TriangleId b) { return rank(a) < rank(b); });
-}
-
 void check_exact(const Hierarchy& h, Spot q, const LocatedPoint& point) {
   const std::vector<TriangleId> at = reference::triangles_at(h.full, rational_of(q));
   if (at.empty()) {
     RC_ASSERT(point.state == PointState::kOutside);
     return;
   }
-  const TriangleId t = wanted_answer(h.full, at);
+  const TriangleId t = reference::answering_among(h.full, at);
   for (std::size_t i = 0; i < 3; ++i) {
     const VertexId v = h.full.triangles[t].v[i];
     RC_ASSERT(std::any_of(point.triangle.begin(), point.triangle.end(), [&](const auto& c) {

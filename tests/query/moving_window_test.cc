@@ -25,8 +25,8 @@ using reference::canonical;
 using reference::Hierarchy;
 using reference::TemporaryStore;
 
-struct Asked {
-  explicit Asked(std::uint64_t seed)
+struct MovingWindowCase {
+  explicit MovingWindowCase(std::uint64_t seed)
       : random(seed),
         hierarchy(reference::random_hierarchy(seed)),
         file(hierarchy),
@@ -77,7 +77,7 @@ void require_fresh(const MovingWindow& window, const MoveResult& moved, const Re
 }
 
 RC_GTEST_PROP(MovingWindow, IsAfterEachMoveAFreshRefinement, (std::uint64_t seed)) {
-  Asked asked(seed);
+  MovingWindowCase asked(seed);
   MovingWindowOptions options;
   options.page_cache_bytes = asked.random() % 3 == 0 ? 10'000 : options.page_cache_bytes;
   MovingWindow window(asked.store, options);
@@ -95,7 +95,7 @@ RC_GTEST_PROP(MovingWindow, IsAfterEachMoveAFreshRefinement, (std::uint64_t seed
 }
 
 RC_GTEST_PROP(MovingWindow, FollowsAWindowThatDriftsAndChangesItsTolerance, (std::uint64_t seed)) {
-  Asked asked(seed);
+  MovingWindowCase asked(seed);
   MovingWindow window(asked.store);
   double x = 0.3, y = 0.6, tolerance = 2;
   std::uniform_real_distribution<double> step(-0.08, 0.08);
@@ -113,7 +113,7 @@ RC_GTEST_PROP(MovingWindow, FollowsAWindowThatDriftsAndChangesItsTolerance, (std
 // The example of view-dependent use: an eye flies over the terrain and looks back; the mesh is fine
 // near it and coarse far away, and each frame costs what changed.
 TEST(MovingWindow, FollowsAnEyeThatFliesOverTheTerrain) {
-  const Asked asked(11);
+  const MovingWindowCase asked(11);
   const StoreFacts& f = asked.hierarchy.facts;
   MovingWindow window(asked.store);
   std::uint64_t largest = 0;
@@ -134,7 +134,7 @@ TEST(MovingWindow, FollowsAnEyeThatFliesOverTheTerrain) {
 
 TEST(MovingWindow, ReadsNoPageTwiceWhileTheyFitTheCache) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Asked asked(seed);
+    const MovingWindowCase asked(seed);
     MovingWindow window(asked.store);
     std::uint64_t pages = 0;
     for (const double x : {0.1, 0.2, 0.3, 0.2, 0.1, 0.15, 0.3}) {
@@ -168,7 +168,7 @@ TEST(MovingWindow, LeavesPagesInsideOfBothWindowsAlone) {
 }
 
 TEST(MovingWindow, RefusesMoreThanItsMemoryBeforeReadingAndStaysAsItWas) {
-  const Asked asked(2);
+  const MovingWindowCase asked(2);
   MovingWindowOptions options;
   options.page_cache_bytes = 4096;
   options.memory_limit_bytes = 4096 + refinement_bytes(asked.hierarchy.records.size() / 2);
@@ -189,7 +189,7 @@ TEST(MovingWindow, RefusesMoreThanItsMemoryBeforeReadingAndStaysAsItWas) {
 }
 
 TEST(MovingWindow, StaysAsItWasWhenCancelled) {
-  const Asked asked(6);
+  const MovingWindowCase asked(6);
   MovingWindow window(asked.store);
   window.move_to(asked.window_at(0.5, 0.5, 0.5));
   const auto before = canonical(window.tin());

@@ -5,19 +5,18 @@
 #include "engine/query/predicate.h"
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
 #include "tests/query/random_predicate.h"
 
 namespace ptin {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const HeightEncoding kHeights{HeightType::int32, 0.1, 3.3};
 
 StoreFacts domain() {

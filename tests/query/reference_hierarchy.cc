@@ -15,6 +15,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <unistd.h>
 
+#include "engine/geometry/infinity.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/collapse.h"
 #include "engine/mesh/star.h"
@@ -25,7 +26,6 @@ namespace ptin::reference {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr HeightEncoding kHeights{HeightType::int32, 0.25, -3.0};
 
 /// What a triangle carries of the record that created it.

@@ -30,8 +30,8 @@ using reference::Hierarchy;
 using reference::TemporaryStore;
 
 /// A terrain, its store and the object that is asked.
-struct Asked {
-  explicit Asked(std::uint64_t seed)
+struct RefineCase {
+  explicit RefineCase(std::uint64_t seed)
       : random(seed),
         hierarchy(reference::random_hierarchy(seed)),
         file(hierarchy),
@@ -96,7 +96,7 @@ std::string connectivity_fault(const Tin& tin) {
 
 TEST(Refine, WithoutAnyWishGivesTheFullTinBackExactly) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
-    const Asked asked(seed);
+    const RefineCase asked(seed);
     const RefinedTin result = asked.tin.refine({});
     EXPECT_EQ(validate(result.tin), "") << "seed " << seed;
     EXPECT_EQ(canonical(result.tin), canonical(asked.hierarchy.full)) << "seed " << seed;
@@ -108,7 +108,7 @@ TEST(Refine, WithoutAnyWishGivesTheFullTinBackExactly) {
 }
 
 RC_GTEST_PROP(Refine, IsValidAndAppliesExactlyTheRecordsOfThePredicate, (std::uint64_t seed)) {
-  Asked asked(seed);
+  RefineCase asked(seed);
   for (int i = 0; i < 4; ++i) {
     const PredicatePtr p = reference::random_predicate(asked.random, asked.hierarchy.facts, 3);
     const RefinedTin result = asked.refine(*p);
@@ -122,7 +122,7 @@ RC_GTEST_PROP(Refine, IsValidAndAppliesExactlyTheRecordsOfThePredicate, (std::ui
 }
 
 RC_GTEST_PROP(Refine, GivesEveryTriangleOfTheFullTinThatMeetsTheRegion, (std::uint64_t seed)) {
-  Asked asked(seed);
+  RefineCase asked(seed);
   for (int i = 0; i < 4; ++i) {
     RefineRequest request;
     request.region = reference::random_region(asked.random, asked.hierarchy.facts);
@@ -141,7 +141,7 @@ RC_GTEST_PROP(Refine, GivesEveryTriangleOfTheFullTinThatMeetsTheRegion, (std::ui
 }
 
 RC_GTEST_PROP(Refine, TwoRegionsAgreeOnTrianglesThatMeetBoth, (std::uint64_t seed)) {
-  Asked asked(seed);
+  RefineCase asked(seed);
   const PredicatePtr level = reference::random_predicate(asked.random, asked.hierarchy.facts, 1);
   for (int i = 0; i < 4; ++i) {
     RefineRequest request[2];
@@ -166,7 +166,7 @@ RC_GTEST_PROP(Refine, TwoRegionsAgreeOnTrianglesThatMeetBoth, (std::uint64_t see
 }
 
 RC_GTEST_PROP(Refine, AnyOrderOfFallingRankGivesTheSameTin, (std::uint64_t seed)) {
-  Asked asked(seed);
+  RefineCase asked(seed);
   const PredicatePtr p = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
   const StoreFile& store = asked.tin.store();
   QueryContext context({}, UINT64_MAX, store.path());
@@ -179,7 +179,7 @@ RC_GTEST_PROP(Refine, AnyOrderOfFallingRankGivesTheSameTin, (std::uint64_t seed)
 }
 
 RC_GTEST_PROP(Refine, TwoClosedSetsOneAfterTheOtherGiveTheUnion, (std::uint64_t seed)) {
-  Asked asked(seed);
+  RefineCase asked(seed);
   const StoreFile& store = asked.tin.store();
   const PredicatePtr first = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
   const PredicatePtr both =
@@ -248,7 +248,7 @@ double measured_error(const Tin& full, const Tin& tin, const HeightEncoding& hei
 }
 
 RC_GTEST_PROP(Refine, CertifiedErrorHoldsAtEverySample, (std::uint64_t seed)) {
-  Asked asked(seed);
+  RefineCase asked(seed);
   for (const double tolerance : {0.0, 0.5, 3.0, 12.0}) {
     RefineRequest request;
     request.tolerance = tolerance;
@@ -262,7 +262,7 @@ RC_GTEST_PROP(Refine, CertifiedErrorHoldsAtEverySample, (std::uint64_t seed)) {
 
 TEST(Refine, CertificateIsThatOfTheRecordsLeftOutToAnEighthOfAnOctave) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    const Asked asked(seed);
+    const RefineCase asked(seed);
     for (const double tolerance : {0.0, 1.0, 7.5, 1e9}) {
       RefineRequest request;
       request.tolerance = tolerance;
@@ -284,7 +284,7 @@ TEST(Refine, CertificateIsThatOfTheRecordsLeftOutToAnEighthOfAnOctave) {
 }
 
 TEST(Refine, RegionOutsideOfTheTerrainGivesT0) {
-  const Asked asked(3);
+  const RefineCase asked(3);
   RefineRequest request;
   request.region = Window{-1e6, -1e6, -9e5, -9e5};
   const RefinedTin whole = asked.tin.refine(request);
@@ -299,7 +299,7 @@ TEST(Refine, RegionOutsideOfTheTerrainGivesT0) {
 }
 
 TEST(Refine, SaysWhichPageMadeEachTriangle) {
-  const Asked asked(5);
+  const RefineCase asked(5);
   RefineRequest request;
   request.page_of_triangle = true;
   const RefinedTin result = asked.tin.refine(request);
@@ -317,7 +317,7 @@ TEST(Refine, SaysWhichPageMadeEachTriangle) {
 }
 
 TEST(Refine, PagesFollowTheirTrianglesIntoAClippedMesh) {
-  const Asked asked(8);
+  const RefineCase asked(8);
   RefineRequest request;
   const StoreFacts& f = asked.hierarchy.facts;
   const MapPoint low = f.map.to_map(f.bounds.min_x, f.bounds.min_y);
@@ -348,7 +348,7 @@ ErrorCode code_of(const ProgressiveTin& tin, const RefineRequest& request) {
 }
 
 TEST(RefineRequest, RejectsValuesOutsideOfItsContract) {
-  const Asked asked(1);
+  const RefineCase asked(1);
   std::vector<RefineRequest> bad(8);
   bad[0].tolerance = -1.0;
   bad[1].tolerance = std::nan("");
@@ -365,7 +365,7 @@ TEST(RefineRequest, RejectsValuesOutsideOfItsContract) {
 }
 
 TEST(RefineRequest, RefusesBeforeReadingWhenTheAnswerMayExceedTheMemoryLimit) {
-  const Asked asked(2);
+  const RefineCase asked(2);
   RefineRequest request;
   request.memory_limit_bytes = 1000;
   try {
@@ -380,7 +380,7 @@ TEST(RefineRequest, RefusesBeforeReadingWhenTheAnswerMayExceedTheMemoryLimit) {
 }
 
 TEST(RefineRequest, StopTokenEndsTheQuery) {
-  const Asked asked(2);
+  const RefineCase asked(2);
   std::stop_source stop;
   stop.request_stop();
   RefineRequest request;
@@ -390,7 +390,7 @@ TEST(RefineRequest, StopTokenEndsTheQuery) {
 
 TEST(Refine, PreadAndMappedGiveTheSameBytes) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const Asked asked(seed);
+    const RefineCase asked(seed);
     const ProgressiveTin other(asked.file.open(PageAccess::kPread));
     RefineRequest request;
     request.tolerance = 2.0;

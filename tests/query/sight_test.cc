@@ -24,7 +24,7 @@ using reference::true_sight;
 using reference::TrueSight;
 
 /// A request and a pair in which touching, grazing and lines along edges are common.
-struct Asked {
+struct SightCase {
   SightRequest request;
   SightPair pair;
   Spot p, q;
@@ -38,8 +38,8 @@ double nasty_end(std::mt19937_64& random, bool absolute) {
   return static_cast<double>(random() % (absolute ? 31 : 4));
 }
 
-Asked random_question(std::mt19937_64& random, const SmallTerrain& t) {
-  Asked asked;
+SightCase random_question(std::mt19937_64& random, const SmallTerrain& t) {
+  SightCase asked;
   const StoreFacts& f = t.terrain->store().facts();
   const SpotMap map(f.map, f.bounds);
   do {
@@ -92,7 +92,7 @@ RC_GTEST_PROP(Sight, AgreesWithEveryTriangleInRationals, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const SmallTerrain t(seed);
   for (int i = 0; i < 5; ++i) {
-    const Asked asked = random_question(random, t);
+    const SightCase asked = random_question(random, t);
     const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
                                        asked.pair.height_b, asked.request.absolute, asked.bend);
     const SightResult found = sight(*t.terrain, asked.pair, asked.request);
@@ -104,13 +104,13 @@ RC_GTEST_PROP(Sight, AgreesWithEveryTriangleInRationals, (std::uint64_t seed)) {
 RC_GTEST_PROP(Sight, SolversAgreeWithEveryTriangleWhateverTheyAskedBefore, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const SmallTerrain t(seed);
-  const Asked first = random_question(random, t);
+  const SightCase first = random_question(random, t);
   SightRequest request = first.request;
   request.curvature.coefficient = 0.0;
   request.verdict_only = random() % 2 == 0;
   SightSolver solver(*t.terrain, request, random() % 3 == 0 ? 0 : random() % 100);
   for (int i = 0; i < 5; ++i) {
-    const Asked asked = random_question(random, t);
+    const SightCase asked = random_question(random, t);
     const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
                                        asked.pair.height_b, request.absolute, 0.0);
     const SightResult found = solver.solve(asked.pair);
@@ -146,7 +146,7 @@ RC_GTEST_PROP(Sight, IsNeverWrongWhenItStopsEarly, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const SmallTerrain t(seed);
   for (int i = 0; i < 5; ++i) {
-    Asked asked = random_question(random, t);
+    SightCase asked = random_question(random, t);
     const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
                                        asked.pair.height_b, asked.request.absolute, asked.bend);
     asked.request.verdict_only = random() % 2 == 0;
@@ -196,7 +196,7 @@ RC_GTEST_PROP(Sight, IsNeverWrongOfAFileThatIsNotExact, (std::uint64_t seed)) {
   }
   const SmallTerrain rough(seed, 1.0 + static_cast<double>(random() % 4));
   for (int i = 0; i < 5; ++i) {
-    Asked asked = random_question(random, t);
+    SightCase asked = random_question(random, t);
     const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
                                        asked.pair.height_b, asked.request.absolute, asked.bend);
     asked.request.verdict_only = random() % 2 == 0;

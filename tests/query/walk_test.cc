@@ -39,18 +39,6 @@ TriangleId any_triangle(std::mt19937_64& random, const Tin& tin) {
   return static_cast<TriangleId>(random() % tin.triangles.size());
 }
 
-/// Surface before void, then the smallest keys.
-TriangleId wanted_answer(const Tin& tin, const std::vector<TriangleId>& at) {
-  const auto rank = [&](TriangleId t) {
-    std::array<VertexKey, 3> keys{};
-    for (std::size_t i = 0; i < 3; ++i) keys[i] = key_of(tin.position(tin.triangles[t].v[i]));
-    std::sort(keys.begin(), keys.end());
-    return std::pair(tin.classes[t], keys);
-  };
-  return *std::min_element(at.begin(), at.end(),
-                           [&](TriangleId a, TriangleId b) { return rank(a) < rank(b); });
-}
-
 RC_GTEST_PROP(FindSpot, AgreesWithAllTriangles, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const Tin tin = random_tin(random);
@@ -64,7 +52,7 @@ RC_GTEST_PROP(FindSpot, AgreesWithAllTriangles, (std::uint64_t seed)) {
       continue;
     }
     RC_ASSERT(std::count(at.begin(), at.end(), place.triangle) == 1);
-    RC_ASSERT(answering_triangle(tin, place) == wanted_answer(tin, at));
+    RC_ASSERT(answering_triangle(tin, place) == reference::answering_among(tin, at));
     const Footing f = footing_of(tin, q, place);
     RC_ASSERT(f.lies() == place.lies);
     if (tin.classes[answering_triangle(tin, place)] == TriangleClass::kSurface) {

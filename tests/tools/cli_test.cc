@@ -14,27 +14,14 @@ namespace ptin::tools {
 namespace {
 
 using nlohmann::json;
+using testing::answer_of;
+using testing::built;
 using testing::Outcome;
 using testing::read_file;
 using testing::ReadMesh;
 using testing::run_ptin;
 using testing::test_data;
 using testing::TestFolder;
-
-/// Builds tests/data/`name` into `folder`; returns the path.
-std::string built(const TestFolder& folder, const std::string& name) {
-  const std::string path = folder.file(name + ".ptin");
-  const Outcome outcome = run_ptin({"build", test_data(name), "-o", path, "-q"});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.out + outcome.err, "");
-  return path;
-}
-
-json answer_of(const std::vector<std::string>& arguments) {
-  const Outcome outcome = run_ptin(arguments);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  return json::parse(outcome.out, nullptr, false);
-}
 
 TEST(Cli, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(run_ptin({"--help"}).status, 0);

@@ -23,6 +23,8 @@
 namespace ptin::tools {
 namespace {
 
+using testing::built;
+using testing::expect_done;
 using testing::Outcome;
 using testing::read_file;
 using testing::read_ply;
@@ -32,18 +34,6 @@ using testing::test_data;
 using testing::TestFolder;
 using Point = std::array<double, 3>;
 using Facet = std::array<Point, 3>;
-
-void expect_done(const std::vector<std::string>& arguments) {
-  const Outcome outcome = run_ptin(arguments);
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-}
-
-/// A terrain of tests/data, built into `folder`.
-std::string built(const TestFolder& folder, const std::string& name) {
-  const std::string path = folder.file(name + ".ptin");
-  expect_done({"build", test_data(name), "-o", path, "-q"});
-  return path;
-}
 
 /// Corners from the smallest on, in the same sense.
 Facet turned(Facet f) {

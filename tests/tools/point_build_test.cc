@@ -15,7 +15,7 @@ using testing::run_ptin;
 using testing::TestFolder;
 using testing::write_file;
 
-nlohmann::json built(const TestFolder& folder, std::vector<std::string> arguments) {
+nlohmann::json built_points(const TestFolder& folder, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "build");
   arguments.insert(arguments.end(), {"-o", folder.file("out.ptin"), "--overwrite", "--json"});
   const auto outcome = run_ptin(arguments);
@@ -44,12 +44,12 @@ std::string las() {
 TEST(PointBuild, TakesTheClassesOfLasThatAreAskedFor) {
   const TestFolder folder;
   write_file(folder.file("a.las"), las());
-  EXPECT_EQ(built(folder, {folder.file("a.las")})["samples"], 288);
-  const auto ground = built(folder, {folder.file("a.las"), "--class", "2"});
+  EXPECT_EQ(built_points(folder, {folder.file("a.las")})["samples"], 288);
+  const auto ground = built_points(folder, {folder.file("a.las"), "--class", "2"});
   EXPECT_EQ(ground["samples"], 144);
   EXPECT_EQ(ground["left_out_points"], 144);
   expect_verified(folder, "a.las");
-  EXPECT_EQ(built(folder, {folder.file("a.las"), "--class", "2,9"})["samples"], 216);
+  EXPECT_EQ(built_points(folder, {folder.file("a.las"), "--class", "2,9"})["samples"], 216);
   const auto none = run_ptin(
       {"build", folder.file("a.las"), "--class", "7", "-o", folder.file("none.ptin"), "--json"});
   EXPECT_EQ(none.status, 2) << none.err;
@@ -69,12 +69,12 @@ std::string two_layers() {
 TEST(PointBuild, TakesALayerAndAnAttributeForTheHeights) {
   const TestFolder folder;
   write_file(folder.file("a.gpx"), two_layers());
-  const auto points = built(folder, {folder.file("a.gpx"), "--layer", "waypoints", "--z-field",
-                                     "ele", "--resolution", "0.0001"});
+  const auto points = built_points(folder, {folder.file("a.gpx"), "--layer", "waypoints",
+                                            "--z-field", "ele", "--resolution", "0.0001"});
   EXPECT_EQ(points["samples"], 4);
   expect_verified(folder, "a.gpx");
-  const auto track = built(folder, {folder.file("a.gpx"), "--layer", "track_points", "--z-field",
-                                    "ele", "--resolution", "0.0001"});
+  const auto track = built_points(folder, {folder.file("a.gpx"), "--layer", "track_points",
+                                           "--z-field", "ele", "--resolution", "0.0001"});
   EXPECT_EQ(track["samples"], 3);
   const auto wrong = run_ptin({"build", folder.file("a.gpx"), "--layer", "nothing", "--z-field",
                                "ele", "-o", folder.file("none.ptin")});
@@ -92,14 +92,14 @@ TEST(PointBuild, MakesTrianglesWithLongEdgesVoidAndVerifyKnowsTheLonePoints) {
   }
   text += "100 0 5\n100 100 6\n0 100 7\n";  // far from each other and from all else
   write_file(folder.file("a.xyz"), text);
-  const auto with_voids = built(folder, {folder.file("a.xyz"), "--max-edge", "2"});
+  const auto with_voids = built_points(folder, {folder.file("a.xyz"), "--max-edge", "2"});
   EXPECT_EQ(with_voids["lone_samples"], 3);
   expect_verified(folder, "a.xyz");
-  EXPECT_EQ(built(folder, {folder.file("a.xyz"), "--max-edge", "200"})["lone_samples"], 0);
+  EXPECT_EQ(built_points(folder, {folder.file("a.xyz"), "--max-edge", "200"})["lone_samples"], 0);
   expect_verified(folder, "a.xyz");
   // Without the lone points in the source, something is wrong.
   write_file(folder.file("other.xyz"), text.substr(0, text.find("100 0 5")));
-  built(folder, {folder.file("a.xyz"), "--max-edge", "2"});
+  built_points(folder, {folder.file("a.xyz"), "--max-edge", "2"});
   EXPECT_NE(
       run_ptin({"verify", folder.file("out.ptin"), "--against", folder.file("other.xyz"), "-q"})
           .status,

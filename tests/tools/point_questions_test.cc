@@ -12,6 +12,7 @@ namespace ptin::tools {
 namespace {
 
 using nlohmann::json;
+using testing::answer_of;
 using testing::lines_in;
 using testing::Outcome;
 using testing::run_ptin;
@@ -31,12 +32,6 @@ std::string wall(const TestFolder& folder) {
       run_ptin({"build", folder.file("wall.tif"), "-o", folder.file("wall.ptin"), "-q"});
   EXPECT_EQ(built.status, 0) << built.err;
   return folder.file("wall.ptin");
-}
-
-json answer_of(const std::vector<std::string>& arguments) {
-  const Outcome outcome = run_ptin(arguments);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  return json::parse(outcome.out, nullptr, false);
 }
 
 constexpr double kWest = 500015.0;    // centre of the western column

@@ -142,4 +142,23 @@ std::string test_data(const std::string& name) {
   return std::string(PTIN_TEST_DATA "/").append(name);
 }
 
+std::string built(const TestFolder& folder, const std::string& name) {
+  const std::string path = folder.file(name + ".ptin");
+  const Outcome outcome = run_ptin({"build", test_data(name), "-o", path, "-q"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out + outcome.err, "");
+  return path;
+}
+
+nlohmann::json answer_of(const std::vector<std::string>& arguments) {
+  const Outcome outcome = run_ptin(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return nlohmann::json::parse(outcome.out, nullptr, false);
+}
+
+void expect_done(const std::vector<std::string>& arguments) {
+  const Outcome outcome = run_ptin(arguments);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+}
+
 }  // namespace ptin::tools::testing

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 namespace ptin::tools::testing {
 
 /// A folder of one test; removed with everything in it.
@@ -68,5 +70,12 @@ void make_raster(const std::string& path, const RasterRecipe& recipe);
 
 /// A small real terrain of tests/data.
 [[nodiscard]] std::string test_data(const std::string& name);
+/// The same, built into `folder` without a word; returns the store's path.
+[[nodiscard]] std::string built(const TestFolder& folder, const std::string& name);
+
+/// Runs ptin and expects success.
+void expect_done(const std::vector<std::string>& arguments);
+/// The same; returns what it printed as JSON.
+[[nodiscard]] nlohmann::json answer_of(const std::vector<std::string>& arguments);
 
 }  // namespace ptin::tools::testing

@@ -12,16 +12,12 @@ namespace ptin::tools {
 namespace {
 
 using nlohmann::json;
+using testing::expect_done;
 using testing::Outcome;
 using testing::read_file;
 using testing::run_ptin;
 using testing::test_data;
 using testing::TestFolder;
-
-void expect_done(const std::vector<std::string>& arguments) {
-  const Outcome outcome = run_ptin(arguments);
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-}
 
 /// A surface with voids comes back from its own export, bit for bit, and verifies against it.
 TEST(TinInput, ComesBackFromItsExport) {

@@ -16,6 +16,7 @@ namespace ptin::tools {
 namespace {
 
 using nlohmann::json;
+using testing::answer_of;
 using testing::Outcome;
 using testing::run_ptin;
 using testing::TestFolder;
@@ -33,12 +34,6 @@ std::string plane(const TestFolder& folder) {
       run_ptin({"build", folder.file("plane.tif"), "-o", folder.file("plane.ptin"), "-q"});
   EXPECT_EQ(built.status, 0) << built.err;
   return folder.file("plane.ptin");
-}
-
-json answer_of(const std::vector<std::string>& arguments) {
-  const Outcome outcome = run_ptin(arguments);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  return json::parse(outcome.out, nullptr, false);
 }
 
 /// Longitude and latitude of a sample.

@@ -33,7 +33,7 @@ RasterRecipe hills_with_voids() {
   return recipe;
 }
 
-std::string built(const TestFolder& folder, const RasterRecipe& recipe) {
+std::string built_raster(const TestFolder& folder, const RasterRecipe& recipe) {
   make_raster(folder.file("source.tif"), recipe);
   const Outcome outcome =
       run_ptin({"build", folder.file("source.tif"), "-o", folder.file("store.ptin"), "-q"});
@@ -63,7 +63,7 @@ void plant(const std::string& store, const std::string& planted,
 
 TEST(Verify, FindsAGoodFileGood) {
   const TestFolder folder;
-  const std::string store = built(folder, hills_with_voids());
+  const std::string store = built_raster(folder, hills_with_voids());
   const Outcome outcome =
       run_ptin({"verify", store, "--against", folder.file("source.tif"), "--json", "-q"});
   EXPECT_EQ(outcome.status, 0) << outcome.out;
@@ -78,7 +78,7 @@ TEST(Verify, FindsAGoodFileGood) {
 
 TEST(Verify, FindsErrorsThatAreTooSmall) {
   const TestFolder folder;
-  const std::string store = built(folder, hills_with_voids());
+  const std::string store = built_raster(folder, hills_with_voids());
   plant(store, folder.file("planted.ptin"), [](VertexSplit& r, std::size_t) { r.error *= 0.7F; });
   const Outcome outcome = verified(folder.file("planted.ptin"), folder.file("source.tif"));
   EXPECT_EQ(outcome.status, 1);
@@ -87,7 +87,7 @@ TEST(Verify, FindsErrorsThatAreTooSmall) {
 
 TEST(Verify, FindsDeviationsThatAreTooSmall) {
   const TestFolder folder;
-  const std::string store = built(folder, {});
+  const std::string store = built_raster(folder, {});
   plant(store, folder.file("planted.ptin"),
         [](VertexSplit& r, std::size_t) { r.deviation = 0.0F; });
   const Outcome outcome = verified(folder.file("planted.ptin"), folder.file("source.tif"));
@@ -97,7 +97,7 @@ TEST(Verify, FindsDeviationsThatAreTooSmall) {
 
 TEST(Verify, FindsOneWrongHeight) {
   const TestFolder folder;
-  const std::string store = built(folder, hills_with_voids());
+  const std::string store = built_raster(folder, hills_with_voids());
   const HeightEncoding heights = StoreFile::open(store)->facts().heights;
   bool done = false;
   plant(store, folder.file("planted.ptin"), [&](VertexSplit& r, std::size_t) {
@@ -117,7 +117,7 @@ TEST(Verify, FindsVoidsThatAreCheaperThanTheyMayBe) {
   // On a plane nothing but class changes has an error.
   RasterRecipe flat = hills_with_voids();
   flat.value = [value = flat.value](int x, int y) { return value(x, y) < 0 ? -9999.0 : 5.0; };
-  const std::string store = built(folder, flat);
+  const std::string store = built_raster(folder, flat);
   plant(store, folder.file("planted.ptin"), [](VertexSplit& r, std::size_t) { r.error *= 0.25F; });
   EXPECT_EQ(verified(store, folder.file("source.tif")).status, 0);
   const Outcome outcome = verified(folder.file("planted.ptin"), folder.file("source.tif"));
@@ -127,7 +127,7 @@ TEST(Verify, FindsVoidsThatAreCheaperThanTheyMayBe) {
 
 TEST(Verify, FindsAnotherSource) {
   const TestFolder folder;
-  const std::string store = built(folder, hills_with_voids());
+  const std::string store = built_raster(folder, hills_with_voids());
   const struct {
     const char* what;
     double east, north, up;
@@ -171,7 +171,7 @@ TEST(Verify, ChecksPointsToo) {
 
 TEST(Verify, SaysNotFoundForAMissingSource) {
   const TestFolder folder;
-  const std::string store = built(folder, hills_with_voids());
+  const std::string store = built_raster(folder, hills_with_voids());
   EXPECT_EQ(verified(store, folder.file("none.tif")).status, 3);
 }
 

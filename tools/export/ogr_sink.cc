@@ -20,9 +20,6 @@ namespace {
 constexpr std::uint64_t kFeaturesATransaction = 100'000;
 constexpr std::uint64_t kIndexBytesATriangle = 128;  // FlatGeobuf's items, while it sorts them
 
-struct DatasetCloser {
-  void operator()(GDALDataset* d) const { GDALClose(d); }
-};
 struct FeatureDestroyer {
   void operator()(OGRFeature* f) const { OGRFeature::DestroyFeature(f); }
 };
@@ -113,7 +110,7 @@ class OgrSink final : public TinSink {
   /// short write, so they are read back.
   [[nodiscard]] bool is_complete() const {
     if (has_transactions_) return true;
-    const std::unique_ptr<GDALDataset, DatasetCloser> written(
+    const GDALDatasetUniquePtr written(
         GDALDataset::Open(pending_.temporary().c_str(), GDAL_OF_VECTOR));
     if (!written || written->GetLayerCount() != 1) return false;
     OGRLayer* layer = written->GetLayer(0);
@@ -134,7 +131,7 @@ class OgrSink final : public TinSink {
 
   PendingFile pending_;
   bool has_transactions_;
-  std::unique_ptr<GDALDataset, DatasetCloser> dataset_;
+  GDALDatasetUniquePtr dataset_;
   OGRLayer* layer_ = nullptr;
   std::unique_ptr<OGRFeature, FeatureDestroyer> feature_;
   TriangleWkb wkb_;

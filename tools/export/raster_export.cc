@@ -19,11 +19,6 @@ namespace ptin::tools {
 
 namespace {
 
-struct DatasetCloser {
-  void operator()(GDALDataset* d) const { GDALClose(d); }
-};
-using Dataset = std::unique_ptr<GDALDataset, DatasetCloser>;
-
 constexpr const char* kBlockSide = "512";
 
 /// Float64 where Float32 would lose digits of whole codes.
@@ -193,15 +188,15 @@ void check_creation_options(GDALDriver* driver, const CPLStringList& options,
   }
 }
 
-Dataset create(const PendingFile& file, const PixelGrid& grid, const RasterTarget& target,
-               const StoreFacts& facts) {
+GDALDatasetUniquePtr create(const PendingFile& file, const PixelGrid& grid,
+                            const RasterTarget& target, const StoreFacts& facts) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   const CPLStringList options = options_of(target, false);
   check_creation_options(driver, options, target.path);
   CPLErrorReset();
-  Dataset dataset(driver->Create(file.temporary().c_str(), static_cast<int>(grid.columns()),
-                                 static_cast<int>(grid.rows()), 1, type_for(facts),
-                                 const_cast<char**>(options.List())));
+  GDALDatasetUniquePtr dataset(driver->Create(
+      file.temporary().c_str(), static_cast<int>(grid.columns()), static_cast<int>(grid.rows()), 1,
+      type_for(facts), const_cast<char**>(options.List())));
   if (!dataset) throw gdal_failure("cannot create the raster", target.path);
   auto transform = grid.geotransform();
   dataset->SetGeoTransform(transform.data());
@@ -216,7 +211,7 @@ Dataset create(const PendingFile& file, const PixelGrid& grid, const RasterTarge
 }
 
 /// Closes a dataset and tells what its last writes met. GDALClose has no result in this GDAL.
-void close_checked(Dataset& dataset, const std::string& path) {
+void close_checked(GDALDatasetUniquePtr& dataset, const std::string& path) {
   CPLErrorReset();
   GDALClose(dataset.release());
   if (CPLGetLastErrorType() >= CE_Failure) throw gdal_failure("cannot finish the raster", path);
@@ -238,13 +233,13 @@ void copy_as_cog(const PendingFile& raw, const PendingFile& file, const RasterTa
   if (driver == nullptr)
     throw Error(ErrorCode::invalid_argument, "this GDAL was built without COG", target.path);
   CPLErrorReset();
-  const Dataset source(GDALDataset::Open(raw.temporary().c_str(), GDAL_OF_RASTER));
+  const GDALDatasetUniquePtr source(GDALDataset::Open(raw.temporary().c_str(), GDAL_OF_RASTER));
   if (!source) throw gdal_failure("cannot read the raster back", target.path);
   const CPLStringList options = options_of(target, true);
   check_creation_options(driver, options, target.path);
-  Dataset copy(driver->CreateCopy(file.temporary().c_str(), source.get(), FALSE,
-                                  const_cast<char**>(options.List()), &CopyProgress::tell,
-                                  &progress));
+  GDALDatasetUniquePtr copy(driver->CreateCopy(file.temporary().c_str(), source.get(), FALSE,
+                                               const_cast<char**>(options.List()),
+                                               &CopyProgress::tell, &progress));
   if (progress.stop.stop_requested())
     throw Error(ErrorCode::cancelled, "the export was cancelled", target.path);
   if (!copy || CPLGetLastErrorType() >= CE_Failure)
@@ -266,7 +261,7 @@ void export_raster(const PartRefiner& refiner, const PixelGrid& grid, const Rast
   PendingFile file(target.path, target.overwrite);
   const StoreFacts& facts = refiner.terrain().store().facts();
   if (!target.is_cog) {
-    Dataset dataset = create(file, grid, target, facts);
+    GDALDatasetUniquePtr dataset = create(file, grid, target, facts);
     RasterWriter(refiner, grid, target, *dataset, progress).run();
     close_checked(dataset, target.path);
   } else {
@@ -274,7 +269,7 @@ void export_raster(const PartRefiner& refiner, const PixelGrid& grid, const Rast
     const std::function<void(double)> first_half = [&](double done) {
       if (progress) progress(done / 2);
     };
-    Dataset dataset = create(raw, grid, target, facts);
+    GDALDatasetUniquePtr dataset = create(raw, grid, target, facts);
     RasterWriter(refiner, grid, target, *dataset, first_half).run();
     close_checked(dataset, target.path);
     CopyProgress copying{progress, refiner.request().stop};

@@ -10,7 +10,7 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr std::array<MeshFormat, 4> kFormats = {{
+constexpr std::array<MeshFormat, 4> kMeshFormats = {{
     {"ply", "PLY, binary, double coordinates (QGIS, Blender, MeshLab)", write_ply},
     {"obj", "Wavefront OBJ, text", write_obj},
     {"2dm", "SMS 2DM, text (QGIS, hydraulic models)", write_2dm},
@@ -19,13 +19,13 @@ constexpr std::array<MeshFormat, 4> kFormats = {{
 
 }  // namespace
 
-std::span<const MeshFormat> mesh_formats() noexcept { return kFormats; }
+std::span<const MeshFormat> mesh_formats() noexcept { return kMeshFormats; }
 
 const MeshFormat& mesh_format_of(const std::string& path) {
   std::string extension = lower_extension(path);
   if (!extension.empty()) extension.erase(0, 1);
   std::string known;
-  for (const MeshFormat& format : kFormats) {
+  for (const MeshFormat& format : kMeshFormats) {
     if (format.extension == extension) return format;
     known.append(known.empty() ? "." : ", .").append(format.extension);
   }

@@ -25,9 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<VectorFormat, 4> kFormats = {
+constexpr std::array<VectorFormat, 4> kVectorFormats = {
     {{"gpkg", "GPKG"}, {"fgb", "FlatGeobuf"}, {"geojson", "GeoJSON"}, {"shp", "ESRI Shapefile"}}};
-constexpr const VectorFormat& kGeoJson = kFormats[2];
+constexpr const VectorFormat& kGeoJson = kVectorFormats[2];
 
 /// What SQLite does for the safety of a file that nobody knows of yet, and whose parts nobody
 /// keeps, is switched off: the finished file is synced before it gets its name.
@@ -91,11 +91,11 @@ std::string published_name(const fs::path& written, const fs::path& wanted) {
 
 }  // namespace
 
-std::span<const VectorFormat> vector_formats() noexcept { return kFormats; }
+std::span<const VectorFormat> vector_formats() noexcept { return kVectorFormats; }
 
 std::string known_vector_extensions() {
   std::string known;
-  for (const VectorFormat& f : kFormats)
+  for (const VectorFormat& f : kVectorFormats)
     known.append(known.empty() ? "." : ", .").append(f.extension);
   return known;
 }
@@ -104,7 +104,7 @@ const VectorFormat& vector_format_of(const std::string& path) {
   if (path == "-") return kGeoJson;
   const std::string extension = lower_extension(path);
   if (extension == ".json") return kGeoJson;
-  for (const VectorFormat& f : kFormats) {
+  for (const VectorFormat& f : kVectorFormats) {
     if (extension == std::string(".").append(f.extension)) return f;
   }
   const std::string what = extension.empty() ? std::string("the name has no extension")

@@ -3,10 +3,18 @@
 // Words of answers, the same in text and JSON.
 #pragma once
 
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
 #include "engine/query/locate.h"
 #include "engine/query/sight.h"
 
 namespace ptin::tools {
+
+[[nodiscard]] inline nlohmann::json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
 
 [[nodiscard]] constexpr const char* name_of(PointState s) noexcept {
   return s == PointState::kSurface ? "surface" : (s == PointState::kVoid ? "void" : "outside");

@@ -8,6 +8,7 @@
 
 #include "storage/index_shape.h"
 #include "tools/error_status.h"
+#include "tools/ptin/answers.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/error_stats.h"
 #include "tools/ptin/human.h"
@@ -18,10 +19,6 @@ namespace ptin::tools {
 namespace {
 
 constexpr double kQuantiles[] = {0.5, 0.9, 0.99, 0.999, 1.0};
-
-nlohmann::json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
 
 nlohmann::json text_or_null(const std::string& text) {
   return text.empty() ? nlohmann::json() : nlohmann::json(text);

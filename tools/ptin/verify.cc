@@ -12,6 +12,7 @@
 #include "engine/mesh/validate.h"
 #include "tools/error_status.h"
 #include "tools/progress.h"
+#include "tools/ptin/answers.h"
 #include "tools/ptin/error_stats.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
@@ -136,10 +137,6 @@ Findings verify(const VerifyCommand& command, const Context& context) {
   findings.fault_count += findings.faults.size();
   progress.finish();
   return findings;
-}
-
-nlohmann::json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }
 
 nlohmann::json findings_json(const VerifyCommand& command, const Findings& f) {
