@@ -108,7 +108,6 @@ BuildReport build(const std::vector<std::string>& inputs, const std::string& out
   } else {
     build_raster(job);
   }
-  job.stage("writing")(1, 1);
   job.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return job.report;

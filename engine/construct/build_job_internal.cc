@@ -167,6 +167,7 @@ void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const B
   job.stage("writing")(0, 1);
   workspace.append({{{"publishing", inode_of(pages_in(workspace)).value_or(0)}}});
   store.publish(built.t0, job.inputs, job.report);
+  job.stage("writing")(1, 1);
 }
 
 }  // namespace ptin::build_internal

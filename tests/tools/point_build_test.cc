@@ -112,6 +112,7 @@ TEST(PointBuild, SaysBeforeItReadsWhatItExpectsToNeed) {
   const auto outcome = run_ptin({"build", folder.file("a.las"), "-o", folder.file("out.ptin"),
                                  "--tile", "6", "--dry-run", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("writing"), std::string::npos) << outcome.err;
   const auto plan = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(plan["estimated"], true);
   EXPECT_GE(plan["temporary_bytes"], 288 * 43);
