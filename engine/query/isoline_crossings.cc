@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/isoline_crossings.h"
+
 #include <algorithm>
 #include <utility>
 
-#include "engine/query/isoline_trace.h"
+#include "engine/geometry/affine.h"
 
 namespace ptin {
 
@@ -24,7 +26,7 @@ class Collector {
            counts_.segments * (sizeof(TriangleId) + 6 * sizeof(MapPoint));
   }
   [[nodiscard]] const TraceCounts& counts() const noexcept { return counts_; }
-  [[nodiscard]] const Crossings& crossings() const noexcept { return crossings_; }
+  [[nodiscard]] Crossings take() noexcept { return std::move(crossings_); }
 
  private:
   [[nodiscard]] bool meets_region(const Triangle& t) const noexcept;
@@ -112,18 +114,16 @@ void Collector::collect() {
 
 }  // namespace
 
-TraceResult trace_isolines(const Tin& tin, const LevelSet& levels, const HeightEncoding& heights,
-                           const AffineMap& map, const TraceScope& scope, std::uint64_t most_bytes,
-                           const QueryContext& context, std::vector<IsolinePiece>& pieces,
-                           std::vector<MapPoint>& points) {
+FoundCrossings find_crossings(const Tin& tin, const LevelSet& levels, const HeightEncoding& heights,
+                              const TraceScope& scope, std::uint64_t most_bytes,
+                              const QueryContext& context) {
   Collector collector(tin, levels, heights, scope, context);
   collector.count();
   if (collector.bytes() > most_bytes) {
-    return {false, collector.bytes(), {}};
+    return {false, collector.bytes(), {}, {}};
   }
   collector.collect();
-  trace_crossings(tin, levels, heights, map, collector.crossings(), context, pieces, points);
-  return {true, collector.bytes(), collector.counts()};
+  return {true, collector.bytes(), collector.counts(), collector.take()};
 }
 
 }  // namespace ptin

@@ -145,4 +145,15 @@ void trace_crossings(const Tin& tin, const LevelSet& levels, const HeightEncodin
   Tracer(tin, levels, heights, map, crossings, context).trace(pieces, points);
 }
 
+TraceResult trace_isolines(const Tin& tin, const LevelSet& levels, const HeightEncoding& heights,
+                           const AffineMap& map, const TraceScope& scope, std::uint64_t most_bytes,
+                           const QueryContext& context, std::vector<IsolinePiece>& pieces,
+                           std::vector<MapPoint>& points) {
+  const FoundCrossings found = find_crossings(tin, levels, heights, scope, most_bytes, context);
+  if (found.found) {
+    trace_crossings(tin, levels, heights, map, found.crossings, context, pieces, points);
+  }
+  return {found.found, found.bytes, found.counts};
+}
+
 }  // namespace ptin
