@@ -19,6 +19,7 @@ void put_facts(const StoreFacts& facts, layout::FileHeader& h) noexcept {
   h.base_error = layout::to_bits(facts.base_error);
   h.base_deviation = layout::to_bits(facts.base_deviation);
   h.source_samples = facts.source_samples;
+  h.flags = facts.free_of_voids ? layout::kFreeOfVoids : 0;
 }
 
 StoreFacts facts_of(const layout::FileHeader& h) noexcept {
@@ -33,6 +34,7 @@ StoreFacts facts_of(const layout::FileHeader& h) noexcept {
   facts.base_error = layout::to_double(h.base_error);
   facts.base_deviation = layout::to_double(h.base_deviation);
   facts.source_samples = h.source_samples;
+  facts.free_of_voids = (h.flags & layout::kFreeOfVoids) != 0;
   facts.page_bytes = h.page_bytes;
   return facts;
 }

@@ -47,13 +47,16 @@ struct FileHeader {
   std::uint64_t min_height, max_height;        // 136  double
   std::uint64_t base_error, base_deviation;    // 152  double
   std::uint64_t source_samples;                // 168
-  std::array<std::uint8_t, 72> reserved;       // 176  zero
+  std::uint32_t flags;                         // 176  kFreeOfVoids
+  std::array<std::uint8_t, 68> reserved;       // 180  zero
   std::uint64_t header_checksum;               // 248  of bytes 0 to 247
 };
 static_assert(sizeof(FileHeader) == 256 && offsetof(FileHeader, section_table_checksum) == 32 &&
               offsetof(FileHeader, max_rank) == 64 && offsetof(FileHeader, bounds) == 120 &&
-              offsetof(FileHeader, source_samples) == 168 &&
+              offsetof(FileHeader, source_samples) == 168 && offsetof(FileHeader, flags) == 176 &&
               offsetof(FileHeader, header_checksum) == 248);
+
+inline constexpr std::uint32_t kFreeOfVoids = 1;  ///< Bit of FileHeader::flags.
 
 enum class SectionKind : std::uint32_t {
   kMetadata = 1,

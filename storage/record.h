@@ -26,6 +26,7 @@ struct VertexSplit {
     kVertexVoid = 16  ///< u has no height.
   };
   static constexpr std::uint16_t kAllFlags = 31;
+  static constexpr std::uint16_t kAnyVoid = kLeftVoid | kRightVoid | kVertexVoid;
 
   GridPoint u, w, vl, vr;
   HeightBits height = 0;  ///< Of u; 0 when kVertexVoid.

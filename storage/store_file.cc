@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "storage/store_file.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -115,6 +116,13 @@ std::uint32_t StoreFileImpl::read_matching(PageId id, const AttributePredicate& 
 }
 
 }  // namespace
+
+bool has_void(const CoarsestTin& t0) noexcept {
+  return std::any_of(t0.triangles.begin(), t0.triangles.end(),
+                     [](const CoarsestTin::T& t) { return t.is_void != 0; }) ||
+         std::any_of(t0.vertices.begin(), t0.vertices.end(),
+                     [](const CoarsestTin::V& v) { return v.has_height == 0; });
+}
 
 std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access) {
   return std::make_shared<const StoreFileImpl>(path, access);

@@ -30,6 +30,8 @@ struct StoreFacts {
                             ///< rounding of heights).
   double base_deviation = 0.0;
   std::uint64_t source_samples = 0;  ///< Samples with a height in the source.
+  /// No triangle of the source's TIN, or of any coarser one, is void. False where nobody knows.
+  bool free_of_voids = false;
   std::uint32_t page_bytes = 4096;
   friend bool operator==(const StoreFacts&, const StoreFacts&) = default;
 };
@@ -49,6 +51,9 @@ struct CoarsestTin {
   std::vector<V> vertices;
   std::vector<T> triangles;
 };
+
+/// Whether any triangle is void or any vertex without a height.
+[[nodiscard]] bool has_void(const CoarsestTin& t0) noexcept;
 
 /// One bin of the table of errors: the records with error in (previous upper, upper].
 /// Bins ascend; the first has upper 0 (records of error exactly 0), the last may be +infinity. An

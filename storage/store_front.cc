@@ -77,8 +77,9 @@ void check_header(const FileHeader& h, const ReadOnlyFile& file) {
   // Reserved bytes of a later minor version may mean something; ours are zero.
   const bool zero =
       std::all_of(h.reserved.begin(), h.reserved.end(), [](std::uint8_t b) { return b == 0; });
-  require(zero || h.minor_version > layout::kMinorVersion, path,
-          "reserved bytes of the header are not zero");
+  require(
+      (zero && (h.flags & ~layout::kFreeOfVoids) == 0) || h.minor_version > layout::kMinorVersion,
+      path, "reserved bytes of the header are not zero");
   const char* fault = fault_in(facts_of(h));
   require(fault == nullptr, path, fault);
 }

@@ -59,6 +59,7 @@ class Verifier {
   std::uint64_t pages_done_ = 0;
   ErrorTable errors_;
   std::uint32_t max_rank_ = 0;
+  bool makes_void_ = false;
   bool all_seen_ = true;  // no page was left out because of damage
   std::vector<std::byte> page_;
   std::vector<VertexSplit> records_;
@@ -269,6 +270,7 @@ void Verifier::count(const std::vector<VertexSplit>& records) {
   report_.records += records.size();
   for (const VertexSplit& r : records) {
     errors_.add(r);
+    makes_void_ = makes_void_ || (r.flags & VertexSplit::kAnyVoid) != 0;
     max_rank_ = std::max<std::uint32_t>(max_rank_, r.rank);
     if (!contains(front_.facts.bounds, r.roi)) {
       report("a region of influence reaches out of the bounds",
@@ -294,6 +296,9 @@ void Verifier::compare_totals() {
     report("the header says that the largest rank is " + std::to_string(front_.header.max_rank) +
                ", it is " + std::to_string(max_rank_),
            "header");
+  }
+  if (front_.facts.free_of_voids && (makes_void_ || has_void(front_.t0))) {
+    report("the header says that there are no voids, but there are", "header");
   }
   const std::vector<ErrorBin> bins = errors_.bins();
   const bool equal = std::equal(bins.begin(), bins.end(), front_.bins.begin(), front_.bins.end(),

@@ -40,19 +40,7 @@ nlohmann::json value_or_null(const std::optional<T>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
-constexpr std::uint16_t kAnyVoid =
-    VertexSplit::kLeftVoid | VertexSplit::kRightVoid | VertexSplit::kVertexVoid;
-
-/// Classes change by splits alone, so what neither T0 nor a record shows is nowhere.
-bool has_void(const CoarsestTin& t0) {
-  return std::any_of(t0.triangles.begin(), t0.triangles.end(),
-                     [](const auto& t) { return t.is_void != 0; }) ||
-         std::any_of(t0.vertices.begin(), t0.vertices.end(),
-                     [](const auto& v) { return v.has_height == 0; });
-}
-
-nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildReport& r,
-                           bool voids) {
+nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildReport& r) {
   nlohmann::json files = nlohmann::json::array();
   for (const std::string& input : inputs) {
     files.push_back(std::filesystem::path(input).filename().string());
@@ -60,7 +48,6 @@ nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildRe
   return {{"files", files},
           {"samples", r.source_samples},
           {"void_samples", r.void_samples},
-          {"voids", voids},
           {"lone_samples", r.lone_samples},
           {"left_out_points", r.left_out_points},
           {"merged_points", r.merged_points},
@@ -147,7 +134,7 @@ void StoreOutput::add_segment(std::span<VertexSplit> records) {
   // Of the source's TIN: before records are left out.
   void_records_ += static_cast<std::uint64_t>(
       std::count_if(records.begin(), records.end(),
-                    [](const VertexSplit& r) { return (r.flags & kAnyVoid) != 0; }));
+                    [](const VertexSplit& r) { return (r.flags & VertexSplit::kAnyVoid) != 0; }));
   if (options_.max_error > 0.0) {
     // The records kept are those of the monotone predicate error > max_error: closed under
     // dependency.
@@ -202,13 +189,14 @@ void StoreOutput::publish(const Tin& t0, const std::vector<std::string>& inputs,
   facts.base_error = base_error_;
   facts.base_deviation = base_deviation_;
   facts.source_samples = report.source_samples;
+  facts.free_of_voids = void_records_ == 0 && !has_void(coarsest);
   facts.page_bytes = options_.page_bytes;
   const nlohmann::json metadata{
       {"crs", {{"wkt", frame_.crs_wkt}, {"vertical_known", frame_.vertical_crs_known}}},
       {"units", {{"horizontal", frame_.horizontal_unit}, {"height", frame_.vertical_unit}}},
       {"height_quantum", frame_.height_quantum},
       {"options", options_json(options_)},
-      {"source", source_json(inputs, report, void_records_ > 0 || has_void(coarsest))}};
+      {"source", source_json(inputs, report)}};
   writer_->publish(facts, coarsest,
                    metadata.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   report.records = records_;

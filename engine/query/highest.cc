@@ -16,7 +16,6 @@
 #include "engine/query/locate.h"
 #include "engine/query/refinement.h"
 #include "engine/query/spot.h"
-#include "engine/query/voids.h"
 
 namespace ptin {
 
@@ -102,7 +101,7 @@ class Search {
     HighGatherer gatherer(store_, *predicate, detail, region_ ? &*region_ : nullptr,
                           request_.lowest, context_);
     // At a level of detail a vertex may be of the surface later, and of none yet.
-    const bool any_rejected = detail.is_asked() || may_have_voids(store_);
+    const bool any_rejected = detail.is_asked() || !facts_.free_of_voids;
     const std::vector<HighCandidate> best =
         any_rejected ? find_on_surface(gatherer) : find(gatherer, request_.listed);
     for (const HighCandidate& c : best) {

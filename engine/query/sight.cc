@@ -14,7 +14,6 @@
 #include "engine/query/detail.h"
 #include "engine/query/fresnel_internal.h"
 #include "engine/query/sight_search_internal.h"
-#include "engine/query/voids.h"
 
 namespace ptin {
 
@@ -138,7 +137,7 @@ SightSolver::Impl::Impl(const ProgressiveTin& terrain, SightRequest request,
   facts_.file_deviation = store_facts_.base_deviation;
   facts_.finest_deviation = finest.deviation;
   facts_.max_height = store_facts_.max_height;
-  facts_.has_voids = may_have_voids(store);
+  facts_.has_voids = !store.facts().free_of_voids;
   // An error of 0 does not do: voids may differ between samples.
   facts_.exact_settles = !facts_.has_voids || store_facts_.base_error == 0;
   facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);

@@ -13,7 +13,6 @@
 #include "engine/query/detail.h"
 #include "engine/query/spot.h"
 #include "engine/query/viewshed_sweep_internal.h"
-#include "engine/query/voids.h"
 
 namespace ptin {
 
@@ -121,7 +120,7 @@ class ViewshedSearch {
     Viewshed result = sweep({});
     if (is_open) {
       Certainty certainty(result);
-      const bool voids = may_have_voids(store_);
+      const bool voids = !store_.facts().free_of_voids;
       certainty.add(sweep({1, slope_, voids}), Sight::kVisible);
       if (!voids) {
         certainty.add(sweep({-1, slope_, false}), Sight::kHidden);

@@ -403,10 +403,9 @@ TemporaryStore::TemporaryStore(const Hierarchy& hierarchy, std::uint32_t page_by
   }
   StoreFacts facts = hierarchy.facts;
   facts.page_bytes = page_bytes;
-  const bool voids = std::find(hierarchy.full.classes.begin(), hierarchy.full.classes.end(),
-                               TriangleClass::kVoid) != hierarchy.full.classes.end();
-  writer->publish(facts, hierarchy.t0,
-                  voids ? R"({"source": {"voids": true}})" : R"({"source": {"voids": false}})");
+  facts.free_of_voids = std::find(hierarchy.full.classes.begin(), hierarchy.full.classes.end(),
+                                  TriangleClass::kVoid) == hierarchy.full.classes.end();
+  writer->publish(facts, hierarchy.t0, "{}");
 }
 
 TemporaryStore::~TemporaryStore() {

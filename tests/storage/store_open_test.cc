@@ -262,7 +262,8 @@ TEST_F(StoreOpen, RejectsHeadersThatNoProgramWrote) {
     expect_header_rejected("base deviation",
                            [=](FileHeader& h) { h.base_deviation = layout::to_bits(v); });
   }
-  expect_header_rejected("reserved", [](FileHeader& h) { h.reserved[71] = 1; });
+  expect_header_rejected("reserved", [](FileHeader& h) { h.reserved[67] = 1; });
+  expect_header_rejected("reserved", [](FileHeader& h) { h.flags = 2; });
 }
 
 TEST_F(StoreOpen, RejectsSectionTablesThatNoProgramWrote) {

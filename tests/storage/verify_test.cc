@@ -236,6 +236,22 @@ TEST_F(Verify, FindsAVertexOfT0AmongTheRecords) {
   EXPECT_TRUE(tells(verify_store(path_), "comes twice"));
 }
 
+TEST_F(Verify, FindsVoidsThatTheHeaderDenies) {
+  const auto told = [&](const std::function<void(StoreContent&)>& change) {
+    StoreContent content = random_content({});
+    content.facts.free_of_voids = true;
+    for (auto& segment : content.segments) {
+      for (VertexSplit& r : segment) r.flags &= ~VertexSplit::kAnyVoid;
+    }
+    change(content);
+    write(content);
+    return tells(verify_store(path_), "there are no voids");
+  };
+  EXPECT_FALSE(told([](auto&) {}));
+  EXPECT_TRUE(told([](auto& c) { c.t0.triangles[0].is_void = 1; }));
+  EXPECT_TRUE(told([](auto& c) { c.segments[0][3].flags |= VertexSplit::kRightVoid; }));
+}
+
 TEST_F(Verify, FindsT0ThatDoesNotCoverItsDomain) {
   const auto told = [&](const std::function<void(StoreContent&)>& change, const std::string& what) {
     StoreContent content = flat_square(100);

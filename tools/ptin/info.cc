@@ -91,6 +91,7 @@ nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
             {"step", {facts.map.step_x, facts.map.step_y}}}},
           {"heights", heights_json(facts)},
           {"source_samples", facts.source_samples},
+          {"free_of_voids", facts.free_of_voids},
           {"vertices", store.t0().vertices.size() + store.record_count()},
           {"void_vertices", void_vertices},
           {"records", store.record_count()},
