@@ -157,6 +157,7 @@ void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const B
   options.collapse.units = terrain.units;
   options.threads = plan.threads;
   options.bytes = plan.tile_bytes;
+  options.give_back = job.resources.give_back;
   options.checkpoint_interval = job.resources.checkpoint_interval;
   options.stop = job.resources.stop;
   options.progress = job.resources.progress;

@@ -39,6 +39,7 @@ class Runner {
  private:
   std::optional<Piece> take(std::unique_lock<std::mutex>& lock, int worker);
   void run(const Piece& piece, std::unique_lock<std::mutex>& lock);
+  void give_back(std::unique_lock<std::mutex>& lock);
   void fail(std::exception_ptr failure);
 
   PieceSource& source_;
@@ -54,6 +55,7 @@ class Runner {
 
 /// Waits for a piece that fits; none when there is nothing more to wait for.
 std::optional<Piece> Runner::take(std::unique_lock<std::mutex>& lock, int worker) {
+  bool gave_back = false;
   while (!halt_.stop_requested()) {
     const std::optional<std::uint64_t> bytes = source_.next_bytes();
     if (bytes && (running_ == 0 || bytes_ + *bytes <= limits_.bytes)) {
@@ -66,9 +68,22 @@ std::optional<Piece> Runner::take(std::unique_lock<std::mutex>& lock, int worker
     if (running_ == 0) {
       return std::nullopt;
     }
+    if (!gave_back) {
+      give_back(lock);
+      gave_back = true;
+      continue;  // something may have ended meanwhile
+    }
     changed_.wait(lock);
   }
   return std::nullopt;
+}
+
+void Runner::give_back(std::unique_lock<std::mutex>& lock) {
+  if (limits_.give_back) {
+    lock.unlock();
+    limits_.give_back();
+    lock.lock();
+  }
 }
 
 void Runner::run(const Piece& piece, std::unique_lock<std::mutex>& lock) {
@@ -98,9 +113,14 @@ void Runner::fail(std::exception_ptr failure) {
 
 void Runner::work(int worker) noexcept {
   std::unique_lock lock(mutex_);
+  std::uint64_t last_bytes = ~std::uint64_t{0};
   try {
     while (const std::optional<Piece> piece = take(lock, worker)) {
       try {
+        if (piece->bytes > last_bytes) {
+          give_back(lock);
+        }
+        last_bytes = piece->bytes;
         run(*piece, lock);
       } catch (...) {
         fail(std::current_exception());

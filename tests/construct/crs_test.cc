@@ -11,7 +11,7 @@
 namespace ptin {
 namespace {
 
-void expect_refused(const std::string& declared, const std::string& a_srs,
+void expect_crs_refused(const std::string& declared, const std::string& a_srs,
                     const std::string& vertical_crs, const std::string& word) {
   try {
     std::ignore = resolve_crs(declared, a_srs, vertical_crs);
@@ -87,21 +87,21 @@ TEST(Crs, CountsEllipsoidalHeightsAsVertical) {
 }
 
 TEST(Crs, IsRefusedWithWhatGdalSaysWhereItIsNotUnderstood) {
-  expect_refused("", "EPSG:999999", "", "not one that GDAL understands");
-  expect_refused("", "the moon", "", "the moon");
-  expect_refused("PROJCRS[nonsense", "", "", "source's CRS");
-  expect_refused("EPSG:4326", "", "gibberish", "vertical CRS 'gibberish'");
+  expect_crs_refused("", "EPSG:999999", "", "not one that GDAL understands");
+  expect_crs_refused("", "the moon", "", "the moon");
+  expect_crs_refused("PROJCRS[nonsense", "", "", "source's CRS");
+  expect_crs_refused("EPSG:4326", "", "gibberish", "vertical CRS 'gibberish'");
 }
 
 TEST(Crs, IsRefusedWhereItIsNoHorizontalOne) {
-  expect_refused("", "EPSG:5773", "", "vertical CRS alone");
-  expect_refused("", "EPSG:4978", "", "neither geographic nor projected");  // geocentric
+  expect_crs_refused("", "EPSG:5773", "", "vertical CRS alone");
+  expect_crs_refused("", "EPSG:4978", "", "neither geographic nor projected");  // geocentric
 }
 
 TEST(Crs, RefusesAVerticalPartThatIsNone) {
-  expect_refused("EPSG:4326", "", "EPSG:32611", "is not a vertical CRS");
-  expect_refused("EPSG:4326", "", "EPSG:4326+5773", "is not a vertical CRS");
-  expect_refused("", "", "EPSG:5773", "no horizontal CRS");
+  expect_crs_refused("EPSG:4326", "", "EPSG:32611", "is not a vertical CRS");
+  expect_crs_refused("EPSG:4326", "", "EPSG:4326+5773", "is not a vertical CRS");
+  expect_crs_refused("", "", "EPSG:5773", "no horizontal CRS");
 }
 
 TEST(IsSameCrs, ComparesMeaningAndNotText) {

@@ -97,7 +97,7 @@ Points arbitrary_points() {
   return sorted(points);
 }
 
-void expect_refused(const Points& points, const std::string& word) {
+void expect_points_refused(const Points& points, const std::string& word) {
   try {
     delaunay(points);
     FAIL() << "accepted";
@@ -148,15 +148,15 @@ TEST(Delaunay, HoldsTheCornersOfTheWholeGrid) {
 }
 
 TEST(Delaunay, RefusesWhatSpansNoTriangle) {
-  expect_refused({}, "fewer than 3");
-  expect_refused({{0, 0}, {1, 1}}, "fewer than 3");
-  expect_refused({{0, 0}, {1, 1}, {2, 2}, {kGridMax, kGridMax}}, "collinear");
+  expect_points_refused({}, "fewer than 3");
+  expect_points_refused({{0, 0}, {1, 1}}, "fewer than 3");
+  expect_points_refused({{0, 0}, {1, 1}, {2, 2}, {kGridMax, kGridMax}}, "collinear");
 }
 
 TEST(Delaunay, RefusesPointsOutOfOrderOrTwice) {
-  expect_refused({{0, 0}, {0, 0}, {1, 1}}, "sorted");
-  expect_refused({{0, 1}, {0, 0}, {1, 1}}, "sorted");
-  expect_refused({{0, 0}, {-1, 1}, {1, 1}}, "outside of the grid");
+  expect_points_refused({{0, 0}, {0, 0}, {1, 1}}, "sorted");
+  expect_points_refused({{0, 1}, {0, 0}, {1, 1}}, "sorted");
+  expect_points_refused({{0, 0}, {-1, 1}, {1, 1}}, "outside of the grid");
 }
 
 TEST(Delaunay, StopsWhenAsked) {

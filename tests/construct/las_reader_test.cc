@@ -32,7 +32,7 @@ std::vector<SourcePoint> points_of(const std::string& bytes, const std::vector<i
   return all;
 }
 
-void expect_refused(const std::string& bytes, const std::string& word,
+void expect_las_refused(const std::string& bytes, const std::string& word,
                     ErrorCode code = ErrorCode::invalid_argument) {
   try {
     std::ignore = points_of(bytes);
@@ -120,41 +120,41 @@ TEST(LasReader, KeepsALatticeThatIsNotDecimal) {
 }
 
 TEST(LasReader, RefusesWhatIsNoLas) {
-  expect_refused("", "no LAS file");
-  expect_refused("PK\3\4", "no LAS file");
+  expect_las_refused("", "no LAS file");
+  expect_las_refused("PK\3\4", "no LAS file");
   LasFileMaker las = three_points();
   las.format = 3;
   std::string laz = las.bytes();
   laz[104] = static_cast<char>(0x83);
-  expect_refused(laz, "compressed (LAZ)");
+  expect_las_refused(laz, "compressed (LAZ)");
   std::string newer = las.bytes();
   newer[25] = 5;
-  expect_refused(newer, "LAS 1.5", ErrorCode::unsupported_version);
+  expect_las_refused(newer, "LAS 1.5", ErrorCode::unsupported_version);
   newer[24] = 77;
-  expect_refused(newer, "LAS 77.5");
+  expect_las_refused(newer, "LAS 77.5");
 }
 
 TEST(LasReader, RefusesDamagedHeaders) {
   const std::string good = three_points().bytes();
   for (std::size_t length = 4; length < good.size(); ++length) {
-    expect_refused(good.substr(0, length), "damaged or cut off");
+    expect_las_refused(good.substr(0, length), "damaged or cut off");
   }
   const auto with = [&](std::size_t at, auto value) {
     std::string bytes = good;
     std::memcpy(bytes.data() + at, &value, sizeof value);
     return bytes;
   };
-  expect_refused(with(94, std::uint16_t{100}), "shorter than");
-  expect_refused(with(96, std::uint32_t{100}), "said to begin");
-  expect_refused(with(96, std::uint32_t{1U << 30}), "said to begin");
-  expect_refused(with(100, std::uint32_t{1U << 30}), "damaged or cut off");
-  expect_refused(with(104, std::uint8_t{11}), "point format 11");
-  expect_refused(with(105, std::uint16_t{19}), "at least 20 bytes");
-  expect_refused(with(107, std::uint32_t{4}), "and there are 3");
-  expect_refused(with(131, 0.0), "scale factors");
-  expect_refused(with(131, std::numeric_limits<double>::quiet_NaN()), "scale factors");
-  expect_refused(with(155, 1e300), "coordinates below");
-  expect_refused(with(163, -std::numeric_limits<double>::infinity()), "coordinates below");
+  expect_las_refused(with(94, std::uint16_t{100}), "shorter than");
+  expect_las_refused(with(96, std::uint32_t{100}), "said to begin");
+  expect_las_refused(with(96, std::uint32_t{1U << 30}), "said to begin");
+  expect_las_refused(with(100, std::uint32_t{1U << 30}), "damaged or cut off");
+  expect_las_refused(with(104, std::uint8_t{11}), "point format 11");
+  expect_las_refused(with(105, std::uint16_t{19}), "at least 20 bytes");
+  expect_las_refused(with(107, std::uint32_t{4}), "and there are 3");
+  expect_las_refused(with(131, 0.0), "scale factors");
+  expect_las_refused(with(131, std::numeric_limits<double>::quiet_NaN()), "scale factors");
+  expect_las_refused(with(155, 1e300), "coordinates below");
+  expect_las_refused(with(163, -std::numeric_limits<double>::infinity()), "coordinates below");
 }
 
 TEST(LasReader, TakesTheCrsFromWkt) {

@@ -36,7 +36,7 @@ PointSet read(const std::vector<std::string>& features, const PointChoice& choic
   return read_points({file.path()}, options);
 }
 
-void expect_refused(const std::vector<std::string>& features, const std::string& word,
+void expect_layer_refused(const std::vector<std::string>& features, const std::string& word,
                     const PointChoice& choice = {}) {
   try {
     std::ignore = read(features, choice);
@@ -69,26 +69,26 @@ TEST(OgrPoints, TakesHeightsFromAnAttribute) {
   EXPECT_EQ(set.left_out_points, 1U);
   EXPECT_EQ(set.frame.max_height, 3);
   choice.z_field = "height";
-  expect_refused({feature(point("0,0"), R"("alt":1.5,"name":"a")")}, "numbers are in 'alt'",
+  expect_layer_refused({feature(point("0,0"), R"("alt":1.5,"name":"a")")}, "numbers are in 'alt'",
                  choice);
   choice.z_field = "name";
-  expect_refused({feature(point("0,0"), R"("alt":1.5,"name":"a")")}, "holds no numbers", choice);
+  expect_layer_refused({feature(point("0,0"), R"("alt":1.5,"name":"a")")}, "holds no numbers", choice);
 }
 
 TEST(OgrPoints, RefusesLayersThatHoldNoPointsWithHeights) {
-  expect_refused({feature(point("0,0")), feature(point("1,0")), feature(point("0,1"))},
+  expect_layer_refused({feature(point("0,0")), feature(point("1,0")), feature(point("0,1"))},
                  "--z-field");
-  expect_refused({feature(R"({"type":"LineString","coordinates":[[0,0,1],[1,1,1]]})")},
+  expect_layer_refused({feature(R"({"type":"LineString","coordinates":[[0,0,1],[1,1,1]]})")},
                  "not points");
-  expect_refused({feature(point("0,0,1")),
+  expect_layer_refused({feature(point("0,0,1")),
                   feature(R"({"type":"LineString","coordinates":[[0,0,1],[1,1,1]]})")},
                  "not a point");
   PointChoice choice;
   choice.layer = "elsewhere";
-  expect_refused({feature(point("0,0,1"))}, "there is no layer 'elsewhere'", choice);
+  expect_layer_refused({feature(point("0,0,1"))}, "there is no layer 'elsewhere'", choice);
   choice.layer.clear();
   choice.classes = {2};
-  expect_refused({feature(point("0,0,1"))}, "only LAS has classes", choice);
+  expect_layer_refused({feature(point("0,0,1"))}, "only LAS has classes", choice);
 }
 
 TEST(OgrPoints, IsKnownByItsContent) {

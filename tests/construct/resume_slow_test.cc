@@ -13,10 +13,13 @@ namespace {
 class ResumeSlow : public testing::TestWithParam<test::SourceKind> {};
 
 TEST_P(ResumeSlow, GivesTheSameBytesWhicheverCallFailed) {
+  // A TIN is sorted several times: every fourth of its calls is as many as all of the others'.
+  const int step = GetParam() == test::SourceKind::kTin ? 4 : 1;
   int nth = 0;
   bool has_failed = true;
   while (has_failed) {
-    SCOPED_TRACE(++nth);
+    nth += step;
+    SCOPED_TRACE(nth);
     const test::InterruptibleBuild interrupted(GetParam());
     test::FailingFiles files(nth);
     BuildResources resources = test::InterruptibleBuild::resources();

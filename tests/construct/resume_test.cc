@@ -154,7 +154,7 @@ void change_while_reading(const std::string& input, const std::string& output,
   ASSERT_TRUE(std::filesystem::exists(Workspace::folder_of(output)));
 }
 
-void expect_refused(const std::string& input, const std::string& output,
+void expect_resume_refused(const std::string& input, const std::string& output,
                     const BuildOptions& options) {
   try {
     build({input}, output, options, resuming());
@@ -175,7 +175,7 @@ TEST(Resume, RefusesARasterThatWasReplacedWhileItWasRead) {
   BuildOptions options;
   options.tile = 8;
   change_while_reading(input, output, options);
-  expect_refused(input, output, options);
+  expect_resume_refused(input, output, options);
 }
 
 /// A grid of 24 x 24 vertices as a TIN.
@@ -206,7 +206,7 @@ TEST(Resume, RefusesATinThatWasReplacedWhileItWasRead) {
   BuildOptions options;
   options.tile = 8;
   change_while_reading(input, output, options);
-  expect_refused(input, output, options);
+  expect_resume_refused(input, output, options);
 }
 
 TEST(Build, OfATinSaysBeforeItReadsThatAnUnfinishedOneIsThere) {

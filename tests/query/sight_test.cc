@@ -176,7 +176,7 @@ RC_GTEST_PROP(Sight, IsNeverWrongWhenItStopsEarly, (std::uint64_t seed)) {
 RC_GTEST_PROP(Sight, OfAllVerticesIsExact, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const SmallTerrain t(seed);
-  Asked asked = random_question(random, t);
+  SightCase asked = random_question(random, t);
   const SightResult exact = sight(*t.terrain, asked.pair, asked.request);
   asked.request.vertices = std::uint64_t{1} << 40;
   const SightResult all = sight(*t.terrain, asked.pair, asked.request);

@@ -176,7 +176,7 @@ TEST(IsolineProgram, RefusesWhatCannotBeAnswered) {
   refused({"--interval", "100000", "--base", "99000"}, 2, "--interval");
   refused({"--level", "1000", "--error", "-1"}, 2, "--error");
   refused({"--interval", "10", "--max-lines", "3"}, 7, "isolines, more than the limit of 3");
-  refused({"--interval", "10", "--memory", "100K"}, 7, "MiB");
+  refused({"--interval", "10", "--memory", "100K"}, 7, "KiB");
   refused({"--level", "1", "--interval", "1"}, 2, "excludes");
   const Outcome extension = run_ptin({"isoline", m.file, "--level", "1", "-o", "x.dxf"});
   EXPECT_EQ(extension.status, 2);

@@ -275,6 +275,7 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
                          : command.discard ? Unfinished::kDiscard
                                            : Unfinished::kRefuse;
   resources.dry_run = command.dry_run;
+  resources.give_back = [] { malloc_trim(0); };
   resources.plan = [&command, &context, &show](const BuildPlan& plan) {
     show.finish();
     keep_freed_memory(plan);
