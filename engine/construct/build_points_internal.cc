@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr const char* kBucketFile = "points";
-constexpr const char* kIndexFile = "points.index";
+constexpr const char* kPointsIndex = "points.index";
 
 ExternalMemory memory_for_sorting(const Job& job, const Workspace& workspace) {
   return {job.files(), workspace.temporary_folder(),
@@ -38,7 +38,7 @@ SourceDisk disk_of(const Job& job, const PointCount& count) {
 /// The points as an interrupted build had sorted them, or else read and sorted now.
 PointBuckets sorted_points(Job& job, Workspace& workspace) {
   const std::string buckets = workspace.temporary(kBucketFile);
-  const std::string index = workspace.temporary(kIndexFile);
+  const std::string index = workspace.temporary(kPointsIndex);
   for (const nlohmann::json& line : workspace.lines()) {
     if (line.contains("points")) {
       const auto& facts = line["points"];
@@ -67,7 +67,7 @@ void report_counts(BuildReport& report, const PointBuckets& points) {
   report.height_rounding = points.frame().height_rounding;
 }
 
-void build_in(Workspace& workspace, Job& job) {
+void build_points_in(Workspace& workspace, Job& job) {
   const PointBuckets points = sorted_points(job, workspace);
   report_counts(job.report, points);
   Terrain terrain{points.frame(),
@@ -98,7 +98,8 @@ void build_points(Job& job) {
   if (job.resources.dry_run) {
     return;
   }
-  in_workspace(job, fingerprint(job), [&](Workspace& workspace) { build_in(workspace, job); });
+  in_workspace(job, fingerprint(job),
+               [&](Workspace& workspace) { build_points_in(workspace, job); });
 }
 
 }  // namespace ptin::build_internal

@@ -15,12 +15,12 @@ namespace ptin::build_internal {
 namespace {
 
 constexpr const char* kTinFile = "tin";
-constexpr const char* kIndexFile = "tin.index";
+constexpr const char* kTinIndex = "tin.index";
 
 /// The triangles as an interrupted build had sorted them, or else read and sorted now.
 TinTriangles sorted_triangles(Job& job, Workspace& workspace) {
   const std::string kept_as = workspace.temporary(kTinFile);
-  const std::string index = workspace.temporary(kIndexFile);
+  const std::string index = workspace.temporary(kTinIndex);
   for (const nlohmann::json& line : workspace.lines()) {
     if (line.contains("tin")) {
       const auto& facts = line["tin"];
@@ -54,7 +54,7 @@ void report_counts(BuildReport& report, const TinTriangles& triangles) {
   report.height_rounding = triangles.frame().height_rounding;
 }
 
-void build_in(Workspace& workspace, Job& job) {
+void build_tin_in(Workspace& workspace, Job& job) {
   job.begins_anew = true;
   const TinTriangles triangles = sorted_triangles(job, workspace);
   job.begins_anew = false;
@@ -89,7 +89,7 @@ void build_tin(Job& job) {
   if (job.resources.dry_run) {
     return;
   }
-  in_workspace(job, fingerprint(job), [&](Workspace& workspace) { build_in(workspace, job); });
+  in_workspace(job, fingerprint(job), [&](Workspace& workspace) { build_tin_in(workspace, job); });
 }
 
 }  // namespace ptin::build_internal

@@ -89,4 +89,8 @@ std::span<const char> ByteReader::bytes(std::size_t count) {
   return {from, n};
 }
 
+void refuse_at(const ByteReader& in, const std::string& sentence) {
+  throw Error(ErrorCode::invalid_argument, sentence, in.place());
+}
+
 }  // namespace ptin

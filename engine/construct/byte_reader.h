@@ -58,4 +58,7 @@ class ByteReader {
   std::uint64_t size_ = 0, position_ = 0, line_ = 0;
 };
 
+/// @throws Error invalid_argument  at the place that `in` has reached; always
+[[noreturn]] void refuse_at(const ByteReader& in, const std::string& sentence);
+
 }  // namespace ptin

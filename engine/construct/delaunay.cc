@@ -20,10 +20,6 @@ namespace {
 using namespace delaunay_internal;
 using Kernel = GridKernel;
 
-[[noreturn]] void refuse(const char* sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence);
-}
-
 void check(std::span<const GridPoint> positions, std::span<const HeightBits> heights) {
   if (positions.size() != heights.size()) {
     refuse("a triangulation needs one height for each point");

@@ -23,7 +23,7 @@ constexpr std::uint32_t kFormatBytes[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59
 constexpr std::uint64_t kMostRecords = 65536;  // variable length records that are looked at
 constexpr std::uint64_t kMostCrsBytes = std::uint64_t{1} << 24;
 
-[[noreturn]] void refuse(const LasFile& file, const std::string& sentence) {
+[[noreturn]] void refuse_las(const LasFile& file, const std::string& sentence) {
   throw Error(ErrorCode::invalid_argument, sentence, file.path());
 }
 
@@ -36,23 +36,24 @@ void check_version(const LasFile& file, int major, int minor) {
     throw Error(ErrorCode::unsupported_version,
                 "this is LAS " + version + "; versions 1.0 to 1.4 are read", file.path());
   }
-  refuse(file, "the header says LAS " + version + ", which does not exist; the file is damaged");
+  refuse_las(file,
+             "the header says LAS " + version + ", which does not exist; the file is damaged");
 }
 
 void check_format(const LasFile& file, const LasHeader& h, int format) {
   if ((format & 0xc0) != 0) {
-    refuse(file,
-           "this is compressed (LAZ); unpack it first, with 'laszip -i IN.laz -o OUT.las' or "
-           "'pdal translate IN.laz OUT.las'");
+    refuse_las(file,
+               "this is compressed (LAZ); unpack it first, with 'laszip -i IN.laz -o OUT.las' or "
+               "'pdal translate IN.laz OUT.las'");
   }
   if (format > 10) {
-    refuse(file, "the header names point format " + std::to_string(format) +
-                     "; LAS has formats 0 to 10; the file is damaged");
+    refuse_las(file, "the header names point format " + std::to_string(format) +
+                         "; LAS has formats 0 to 10; the file is damaged");
   }
   if (h.record_bytes < kFormatBytes[format]) {
-    refuse(file, "points of format " + std::to_string(format) + " take at least " +
-                     std::to_string(kFormatBytes[format]) + " bytes, and the header says " +
-                     std::to_string(h.record_bytes) + "; the file is damaged");
+    refuse_las(file, "points of format " + std::to_string(format) + " take at least " +
+                         std::to_string(kFormatBytes[format]) + " bytes, and the header says " +
+                         std::to_string(h.record_bytes) + "; the file is damaged");
   }
 }
 
@@ -61,25 +62,26 @@ void check_lattice(const LasFile& file, const LasHeader& h) {
     // Beyond 10^15 no digit after the point is left in a double.
     const double reach = std::abs(h.offset[i]) + h.scale[i] * 2147483648.0;
     if (!(h.scale[i] > 0) || !(reach < 1e15)) {
-      refuse(file,
-             "scale factors must be above 0, and coordinates below 10^15; the header is damaged");
+      refuse_las(
+          file,
+          "scale factors must be above 0, and coordinates below 10^15; the header is damaged");
     }
   }
 }
 
 void check_points(const LasFile& file, const LasHeader& h, std::uint64_t header_bytes) {
   if (h.first_point < header_bytes || (h.points > 0 && h.first_point > file.bytes())) {
-    refuse(file, "the points are said to begin at byte " + std::to_string(h.first_point) +
-                     " of a file of " + std::to_string(file.bytes()) +
-                     "; it is damaged or cut off");
+    refuse_las(file, "the points are said to begin at byte " + std::to_string(h.first_point) +
+                         " of a file of " + std::to_string(file.bytes()) +
+                         "; it is damaged or cut off");
   }
   if (h.points == 0) {
     return;
   }
   const std::uint64_t there = (file.bytes() - h.first_point) / h.record_bytes;
   if (there < h.points) {
-    refuse(file, "the header says " + std::to_string(h.points) + " points and there are " +
-                     std::to_string(there) + "; the file is damaged or cut off");
+    refuse_las(file, "the header says " + std::to_string(h.points) + " points and there are " +
+                         std::to_string(there) + "; the file is damaged or cut off");
   }
 }
 
@@ -104,9 +106,9 @@ struct CrsRecords {
 void take_record(const LasFile& file, std::span<const unsigned char> head, std::uint64_t at,
                  std::uint64_t bytes, CrsRecords& crs) {
   if (at > file.bytes() || bytes > file.bytes() - at) {
-    refuse(file,
-           "a record before or behind the points reaches beyond the end of the file; it is "
-           "damaged or cut off");
+    refuse_las(file,
+               "a record before or behind the points reaches beyond the end of the file; it is "
+               "damaged or cut off");
   }
   const char* user = reinterpret_cast<const char*>(head.data()) + 2;
   if (std::string(user, strnlen(user, 16)) != "LASF_Projection" || bytes > kMostCrsBytes) {
@@ -139,8 +141,9 @@ void walk_records(const LasFile& file, std::uint64_t at, std::uint64_t count, bo
   Bytes head(head_bytes);
   for (std::uint64_t i = 0; i < std::min(count, kMostRecords); ++i) {
     if (at > file.bytes() || head_bytes > file.bytes() - at) {
-      refuse(file, "the header says " + std::to_string(count) + " records beside the points and " +
-                       std::to_string(i) + " are there; the file is damaged or cut off");
+      refuse_las(file, "the header says " + std::to_string(count) +
+                           " records beside the points and " + std::to_string(i) +
+                           " are there; the file is damaged or cut off");
     }
     file.read(at, head);
     at += head_bytes;
@@ -221,7 +224,7 @@ class KeyTiff {
 std::string wkt_of_keys(const LasFile& file, const CrsRecords& crs) {
   if (crs.keys.size() < 8 ||
       crs.keys.size() < 8 + std::size_t{las_value<std::uint16_t>(crs.keys, 6)} * 8) {
-    refuse(file, "its GeoTIFF keys are cut off; name the CRS with --a-srs instead");
+    refuse_las(file, "its GeoTIFF keys are cut off; name the CRS with --a-srs instead");
   }
   Bytes tiff = KeyTiff(crs).bytes();
   const GdalSession session;
@@ -278,7 +281,7 @@ LasHeader read_las_header(const LasFile& file) {
   const auto there = static_cast<std::size_t>(std::min<std::uint64_t>(file.bytes(), bytes.size()));
   file.read(0, std::span(bytes).first(there));
   if (there < 4 || std::memcmp(bytes.data(), "LASF", 4) != 0) {
-    refuse(file, "this is no LAS file: it does not begin with 'LASF'");
+    refuse_las(file, "this is no LAS file: it does not begin with 'LASF'");
   }
   LasHeader h;
   if (there >= 26) {
@@ -288,8 +291,8 @@ LasHeader read_las_header(const LasFile& file) {
   const std::size_t needed = kHeaderBytes[h.minor_version];
   const auto header_bytes = las_value<std::uint16_t>(bytes, 94);
   if (there < needed || header_bytes < needed) {
-    refuse(file, "the header is shorter than the " + std::to_string(needed) +
-                     " bytes of its version; the file is damaged or cut off");
+    refuse_las(file, "the header is shorter than the " + std::to_string(needed) +
+                         " bytes of its version; the file is damaged or cut off");
   }
   h.first_point = las_value<std::uint32_t>(bytes, 96);
   h.record_bytes = las_value<std::uint16_t>(bytes, 105);

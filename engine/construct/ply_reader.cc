@@ -63,10 +63,6 @@ struct Header {
   std::string crs, vertical_crs;
 };
 
-[[noreturn]] void refuse(const ByteReader& in, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence, in.place());
-}
-
 // ---------------------------------------------------------------------------------------------------
 // The header.
 
@@ -77,7 +73,7 @@ class HeaderReader {
   Header read() {
     std::string_view line;
     if (!in_.line(line) || line != "ply") {
-      refuse(in_, "a PLY file begins with the line 'ply'");
+      refuse_at(in_, "a PLY file begins with the line 'ply'");
     }
     constexpr int kMostLines = 10'000;
     for (int i = 0; i < kMostLines && in_.line(line); ++i) {
@@ -87,13 +83,13 @@ class HeaderReader {
       }
       if (words_[0] == "end_header") {
         if (!has_format_) {
-          refuse(in_, "the header names no format");
+          refuse_at(in_, "the header names no format");
         }
         return std::move(header_);
       }
       read_line(line);
     }
-    refuse(in_, "the header has no end");
+    refuse_at(in_, "the header has no end");
   }
 
  private:
@@ -105,14 +101,14 @@ class HeaderReader {
     } else if (words_[0] == "element" && words_.size() == 3) {
       const std::int64_t count = whole_of(words_[2], in_.place());
       if (count < 0) {
-        refuse(in_, "an element has a negative count");
+        refuse_at(in_, "an element has a negative count");
       }
       header_.elements.push_back({std::string(words_[1]), static_cast<std::uint64_t>(count), {}});
     } else if (words_[0] == "property" && !header_.elements.empty()) {
       read_property();
     } else {
-      refuse(in_, "the header has a line that PLY does not know: '" +
-                      std::string(line.substr(0, 60)) + "'");
+      refuse_at(in_, "the header has a line that PLY does not know: '" +
+                         std::string(line.substr(0, 60)) + "'");
     }
   }
 
@@ -141,7 +137,7 @@ class HeaderReader {
     } else if (words_[1] == "binary_big_endian") {
       header_.encoding = Encoding::kBig;
     } else {
-      refuse(in_, "the format is none of ascii, binary_little_endian, binary_big_endian");
+      refuse_at(in_, "the format is none of ascii, binary_little_endian, binary_big_endian");
     }
   }
 
@@ -151,7 +147,7 @@ class HeaderReader {
         return type.type;
       }
     }
-    refuse(in_, "'" + std::string(name.substr(0, 40)) + "' is no type of PLY");
+    refuse_at(in_, "'" + std::string(name.substr(0, 40)) + "' is no type of PLY");
   }
 
   void read_property() {
@@ -160,12 +156,12 @@ class HeaderReader {
       property.count = type_of(words_[2]);
       property.type = type_of(words_[3]);
       if (*property.count == Type::kFloat || *property.count == Type::kDouble) {
-        refuse(in_, "a list is counted by a whole number");
+        refuse_at(in_, "a list is counted by a whole number");
       }
     } else if (words_.size() == 3) {
       property.type = type_of(words_[1]);
     } else {
-      refuse(in_, "a property needs a type and a name");
+      refuse_at(in_, "a property needs a type and a name");
     }
     property.name = words_.back();
     header_.elements.back().properties.push_back(std::move(property));
@@ -193,7 +189,7 @@ class Values {
     std::string_view line;
     do {
       if (!in_.line(line)) {
-        refuse(in_, "the file ends before its last element: it is cut short");
+        refuse_at(in_, "the file ends before its last element: it is cut short");
       }
       split_words(line, words_);
     } while (words_.empty());
@@ -218,7 +214,7 @@ class Values {
       case Type::kUint32:
         return raw<std::uint32_t>();
       default:
-        refuse(in_, "an index of a vertex is a whole number");
+        refuse_at(in_, "an index of a vertex is a whole number");
     }
   }
 
@@ -249,7 +245,7 @@ class Values {
   std::int64_t list_count(const Property& p) {
     const std::int64_t count = whole(*p.count);
     if (count < 0) {
-      refuse(in_, "a list has a negative count");
+      refuse_at(in_, "a list has a negative count");
     }
     return count;
   }
@@ -257,7 +253,7 @@ class Values {
  private:
   std::string_view word() {
     if (next_ >= words_.size()) {
-      refuse(in_, "this line has fewer values than the header says");
+      refuse_at(in_, "this line has fewer values than the header says");
     }
     return words_[next_++];
   }
@@ -294,7 +290,7 @@ std::array<std::size_t, 3> axes_of(const Element& element, const ByteReader& in)
         std::find_if(element.properties.begin(), element.properties.end(),
                      [&](const Property& p) { return p.name == kNames[a] && !p.count; });
     if (found == element.properties.end()) {
-      refuse(in, "vertices have no property " + std::string(kNames[a]));
+      refuse_at(in, "vertices have no property " + std::string(kNames[a]));
     }
     axes[a] = static_cast<std::size_t>(found - element.properties.begin());
   }
@@ -325,7 +321,7 @@ void read_faces(const Element& element, const ByteReader& in, Values& values, Ti
     return p.count && (p.name == "vertex_indices" || p.name == "vertex_index");
   };
   if (std::none_of(element.properties.begin(), element.properties.end(), is_corners)) {
-    refuse(in, "faces have no list vertex_indices");
+    refuse_at(in, "faces have no list vertex_indices");
   }
   for (std::uint64_t row = 0; row < element.count; ++row) {
     values.begin_row();
@@ -355,16 +351,16 @@ void check_counts(const Header& header, const ByteReader& in) {
   const std::uint64_t left = in.size() - std::min(in.size(), in.position());
   for (const Element& element : header.elements) {
     if (element.properties.empty()) {
-      refuse(in, "the element " + element.name.substr(0, 40) + " has no properties");
+      refuse_at(in, "the element " + element.name.substr(0, 40) + " has no properties");
     }
     std::uint64_t row = 0;  // a value of text takes a digit and what ends it
     for (const Property& p : element.properties) {
       row += header.encoding == Encoding::kAscii ? 2 : bytes_of(p.count.value_or(p.type));
     }
     if (element.count > left / row + 1) {
-      refuse(in, "the header claims " + std::to_string(element.count) + " rows of " +
-                     element.name.substr(0, 40) +
-                     ", more than the file can hold: it is cut short, or damaged");
+      refuse_at(in, "the header claims " + std::to_string(element.count) + " rows of " +
+                        element.name.substr(0, 40) +
+                        ", more than the file can hold: it is cut short, or damaged");
     }
   }
 }

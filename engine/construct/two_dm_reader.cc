@@ -12,30 +12,26 @@ namespace ptin {
 
 namespace {
 
-[[noreturn]] void refuse(const ByteReader& in, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_argument, sentence, in.place());
-}
-
 void read_card(const ByteReader& in, const std::vector<std::string_view>& words, TinReceiver& tin) {
   constexpr std::array<std::string_view, 5> kOthers = {"E2L", "E6T", "E8Q", "E9Q", "E4Q"};
   const std::string place = in.place();
   if (words[0] == "ND") {
     if (words.size() < 5) {
-      refuse(in, "a node needs an id, x, y and z");
+      refuse_at(in, "a node needs an id, x, y and z");
     }
     tin.add_vertex(whole_of(words[1], place),
                    {coordinate_of(words[2], place), coordinate_of(words[3], place),
                     coordinate_of(words[4], place)});
   } else if (words[0] == "E3T") {
     if (words.size() < 5) {
-      refuse(in, "a triangle needs an id and three nodes");
+      refuse_at(in, "a triangle needs an id and three nodes");
     }
     tin.add_triangle(
         {whole_of(words[2], place), whole_of(words[3], place), whole_of(words[4], place)});
   } else if (words[0] != "E2L" &&
              std::find(kOthers.begin(), kOthers.end(), words[0]) != kOthers.end()) {
-    refuse(in, "there is a " + std::string(words[0]) +
-                   " element; only triangles (E3T) are read: triangulate the mesh first");
+    refuse_at(in, "there is a " + std::string(words[0]) +
+                      " element; only triangles (E3T) are read: triangulate the mesh first");
   }
 }
 
@@ -53,7 +49,7 @@ TinFileFacts read_two_dm(ByteReader& in, const TinReading& reading, SoupSink& si
     }
     if (!has_begun) {
       if (words[0] != "MESH2D") {
-        refuse(in, "a 2DM file begins with MESH2D");
+        refuse_at(in, "a 2DM file begins with MESH2D");
       }
       has_begun = true;
       continue;

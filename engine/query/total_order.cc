@@ -14,9 +14,9 @@ namespace {
 constexpr std::size_t kLeastPages = 16;  // Pages read at once, at least.
 
 /// `inner`, where the error is above a bound.
-class AboveError final : public AttributePredicate {
+class InnerAboveError final : public AttributePredicate {
  public:
-  AboveError(const AttributePredicate& inner, double bound) : inner_(inner), bound_(bound) {}
+  InnerAboveError(const AttributePredicate& inner, double bound) : inner_(inner), bound_(bound) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return a.error > bound_ && inner_.holds(a);
   }
@@ -79,7 +79,7 @@ class Search {
 
   std::vector<RankedPage> unread_pages(double bound) {
     std::vector<PageId> ids;
-    source_.index.search(AboveError(predicate_, bound), ids, context_.cost.io);
+    source_.index.search(InnerAboveError(predicate_, bound), ids, context_.cost.io);
     context_.check_stop();
     std::vector<RankedPage> pages;
     for (const PageId id : ids) {

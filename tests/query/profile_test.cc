@@ -198,7 +198,9 @@ TEST(Profile, SharesRefinementsAndKeepsTheOrderOfManyLines) {
         ASSERT_EQ(all.points[i].distance, p.distance);
         ASSERT_EQ(all.points[i].position, p.position);
         ASSERT_EQ(all.points[i].state, p.state);
-        if (!std::isnan(p.height)) ASSERT_EQ(all.points[i].height, p.height);
+        if (!std::isnan(p.height)) {
+          ASSERT_EQ(all.points[i].height, p.height);
+        }
         ++i;
       }
     }

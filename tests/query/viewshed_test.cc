@@ -318,7 +318,9 @@ TEST(Viewshed, OfMountainsIsMostlyCertainAtAnError) {
     visible += level.visible_pixels;
     targets += level.hidden_pixels + level.visible_pixels + level.undecided_pixels;
     EXPECT_LT(level.cost.records_applied, exact.cost.records_applied);
-    if (request.target_height == 0) EXPECT_LE(level.visible_pixels, 1U);  // the eye's own
+    if (request.target_height == 0) {
+      EXPECT_LE(level.visible_pixels, 1U);  // the eye's own
+    }
   }
   EXPECT_GT(hidden, targets / 5);
   EXPECT_GT(visible, targets / 50);
