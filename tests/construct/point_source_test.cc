@@ -23,7 +23,7 @@ PointSet read(const std::string& text, const SourceOptions& options = {}) {
   return read_points({file.path()}, options);
 }
 
-std::vector<double> heights_of(const PointSet& set) {
+std::vector<double> heights_of_set(const PointSet& set) {
   std::vector<double> heights;
   for (HeightBits bits : set.heights) {
     heights.push_back(set.frame.heights.height(bits));
@@ -60,7 +60,7 @@ TEST(PointSource, KeepsEveryDigitOfHeights) {
   EXPECT_EQ(set.frame.heights, (HeightEncoding{HeightType::int32, 0.01, 0}));
   EXPECT_EQ(set.frame.height_quantum, 0.01);
   EXPECT_EQ(set.frame.height_rounding, 0);
-  EXPECT_EQ(heights_of(set), (Heights{-1225 * 0.01, 884886 * 0.01, 300 * 0.01}));
+  EXPECT_EQ(heights_of_set(set), (Heights{-1225 * 0.01, 884886 * 0.01, 300 * 0.01}));
   EXPECT_EQ(set.frame.min_height, -12.25);
 }
 
@@ -69,7 +69,7 @@ TEST(PointSource, RoundsHeightsWithMoreDigitsThanFit) {
   EXPECT_EQ(set.frame.heights.type, HeightType::int32);
   EXPECT_GT(set.frame.height_rounding, 0);
   EXPECT_LT(set.frame.height_rounding, 1e-5);
-  EXPECT_NEAR(heights_of(set)[0], -12.123456789, set.frame.height_rounding);
+  EXPECT_NEAR(heights_of_set(set)[0], -12.123456789, set.frame.height_rounding);
 }
 
 TEST(PointSource, SnapsToAResolution) {
@@ -111,14 +111,14 @@ TEST(PointSource, MergesPointsThatFallTogether) {
   EXPECT_EQ(set.source_points, 5U);
   EXPECT_EQ(set.merged_points, 2U);
   EXPECT_EQ(set.positions.size(), 3U);
-  EXPECT_NEAR(heights_of(set)[0], 1.3, 1e-12) << "the mean, 1.2666, rounded to the step";
+  EXPECT_NEAR(heights_of_set(set)[0], 1.3, 1e-12) << "the mean, 1.2666, rounded to the step";
   EXPECT_NEAR(set.largest_shift_height, 0.3, 1e-12);
   SourceOptions options;
   options.merge = PointMerge::kLowest;
-  EXPECT_NEAR(heights_of(read(text, options))[0], 1.0, 1e-12);
+  EXPECT_NEAR(heights_of_set(read(text, options))[0], 1.0, 1e-12);
   options.merge = PointMerge::kHighest;
   set = read(text, options);
-  EXPECT_NEAR(heights_of(set)[0], 1.4, 1e-12);
+  EXPECT_NEAR(heights_of_set(set)[0], 1.4, 1e-12);
   EXPECT_NEAR(set.largest_shift_height, 0.4, 1e-12);
 }
 
