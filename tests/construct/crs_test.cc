@@ -12,7 +12,7 @@ namespace ptin {
 namespace {
 
 void expect_crs_refused(const std::string& declared, const std::string& a_srs,
-                    const std::string& vertical_crs, const std::string& word) {
+                        const std::string& vertical_crs, const std::string& word) {
   try {
     std::ignore = resolve_crs(declared, a_srs, vertical_crs);
     FAIL() << "accepted " << declared << a_srs << vertical_crs;

@@ -33,7 +33,7 @@ std::vector<SourcePoint> points_of(const std::string& bytes, const std::vector<i
 }
 
 void expect_las_refused(const std::string& bytes, const std::string& word,
-                    ErrorCode code = ErrorCode::invalid_argument) {
+                        ErrorCode code = ErrorCode::invalid_argument) {
   try {
     std::ignore = points_of(bytes);
     FAIL() << "accepted; " << word;

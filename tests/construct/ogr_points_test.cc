@@ -37,7 +37,7 @@ PointSet read(const std::vector<std::string>& features, const PointChoice& choic
 }
 
 void expect_layer_refused(const std::vector<std::string>& features, const std::string& word,
-                    const PointChoice& choice = {}) {
+                          const PointChoice& choice = {}) {
   try {
     std::ignore = read(features, choice);
     FAIL() << "accepted; " << word;
@@ -70,19 +70,20 @@ TEST(OgrPoints, TakesHeightsFromAnAttribute) {
   EXPECT_EQ(set.frame.max_height, 3);
   choice.z_field = "height";
   expect_layer_refused({feature(point("0,0"), R"("alt":1.5,"name":"a")")}, "numbers are in 'alt'",
-                 choice);
+                       choice);
   choice.z_field = "name";
-  expect_layer_refused({feature(point("0,0"), R"("alt":1.5,"name":"a")")}, "holds no numbers", choice);
+  expect_layer_refused({feature(point("0,0"), R"("alt":1.5,"name":"a")")}, "holds no numbers",
+                       choice);
 }
 
 TEST(OgrPoints, RefusesLayersThatHoldNoPointsWithHeights) {
   expect_layer_refused({feature(point("0,0")), feature(point("1,0")), feature(point("0,1"))},
-                 "--z-field");
+                       "--z-field");
   expect_layer_refused({feature(R"({"type":"LineString","coordinates":[[0,0,1],[1,1,1]]})")},
-                 "not points");
+                       "not points");
   expect_layer_refused({feature(point("0,0,1")),
-                  feature(R"({"type":"LineString","coordinates":[[0,0,1],[1,1,1]]})")},
-                 "not a point");
+                        feature(R"({"type":"LineString","coordinates":[[0,0,1],[1,1,1]]})")},
+                       "not a point");
   PointChoice choice;
   choice.layer = "elsewhere";
   expect_layer_refused({feature(point("0,0,1"))}, "there is no layer 'elsewhere'", choice);

@@ -155,7 +155,7 @@ void change_while_reading(const std::string& input, const std::string& output,
 }
 
 void expect_resume_refused(const std::string& input, const std::string& output,
-                    const BuildOptions& options) {
+                           const BuildOptions& options) {
   try {
     build({input}, output, options, resuming());
     ADD_FAILURE() << "went on";
