@@ -54,18 +54,7 @@ void connect(Tin& tin) {
       }
     }
   }
-  for (Vertex& v : tin.vertices) {
-    v.triangle = kNone;
-  }
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    const Triangle& triangle = tin.triangles[t];
-    for (int c = 0; c < 3; ++c) {
-      TriangleId& slot = tin.vertices[triangle.v[c]].triangle;
-      if (slot == kNone || triangle.n[previous_corner(c)] == kNone) {
-        slot = t;
-      }
-    }
-  }
+  point_vertices(tin);
 }
 
 Drawing draw(const std::vector<std::string>& picture, const std::vector<std::string>& triangles) {
