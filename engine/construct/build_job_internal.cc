@@ -171,4 +171,30 @@ void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const B
   job.stage("writing")(1, 1);
 }
 
+std::optional<ArrayFileFacts> kept_index(const Workspace& workspace, const std::string& key) {
+  for (const nlohmann::json& line : workspace.lines()) {
+    if (line.contains(key)) {
+      const auto& facts = line[key];
+      return ArrayFileFacts{facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()};
+    }
+  }
+  return std::nullopt;
+}
+
+void note_index(Workspace& workspace, const std::string& key, const ArrayFileFacts& index) {
+  workspace.sync_names();
+  workspace.append({{{key, {index.bytes, index.checksum}}}});
+}
+
+BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk) {
+  disk.is_there = true;
+  disk.may_be_less = job.report.resumed;
+  const BuildPlan plan =
+      plan_build(tree, job.output, job.options, job.resources, kPointTileBytes, disk);
+  if (job.resources.plan) {
+    job.resources.plan(plan);
+  }
+  return plan;
+}
+
 }  // namespace ptin::build_internal

@@ -5,11 +5,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/array_file.h"
 #include "engine/construct/build.h"
 #include "engine/construct/build_plan.h"
 #include "engine/construct/point_count.h"
@@ -24,7 +26,7 @@ namespace ptin::build_internal {
 
 /// What a leaf of points or triangles takes: its triangulation by CGAL goes before its collapses
 /// begin, its copy of the full surface stays.
-inline constexpr TileBytes kPointTileBytes{.collapse_of_sample = 640, .replay_of_sample = 560};
+inline constexpr TileBytes kPointTileBytes{.replay_of_sample = 560};
 
 /// One call of build(): what it was asked, and what it reports.
 struct Job {
@@ -70,6 +72,15 @@ void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const B
 /// @param disk_of  What the source takes.
 /// @throws Error as count_points() and plan_build()
 void announce(const Job& job, const std::function<SourceDisk(const PointCount&)>& disk_of);
+
+/// Of a source that is sorted on disk: the index that an interrupted build noted under `key`; none
+/// where it had not got so far.
+[[nodiscard]] std::optional<ArrayFileFacts> kept_index(const Workspace& workspace,
+                                                       const std::string& key);
+/// Notes it, so that what it speaks of is never read again. @throws Error io_error
+void note_index(Workspace& workspace, const std::string& key, const ArrayFileFacts& index);
+/// Plans the tiles of such a source, and tells the caller. @throws Error as plan_build()
+[[nodiscard]] BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk);
 
 /// Points, sorted on disk (point_buckets.h); over tiles.
 void build_points(Job& job);

@@ -39,22 +39,15 @@ SourceDisk disk_of(const Job& job, const PointCount& count) {
 PointBuckets sorted_points(Job& job, Workspace& workspace) {
   const std::string buckets = workspace.temporary(kBucketFile);
   const std::string index = workspace.temporary(kPointsIndex);
-  for (const nlohmann::json& line : workspace.lines()) {
-    if (line.contains("points")) {
-      const auto& facts = line["points"];
-      return PointBuckets::load(
-          job.files(), buckets, index,
-          {facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()}, job.resources.stop,
-          job.stage("checking"));
-    }
+  if (const auto facts = kept_index(workspace, "points")) {
+    return PointBuckets::load(job.files(), buckets, index, *facts, job.resources.stop,
+                              job.stage("checking"));
   }
   workspace.remove(kBucketFile);
   PointBuckets points =
       PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
                          job.resources.stop, job.resources.progress, buckets);
-  const ArrayFileFacts facts = points.save(job.files(), index);
-  workspace.sync_names();
-  workspace.append({{{"points", {facts.bytes, facts.checksum}}}});
+  note_index(workspace, "points", points.save(job.files(), index));
   return points;
 }
 
@@ -74,14 +67,7 @@ void build_points_in(Workspace& workspace, Job& job) {
                   measure_units(points.frame(), job.options.void_slope),
                   point_tree(points, job.options.tile),
                   {}};
-  SourceDisk disk = PointBuckets::disk_of(points.size());
-  disk.is_there = true;
-  disk.may_be_less = job.report.resumed;
-  const BuildPlan plan =
-      plan_build(terrain.tree, job.output, job.options, job.resources, kPointTileBytes, disk);
-  if (job.resources.plan) {
-    job.resources.plan(plan);
-  }
+  const BuildPlan plan = plan_sorted(job, terrain.tree, PointBuckets::disk_of(points.size()));
   terrain.make_starter = [&]() -> LeafStarter {
     const auto starter = std::make_shared<PointTileStarter>(
         points, terrain.tree, terrain.units, job.options.max_edge, job.resources.stop);

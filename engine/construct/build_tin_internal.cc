@@ -21,14 +21,9 @@ constexpr const char* kTinIndex = "tin.index";
 TinTriangles sorted_triangles(Job& job, Workspace& workspace) {
   const std::string kept_as = workspace.temporary(kTinFile);
   const std::string index = workspace.temporary(kTinIndex);
-  for (const nlohmann::json& line : workspace.lines()) {
-    if (line.contains("tin")) {
-      const auto& facts = line["tin"];
-      return TinTriangles::load(
-          job.files(), kept_as, index,
-          {facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()}, job.resources.stop,
-          job.stage("checking"));
-    }
+  if (const auto facts = kept_index(workspace, "tin")) {
+    return TinTriangles::load(job.files(), kept_as, index, *facts, job.resources.stop,
+                              job.stage("checking"));
   }
   for (const std::string& name : TinTriangles::kept_files(kTinFile)) {
     workspace.remove(name);
@@ -37,9 +32,7 @@ TinTriangles sorted_triangles(Job& job, Workspace& workspace) {
                                               {job.files(), workspace.temporary_folder(),
                                                std::max<std::uint64_t>(job.memory() / 2, 1U << 20)},
                                               job.resources.stop, job.resources.progress, kept_as);
-  const ArrayFileFacts facts = triangles.save(job.files(), index);
-  workspace.sync_names();
-  workspace.append({{{"tin", {facts.bytes, facts.checksum}}}});
+  note_index(workspace, "tin", triangles.save(job.files(), index));
   return triangles;
 }
 
@@ -63,14 +56,8 @@ void build_tin_in(Workspace& workspace, Job& job) {
                   measure_units(triangles.frame(), job.options.void_slope),
                   tin_tree(triangles, job.options.tile),
                   {}};
-  SourceDisk disk = TinTriangles::disk_of(triangles.counts().vertices);
-  disk.is_there = true;
-  disk.may_be_less = job.report.resumed;
   const BuildPlan plan =
-      plan_build(terrain.tree, job.output, job.options, job.resources, kPointTileBytes, disk);
-  if (job.resources.plan) {
-    job.resources.plan(plan);
-  }
+      plan_sorted(job, terrain.tree, TinTriangles::disk_of(triangles.counts().vertices));
   terrain.make_starter = [&]() -> LeafStarter {
     return [&](const SampleRange& window) {
       return start_tin_tile(triangles, terrain.tree, window, terrain.units);
