@@ -11,7 +11,7 @@
 
 namespace ptin {
 
-inline constexpr std::size_t kWitnesses = 8;
+inline constexpr std::size_t kWitnesses = 12;
 /// Samples that a triangle of a tile of witnesses may keep while it is collapsed, at least and at
 /// most: coarse fans would otherwise hold all of them.
 inline constexpr std::size_t kWitnessesInWork = 32;
