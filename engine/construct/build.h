@@ -59,8 +59,8 @@ struct BuildResources {
   std::stop_token stop;
   /// Stage name, done and total in its units; called from any thread, but never twice at once.
   std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
-  /// Gives freed memory back to the system (malloc_trim); called by any thread between tiles, so
-  /// that the limit holds there too. May be empty.
+  /// Gives freed memory back to the system (malloc_trim); called by any thread between tiles where
+  /// what was freed and what is wanted next exceed the limit together. May be empty.
   std::function<void()> give_back;
   /// Leaves done and in all, of the stages that go through the tiles; called before `progress`.
   std::function<void(std::uint64_t done, std::uint64_t total)> tiles;

@@ -23,7 +23,7 @@ struct HierarchyOptions {
   int threads = 1;
   std::uint64_t bytes = ~std::uint64_t{0};  ///< Of all tiles in work at once.
   TileBytes tile_bytes;
-  std::function<void()> give_back;  ///< As PieceLimits says.
+  std::function<void(std::uint64_t bytes)> give_back;  ///< As PieceLimits says.
   std::chrono::milliseconds checkpoint_interval{2000};
   std::stop_token stop;
   /// Samples done and in all; called by any thread, but never twice at once.

@@ -39,7 +39,7 @@ class Runner {
  private:
   std::optional<Piece> take(std::unique_lock<std::mutex>& lock, int worker);
   void run(const Piece& piece, std::unique_lock<std::mutex>& lock);
-  void give_back(std::unique_lock<std::mutex>& lock);
+  void give_back(std::unique_lock<std::mutex>& lock, std::uint64_t bytes);
   void fail(std::exception_ptr failure);
 
   PieceSource& source_;
@@ -69,7 +69,7 @@ std::optional<Piece> Runner::take(std::unique_lock<std::mutex>& lock, int worker
       return std::nullopt;
     }
     if (!gave_back) {
-      give_back(lock);
+      give_back(lock, bytes_ + bytes.value_or(0));
       gave_back = true;
       continue;  // something may have ended meanwhile
     }
@@ -78,10 +78,10 @@ std::optional<Piece> Runner::take(std::unique_lock<std::mutex>& lock, int worker
   return std::nullopt;
 }
 
-void Runner::give_back(std::unique_lock<std::mutex>& lock) {
+void Runner::give_back(std::unique_lock<std::mutex>& lock, std::uint64_t bytes) {
   if (limits_.give_back) {
     lock.unlock();
-    limits_.give_back();
+    limits_.give_back(bytes);
     lock.lock();
   }
 }
@@ -118,7 +118,7 @@ void Runner::work(int worker) noexcept {
     while (const std::optional<Piece> piece = take(lock, worker)) {
       try {
         if (piece->bytes > last_bytes) {
-          give_back(lock);
+          give_back(lock, bytes_);
         }
         last_bytes = piece->bytes;
         run(*piece, lock);

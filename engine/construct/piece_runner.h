@@ -36,10 +36,11 @@ class PieceSource {
 struct PieceLimits {
   int threads = 1;
   std::uint64_t bytes = ~std::uint64_t{0};  ///< Of all pieces that run at once.
-  /// Gives freed memory back to the system; may be empty. Called by a worker that has to wait, and
+  /// Gives freed memory back to the system where it stands in the way of `bytes`: those of all
+  /// pieces that run, and of the next. May be empty. Called by a worker that has to wait, and
   /// before a piece larger than the worker's last: what a heap keeps of pieces that have ended is
   /// counted for none that runs.
-  std::function<void()> give_back;
+  std::function<void(std::uint64_t bytes)> give_back;
 };
 
 /// Runs all pieces. One runs whatever its size; more than one only within the limit. The first

@@ -34,10 +34,15 @@ class ListedPieces final : public PieceSource {
 TEST(PieceRunner, GivesMemoryBackBeforePiecesThatAreLarger) {
   ListedPieces pieces({5, 5, 3, 9, 9, 1, 2});
   std::vector<std::size_t> given_back;
-  const PieceLimits limits{1, 10, [&] { given_back.push_back(pieces.committed.size()); }};
+  std::vector<std::uint64_t> wanted;
+  const PieceLimits limits{1, 10, [&](std::uint64_t bytes) {
+                             given_back.push_back(pieces.committed.size());
+                             wanted.push_back(bytes);
+                           }};
   EXPECT_EQ(run_pieces(pieces, limits, {}), 9U);
   EXPECT_EQ(pieces.committed, (std::vector<std::uint64_t>{5, 5, 3, 9, 9, 1, 2}));
   EXPECT_EQ(given_back, (std::vector<std::size_t>{3, 6})) << "before the first 9, and before the 2";
+  EXPECT_EQ(wanted, (std::vector<std::uint64_t>{9, 2}));
 }
 
 }  // namespace

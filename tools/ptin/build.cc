@@ -256,7 +256,7 @@ void return_freed_memory(int threads) {
 /// Where the limit leaves room for it, freed blocks are kept for the next tile: giving them back
 /// and taking fresh ones, page by page, is a sixth of the time of a build.
 void keep_freed_memory(const BuildPlan& plan) {
-  constexpr std::uint64_t kKeptByThread = std::uint64_t{128} << 20;  // measured: half of it
+  constexpr std::uint64_t kKeptByThread = std::uint64_t{64} << 20;  // measured
   const std::uint64_t kept = kKeptByThread * static_cast<std::uint64_t>(plan.threads + 1);
   if (plan.memory_expected + kept <= plan.memory_limit) {
     mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that malloc takes
