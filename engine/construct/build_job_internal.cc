@@ -5,6 +5,7 @@
 
 #include <sys/stat.h>
 
+#include "engine/construct/first_pass.h"
 #include "engine/construct/hierarchy.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/point_tile.h"
@@ -17,7 +18,7 @@ namespace ptin::build_internal {
 namespace {
 
 /// Of the temporary files: to be raised when their bytes mean something else.
-constexpr int kTemporaryFormat = 2;
+constexpr int kTemporaryFormat = 3;
 
 /// The number of a file on its disk, which stays the same when it gets another name; none when
 /// there is no such file.
@@ -155,9 +156,18 @@ void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const B
   HierarchyOptions options;
   options.collapse.cost = job.options.cost;
   options.collapse.units = terrain.units;
+  options.collapse.first_pass =
+      (kFirstPassShare * job.options.max_error - terrain.frame.height_rounding) /
+      terrain.frame.heights.step;
   options.threads = plan.threads;
   options.bytes = plan.tile_bytes;
-  options.give_back = job.resources.give_back;
+  options.give_back = [&job, limit = job.memory()](std::uint64_t bytes) {
+    // Memory that is given back is taken again a page at a time: a fifth of the time, where it
+    // happens before every larger piece.
+    if (job.resources.give_back && anonymous_bytes_now() + bytes > limit) {
+      job.resources.give_back();
+    }
+  };
   options.checkpoint_interval = job.resources.checkpoint_interval;
   options.stop = job.resources.stop;
   options.progress = job.resources.progress;

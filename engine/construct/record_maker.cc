@@ -9,23 +9,11 @@
 #include "engine/construct/fan_deviation.h"
 #include "engine/construct/rounding.h"
 #include "engine/construct/saturation.h"
-#include "engine/geometry/infinity.h"
 #include "engine/prefetch.h"
 
 namespace ptin {
 
 namespace {
-
-/// Bits of an interval of codes; an empty one as the format has it (lo > hi).
-std::pair<HeightBits, HeightBits> bits_of(const Interval& codes, const HeightEncoding& heights) {
-  if (!is_empty(codes)) {
-    return {heights.bits(codes.lo), heights.bits(codes.hi)};
-  }
-  if (heights.type == HeightType::int32) {
-    return {heights.bits(INT32_MAX), heights.bits(INT32_MIN)};
-  }
-  return {heights.bits(kInfinity), heights.bits(-kInfinity)};
-}
 
 std::uint16_t flags_of(const Tin& tin, const CollapseSite& site) {
   const auto is_void = [&](TriangleId t) {
@@ -78,7 +66,7 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const FanError& own,
   r.vr = tin.position(site.vr);
   r.roi = saturated_box(tile_, s.star);
   std::tie(r.height_lo, r.height_hi) =
-      bits_of(saturated_heights(tile_, s.star), tile_.units.heights);
+      height_bits(saturated_heights(tile_, s.star), tile_.units.heights);
   r.flags = flags_of(tin, site);
   if (tin.has_height[site.u] != 0) {
     r.height = tin.vertices[site.u].height;

@@ -51,6 +51,14 @@ bool ends_with_siblings(const std::vector<std::pair<std::uint64_t, Sample>>& joi
   return true;
 }
 
+bool is_mostly_alike(const std::vector<Sample>& samples) noexcept {
+  std::size_t alike = 0;
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    alike += samples[k].height == samples[k - 1].height ? 1 : 0;
+  }
+  return alike > samples.size() / 2;
+}
+
 float farther(float a, float b) noexcept { return std::abs(a) >= std::abs(b) ? a : b; }
 
 }  // namespace
@@ -79,6 +87,12 @@ void join_into_blocks(std::vector<Sample>& samples) {
   samples.clear();
   for (const auto& [order, sample] : joined) {
     samples.push_back(sample);
+  }
+}
+
+void join_where_alike(std::vector<Sample>& samples, double length) {
+  if (static_cast<double>(samples.size()) > 2.0 * length + 64.0 && is_mostly_alike(samples)) {
+    join_into_blocks(samples);
   }
 }
 

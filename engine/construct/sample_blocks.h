@@ -19,6 +19,10 @@ namespace ptin {
 /// for rasters, where a block's samples are all there is inside of it. Cost: one sort.
 void join_into_blocks(std::vector<Sample>& samples);
 
+/// The same where that pays: where there are more samples than a triangle of this length is long,
+/// so that it has an inside, and most are like the one before. Cost: linear, else one sort.
+void join_where_alike(std::vector<Sample>& samples, double length);
+
 /// Bounds the residuals of samples in blocks that lie across a spoke of the fan; 0 where none does.
 /// A block has one height, so the difference to the fan is linear in each part that the spokes cut
 /// it into, and largest at a corner of a part: a corner of the block (measured as a sample) or a

@@ -9,18 +9,6 @@
 
 namespace ptin {
 
-namespace {
-
-bool is_mostly_alike(const std::vector<Sample>& list) {
-  std::size_t alike = 0;
-  for (std::size_t k = 1; k < list.size(); ++k) {
-    alike += list[k].height == list[k - 1].height ? 1 : 0;
-  }
-  return alike > list.size() / 2;
-}
-
-}  // namespace
-
 void SampleHandOver::run(Tile& tile, const StarSamples& s, const FanFrame& frame,
                          const FanAssignment& assignment, std::span<const TriangleId> receivers,
                          bool drop_center) {
@@ -77,8 +65,6 @@ void SampleHandOver::add_block(const Tile& tile, const StarSamples& s, const Fan
   }
 }
 
-/// Long lists become blocks where that pays: where they hold more samples than the triangle is
-/// long, so that there is an inside, and most are like the one before.
 void SampleHandOver::store(Tile& tile, const FanFrame& frame, std::size_t i,
                            CarriedState& carried) {
   std::vector<Sample>& list = lists_[i].samples;
@@ -90,9 +76,8 @@ void SampleHandOver::store(Tile& tile, const FanFrame& frame, std::size_t i,
       std::any_of(list.begin(), list.end(), [](const Sample& a) { return !(a.depth < 0.0F); });
   const double length = std::abs(frame.spoke_x[i]) + std::abs(frame.spoke_y[i]) +
                         std::abs(frame.spoke_x[i + 1]) + std::abs(frame.spoke_y[i + 1]);
-  if (tile.samples_fill_grid && static_cast<double>(list.size()) > 2.0 * length + 64.0 &&
-      is_mostly_alike(list)) {
-    join_into_blocks(list);
+  if (tile.samples_fill_grid) {
+    join_where_alike(list, length);
   }
   carried.samples = tile.samples.take(static_cast<std::uint32_t>(list.size()));
   std::copy(list.begin(), list.end(), tile.samples.samples(carried.samples).begin());

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "engine/geometry/infinity.h"
+
 namespace ptin {
 
 GridBox saturated_box(const Tile& tile, const Star& star) noexcept {
@@ -41,6 +43,17 @@ Interval saturated_heights(const Tile& tile, const Star& star) noexcept {
     }
   }
   return heights;
+}
+
+std::pair<HeightBits, HeightBits> height_bits(const Interval& codes,
+                                              const HeightEncoding& heights) {
+  if (!is_empty(codes)) {
+    return {heights.bits(codes.lo), heights.bits(codes.hi)};
+  }
+  if (heights.type == HeightType::int32) {
+    return {heights.bits(INT32_MAX), heights.bits(INT32_MIN)};
+  }
+  return {heights.bits(kInfinity), heights.bits(-kInfinity)};
 }
 
 }  // namespace ptin

@@ -3,8 +3,11 @@
 // Saturation: what a collapse takes over from the triangles of its star (DESIGN.md, section 2).
 #pragma once
 
+#include <utility>
+
 #include "engine/construct/tile.h"
 #include "engine/geometry/box.h"
+#include "engine/geometry/height.h"
 #include "engine/geometry/interval.h"
 #include "engine/mesh/star.h"
 
@@ -19,5 +22,9 @@ namespace ptin {
 /// Height codes of u, P(u) and of everything below: covers the full surface inside of P(u), and any
 /// fan. Cost: the degree, and a record a triangle.
 [[nodiscard]] Interval saturated_heights(const Tile& tile, const Star& star) noexcept;
+
+/// Bits of an interval of codes; an empty one as the format has it (lo > hi).
+[[nodiscard]] std::pair<HeightBits, HeightBits> height_bits(const Interval& codes,
+                                                            const HeightEncoding& heights);
 
 }  // namespace ptin

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/construct/first_pass.h"
 #include "engine/construct/joined_surface.h"
 #include "engine/construct/simplify.h"
 
@@ -35,8 +36,11 @@ CollapsedLeaf collapse_leaf(const TileId& id, const TileTree& tree, const LeafSt
                             const CollapseOptions& options, const std::stop_token& stop) {
   StartedTile leaf = start(tree.window(id));
   lock_seams(leaf.tile, tree, id);
-  simplify(leaf.tile, *leaf.full,
-           simplify_options(options, vertices_to_keep(leaf.tile, tree, id), stop));
+  const std::uint64_t keep = vertices_to_keep(leaf.tile, tree, id);  // of all samples
+  if (options.first_pass > 0.0 && leaf.tile.samples_fill_grid) {
+    run_first_pass(leaf.tile, *leaf.full, leaf.box, options.first_pass);
+  }
+  simplify(leaf.tile, *leaf.full, simplify_options(options, keep, stop));
   CollapsedLeaf result;
   result.lone_samples = leaf.lone_samples;
   result.records = leaf.tile.records;

@@ -25,6 +25,9 @@ using LeafStarter = std::function<StartedTile(const SampleRange&)>;
 struct CollapseOptions {
   CostModel cost = CostModel::kError;
   MeasureUnits units;
+  /// Residual, in codes, up to which samples of a raster go without a queue (first_pass.h); 0:
+  /// none.
+  double first_pass = 0.0;
 };
 
 /// A leaf after its collapses.
