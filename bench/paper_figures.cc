@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -109,6 +110,7 @@ class Counted {
     for (const Vertex& v : terrain.started.tile.tin.vertices) vertices_.add(box_of(v.position));
     SimplifyOptions options;
     options.cost = cost;
+    options.compact_above = SIZE_MAX;  // OwnPolygons goes by the ids of the full TIN
     simplify(terrain.started.tile, *terrain.started.full, options);
     for (const VertexSplit& r : terrain.started.tile.records) boxes_.add(r.roi);
   }
