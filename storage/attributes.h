@@ -4,6 +4,8 @@
 // predicate.
 #pragma once
 
+#include <cstdint>
+
 #include "engine/geometry/box.h"
 #include "engine/geometry/interval.h"
 
@@ -29,6 +31,11 @@ class AttributePredicate {
   AttributePredicate& operator=(const AttributePredicate&) = default;
   virtual ~AttributePredicate() = default;
   [[nodiscard]] virtual bool holds(const Attributes& a) const noexcept = 0;
+  /// A box that every roi meets of which it can be true: what lies elsewhere need not be asked
+  /// about. Everywhere where nothing better is known.
+  [[nodiscard]] virtual GridBox reach() const noexcept {
+    return {INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
+  }
 };
 
 }  // namespace ptin

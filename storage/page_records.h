@@ -48,7 +48,11 @@ class DescribedPage {
  private:
   /// How many records come before the first that the descriptor excludes.
   [[nodiscard]] std::size_t admitted(std::span<const VertexSplit> records) const noexcept;
+  [[nodiscard]] std::size_t find_near(std::span<const std::byte> bytes, const GridBox& box,
+                                      std::span<std::uint16_t> near) const noexcept;
   [[noreturn]] void report(std::size_t record) const;
+
+  static constexpr std::size_t kMostRecords = layout::kMaxPageBytes / sizeof(layout::NarrowRecord);
 
   const std::string& path_;
   PageId id_;

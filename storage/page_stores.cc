@@ -101,6 +101,19 @@ void MappedPageStore::read_described(PageId id, const layout::NodeEntry& descrip
   }
 }
 
+std::span<const std::byte> MappedPageStore::view_described(PageId id,
+                                                           const layout::NodeEntry& descriptor,
+                                                           std::span<std::byte> buffer,
+                                                           IoCounters& counters) const {
+  if (!verified_.test(index_of(id))) {
+    read_described(id, descriptor, buffer, counters);
+    return buffer;
+  }
+  ++counters.pages;
+  counters.bytes_read += buffer.size();
+  return {mapping_.at(slots_.offset_of(id)), buffer.size()};
+}
+
 void MappedPageStore::check_unchanged() const {
   mapping_.require_undamaged();
   file_.check_unchanged();

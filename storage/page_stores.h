@@ -27,6 +27,18 @@ class DescribedPageStore : public PageStore {
   /// page_bytes().
   virtual void read_described(PageId id, const layout::NodeEntry& descriptor,
                               std::span<std::byte> out, IoCounters& counters) const = 0;
+  /// As read_described(), of bytes that are looked at once: where the page lies in memory already
+  /// and was verified before, no copy is made. After them, and before anything that was made of
+  /// them is used, comes require_undamaged().
+  /// @return `buffer`, or the bytes in the mapping.
+  [[nodiscard]] virtual std::span<const std::byte> view_described(
+      PageId id, const layout::NodeEntry& descriptor, std::span<std::byte> buffer,
+      IoCounters& counters) const {
+    read_described(id, descriptor, buffer, counters);
+    return buffer;
+  }
+  /// @throws Error corruption  the bytes of a view may not have been the file's
+  virtual void require_undamaged() const {}
 
  protected:
   DescribedPageStore(const ReadOnlyFile& file, const PageSlots& slots, const IndexNodes& nodes)
@@ -42,8 +54,8 @@ class DescribedPageStore : public PageStore {
   const IndexNodes& nodes_;
 };
 
-/// Copies out of the mapping. The checksum is compared at the first touch of a page, on the copy;
-/// later copies are trusted as long as the file is unchanged.
+/// Copies out of the mapping, or shows what lies there. The checksum is compared at the first touch
+/// of a page, on the copy; later looks are trusted as long as the file is unchanged.
 class MappedPageStore final : public DescribedPageStore {
  public:
   MappedPageStore(const ReadOnlyFile& file, const MappedFile& mapping, const PageSlots& slots,
@@ -51,6 +63,11 @@ class MappedPageStore final : public DescribedPageStore {
       : DescribedPageStore(file, slots, nodes), mapping_(mapping), verified_(slots.pages) {}
   void read_described(PageId id, const layout::NodeEntry& descriptor, std::span<std::byte> out,
                       IoCounters& counters) const override;
+  [[nodiscard]] std::span<const std::byte> view_described(PageId id,
+                                                          const layout::NodeEntry& descriptor,
+                                                          std::span<std::byte> buffer,
+                                                          IoCounters& counters) const override;
+  void require_undamaged() const override { mapping_.require_undamaged(); }
   void check_unchanged() const override;
 
  private:

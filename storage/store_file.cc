@@ -109,9 +109,18 @@ std::uint32_t StoreFileImpl::read_matching(PageId id, const AttributePredicate& 
                                            std::vector<VertexSplit>& out,
                                            IoCounters& counters) const {
   const DescribedPage page = described(id);
-  PageBuffer bytes;
-  pages_->read_described(id, page.descriptor(), bytes.of(page), counters);
-  page.decode_matching(bytes.of(page), predicate, out);
+  PageBuffer buffer;
+  const std::span<const std::byte> bytes =
+      pages_->view_described(id, page.descriptor(), buffer.of(page), counters);
+  const std::size_t before = out.size();
+  try {
+    page.decode_matching(bytes, predicate, out);
+    pages_->require_undamaged();
+  } catch (const Error&) {
+    out.resize(before);
+    pages_->require_undamaged();  // then that is why
+    throw;
+  }
   return page.records();
 }
 

@@ -16,6 +16,7 @@ class MeetsBox final : public AttributePredicate {
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return meets(a.roi, box_);
   }
+  [[nodiscard]] GridBox reach() const noexcept override { return box_; }
 
  private:
   GridBox box_;

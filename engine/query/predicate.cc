@@ -23,6 +23,7 @@ class Everything final : public BoundedPredicate {
 class MeetsRegion final : public BoundedPredicate {
  public:
   MeetsRegion(const Region& region, const AffineMap& map) : region_(region, map) {}
+  [[nodiscard]] GridBox reach() const noexcept override { return region_.bounds(); }
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return region_.meets(a.roi);
   }
@@ -143,6 +144,17 @@ class AllOf final : public BoundedPredicate {
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return std::all_of(parts_.begin(), parts_.end(),
                        [&](const PredicatePtr& p) { return p->holds(a); });
+  }
+  /// The smallest of its parts'.
+  [[nodiscard]] GridBox reach() const noexcept override {
+    GridBox least = AttributePredicate::reach();
+    for (const PredicatePtr& p : parts_) {
+      const GridBox reach = p->reach();
+      if (half_perimeter(reach) < half_perimeter(least)) {
+        least = reach;
+      }
+    }
+    return least;
   }
   [[nodiscard]] bool holds_for_all(const Attributes& all,
                                    double least_error) const noexcept override {

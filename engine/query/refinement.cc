@@ -135,11 +135,35 @@ void Refinement::restart(const Tin& t0) {
   }
 }
 
-/// In a pipeline: while one split is applied, others behind it are looked up and fetched. A split's
-/// w, vl and vr are looked up after those before it were entered, so they are there.
 void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& context) {
+  static constexpr std::size_t kFew = 4096;  // a mesh that stays in the caches by itself
   order_ = order_of(splits);
   const Batch batch = reserve(splits, context);
+  if (splits.size() < kFew) {
+    apply_one_by_one(splits, batch, context);
+  } else {
+    apply_in_pipeline(splits, batch, context);
+  }
+  forget_places(batch);
+  context.cost.records_applied += splits.size();
+}
+
+void Refinement::apply_one_by_one(std::span<const PendingSplit> splits, const Batch& batch,
+                                  const QueryContext& context) {
+  context.check_stop();
+  std::uint32_t triangles = 0;
+  for (std::size_t i = 0; i < splits.size(); ++i) {
+    Resolved r = enter(splits[order_[i]], vertex_place(batch, i), context);
+    r.triangle = triangles;
+    triangles += triangles_of(r.flags);
+    apply_one(r, batch, splits, context);
+  }
+}
+
+/// While one split is applied, others behind it are looked up and fetched. A split's w, vl and vr
+/// are looked up after those before it were entered, so they are there.
+void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const Batch& batch,
+                                   const QueryContext& context) {
   const StarFetcher fetcher(tin_);
   using F = StarFetcher;
   constexpr std::size_t kRing = 32;
@@ -179,8 +203,6 @@ void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& conte
       apply_one(ring[i % kRing], batch, splits, context);
     }
   }
-  forget_places(batch);
-  context.cost.records_applied += count;
 }
 
 /// Makes room for the vertices and triangles to come; triangles stay removed until their split is

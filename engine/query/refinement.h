@@ -107,6 +107,10 @@ class Refinement {
   [[nodiscard]] Resolved enter(const PendingSplit& split, VertexId u, const QueryContext& context);
   void apply_one(const Resolved& split, const Batch& batch, std::span<const PendingSplit> splits,
                  const QueryContext& context);
+  void apply_one_by_one(std::span<const PendingSplit> splits, const Batch& batch,
+                        const QueryContext& context);
+  void apply_in_pipeline(std::span<const PendingSplit> splits, const Batch& batch,
+                         const QueryContext& context);
   void forget_places(const Batch& batch);
   void undo_one(const PendingSplit& split, Star& star, const QueryContext& context);
 

@@ -235,6 +235,14 @@ GridRegion::Side GridRegion::side_of(GridPoint p) const noexcept {
   return inside ? Side::kInside : Side::kOutside;
 }
 
+GridBox GridRegion::bounds() const noexcept {
+  const auto bounded = [](double v) {
+    return static_cast<std::int32_t>(std::clamp(v, double{INT32_MIN}, double{INT32_MAX}));
+  };
+  return {bounded(std::floor(min_x_) - 1.0), bounded(std::floor(min_y_) - 1.0),
+          bounded(std::ceil(max_x_) + 1.0), bounded(std::ceil(max_y_) + 1.0)};
+}
+
 bool GridRegion::meets(const GridBox& box) const noexcept {
   if (box.max_x < min_x_ || max_x_ < box.min_x || box.max_y < min_y_ || max_y_ < box.min_y) {
     return false;

@@ -60,6 +60,9 @@ class GridRegion {
   /// empty. Cost: a polygon's edges near the box.
   [[nodiscard]] bool meets(const GridBox& box) const noexcept;
 
+  /// A box that every box meets that meets the region. A little larger than need be.
+  [[nodiscard]] GridBox bounds() const noexcept;
+
   /// True only when every box within `box` that is not empty meets the region: `box` lies inside.
   /// False where that is not certain; always for segments. Law: contains(a) and b within a imply
   /// contains(b) and meets(b). REQUIRES: `box` not empty. Cost: as meets().

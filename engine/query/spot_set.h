@@ -26,6 +26,10 @@ class SpotSet final : public AttributePredicate {
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return a.error > tolerance_ && meets(a.roi) && (single_ || holds_one(a.roi));
   }
+  [[nodiscard]] GridBox reach() const noexcept override {  // spots lie on the grid
+    return {static_cast<std::int32_t>(low_x_), static_cast<std::int32_t>(low_y_),
+            static_cast<std::int32_t>(high_x_), static_cast<std::int32_t>(high_y_)};
+  }
 
  private:
   [[nodiscard]] bool meets(const GridBox& b) const noexcept {

@@ -86,6 +86,7 @@ RC_GTEST_PROP(Predicate, NeverTurnsFalseWhileItsArgumentsGrow, (std::uint64_t se
         grow(random, a);
         const bool holds = p->holds(a);
         RC_ASSERT(holds || !held);
+        RC_ASSERT(!holds || meets(a.roi, p->reach()));
         held = holds;
       }
     }
@@ -179,6 +180,16 @@ Attributes at(double x, double y, double lo, double hi, double error) {
   a.heights = {lo, hi};
   a.error = error;
   return a;
+}
+
+TEST(Reach, IsThatOfTheSmallestPart) {
+  const AffineMap map = domain().map;
+  const PredicatePtr small = meets_region(Window{10, 20, 30, 40}, map);
+  const PredicatePtr both =
+      all_of({meets_region(Window{0, 0, 1000, 1000}, map), small, error_above(1.0)});
+  EXPECT_EQ(both->reach(), small->reach());
+  EXPECT_FALSE(contains(small->reach(), everything()->reach()));
+  EXPECT_TRUE(contains(everything()->reach(), any_of({small})->reach()));
 }
 
 TEST(ErrorAbove, IsStrict) {
