@@ -48,12 +48,11 @@ std::uint32_t error_class(double error_quanta) noexcept {
   }
   int exponent = 0;
   const double mantissa = std::frexp(error_quanta, &exponent);  // in [0.5, 1)
-  constexpr double kQuarter = 0.59460355750136053336;           // 2^(-3/4)
-  constexpr double kHalf = 0.70710678118654752440;              // 2^(-1/2)
-  constexpr double kThreeQuarters = 0.84089641525371454303;     // 2^(-1/4)
-  const std::uint32_t part = (mantissa >= kQuarter ? 1U : 0U) + (mantissa >= kHalf ? 1U : 0U) +
-                             (mantissa >= kThreeQuarters ? 1U : 0U);
-  return 1 + 4 * static_cast<std::uint32_t>(exponent - 1) + part;
+  constexpr double kThird = 0.62996052494743658238;             // 2^(-2/3)
+  constexpr double kTwoThirds = 0.79370052598409973738;         // 2^(-1/3)
+  const std::uint32_t part = (mantissa > 0.5 ? 1U : 0U) + (mantissa > kThird ? 1U : 0U) +
+                             (mantissa > kTwoThirds ? 1U : 0U);
+  return 1 + 3 * static_cast<std::uint32_t>(exponent - 1) + part;
 }
 
 PriorityScale::PriorityScale(CostModel cost, const GridBox& bounds, std::uint64_t vertices) noexcept

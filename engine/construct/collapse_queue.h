@@ -33,8 +33,10 @@ struct CollapseMeasure {
   std::uint32_t chain = 0;     ///< Collapses that this one would come to depend on, one on another.
 };
 
-/// Class of an error: 0 below one height quantum, then one class for each quarter of an octave
-/// (DESIGN.md, section 5). Exact on every machine: exponent and three comparisons, no logarithm.
+/// Class of an error: 0 below one height quantum, 1 for just that, then one class for each third of
+/// an octave, its upper end included: whole errors, which are many, end a class and do not begin
+/// one (engine/DESIGN.md, section 3). Exact on every machine: exponent and comparisons, no
+/// logarithm.
 [[nodiscard]] std::uint32_t error_class(double error_quanta) noexcept;
 
 /// Turns measures into priorities of 64 bits, the highest ten of which are a class.

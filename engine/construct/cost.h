@@ -8,7 +8,7 @@
 namespace ptin {
 
 enum class CostModel : std::uint8_t {
-  kError,  ///< Class of the sample error, a quarter of an octave wide; then the smallest saturated
+  kError,  ///< Class of the sample error, a third of an octave wide; then the smallest saturated
            ///< box; then the key.
   kRoi,    ///< Smallest saturated box (the paper's for point location).
   kElevation,  ///< Smallest saturated height interval (the paper's for isolines), then box, then

@@ -14,15 +14,18 @@
 namespace ptin {
 namespace {
 
-TEST(ErrorClass, IsAQuarterOfAnOctaveWide) {
+TEST(ErrorClass, IsAThirdOfAnOctaveWide) {
   EXPECT_EQ(error_class(0.0), 0U);
   EXPECT_EQ(error_class(std::nextafter(1.0, 0.0)), 0U);
   EXPECT_EQ(error_class(1.0), 1U);
-  for (int quarter = 0; quarter < 200; ++quarter) {
-    const double lower = std::exp2(quarter / 4.0);
-    EXPECT_EQ(error_class(lower * (1 + 1e-12)), 1U + static_cast<unsigned>(quarter));
-    EXPECT_EQ(error_class(lower * std::exp2(0.25) * (1 - 1e-12)),
-              1U + static_cast<unsigned>(quarter));
+  for (int third = 0; third < 200; ++third) {
+    const double lower = std::exp2(third / 3.0);
+    EXPECT_EQ(error_class(lower * (1 + 1e-12)), 2U + static_cast<unsigned>(third));
+    EXPECT_EQ(error_class(std::exp2((third + 1) / 3.0) * (1 - 1e-12)),
+              2U + static_cast<unsigned>(third));
+  }
+  for (int octave = 1; octave < 60; ++octave) {  // a whole power of two ends a class
+    EXPECT_EQ(error_class(std::exp2(octave)), 1U + 3U * static_cast<unsigned>(octave));
   }
   EXPECT_GT(error_class(kInfinity), error_class(std::numeric_limits<double>::max()));
 }
@@ -39,7 +42,7 @@ CollapseMeasure measure(double error, double height, std::int32_t side) {
 TEST(PriorityScale, PutsErrorClassesBeforeBoxes) {
   const PriorityScale scale(CostModel::kError, {0, 0, 1000, 1000}, 1000000);
   EXPECT_LT(scale(measure(0.5, 9, 400)), scale(measure(1.5, 0, 20)));
-  EXPECT_LT(scale(measure(1.5, 9, 20)), scale(measure(1.51, 0, 400)));
+  EXPECT_LT(scale(measure(1.5, 9, 20)), scale(measure(1.6, 0, 400)));
   EXPECT_LT(scale(measure(1e30, 9, 400)), scale(measure(kInfinity, 0, 20)));
   EXPECT_LT(scale(measure(kInfinity, 9, 20)), scale(measure(kInfinity, 0, 21)));
 }
