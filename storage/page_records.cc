@@ -46,7 +46,8 @@ class Bounds {
     const std::int32_t is_empty = values[0] > values[1] ? -1 : 0;
     const Int4 excused{is_empty, is_empty, 0, 0};
     const auto height = std::bit_cast<Code>(r.height);
-    return lanes::any(outside | ~(within | excused)) || !(height == height);
+    const bool is_nan = !(height == height);  // NOLINT(misc-redundant-expression)
+    return lanes::any(outside | ~(within | excused)) || is_nan;
   }
 
  private:

@@ -20,6 +20,7 @@ namespace ptin {
 struct QueueEntry {
   std::uint64_t priority = 0;
   VertexId vertex = kNone;
+  // NOLINTNEXTLINE(modernize-use-nullptr)
   friend auto operator<=>(const QueueEntry&, const QueueEntry&) = default;
 };
 

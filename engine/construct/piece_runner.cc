@@ -39,7 +39,7 @@ class Runner {
  private:
   std::optional<Piece> take(std::unique_lock<std::mutex>& lock, int worker);
   void run(const Piece& piece, std::unique_lock<std::mutex>& lock);
-  void give_back(std::unique_lock<std::mutex>& lock, std::uint64_t bytes);
+  void give_back(std::unique_lock<std::mutex>& lock, std::uint64_t bytes) const;
   void fail(std::exception_ptr failure);
 
   PieceSource& source_;
@@ -78,7 +78,7 @@ std::optional<Piece> Runner::take(std::unique_lock<std::mutex>& lock, int worker
   return std::nullopt;
 }
 
-void Runner::give_back(std::unique_lock<std::mutex>& lock, std::uint64_t bytes) {
+void Runner::give_back(std::unique_lock<std::mutex>& lock, std::uint64_t bytes) const {
   if (limits_.give_back) {
     lock.unlock();
     limits_.give_back(bytes);

@@ -11,7 +11,11 @@ namespace ptin {
 
 namespace {
 
-using namespace delaunay_internal;
+using delaunay_internal::add_faces;
+using delaunay_internal::Delaunay;
+using delaunay_internal::GrowingDelaunay;
+using delaunay_internal::number_faces;
+using delaunay_internal::position_of;
 using Vertex_handle = Delaunay::Vertex_handle;
 using Face_handle = Delaunay::Face_handle;
 
