@@ -94,8 +94,8 @@ class SeenFrom final : public BoundedPredicate {
   /// rounding. In space it is never certain: where all is void a record is infinitely far away.
   [[nodiscard]] bool holds_for_all(const Attributes& all,
                                    double least_error) const noexcept override {
-    const double dx = reach(all.roi.min_x, all.roi.max_x, eye_.x) * ground_x_;
-    const double dy = reach(all.roi.min_y, all.roi.max_y, eye_.y) * ground_y_;
+    const double dx = farther_end(all.roi.min_x, all.roi.max_x, eye_.x) * ground_x_;
+    const double dy = farther_end(all.roi.min_y, all.roi.max_y, eye_.y) * ground_y_;
     return !view_.eye_height &&
            least_error > view_.tau * (std::sqrt(dx * dx + dy * dy) * kRoundDown);
   }
@@ -117,7 +117,7 @@ class SeenFrom final : public BoundedPredicate {
   }
 
   /// At least the gap of every interval within [lo, hi].
-  static double reach(double lo, double hi, double v) noexcept {
+  static double farther_end(double lo, double hi, double v) noexcept {
     return std::max(0.0, std::max(hi - v, v - lo));
   }
 
@@ -149,9 +149,9 @@ class AllOf final : public BoundedPredicate {
   [[nodiscard]] GridBox reach() const noexcept override {
     GridBox least = AttributePredicate::reach();
     for (const PredicatePtr& p : parts_) {
-      const GridBox reach = p->reach();
-      if (half_perimeter(reach) < half_perimeter(least)) {
-        least = reach;
+      const GridBox part = p->reach();
+      if (half_perimeter(part) < half_perimeter(least)) {
+        least = part;
       }
     }
     return least;
