@@ -11,7 +11,7 @@
 
 namespace ptin {
 
-inline constexpr std::size_t kWitnesses = 12;
+inline constexpr std::size_t kWitnessesOfTriangle = 12;
 /// Samples that a triangle of a tile of witnesses may keep while it is collapsed, at least and at
 /// most: coarse fans would otherwise hold all of them.
 inline constexpr std::size_t kWitnessesInWork = 32;
@@ -24,6 +24,6 @@ inline constexpr std::size_t kMostWitnessesInWork = 1024;
 /// Deterministic; a block is taken for its first sample. Cost: n log n.
 /// REQUIRES: most >= 6.
 void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
-                      std::size_t most = kWitnesses);
+                      std::size_t most = kWitnessesOfTriangle);
 
 }  // namespace ptin
