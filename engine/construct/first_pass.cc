@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "engine/construct/edge_middles.h"
 #include "engine/construct/fan_error.h"
 #include "engine/construct/right_triangles.h"
 #include "engine/construct/sample_blocks.h"
 #include "engine/construct/saturation.h"
-#include "engine/geometry/orient.h"
+#include "engine/mesh/triangle_holds.h"
 
 namespace ptin {
 
@@ -44,43 +45,6 @@ struct Samples {
     grid.valid = tin.has_height;
     grid.rising = rising;
   }
-};
-
-/// Finds the two triangles of each edge by its middle: without cracks no two edges have the same,
-/// and counted in half cells it is a whole number.
-class EdgeMiddles {
- public:
-  explicit EdgeMiddles(const GridBox& box)
-      : box_(box),
-        width_(2 * side_of(box.min_x, box.max_x) + 1),
-        first_(width_ * (2 * side_of(box.min_y, box.max_y) + 1), kNone) {}
-
-  struct Side {
-    TriangleId triangle = kNone;
-    int side = 0;
-  };
-  /// The side that was added with the same ends, if there was one; else adds this.
-  Side match(const Tin& tin, const Side& added) {
-    const Triangle& triangle = tin.triangles[added.triangle];
-    const GridPoint p = tin.position(triangle.v[next_corner(added.side)]);
-    const GridPoint q = tin.position(triangle.v[previous_corner(added.side)]);
-    const std::size_t middle = (side_of(box_.min_y, p.y) + side_of(box_.min_y, q.y)) * width_ +
-                               side_of(box_.min_x, p.x) + side_of(box_.min_x, q.x);
-    std::uint32_t& first = first_[middle];
-    if (first == kNone) {
-      first = 3 * added.triangle + static_cast<std::uint32_t>(added.side);
-      return {};
-    }
-    return {first / 3, static_cast<int>(first % 3)};
-  }
-
- private:
-  static std::size_t side_of(std::int32_t from, std::int32_t to) noexcept {
-    return static_cast<std::size_t>(to - from);
-  }
-  const GridBox& box_;
-  std::size_t width_;
-  std::vector<std::uint32_t> first_;  ///< 3 * triangle + side.
 };
 
 /// The plane of a triangle, relative to its first corner. Twice its area is a power of two, so
@@ -124,7 +88,6 @@ class FirstPass {
   void take_triangles(const std::vector<RightTriangle>& triangles);
   void link();
   [[nodiscard]] double gap_along(TriangleId t, int side) const;
-  [[nodiscard]] bool holds(const Triangle& triangle, GridPoint p) const;
   void collect(TriangleId t);
   [[nodiscard]] Interval codes_of(const Triangle& triangle) const;
   void store(TriangleId t);
@@ -229,17 +192,6 @@ double FirstPass::gap_along(TriangleId t, int side) const {
   return surface_.largest_gap({kNone, p, code(a)}, {kNone, q, code(b)});
 }
 
-bool FirstPass::holds(const Triangle& triangle, GridPoint p) const {
-  for (int i = 0; i < 3; ++i) {
-    const GridPoint a = tile_.tin.position(triangle.v[i]);
-    const GridPoint b = tile_.tin.position(triangle.v[next_corner(i)]);
-    if (orient(a, b, p) < 0) {
-      return false;
-    }
-  }
-  return true;
-}
-
 /// The free samples in a triangle, the worst one first.
 void FirstPass::collect(TriangleId t) {
   list_.clear();
@@ -257,7 +209,7 @@ void FirstPass::collect(TriangleId t) {
   for (std::int32_t y = box.min_y; y <= box.max_y; ++y) {
     for (std::int32_t x = box.min_x; x <= box.max_x; ++x) {
       const std::size_t v = samples_.grid.at(x - box_.min_x, y - box_.min_y);
-      if (is_free_[v] == 0 || !holds(triangle, {x, y})) {
+      if (is_free_[v] == 0 || !triangle_holds(tile_.tin, triangle, {x, y})) {
         continue;
       }
       is_free_[v] = 0;

@@ -19,6 +19,7 @@
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/split.h"
+#include "engine/mesh/triangle_holds.h"
 
 namespace ptin {
 
@@ -131,23 +132,14 @@ void Replay::take_samples(const Tile& leaf) {
   }
 }
 
-bool holds(const Tin& tin, TriangleId t, GridPoint p) {
-  const Triangle& triangle = tin.triangles[t];
-  for (int i = 0; i < 3; ++i) {
-    if (orient(tin.position(triangle.v[i]), tin.position(triangle.v[next_corner(i)]), p) < 0) {
-      return false;
-    }
-  }
-  return true;
-}
-
 void Replay::place(Sample sample, std::vector<std::vector<Sample>>& lists) {
   const std::int32_t reach = (std::int32_t{1} << sample.side_log) - 1;
   const GridPoint p = sample.position;
   const auto holds_all = [&](TriangleId t) {
-    return holds(tile_.tin, t, p) && holds(tile_.tin, t, {p.x + reach, p.y}) &&
-           holds(tile_.tin, t, {p.x, p.y + reach}) &&
-           holds(tile_.tin, t, {p.x + reach, p.y + reach});
+    return triangle_holds(tile_.tin, tile_.tin.triangles[t], p) &&
+           triangle_holds(tile_.tin, tile_.tin.triangles[t], {p.x + reach, p.y}) &&
+           triangle_holds(tile_.tin, tile_.tin.triangles[t], {p.x, p.y + reach}) &&
+           triangle_holds(tile_.tin, tile_.tin.triangles[t], {p.x + reach, p.y + reach});
   };
   const TriangleClass own = sample.depth < 0.0F ? TriangleClass::kVoid : TriangleClass::kSurface;
   std::size_t chosen = near_.size();

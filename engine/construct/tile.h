@@ -69,7 +69,9 @@ struct Tile {
   std::vector<CarriedState> carried;      ///< Beside tin.triangles.
   std::vector<VertexState> vertex_state;  ///< Beside tin.vertices.
   SampleLists samples;
-  std::vector<VertexSplit> records;  ///< In the order of the collapses.
+  /// In the order of the collapses; before them what a first pass left out (first_pass.h), one for
+  /// each of its triangles, which no file keeps.
+  std::vector<VertexSplit> records;
   /// What the own records of a tile of witnesses depend on, as indices into `records` (below that
   /// of the record itself): record i of the own ones on dependencies[dependency_end[i - 1]] ..
   /// [dependency_end[i]].

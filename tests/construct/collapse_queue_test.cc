@@ -42,7 +42,7 @@ CollapseMeasure measure(double error, double height, std::int32_t side) {
 TEST(PriorityScale, PutsErrorClassesBeforeBoxes) {
   const PriorityScale scale(CostModel::kError, {0, 0, 1000, 1000}, 1000000);
   EXPECT_LT(scale(measure(0.5, 9, 400)), scale(measure(1.5, 0, 20)));
-  EXPECT_LT(scale(measure(1.5, 9, 20)), scale(measure(1.6, 0, 400)));
+  EXPECT_LT(scale(measure(1.5, 9, 20)), scale(measure(1.51, 0, 400)));
   EXPECT_LT(scale(measure(1e30, 9, 400)), scale(measure(kInfinity, 0, 20)));
   EXPECT_LT(scale(measure(kInfinity, 9, 20)), scale(measure(kInfinity, 0, 21)));
 }

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/construct/build.h"
-#include "engine/geometry/orient.h"
+#include "engine/mesh/triangle_holds.h"
 #include "engine/mesh/validate.h"
 #include "engine/query/progressive_tin.h"
 #include "tests/construct/made_raster.h"
@@ -64,15 +64,6 @@ GridBox box_of_samples(const TestTerrain& terrain) {
           terrain.samples.back().position.x, terrain.samples.back().position.y};
 }
 
-bool holds(const Tin& tin, const Triangle& triangle, GridPoint p) {
-  for (int i = 0; i < 3; ++i) {
-    if (orient(tin.position(triangle.v[i]), tin.position(triangle.v[next_corner(i)]), p) < 0) {
-      return false;
-    }
-  }
-  return true;
-}
-
 /// The first sample that is not either a vertex or in one list, of a triangle that holds it.
 std::string check_lists(const TestTerrain& terrain, const Tile& tile) {
   std::vector<int> found(terrain.samples.size(), 0);
@@ -91,7 +82,7 @@ std::string check_lists(const TestTerrain& terrain, const Tile& tile) {
         for (std::int32_t x = 0; x < 1 << s.side_log; ++x) {
           const GridPoint p{s.position.x + x, s.position.y + y};
           count(p);
-          if (!holds(tile.tin, tile.tin.triangles[t], p)) {
+          if (!triangle_holds(tile.tin, tile.tin.triangles[t], p)) {
             return "a sample is outside of its triangle";
           }
         }

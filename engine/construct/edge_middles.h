@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Which triangles of a mesh share an edge, looked up by its middle.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/geometry/box.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin {
+
+/// Finds the two triangles of each edge by its middle: without cracks no two edges have the same,
+/// and counted in half cells it is a whole number.
+class EdgeMiddles {
+ public:
+  /// @param box  Of the mesh. Memory: 16 bytes for each of its grid points.
+  explicit EdgeMiddles(const GridBox& box)
+      : box_(box),
+        width_(2 * steps(box.min_x, box.max_x) + 1),
+        first_(width_ * (2 * steps(box.min_y, box.max_y) + 1), kNone) {}
+
+  struct Side {
+    TriangleId triangle = kNone;
+    int side = 0;
+  };
+  /// The side that was added with the same ends, if there was one; else adds this.
+  Side match(const Tin& tin, const Side& added) {
+    const Triangle& triangle = tin.triangles[added.triangle];
+    const GridPoint p = tin.position(triangle.v[next_corner(added.side)]);
+    const GridPoint q = tin.position(triangle.v[previous_corner(added.side)]);
+    const std::size_t middle = (steps(box_.min_y, p.y) + steps(box_.min_y, q.y)) * width_ +
+                               steps(box_.min_x, p.x) + steps(box_.min_x, q.x);
+    std::uint32_t& first = first_[middle];
+    if (first == kNone) {
+      first = 3 * added.triangle + static_cast<std::uint32_t>(added.side);
+      return {};
+    }
+    return {first / 3, static_cast<int>(first % 3)};
+  }
+
+ private:
+  static std::size_t steps(std::int32_t from, std::int32_t to) noexcept {
+    return static_cast<std::size_t>(to - from);
+  }
+  GridBox box_;
+  std::size_t width_;
+  std::vector<std::uint32_t> first_;  ///< 3 * triangle + side.
+};
+
+}  // namespace ptin
