@@ -53,6 +53,8 @@ class Simplifier {
   [[nodiscard]] std::size_t most_samples() const;
   void compact_when_sparse();
   void prefetch_upcoming() const;
+  void prefetch_beside(VertexId v) const;
+  void prefetch_beyond(VertexId v) const;
   void prefetch_star(VertexId v) const;
   void prefetch_samples(VertexId v) const;
   template <class Visit>
@@ -219,6 +221,35 @@ void Simplifier::for_each_around(VertexId v, const Visit& visit) const {
   } while (t != first && t != kNone);
 }
 
+/// The first triangle of a star is there: asks for those on both sides of it.
+void Simplifier::prefetch_beside(VertexId v) const {
+  const Tin& tin = tile_.tin;
+  const Triangle& first = tin.triangles[tin.vertices[v].triangle];
+  const int c = corner_of(first, v);
+  for (const TriangleId t : {first.n[next_corner(c)], first.n[previous_corner(c)]}) {
+    if (t != kNone) {
+      prefetch(&tin.triangles[t]);
+    }
+  }
+}
+
+/// Those on both sides are there: asks for what lies beyond them in the star.
+void Simplifier::prefetch_beyond(VertexId v) const {
+  const Tin& tin = tile_.tin;
+  const Triangle& first = tin.triangles[tin.vertices[v].triangle];
+  const int c = corner_of(first, v);
+  const auto prefetch_next = [&](TriangleId t, int (*side)(int)) {
+    if (t != kNone) {
+      const TriangleId next = tin.triangles[t].n[side(corner_of(tin.triangles[t], v))];
+      if (next != kNone) {
+        prefetch(&tin.triangles[next]);
+      }
+    }
+  };
+  prefetch_next(first.n[next_corner(c)], next_corner);
+  prefetch_next(first.n[previous_corner(c)], previous_corner);
+}
+
 void Simplifier::prefetch_star(VertexId v) const {
   for_each_around(v, [this](TriangleId t, int c) {
     prefetch(&tile_.carried[t]);
@@ -252,12 +283,11 @@ void Simplifier::prefetch_upcoming() const {
   if (const QueueEntry* e = queue_.upcoming(12)) {
     prefetch(&tin.triangles[tin.vertices[e->vertex].triangle]);
   }
-  if (const QueueEntry* e = queue_.upcoming(8)) {
-    for (const TriangleId n : tin.triangles[tin.vertices[e->vertex].triangle].n) {
-      if (n != kNone) {
-        prefetch(&tin.triangles[n]);
-      }
-    }
+  if (const QueueEntry* e = queue_.upcoming(9)) {
+    prefetch_beside(e->vertex);
+  }
+  if (const QueueEntry* e = queue_.upcoming(6)) {
+    prefetch_beyond(e->vertex);
   }
   if (const QueueEntry* e = queue_.upcoming(4)) {
     prefetch_star(e->vertex);
