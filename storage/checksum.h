@@ -5,11 +5,30 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace ptin {
 
 [[nodiscard]] std::uint64_t checksum_of(std::span<const std::byte> bytes) noexcept;
+
+/// The same of bytes that come in parts.
+class RunningChecksum {
+ public:
+  RunningChecksum();
+  RunningChecksum(const RunningChecksum&) = delete;
+  RunningChecksum& operator=(const RunningChecksum&) = delete;
+  ~RunningChecksum();
+
+  void add(std::span<const std::byte> part) noexcept;
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }  ///< Added so far.
+  [[nodiscard]] std::uint64_t value() const noexcept;  ///< checksum_of() what was added so far.
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+  std::uint64_t bytes_ = 0;
+};
 
 /// Checksum of the bytes of a plain structure.
 template <class T>

@@ -33,6 +33,9 @@ class Verifier {
  private:
   void report(std::string what, std::string where);
   void look_at_sections();
+  void stop_if_asked() const;
+  void read_in_parts(std::uint64_t begin, std::uint64_t end,
+                     const std::function<void(std::span<const std::byte>)>& take);
   void look_for_zeros(std::uint64_t begin, std::uint64_t end, const std::string& where);
   void look_at_tree();
   // Looks at a node and all below it; returns the union over its entries, none when the node is
@@ -64,6 +67,10 @@ class Verifier {
   std::vector<std::byte> page_;
   std::vector<VertexSplit> records_;
 };
+
+bool is_zero(std::span<const std::byte> bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
+}
 
 std::string page_name(PageId id) { return "page " + std::to_string(index_of(id)); }
 
@@ -121,26 +128,41 @@ void Verifier::look_at_sections() {
     if (is_known) {
       continue;
     }
-    std::vector<std::byte> content(s.bytes);
-    file_.read_at(content, s.offset);
-    if (checksum_of(content) != s.checksum) {
+    RunningChecksum checksum;
+    read_in_parts(s.offset, end, [&](std::span<const std::byte> part) { checksum.add(part); });
+    if (checksum.value() != s.checksum) {
       report("the section does not match its checksum",
              "section of kind " + std::to_string(s.kind));
     }
   }
 }
 
-void Verifier::look_for_zeros(std::uint64_t begin, std::uint64_t end, const std::string& where) {
+// The file says how long it is: no part of it is taken whole.
+void Verifier::read_in_parts(std::uint64_t begin, std::uint64_t end,
+                             const std::function<void(std::span<const std::byte>)>& take) {
   std::vector<std::byte> bytes(std::size_t{1} << 16);
   while (begin < end) {
+    stop_if_asked();
     const std::span<std::byte> part(
         bytes.data(), static_cast<std::size_t>(std::min<std::uint64_t>(end - begin, bytes.size())));
     file_.read_at(part, begin);
-    if (std::any_of(part.begin(), part.end(), [](std::byte b) { return b != std::byte{0}; })) {
-      report("unused bytes are not zero", where);
-      return;
-    }
+    take(part);
     begin += part.size();
+  }
+}
+
+void Verifier::look_for_zeros(std::uint64_t begin, std::uint64_t end, const std::string& where) {
+  bool all_zero = true;
+  read_in_parts(begin, end,
+                [&](std::span<const std::byte> part) { all_zero = all_zero && is_zero(part); });
+  if (!all_zero) {
+    report("unused bytes are not zero", where);
+  }
+}
+
+void Verifier::stop_if_asked() const {
+  if (stop_.stop_requested()) {
+    throw Error(ErrorCode::cancelled, "verification was cancelled", file_.path());
   }
 }
 
@@ -176,8 +198,7 @@ std::optional<layout::NodeEntry> Verifier::look_at_node(std::uint32_t level, std
   report_.index_nodes += pass_ == 0 ? 1 : 0;
   const auto unused =
       std::as_bytes(std::span(node.entry)).subspan(entries * sizeof(layout::NodeEntry));
-  if (pass_ == 0 &&
-      std::any_of(unused.begin(), unused.end(), [](std::byte b) { return b != std::byte{0}; })) {
+  if (pass_ == 0 && !is_zero(unused)) {
     report("unused entries are not zero", where);
   }
   Descriptor all(front_.facts.heights);
@@ -208,9 +229,7 @@ void Verifier::look_at_entry(std::uint32_t level, const layout::NodeEntry& entry
 
 std::optional<layout::NodeEntry> Verifier::look_at_page(PageId id,
                                                         const layout::NodeEntry& descriptor) {
-  if (stop_.stop_requested()) {
-    throw Error(ErrorCode::cancelled, "verification was cancelled", file_.path());
-  }
+  stop_if_asked();
   const bool is_read = read_page(id, descriptor);
   ++pages_done_;
   if (progress_ && pages_done_ % 4096 == 0) {
@@ -249,8 +268,7 @@ bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
       return false;
     }
     const auto tail = std::span(page_).subspan(page.records() * record_bytes(page.kind()));
-    if (pass_ == 0 &&
-        std::any_of(tail.begin(), tail.end(), [](std::byte b) { return b != std::byte{0}; })) {
+    if (pass_ == 0 && !is_zero(tail)) {
       report("the bytes behind the last record are not zero", page_name(id));
     }
     page.decode(page_, records_);

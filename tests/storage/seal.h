@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "storage/checksum.h"
@@ -126,6 +127,36 @@ inline void seal(Bytes& file) {
   h.header_checksum = checksum_of(
       std::as_bytes(std::span(&h, 1)).first(offsetof(layout::FileHeader, header_checksum)));
   set_header(file, h);
+}
+
+/// The file with a seventh section of a later minor version, `bytes` long, behind the pages: header
+/// and table speak of it, its bytes are for the caller to append. To be sealed.
+inline Bytes with_room_for_a_section(const Bytes& file, std::uint64_t bytes) {
+  // The table has no room for a seventh line: the sections before the index move by one, into the
+  // gap before it.
+  std::vector<layout::SectionEntry> sections = sections_of(file);
+  const std::uint64_t index = sections.at(4).offset;
+  std::uint64_t at = sizeof(layout::FileHeader) + 7 * sizeof(layout::SectionEntry);
+  Bytes result = file;
+  std::fill(result.begin() + sizeof(layout::FileHeader),
+            result.begin() + static_cast<std::ptrdiff_t>(index), std::byte{0});
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (at + sections[i].bytes > index) {
+      throw std::runtime_error("there is no gap of 32 bytes before the index");
+    }
+    std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(sections[i].offset), sections[i].bytes,
+                result.begin() + static_cast<std::ptrdiff_t>(at));
+    sections[i].offset = at;
+    at = (at + sections[i].bytes + 7) / 8 * 8;
+  }
+  sections.push_back({99, 1, result.size(), bytes, 0});
+  layout::FileHeader header = header_of(file);
+  header.minor_version = layout::kMinorVersion + 1;
+  header.section_count = 7;
+  header.file_bytes = result.size() + bytes;
+  set_header(result, header);
+  set_sections(result, sections);
+  return result;
 }
 
 }  // namespace ptin::test

@@ -2,10 +2,13 @@
 #include "storage/verify.h"
 
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "engine/error.h"
 #include "storage/index_shape.h"
@@ -176,6 +179,39 @@ TEST_F(Verify, FindsGapsThatAreNotZero) {
   EXPECT_TRUE(tells(
       after([](Bytes& b) { b[section_of(b, SectionKind::kIndex).offset - 1] = std::byte{1}; }),
       "unused bytes"));
+}
+
+long peak_kib() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+TEST_F(Verify, LooksAtALargeSectionOfALaterVersionWithLittleMemory) {
+  constexpr std::uint64_t kBytes = std::uint64_t{256} << 20;
+  write(random_content({.segments = 1, .records = 100}));
+  Bytes front = with_room_for_a_section(read_file(path_), kBytes);
+  const std::uint64_t end = front.size() + kBytes;
+  RunningChecksum zeros;
+  for (const Bytes part(std::size_t{1} << 20); end - front.size() > zeros.bytes();) {
+    zeros.add(part);
+  }
+  std::vector<layout::SectionEntry> sections = sections_of(front);
+  sections.back().checksum = zeros.value();
+  set_sections(front, sections);
+  seal(front);
+  write_file(path_, front);
+  std::filesystem::resize_file(path_, end);  // zeros that take no room on the disk
+  VerifyOptions options;
+  options.memory_bytes = std::uint64_t{1} << 20;
+  const long before = peak_kib();
+  const VerifyReport report = verify_store(path_, options);
+  EXPECT_TRUE(report.is_sound()) << report.faults[0].what;
+  EXPECT_LT(peak_kib() - before, 32 << 10);
+  std::fstream(path_, std::ios::binary | std::ios::in | std::ios::out)
+      .seekp(static_cast<std::streamoff>(end - 1))
+      .put('x');
+  EXPECT_TRUE(tells(verify_store(path_, options), "does not match its checksum"));
 }
 
 TEST_F(Verify, FindsMetadataThatIsNotJson) {
