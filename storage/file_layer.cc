@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include <fcntl.h>
@@ -68,6 +70,13 @@ int FileLayer::allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexc
   return ::fallocate(fd, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)) == 0 ? 0 : errno;
 }
 
+int FileLayer::size(int fd, std::uint64_t& bytes) noexcept {
+  struct stat status {};
+  const int failure = ::fstat(fd, &status) == 0 ? 0 : errno;
+  bytes = failure == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+  return failure;
+}
+
 int FileLayer::truncate(int fd, std::uint64_t bytes) noexcept {
   return ::ftruncate(fd, static_cast<off_t>(bytes)) == 0 ? 0 : errno;
 }
@@ -105,6 +114,20 @@ int FileLayer::sync_folder(const std::string& path) noexcept {
   const int result = ::fsync(fd) == 0 || errno == EINVAL ? 0 : errno;
   ::close(fd);
   return result;
+}
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+ScratchFile::Kept ScratchFile::kept_at(const std::string& path) {
+  std::error_code failure;
+  const bool exists = std::filesystem::exists(path, failure);
+  if (failure) {
+    throw system_error(failure.value(), "cannot look for", path);
+  }
+  return exists ? Kept::kExisting : Kept::kNew;
 }
 
 ScratchFile::ScratchFile(FileLayer& files, const std::string& folder, const std::string& stem,
@@ -145,11 +168,7 @@ void ScratchFile::create_named(const std::string& stem) {
 }
 
 ScratchFile::ScratchFile(FileLayer& files, const std::string& path, Kept kept)
-    : files_(files),
-      folder_(path.substr(0, path.rfind('/'))),
-      path_(path),
-      kept_(true),
-      shown_(path) {
+    : files_(files), folder_(folder_of(path)), path_(path), kept_(true), shown_(path) {
   const int failure = kept == Kept::kNew ? files_.create(path_, fd_) : files_.open(path_, fd_);
   if (failure != 0) {
     throw system_error(failure, kept == Kept::kNew ? "cannot create" : "cannot open", path);
@@ -214,6 +233,15 @@ void ScratchFile::copy_from(const ScratchFile& from, std::uint64_t from_offset, 
   }
 }
 
+std::uint64_t ScratchFile::size() const {
+  std::uint64_t bytes = 0;
+  const int failure = files_.size(fd_, bytes);
+  if (failure != 0) {
+    throw system_error(failure, "cannot learn the size", shown_);
+  }
+  return bytes;
+}
+
 void ScratchFile::reserve(std::uint64_t offset, std::uint64_t bytes) {
   const int failure = bytes == 0 ? 0 : files_.allocate(fd_, offset, bytes);
   if (failure == ENOSPC || failure == EDQUOT || failure == EFBIG) {
@@ -255,8 +283,7 @@ void ScratchFile::publish_as(const std::string& target, bool replace) {
     throw system_error(failure, "cannot rename the finished file onto this name", target);
   }
   path_.clear();
-  const std::size_t slash = target.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : target.substr(0, slash + 1);
+  const std::string folder = folder_of(target);
   failure = files_.sync_folder(folder);
   if (failure != 0) {
     throw system_error(

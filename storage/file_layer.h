@@ -42,6 +42,7 @@ class FileLayer {
   /// Reserves space, so that a full disk is known early. File systems that cannot do it answer
   /// EOPNOTSUPP.
   virtual int allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexcept;
+  virtual int size(int fd, std::uint64_t& bytes) noexcept;
   /// Cuts the file to `bytes`, or fills it with zeros up to there.
   virtual int truncate(int fd, std::uint64_t bytes) noexcept;
   virtual int sync(int fd) noexcept;
@@ -56,11 +57,17 @@ class FileLayer {
   virtual int sync_folder(const std::string& path) noexcept;
 };
 
+/// The folder that a path names a file in: "." for a bare name.
+[[nodiscard]] std::string folder_of(const std::string& path);
+
 /// A file being written: closed when destroyed, removed too unless it is a kept one. Errors are
 /// ptin::Error and name the file.
 class ScratchFile {
  public:
   enum class Kept { kNew, kExisting };
+  /// kExisting when there is something of this name.
+  /// @throws Error io_error  that cannot be told
+  [[nodiscard]] static Kept kept_at(const std::string& path);
   /// A file of this very name, which stays when the object goes: work that can be taken up again.
   /// @throws Error not_found, io_error, resource_exhausted; also when a new one exists already
   ScratchFile(FileLayer& files, const std::string& path, Kept kept);
@@ -79,6 +86,7 @@ class ScratchFile {
   /// are this file.
   void copy_from(const ScratchFile& from, std::uint64_t from_offset, std::uint64_t bytes,
                  std::uint64_t offset);
+  [[nodiscard]] std::uint64_t size() const;
   void reserve(std::uint64_t offset, std::uint64_t bytes);
   void truncate(std::uint64_t bytes);
   void sync();

@@ -2,7 +2,6 @@
 #include "storage/page_journal.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "engine/error.h"
 #include "storage/checksum.h"
@@ -61,7 +60,7 @@ void PageJournal::mark(std::uint64_t moved_bytes, std::uint64_t moved_to) {
 }
 
 std::optional<PublishMark> PageJournal::find_mark() const {
-  const std::uint64_t bytes = std::filesystem::file_size(path_);
+  const std::uint64_t bytes = file_.size();
   if (bytes < sizeof(PublishMark)) {
     return std::nullopt;
   }
@@ -75,7 +74,7 @@ std::optional<PublishMark> PageJournal::find_mark() const {
 void PageJournal::replay(const StoreCheckpoint& checkpoint,
                          const std::function<void(const layout::NodeEntry&)>& page) {
   const auto refuse = [this](const char* what) { throw Error(ErrorCode::corruption, what, path_); };
-  if (std::filesystem::file_size(path_) / sizeof(layout::NodeEntry) < checkpoint.pages) {
+  if (file_.size() / sizeof(layout::NodeEntry) < checkpoint.pages) {
     refuse("the unfinished build's list of pages is shorter than its manifest says");
   }
   end_ = {};

@@ -58,11 +58,6 @@ void check_target(const std::string& path, const StoreWriterOptions& options) {
   }
 }
 
-std::string folder_of(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  return folder.empty() ? "." : folder;
-}
-
 // Fills pages with records of one kind each, and hands each finished page and its descriptor on.
 class PagePacker {
  public:
@@ -185,7 +180,7 @@ class StoreWriterImpl final : public StoreWriter {
                                           : kept_file(files_, options.work_folder + "/pages")) {
     if (!options_.work_folder.empty()) {
       const std::string journal = options_.work_folder + "/descriptors";
-      journal_.emplace(files_, journal, kept(journal));
+      journal_.emplace(files_, journal, ScratchFile::kept_at(journal));
     }
     pending_.reserve(kWriteBytes);
   }
@@ -198,11 +193,8 @@ class StoreWriterImpl final : public StoreWriter {
                const std::string& metadata_json) override;
 
  private:
-  static ScratchFile::Kept kept(const std::string& path) {
-    return std::filesystem::exists(path) ? ScratchFile::Kept::kExisting : ScratchFile::Kept::kNew;
-  }
   static ScratchFile kept_file(FileLayer& files, const std::string& path) {
-    return ScratchFile(files, path, kept(path));
+    return ScratchFile(files, path, ScratchFile::kept_at(path));
   }
   void start(const HeightEncoding& heights);
   void add(const VertexSplit& r);
@@ -341,6 +333,9 @@ void StoreWriterImpl::resume(const StoreCheckpoint& checkpoint, const HeightEnco
   restore_moved_pages();
   std::vector<std::byte> page(options_.page_bytes);
   journal_->replay(checkpoint, [&](const layout::NodeEntry& entry) { take_back(entry, page); });
+  // A mark of publishing that comes back after a power cut would speak of copies that are cut off
+  // here.
+  journal_->sync();
   file_.truncate(written_bytes_);
 }
 

@@ -11,6 +11,41 @@
 
 namespace ptin::test {
 
+int PowerCutFiles::create(const std::string& path, int& fd) noexcept {
+  const int failure = FileLayer::create(path, fd);
+  names_[fd] = path;
+  return failure;
+}
+
+int PowerCutFiles::open(const std::string& path, int& fd) noexcept {
+  const int failure = FileLayer::open(path, fd);
+  names_[fd] = path;
+  return failure;
+}
+
+int PowerCutFiles::truncate(int fd, std::uint64_t bytes) noexcept {
+  const Bytes whole = read_file(names_[fd]);
+  if (bytes < whole.size()) {
+    cuts_[names_[fd]] = {bytes,
+                         Bytes(whole.begin() + static_cast<std::ptrdiff_t>(bytes), whole.end())};
+  }
+  return FileLayer::truncate(fd, bytes);
+}
+
+int PowerCutFiles::sync(int fd) noexcept {
+  cuts_.erase(names_[fd]);
+  return FileLayer::sync(fd);
+}
+
+void PowerCutFiles::lose_cuts(const std::string& path) {
+  if (const auto cut = cuts_.find(path); cut != cuts_.end()) {
+    Bytes whole = read_file(path);
+    ASSERT_EQ(whole.size(), cut->second.at) << "written to since it was cut";
+    whole.insert(whole.end(), cut->second.tail.begin(), cut->second.tail.end());
+    write_file(path, whole);
+  }
+}
+
 void expect_old_or_new(const StoreContent& new_content) {
   const TemporaryFolder folder(TemporaryFolder::Size::kSmall);
   const std::string path = folder.file("a.ptin");

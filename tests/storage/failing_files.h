@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/error.h"
 #include "storage/file_layer.h"
@@ -41,6 +43,9 @@ class FailingFiles final : public FileLayer {
   int create(const std::string& path, int& fd) noexcept override {
     return fails() ? failure_ : FileLayer::create(path, fd);
   }
+  int open(const std::string& path, int& fd) noexcept override {
+    return fails() ? failure_ : FileLayer::open(path, fd);
+  }
   int create_nameless(const std::string& folder, int& fd) noexcept override {
     return fails() ? failure_ : FileLayer::create_nameless(folder, fd);
   }
@@ -64,6 +69,12 @@ class FailingFiles final : public FileLayer {
   }
   int allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexcept override {
     return fails(failure_ != ENOSPC) ? failure_ : FileLayer::allocate(fd, offset, bytes);
+  }
+  int size(int fd, std::uint64_t& bytes) noexcept override {
+    return fails() ? failure_ : FileLayer::size(fd, bytes);
+  }
+  int truncate(int fd, std::uint64_t bytes) noexcept override {
+    return fails() ? failure_ : FileLayer::truncate(fd, bytes);
   }
   int sync(int fd) noexcept override { return fails() ? failure_ : FileLayer::sync(fd); }
   int rename(const std::string& from, const std::string& to, bool replace) noexcept override {
@@ -93,6 +104,31 @@ class FailingFiles final : public FileLayer {
   int calls_ = 0;
   bool is_renamed_ = false;
   bool was_harmless_ = false;
+};
+
+/// A disk that may be without power: what truncate() cuts off is remembered until the file is
+/// synced, and can be put back. With `renames` off no file gets its final name.
+class PowerCutFiles final : public FileLayer {
+ public:
+  bool renames = true;
+
+  int create(const std::string& path, int& fd) noexcept override;
+  int open(const std::string& path, int& fd) noexcept override;
+  int truncate(int fd, std::uint64_t bytes) noexcept override;
+  int sync(int fd) noexcept override;
+  int rename(const std::string& from, const std::string& to, bool replace) noexcept override {
+    return renames ? FileLayer::rename(from, to, replace) : EIO;
+  }
+  /// Undoes the cuts of this file that no sync() followed. REQUIRES: it is not open.
+  void lose_cuts(const std::string& path);
+
+ private:
+  struct Cut {
+    std::uint64_t at = 0;
+    std::vector<std::byte> tail;
+  };
+  std::map<int, std::string> names_;
+  std::map<std::string, Cut> cuts_;
 };
 
 /// Publishes `content` over an older file, with each call of the file layer failing in turn: the

@@ -254,6 +254,84 @@ TEST(StoreWriter, TakesRecordsThatCannotBeReadBackForAFaultOfTheProgram) {
   EXPECT_TRUE(folder.names().empty());
 }
 
+// --- Resuming ---
+
+class StoreWriterResume : public testing::Test {
+ protected:
+  StoreWriterResume() { std::filesystem::create_directory(work_); }
+
+  [[nodiscard]] std::unique_ptr<StoreWriter> writer(FileLayer& files) const {
+    return StoreWriter::create(path_, {.files = &files, .work_folder = work_});
+  }
+  // All segments are on disk; the front of the file is over the first pages; it has no name yet.
+  StoreCheckpoint publish_but_for_the_name() {
+    PowerCutFiles files;
+    files.renames = false;
+    const auto first = writer(files);
+    for (std::vector<VertexSplit> segment : content_.segments) {
+      first->add_segment(segment, content_.facts.heights);
+    }
+    first->sync();
+    EXPECT_EQ(code_of([&] { publish(*first); }), ErrorCode::io_error);
+    return first->position();
+  }
+  void publish(StoreWriter& writer) const {
+    writer.publish(content_.facts, content_.t0, content_.metadata);
+  }
+  [[nodiscard]] Bytes written_in_one_go() const {
+    write_store(folder_.file("b.ptin"), content_, {.overwrite = true});
+    return read_file(folder_.file("b.ptin"));
+  }
+
+  TemporaryFolder folder_{TemporaryFolder::Size::kSmall};
+  std::string path_ = folder_.file("a.ptin");
+  std::string work_ = folder_.file("work");
+  StoreContent content_ = random_content({.seed = 3, .segments = 2, .records = 700});
+};
+
+// The cut of the pages reaches the disk and that of the journal, which was made before it, does
+// not: the journal's mark must not send the next one to copies that are gone.
+TEST_F(StoreWriterResume, IsItselfResumedAfterAPowerCut) {
+  const StoreCheckpoint checkpoint = publish_but_for_the_name();
+  PowerCutFiles files;
+  {
+    const auto second = writer(files);
+    second->resume(checkpoint, content_.facts.heights);
+  }
+  files.lose_cuts(work_ + "/descriptors");
+  const auto third = writer(files);
+  third->resume(checkpoint, content_.facts.heights);
+  publish(*third);
+  EXPECT_TRUE(read_file(path_) == written_in_one_go());
+}
+
+TEST_F(StoreWriterResume, GoesOnAfterEachCallThatCanFail) {
+  const Bytes expected = written_in_one_go();
+  bool failed = true;
+  int nth = 0;
+  while (failed) {
+    const StoreCheckpoint checkpoint = publish_but_for_the_name();
+    FailingFiles files(++nth, EIO, true);
+    const auto code = code_of([&] { writer(files)->resume(checkpoint, content_.facts.heights); });
+    failed = code.has_value();
+    ASSERT_TRUE(!failed || code == ErrorCode::io_error) << "call " << nth;
+    const auto last = writer(FileLayer::system());
+    last->resume(checkpoint, content_.facts.heights);
+    publish(*last);
+    ASSERT_TRUE(read_file(path_) == expected) << "call " << nth;
+    std::filesystem::remove_all(work_);
+    std::filesystem::create_directory(work_);
+    std::filesystem::remove(path_);
+  }
+  EXPECT_GT(nth, 20);
+}
+
+TEST_F(StoreWriterResume, SaysThatTheWorkFolderCannotBeLookedInto) {
+  std::filesystem::remove(work_);
+  std::filesystem::create_symlink("work", work_);  // to itself
+  EXPECT_EQ(code_of([&] { static_cast<void>(writer(FileLayer::system())); }), ErrorCode::io_error);
+}
+
 // --- Faults ---
 
 TEST(StoreWriterFaults, LeaveTheOldFileOrTheNewOneAndNothingElse) {
