@@ -19,6 +19,10 @@ PendingFile::PendingFile(std::string path, bool overwrite)
 PendingFile::~PendingFile() {
   if (temporary_.empty()) return;
   unlink(temporary_.c_str());
+  remove_side_files();
+}
+
+void PendingFile::remove_side_files() const noexcept {
   for (const char* beside : {"-journal", "-wal", "-shm", ".aux.xml", ".ovr", ".ovr.tmp",
                              ".msk.ovr.tmp", ".warped.tif.tmp"}) {
     unlink((temporary_ + beside).c_str());
@@ -27,6 +31,7 @@ PendingFile::~PendingFile() {
 
 void PendingFile::publish() {
   move_into_place(temporary_, path_, overwrite_);
+  remove_side_files();  // they bear the name that is gone
   temporary_.clear();
 }
 

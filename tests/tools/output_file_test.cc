@@ -5,6 +5,7 @@
 
 #include "engine/error.h"
 #include "tests/tools/program.h"
+#include "tools/pending_file.h"
 
 namespace ptin::tools {
 namespace {
@@ -60,6 +61,18 @@ TEST(OutputFile, DoesNotReplaceWhatAppearedMeanwhile) {
   write_file(folder.file("file"), "another's");
   EXPECT_EQ(code_thrown_by([&] { out.publish(); }), ErrorCode::invalid_argument);
   EXPECT_EQ(read_file(folder.file("file")), "another's");
+}
+
+TEST(PendingFile, TakesItsSideFilesAlongHoweverItEnds) {
+  const TestFolder folder;
+  for (const bool is_published : {true, false}) {
+    PendingFile file(folder.file("a.gpkg"), true);
+    write_file(file.temporary(), "content");
+    write_file(file.temporary() + "-journal", "");
+    write_file(file.temporary() + ".aux.xml", "<PAMDataset/>");
+    if (is_published) file.publish();
+  }
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.gpkg"});
 }
 
 TEST(OutputFile, NamesAMissingFolderAndRefusesAFolder) {
