@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/height_fit.h"
 
 namespace ptin {
 

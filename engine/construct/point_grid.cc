@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/height_fit.h"
 #include "engine/error.h"
 
 namespace ptin {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/construct/crs.h"
-#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/height_fit.h"
 #include "engine/construct/point_merge.h"
 #include "engine/construct/point_reading.h"
 #include "engine/error.h"

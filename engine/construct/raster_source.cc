@@ -13,7 +13,7 @@
 #include <sys/resource.h>
 
 #include "engine/construct/crs.h"
-#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/height_fit.h"
 #include "engine/construct/raster_part_internal.h"
 #include "engine/error.h"
 #include "engine/geometry/point.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/height_fit.h"
 #include "engine/geometry/point.h"
 
 namespace ptin {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "engine/construct/external_sorter.h"
-#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/height_fit.h"
 #include "engine/construct/point_grid.h"
 #include "engine/construct/record_file.h"
 #include "engine/construct/terrain_source.h"

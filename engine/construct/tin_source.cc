@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/construct/crs.h"
-#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/height_fit.h"
 #include "engine/construct/hull_delaunay.h"
 #include "engine/construct/point_order_internal.h"
 #include "engine/construct/tin_border.h"

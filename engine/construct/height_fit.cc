@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/height_fit_internal.h"
+#include "engine/construct/height_fit.h"
 
 #include <algorithm>
 #include <array>
