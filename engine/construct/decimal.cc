@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <string>
 
 #include "engine/check.h"
 
@@ -12,6 +11,7 @@ namespace ptin {
 namespace {
 
 constexpr int kMostDigits = 18;  // 10^18 - 1 fits in 63 bits
+constexpr std::int64_t kFirstTooLarge = power_of_ten(kMostDigits);
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -59,7 +59,7 @@ bool parse_exponent(std::string_view text, int& exponent) {
 /// False when it is 10^18 or more.
 bool normalise(std::int64_t& mantissa, std::int64_t& decimals) {
   for (; decimals < 0 && mantissa != 0; ++decimals) {
-    if (mantissa >= 100'000'000'000'000'000) {
+    if (mantissa >= kFirstTooLarge / 10) {
       return false;
     }
     mantissa *= 10;
@@ -71,18 +71,22 @@ bool normalise(std::int64_t& mantissa, std::int64_t& decimals) {
     mantissa /= 10;
   }
   decimals = mantissa == 0 ? 0 : decimals;
-  return true;
+  return mantissa < kFirstTooLarge;  // rounding may have made it 10^18
+}
+
+/// @param word  In lower case.
+bool is_word(std::string_view text, std::string_view word) {
+  return std::equal(text.begin(), text.end(), word.begin(), word.end(), [](char c, char lower) {
+    return (c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c) == lower;
+  });
 }
 
 NumberKind parse_word(std::string_view text) {
-  std::string word(text);
-  std::transform(word.begin(), word.end(), word.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  if (word == "nan") {
+  if (is_word(text, "nan")) {
     return NumberKind::kNotANumber;
   }
-  return word == "inf" || word == "infinity" ? NumberKind::kInfinite : NumberKind::kNoNumber;
+  return is_word(text, "inf") || is_word(text, "infinity") ? NumberKind::kInfinite
+                                                           : NumberKind::kNoNumber;
 }
 
 }  // namespace
@@ -128,7 +132,7 @@ NumberKind parse_number(std::string_view text, Decimal& value) noexcept {
   return NumberKind::kNumber;
 }
 
-Decimal decimal_of(double value) noexcept {
+Decimal decimal_of(double value) {
   std::array<char, 64> text{};
   const auto [end, status] = std::to_chars(text.data(), text.data() + text.size(), value);
   Decimal decimal;

@@ -33,11 +33,12 @@ struct Decimal {
 enum class NumberKind : std::uint8_t { kNumber, kNotANumber, kInfinite, kTooLarge, kNoNumber };
 
 /// Reads all of `text` as a number: sign, digits, decimal point, exponent; or "nan", "inf".
-/// kTooLarge for 10^18 and above. `value` is set for kNumber alone.
+/// kTooLarge for what is 10^18 or more when it is rounded to 18 digits. `value` is set for kNumber
+/// alone.
 [[nodiscard]] NumberKind parse_number(std::string_view text, Decimal& value) noexcept;
 
 /// The shortest decimal that reads back as `value`; of magnitudes below 10^-18, 0.
 /// REQUIRES: finite, |value| < 10^18. Cost: about 0.1 us.
-[[nodiscard]] Decimal decimal_of(double value) noexcept;
+[[nodiscard]] Decimal decimal_of(double value);
 
 }  // namespace ptin

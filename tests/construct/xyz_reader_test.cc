@@ -83,6 +83,13 @@ TEST(ParseNumber, TellsWhatIsNoFiniteNumber) {
   EXPECT_EQ(kind("99e66633333333332"), NumberKind::kTooLarge);
   EXPECT_EQ(kind("1e17"), NumberKind::kNumber);
   EXPECT_EQ(kind("1e999999999999"), NumberKind::kTooLarge);
+  EXPECT_EQ(kind("999999999999999999.6"), NumberKind::kTooLarge) << "rounded, it is 10^18";
+  EXPECT_EQ(kind("-999999999999999999.5"), NumberKind::kTooLarge);
+  EXPECT_EQ(number("999999999999999999.4"), (Decimal{999999999999999999, 0}));
+  EXPECT_EQ(number("99999999999999999.96"), (Decimal{100000000000000000, 0}));
+  EXPECT_EQ(kind("na"), NumberKind::kNoNumber);
+  EXPECT_EQ(kind("infinit"), NumberKind::kNoNumber);
+  EXPECT_EQ(kind("infinityx"), NumberKind::kNoNumber);
   for (const char* text :
        {"", "-", ".", "x", "1x", "1e", "1e+", "1.2.3", "1 2", "--1", "0x10", "1,5"}) {
     EXPECT_EQ(kind(text), NumberKind::kNoNumber) << text;
