@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 
 #include <cpl_vsi.h>
 
@@ -18,6 +19,7 @@ namespace ptin {
 namespace {
 
 constexpr std::size_t kBatchPoints = 4096;
+constexpr std::string_view kPacked = ".gz";
 
 std::string lower_case(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(),
@@ -32,8 +34,8 @@ bool is_las(const std::string& path) {
 
 bool is_text(const std::string& path) {
   std::string name = lower_case(path);
-  if (name.ends_with(".gz")) {
-    name.resize(name.size() - 3);
+  if (is_packed(path)) {
+    name.resize(name.size() - kPacked.size());
   }
   return name.ends_with(".csv") || name.ends_with(".xyz") || name.ends_with(".txt") ||
          name.ends_with(".tsv");
@@ -45,7 +47,7 @@ class TextPoints final : public PointStream {
   explicit TextPoints(const std::string& path) : reader_(path) {
     const GdalSession session;
     VSIStatBufL status;
-    if (!lower_case(path).ends_with(".gz") && VSIStatL(path.c_str(), &status) == 0) {
+    if (!is_packed(path) && VSIStatL(path.c_str(), &status) == 0) {
       total_ = static_cast<std::uint64_t>(status.st_size);
     }
   }
@@ -72,6 +74,8 @@ class TextPoints final : public PointStream {
 bool is_point_file(const std::string& path) { return is_las(path) || is_text(path); }
 
 bool is_point_text(const std::string& path) { return is_text(path); }
+
+bool is_packed(const std::string& path) { return lower_case(path).ends_with(kPacked); }
 
 bool is_point_input(const std::string& path, const PointChoice& choice) {
   return is_point_file(path) || is_tin_file(path) || !choice.layer.empty() ||

@@ -81,6 +81,8 @@ class PointStream {
 [[nodiscard]] bool is_point_file(const std::string& path);
 /// Those of them that are text.
 [[nodiscard]] bool is_point_text(const std::string& path);
+/// True when a name says that text is packed, to be unpacked on the way: .gz, in any case.
+[[nodiscard]] bool is_packed(const std::string& path);
 
 /// True when an input is points rather than a raster: by its name, or because a layer or attribute
 /// is chosen, or as a TIN that has vertices, or since OGR reads it and GDAL finds no raster in it.
@@ -91,11 +93,10 @@ class PointStream {
 /// text (xyz_reader.h), anything else as a layer of OGR's (ogr_points.h); with a layer or z-field
 /// chosen, OGR always.
 /// @param nodata  This height means none: such points are handed out all the same, but that
-/// vertices
-///                of a TIN stay only where a triangle has three heights, as when it is built.
+///                vertices of a TIN stay only where a triangle has three heights, as when it is
+///                built.
 /// @throws Error  not_found, io_error, invalid_argument, unsupported_version  as those; a choice
-/// that
-///                means nothing for the kind of file
+///                that means nothing for the kind of file
 [[nodiscard]] std::unique_ptr<PointStream> open_point_stream(const std::string& path,
                                                              const PointChoice& choice,
                                                              std::optional<double> nodata = {},

@@ -83,7 +83,7 @@ struct XyzReader::File {
 
 XyzReader::XyzReader(std::string path) : path_(std::move(path)), file_(std::make_unique<File>()) {
   const GdalSession session;
-  file_->packed = path_.ends_with(".gz");
+  file_->packed = is_packed(path_);
   errno = 0;
   file_->handle = VSIFOpenL(((file_->packed ? "/vsigzip/" : "") + path_).c_str(), "rb");
   if (file_->handle == nullptr) {

@@ -196,8 +196,14 @@ std::string packed(const std::string& text) {
 }
 
 TEST(XyzReader, UnpacksGzip) {
-  EXPECT_EQ(read(packed("1 2 3\n4 5 6\n"), "points.xyz.gz"),
-            (std::vector<Row>{{1, 2, 3}, {4, 5, 6}}));
+  for (const char* name : {"points.xyz.gz", "POINTS.XYZ.GZ", "points.csv.Gz"}) {
+    EXPECT_EQ(read(packed("1 2 3\n4 5 6\n"), name), (std::vector<Row>{{1, 2, 3}, {4, 5, 6}}))
+        << name;
+    EXPECT_TRUE(is_packed(name)) << name;
+  }
+  for (const char* name : {"points.xyz", "gz", "points.gz.csv", ""}) {
+    EXPECT_FALSE(is_packed(name)) << name;
+  }
 }
 
 TEST(XyzReader, ReportsPackedFilesThatAreDamagedOrCutShort) {
