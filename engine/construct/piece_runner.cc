@@ -16,6 +16,18 @@ namespace ptin {
 
 namespace {
 
+/// Lets others in for as long as this lives, however that ends.
+class Unlocked {
+ public:
+  explicit Unlocked(std::unique_lock<std::mutex>& lock) : lock_(lock) { lock_.unlock(); }
+  ~Unlocked() { lock_.lock(); }
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+ private:
+  std::unique_lock<std::mutex>& lock_;
+};
+
 class Runner {
  public:
   Runner(PieceSource& source, const PieceLimits& limits, const std::stop_token& stop)
@@ -80,24 +92,16 @@ std::optional<Piece> Runner::take(std::unique_lock<std::mutex>& lock, int worker
 
 void Runner::give_back(std::unique_lock<std::mutex>& lock, std::uint64_t bytes) const {
   if (limits_.give_back) {
-    lock.unlock();
+    const Unlocked others_may_go_on(lock);
     limits_.give_back(bytes);
-    lock.lock();
   }
 }
 
 void Runner::run(const Piece& piece, std::unique_lock<std::mutex>& lock) {
-  lock.unlock();
   std::function<void()> commit;
-  std::exception_ptr failure;
-  try {
+  {
+    const Unlocked others_may_go_on(lock);
     commit = piece.run(halt_.get_token());
-  } catch (...) {
-    failure = std::current_exception();
-  }
-  lock.lock();
-  if (failure) {
-    std::rethrow_exception(failure);
   }
   if (!halt_.stop_requested()) {
     commit();

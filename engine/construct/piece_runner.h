@@ -45,7 +45,7 @@ struct PieceLimits {
 
 /// Runs all pieces. One runs whatever its size; more than one only within the limit. The first
 /// error stops the others and is thrown when all have ended.
-/// @throws Error cancelled  `stop` fired; and whatever a piece throws
+/// @throws Error cancelled  `stop` fired; and whatever a piece, the source or give_back throws
 /// @return The most bytes that were admitted at once.
 std::uint64_t run_pieces(PieceSource& source, const PieceLimits& limits,
                          const std::stop_token& stop);
