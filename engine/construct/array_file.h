@@ -69,11 +69,13 @@ class ArrayFileReader {
   /// @throws Error corruption  when a span met a hole since: the file was cut short, or its disk
   ///                           failed; to be called when the work with spans is done
   void require_undamaged() const { mapped_.require_undamaged(); }
-  /// As take(), copied.
+  /// As take(), copied; nothing needs to be asked about the copy later on.
   template <class T>
   [[nodiscard]] std::vector<T> take_copy() {
     const std::span<const T> array = take<T>();
-    return {array.begin(), array.end()};
+    std::vector<T> copy(array.begin(), array.end());
+    require_undamaged();
+    return copy;
   }
 
  private:

@@ -195,12 +195,14 @@ void TightenStage::take_up(const Batch& batch) {
     const auto raises = file.take<BoundsRaise>();
     if (!is_written(id)) {
       open(id).bounds.raise(raises);
+      file.require_undamaged();
     }
   }
   for (const TileId& id : batch.closed) {
     if (id != tree_.root() && !is_written(BatchOrder::parent_of(id))) {
       ArrayFileReader closed(log_.path(id, kBounds), log_.tightened().at(id));
       hand_to_parent(id, closed.take<RecordBounds>());
+      closed.require_undamaged();
     }
   }
 }
