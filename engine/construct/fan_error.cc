@@ -9,7 +9,7 @@
 
 namespace ptin {
 
-FanError measure_fan(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+FanError measure_fan(const Tile& tile, const StarSamples& s, FanFrame& fan,
                      FanAssignment& assignment) {
   assign_samples(s, fan, assignment.triangle, assignment.residual);
   if (s.void_only || s.flat) {

@@ -28,7 +28,7 @@ struct FanAssignment {
 /// to the side of its own class; elements that are blocks are not assigned (sample_hand_over.h
 /// takes them apart). REQUIRES: gather_samples() and gather_sources() were called. Cost: samples
 /// times degree.
-[[nodiscard]] FanError measure_fan(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+[[nodiscard]] FanError measure_fan(const Tile& tile, const StarSamples& s, FanFrame& fan,
                                    FanAssignment& assignment);
 
 /// Assigns elements to triangles of the frame by class: one on a spoke goes to the side of its own.

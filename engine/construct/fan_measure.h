@@ -16,11 +16,12 @@ namespace ptin {
 struct FanFrame {
   std::size_t j = 0;                       ///< w is link[j] of the star.
   double w_x = 0.0, w_y = 0.0, w_z = 0.0;  ///< w relative to u.
-  // Buffers, at least as long as they need to be (but for star_triangle, which is as long).
+  // Buffers, at least as long as they need to be (but for the last two, which are as long).
   std::vector<double> spoke_x, spoke_y, spoke_z;  ///< One more than triangles.
   std::vector<double> determinant, inverse;  ///< Twice the area of each triangle, and its inverse.
   std::vector<std::uint32_t>
-      star_triangle;  ///< Index in the star of the triangle that each replaces.
+      star_triangle;                      ///< Index in the star of the triangle that each replaces.
+  std::vector<unsigned char> is_surface;  ///< Of measure_with_voids(): what each is.
 
   [[nodiscard]] std::size_t triangles() const noexcept { return triangles_; }
   void set_triangles(std::size_t n) {

@@ -195,21 +195,21 @@ void measure_singly(const Tile& tile, const StarSamples& s, const FanFrame& fan,
   }
 }
 
-void measure_samples(const Tile& tile, const StarSamples& s, const FanFrame& fan, double stop_above,
-                     std::vector<unsigned char>& is_surface, VoidMeasure& measure) {
+void measure_samples(const Tile& tile, const StarSamples& s, FanFrame& fan, double stop_above,
+                     VoidMeasure& measure) {
   if (s.is_wide()) {
     measure_singly(tile, s, fan, 0, s.count, measure);
     return;
   }
-  is_surface.resize(fan.triangles());
+  fan.is_surface.resize(fan.triangles());
   for (std::size_t i = 0; i < fan.triangles(); ++i) {
-    is_surface[i] = is_void(tile, s, fan.star_triangle[i]) ? 0 : 1;
+    fan.is_surface[i] = is_void(tile, s, fan.star_triangle[i]) ? 0 : 1;
   }
   std::size_t k = 0;
   while (k < s.x.size() && measure.error <= stop_above) {
     double residual = 0.0;
     double charged = 0.0;
-    k = measure_while_found(s, fan, is_surface.data(), k, stop_above, residual, charged);
+    k = measure_while_found(s, fan, fan.is_surface.data(), k, stop_above, residual, charged);
     charge(measure, charged);
     measure.error = std::max(measure.error, residual);
     measure.deviation = std::max(measure.deviation, residual);
@@ -262,7 +262,7 @@ bool keeps_surface(const Tile& tile, const StarSamples& s, const FanFrame& fan, 
 
 }  // namespace
 
-VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, FanFrame& fan,
                                double stop_above) {
   VoidMeasure measure;
   if (tile.tin.has_height[s.star.link[fan.j]] == 0) {
@@ -282,8 +282,7 @@ VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, const Fan
       }
     }
   }
-  thread_local std::vector<unsigned char> is_surface;
-  measure_samples(tile, s, fan, stop_above, is_surface, measure);
+  measure_samples(tile, s, fan, stop_above, measure);
   if (measure.error <= stop_above) {
     measure_blocks(tile, s, fan, measure);
   }

@@ -35,13 +35,14 @@ struct VoidMeasure {
 /// A data sample on an edge of a void fan triangle whose ends have heights may have surface beyond,
 /// at once or in another refinement, which holds it too: it is measured against that edge besides.
 ///
-/// A block is measured at its corners; one that lies
-/// across a spoke may be in every fan triangle between those of its corners: it is charged where
-/// any of them is of the wrong class, and its residuals are bounded along the spokes.
+/// A block is measured at its corners; one that lies across a spoke may be in every fan triangle
+/// between those of its corners: it is charged where any of them is of the wrong class, and its
+/// residuals are bounded along the spokes.
+/// @param fan         Its buffer `is_surface` is overwritten.
 /// @param stop_above  Returns early, with what it has, once the error exceeds this.
 /// Cost: samples times degree, in lanes; those that lose their surface one by one.
 [[nodiscard]] VoidMeasure measure_with_voids(
-    const Tile& tile, const StarSamples& s, const FanFrame& fan,
+    const Tile& tile, const StarSamples& s, FanFrame& fan,
     double stop_above = std::numeric_limits<double>::infinity());
 
 /// The fan triangle that a sample at (x, y), relative to u, goes to: one of its own class where it
