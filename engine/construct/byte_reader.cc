@@ -21,7 +21,10 @@ ByteReader::ByteReader(std::string path)
     throw system_error(errno, "cannot open the file", path_);
   }
   struct stat status {};
-  if (fstat(fileno(file_.get()), &status) != 0 || S_ISDIR(status.st_mode)) {
+  if (fstat(fileno(file_.get()), &status) != 0) {
+    throw system_error(errno, "cannot look at the open file", path_);
+  }
+  if (S_ISDIR(status.st_mode)) {
     throw Error(ErrorCode::invalid_argument, "this is a folder; give a file", path_);
   }
   size_ = static_cast<std::uint64_t>(status.st_size);

@@ -104,7 +104,7 @@ class GridReader {
       reading_.progress("sorting", done, kSteps);
     }
   }
-  static constexpr std::uint64_t kSteps = 5;
+  static constexpr std::uint64_t kSteps = 4;
 
   const std::string& path_;
   const TinGridReading& reading_;
