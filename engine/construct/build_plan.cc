@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "engine/construct/build.h"
+#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/error.h"
 
@@ -152,7 +153,7 @@ void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& o
   plan.temporary_free = free_in(tmp);
   plan.same_disk = on_same_disk(folder, tmp);
   const bool may_be_taken_up = resources.unfinished != Unfinished::kRefuse && !source.is_there &&
-                               std::filesystem::exists(Workspace::folder_of(output));
+                               is_there(Workspace::folder_of(output));
   if (source.may_be_less || may_be_taken_up) {
     return;  // of what is needed much may be on the disk already, or never come
   }

@@ -3,11 +3,11 @@
 
 #include <array>
 #include <charconv>
-#include <filesystem>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/file_questions_internal.h"
 #include "storage/checksum.h"
 
 namespace ptin {
@@ -25,7 +25,7 @@ std::string checksum_text(const std::string& text) {
 }
 
 ScratchFile::Kept kept(const std::string& path) {
-  return std::filesystem::exists(path) ? ScratchFile::Kept::kExisting : ScratchFile::Kept::kNew;
+  return is_there(path) ? ScratchFile::Kept::kExisting : ScratchFile::Kept::kNew;
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ Manifest::Manifest(FileLayer& files, const std::string& path)
 Manifest::~Manifest() = default;
 
 void Manifest::read() {
-  std::string text(std::filesystem::file_size(path_), '\0');
+  std::string text(bytes_of_file(path_), '\0');
   file_.read_at(std::as_writable_bytes(std::span(text)), 0);
   while (true) {
     const std::size_t end = text.find('\n', bytes_);

@@ -8,6 +8,7 @@
 #include <gdal_priv.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/gdal_session_internal.h"
 #include "engine/construct/point_stream.h"
 #include "engine/construct/tin_soup.h"
@@ -21,7 +22,9 @@ namespace fs = std::filesystem;
 /// Absolute where it is a file, so that a build can be resumed from another folder.
 std::string full_name(const std::string& file) {
   std::error_code ignored;
-  return fs::is_regular_file(file, ignored) ? fs::absolute(file).lexically_normal().string() : file;
+  return fs::is_regular_file(file, ignored)
+             ? fs::path(absolute_path(file)).lexically_normal().string()
+             : file;
 }
 
 void collect(const std::string& input, std::set<std::string>& files) {
@@ -48,11 +51,13 @@ void collect(const std::string& input, std::set<std::string>& files) {
 nlohmann::json facts_of(const std::string& file) {
   std::error_code failure;
   const auto bytes = fs::file_size(file, failure);
-  const auto time = fs::last_write_time(file, failure);
   if (!failure) {
-    return {file, bytes, time.time_since_epoch().count()};
+    const auto time = fs::last_write_time(file, failure);
+    if (!failure) {
+      return {file, bytes, time.time_since_epoch().count()};
+    }
   }
-  VSIStatBufL status;  // of what only GDAL knows: archives, servers
+  VSIStatBufL status;  // of folders, and of what only GDAL knows: archives, servers
   if (VSIStatL(file.c_str(), &status) == 0) {
     return {file, static_cast<std::uint64_t>(status.st_size),
             static_cast<std::int64_t>(status.st_mtime)};

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/rounding.h"
 
 namespace ptin {
@@ -202,7 +203,7 @@ void StoreOutput::publish(const Tin& t0, const std::vector<std::string>& inputs,
   report.records = records_;
   report.t0_vertices = coarsest.vertices.size();
   report.max_rank = max_rank_;
-  report.file_bytes = std::filesystem::file_size(path_);
+  report.file_bytes = bytes_of_file(path_);
 }
 
 }  // namespace ptin

@@ -2,9 +2,9 @@
 #include "engine/construct/tin_vertices.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
+#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/record_file.h"
 #include "engine/construct/tin_digits.h"
 #include "engine/construct/tin_names_internal.h"
@@ -17,10 +17,9 @@ namespace {
 constexpr std::uint64_t kSorters = 3;
 
 ExternalMemory memory_of(const StreamResources& resources) {
-  ExternalMemory memory =
-      resources.memory != nullptr
-          ? *resources.memory
-          : ExternalMemory{FileLayer::system(), std::filesystem::temp_directory_path().string()};
+  ExternalMemory memory = resources.memory != nullptr
+                              ? *resources.memory
+                              : ExternalMemory{FileLayer::system(), system_temporary_folder()};
   memory.bytes /= kSorters;
   return memory;
 }

@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "engine/construct/file_questions_internal.h"
 #include "engine/error.h"
 #include "storage/checksum.h"
 
@@ -29,13 +30,13 @@ std::string manifest_in(const std::string& folder) { return folder + "/manifest"
 /// In a folder in `--tmp`: holds the path of the folder beside the output that it belongs to.
 std::string owner_in(const std::string& folder) { return folder + "/owner"; }
 std::string whole_path(const std::string& path) {
-  return fs::absolute(path).lexically_normal().string();
+  return fs::path(absolute_path(path)).lexically_normal().string();
 }
 
 bool is_empty_but_for(const std::string& folder, const std::string& name) {
-  const fs::directory_iterator entries(folder);
-  return std::all_of(begin(entries), end(entries),
-                     [&](const fs::directory_entry& e) { return e.path().string() == name; });
+  const std::vector<std::string> paths = paths_in(folder);
+  return std::all_of(paths.begin(), paths.end(),
+                     [&](const std::string& path) { return path == name; });
 }
 
 /// A name that looks like ours proves nothing: everything in a folder is removed in the end.
@@ -79,11 +80,9 @@ void write_owner(FileLayer& files, const std::string& tmp, const std::string& fo
 
 /// A folder in `tmp` that no other output uses.
 std::string folder_in_tmp(const std::string& output, const std::string& tmp) {
-  const fs::path whole = fs::absolute(output);
-  const std::string text = whole.string();
-  const std::uint64_t name = checksum_of_text(text);
-  return fs::absolute(tmp).string() + "/." + whole.filename().string() + ".ptin-build-" +
-         std::to_string(name);
+  const std::string whole = absolute_path(output);
+  return absolute_path(tmp) + "/." + fs::path(whole).filename().string() + ".ptin-build-" +
+         std::to_string(checksum_of_text(whole));
 }
 
 void make_folder(FileLayer& files, const std::string& path) {
@@ -95,10 +94,11 @@ void make_folder(FileLayer& files, const std::string& path) {
 
 /// Removes a folder of ours with its files; one that is not there is no fault.
 void remove_folder(FileLayer& files, const std::string& path) {
-  std::error_code ignored;
+  std::error_code ignored;  // what cannot be listed cannot be removed either, which says why
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored)) {
-    names.push_back(entry.path().string());
+  for (fs::directory_iterator entry(path, ignored); !ignored && entry != fs::directory_iterator();
+       entry.increment(ignored)) {
+    names.push_back(entry->path().string());
   }
   // The manifest goes last: without it nobody would know what the rest is.
   std::stable_partition(names.begin(), names.end(), [&](const std::string& n) {
@@ -177,8 +177,8 @@ bool Workspace::discard(FileLayer& files, const std::string& output) {
   if (!lock) {
     return false;
   }
-  if (!fs::exists(manifest_in(folder))) {
-    require_ours(fs::is_empty(folder), folder);
+  if (!is_there(manifest_in(folder))) {
+    require_ours(paths_in(folder).empty(), folder);
     remove_folder(files, folder);
     return true;
   }
@@ -193,7 +193,7 @@ bool Workspace::discard(FileLayer& files, const std::string& output) {
       owner = owner_of(manifest.entries().front(), folder);
     }
   }
-  if (tmp != folder && fs::exists(tmp)) {
+  if (tmp != folder && is_there(tmp)) {
     require_ours(is_owned(tmp, owner), tmp);
     remove_folder(files, tmp);
   }
@@ -220,8 +220,8 @@ Workspace::Workspace(FileLayer& files, const std::string& output, const std::str
     discard(files, output);
   }
   lock_folder();
-  if (!fs::exists(manifest_in(folder_))) {
-    require_ours(fs::is_empty(folder_), folder_);
+  if (!is_there(manifest_in(folder_))) {
+    require_ours(paths_in(folder_).empty(), folder_);
   }
   manifest_ = std::make_unique<Manifest>(files_, manifest_in(folder_));
   if (!tmp.empty()) {
@@ -261,7 +261,7 @@ void Workspace::take_up(const nlohmann::json& fingerprint) {
     take_tmp(owner_of(first, folder_));
     return;
   }
-  if (!fs::exists(tmp_)) {
+  if (!is_there(tmp_)) {
     throw Error(ErrorCode::not_found,
                 "the temporary files of the unfinished build are not there; is their disk mounted?",
                 tmp_);

@@ -68,5 +68,14 @@ TEST(SourceFiles, OfPointsAndOfWhatIsNoFileAreThemselves) {
   EXPECT_EQ(files_of_input("no such thing"), std::vector<std::string>{"no such thing"});
 }
 
+TEST(SourceFiles, OfAFolderHaveAnHonestSize) {
+  const oracle::ScratchFolder folder;
+  const std::string inner = folder.file("terrain.zarr");
+  std::filesystem::create_directory(inner);
+  const nlohmann::json fingerprint = input_fingerprint({inner});
+  EXPECT_EQ(fingerprint[0][1][0][0], inner);
+  EXPECT_LT(fingerprint[0][1][0][1], std::uint64_t{1} << 40) << fingerprint;
+}
+
 }  // namespace
 }  // namespace ptin
