@@ -92,6 +92,8 @@ struct BuildReport {
 /// @throws Error invalid_argument, not_found: nothing is left behind.
 ///               io_error, resource_exhausted, cancelled: a build over tiles that has begun is kept
 ///               beside the output (workspace.h) and can be resumed; the message names the folder.
+///               internal: something else than an Error was thrown, by a function of the caller's,
+///               too; kept likewise. (std::bad_alloc comes as resource_exhausted.)
 /// Memory: within BuildResources::memory_bytes. Points and triangles are sorted into temporary
 /// files first; a resumed build takes up points that were sorted to the end.
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,

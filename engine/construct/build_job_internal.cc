@@ -2,9 +2,12 @@
 #include "engine/construct/build_job_internal.h"
 
 #include <filesystem>
+#include <new>
+#include <string>
 
 #include <sys/stat.h>
 
+#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/first_pass.h"
 #include "engine/construct/hierarchy.h"
 #include "engine/construct/memory_plan.h"
@@ -44,7 +47,7 @@ void report_published(Job& job) {
   job.report.records = store->record_count();
   job.report.t0_vertices = store->t0().vertices.size();
   job.report.max_rank = store->max_rank();
-  job.report.file_bytes = std::filesystem::file_size(job.output);
+  job.report.file_bytes = bytes_of_file(job.output);
 }
 
 /// Worth keeping: faults of the system, and whatever comes when hours of work may be there.
@@ -52,6 +55,26 @@ bool is_kept(const Workspace& workspace, const Job& job, ErrorCode code) {
   return workspace.has_work() || (!job.begins_anew && (code == ErrorCode::cancelled ||
                                                        code == ErrorCode::resource_exhausted ||
                                                        code == ErrorCode::io_error));
+}
+
+/// What is being handled, as an Error: what libraries throw, and the caller's own functions.
+Error error_in_flight() {
+  try {
+    throw;
+  } catch (const Error& e) {
+    return e;
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::resource_exhausted,
+            "the system gives no more memory; give a lower --memory, or close other programs"};
+  } catch (const std::filesystem::filesystem_error& e) {
+    return system_error(e.code().value(), "the file system refused", e.path1().string());
+  } catch (const std::exception& e) {
+    return {ErrorCode::internal,
+            std::string("something else than an error of ours was thrown: ") + e.what()};
+  } catch (...) {
+    return {ErrorCode::internal,
+            "something was thrown that is no exception of the standard library"};
+  }
 }
 
 /// Removes what a failed build began, and throws its error on, whatever becomes of that.
@@ -130,7 +153,8 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   job.report.resumed = !workspace.lines().empty();
   try {
     work(workspace);
-  } catch (const Error& e) {
+  } catch (...) {
+    const Error e = error_in_flight();
     if (is_kept(workspace, job, e.code())) {
       throw Error(e.code(),
                   e.message() + "; what is done is kept in " + workspace.folder() +
