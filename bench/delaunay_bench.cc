@@ -14,7 +14,7 @@
 #include "engine/construct/delaunay.h"
 #include "engine/construct/point_buckets.h"
 #include "engine/construct/tile_delaunay.h"
-#include "tests/construct/las_file.h"
+#include "tests/support/las_file.h"
 
 namespace ptin {
 namespace {

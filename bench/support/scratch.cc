@@ -3,9 +3,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <system_error>
-
-#include <unistd.h>
 
 #include "engine/construct/build.h"
 
@@ -18,18 +15,16 @@ std::string shared_terrain(const std::string& name) {
   return fs::exists(path) ? path.string() : std::string();
 }
 
-ScratchFolder::ScratchFolder() {
-  static int count = 0;
-  path_ =
-      (fs::path(PTIN_BENCH_SCRATCH) / (std::to_string(::getpid()) + "_" + std::to_string(count++)))
-          .string();
-  fs::create_directories(path_);
+namespace {
+
+const char* scratch_place() {
+  fs::create_directories(PTIN_BENCH_SCRATCH);
+  return PTIN_BENCH_SCRATCH;
 }
 
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
+}  // namespace
+
+ScratchFolder::ScratchFolder() : TestFolder(fs::path(scratch_place())) {}
 
 const std::string& bench_store() {
   static const ScratchFolder folder;

@@ -5,24 +5,18 @@
 
 #include <string>
 
+#include "tests/support/test_folder.h"
+
 namespace ptin::bench {
 
 /// A file of the folder of larger terrains (PTIN_SHARED_DATA at configuration); empty when it is
 /// not there.
 [[nodiscard]] std::string shared_terrain(const std::string& name);
 
-/// A folder of its own in the build folder (on a disk, which a temporary folder need not be),
-/// removed with all that is in it when destroyed.
-class ScratchFolder {
+/// A folder of its own in the build folder (on a disk, which a temporary folder need not be).
+class ScratchFolder : public test::TestFolder {
  public:
   ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
 };
 
 /// The store that benchmarks of queries read: the one that the environment variable

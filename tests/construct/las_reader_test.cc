@@ -11,8 +11,8 @@
 #include "engine/construct/crs.h"
 #include "engine/construct/point_source.h"
 #include "engine/error.h"
-#include "tests/construct/las_file.h"
 #include "tests/construct/memory_file.h"
+#include "tests/support/las_file.h"
 
 namespace ptin {
 namespace {

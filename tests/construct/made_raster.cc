@@ -11,7 +11,6 @@
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
-#include <unistd.h>
 
 namespace ptin::oracle {
 
@@ -48,28 +47,6 @@ WrittenRaster::WrittenRaster(const RasterFile& raster) {
 }
 
 WrittenRaster::~WrittenRaster() { VSIUnlink(path_.c_str()); }
-
-ScratchFolder::ScratchFolder() {
-  static std::atomic<int> number{0};
-  path_ = std::filesystem::temp_directory_path() /
-          ("ptin_construct_" + std::to_string(::getpid()) + "_" + std::to_string(number++));
-  std::filesystem::create_directory(path_);
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::permissions(path_, std::filesystem::perms::owner_all, ignored);
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::vector<std::string> ScratchFolder::names() const {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(path_)) {
-    names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 std::string bytes_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

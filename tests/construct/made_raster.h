@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Rasters in GDAL's memory, and a folder of one test.
+// Rasters in GDAL's memory.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <gdal.h>
+
+#include "tests/support/test_folder.h"
 
 namespace ptin::oracle {
 
@@ -38,19 +38,7 @@ class WrittenRaster {
   std::string path_;
 };
 
-/// A folder on disk; removed with everything in it.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-  [[nodiscard]] std::vector<std::string> names() const;
-
- private:
-  std::filesystem::path path_;
-};
+using ScratchFolder = test::TestFolder;
 
 [[nodiscard]] std::string bytes_of(const std::string& path);
 void write_text(const std::string& path, const std::string& text);

@@ -10,8 +10,8 @@
 #include "engine/construct/build.h"
 #include "engine/construct/point_buckets.h"
 #include "engine/error.h"
-#include "tests/construct/las_file.h"
 #include "tests/construct/made_raster.h"
+#include "tests/support/las_file.h"
 
 namespace ptin {
 namespace {

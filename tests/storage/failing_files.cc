@@ -47,7 +47,7 @@ void PowerCutFiles::lose_cuts(const std::string& path) {
 }
 
 void expect_old_or_new(const StoreContent& new_content) {
-  const TemporaryFolder folder(TemporaryFolder::Size::kSmall);
+  const TestFolder folder(TestFolder::Size::kSmall);
   const std::string path = folder.file("a.ptin");
   const StoreContent old_content = random_content({.seed = 1, .segments = 1, .records = 5});
   write_store(path, new_content);

@@ -34,7 +34,7 @@ void expect_to_keep_bytes(ScratchFile& file) {
 }
 
 TEST(ScratchFile, WithoutANameLeavesNothingBehindWheneverTheProcessIsKilled) {
-  const TemporaryFolder folder(TemporaryFolder::Size::kSmall);
+  const TestFolder folder(TestFolder::Size::kSmall);
   NothingIsRemoved files;
   const std::string at = std::filesystem::path(folder.file("x")).parent_path().string();
   ScratchFile file(files, at, "spool", true);
@@ -43,7 +43,7 @@ TEST(ScratchFile, WithoutANameLeavesNothingBehindWheneverTheProcessIsKilled) {
 }
 
 TEST(ScratchFile, WithoutANameGetsOneForAMomentWhereTheDiskKnowsNoOtherWay) {
-  const TemporaryFolder folder(TemporaryFolder::Size::kSmall);
+  const TestFolder folder(TestFolder::Size::kSmall);
   EverythingHasAName files;
   const std::string at = std::filesystem::path(folder.file("x")).parent_path().string();
   ScratchFile file(files, at, "spool", true);

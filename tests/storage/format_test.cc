@@ -24,7 +24,7 @@ fs::path here() { return fs::path(__FILE__).parent_path(); }
 std::string golden() { return (here() / "golden" / "two_records_v1.0.ptin").string(); }
 
 TEST(Format, WritesTheGoldenFileByteForByte) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   write_store(folder.file("a.ptin"), two_records());
   EXPECT_EQ(read_file(folder.file("a.ptin")), read_file(golden()));
 }
@@ -106,7 +106,7 @@ TEST(Format, DISABLED_WritesTheGoldenFileAndTheFuzzSeedsAgain) {
   seed("store_open", "two_records", {std::byte{0}}, file);
   seed("store_open", "two_records_sealed", {std::byte{1}}, file);
 
-  const TemporaryFolder folder;
+  const TestFolder folder;
   StoreContent none = two_records();
   none.segments.clear();
   write_store(folder.file("none"), none);

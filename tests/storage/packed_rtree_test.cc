@@ -21,7 +21,7 @@ namespace {
 
 // One store for all cases of a process: more than one leaf, wide and narrow pages, voids.
 struct Shared {
-  TemporaryFolder folder;
+  TestFolder folder;
   std::shared_ptr<const StoreFile> mapped, pread;
   std::unique_ptr<SpatialIndexRTree> second;
 
@@ -126,7 +126,7 @@ TEST(PackedRTree, CountsWhatItReads) {
 }
 
 TEST(SpatialIndexRTree, IsBuiltOnceAndAgainForAnotherStore) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   const std::string path = folder.file("a.ptin");
   write_store(path, random_content({.seed = 1}));
   const auto first = StoreFile::open(path);
@@ -140,7 +140,7 @@ TEST(SpatialIndexRTree, IsBuiltOnceAndAgainForAnotherStore) {
 }
 
 TEST(SpatialIndexRTree, SortsWithLittleMemoryInTheGivenFolderAndLeavesNothingThere) {
-  const TemporaryFolder folder, scratch;
+  const TestFolder folder, scratch;
   const std::string path = folder.file("a.ptin");
   RandomRecords options;
   options.segments = 70;
@@ -161,7 +161,7 @@ TEST(SpatialIndexRTree, SortsWithLittleMemoryInTheGivenFolderAndLeavesNothingThe
 }
 
 TEST(SpatialIndexRTree, AnswersForAStoreWithoutPages) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   write_store(folder.file("a.ptin"), flat_square(10));
   const auto store = StoreFile::open(folder.file("a.ptin"));
   const FunctionPredicate all([](const Attributes&) { return true; });
@@ -170,7 +170,7 @@ TEST(SpatialIndexRTree, AnswersForAStoreWithoutPages) {
 }
 
 TEST(SpatialIndexRTree, SaysWhichFolderIsMissing) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   write_store(folder.file("a.ptin"), random_content({}));
   const auto store = StoreFile::open(folder.file("a.ptin"));
   try {

@@ -41,7 +41,7 @@ class PageStoreTest : public testing::TestWithParam<PageAccess> {
     return section_of(read_file(path_), kind).offset;
   }
 
-  TemporaryFolder folder_;
+  TestFolder folder_;
   std::string path_ = folder_.file("a.ptin");
 };
 INSTANTIATE_TEST_SUITE_P(Access, PageStoreTest,
@@ -196,7 +196,7 @@ TEST_P(PageStoreTest, SurvivesAFileThatIsCutShortInsideOfTheIndex) {
 }
 
 TEST(SigbusGuard, HandsOtherFaultsToTheHandlerBefore) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   write_file(folder.file("hole"), Bytes(4096));
   EXPECT_EXIT(
       {
@@ -214,7 +214,7 @@ TEST(SigbusGuard, HandsOtherFaultsToTheHandlerBefore) {
 
 TEST(SigbusGuard, MarksTheMappingThatHasTheHole) {
   install_sigbus_guard();
-  const TemporaryFolder folder;
+  const TestFolder folder;
   write_file(folder.file("hole"), Bytes(8192, std::byte{7}));
   std::FILE* file = std::fopen(folder.file("hole").c_str(), "r");
   const auto map = [&] {

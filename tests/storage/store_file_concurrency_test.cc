@@ -28,7 +28,7 @@ void run(const std::function<void(int)>& work) {
 }
 
 TEST(StoreFileConcurrency, GivesEveryThreadTheSameAnswers) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   write_store(folder.file("a"), random_content({.segments = 3, .records = 5000}));
   for (const PageAccess access : {PageAccess::kMapped, PageAccess::kPread}) {
     const auto reference = StoreFile::open(folder.file("a"));
@@ -55,7 +55,7 @@ TEST(StoreFileConcurrency, GivesEveryThreadTheSameAnswers) {
 
 TEST(StoreFileConcurrency, EveryThreadSeesThatTheFileWasCutShort) {
   install_sigbus_guard();
-  const TemporaryFolder folder;
+  const TestFolder folder;
   write_store(folder.file("a"), random_content({.segments = 3, .records = 5000}));
   const auto store = StoreFile::open(folder.file("a"));
   static_cast<void>(read_all(*store));
@@ -72,7 +72,7 @@ TEST(StoreFileConcurrency, EveryThreadSeesThatTheFileWasCutShort) {
 }
 
 TEST(StoreFileConcurrency, StoresOpenAndCloseBesideEachOther) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   write_store(folder.file("a"), random_content({.segments = 1, .records = 500}));
   install_sigbus_guard();
   std::atomic<std::size_t> records{0};

@@ -10,7 +10,7 @@ namespace ptin::test {
 namespace {
 
 TEST(StoreFile, GivesBackWhatWasWritten) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   for (const HeightType type : {HeightType::float32, HeightType::int32}) {
     for (const std::size_t records : {0U, 1U, 2U, 63U, 64U, 65U, 1000U, 30000U}) {
       RandomRecords options;

@@ -5,43 +5,16 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <set>
 #include <span>
-#include <stdexcept>
 #include <tuple>
-
-#include <unistd.h>
 
 namespace ptin::test {
 
 namespace fs = std::filesystem;
-
-TemporaryFolder::TemporaryFolder(Size size) {
-  const fs::path memory = "/dev/shm";
-  const bool in_memory = size == Size::kSmall && ::access(memory.c_str(), W_OK) == 0;
-  std::string name =
-      ((in_memory ? memory : fs::temp_directory_path()) / "ptin-test-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) {
-    throw std::runtime_error("cannot make a temporary folder");
-  }
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
-std::vector<std::string> TemporaryFolder::names() const {
-  std::vector<std::string> result;
-  for (const auto& e : fs::directory_iterator(path_)) {
-    result.push_back(e.path().filename().string());
-  }
-  std::sort(result.begin(), result.end());
-  return result;
-}
 
 Bytes read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

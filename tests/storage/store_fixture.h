@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Stores for tests: random records, a folder that goes away, and files damaged and sealed again.
+// Stores for tests: random records, and files damaged and sealed again.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <random>
@@ -16,25 +15,9 @@
 #include "storage/store_file.h"
 #include "storage/store_writer.h"
 #include "tests/storage/seal.h"
+#include "tests/support/test_folder.h"
 
 namespace ptin::test {
-
-/// A folder of its own, removed with all it holds. `small` ones are in memory where the system has
-/// a place for that: a disk takes minutes for what some tests do to one file.
-class TemporaryFolder {
- public:
-  enum class Size { kAny, kSmall };
-  explicit TemporaryFolder(Size size = Size::kAny);
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder();
-  [[nodiscard]] std::string path() const { return path_.string(); }
-  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-  [[nodiscard]] std::vector<std::string> names() const;  ///< Of what is in it, sorted.
-
- private:
-  std::filesystem::path path_;
-};
 
 [[nodiscard]] Bytes read_file(const std::string& path);
 void write_file(const std::string& path, const Bytes& bytes);

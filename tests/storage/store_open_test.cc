@@ -85,7 +85,7 @@ class StoreOpen : public testing::Test {
     expect_corruption(name, bytes);
   }
 
-  TemporaryFolder folder_{TemporaryFolder::Size::kSmall};
+  TestFolder folder_{TestFolder::Size::kSmall};
   std::string path_ = folder_.file("a.ptin");
   Bytes bytes_;
 };
@@ -109,7 +109,7 @@ TEST_F(StoreOpen, SaysThatAFileIsNotThere) {
 TEST_F(StoreOpen, RefusesAFolderAndAPipe) {
   const std::string pipe = folder_.file("pipe");
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  for (const std::string& path : {folder_.path(), pipe}) {
+  for (const std::string& path : {folder_.path().string(), pipe}) {
     try {
       StoreFile::open(path);
       FAIL();

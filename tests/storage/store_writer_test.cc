@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <random>
 #include <tuple>
 
 #include <gtest/gtest.h>
-#include <sys/mount.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,12 +19,13 @@
 #include "storage/verify.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/store_fixture.h"
+#include "tests/support/test_folder.h"
 
 namespace ptin::test {
 namespace {
 
 TEST(StoreWriter, GivesTheSameBytesForTheSameRecordsInAnyOrderInsideOfASegment) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   StoreContent content = random_content({.segments = 3, .records = 5000});
   write_store(folder.file("a"), content);
   for (auto& segment : content.segments) {
@@ -35,7 +36,7 @@ TEST(StoreWriter, GivesTheSameBytesForTheSameRecordsInAnyOrderInsideOfASegment) 
 }
 
 TEST(StoreWriter, PutsWideRecordsFirstAndStartsASegmentOnAPageOfItsOwn) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   const StoreContent content = random_content({.segments = 3, .records = 1000});
   write_store(folder.file("a"), content);
   const auto store = StoreFile::open(folder.file("a"));
@@ -116,7 +117,7 @@ TEST(StoreWriter, OrdersRecordsSoThatPointsAndTolerancesReadFewPages) {
 }
 
 TEST(StoreWriter, FillsPagesOfEachSizeWithAsManyRecordsAsFit) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   RandomRecords options;
   options.segments = 1;
   options.records = 5000;
@@ -149,7 +150,7 @@ TEST(StoreWriter, FillsPagesOfEachSizeWithAsManyRecordsAsFit) {
 }
 
 TEST(StoreWriter, TakesAtMost80BytesARecordOnALargeFile) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   RandomRecords options;
   options.segments = 1;
   options.records = 100000;
@@ -158,7 +159,7 @@ TEST(StoreWriter, TakesAtMost80BytesARecordOnALargeFile) {
 }
 
 TEST(StoreWriter, KeepsALongIndexInASideFile) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   RandomRecords options;
   options.segments = 4;
   options.records = 40000;  // 2600 pages: 31 leaves, and 16 are kept in memory
@@ -169,7 +170,7 @@ TEST(StoreWriter, KeepsALongIndexInASideFile) {
 }
 
 TEST(StoreWriter, RefusesAnExistingTargetAndKeepsIt) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   const std::string path = folder.file("a.ptin");
   write_file(path, Bytes(3));
   EXPECT_EQ(code_of([&] { StoreWriter::create(path, {}); }), ErrorCode::invalid_argument);
@@ -179,7 +180,7 @@ TEST(StoreWriter, RefusesAnExistingTargetAndKeepsIt) {
 }
 
 TEST(StoreWriter, RefusesATargetThatAppearsWhileItWrites) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   const std::string path = folder.file("a.ptin");
   const StoreContent content = flat_square(10);
   auto writer = StoreWriter::create(path, {});
@@ -192,7 +193,7 @@ TEST(StoreWriter, RefusesATargetThatAppearsWhileItWrites) {
 }
 
 TEST(StoreWriter, RefusesAFolderAsTargetAndAMissingFolder) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   EXPECT_EQ(code_of([&] { StoreWriter::create(folder.path(), {.overwrite = true}); }),
             ErrorCode::invalid_argument);
   EXPECT_EQ(code_of([&] { StoreWriter::create(folder.file("no/a.ptin"), {}); }),
@@ -203,14 +204,14 @@ TEST(StoreWriter, SaysThatAFolderCannotBeWritten) {
   if (::geteuid() == 0) {
     GTEST_SKIP() << "permissions do not bind root";
   }
-  const TemporaryFolder folder;
+  const TestFolder folder;
   ::chmod(folder.path().c_str(), 0500);
   EXPECT_EQ(code_of([&] { StoreWriter::create(folder.file("a.ptin"), {}); }), ErrorCode::io_error);
   ::chmod(folder.path().c_str(), 0700);
 }
 
 TEST(StoreWriter, LeavesNothingWhenItIsNotPublished) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   {
     StoreContent content = random_content({});
     const auto writer = StoreWriter::create(folder.file("a.ptin"), {});
@@ -221,7 +222,7 @@ TEST(StoreWriter, LeavesNothingWhenItIsNotPublished) {
 }
 
 TEST(StoreWriter, RefusesFactsAndPageSizesThatAReaderWouldRefuse) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   for (const std::uint32_t bytes : {0U, 2048U, 5000U, 131072U}) {
     StoreWriterOptions options;
     options.page_bytes = bytes;
@@ -244,7 +245,7 @@ TEST(StoreWriter, RefusesFactsAndPageSizesThatAReaderWouldRefuse) {
 }
 
 TEST(StoreWriter, TakesRecordsThatCannotBeReadBackForAFaultOfTheProgram) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   StoreContent content = random_content({.segments = 1, .records = 1});
   content.segments[0][0].w = content.segments[0][0].u;
   EXPECT_EQ(code_of([&] { write_store(folder.file("a"), content); }), ErrorCode::internal);
@@ -283,7 +284,7 @@ class StoreWriterResume : public testing::Test {
     return read_file(folder_.file("b.ptin"));
   }
 
-  TemporaryFolder folder_{TemporaryFolder::Size::kSmall};
+  TestFolder folder_{TestFolder::Size::kSmall};
   std::string path_ = folder_.file("a.ptin");
   std::string work_ = folder_.file("work");
   StoreContent content_ = random_content({.seed = 3, .segments = 2, .records = 700});
@@ -339,18 +340,17 @@ TEST(StoreWriterFaults, LeaveTheOldFileOrTheNewOneAndNothingElse) {
 }
 
 TEST(StoreWriterFaults, AFullDiskIsResourceExhaustedAndLeavesNothing) {
-  const TemporaryFolder folder;
-  const std::string disk = folder.file("disk");
-  std::filesystem::create_directory(disk);
-  if (::mount("none", disk.c_str(), "tmpfs", 0, "size=4m") != 0) {
-    GTEST_SKIP() << "mounting a small tmpfs is not allowed here";
+  const TestFolder folder;
+  const SmallDisk disk(folder.file("disk"), 4);
+  if (!disk.is_mounted()) {
+    GTEST_SKIP() << SmallDisk::kNeeded;
   }
-  const auto code = code_of(
-      [&] { write_store(disk + "/a.ptin", random_content({.segments = 2, .records = 52000})); });
-  const bool is_empty = std::filesystem::is_empty(disk);
-  ::umount(disk.c_str());
-  EXPECT_EQ(code, ErrorCode::resource_exhausted);
-  EXPECT_TRUE(is_empty);
+  EXPECT_EQ(code_of([&] {
+              write_store(disk.path() + "/a.ptin",
+                          random_content({.segments = 2, .records = 52000}));
+            }),
+            ErrorCode::resource_exhausted);
+  EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ class Verify : public testing::Test {
     return false;
   }
 
-  TemporaryFolder folder_{TemporaryFolder::Size::kSmall};
+  TestFolder folder_{TestFolder::Size::kSmall};
   std::string path_ = folder_.file("a.ptin");
 };
 

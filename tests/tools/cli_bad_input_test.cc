@@ -7,15 +7,16 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/mount.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "tests/support/test_folder.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
 namespace {
 
+using test::SmallDisk;
 using testing::make_raster;
 using testing::Outcome;
 using testing::RasterRecipe;
@@ -281,21 +282,6 @@ TEST(CliBadInput, StoreOfANewerVersion) {
   expect_refusal(run_ptin({"verify", folder.file("newer.ptin"), "-q"}), 5, "version");
 }
 
-/// A file system of 1 MiB; unmounted at the end. `mounted` is false where that is not permitted.
-struct SmallDisk {
-  explicit SmallDisk(std::string at) : path(std::move(at)) {
-    std::filesystem::create_directory(path);
-    mounted = mount("tmpfs", path.c_str(), "tmpfs", 0, "size=1m") == 0;
-  }
-  ~SmallDisk() {
-    if (mounted) umount(path.c_str());
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  std::string path;
-  bool mounted = false;
-};
-
 TEST(CliBadInput, QuestionsThatMeanNothing) {
   const TestFolder folder;
   const std::string store = small_store(folder);
@@ -348,33 +334,33 @@ TEST(CliOutput, KeepsTheCapitalsOfAShapefile) {
 
 TEST(CliBadInput, FullDisk) {
   const TestFolder folder;
-  const SmallDisk disk(folder.file("disk"));
-  if (!disk.mounted) GTEST_SKIP() << "a tmpfs cannot be mounted here";
+  const SmallDisk disk(folder.file("disk"), 1);
+  if (!disk.is_mounted()) GTEST_SKIP() << SmallDisk::kNeeded;
   const std::string store = folder.file("m.ptin");
   ASSERT_EQ(run_ptin({"build", test_data("mountains_257.tif"), "-o", store, "-q"}).status, 0);
   expect_refusal(
-      run_ptin({"build", test_data("mountains_257.tif"), "-o", disk.path + "/m.ptin", "-q"}), 7,
+      run_ptin({"build", test_data("mountains_257.tif"), "-o", disk.path() + "/m.ptin", "-q"}), 7,
       "m.ptin");
-  EXPECT_TRUE(std::filesystem::is_empty(disk.path));
+  EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
   for (const char* name : {"/a.ply", "/a.obj", "/a.2dm", "/a.glb"}) {
-    expect_refusal(run_ptin({"refine", store, "-o", disk.path + name}), 7, name);
-    EXPECT_TRUE(std::filesystem::is_empty(disk.path)) << name;
+    expect_refusal(run_ptin({"refine", store, "-o", disk.path() + name}), 7, name);
+    EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
   }
   for (const char* name : {"/a.ply", "/a.gpkg", "/a.fgb", "/a.tif"}) {
-    std::vector<std::string> arguments = {"export", store, "-q", "-o", disk.path + name};
+    std::vector<std::string> arguments = {"export", store, "-q", "-o", disk.path() + name};
     if (name == std::string("/a.tif")) arguments.insert(arguments.end(), {"--pixel-size", "4"});
     expect_refusal(run_ptin(arguments), 7, name);
-    EXPECT_TRUE(std::filesystem::is_empty(disk.path)) << name;
+    EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
   }
   for (const char* name : {"/a.gpkg", "/a.fgb", "/a.geojson", "/a.shp"}) {
-    expect_refusal(run_ptin({"isoline", store, "--interval", "5", "-q", "-o", disk.path + name}), 7,
-                   name);
-    EXPECT_TRUE(std::filesystem::is_empty(disk.path)) << name;
+    expect_refusal(run_ptin({"isoline", store, "--interval", "5", "-q", "-o", disk.path() + name}),
+                   7, name);
+    EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
   }
   expect_refusal(
-      run_ptin({"render", store, "--size", "2000", "2000", "-o", disk.path + "/a.png", "-q"}), 7,
+      run_ptin({"render", store, "--size", "2000", "2000", "-o", disk.path() + "/a.png", "-q"}), 7,
       "a.png");
-  EXPECT_TRUE(std::filesystem::is_empty(disk.path));
+  EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
 }
 
 TEST(CliSignals, StopABuildTidily) {

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Builds that are killed without a word, and disks that fill up: the output's name shows nothing,
-// and
-// --resume gives the bytes of a build that nobody disturbed.
+// and --resume gives the bytes of a build that nobody disturbed.
+#include <atomic>
 #include <csignal>
 #include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
-#include <sys/mount.h>
 
+#include "tests/support/test_folder.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
 namespace {
 
+using test::SmallDisk;
 using testing::make_raster;
 using testing::RasterRecipe;
 using testing::read_file;
@@ -95,31 +96,30 @@ TEST_P(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
 }
 
 TEST_P(KillSlow, ADiskThatFillsUpLosesNothing) {
-  const std::string disk = folder_.file("disk");
-  std::filesystem::create_directory(disk);
   ASSERT_EQ(run_ptin(build(folder_.file("plain.ptin"), {})).status, 0);
-  if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=40m") != 0) {
-    GTEST_SKIP() << "a tmpfs cannot be mounted here";
-  }
+  const SmallDisk disk(folder_.file("disk"), 40);
+  if (!disk.is_mounted()) GTEST_SKIP() << SmallDisk::kNeeded;
+  const std::string output = disk.path() + "/k.ptin";
   // The disk is as large as the plan wants it; then somebody else takes all that is left: while
   // points are read, or when the tiles begin.
   const std::string begun = GetParam() == Source::kRaster ? "pages" : "manifest";
+  std::atomic<bool> has_ended{false};
   std::thread somebody([&] {
-    while (!std::filesystem::exists(disk + "/.k.ptin.ptin-build/" + begun)) {
+    while (!has_ended && !std::filesystem::exists(disk.path() + "/.k.ptin.ptin-build/" + begun)) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    testing::write_file(disk + "/other", std::string(40U << 20, 'x'));
+    testing::write_file(disk.path() + "/other", std::string(40U << 20, 'x'));
   });
-  auto outcome = run_ptin(build(disk + "/k.ptin", {"--resume"}));
+  auto outcome = run_ptin(build(output, {"--resume"}));
+  has_ended = true;
   somebody.join();
   EXPECT_EQ(outcome.status, 7) << outcome.err;
   EXPECT_NE(outcome.err.find("--resume"), std::string::npos) << outcome.err;
-  EXPECT_FALSE(std::filesystem::exists(disk + "/k.ptin"));
-  std::filesystem::remove(disk + "/other");
-  outcome = run_ptin(build(disk + "/k.ptin", {"--resume"}));
+  EXPECT_FALSE(std::filesystem::exists(output));
+  std::filesystem::remove(disk.path() + "/other");
+  outcome = run_ptin(build(output, {"--resume"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(read_file(disk + "/k.ptin") == read_file(folder_.file("plain.ptin")));
-  umount(disk.c_str());
+  EXPECT_TRUE(read_file(output) == read_file(folder_.file("plain.ptin")));
 }
 
 }  // namespace

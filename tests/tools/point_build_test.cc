@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/construct/las_file.h"
+#include "tests/support/las_file.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {

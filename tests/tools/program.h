@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,24 +12,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/test_folder.h"
+
 namespace ptin::tools::testing {
 
-/// A folder of one test; removed with everything in it.
-class TestFolder {
- public:
-  TestFolder();
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-  ~TestFolder();
-
-  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Names in the folder, sorted.
-  [[nodiscard]] std::vector<std::string> names() const;
-
- private:
-  std::filesystem::path path_;
-};
+using test::TestFolder;
 
 struct Outcome {
   int status = -1;  ///< Exit status; 128 + signal when a signal ended it.
