@@ -2,9 +2,8 @@
 //
 // The whole build, from a raster on disk to a published and synced store: one build an iteration.
 //   BM_Build/terrain:t/cost:c/max_error:E    vertices a second (those of the full TIN, void ones
-//   counted), of processor time
-//                                            of all threads together: what one core does, also on a
-//                                            busy machine
+//                                            counted), of processor time of all threads together:
+//                                            what one core does, also on a busy machine
 // Counters: seconds_wall is the time on the clock; samples/s counts samples with a height alone;
 // bytes_per_vertex is of the file; peak_MB is the largest resident memory of the process so far (so
 // run one terrain at a time to have its own). Cannot show: a cold source (it is read from the page

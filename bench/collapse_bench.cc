@@ -2,10 +2,10 @@
 //
 // Collapses in memory, one thread: vertices a second of processor time.
 //   BM_Simplify/tile:t/cost:c       one tile down to what no collapse is allowed in: queue, choice
-//   of w, certificates, records BM_CollapseAndSplit/tile:t      connectivity alone: half of the
-//   vertices of a tile collapsed into the first allowed
-//                                   neighbour in a seeded order, then split back; steps a second,
-//                                   one collapse or split each
+//                                   of w, certificates, records
+//   BM_CollapseAndSplit/tile:t      connectivity alone: half of the vertices of a tile collapsed
+//                                   into the first allowed neighbour in a seeded order, then split
+//                                   back; steps a second, one collapse or split each
 // Tiles of 384 x 384 samples are cut from the south-western corner of real terrains (where
 // PTIN_SHARED_DATA has them) or made: hills, noise (every residual large), flat (every error 0);
 // random is the Delaunay triangulation of 100 000 points on hills. half_void is half void and a

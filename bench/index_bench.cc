@@ -5,12 +5,14 @@
 // the rival of both. The store is PTIN_BENCH_STORE or is built from srtm1_bigtujunga; without
 // either, all is skipped.
 //   BM_Load/index:packed         pages' attributes -> IndexWriter -> nodes in a file, not synced;
-//   pages a second BM_Load/index:spatialindex   the same attributes -> libspatialindex's bulk
-//   loader -> its two files; pages a second BM_Search/index:i/query:q    predicate -> page ids;
-//   counters: pages found, nodes examined, pages found a second
+//                                pages a second
+//   BM_Load/index:spatialindex   the same attributes -> libspatialindex's bulk loader -> its two
+//                                files; pages a second
+//   BM_Search/index:i/query:q    predicate -> page ids; counters: pages found, nodes examined,
+//                                pages found a second
 //     window_ppm:n is one window of n millionths of the area; point is a window without area;
-//     error_5 the whole terrain at 5 units of height; both is the window of 1/25 at that error. 64
-//     seeded places, one after the other.
+//     error_5 the whole terrain at 5 units of height; both is the window of 1/25 at that error.
+//     64 seeded places, one after the other.
 // libspatialindex keeps its nodes in an LRU buffer of its own and takes a lock; boxes of its nodes
 // are doubles of four dimensions. Cannot show: cold nodes (bench/io), several threads, trees higher
 // than two or three levels.

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What queries read, cold and warm: records, pages, bytes, faults and time, by reader and by page
-// size.
+// What queries read, cold and warm: records, pages, bytes, faults and time, by reader and page size.
 //
 //   readers  mapped, pread (the two page stores, packed R-tree); spatialindex (mapped pages,
-//   libspatialindex's tree); uring
-//            (mapped index, pages through io_uring with 64 reads under way; checksums, no decoding)
+//            libspatialindex's tree); uring (mapped index, pages through io_uring with 64 reads
+//            under way; checksums, no decoding)
 //   queries  open; point: 64 regular places; window of 1/1000 (16 places) and 1/25 (8), full
-//   detail; the whole terrain at
-//            10 and 2 units of height. A query is search, announce, read, decode and ask; splits
-//            are not applied.
+//            detail; the whole terrain at 10 and 2 units of height. A query is search, announce,
+//            read, decode and ask; splits are not applied.
 //   cold     before each query the store is closed and dropped from the page cache by
-//   posix_fadvise, mincore must then find
-//            nothing of it, and the store is opened again; "open" is a line of its own, not part of
-//            the others
+//            posix_fadvise, mincore must then find nothing of it, and the store is opened again;
+//            "open" is a line of its own, not part of the others
 //   warm     the same query again on the store as the cold one left it
 //
 // Columns are means over the queries, times are medians. `device` is what the process asked of the
@@ -24,8 +21,8 @@
 // figure to quote. Cold speaks of this system's cache alone: what the disk, the host of a virtual
 // machine or the network keeps cannot be dropped from here.
 //
-// usage: io RASTER [-o OUT.csv] [--pages KIB...]       builds a store for each page size in the
-// build folder first
+// usage: io RASTER [-o OUT.csv] [--pages KIB...]
+// builds a store for each page size in the build folder first
 #include <algorithm>
 #include <array>
 #include <chrono>

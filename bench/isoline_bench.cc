@@ -3,8 +3,7 @@
 // Isolines (paper, section 5.2). The store: PTIN_BENCH_STORE, else srtm1_bigtujunga.
 //
 // IsolineOne/T      the middle height of the whole terrain, T threads: levels a second of wall
-// time,
-//                   records retrieved per vertex of a crossing triangle
+//                   time, records retrieved per vertex of a crossing triangle
 // IsolineTwenty/T   twenty levels at once
 // IsolineOneMesh    twenty levels where all is one mesh instead of tiles: what tiles are worth
 // ProgressiveSplit  the records of one level applied one by one, isolines kept up to date after

@@ -3,10 +3,10 @@
 // The moving window, warm, over the store of PTIN_BENCH_STORE (or srtm1_bigtujunga).
 //   BM_Fresh/area_ppm:n               a fresh refinement of a window of n millionths of the area
 //   BM_Move/area_ppm:n/step_ppm:s     that window moved by s millionths of its width, to and fro:
-//   one
-//                                     move; `changed` counts splits made and undone
+//                                     one move; `changed` counts splits made and undone
 //   BM_FirstMove/area_ppm:n           a new window moved there: against BM_Fresh, what the bits
-//   cost BM_Eye/tau_ppm:t                  a view moved by a thousandth of the terrain's width
+//                                     cost
+//   BM_Eye/tau_ppm:t                  a view moved by a thousandth of the terrain's width
 // Cannot show: cold pages; caches that do not hold the window's pages.
 #include <cmath>
 #include <memory>

@@ -4,7 +4,8 @@
 // either, all is skipped.
 //   BM_Open/access:a           open and close: header, tables, metadata, T0, root of the index
 //   BM_OpenAndPoint/access:a   open, refine to the full triangle over one of 2500 regular places,
-//   close BM_Point/access:a          the same on a store that stays open
+//                              close
+//   BM_Point/access:a          the same on a store that stays open
 // Counters: records and pages a point, worst_us the slowest single call. Times are of the clock.
 // Cannot show: cold pages (bench/io), other sizes (give PTIN_BENCH_STORE), the walk to the
 // triangle.

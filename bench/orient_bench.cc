@@ -3,8 +3,7 @@
 // The orientation predicate, on 4096 seeded triples that stay in the cache: calls a second.
 //   BM_Orient/points:p             ours: exact in 64-bit integers on the grid
 //   BM_OrientRival/points:p        CGAL's filtered predicate (EPICK kernel) on the same triples as
-//   doubles: what we would use
-//                                  without a grid
+//                                  doubles: what we would use without a grid
 //   points:random is uniform on the whole grid; points:neighbours lies within 8 grid units, a
 //   quarter of it collinear, as in rasters; points:collinear is exactly collinear and far apart,
 //   where a filter fails.

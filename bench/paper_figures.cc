@@ -3,20 +3,21 @@
 // The figures 4 and 5 of the paper: what a window and a point retrieve, on random and real TINs, as
 // lines of CSV.
 //
-//   windows of 1/25 and 1/4 of the area at 50 x 50 regular places: splits retrieved over vertices
-//   in the window points at 50 x 50 regular places: splits retrieved; and splits whose own polygon
-//   P(u) holds the point
+//   windows  of 1/25 and 1/4 of the area at 50 x 50 regular places: splits retrieved over vertices
+//            in the window
+//   points   at 50 x 50 regular places: splits retrieved; and splits whose own polygon P(u) holds
+//            the point
 //
-// Random TINs are uniform points in the unit square under Delaunay; real ones take the 10 000 or 20
-// 000 most important vertices of a built store as points. "Retrieved" is what our engine retrieves
+// Random TINs are uniform points in the unit square under Delaunay; real ones take the 10 000 or
+// 20 000 most important vertices of a built store as points. "Retrieved" is what our engine retrieves
 // and applies: records whose saturated box meets the query, so that the mesh stays valid
 // everywhere. The paper counts for its own box and its own collapse; the number to hold against its
 // 70 splits a point is the one of own polygons, which are the splits that change the surface over
 // the point. Everything is counted here in memory by brute force; for one size the store is
 // written, opened and asked the same, and the program fails when the answers differ.
 //
-// usage: paper_figures [OUT.csv] [LARGEST]     sizes above LARGEST (default 50 000; 1 000 000 gives
-// all) are left out
+// usage: paper_figures [OUT.csv] [LARGEST]
+// sizes above LARGEST (default 50 000; 1 000 000 gives all) are left out
 #include <algorithm>
 #include <array>
 #include <cmath>

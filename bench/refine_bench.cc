@@ -5,7 +5,8 @@
 // passes of independent vertices, in a random order, so ranks are low and the file's locality is
 // worse than a builder's.
 //   BM_RefineWindow/area_ppm:n  one window of n millionths of the area, full detail, whole domain:
-//   search, read, apply BM_Retrieve/area_ppm:n      the same, search and read alone
+//                               search, read, apply
+//   BM_Retrieve/area_ppm:n      the same, search and read alone
 //   BM_Apply/area_ppm:n         the same, counting sort and splits alone
 // Cannot show: cold pages (bench/io); several queries at once.
 #include <algorithm>
