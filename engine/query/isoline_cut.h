@@ -20,7 +20,7 @@ struct CutEdge {
 };
 
 /// An end of an edge in the plane, with its height code.
-struct EdgeEnd {
+struct CutEnd {
   double x, y, code;
 };
 
@@ -28,7 +28,7 @@ struct EdgeEnd {
 /// lower end to the higher one, so every triangle, tile and window gets the same bits; at the
 /// height of the higher end it is that end exactly. Grid units in, grid units out.
 /// REQUIRES: below.code < level <= above.code.
-[[nodiscard]] inline MapPoint cut_of(const EdgeEnd& below, const EdgeEnd& above,
+[[nodiscard]] inline MapPoint cut_of(const CutEnd& below, const CutEnd& above,
                                      double level) noexcept {
   if (level == above.code) {
     return {above.x, above.y};
