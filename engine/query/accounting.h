@@ -54,6 +54,13 @@ class QueryContext {
     }
   }
 
+  /// The limit of a part of the query that keeps account of itself, while the query holds `bytes`.
+  /// @throws Error as admit()
+  [[nodiscard]] std::uint64_t left_beside(std::uint64_t bytes) const {
+    admit(bytes);
+    return memory_limit_bytes_ - bytes;
+  }
+
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
 
   QueryCost cost;

@@ -108,8 +108,10 @@ class Search {
       const GridPoint p = point_of(c.key);
       result.vertices.push_back(at(p.x, p.y, c.value));
     }
+    const std::vector<PendingSplit> splits = gatherer.take_splits();
+    context_.admit(bytes_of(terrain_.t0()) + refinement_bytes(splits.size()));
     Refinement refinement(terrain_.t0());
-    refinement.apply(gatherer.take_splits(), context_);
+    refinement.apply(splits, context_);
     find_point(refinement.tin(), best, result);
     store_.pages().check_unchanged();
     result.cost = context_.cost;
@@ -170,16 +172,14 @@ class Search {
   /// left, each time with more to spare, and the best, above which records were gathered, is one
   /// of them.
   std::vector<HighCandidate> find_on_surface(HighGatherer& gatherer) {
-    std::unordered_set<VertexKey> confirmed;
     std::size_t spare = 0;
     while (true) {
       std::vector<HighCandidate> best = find(gatherer, request_.listed + spare);
       const bool are_all = best.size() < request_.listed + spare;
       const VertexKey first = best.empty() ? kNoVertexKey : best.front().key;
-      look_up(best, confirmed, gatherer.rejected);
-      std::erase_if(best,
-                    [&](const HighCandidate& c) { return gatherer.rejected.contains(c.key); });
-      if ((are_all || best.size() >= request_.listed) && !gatherer.rejected.contains(first)) {
+      look_up(best, gatherer);
+      std::erase_if(best, [&](const HighCandidate& c) { return gatherer.is_rejected(c.key); });
+      if ((are_all || best.size() >= request_.listed) && !gatherer.is_rejected(first)) {
         best.resize(std::min<std::size_t>(best.size(), request_.listed));
         return best;
       }
@@ -187,27 +187,33 @@ class Search {
     }
   }
 
-  /// Sorts candidates that are in neither set into one of the two.
-  void look_up(const std::vector<HighCandidate>& best, std::unordered_set<VertexKey>& confirmed,
-               std::unordered_set<VertexKey>& rejected) {
+  /// Tells the gatherer of each candidate that it was not told of before whether the surface has
+  /// it.
+  void look_up(const std::vector<HighCandidate>& best, HighGatherer& gatherer) {
     std::vector<VertexKey> keys;
-    std::vector<MapPoint> points;
     for (const HighCandidate& c : best) {
-      if (!confirmed.contains(c.key)) {
-        const GridPoint p = point_of(c.key);
+      if (!gatherer.is_told(c.key)) {
         keys.push_back(c.key);
-        points.push_back(facts_.map.to_map(p.x, p.y));
       }
     }
+    std::vector<MapPoint> points;
+    points.reserve(keys.size());
+    for (const VertexKey key : keys) {
+      const GridPoint p = point_of(key);
+      points.push_back(facts_.map.to_map(p.x, p.y));
+    }
+    gatherer.reserve_told(keys.size());
     LocateRequest request;
     request.tolerance = request_.tolerance;
     request.vertices = request_.vertices;
-    request.memory_limit_bytes = request_.memory_limit_bytes;
+    request.memory_limit_bytes = context_.left_beside(
+        gatherer.held_bytes() + best.capacity() * sizeof(HighCandidate) +
+        keys.capacity() * sizeof(VertexKey) + points.capacity() * sizeof(MapPoint));
     request.stop = request_.stop;
     const LocateResult located = locate(terrain_, points, request);
     context_.cost.add_counts(located.cost);
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      (located.points[i].state == PointState::kSurface ? confirmed : rejected).insert(keys[i]);
+      gatherer.tell(keys[i], located.points[i].state == PointState::kSurface);
     }
   }
 

@@ -27,6 +27,17 @@ void HighGatherer::start(std::size_t wanted) {
   }
 }
 
+void HighGatherer::reserve_told(std::size_t more) {
+  if (told_.size() + more > told_capacity_) {
+    told_capacity_ = std::max(told_.size() + more, 2 * told_capacity_);
+    told_.reserve(told_capacity_);
+  }
+}
+
+std::uint64_t HighGatherer::held_bytes() const noexcept {
+  return splits_.capacity() * sizeof(Reaching) + KeyTable::bytes_for(told_capacity_);
+}
+
 double HighGatherer::bound(const Attributes& a) const {
   if (!predicate_.holds(a) || is_empty(a.heights)) {
     return kNothing;
@@ -55,7 +66,8 @@ double HighGatherer::visit(PageId page) {
   if (splits_.size() > std::max(kFewSplits, 2 * looked_through_)) {
     drop_what_ends_below();
   }
-  context_.admit(refinement_bytes(splits_.size()) + heap_.capacity() * sizeof(HighCandidate));
+  context_.admit(refinement_bytes(splits_.size()) + heap_.capacity() * sizeof(HighCandidate) +
+                 KeyTable::bytes_for(told_capacity_));
   // The next larger number: pages that reach no higher than the last of the best are not needed.
   return std::nextafter(cut_off(), -kNothing);
 }
@@ -64,7 +76,7 @@ void HighGatherer::offer(GridPoint p, HeightBits height) {
   const double code = store_.facts().heights.code(height);
   const HighCandidate c{lowest_ ? -code : code, found_, key_of(p)};
   if (!(c.value > cut_off()) || (window_ != nullptr && !window_->meets(box_of(p))) ||
-      rejected.contains(c.key)) {
+      is_rejected(c.key)) {
     return;
   }
   ++found_;

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <unordered_set>
 #include <vector>
 
+#include "engine/geometry/key_table.h"
 #include "engine/query/accounting.h"
 #include "engine/query/detail.h"
 #include "engine/query/region.h"
@@ -39,11 +39,18 @@ class HighGatherer final : public BestFirstVisitor {
         lowest_(lowest),
         context_(context) {}
 
-  /// Begins a search for `wanted` vertices, those of `rejected` left out. REQUIRES: wanted > 0.
+  /// Begins a search for `wanted` vertices; those that were told to be off the surface do not
+  /// count. REQUIRES: wanted > 0.
   void start(std::size_t wanted);
 
-  /// Vertices that are none of the surface's: found again, they do not count.
-  std::unordered_set<VertexKey> rejected;
+  /// Makes room to be told of `more` vertices. Cost: linear in all of them when it grows.
+  void reserve_told(std::size_t more);
+  /// Tells of a vertex whether it is the surface's. REQUIRES: not told before; room for it.
+  void tell(VertexKey key, bool on_surface) noexcept { told_.insert(key, on_surface ? 1 : 0); }
+  [[nodiscard]] bool is_told(VertexKey key) const noexcept {
+    return told_.find(key) != KeyTable::kAbsent;
+  }
+  [[nodiscard]] bool is_rejected(VertexKey key) const noexcept { return told_.find(key) == 0; }
 
   [[nodiscard]] double bound(const Attributes& a) const override;
   double visit(PageId page) override;
@@ -51,6 +58,9 @@ class HighGatherer final : public BestFirstVisitor {
   /// The best vertices, falling; fewer than wanted when there are fewer. Ends the search.
   /// Cost: n log n.
   [[nodiscard]] std::vector<HighCandidate> take_best();
+
+  /// What is kept between searches: the records so far, and what was told.
+  [[nodiscard]] std::uint64_t held_bytes() const noexcept;
 
   /// The records that reach above the best vertex, a set closed under dependency.
   [[nodiscard]] std::vector<PendingSplit> take_splits();
@@ -85,6 +95,8 @@ class HighGatherer final : public BestFirstVisitor {
   std::vector<Reaching> splits_;
   std::size_t looked_through_ = 0;  ///< Splits when they were last looked through.
   std::vector<VertexSplit> records_;
+  KeyTable told_;  ///< 1: on the surface, 0: rejected.
+  std::size_t told_capacity_ = 0;
 };
 
 }  // namespace ptin

@@ -12,6 +12,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/locate.h"
 #include "storage/spatialindex_rtree.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
@@ -245,6 +246,52 @@ TEST(Highest, TakesStepsInProportionToTheVerticesListedOverVoids) {
   // Each record is looked at by the search, and once by a batch of points.
   EXPECT_LE(cost.records_examined, 3 * h.records.size());
   EXPECT_LE(cost.records_applied, 2 * h.records.size());
+}
+
+/// The least memory limit, to a KiB, at which `ask` is not refused for want of memory.
+template <typename Ask>
+std::uint64_t least_limit(const Ask& ask) {
+  std::uint64_t refused = 0, enough = std::uint64_t{1} << 30;
+  while (enough - refused > 1024) {
+    const std::uint64_t middle = (refused + enough) / 2;
+    try {
+      ask(middle);
+      enough = middle;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::resource_exhausted) << e.message();
+      refused = middle;
+    }
+  }
+  return enough;
+}
+
+TEST(Highest, CountsItsOwnMemoryBesideThatOfLocatingItsVertices) {
+  std::mt19937_64 random(9);
+  reference::Options options;
+  options.measured = false;
+  const Hierarchy h =
+      reference::simplify(reference::random_grid(random, 60, 60, 4, 0.0), random, options);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  HighestRequest request;
+  request.listed = 10000;   // all of them are candidates at once,
+  request.tolerance = 0.0;  // each of which may be of no triangle yet
+  const HighestResult all = highest(terrain, request);
+  std::vector<MapPoint> points;
+  for (const HeightAt& v : all.vertices) points.push_back(v.position);
+  LocateRequest where;
+  where.tolerance = request.tolerance;
+  const std::uint64_t located = least_limit([&](std::uint64_t limit) {
+    where.memory_limit_bytes = limit;
+    static_cast<void>(locate(terrain, points, where));
+  });
+  const std::uint64_t listed = least_limit([&](std::uint64_t limit) {
+    request.memory_limit_bytes = limit;
+    static_cast<void>(highest(terrain, request));
+  });
+  // A candidate's value, number and key, and its point and key on the way to locate().
+  EXPECT_GE(listed, located + all.vertices.size() * 48);
+  EXPECT_LE(listed, located + all.vertices.size() * 200);
 }
 
 TEST(Highest, OfALargeTerrainReadsFewPagesOfIt) {
