@@ -5,45 +5,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "engine/query/accounting.h"
 #include "engine/query/isoline_cut.h"
+#include "engine/query/point_store.h"
 
 namespace ptin {
-
-/// Points in the order in which they were added: in memory up to a budget, then in a file without a
-/// name. Threads: none; one owner.
-class PointStore {
- public:
-  /// @param budget_bytes      Of points kept in memory, in blocks of at most a megabyte.
-  /// @param temporary_folder  Where the file is made when they do not fit; empty: nowhere.
-  PointStore(std::uint64_t budget_bytes, std::string temporary_folder);
-  PointStore(PointStore&&) noexcept;
-  PointStore& operator=(PointStore&&) noexcept;
-  ~PointStore();
-
-  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
-  /// @throws Error resource_exhausted  over the budget and no folder, or the disk is full; io_error
-  void add(std::span<const MapPoint> points);
-  /// Appends points [first, first + count) to `out`.  @throws Error io_error
-  void read(std::uint64_t first, std::size_t count, std::vector<MapPoint>& out) const;
-
- private:
-  void add_block();
-  void spill();
-
-  std::uint64_t block_points_;  ///< In a block.
-  std::uint64_t most_blocks_;   ///< In memory.
-  std::string folder_;
-  std::vector<std::unique_ptr<MapPoint[]>> blocks_;  ///< The last points; all but the last full.
-  std::uint64_t size_ = 0;
-  std::uint64_t spilled_ = 0;  ///< Points in the file, before those in memory.
-  int file_ = -1;
-};
 
 /// A part of one isoline, in the triangles of one mesh.
 struct IsolinePiece {
