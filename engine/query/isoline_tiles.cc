@@ -6,6 +6,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -248,8 +249,12 @@ TileTraces trace_tiles(const ProgressiveTin& terrain, const TileTraceRequest& re
   {
     std::vector<std::jthread> threads;  // joined where the block ends
     for (int i = 1; i < count; ++i) {
-      threads.emplace_back(
-          [worker = workers[static_cast<std::size_t>(i)].get()] { worker->run(); });
+      try {
+        threads.emplace_back(
+            [worker = workers[static_cast<std::size_t>(i)].get()] { worker->run(); });
+      } catch (const std::system_error&) {
+        break;  // the system gives no more: those that run do all of the work
+      }
     }
     workers.front()->run();
   }

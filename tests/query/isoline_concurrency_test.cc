@@ -3,10 +3,12 @@
 // Tiles traced by several threads at once give the lines of one thread; a failure in one of them
 // ends all.
 #include <random>
-#include <set>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include "engine/error.h"
 #include "engine/query/isoline_tiles.h"
@@ -66,6 +68,41 @@ TEST(IsolineTiles, GiveTheSameLinesOnAnyNumberOfThreads) {
     EXPECT_GT(tiles, 4U);
     EXPECT_TRUE(lines == whole) << threads << " threads, " << tiles << " tiles";
   }
+}
+
+/// No thread can be started while it lives: their stacks would be larger than the address space.
+class NoMoreThreads {
+ public:
+  NoMoreThreads() {
+    pthread_attr_t attributes;
+    pthread_getattr_default_np(&attributes);
+    pthread_attr_getstacksize(&attributes, &before_);
+    pthread_attr_destroy(&attributes);
+    set_stack(std::size_t{1} << 48);
+  }
+  NoMoreThreads(const NoMoreThreads&) = delete;
+  NoMoreThreads& operator=(const NoMoreThreads&) = delete;
+  ~NoMoreThreads() { set_stack(before_); }
+
+ private:
+  static void set_stack(std::size_t bytes) {
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, bytes);
+    EXPECT_EQ(pthread_setattr_default_np(&attributes), 0);
+    pthread_attr_destroy(&attributes);
+  }
+  std::size_t before_ = 0;
+};
+
+TEST(IsolineTiles, AreTracedByTheThreadsThatCanBeStarted) {
+  const Terrain terrain;
+  const auto [whole, one] = traced(terrain, 1, 1 << 30);
+  const NoMoreThreads limit;
+  EXPECT_THROW(std::jthread([] {}), std::system_error);
+  const auto [lines, tiles] = traced(terrain, 4, 200'000);
+  EXPECT_GT(tiles, 4U);
+  EXPECT_TRUE(lines == whole);
 }
 
 TEST(IsolineTiles, EndWhenOneOfThemFails) {
