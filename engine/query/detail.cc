@@ -11,8 +11,6 @@
 
 namespace ptin {
 
-namespace {}  // namespace
-
 std::uint64_t records_of_first(std::uint64_t vertices, const StoreFile& store) {
   const std::uint64_t t0 = store.t0().vertices.size();
   if (vertices < t0) {
@@ -88,7 +86,7 @@ bool Detail::cut_between(double low, double high, std::uint64_t records, const R
   source.index.search(predicate, pages, context.cost.io);
   source.store.pages().announce(pages, context.cost.io);
   std::uint64_t above = 0;
-  std::vector<Place> within;
+  std::vector<RecordPlace> within;
   std::vector<VertexSplit> found;
   for (const PageId page : pages) {
     context.check_stop();
@@ -103,7 +101,7 @@ bool Detail::cut_between(double low, double high, std::uint64_t records, const R
         within.push_back({r.error, r.rank, key_of(r.u)});
       }
     }
-    context.admit(within.capacity() * sizeof(Place));
+    context.admit(within.capacity() * sizeof(RecordPlace));
   }
   if (above >= records || within.size() < records - above) return false;
   const auto last = within.begin() + static_cast<std::ptrdiff_t>(records - above - 1);
@@ -112,7 +110,7 @@ bool Detail::cut_between(double low, double high, std::uint64_t records, const R
   tolerance_ = std::nextafter(static_cast<double>(last->error), -kInfinity);
   double left = low;
   std::for_each(last + 1, within.end(),
-                [&](const Place& p) { left = std::max<double>(left, p.error); });
+                [&](const RecordPlace& p) { left = std::max<double>(left, p.error); });
   certificate_ = certify_below(source.store, left);
   return true;
 }

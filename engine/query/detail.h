@@ -11,6 +11,7 @@
 #include "engine/query/accounting.h"
 #include "engine/query/certificate.h"
 #include "engine/query/retrieval.h"
+#include "engine/query/total_order.h"
 
 namespace ptin {
 
@@ -60,25 +61,15 @@ class Detail {
   }
 
  private:
-  /// Place of a record in the total order.
-  struct Place {
-    float error;
-    std::uint16_t rank;
-    VertexKey u;
-    friend constexpr bool operator<(const Place& a, const Place& b) noexcept {
-      if (a.error != b.error) return a.error > b.error;
-      return a.rank != b.rank ? a.rank > b.rank : a.u < b.u;
-    }
-  };
   [[nodiscard]] bool is_behind(const PendingSplit& s) const noexcept {
-    return *last_ < Place{s.error, s.rank, s.u};
+    return *last_ < place_of(s);
   }
   void cut_behind(std::uint64_t records, const RecordSource& source, QueryContext& context);
   [[nodiscard]] bool cut_between(double low, double high, std::uint64_t records,
                                  const RecordSource& source, QueryContext& context);
 
   double tolerance_ = -1.0;
-  std::optional<Place> last_;  ///< What is kept ends with it; none: the tolerance says all.
+  std::optional<RecordPlace> last_;  ///< What is kept ends with it; none: the tolerance says all.
   bool asked_ = false;
   Certificate certificate_;
 };

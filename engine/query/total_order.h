@@ -12,13 +12,26 @@
 
 namespace ptin {
 
-/// True when `a` comes before `b`. Every record comes after what it needs, whose error is not
-/// smaller and whose rank is larger (saturation): so any prefix, within any closed set, is closed.
-[[nodiscard]] constexpr bool is_before(const PendingSplit& a, const PendingSplit& b) noexcept {
-  if (a.error != b.error) {
-    return a.error > b.error;
+/// What places a record in the total order. Every record comes after what it needs, whose error is
+/// not smaller and whose rank is larger (saturation): so any prefix, within any closed set, is
+/// closed.
+struct RecordPlace {
+  float error;
+  std::uint16_t rank;
+  VertexKey u;
+  friend constexpr bool operator<(const RecordPlace& a, const RecordPlace& b) noexcept {
+    if (a.error != b.error) {
+      return a.error > b.error;
+    }
+    return a.rank != b.rank ? a.rank > b.rank : a.u < b.u;
   }
-  return a.rank != b.rank ? a.rank > b.rank : a.u < b.u;
+};
+[[nodiscard]] constexpr RecordPlace place_of(const PendingSplit& s) noexcept {
+  return {s.error, s.rank, s.u};
+}
+/// True when `a` comes before `b`.
+[[nodiscard]] constexpr bool is_before(const PendingSplit& a, const PendingSplit& b) noexcept {
+  return place_of(a) < place_of(b);
 }
 
 /// The first records of the total order among those for which a predicate is true.
@@ -33,8 +46,9 @@ struct FirstRecords {
 /// read ahead. The file's table of errors says where to begin; it only saves work, and may be
 /// wrong.
 /// @throws Error resource_exhausted (before the pages concerned are read), corruption, io_error,
-/// cancelled Cost: O(t) records read and compared, times the logarithm of what share of the terrain
-/// the predicate leaves.
+///               cancelled
+/// Cost: O(t) records read and compared, times the logarithm of what share of the terrain the
+/// predicate leaves.
 [[nodiscard]] FirstRecords first_records(const RecordSource& source,
                                          const AttributePredicate& predicate, std::uint64_t count,
                                          std::uint64_t fixed_bytes, QueryContext& context);
