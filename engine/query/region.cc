@@ -7,6 +7,8 @@
 #include <string>
 
 #include "engine/error.h"
+#include "engine/geometry/affine_rounding.h"
+#include "engine/geometry/infinity.h"
 
 namespace ptin {
 
@@ -16,13 +18,10 @@ constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;  // unit ro
 constexpr double kFarthest = 1e100;                                   // products of two stay finite
 constexpr std::size_t kMostSlabs = 4096;
 
-/// One coordinate of a map position on the grid. `slack` bounds the distance to the true preimage
-/// of every map position that rounds to the same double: (X - o) / s carries at most 2u |g| (1 + u)
-/// of rounding, and X itself, when it was computed as o + s g, at most u (|X| + |X - o|) of its
-/// own. Twice the sum of both is taken.
+/// One coordinate of a map position on the grid, and how far the true one may be away.
 double to_grid(double map_value, double origin, double step, double& slack) {
   const double grid = (map_value - origin) / step;
-  slack = 4 * kUnit * ((std::abs(map_value) + std::abs(origin)) / step + std::abs(grid));
+  slack = rounding_to_grid(map_value, origin, step, grid);
   if (!(std::abs(grid) <= kFarthest) || !(slack <= kFarthest)) {
     refuse("a coordinate of the region is not a finite number near the terrain");
   }
@@ -53,13 +52,13 @@ GridRegion::GridRegion(const Region& region, const AffineMap& map) {
     if (!(window->min_x <= window->max_x && window->min_y <= window->max_y)) {
       refuse("the window is inverted or not a number: expected min_x <= max_x and min_y <= max_y");
     }
-    set_rectangle(spot_of({window->min_x, window->min_y}, map),
-                  spot_of({window->max_x, window->max_y}, map));
+    set_rectangle(widened({window->min_x, window->min_y}, map),
+                  widened({window->max_x, window->max_y}, map));
   } else if (const auto* point = std::get_if<MapPoint>(&region)) {
-    set_rectangle(spot_of(*point, map), spot_of(*point, map));
+    set_rectangle(widened(*point, map), widened(*point, map));
   } else if (const auto* segment = std::get_if<Segment>(&region)) {
     kind_ = Kind::kSegment;
-    add_edge(spot_of(segment->a, map), spot_of(segment->b, map));
+    add_edge(widened(segment->a, map), widened(segment->b, map));
     sort_edges_into_slabs();
   } else {
     kind_ = Kind::kPolygon;
@@ -74,14 +73,14 @@ GridRegion::GridRegion(const Region& region, const AffineMap& map) {
   }
 }
 
-GridRegion::Spot GridRegion::spot_of(MapPoint p, const AffineMap& map) {
-  Spot spot{};
-  spot.x = to_grid(p.x, map.origin_x, map.step_x, spot.slack_x);
-  spot.y = to_grid(p.y, map.origin_y, map.step_y, spot.slack_y);
-  return spot;
+GridRegion::WidenedPoint GridRegion::widened(MapPoint p, const AffineMap& map) {
+  WidenedPoint point{};
+  point.x = to_grid(p.x, map.origin_x, map.step_x, point.slack_x);
+  point.y = to_grid(p.y, map.origin_y, map.step_y, point.slack_y);
+  return point;
 }
 
-void GridRegion::set_rectangle(const Spot& low, const Spot& high) {
+void GridRegion::set_rectangle(const WidenedPoint& low, const WidenedPoint& high) {
   kind_ = Kind::kRectangle;
   min_x_ = low.x - low.slack_x;
   min_y_ = low.y - low.slack_y;
@@ -93,7 +92,7 @@ void GridRegion::set_rectangle(const Spot& low, const Spot& high) {
 /// ay), differences, products and sum carry at most 4u (|t1| + |t2|) (1 + O(u)); ends that are
 /// displaced move it by |nx| slack_x + |ny| slack_y. Twice the sum of both is taken, at the largest
 /// |x - ax| and |y - ay| that the grid allows.
-void GridRegion::add_edge(const Spot& a, const Spot& b) {
+void GridRegion::add_edge(const WidenedPoint& a, const WidenedPoint& b) {
   Edge e{};
   e.ax = a.x, e.ay = a.y, e.bx = b.x, e.by = b.y;
   e.slack_x = std::max(a.slack_x, b.slack_x);
@@ -120,7 +119,7 @@ void GridRegion::add_ring(const std::vector<MapPoint>& ring, const AffineMap& ma
     refuse("a ring of the polygon has fewer than three points");
   }
   for (std::size_t i = 0; i < size; ++i) {
-    add_edge(spot_of(ring[i], map), spot_of(ring[i + 1 == size ? 0 : i + 1], map));
+    add_edge(widened(ring[i], map), widened(ring[i + 1 == size ? 0 : i + 1], map));
   }
 }
 
@@ -147,7 +146,7 @@ void GridRegion::count_slabs(std::size_t slabs) {
 }
 
 void GridRegion::sort_edges_into_slabs() {
-  min_x_ = min_y_ = std::numeric_limits<double>::infinity();
+  min_x_ = min_y_ = kInfinity;
   max_x_ = max_y_ = -min_x_;
   for (const Edge& e : edges_) {
     min_x_ = std::min(min_x_, e.min_x), max_x_ = std::max(max_x_, e.max_x);

@@ -39,20 +39,19 @@ using Region = std::variant<Window, MapPoint, Segment, Polygon>;
 /// on the region's border is inside.
 ///
 /// Laws, for boxes on the grid (0 to kGridMax):
-///   monotone    contains(b, a) and meets(a) imply meets(b), in floating point too: an edge is
-///   tested by comparisons and by
-///               its line function at the extreme corners of the box, evaluated as nx * (x - ax) +
-///               ny * (y - ay) with constants that do not depend on the box, and each rounded
-///               operation is monotone in x and y
-///   consistent  meets(a, b, c) implies meets(their box): so a triangle that meets the region and
-///   is the fan of a record
-///               lies in a box that meets it (promise P1)
+/// - Monotone: contains(b, a) and meets(a) imply meets(b), in floating point too. An edge is tested
+///   by comparisons and by its line function at the extreme corners of the box, evaluated as
+///   nx * (x - ax) + ny * (y - ay) with constants that do not depend on the box, and each rounded
+///   operation is monotone in x and y.
+/// - Consistent: meets(a, b, c) implies meets(their box). So a triangle that meets the region and
+///   is the fan of a record lies in a box that meets it (promise P1).
+///
 /// Threads: immutable.
 class GridRegion {
  public:
   /// @throws Error invalid_argument  a coordinate is not finite or beyond 1e100 grid units; a
-  /// window is inverted; a polygon
-  ///                                 has no ring or one of fewer than three points
+  ///                                 window is inverted; a polygon has no ring or one of fewer
+  ///                                 than three points
   GridRegion(const Region& region, const AffineMap& map);
 
   /// True when the closed box shares a point with the region. Exact for windows and points up to
@@ -77,7 +76,7 @@ class GridRegion {
   enum class Side : std::uint8_t { kOutside, kInside, kBorder };
 
   /// A position on the grid, and how far the true one may be away.
-  struct Spot {
+  struct WidenedPoint {
     double x, y, slack_x, slack_y;
   };
   /// A straight edge a -> b; (nx, ny) points to its right. Box and line function already widened.
@@ -89,15 +88,15 @@ class GridRegion {
     double slack_x, slack_y;  ///< Of the two ends.
   };
 
-  static Spot spot_of(MapPoint p, const AffineMap& map);
+  static WidenedPoint widened(MapPoint p, const AffineMap& map);
   static double line(const Edge& e, double x, double y) noexcept {
     return e.nx * (x - e.ax) + e.ny * (y - e.ay);
   }
   static bool touches(const Edge& e, const GridBox& box) noexcept;
   static bool touches(const Edge& e, const GridPoint (&triangle)[3]) noexcept;
 
-  void set_rectangle(const Spot& low, const Spot& high);
-  void add_edge(const Spot& a, const Spot& b);
+  void set_rectangle(const WidenedPoint& low, const WidenedPoint& high);
+  void add_edge(const WidenedPoint& a, const WidenedPoint& b);
   void add_ring(const std::vector<MapPoint>& ring, const AffineMap& map);
   void sort_edges_into_slabs();
   void count_slabs(std::size_t slabs);

@@ -3,19 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/error.h"
+#include "engine/geometry/affine_rounding.h"
 
 namespace ptin {
 
 namespace {
 
-/// Bound on |(X - o) / s - g| in doubles for X = fl(fl(o) + fl(s g)): as in region.cc, to_grid.
+/// Of a vertex's own map position, X = fl(fl(o) + fl(s g)).
 double conversion_error(double origin, double step, double grid) {
-  const double map_value = origin + step * grid;
-  return 2 * std::numeric_limits<double>::epsilon() *
-         ((std::abs(map_value) + std::abs(origin)) / step + std::abs(grid));
+  return rounding_to_grid(origin + step * grid, origin, step, grid);
 }
 
 }  // namespace
