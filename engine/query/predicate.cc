@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/geometry/affine_rounding.h"
+#include "engine/query/above_error.h"
 
 namespace ptin {
 
@@ -35,20 +37,6 @@ class MeetsRegion final : public BoundedPredicate {
   GridRegion region_;
 };
 
-class ErrorAbove final : public BoundedPredicate {
- public:
-  explicit ErrorAbove(double tolerance) : tolerance_(tolerance) {}
-  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    return a.error > tolerance_;
-  }
-  [[nodiscard]] bool holds_for_all(const Attributes&, double least_error) const noexcept override {
-    return least_error > tolerance_;
-  }
-
- private:
-  double tolerance_;
-};
-
 /// Compares decoded heights: decoding is monotone in the code, and it is what callers see of the
 /// vertices.
 class HeightsMeet final : public BoundedPredicate {
@@ -75,8 +63,8 @@ class SeenFrom final : public BoundedPredicate {
       : view_(view), heights_(heights), eye_(map.to_grid(view.eye)) {
     ground_x_ = map.step_x * view.ground_per_map_x;
     ground_y_ = map.step_y * view.ground_per_map_y;
-    slack_x_ = slack(view.eye.x, map.origin_x, map.step_x, eye_.x);
-    slack_y_ = slack(view.eye.y, map.origin_y, map.step_y, eye_.y);
+    slack_x_ = rounding_to_grid(view.eye.x, map.origin_x, map.step_x, eye_.x);
+    slack_y_ = rounding_to_grid(view.eye.y, map.origin_y, map.step_y, eye_.y);
   }
 
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
@@ -105,11 +93,6 @@ class SeenFrom final : public BoundedPredicate {
   /// distance.
   static constexpr double kRoundDown = 1.0 - 16 * std::numeric_limits<double>::epsilon();
 
-  /// Error of the eye's conversion to the grid (region.cc, to_grid).
-  static double slack(double map_value, double origin, double step, double grid) {
-    return 2 * std::numeric_limits<double>::epsilon() *
-           ((std::abs(map_value) + std::abs(origin)) / step + std::abs(grid));
-  }
   /// Distance from v to [lo, hi]: falls as the interval grows. An empty interval (+inf, -inf) is
   /// infinitely far away.
   static double gap(double lo, double hi, double v, double slack) noexcept {
@@ -196,6 +179,10 @@ void check_parts(const std::vector<PredicatePtr>& parts) {
 
 }  // namespace
 
+PredicatePtr borrowed(const AttributePredicate& predicate) {
+  return {&predicate, [](const AttributePredicate*) {}};
+}
+
 PredicatePtr everything() { return std::make_shared<Everything>(); }
 
 PredicatePtr meets_region(const Region& region, const AffineMap& map) {
@@ -206,7 +193,7 @@ PredicatePtr error_above(double tolerance) {
   if (!(tolerance >= 0)) {
     refuse("the tolerance is negative or not a number: expected a value >= 0 in the height's unit");
   }
-  return std::make_shared<ErrorAbove>(tolerance);
+  return std::make_shared<AboveError>(tolerance);
 }
 
 PredicatePtr contains_height(double height, const HeightEncoding& heights) {

@@ -5,7 +5,7 @@
 // rounding, so they are monotone in floating point too.
 //
 // Predicates are immutable values behind a shared pointer: a composition keeps its parts alive, and
-// nothing is borrowed. Threads: callable from several threads at once.
+// nothing is borrowed unless asked for. Threads: callable from several threads at once.
 #pragma once
 
 #include <cstddef>
@@ -32,6 +32,9 @@ class BoundedPredicate : public AttributePredicate {
 };
 
 using PredicatePtr = std::shared_ptr<const AttributePredicate>;
+
+/// A predicate that the caller keeps alive, as a part of what goes before it does.
+[[nodiscard]] PredicatePtr borrowed(const AttributePredicate& predicate);
 
 /// Always true: every record, the full TIN.
 [[nodiscard]] PredicatePtr everything();

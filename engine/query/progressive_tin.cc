@@ -34,7 +34,7 @@ PredicatePtr predicate_of(const RefineRequest& request, const StoreFacts& facts)
     parts.push_back(meets_region(*request.region, facts.map));
   }
   if (request.also != nullptr) {
-    parts.emplace_back(request.also, [](const AttributePredicate*) {});  // borrowed for the call
+    parts.push_back(borrowed(*request.also));
   }
   return parts.size() == 1 ? parts.front() : all_of(std::move(parts));
 }

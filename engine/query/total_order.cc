@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <utility>
 
+#include "engine/query/above_error.h"
 #include "engine/query/refinement.h"
 
 namespace ptin {
@@ -12,19 +14,6 @@ namespace ptin {
 namespace {
 
 constexpr std::size_t kLeastPages = 16;  // Pages read at once, at least.
-
-/// `inner`, where the error is above a bound.
-class InnerAboveError final : public AttributePredicate {
- public:
-  InnerAboveError(const AttributePredicate& inner, double bound) : inner_(inner), bound_(bound) {}
-  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    return a.error > bound_ && inner_.holds(a);
-  }
-
- private:
-  const AttributePredicate& inner_;
-  double bound_;
-};
 
 /// A bound that at least `count` records of the whole file exceed, as the table of errors has it;
 /// -1 when all are needed.
@@ -79,7 +68,8 @@ class Search {
 
   std::vector<RankedPage> unread_pages(double bound) {
     std::vector<PageId> ids;
-    source_.index.search(InnerAboveError(predicate_, bound), ids, context_.cost.io);
+    const PredicatePtr wanted = all_of({std::make_shared<AboveError>(bound), borrowed(predicate_)});
+    source_.index.search(*wanted, ids, context_.cost.io);
     context_.check_stop();
     std::vector<RankedPage> pages;
     for (const PageId id : ids) {
