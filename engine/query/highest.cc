@@ -93,7 +93,7 @@ class Search {
     result.certified_deviation = detail.certificate().deviation;
     result.exact = detail.is_exact(facts_);
     if (region_ && !region_->meets(facts_.bounds)) {
-      result.state = HighestResult::State::kOutside;
+      result.state = PointState::kOutside;
       result.cost = context_.cost;
       return result;
     }
@@ -264,7 +264,7 @@ class Search {
       }
     }
     if (most == -kInfinity) {
-      result.state = meets_domain() ? HighestResult::State::kVoid : HighestResult::State::kOutside;
+      result.state = meets_domain() ? PointState::kVoid : PointState::kOutside;
       return;
     }
     // Widened by the rounding of the height and of the sum.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/query/accounting.h"
+#include "engine/query/point_state.h"
 #include "engine/query/progressive_tin.h"
 
 namespace ptin {
@@ -32,10 +33,9 @@ struct HeightAt {
 };
 
 struct HighestResult {
-  /// Why there is no point: the window lies outside of the domain (its hull, not its box), or holds
-  /// nothing but voids.
-  enum class State : std::uint8_t { kSurface, kVoid, kOutside };
-  State state = State::kSurface;
+  /// Unless it is surface there is no point: the window lies outside of the domain (its hull, not
+  /// its box), or holds nothing but voids.
+  PointState state = PointState::kSurface;
   /// The highest point of the surface in the window: one of several, when there are. At a vertex,
   /// or on the window's border, where an edge crosses it or at its corner.
   HeightAt point;
@@ -54,8 +54,7 @@ struct HighestResult {
 /// Finds them. Heights at vertices are as stored; on the window's border they are interpolated,
 /// with the rounding of a few operations.
 /// @throws Error invalid_argument    the window is inverted or not finite; no vertex is asked for;
-/// as
-///               Detail
+///                                   as Detail
 ///               resource_exhausted, corruption, io_error, cancelled
 /// Cost: the pages and nodes whose height interval reaches above the last of the highest vertices:
 /// those around them, and coarse records that reach out to higher ground outside; n log n for n

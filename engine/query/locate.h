@@ -12,13 +12,10 @@
 #include <stop_token>
 #include <vector>
 
+#include "engine/query/point_state.h"
 #include "engine/query/progressive_tin.h"
 
 namespace ptin {
-
-/// What a point can be: over ground, over a void (the terrain has no height there), or outside of
-/// the domain. None is an error.
-enum class PointState : std::uint8_t { kSurface, kVoid, kOutside };
 
 struct LocateRequest {
   /// Certified error asked for, in the height's unit, >= 0. None: exact.

@@ -108,13 +108,12 @@ void check(const HighestResult& got, const HighestRequest& request, const Tin& t
     RC_ASSERT(sign * got.vertices[k].height == wanted.vertices[k]);
   }
   if (std::isinf(wanted.most)) {
-    RC_ASSERT(got.state ==
-              (wanted.domain ? HighestResult::State::kVoid : HighestResult::State::kOutside));
+    RC_ASSERT(got.state == (wanted.domain ? PointState::kVoid : PointState::kOutside));
     return;
   }
   RC_ASSERT(got.height_min <= got.point.height);
   RC_ASSERT(got.point.height <= got.height_max);
-  RC_ASSERT(got.state == HighestResult::State::kSurface);
+  RC_ASSERT(got.state == PointState::kSurface);
   RC_ASSERT(std::abs(sign * got.point.height - wanted.most) <= 1e-9);
   const MapPoint p = got.point.position;
   RC_ASSERT((w.min_x - 1e-9 <= p.x && p.x <= w.max_x + 1e-9));
@@ -177,7 +176,7 @@ TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
       request.tolerance = double(random() % 4000) / 100;
     }
     const HighestResult got = highest(terrain, request);
-    if (got.state != HighestResult::State::kSurface) continue;
+    if (got.state != PointState::kSurface) continue;
     const double sign = request.lowest ? -1.0 : 1.0;
     const double truth = sign * brute_force(full, facts, *request.window, sign).most;
     EXPECT_LE(got.height_min, truth);

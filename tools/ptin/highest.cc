@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "tools/error_status.h"
+#include "tools/ptin/answers.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
@@ -24,25 +25,13 @@ struct HighestOptions {
   std::string memory;
 };
 
-const char* state_name(HighestResult::State state) {
-  switch (state) {
-    case HighestResult::State::kSurface:
-      return "surface";
-    case HighestResult::State::kVoid:
-      return "void";
-    case HighestResult::State::kOutside:
-      break;
-  }
-  return "outside";
-}
-
 nlohmann::json position_json(const HeightAt& p) {
   return {{"x", p.position.x}, {"y", p.position.y}, {"height", p.height}};
 }
 
 void print_text(const HighestResult& result, const HighestOptions& options) {
-  if (result.state != HighestResult::State::kSurface) {
-    std::printf("%s\n", state_name(result.state));
+  if (result.state != PointState::kSurface) {
+    std::printf("%s\n", name_of(result.state));
     return;
   }
   std::printf("%s %.17g at %.17g %.17g (%s)\n", options.lowest ? "lowest" : "highest",
@@ -77,7 +66,7 @@ int run_highest(const HighestOptions& options, const Context& context) {
     return kExitDone;
   }
   nlohmann::json answer = {
-      {"state", state_name(result.state)},
+      {"state", name_of(result.state)},
       {"lowest", options.lowest},
       {"vertices", nlohmann::json::array()},
       {"certified_error", result.certified_error},
@@ -85,7 +74,7 @@ int run_highest(const HighestOptions& options, const Context& context) {
       {"exact", result.exact},
       {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
       {"cost", cost_json(result.cost)}};
-  if (result.state == HighestResult::State::kSurface) {
+  if (result.state == PointState::kSurface) {
     answer["point"] = position_json(result.point);
     answer["point"]["at_vertex"] = result.at_vertex;
     answer["point"]["height_min"] = result.height_min;
