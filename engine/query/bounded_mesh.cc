@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include "engine/geometry/infinity.h"
+
 namespace ptin {
 
 namespace {
@@ -13,8 +15,7 @@ constexpr std::uint32_t kRankOfT0 = std::uint32_t{1} << 16;  // above every reco
 
 BoundedMesh::BoundedMesh(const ProgressiveTin& terrain, const Detail& detail)
     : terrain_(terrain), detail_(detail), refinement_(terrain.t0()) {
-  constexpr double kAny = std::numeric_limits<double>::infinity();
-  const Made t0{-kAny, kAny, std::numeric_limits<float>::infinity(), kRankOfT0};
+  const Made t0{-kInfinity, kInfinity, std::numeric_limits<float>::infinity(), kRankOfT0};
   made_.assign(tin().vertices.size(), t0);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/geometry/infinity.h"
 #include "storage/error_table.h"
 
 namespace ptin {
@@ -20,8 +21,8 @@ Certificate of_finest(const StoreFile& store) {
 /// The largest float that is not above `v`: no stored error lies between them. REQUIRES: v >= 0.
 float rounded_down(double v) {
   if (v > std::numeric_limits<float>::max()) {
-    return v < std::numeric_limits<double>::infinity() ? std::numeric_limits<float>::max()
-                                                       : std::numeric_limits<float>::infinity();
+    return v < kInfinity ? std::numeric_limits<float>::max()
+                         : std::numeric_limits<float>::infinity();
   }
   const auto f = static_cast<float>(v);
   return f > v ? std::nextafter(f, 0.0F) : f;

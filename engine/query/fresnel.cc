@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "engine/geometry/infinity.h"
 #include "engine/query/fresnel_internal.h"
 
 namespace ptin {
@@ -40,7 +40,7 @@ double sign_change(const Parabola& c, double low, double high) {
 }  // namespace
 
 LeastRatio least_fresnel_ratio(double from, double c_from, double to, double c_to, double bend) {
-  LeastRatio least{std::numeric_limits<double>::infinity(), from};
+  LeastRatio least{kInfinity, from};
   const Parabola c = through(from, c_from, to, c_to, bend);
   const auto consider = [&](double s) {
     if (s > 0 && s < 1) {

@@ -16,7 +16,7 @@ constexpr std::size_t kFewSplits = 4096;  // not worth looking through
 void HighGatherer::start(std::size_t wanted) {
   wanted_ = wanted;
   found_ = 0;
-  most_ = kNothing;
+  most_ = -kInfinity;
   heap_.clear();
   splits_.clear();
   looked_through_ = 0;
@@ -40,7 +40,7 @@ std::uint64_t HighGatherer::held_bytes() const noexcept {
 
 double HighGatherer::bound(const Attributes& a) const {
   if (!predicate_.holds(a) || is_empty(a.heights)) {
-    return kNothing;
+    return -kInfinity;
   }
   return lowest_ ? -a.heights.lo : a.heights.hi;
 }
@@ -69,7 +69,7 @@ double HighGatherer::visit(PageId page) {
   context_.admit(refinement_bytes(splits_.size()) + heap_.capacity() * sizeof(HighCandidate) +
                  KeyTable::bytes_for(told_capacity_));
   // The next larger number: pages that reach no higher than the last of the best are not needed.
-  return std::nextafter(cut_off(), -kNothing);
+  return std::nextafter(cut_off(), kInfinity);
 }
 
 void HighGatherer::offer(GridPoint p, HeightBits height) {

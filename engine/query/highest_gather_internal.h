@@ -5,9 +5,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
+#include "engine/geometry/infinity.h"
 #include "engine/geometry/key_table.h"
 #include "engine/query/accounting.h"
 #include "engine/query/detail.h"
@@ -70,7 +70,6 @@ class HighGatherer final : public BestFirstVisitor {
     PendingSplit split;
     double bound;
   };
-  static constexpr double kNothing = -std::numeric_limits<double>::infinity();
   /// The order of the best, and of the heap whose top is the last of them.
   static bool is_better(const HighCandidate& a, const HighCandidate& b) noexcept {
     return a.value != b.value ? a.value > b.value : a.found < b.found;
@@ -79,7 +78,7 @@ class HighGatherer final : public BestFirstVisitor {
   void drop_what_ends_below();
   /// Nothing at or below this is wanted: the value of the last of the best.
   [[nodiscard]] double cut_off() const noexcept {
-    return heap_.size() == wanted_ ? heap_.front().value : kNothing;
+    return heap_.size() == wanted_ ? heap_.front().value : -kInfinity;
   }
 
   const StoreFile& store_;
@@ -90,7 +89,7 @@ class HighGatherer final : public BestFirstVisitor {
   QueryContext& context_;
   std::size_t wanted_ = 1;
   std::uint64_t found_ = 0;
-  double most_ = kNothing;  ///< The best value.
+  double most_ = -kInfinity;  ///< The best value.
   std::vector<HighCandidate> heap_;
   std::vector<Reaching> splits_;
   std::size_t looked_through_ = 0;  ///< Splits when they were last looked through.

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
+#include "engine/geometry/infinity.h"
 #include "engine/query/bounded_mesh.h"
 #include "engine/query/detail.h"
 #include "engine/query/retrieval.h"
@@ -138,7 +140,7 @@ void Locating::locate_exactly(std::span<const Ordered> group, std::span<const Pa
   Refinement refinement(terrain_.t0());
   refinement.apply(splits, context_);
   walk_group(refinement.tin(), group, [](TriangleId) {
-    return SurfaceBounds{0.0, {-INFINITY, INFINITY}};
+    return SurfaceBounds{0.0, {-kInfinity, kInfinity}};
   });
 }
 
