@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/fresnel_internal.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "engine/geometry/infinity.h"
-#include "engine/query/fresnel_internal.h"
 
 namespace ptin {
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight_search_internal.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "engine/geometry/infinity.h"
-#include "engine/query/sight_search_internal.h"
 
 namespace ptin {
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/viewshed_sweep_internal.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,7 +8,6 @@
 
 #include "engine/error.h"
 #include "engine/query/horizon.h"
-#include "engine/query/viewshed_sweep_internal.h"
 #include "engine/query/viewshed_walk_internal.h"
 
 namespace ptin {

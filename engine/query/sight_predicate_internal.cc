@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight_predicate_internal.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
-
-#include "engine/query/sight_predicate_internal.h"
 
 namespace ptin {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight_view_internal.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "engine/geometry/infinity.h"
-#include "engine/query/sight_view_internal.h"
 
 namespace ptin {
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/highest_gather_internal.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "engine/query/highest_gather_internal.h"
 #include "engine/query/refinement.h"
 
 namespace ptin {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/isoline_rings_internal.h"
+
 #include <algorithm>
 #include <numeric>
 
 #include "engine/check.h"
 #include "engine/error.h"
-#include "engine/query/isoline_rings_internal.h"
 
 namespace ptin {
 

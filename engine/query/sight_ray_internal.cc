@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight_ray_internal.h"
+
 #include <algorithm>
 #include <cstdint>
 
 #include <boost/multiprecision/cpp_int.hpp>
-
-#include "engine/query/sight_ray_internal.h"
 
 namespace ptin {
 
