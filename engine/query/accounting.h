@@ -15,8 +15,8 @@ namespace ptin {
 
 /// What an answer cost (promise P9). Counted in the query's own context.
 struct QueryCost {
-  std::uint64_t records_retrieved =
-      0;  ///< Records of the pages read for which the predicate is true.
+  /// Records of the pages read for which the predicate is true.
+  std::uint64_t records_retrieved = 0;
   std::uint64_t records_examined = 0;  ///< Records decoded and asked.
   std::uint64_t records_applied = 0;   ///< Splits made.
   IoCounters io;

@@ -34,7 +34,7 @@ class Detail {
   explicit Detail(const StoreFile& store) : certificate_(certify_below(store, -1.0)) {}
 
   /// @throws Error invalid_argument    tolerance negative or NaN; both given; fewer vertices than
-  /// T0
+  ///                                   T0
   ///               resource_exhausted  the last bin of errors exceeds the memory limit
   ///               corruption, io_error, cancelled
   /// Cost: none but for `vertices`: reads the pages with errors as large as the last vertex's, of

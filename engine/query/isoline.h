@@ -81,7 +81,7 @@ class Isolines {
 /// them.
 /// @throws Error invalid_argument    levels, window or tolerance mean nothing; as Detail
 ///               resource_exhausted  more than most_lines lines, told before any is handed out; a
-///               tile that cannot be made small enough; no room for points
+///                                   tile that cannot be made small enough; no room for points
 ///               corruption, io_error, cancelled
 /// Cost: records whose height interval holds a level; O(n log n) in the lines. With `vertices` that
 /// of finding the last one is added (detail.h).

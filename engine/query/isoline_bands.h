@@ -36,8 +36,10 @@ struct BandPolygon {
 /// Valid by the rules of OGC simple features, as long as neighbouring cuts are told apart by
 /// doubles: cuts closer to each other than about 1e-16 of a coordinate may fall together.
 /// @param levels  Ascending, each once.
-/// @throws Error resource_exhausted  more than the context's memory; cancelled
-/// Ordered by band. Cost: O(n log n) in triangles and cuts.
+/// Ordered by band.
+/// @throws Error resource_exhausted  more than the context's memory
+///               cancelled
+/// Cost: O(n log n) in triangles and cuts.
 [[nodiscard]] std::vector<BandPolygon> band_polygons(const SurfaceArrays& surface,
                                                      std::span<const double> levels,
                                                      const QueryContext& context);

@@ -44,7 +44,7 @@ struct TileTraces {
 /// mesh of everything is twice as slow; and halved on when their records (known from the index) or
 /// what is crossed (known before it is traced) do not fit. Pieces come in no order.
 /// @throws Error resource_exhausted  a tile that cannot be made small enough, too many pieces; says
-///               what would do
+///                                   what would do
 ///               corruption, io_error, cancelled; as PointStore::add
 [[nodiscard]] TileTraces trace_tiles(const ProgressiveTin& terrain, const TileTraceRequest& request,
                                      PointStore& points, QueryCost& cost);

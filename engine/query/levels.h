@@ -86,7 +86,7 @@ class LevelSet {
 /// The levels base + n * interval within [low, high], n an integer: as gdal_contour -i.
 /// None where all is void: low > high.
 /// @throws Error invalid_argument  interval not positive, a value not finite, |n| > 2^53, or more
-/// than kMostLevels levels
+///                                 than kMostLevels levels
 [[nodiscard]] std::vector<double> levels_at(double interval, double base, double low, double high);
 
 }  // namespace ptin

@@ -51,8 +51,8 @@ struct LocatedPoint {
 struct LocateResult {
   std::vector<LocatedPoint> points;  ///< In the order of the request.
   double certified_error = 0.0;      ///< Bound at every sample near a point.
-  double certified_deviation =
-      0.0;             ///< Bound at every point, both of whose TINs are surface there.
+  /// Bound at every point, both of whose TINs are surface there.
+  double certified_deviation = 0.0;
   bool exact = false;  ///< Nothing was left out, and the file's base error is 0.
   QueryCost cost;
 };
@@ -60,7 +60,7 @@ struct LocateResult {
 /// Locates points given in map units. Points are taken along the Hilbert curve in groups that share
 /// one refinement each.
 /// @throws Error invalid_argument    a coordinate is not finite (names the point); tolerance
-/// negative or NaN; as Detail
+///                                   negative or NaN; as Detail
 ///               resource_exhausted  one group of points, however small, exceeds the memory limit
 ///               corruption, io_error, cancelled
 /// Cost: one point: the records whose region of influence holds it, O(log n) of them in practice. A

@@ -46,12 +46,12 @@ using PredicatePtr = std::shared_ptr<const AttributePredicate>;
 /// @throws Error invalid_argument unless tolerance >= 0
 [[nodiscard]] PredicatePtr error_above(double tolerance);
 
-/// `heights` contains `height` (height's unit): what an isoline needs.  @throws Error
-/// invalid_argument when not finite
+/// `heights` contains `height` (height's unit): what an isoline needs.
+/// @throws Error invalid_argument when not finite
 [[nodiscard]] PredicatePtr contains_height(double height, const HeightEncoding& heights);
 
-/// `heights` meets [low, high] (height's unit).  @throws Error invalid_argument when NaN or
-/// inverted; infinite ends are fine
+/// `heights` meets [low, high] (height's unit); infinite ends are fine.
+/// @throws Error invalid_argument when NaN or inverted
 [[nodiscard]] PredicatePtr heights_meet(double low, double high, const HeightEncoding& heights);
 
 /// A level of detail that falls off with the distance from an eye.

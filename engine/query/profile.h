@@ -51,7 +51,7 @@ struct ProfileResult {
 /// Walks along polylines. Segments of no length are left out, and of several lines those without
 /// any length.
 /// @throws Error invalid_argument    no line has a length; a coordinate that is not finite, or more
-/// than 2^31 grid units away (names the line); as Detail
+///                                   than 2^31 grid units away (names the line); as Detail
 ///               resource_exhausted  one segment, or the points, exceed the memory limit
 ///               corruption, io_error, cancelled
 /// Cost: the records whose region of influence meets a line, each test of one the logarithm of the

@@ -56,11 +56,11 @@ struct RefinedTin {
   std::uint64_t void_vertices = 0;
   std::uint64_t triangles = 0;
   std::uint64_t t0_vertices = 0;
-  double certified_error =
-      0.0;  ///< Bound at every sample in the region (everywhere when there is none); >= base_error.
+  /// Bound at every sample in the region (everywhere when there is none); >= base_error.
+  double certified_error = 0.0;
   double certified_deviation = 0.0;  ///< Bound at any point, likewise.
-  bool exact =
-      false;  ///< Every triangle that meets the region is one of the full TIN, and base_error is 0.
+  /// Every triangle that meets the region is one of the full TIN, and base_error is 0.
+  bool exact = false;
   QueryCost cost;
 };
 
@@ -93,10 +93,12 @@ class ProgressiveTin {
   /// Refines T0: retrieves the records for which the request's predicate is true, sorts them by
   /// rank (counting sort), applies them. Exact (P1), certified (P2), valid (P3), closed and lean
   /// (P4), joined (P5).
-  /// @throws Error invalid_argument   tolerance negative or NaN; `vertices` below |T0|; both given;
-  /// region not finite
-  ///               resource_exhausted the index says that the answer exceeds memory_limit_bytes;
-  ///               names `export` corruption, io_error, cancelled
+  /// @throws Error invalid_argument    tolerance negative or NaN; `vertices` below |T0|; both
+  /// given;
+  ///                                   region not finite
+  ///               resource_exhausted  the index says that the answer exceeds memory_limit_bytes;
+  ///                                   names `export`
+  ///               corruption, io_error, cancelled
   /// Cost: k records retrieved: O(|T0| + k) time and memory; index pages usually O(k / B + log_B
   /// n).
   [[nodiscard]] RefinedTin refine(const RefineRequest& request) const;

@@ -39,8 +39,7 @@ class Refinement {
   /// Result: the TIN does not depend on the order of `splits` (the theorem), but its numbering
   /// does.
   /// @throws Error corruption  a vertex comes twice, or a record does not find its w, vl, vr and
-  /// fan; names page and vertex.
-  ///                           Throw the refinement away then.
+  ///                           fan; names page and vertex. Throw the refinement away then.
   ///               resource_exhausted  more triangles than 32 bits number
   ///               cancelled
   /// Cost: O(k + largest rank) expected time and memory for k splits of bounded degree.
@@ -51,7 +50,8 @@ class Refinement {
   /// stays (a collapse is the exact inverse of its split); the places of what went are used again
   /// by the next apply().
   /// @throws Error corruption  a collapse is not the inverse of its split: the records' attributes
-  /// are not saturated; names page and vertex. Throw the refinement away then.
+  ///                           are not saturated; names page and vertex. Throw the refinement away
+  ///                           then.
   ///               cancelled
   /// Cost: O(k + largest rank) expected for k splits of bounded degree.
   void undo(std::span<const PendingSplit> splits, QueryContext& context);

@@ -35,12 +35,14 @@ class StreamReader {
 
   /// Takes the next bytes, however they were cut, and applies every frame that is whole by now.
   /// @return How many were taken: all, unless the stream ended before. What is fed behind the end
-  /// of a stream is another one, which goes on from there.
-  /// @throws Error corruption  bytes that no program wrote (FORMAT.md, "A reader of streams must
-  /// reject"), a stream that does not go on from this mesh; names frame and byte. The mesh stays
-  /// valid, its certificate that of the last whole frame; nothing more can be fed.
+  ///         of a stream is another one, which goes on from there.
+  /// @throws Error corruption           bytes that no program wrote (FORMAT.md, "A reader of
+  ///                                    streams must reject"), a stream that does not go on from
+  ///                                    this mesh; names frame and byte. The mesh stays valid, its
+  ///                                    certificate that of the last whole frame; nothing more can
+  ///                                    be fed.
   ///               unsupported_version
-  ///               resource_exhausted  what comes would exceed the memory limit
+  ///               resource_exhausted   what comes would exceed the memory limit
   ///               cancelled
   /// Cost: linear in the bytes and, where stars are of bounded degree, in the splits; a stream that
   /// goes on from another costs O(n log n) on a mesh of n vertices, however few splits it brings

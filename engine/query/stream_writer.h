@@ -64,7 +64,8 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 /// Certificates are those of a refinement by `wanted` that is cut there: true where it was asked
 /// for (everywhere when it is all or a tolerance alone).
 /// @throws Error invalid_argument, resource_exhausted (before a page is read), corruption,
-/// io_error, cancelled; what `sink` throws Cost: k splits sent, h held: O(|T0| + h + k log k) time;
+///               io_error, cancelled; what `sink` throws
+/// Cost: k splits sent, h held: O(|T0| + h + k log k) time;
 /// memory for two meshes of h + k vertices, known beforehand.
 StreamSummary write_stream(const StoreFile& store, const StreamRequest& request,
                            const ByteSink& sink);

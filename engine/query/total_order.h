@@ -37,8 +37,8 @@ struct RecordPlace {
 /// The first records of the total order among those for which a predicate is true.
 struct FirstRecords {
   std::vector<PendingSplit> splits;
-  double largest_error_left =
-      -1.0;  ///< No record left out (for which the predicate is true) is above; -1: none is.
+  /// No record left out (for which the predicate is true) is above; -1: none is left out.
+  double largest_error_left = -1.0;
 };
 
 /// Finds the first `count` records, or all there are. Reads pages in order of falling largest

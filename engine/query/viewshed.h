@@ -97,8 +97,7 @@ struct Viewshed {
 /// certain, and voids of the level may hold ground of any of the terrain's heights. With curvature
 /// both are for certain up to the straightness of edges above.
 /// @throws Error invalid_argument    as Detail; the eye is outside of the terrain or on a void
-/// without an
-///               absolute height; a length means nothing
+///                                   without an absolute height; a length means nothing
 ///               resource_exhausted, corruption, io_error, cancelled
 /// Cost: linear in the triangles within the radius, and in practice a few pieces of horizon each;
 /// at a level of detail three times that.
