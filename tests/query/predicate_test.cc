@@ -12,6 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
+#include "engine/query/above_error.h"
 #include "tests/query/random_predicate.h"
 
 namespace ptin {
@@ -198,6 +199,17 @@ TEST(ErrorAbove, IsStrict) {
   EXPECT_FALSE(error_above(0.0)->holds(at(0, 0, 0, 0, 0.0)));
   EXPECT_TRUE(error_above(1e300)->holds(at(0, 0, 0, 0, kInfinity)));
   EXPECT_FALSE(error_above(kInfinity)->holds(at(0, 0, 0, 0, kInfinity)));
+}
+
+TEST(AboveError, SpeaksOfManyRecordsInCompositionsToo) {
+  const auto above = [](double bound) { return std::make_shared<AboveError>(bound); };
+  const PredicatePtr both = all_of({everything(), above(2.0)});
+  const auto* bounded = dynamic_cast<const BoundedPredicate*>(both.get());
+  ASSERT_NE(bounded, nullptr);
+  EXPECT_FALSE(bounded->holds_for_all(at(0, 0, 0, 0, 9.0), 2.0));
+  EXPECT_TRUE(bounded->holds_for_all(at(0, 0, 0, 0, 9.0), std::nextafter(2.0, 3.0)));
+  EXPECT_TRUE(above(-1.0)->holds(at(0, 0, 0, 0, 0.0)));
+  EXPECT_FALSE(above(kInfinity)->holds(at(0, 0, 0, 0, kInfinity)));
 }
 
 TEST(ContainsHeight, ComparesDecodedHeightsClosed) {
