@@ -6,24 +6,14 @@
 #include <cstdint>
 #include <utility>
 
+#include "engine/geometry/morton.h"
+
 namespace ptin {
 
 namespace {
 
-/// The bits of `v` with a zero after each. REQUIRES: v < 2^31.
-std::uint64_t spread_bits(std::uint32_t v) noexcept {
-  std::uint64_t x = v;
-  x = (x | (x << 16)) & 0x0000ffff0000ffffU;
-  x = (x | (x << 8)) & 0x00ff00ff00ff00ffU;
-  x = (x | (x << 4)) & 0x0f0f0f0f0f0f0f0fU;
-  x = (x | (x << 2)) & 0x3333333333333333U;
-  return (x | (x << 1)) & 0x5555555555555555U;
-}
-
-/// Place in the order of a quadtree (Morton order): siblings follow each other.
 std::uint64_t quadtree_order(GridPoint p) noexcept {
-  return spread_bits(static_cast<std::uint32_t>(p.x)) |
-         (spread_bits(static_cast<std::uint32_t>(p.y)) << 1);
+  return morton_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y));
 }
 
 bool is_alike(const Sample& a, const Sample& b) noexcept {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "engine/geometry/morton.h"
 #include "engine/query/refinement_internal.h"
 
 namespace ptin {
@@ -15,14 +16,6 @@ namespace {
 
 constexpr std::size_t kSplitsInCell = 4096;
 constexpr std::uint32_t kMostDepth = 8;
-
-/// Every second bit of the lower 16.
-constexpr std::uint32_t spread(std::uint32_t v) noexcept {
-  v = (v | (v << 8)) & 0x00FF00FFU;
-  v = (v | (v << 4)) & 0x0F0F0F0FU;
-  v = (v | (v << 2)) & 0x33333333U;
-  return (v | (v << 1)) & 0x55555555U;
-}
 
 /// A quadtree over where most splits are. What lies outside is moved to its border: that keeps a
 /// box within a larger one.
@@ -49,8 +42,8 @@ class Cells {
     const std::uint32_t differ =
         (low_x ^ column(box.max_x, origin_x_)) | (low_y ^ column(box.max_y, origin_y_));
     const auto above = static_cast<std::uint32_t>(std::bit_width(differ));
-    const std::uint32_t first = (spread(low_x >> above) | (spread(low_y >> above) << 1))
-                                << (2 * above);
+    const auto first = static_cast<std::uint32_t>(morton_position(low_x >> above, low_y >> above))
+                       << (2 * above);
     return (first << 4) | (depth_ - above);
   }
 
