@@ -9,10 +9,10 @@
 #include "engine/construct/hull_delaunay.h"
 #include "engine/construct/point_order_internal.h"
 #include "engine/construct/tin_border.h"
-#include "engine/construct/tin_link.h"
 #include "engine/construct/tin_mend.h"
 #include "engine/construct/void_sweep.h"
 #include "engine/error.h"
+#include "engine/mesh/link.h"
 
 namespace ptin {
 

@@ -3,12 +3,57 @@
 // Neighbours of triangles, and a triangle of each vertex, from corners alone.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
 #include "engine/mesh/tin.h"
 
 namespace ptin {
 
-/// Fills Triangle::n and Vertex::triangle.
-/// REQUIRES: counter-clockwise triangles of which no two lie on the same side of an edge.
+/// A side of a triangle, under the edge that it lies on.
+struct TriangleSide {
+  std::uint64_t edge;  ///< Its ends, the smaller one in the upper half.
+  TriangleId triangle;
+  std::uint32_t place;  ///< The corner opposite to it.
+};
+
+/// All sides of triangles 0 to `count` - 1, whose corner i is `corner(t, i)`.
+template <typename CornerOf>
+[[nodiscard]] std::vector<TriangleSide> sides_of(std::size_t count, const CornerOf& corner) {
+  std::vector<TriangleSide> sides;
+  sides.reserve(3 * count);
+  for (TriangleId t = 0; t < count; ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const VertexId a = corner(t, next_corner(i));
+      const VertexId b = corner(t, previous_corner(i));
+      sides.push_back({(std::uint64_t{std::min(a, b)} << 32) | std::max(a, b), t,
+                       static_cast<std::uint32_t>(i)});
+    }
+  }
+  return sides;
+}
+
+/// Calls `join(a, b)` for every two sides of one edge; of an edge with more, by pairs in the order
+/// of their triangles. Sorts `sides`. Cost: O(n log n).
+template <typename Join>
+void join_sides(std::vector<TriangleSide>& sides, const Join& join) {
+  std::sort(sides.begin(), sides.end(), [](const TriangleSide& a, const TriangleSide& b) {
+    return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle;
+  });
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    if (sides[i].edge == sides[i + 1].edge) {
+      join(sides[i], sides[i + 1]);
+      ++i;
+    }
+  }
+}
+
+/// Fills Triangle::n and Vertex::triangle, those of the border as invariant I6 asks (validate.h).
+/// Of triangles that do not fit together, as a damaged file may have them, the result is a mesh
+/// that validate() refuses.
+/// REQUIRES: no neighbour is set; corners are vertices.
 /// Cost: O(n log n); 16 bytes a side.
 void link_tin(Tin& tin);
 

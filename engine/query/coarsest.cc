@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/coarsest.h"
 
-#include <algorithm>
 #include <cstdint>
-#include <vector>
 
 #include "engine/error.h"
+#include "engine/mesh/link.h"
 #include "engine/mesh/validate.h"
 
 namespace ptin {
@@ -35,44 +34,12 @@ void copy_corners(const CoarsestTin& t0, const std::string& file, Tin& tin) {
   }
 }
 
-/// A side of a triangle under the key of its edge.
-struct Side {
-  std::uint64_t edge;
-  TriangleId triangle;
-  int side;
-};
-
-/// Joins the two sides of each edge. validate() finds edges that are not joined as they should be.
-void join_neighbours(Tin& tin) {
-  std::vector<Side> sides;
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    for (int i = 0; i < 3; ++i) {
-      const auto [low, high] =
-          std::minmax(tin.triangles[t].v[next_corner(i)], tin.triangles[t].v[previous_corner(i)]);
-      sides.push_back({(std::uint64_t{low} << 32) | high, t, i});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle;
-  });
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    const Side& a = sides[i];
-    const Side& b = sides[i + 1];
-    if (a.edge == b.edge) {
-      tin.triangles[a.triangle].n[a.side] = b.triangle;
-      tin.triangles[b.triangle].n[b.side] = a.triangle;
-      ++i;
-    }
-  }
-}
-
 }  // namespace
 
 Tin mesh_of(const CoarsestTin& t0, const std::string& file) {
   Tin tin;
   copy_corners(t0, file, tin);
-  join_neighbours(tin);
-  point_vertices(tin);
+  link_tin(tin);
   for (const Vertex& v : tin.vertices) {
     if (v.triangle == kNone) {
       throw_invalid("a vertex is in no triangle", file);

@@ -6,6 +6,7 @@
 
 #include "engine/check.h"
 #include "engine/error.h"
+#include "engine/mesh/link.h"
 
 namespace ptin {
 
@@ -62,34 +63,15 @@ std::uint32_t BandMesh::high(TriangleId t) const noexcept {
 }
 
 void BandMesh::find_neighbours(const QueryContext& context) {
-  struct Side {
-    std::uint64_t edge;
-    TriangleId triangle;
-    std::uint32_t side;
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * surface_.triangles.size());
-  for (TriangleId t = 0; t < surface_.triangles.size(); ++t) {
-    const auto& v = surface_.triangles[t];
-    for (int i = 0; i < 3; ++i) {
-      const auto [a, b] = std::minmax(v[next_corner(i)], v[previous_corner(i)]);
-      sides.push_back({(std::uint64_t{a} << 32) | b, t, static_cast<std::uint32_t>(i)});
-    }
-  }
-  context.check_stop();
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle;
+  std::vector<TriangleSide> sides = sides_of(surface_.triangles.size(), [&](TriangleId t, int i) {
+    return surface_.triangles[t][static_cast<std::size_t>(i)];
   });
+  context.check_stop();
   neighbours_.assign(surface_.triangles.size(), {kNone, kNone, kNone});
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    const Side& a = sides[i];
-    const Side& b = sides[i + 1];
-    if (a.edge == b.edge) {
-      neighbours_[a.triangle][a.side] = b.triangle;
-      neighbours_[b.triangle][b.side] = a.triangle;
-      ++i;
-    }
-  }
+  join_sides(sides, [&](const TriangleSide& a, const TriangleSide& b) {
+    neighbours_[a.triangle][a.place] = b.triangle;
+    neighbours_[b.triangle][b.place] = a.triangle;
+  });
 }
 
 std::uint32_t BandMesh::component(std::uint32_t piece) noexcept {

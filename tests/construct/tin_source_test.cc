@@ -12,10 +12,10 @@
 #include <gtest/gtest.h>
 
 #include "engine/construct/delaunay.h"
-#include "engine/construct/tin_link.h"
 #include "engine/construct/void_sweep.h"
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
+#include "engine/mesh/link.h"
 #include "engine/mesh/validate.h"
 #include "tests/construct/tin_fixture.h"
 
