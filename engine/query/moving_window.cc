@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/mesh/compact.h"
 #include "engine/query/coarsest.h"
 #include "engine/query/retrieval.h"
 
@@ -202,31 +203,9 @@ void MovingWindow::reset() {
 }
 
 Tin MovingWindow::compact_tin() const {
-  const Tin& from = refinement_.tin();
-  Tin tin;
-  std::vector<VertexId> vertex(from.vertices.size(), kNone);
-  std::vector<TriangleId> triangle(from.triangles.size(), kNone);
-  for (TriangleId t = 0, next = 0; t < from.triangles.size(); ++t) {
-    triangle[t] = from.is_alive(t) ? next++ : kNone;
-  }
-  for (VertexId v = 0; v < from.vertices.size(); ++v) {
-    if (from.vertices[v].triangle != kNone) {
-      vertex[v] = static_cast<VertexId>(tin.vertices.size());
-      tin.vertices.push_back(from.vertices[v]);
-      tin.vertices.back().triangle = triangle[from.vertices[v].triangle];
-      tin.has_height.push_back(from.has_height[v]);
-    }
-  }
-  for (TriangleId t = 0; t < from.triangles.size(); ++t) {
-    if (triangle[t] == kNone) {
-      continue;
-    }
-    const Triangle& old = from.triangles[t];
-    const auto renamed = [&](TriangleId n) { return n == kNone ? kNone : triangle[n]; };
-    tin.triangles.push_back({{vertex[old.v[0]], vertex[old.v[1]], vertex[old.v[2]]},
-                             {renamed(old.n[0]), renamed(old.n[1]), renamed(old.n[2])}});
-    tin.classes.push_back(from.classes[t]);
-  }
+  Tin tin = refinement_.tin();
+  compact_triangles(tin);
+  compact_vertices(tin);
   return tin;
 }
 
