@@ -168,9 +168,10 @@ Isolines ProgressiveIsolines::lines(const Tin& tin, const QueryContext& context)
     }
     crossings.begin.push_back(crossings.triangles.size());
   }
-  std::vector<MapPoint> points;
-  trace_crossings(tin, levels_, heights_, map_, crossings, context, result.pieces_, points);
-  result.points_.add(points);
+  TracedPieces traced;
+  trace_crossings({tin, levels_, heights_, map_}, crossings, context, traced);
+  result.pieces_ = std::move(traced.pieces);
+  result.points_.add(traced.points);
   result.lines_ = join_pieces(result.pieces_, context);
   drop_single_points(result.lines_, result.pieces_, result.points_);
   result.levels_ = levels_.heights();

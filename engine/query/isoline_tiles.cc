@@ -96,8 +96,8 @@ class Collected {
   Collected(PointStore& points, std::uint64_t piece_bytes, std::string file)
       : points_(points), most_pieces_(piece_bytes / kBytesAPiece), file_(std::move(file)) {}
 
-  void add(std::span<IsolinePiece> pieces, const std::vector<MapPoint>& points,
-           const TraceCounts& counts) {
+  void add(TracedPieces traced, const TraceCounts& counts) {
+    std::vector<IsolinePiece>& pieces = traced.pieces;
     const std::lock_guard lock(mutex_);
     if (all_.pieces.size() + pieces.size() > most_pieces_) {
       throw Error(ErrorCode::resource_exhausted,
@@ -109,7 +109,7 @@ class Collected {
     for (IsolinePiece& piece : pieces) {
       piece.first += points_.size();
     }
-    points_.add(points);
+    points_.add(traced.points);
     all_.pieces.insert(all_.pieces.end(), pieces.begin(), pieces.end());
     all_.counts.triangles += counts.triangles;
     all_.counts.vertices += counts.vertices;
@@ -204,16 +204,15 @@ class Worker {
   void trace_mesh(const GridBox& tile, std::uint64_t mesh_bytes) {
     const StoreFacts& facts = terrain_.store().facts();
     const TraceScope scope{tile, request_.region};
-    std::vector<IsolinePiece> pieces;
-    std::vector<MapPoint> points;
+    TracedPieces traced;
     const TraceResult result =
-        trace_isolines(refinement_.tin(), request_.levels, facts.heights, facts.map, scope,
-                       limit_ - std::min(limit_, mesh_bytes), context_, pieces, points);
+        trace_isolines({refinement_.tin(), request_.levels, facts.heights, facts.map}, scope,
+                       limit_ - std::min(limit_, mesh_bytes), context_, traced);
     if (!result.traced && may_halve(tile, mesh_bytes + result.bytes)) {
       queue_.put_halves(tile);
       return;
     }
-    collected_.add(pieces, points, result.counts);
+    collected_.add(std::move(traced), result.counts);
   }
 
   const ProgressiveTin& terrain_;

@@ -11,17 +11,16 @@ namespace {
 
 class Tracer {
  public:
-  Tracer(const Tin& tin, const LevelSet& levels, const HeightEncoding& heights,
-         const AffineMap& map, const Crossings& crossings, const QueryContext& context)
-      : tin_(tin),
-        levels_(levels),
-        heights_(heights),
-        map_(map),
+  Tracer(const TraceSource& source, const Crossings& crossings, const QueryContext& context)
+      : tin_(source.tin),
+        levels_(source.levels),
+        heights_(source.heights),
+        map_(source.map),
         crossings_(crossings),
         context_(context),
-        visited_(tin.triangles.size()) {}
+        visited_(source.tin.triangles.size()) {}
 
-  void trace(std::vector<IsolinePiece>& pieces, std::vector<MapPoint>& points);
+  void trace(TracedPieces& out);
 
  private:
   struct Step {
@@ -40,8 +39,7 @@ class Tracer {
   /// The cut of the edge from `below` to `above`.
   [[nodiscard]] Step cut(VertexId below, VertexId above, std::uint32_t level) const noexcept;
   void trace_from(TriangleId start, std::uint32_t level, bool ring);
-  void emit(std::uint32_t level, bool ring, std::vector<IsolinePiece>& pieces,
-            std::vector<MapPoint>& points);
+  void emit(std::uint32_t level, bool ring, TracedPieces& out);
 
   const Tin& tin_;
   const LevelSet& levels_;
@@ -85,8 +83,8 @@ void Tracer::trace_from(TriangleId start, std::uint32_t level, bool ring) {
   } while (is_traced(t) && t != start);
 }
 
-void Tracer::emit(std::uint32_t level, bool ring, std::vector<IsolinePiece>& pieces,
-                  std::vector<MapPoint>& points) {
+void Tracer::emit(std::uint32_t level, bool ring, TracedPieces& out) {
+  std::vector<MapPoint>& points = out.points;
   auto smallest = std::min_element(steps_.begin(), steps_.end(),
                                    [](const Step& a, const Step& b) { return a.edge < b.edge; });
   IsolinePiece piece;
@@ -111,10 +109,10 @@ void Tracer::emit(std::uint32_t level, bool ring, std::vector<IsolinePiece>& pie
     }
   }
   piece.count = static_cast<std::uint32_t>(points.size() - piece.first);
-  pieces.push_back(piece);
+  out.pieces.push_back(piece);
 }
 
-void Tracer::trace(std::vector<IsolinePiece>& pieces, std::vector<MapPoint>& points) {
+void Tracer::trace(TracedPieces& out) {
   for (std::uint32_t level = 0; level < levels_.size(); ++level) {
     context_.check_stop();
     const auto crossed = std::span(crossings_.triangles)
@@ -130,7 +128,7 @@ void Tracer::trace(std::vector<IsolinePiece>& pieces, std::vector<MapPoint>& poi
         sides(tin_.triangles[t], level, entry, exit);
         if (ring || !is_traced(tin_.triangles[t].n[entry])) {
           trace_from(t, level, ring);
-          emit(level, ring, pieces, points);
+          emit(level, ring, out);
         }
       }
     }
@@ -139,19 +137,18 @@ void Tracer::trace(std::vector<IsolinePiece>& pieces, std::vector<MapPoint>& poi
 
 }  // namespace
 
-void trace_crossings(const Tin& tin, const LevelSet& levels, const HeightEncoding& heights,
-                     const AffineMap& map, const Crossings& crossings, const QueryContext& context,
-                     std::vector<IsolinePiece>& pieces, std::vector<MapPoint>& points) {
-  Tracer(tin, levels, heights, map, crossings, context).trace(pieces, points);
+void trace_crossings(const TraceSource& source, const Crossings& crossings,
+                     const QueryContext& context, TracedPieces& out) {
+  Tracer(source, crossings, context).trace(out);
 }
 
-TraceResult trace_isolines(const Tin& tin, const LevelSet& levels, const HeightEncoding& heights,
-                           const AffineMap& map, const TraceScope& scope, std::uint64_t most_bytes,
-                           const QueryContext& context, std::vector<IsolinePiece>& pieces,
-                           std::vector<MapPoint>& points) {
-  const FoundCrossings found = find_crossings(tin, levels, heights, scope, most_bytes, context);
+TraceResult trace_isolines(const TraceSource& source, const TraceScope& scope,
+                           std::uint64_t most_bytes, const QueryContext& context,
+                           TracedPieces& out) {
+  const FoundCrossings found =
+      find_crossings(source.tin, source.levels, source.heights, scope, most_bytes, context);
   if (found.found) {
-    trace_crossings(tin, levels, heights, map, found.crossings, context, pieces, points);
+    trace_crossings(source, found.crossings, context, out);
   }
   return {found.found, found.bytes, found.counts};
 }
