@@ -21,7 +21,7 @@ struct BuiltTerrain {
     options.max_error = max_error;
     BuildResources resources;
     resources.overwrite = true;
-    build({std::string(PTIN_TEST_DATA) + "/" + name}, path, options, resources);
+    build({PTIN_TEST_DATA "/" + name}, path, options, resources);
     terrain = std::make_unique<ProgressiveTin>(ProgressiveTin::open(path));
   }
   ~BuiltTerrain() {
