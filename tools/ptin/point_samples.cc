@@ -1,80 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points as text for `verify --against`: three numbers a line, x y z, apart by blanks, tabs, commas
-// or semicolons; a first line that names columns x, y and z (or lon, lat; easting, northing;
-// height, elevation) chooses them.
+// Points for `verify --against`.
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <map>
 
 #include "engine/error.h"
 #include "engine/geometry/point.h"
 #include "tools/ptin/source_samples.h"
+#include "tools/ptin/text_samples.h"
 
 namespace ptin::tools {
 
 namespace {
 
-std::vector<std::string> words_of(const std::string& line) {
-  std::vector<std::string> words;
-  std::string word;
-  for (const char c : line + " ") {
-    if (c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r' || c == '"') {
-      if (!word.empty()) words.push_back(word);
-      word.clear();
-    } else {
-      word += c;
-    }
-  }
-  return words;
-}
-
-std::optional<double> number_of(const std::string& word) {
-  double value = 0.0;
-  const char* first = word.data() + (word.front() == '+' ? 1 : 0);
-  const auto [end, status] = std::from_chars(first, word.data() + word.size(), value);
-  if (status != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return value;
-}
-
-/// Which columns a header names; the first three when it does not.
-std::array<std::size_t, 3> columns_of(const std::vector<std::string>& header) {
-  constexpr std::array<std::array<const char*, 5>, 3> kNames = {
-      {{"x", "lon", "longitude", "easting", "east"},
-       {"y", "lat", "latitude", "northing", "north"},
-       {"z", "height", "elevation", "elev", "h"}}};
-  std::array<std::size_t, 3> columns{0, 1, 2};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < header.size(); ++i) {
-      std::string name = header[i];
-      std::transform(name.begin(), name.end(), name.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-      if (std::find(kNames[axis].begin(), kNames[axis].end(), name) != kNames[axis].end())
-        columns[axis] = i;
-    }
-  }
-  return columns;
-}
-
-/// What the reader of this file takes: anything that is not known as LAS, packed text or a layer.
-bool is_plain_text(const std::string& path) {
-  std::string name = path;
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return !name.ends_with(".las") && !name.ends_with(".laz") && !name.ends_with(".gz") &&
-         (is_point_file(path) || !is_point_input(path, {}));
-}
+/// What the reader of text takes: anything that is not known as LAS, a TIN or a layer.
+bool is_text(const std::string& path) { return is_point_text(path) || !is_point_input(path, {}); }
 
 class PointSamples final : public SourceSamples {
  public:
   PointSamples(const std::vector<std::string>& paths, const StoreFile& store)
       : heights_(store.facts().heights), choices_(choices_of(store)) {
     for (const std::string& path : paths) {
-      if (is_plain_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
-        read_file(path, store.facts());
+      if (is_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
+        read_text(path, store.facts());
       } else {
         read_stream(path, store.facts());
       }
@@ -82,10 +30,6 @@ class PointSamples final : public SourceSamples {
     std::sort(samples_.begin(), samples_.end(),
               [](const Sample& a, const Sample& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
     merge();
-  }
-
-  [[nodiscard]] const std::vector<std::string>& misfits() const noexcept override {
-    return misfits_;
   }
 
   [[nodiscard]] SampleWindow read(const GridBox& box) override {
@@ -100,7 +44,7 @@ class PointSamples final : public SourceSamples {
   }
 
  private:
-  void read_file(const std::string& path, const StoreFacts& facts);
+  void read_text(const std::string& path, const StoreFacts& facts);
   void read_stream(const std::string& path, const StoreFacts& facts);
   void add(const std::array<double, 3>& p, const StoreFacts& facts, const std::string& where);
   void merge();
@@ -119,36 +63,22 @@ class PointSamples final : public SourceSamples {
   HeightEncoding heights_;
   SampleChoices choices_;
   std::vector<Sample> samples_;  ///< By y, then x.
-  std::vector<std::string> misfits_;
 };
 
-void PointSamples::read_file(const std::string& path, const StoreFacts& facts) {
-  std::ifstream in(path);
-  if (!in) throw Error(ErrorCode::io_error, "cannot be read", path);
-  std::string line;
-  std::array<std::size_t, 3> columns{0, 1, 2};
-  bool first = true;
-  std::size_t found = 0;
-  for (std::size_t number = 1; std::getline(in, line); ++number) {
-    const std::vector<std::string> words = words_of(line);
-    if (words.empty() || words[0][0] == '#') continue;
-    std::array<double, 3> point{};
-    bool fits = true;
-    for (std::size_t axis = 0; axis < 3 && fits; ++axis) {
-      const auto value =
-          columns[axis] < words.size() ? number_of(words[columns[axis]]) : std::nullopt;
-      fits = value.has_value();
-      point[axis] = value.value_or(0.0);
+void PointSamples::read_text(const std::string& path, const StoreFacts& facts) {
+  TextSamples text(path);
+  TextSamples::Line line;
+  bool is_empty = true;
+  while (text.next(line)) {
+    const std::string where = path + ":" + std::to_string(line.number);
+    is_empty = false;
+    if (line.misfit.empty()) {
+      add(line.point, facts, where);
+    } else {
+      misfits_.add(where + ": " + line.misfit);
     }
-    if (fits) {
-      add(point, facts, path + ":" + std::to_string(number));
-      ++found;
-    } else if (first) {
-      columns = columns_of(words);
-    }
-    first = false;
   }
-  if (found == 0) {
+  if (is_empty) {
     throw Error(ErrorCode::invalid_argument,
                 "neither a raster that GDAL reads nor points as lines of x y z", path);
   }
@@ -174,8 +104,7 @@ void PointSamples::add(const std::array<double, 3>& p, const StoreFacts& facts,
   const auto y = std::llround(grid.y);
   const GridBox& b = facts.bounds;
   if (x < b.min_x || x > b.max_x || y < b.min_y || y > b.max_y) {
-    if (!choices_.bbox && misfits_.size() < 10)
-      misfits_.push_back(where + ": this point lies outside of the terrain");
+    if (!choices_.bbox) misfits_.add(where + ": this point lies outside of the terrain");
     return;
   }
   samples_.push_back({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), p[2], false});

@@ -40,9 +40,6 @@ class RasterSamples final : public SourceSamples {
     compare_extent(store.facts().bounds);
   }
 
-  [[nodiscard]] const std::vector<std::string>& misfits() const noexcept override {
-    return misfits_;
-  }
   [[nodiscard]] SampleWindow read(const GridBox& box) override;
 
  private:
@@ -52,7 +49,6 @@ class RasterSamples final : public SourceSamples {
 
   std::vector<RasterFile> files_;
   SampleChoices choices_;
-  std::vector<std::string> misfits_;
 };
 
 /// Where the middle of the first pixel, and the next, lie on the grid.
@@ -74,10 +70,9 @@ void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
                                std::abs(first.y - static_cast<double>(file.first_y)),
                                std::abs(last.x - expected_x), std::abs(last.y - expected_y)});
   if (t[2] != 0 || t[4] != 0 || off > 0.02) {
-    misfits_.push_back(
-        file.path +
-        ": its samples do not stand on the grid of the terrain; they are off by up to " +
-        short_number(off) + " grid units");
+    misfits_.add(file.path +
+                 ": its samples do not stand on the grid of the terrain; they are off by up to " +
+                 short_number(off) + " grid units");
   }
 }
 
@@ -101,9 +96,8 @@ void RasterSamples::compare_extent(const GridBox& bounds) {
     return std::to_string(a) + " " + std::to_string(b) + " to " + std::to_string(c) + " " +
            std::to_string(d);
   };
-  misfits_.push_back("the source covers grid points " + box(low_x, low_y, high_x, high_y) +
-                     ", the terrain " +
-                     box(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y));
+  misfits_.add("the source covers grid points " + box(low_x, low_y, high_x, high_y) +
+               ", the terrain " + box(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y));
 }
 
 SampleWindow RasterSamples::read(const GridBox& box) {

@@ -2,13 +2,14 @@
 //
 // The samples of a source on a terrain's grid, for `verify --against`: read with GDAL and a text
 // reader of its own, so that nothing is shared with the builder that is being verified; only LAS,
-// packed text and layers come through the builder's readers.
+// TINs and layers come through the builder's readers.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -44,6 +45,17 @@ struct SampleWindow {
   bool is_grid = false;  ///< One sample at each grid point of `box`, row 0 in the south.
 };
 
+/// What is wrong with a source as a whole.
+struct Misfits {
+  static constexpr std::size_t kKept = 1000;
+  std::vector<std::string> first;  ///< In words, at most kKept.
+  std::uint64_t count = 0;
+
+  void add(std::string what) {
+    if (count++ < kKept) first.push_back(std::move(what));
+  }
+};
+
 class SourceSamples {
  public:
   SourceSamples() = default;
@@ -53,9 +65,11 @@ class SourceSamples {
 
   /// Samples in the closed box; grid points outside of every file are void.  @throws Error io_error
   [[nodiscard]] virtual SampleWindow read(const GridBox& box) = 0;
-  /// Everything wrong with the source as a whole: other grid, other extent. Empty when it fits the
-  /// store.
-  [[nodiscard]] virtual const std::vector<std::string>& misfits() const noexcept = 0;
+  /// Other grid, other extent, lines that are no points. None when the source fits the store.
+  [[nodiscard]] const Misfits& misfits() const noexcept { return misfits_; }
+
+ protected:
+  Misfits misfits_;
 };
 
 /// Opens rasters, or points as text.

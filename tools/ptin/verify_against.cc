@@ -136,7 +136,9 @@ std::vector<GridBox> Verifier::windows() {
 }
 
 AgainstReport Verifier::run() {
-  for (const std::string& misfit : source_.misfits()) fault(nullptr, misfit);
+  const Misfits& misfits = source_.misfits();
+  for (const std::string& misfit : misfits.first) fault(nullptr, misfit);
+  report_.fault_count += misfits.count - misfits.first.size();
   const std::vector<GridBox> boxes = windows();
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (options_.stop.stop_requested())
