@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
@@ -32,18 +31,23 @@ Error exists_already(const std::string& path) {
           "exists already; give another name, or --overwrite to replace it", path};
 }
 
+/// Syncs what was written; some file systems cannot, and there is nothing more to do there.
+int sync_content(FileLayer& files, int fd) {
+  const int failure = files.sync(fd);
+  return failure == EINVAL || failure == EROFS ? 0 : failure;
+}
+
 /// Renames in one step, and syncs the folder.
-void rename_into_place(const std::string& from, const std::string& to, bool overwrite) {
-  const unsigned flags = overwrite ? 0U : static_cast<unsigned>(RENAME_NOREPLACE);
-  int renamed = renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags);
-  if (renamed != 0 && errno == EEXIST) throw exists_already(to);
-  if (renamed != 0 && errno == EINVAL)
-    renamed = rename(from.c_str(), to.c_str());  // file system without it
-  if (renamed != 0) throw system_error(errno, "cannot rename the finished output", to);
-  const int folder = open(folder_of(to).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder >= 0) {
-    fsync(folder);
-    close(folder);
+void rename_into_place(FileLayer& files, const std::string& from, const std::string& to,
+                       bool overwrite) {
+  int failure = files.rename(from, to, overwrite);
+  if (failure == EEXIST) throw exists_already(to);
+  if (failure != 0) throw system_error(failure, "cannot rename the finished output", to);
+  failure = files.sync_folder(folder_of(to));
+  if (failure != 0) {
+    throw system_error(
+        failure, "the file is complete, but its name may not survive a power cut: cannot sync",
+        folder_of(to));
   }
 }
 
@@ -66,8 +70,8 @@ void check_output(const std::string& path, bool overwrite) {
   }
 }
 
-OutputFile::OutputFile(std::string path, bool overwrite)
-    : path_(std::move(path)), overwrite_(overwrite) {
+OutputFile::OutputFile(std::string path, bool overwrite, FileLayer& files)
+    : files_(files), path_(std::move(path)), overwrite_(overwrite) {
   check_output(path_, overwrite_);
   temporary_ = path_ + ".tmp" + std::to_string(getpid());
   fd_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -115,24 +119,24 @@ void OutputFile::replace(std::uint64_t offset, std::string_view bytes) {
 
 void OutputFile::publish() {
   flush();
-  if (fsync(fd_) != 0 && errno != EINVAL && errno != EROFS)
-    throw system_error(errno, "cannot sync", path_);
+  const int failure = sync_content(files_, fd_);
+  if (failure != 0) throw system_error(failure, "cannot sync", path_);
   const int closed = close(fd_);
   fd_ = -1;
   if (closed != 0) throw system_error(errno, "cannot close", path_);
-  rename_into_place(temporary_, path_, overwrite_);
+  rename_into_place(files_, temporary_, path_, overwrite_);
   temporary_.clear();
 }
 
-void move_into_place(const std::string& from, const std::string& to, bool overwrite) {
-  const int file = open(from.c_str(), O_RDWR | O_CLOEXEC);
-  if (file < 0) throw system_error(errno, "cannot open the finished output", from);
-  const int synced = fsync(file);
-  const int reason = errno;
-  close(file);
-  if (synced != 0 && reason != EINVAL && reason != EROFS)
-    throw system_error(reason, "cannot sync", to);
-  rename_into_place(from, to, overwrite);
+void move_into_place(const std::string& from, const std::string& to, bool overwrite,
+                     FileLayer& files) {
+  int fd = -1;
+  int failure = files.open(from, fd);
+  if (failure != 0) throw system_error(failure, "cannot open the finished output", from);
+  failure = sync_content(files, fd);
+  static_cast<void>(files.close(fd));
+  if (failure != 0) throw system_error(failure, "cannot sync", to);
+  rename_into_place(files, from, to, overwrite);
 }
 
 }  // namespace ptin::tools

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "storage/file_layer.h"
+
 namespace ptin::tools {
 
 /// The folder of a file's name; "." when it has none.
@@ -21,15 +23,17 @@ void check_output(const std::string& path, bool overwrite);
 
 /// Syncs the finished file `from` and gives it the name `to`, in one step; `from` is in the same
 /// file system.
-/// @throws Error io_error; invalid_argument when `to` exists and `overwrite` is off
-void move_into_place(const std::string& from, const std::string& to, bool overwrite);
+/// @throws Error io_error (also when the folder cannot be synced: the file has its name then);
+/// invalid_argument when `to` exists and `overwrite` is off
+void move_into_place(const std::string& from, const std::string& to, bool overwrite,
+                     FileLayer& files = FileLayer::system());
 
 /// Writes beside the target under a temporary name; publish() syncs and renames. Destroyed without
 /// publish(), it removes what it wrote: the target's name never shows a part.
 class OutputFile {
  public:
   /// @throws Error  as check_output; io_error when the folder is not writable
-  OutputFile(std::string path, bool overwrite);
+  OutputFile(std::string path, bool overwrite, FileLayer& files = FileLayer::system());
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();
@@ -47,13 +51,15 @@ class OutputFile {
   /// @throws Error as write
   void replace(std::uint64_t offset, std::string_view bytes);
 
-  /// Makes the file appear under its name.  @throws Error resource_exhausted, io_error;
-  /// invalid_argument when the target appeared meanwhile and `overwrite` is off
+  /// Makes the file appear under its name.  @throws Error resource_exhausted, io_error (also when
+  /// the folder cannot be synced: the file has its name then); invalid_argument when the target
+  /// appeared meanwhile and `overwrite` is off
   void publish();
 
  private:
   void flush();
 
+  FileLayer& files_;
   std::string path_;
   std::string temporary_;
   bool overwrite_;
