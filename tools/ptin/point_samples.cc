@@ -6,8 +6,10 @@
 
 #include "engine/error.h"
 #include "engine/geometry/point.h"
+#include "tools/ptin/sorted_samples.h"
 #include "tools/ptin/source_samples.h"
 #include "tools/ptin/text_samples.h"
+#include "tools/stop.h"
 
 namespace ptin::tools {
 
@@ -18,122 +20,91 @@ bool is_text(const std::string& path) { return is_point_text(path) || !is_point_
 
 class PointSamples final : public SourceSamples {
  public:
-  PointSamples(const std::vector<std::string>& paths, const StoreFile& store)
-      : heights_(store.facts().heights), choices_(choices_of(store)) {
+  PointSamples(const std::vector<std::string>& paths, const StoreFile& store,
+               const SampleResources& resources)
+      : facts_(store.facts()), choices_(choices_of(store)), samples_(facts_, resources.memory) {
     for (const std::string& path : paths) {
       if (is_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
-        read_text(path, store.facts());
+        read_text(path, resources.stop);
       } else {
-        read_stream(path, store.facts());
+        read_stream(path, resources);
       }
     }
-    std::sort(samples_.begin(), samples_.end(),
-              [](const Sample& a, const Sample& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
-    merge();
+    samples_.sort(resources.stop);
   }
 
+  [[nodiscard]] std::uint64_t count(const GridBox& box) override { return samples_.count(box); }
   [[nodiscard]] SampleWindow read(const GridBox& box) override {
     SampleWindow window;
     window.box = box;
-    const auto row = [](const Sample& s, std::int32_t y) { return s.y < y; };
-    auto it = std::lower_bound(samples_.begin(), samples_.end(), box.min_y, row);
-    for (; it != samples_.end() && it->y <= box.max_y; ++it) {
-      if (it->x >= box.min_x && it->x <= box.max_x) window.samples.push_back(*it);
-    }
+    window.samples = samples_.read(box);
+    std::sort(window.samples.begin(), window.samples.end(),
+              [](const Sample& a, const Sample& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
     return window;
   }
 
  private:
-  void read_text(const std::string& path, const StoreFacts& facts);
-  void read_stream(const std::string& path, const StoreFacts& facts);
-  void add(const std::array<double, 3>& p, const StoreFacts& facts, const std::string& where);
-  void merge();
-  /// Whole codes, so that sums are exact; heights where the store keeps floats.
-  [[nodiscard]] double code_of(double height) const {
-    return heights_.type == HeightType::int32
-               ? std::nearbyint((height - heights_.offset) / heights_.step)
-               : height;
-  }
-  [[nodiscard]] double rounded_mean(double sum, std::size_t count) const {
-    const double mean = sum / static_cast<double>(count);
-    return heights_.type == HeightType::int32 ? heights_.height_of_code(std::nearbyint(mean))
-                                              : mean;
-  }
+  void read_text(const std::string& path, const std::stop_token& stop);
+  void read_stream(const std::string& path, const SampleResources& resources);
+  void add(const std::array<double, 3>& p, const std::string& path, const char* what,
+           std::uint64_t number);
 
-  HeightEncoding heights_;
+  const StoreFacts& facts_;
   SampleChoices choices_;
-  std::vector<Sample> samples_;  ///< By y, then x.
+  SortedSamples samples_;
 };
 
-void PointSamples::read_text(const std::string& path, const StoreFacts& facts) {
+void PointSamples::read_text(const std::string& path, const std::stop_token& stop) {
+  constexpr std::uint64_t kLinesBetweenLooks = 4096;
   TextSamples text(path);
   TextSamples::Line line;
-  bool is_empty = true;
+  std::uint64_t lines = 0;
   while (text.next(line)) {
-    const std::string where = path + ":" + std::to_string(line.number);
-    is_empty = false;
+    if (lines++ % kLinesBetweenLooks == 0) stop_if_asked(stop, "verification");
     if (line.misfit.empty()) {
-      add(line.point, facts, where);
+      add(line.point, path, ":", line.number);
     } else {
-      misfits_.add(where + ": " + line.misfit);
+      misfits_.add(path + ":" + std::to_string(line.number) + ": " + line.misfit);
     }
   }
-  if (is_empty) {
+  if (lines == 0) {
     throw Error(ErrorCode::invalid_argument,
                 "neither a raster that GDAL reads nor points as lines of x y z", path);
   }
 }
 
-void PointSamples::read_stream(const std::string& path, const StoreFacts& facts) {
-  const auto stream = open_point_stream(path, choices_.points, choices_.nodata);
+void PointSamples::read_stream(const std::string& path, const SampleResources& resources) {
+  const auto stream = open_point_stream(path, choices_.points, choices_.nodata,
+                                        {&resources.memory, resources.stop, {}});
   std::vector<SourcePoint> batch;
   std::uint64_t number = 0;
   while (stream->next(batch)) {
-    for (const SourcePoint& p : batch) {
-      add({to_double(p.x), to_double(p.y), to_double(p.z)}, facts,
-          path + ": point " + std::to_string(++number));
-    }
+    stop_if_asked(resources.stop, "verification");
+    for (const SourcePoint& p : batch)
+      add({to_double(p.x), to_double(p.y), to_double(p.z)}, path, ": point ", ++number);
   }
 }
 
-void PointSamples::add(const std::array<double, 3>& p, const StoreFacts& facts,
-                       const std::string& where) {
+void PointSamples::add(const std::array<double, 3>& p, const std::string& path, const char* what,
+                       std::uint64_t number) {
   if (choices_.nodata && p[2] == *choices_.nodata) return;
-  const MapPoint grid = facts.map.to_grid({p[0], p[1]});
-  const auto x = std::llround(grid.x);
-  const auto y = std::llround(grid.y);
-  const GridBox& b = facts.bounds;
-  if (x < b.min_x || x > b.max_x || y < b.min_y || y > b.max_y) {
-    if (!choices_.bbox) misfits_.add(where + ": this point lies outside of the terrain");
-    return;
+  const MapPoint grid = facts_.map.to_grid({p[0], p[1]});
+  const double x = std::round(grid.x);
+  const double y = std::round(grid.y);
+  const GridBox& b = facts_.bounds;
+  if (x >= b.min_x && x <= b.max_x && y >= b.min_y && y <= b.max_y) {
+    samples_.add({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)}, p[2]);
+  } else if (!choices_.bbox) {
+    misfits_.add(path + what + std::to_string(number) + ": this point lies outside of the terrain");
   }
-  samples_.push_back({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), p[2], false});
-}
-
-/// Points on one grid point count as one, at their mean height, rounded as heights are stored, as
-/// the builder documents.
-void PointSamples::merge() {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < samples_.size();) {
-    std::size_t end = i;
-    double sum = 0.0;
-    while (end < samples_.size() && samples_[end].x == samples_[i].x &&
-           samples_[end].y == samples_[i].y) {
-      sum += code_of(samples_[end++].height);
-    }
-    samples_[kept] = samples_[i];
-    if (end - i > 1) samples_[kept].height = rounded_mean(sum, end - i);
-    ++kept;
-    i = end;
-  }
-  samples_.resize(kept);
 }
 
 }  // namespace
 
 std::unique_ptr<SourceSamples> open_point_samples(const std::vector<std::string>& paths,
-                                                  const StoreFile& store) {
-  return std::make_unique<PointSamples>(paths, store);
+                                                  const StoreFile& store,
+                                                  const SampleResources& resources) {
+  return std::make_unique<PointSamples>(paths, store, resources);
 }
 
 }  // namespace ptin::tools

@@ -41,6 +41,10 @@ class RasterSamples final : public SourceSamples {
   }
 
   [[nodiscard]] SampleWindow read(const GridBox& box) override;
+  [[nodiscard]] std::uint64_t count(const GridBox& box) override {
+    return static_cast<std::uint64_t>(std::int64_t{box.max_x} - box.min_x + 1) *
+           static_cast<std::uint64_t>(std::int64_t{box.max_y} - box.min_y + 1);
+  }
 
  private:
   void place(RasterFile& file, const StoreFacts& facts);

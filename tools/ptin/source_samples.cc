@@ -44,14 +44,15 @@ SampleChoices choices_of(const StoreFile& store) {
 }
 
 std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
-                                            const StoreFile& store) {
+                                            const StoreFile& store,
+                                            const SampleResources& resources) {
   for (const std::string& path : paths) {
     if (path.rfind("/vsi", 0) != 0 && !std::filesystem::exists(path)) {
       throw Error(ErrorCode::not_found, "no such file", path);
     }
   }
   std::unique_ptr<SourceSamples> samples = open_raster_samples(paths, store);
-  return samples ? std::move(samples) : open_point_samples(paths, store);
+  return samples ? std::move(samples) : open_point_samples(paths, store, resources);
 }
 
 }  // namespace ptin::tools

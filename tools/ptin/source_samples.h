@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/external_sorter.h"
 #include "engine/construct/point_stream.h"
 #include "engine/geometry/box.h"
 #include "storage/store_file.h"
@@ -64,7 +66,10 @@ class SourceSamples {
   virtual ~SourceSamples() = default;
 
   /// Samples in the closed box; grid points outside of every file are void.  @throws Error io_error
+  /// Memory: what it returns.
   [[nodiscard]] virtual SampleWindow read(const GridBox& box) = 0;
+  /// How many read() would return.  @throws Error io_error
+  [[nodiscard]] virtual std::uint64_t count(const GridBox& box) = 0;
   /// Other grid, other extent, lines that are no points. None when the source fits the store.
   [[nodiscard]] const Misfits& misfits() const noexcept { return misfits_; }
 
@@ -72,15 +77,23 @@ class SourceSamples {
   Misfits misfits_;
 };
 
-/// Opens rasters, or points as text.
-/// @throws Error not_found, invalid_argument
+/// What reading a source may take. Rasters are read by the window and need none of it.
+struct SampleResources {
+  ExternalMemory memory;  ///< Points are sorted in it, and in its folder where they do not fit.
+  std::stop_token stop;
+};
+
+/// Opens rasters, or points of any kind; points are read here, once.
+/// @throws Error not_found, invalid_argument, io_error, resource_exhausted (disk full), cancelled
 [[nodiscard]] std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
-                                                          const StoreFile& store);
+                                                          const StoreFile& store,
+                                                          const SampleResources& resources);
 
 /// The two kinds; open_samples() chooses. A raster is null when GDAL does not know the file as one.
 [[nodiscard]] std::unique_ptr<SourceSamples> open_raster_samples(
     const std::vector<std::string>& paths, const StoreFile& store);
 [[nodiscard]] std::unique_ptr<SourceSamples> open_point_samples(
-    const std::vector<std::string>& paths, const StoreFile& store);
+    const std::vector<std::string>& paths, const StoreFile& store,
+    const SampleResources& resources);
 
 }  // namespace ptin::tools

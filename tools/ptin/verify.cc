@@ -11,6 +11,7 @@
 
 #include "engine/mesh/validate.h"
 #include "tools/error_status.h"
+#include "tools/output_file.h"
 #include "tools/progress.h"
 #include "tools/ptin/answers.h"
 #include "tools/ptin/error_stats.h"
@@ -26,6 +27,7 @@ struct VerifyCommand {
   TerrainOptions terrain;
   std::vector<std::string> against;
   std::vector<double> tolerances;
+  std::string memory, tmp;
   std::size_t faults = 20;
 };
 
@@ -106,7 +108,12 @@ std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
 
 void verify_source(const VerifyCommand& command, const ProgressiveTin& terrain,
                    const Context& context, Progress& progress, Findings& findings) {
-  const std::unique_ptr<SourceSamples> source = open_samples(command.against, terrain.store());
+  constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
+  const ExternalMemory memory{FileLayer::system(),
+                              command.tmp.empty() ? folder_of(command.terrain.file) : command.tmp,
+                              memory_limit_of(command.memory, kMemory)};
+  const std::unique_ptr<SourceSamples> source =
+      open_samples(command.against, terrain.store(), {memory, context.stop});
   AgainstOptions options;
   options.tolerances = tolerances_of(command, terrain.store());
   options.listed_faults = command.faults;
@@ -215,6 +222,13 @@ Action declare_verify(CLI::App& app, Context& context) {
                  "Tolerances to check against the source (default: 0 and four more)")
       ->check(CLI::NonNegativeNumber)
       ->type_name("E");
+  app.add_option("--memory", command->memory,
+                 "Memory to sort the points of the source in, as 512M or 2G (default 1G)")
+      ->type_name("SIZE");
+  app.add_option("--tmp", command->tmp,
+                 "Folder for temporary files of points that do not fit (default: beside FILE)")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
   app.add_option("--faults", command->faults, "List at most this many faults")
       ->capture_default_str()
       ->type_name("N");

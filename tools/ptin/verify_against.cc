@@ -10,7 +10,9 @@
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/scan_triangle.h"
+#include "tools/ptin/sorted_samples.h"
 #include "tools/ptin/void_depth.h"
+#include "tools/stop.h"
 
 namespace ptin::tools {
 
@@ -109,26 +111,19 @@ std::vector<GridBox> Verifier::windows() {
   std::vector<GridBox> open{facts_.bounds};
   const bool is_grid = source_.read(box_of({facts_.bounds.min_x, facts_.bounds.min_y})).is_grid;
   while (!open.empty()) {
+    stop_if_asked(options_.stop, "verification");
     const GridBox box = open.back();
     open.pop_back();
     const std::int64_t width = std::int64_t{box.max_x} - box.min_x;
     const std::int64_t height = std::int64_t{box.max_y} - box.min_y;
-    const bool small = is_grid ? std::max(width, height) < options_.window_side
-                               : std::max(width, height) < 2 || source_.read(box).samples.size() <=
-                                                                    options_.samples_per_window;
+    const bool small =
+        is_grid ? std::max(width, height) < options_.window_side
+                : std::max(width, height) < 2 || source_.count(box) <= options_.samples_per_window;
     if (small) {
       boxes.push_back(box);
       continue;
     }
-    GridBox low = box;
-    GridBox high = box;
-    if (width >= height) {
-      low.max_x = static_cast<std::int32_t>(box.min_x + width / 2);
-      high.min_x = low.max_x + 1;
-    } else {
-      low.max_y = static_cast<std::int32_t>(box.min_y + height / 2);
-      high.min_y = low.max_y + 1;
-    }
+    const auto [low, high] = halves_of(box);
     open.push_back(high);
     open.push_back(low);
   }
@@ -141,8 +136,7 @@ AgainstReport Verifier::run() {
   report_.fault_count += misfits.count - misfits.first.size();
   const std::vector<GridBox> boxes = windows();
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (options_.stop.stop_requested())
-      throw Error(ErrorCode::cancelled, "verification was stopped");
+    stop_if_asked(options_.stop, "verification");
     if (options_.progress) options_.progress(i, boxes.size());
     check_window(boxes[i]);
   }

@@ -49,7 +49,8 @@ struct AgainstOptions {
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;
 };
 
-/// Checks every window of the terrain. Memory: one window.
+/// Checks every window of the terrain. Memory: one window and a box for each; `source` has its own
+/// (SampleResources).
 /// @throws Error  as refine() and SourceSamples::read
 [[nodiscard]] AgainstReport verify_against(const ProgressiveTin& terrain, SourceSamples& source,
                                            const AgainstOptions& options);
