@@ -85,6 +85,35 @@ TEST(DrawRelief, IsDarkAwayFromTheLightAndGreyInVoids) {
   EXPECT_EQ(raster.classes[raster.place(5, 5)], PixelClass::kSurface);
 }
 
+/// What is refused before anything is read or drawn, and drawing that is stopped.
+TEST(Render, KnowsItsMemoryAndCanBeStopped) {
+  const testing::TestFolder folder;
+  const std::string store = testing::built(folder, "ground_points.csv");
+  const auto draw = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"render", store, "-o", folder.file("a.png")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return testing::run_ptin(arguments);
+  };
+  const auto large = draw({"--size", "32768", "32768"});
+  EXPECT_EQ(large.status, 7) << large.err;
+  EXPECT_NE(large.err.find("a picture of 32768 x 32768 pixels takes 32.0 GiB, and 4.00 GiB are"),
+            std::string::npos)
+      << large.err;
+  EXPECT_EQ(draw({"--size", "400", "400", "--memory", "4M"}).status, 7);
+  EXPECT_EQ(draw({"--size", "400", "400", "--memory", "64M"}).status, 0);
+  std::stop_source stop;
+  stop.request_stop();
+  StoreFacts facts;
+  const RefinedTin refined = slope(facts, false);
+  const View view = make_view({0, 0, 10, 10}, false, 50, 50);
+  Image image(50, 50, {0, 0, 0});
+  EXPECT_THROW(static_cast<void>(rasterize(refined, facts, view, stop.get_token())), Error);
+  EXPECT_THROW(static_cast<void>(
+                   draw_relief(rasterize(refined, facts, view), view, 1, {}, stop.get_token())),
+               Error);
+  EXPECT_THROW(draw_wireframe(image, refined, facts, view, stop.get_token()), Error);
+}
+
 TEST(DrawLine, IsOnePixelWideInSum) {
   for (const double y1 : {10.0, 14.0, 30.0}) {
     Image image(40, 40, {0, 0, 0});

@@ -26,7 +26,7 @@ struct RenderOptions {
   bool wireframe = false;
   bool pages = false;
   bool no_legend = false;
-  std::string output;
+  std::string memory, output;
   bool overwrite = false;
 };
 
@@ -53,6 +53,24 @@ double share_of(const Window& w, const Window& whole) {
   const double height = std::min(w.max_y, whole.max_y) - std::max(w.min_y, whole.min_y);
   if (width <= 0 || height <= 0) return 0.0;
   return width * height / ((whole.max_x - whole.min_x) * (whole.max_y - whole.min_y));
+}
+
+constexpr int kSupersampling = 2;
+
+/// Memory that is left for the TIN beside the picture.
+/// @throws Error resource_exhausted  the picture alone takes more
+std::uint64_t memory_beside_picture(const RenderOptions& options, const View& view) {
+  const std::uint64_t limit = memory_limit_of(options.memory);
+  // Pixels of the relief, then those of the picture; making it a PNG takes less.
+  const std::uint64_t bytes =
+      static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height) *
+      (kSupersampling * kSupersampling * raster_bytes_per_pixel(options.pages) + sizeof(Colour));
+  if (bytes < limit) return limit - bytes;
+  throw Error(ErrorCode::resource_exhausted,
+              "a picture of " + std::to_string(view.width) + " x " + std::to_string(view.height) +
+                  " pixels takes " + human_bytes(bytes) + ", and " + human_bytes(limit) +
+                  " are allowed; give a smaller --size or more --memory",
+              options.output);
 }
 
 /// None (the full TIN) where it has at most a few vertices a pixel; else the smallest round
@@ -89,6 +107,17 @@ int reach_for(const StoreFacts& facts, const View& view) {
   return static_cast<int>(std::clamp(std::round(spacing), 1.0, 12.0));
 }
 
+Image draw(const RenderOptions& options, const RefinedTin& refined, const StoreFacts& facts,
+           const View& view, const std::stop_token& stop, ReliefStyle& style) {
+  const TerrainRaster raster = rasterize(refined, facts, supersampled(view, kSupersampling), stop);
+  const bool shows_facets = options.wireframe || options.pages;
+  style = choose_style(raster, view, options.pages,
+                       shows_facets ? 1 : reach_for(facts, view) * kSupersampling);
+  Image image = draw_relief(raster, view, kSupersampling, style, stop);
+  if (options.wireframe) draw_wireframe(image, refined, facts, view, stop);
+  return image;
+}
+
 int run_render(const RenderOptions& options, const Context& context) {
   check_options(options);
   const ProgressiveTin terrain = open_terrain(options.terrain);
@@ -102,6 +131,7 @@ int run_render(const RenderOptions& options, const Context& context) {
       make_view(window, crs.geographic, sized ? options.size[0] : 0, sized ? options.size[1] : 0);
 
   RefineRequest request;
+  request.memory_limit_bytes = memory_beside_picture(options, view);
   if (region) request.region = visible_window(view);
   request.tolerance = options.error
                           ? options.error
@@ -110,15 +140,8 @@ int run_render(const RenderOptions& options, const Context& context) {
   request.page_of_triangle = options.pages;
   request.stop = context.stop;
   const RefinedTin refined = terrain.refine(request);
-
-  constexpr int kSupersampling = 2;
-  const TerrainRaster raster =
-      rasterize(refined, store.facts(), supersampled(view, kSupersampling));
-  const ReliefStyle style = choose_style(
-      raster, view, options.pages,
-      options.wireframe || options.pages ? 1 : reach_for(store.facts(), view) * kSupersampling);
-  Image image = draw_relief(raster, view, kSupersampling, style);
-  if (options.wireframe) draw_wireframe(image, refined, store.facts(), view);
+  ReliefStyle style;
+  Image image = draw(options, refined, store.facts(), view, context.stop, style);
   if (!options.no_legend) draw_legend(image, view, style, unit_of(crs));
   write_png(image, options.output, options.overwrite);
 
@@ -166,6 +189,7 @@ Action declare_render(CLI::App& app, Context& context) {
   app.add_option("-o,--output", options->output, "The .png file to write")
       ->type_name("OUT.png")
       ->required();
+  add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
   add_common_options(app, context, true);
   return [options, &context] { return run_render(*options, context); };

@@ -7,6 +7,9 @@
 #include <cstdio>
 #include <string_view>
 
+#include "engine/query/accounting.h"
+#include "tools/stop.h"
+
 namespace ptin::tools {
 
 namespace {
@@ -150,13 +153,14 @@ void draw_line(Image& image, double x0, double y0, double x1, double y1, const C
 }
 
 void draw_wireframe(Image& image, const RefinedTin& refined, const StoreFacts& facts,
-                    const View& view) {
+                    const View& view, const std::stop_token& stop) {
   const Tin& tin = refined.tin;
   const auto pixel = [&](VertexId v) {
     const MapPoint p = facts.map.to_map(tin.position(v).x, tin.position(v).y);
     return std::array<double, 2>{view.pixel_x(p.x), view.pixel_y(p.y)};
   };
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (t % kStopInterval == 0) stop_if_asked(stop, "drawing");
     for (int i = 0; i < 3; ++i) {
       const TriangleId other = tin.triangles[t].n[i];
       if (other != kNone && other < t) continue;

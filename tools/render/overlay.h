@@ -3,6 +3,7 @@
 // What is drawn over the relief: the edges of the triangles, and a legend.
 #pragma once
 
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -23,9 +24,9 @@ void draw_text(Image& image, int x, int y, std::string_view text);
 [[nodiscard]] int text_width(std::string_view text);
 
 /// Every edge of the TIN once. Opacity falls where edges are closer than a few pixels, so that
-/// dense parts stay legible.
+/// dense parts stay legible.  @throws Error cancelled
 void draw_wireframe(Image& image, const RefinedTin& refined, const StoreFacts& facts,
-                    const View& view);
+                    const View& view, const std::stop_token& stop = {});
 
 /// A scale bar and, when colours tell heights, the colours with their lowest and highest height; in
 /// the lower left corner.

@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "engine/query/accounting.h"
+#include "tools/stop.h"
+
 namespace ptin::tools {
 
 namespace {
@@ -42,7 +45,8 @@ void scan(std::array<Corner, 3> c, int width, int height, const Fill& fill) {
 
 }  // namespace
 
-TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts, const View& view) {
+TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts, const View& view,
+                        const std::stop_token& stop) {
   TerrainRaster raster;
   raster.width = view.width;
   raster.height = view.height;
@@ -54,6 +58,7 @@ TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts, cons
   if (has_pages) raster.pages.assign(pixels, kNone);
   const Tin& tin = refined.tin;
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (t % kStopInterval == 0) stop_if_asked(stop, "drawing");
     const bool is_void = tin.classes[t] == TriangleClass::kVoid;
     std::array<Corner, 3> corners{};
     for (std::size_t i = 0; i < 3; ++i) {

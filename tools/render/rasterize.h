@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "engine/query/progressive_tin.h"
@@ -28,8 +29,15 @@ struct TerrainRaster {
 };
 
 /// Scans every triangle of `refined` over the pixels of `view`. A pixel whose middle lies on an
-/// edge belongs to one of its two triangles. Cost: triangles plus pixels.
+/// edge belongs to one of its two triangles. Cost: triangles plus pixels; memory:
+/// raster_bytes_per_pixel().
+/// @throws Error cancelled
 [[nodiscard]] TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts,
-                                      const View& view);
+                                      const View& view, const std::stop_token& stop = {});
+
+/// Memory of a TerrainRaster, for each pixel.
+[[nodiscard]] constexpr std::uint64_t raster_bytes_per_pixel(bool has_pages) {
+  return sizeof(float) + sizeof(PixelClass) + (has_pages ? sizeof(std::uint32_t) : 0);
+}
 
 }  // namespace ptin::tools

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/mesh/tin.h"
+#include "tools/stop.h"
 
 namespace ptin::tools {
 
@@ -139,11 +140,12 @@ Colour height_colour(float height, const ReliefStyle& style) {
 }
 
 Image draw_relief(const TerrainRaster& raster, const View& view, int factor,
-                  const ReliefStyle& style) {
+                  const ReliefStyle& style, const std::stop_token& stop) {
   Image image(view.width, view.height, kBackground);
   const double ground = view.ground_per_pixel() / factor;
   const float share = 1.0F / static_cast<float>(factor * factor);
   for (int y = 0; y < view.height; ++y) {
+    stop_if_asked(stop, "drawing");
     for (int x = 0; x < view.width; ++x) {
       Colour sum{0, 0, 0};
       for (int k = 0; k < factor * factor; ++k) {

@@ -3,6 +3,8 @@
 // Shaded relief: light from the north-west, 45 degrees high, over colours by height or by page.
 #pragma once
 
+#include <stop_token>
+
 #include "tools/render/image.h"
 #include "tools/render/rasterize.h"
 #include "tools/render/view.h"
@@ -31,7 +33,8 @@ struct ReliefStyle {
 
 /// Draws `raster` (of supersampled(view, factor)) into an image of `view`. Voids are light grey and
 /// hatched, water (flat at height 0) is blue, what lies outside of the terrain is white.
+/// @throws Error cancelled
 [[nodiscard]] Image draw_relief(const TerrainRaster& raster, const View& view, int factor,
-                                const ReliefStyle& style);
+                                const ReliefStyle& style, const std::stop_token& stop = {});
 
 }  // namespace ptin::tools
