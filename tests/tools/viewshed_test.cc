@@ -89,5 +89,14 @@ TEST_F(ViewshedCommand, CountsItsRasterBeforeItTakesIt) {
   EXPECT_EQ(run({"--pixel-size", "0"}, "seen.tif").status, 2);
 }
 
+TEST_F(ViewshedCommand, KnowsItsFormatsBeforeItLooks) {
+  for (const char* name : {"x.g", "x.", "x", "x.,"}) {
+    const Outcome outcome = run_ptin({"viewshed", folder_.file("missing.ptin"), "0", "0", "5",
+                                      "--radius", "20", "-o", folder_.file(name)});
+    EXPECT_EQ(outcome.status, 2) << name << outcome.err;
+    EXPECT_NE(outcome.err.find("the name must end in"), std::string::npos) << outcome.err;
+  }
+}
+
 }  // namespace
 }  // namespace ptin::tools

@@ -2,7 +2,7 @@
 #include "tools/export/gdal_output.h"
 
 #include <cpl_error.h>
-#include <gdal.h>
+#include <gdal_priv.h>
 #include <sys/statvfs.h>
 
 #include "tools/output_file.h"
@@ -24,6 +24,19 @@ Error gdal_failure(const std::string& action, const std::string& path, bool was_
             action + ": the disk is full; make room or choose another folder", path};
   }
   return {ErrorCode::io_error, said.empty() ? action : action + ": " + said, path};
+}
+
+void require_done(CPLErr result, const std::string& action, const std::string& path) {
+  if (result != CE_None) throw gdal_failure(action, path);
+}
+
+GDALDriver& driver_named(const char* name) {
+  GDALDriver* found = GetGDALDriverManager()->GetDriverByName(name);
+  if (found == nullptr) {
+    throw Error(ErrorCode::io_error,
+                std::string("GDAL has no driver ").append(name).append("; install a full GDAL"));
+  }
+  return *found;
 }
 
 GdalCacheLimit::GdalCacheLimit(std::uint64_t bytes) : before_(GDALGetCacheMax64()) {

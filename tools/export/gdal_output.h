@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What GDAL says when it cannot write, as our own errors; and how much it may keep in memory.
+// What GDAL says when it cannot write, as our own errors; its drivers; and how much it may keep in
+// memory.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
+#include <cpl_error.h>
+
 #include "engine/error.h"
+
+class GDALDriver;
 
 namespace ptin::tools {
 
@@ -18,6 +23,12 @@ namespace ptin::tools {
 
 /// True when the disk of `path` has next to no room. Asked before GDAL tidies up after a failure.
 [[nodiscard]] bool is_disk_full(const std::string& path);
+
+/// @throws Error as gdal_failure()  when GDAL refused what `action` says
+void require_done(CPLErr result, const std::string& action, const std::string& path);
+
+/// A driver of GDAL's.  @throws Error io_error  this GDAL was built without it
+[[nodiscard]] GDALDriver& driver_named(const char* name);
 
 /// Sets GDAL's block cache for the time that it lives.
 class GdalCacheLimit {

@@ -52,13 +52,9 @@ class OgrSink final : public TinSink {
  public:
   OgrSink(const SinkTarget& target, const char* driver_name, bool has_index, bool has_transactions)
       : pending_(target.path, target.overwrite), has_transactions_(has_transactions) {
-    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
-    if (driver == nullptr) {
-      throw Error(ErrorCode::invalid_argument,
-                  std::string("this GDAL was built without ") + driver_name, target.path);
-    }
+    GDALDriver& driver = driver_named(driver_name);
     CPLErrorReset();
-    dataset_.reset(driver->Create(pending_.temporary().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    dataset_.reset(driver.Create(pending_.temporary().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
     if (!dataset_) throw gdal_failure("cannot create the output", pending_.path());
     OGRSpatialReference srs;
     srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);

@@ -190,22 +190,23 @@ void check_creation_options(GDALDriver* driver, const CPLStringList& options,
 
 GDALDatasetUniquePtr create(const PendingFile& file, const PixelGrid& grid,
                             const RasterTarget& target, const StoreFacts& facts) {
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  GDALDriver& driver = driver_named("GTiff");
   const CPLStringList options = options_of(target, false);
-  check_creation_options(driver, options, target.path);
+  check_creation_options(&driver, options, target.path);
   CPLErrorReset();
-  GDALDatasetUniquePtr dataset(driver->Create(
+  GDALDatasetUniquePtr dataset(driver.Create(
       file.temporary().c_str(), static_cast<int>(grid.columns()), static_cast<int>(grid.rows()), 1,
       type_for(facts), const_cast<char**>(options.List())));
   if (!dataset) throw gdal_failure("cannot create the raster", target.path);
   auto transform = grid.geotransform();
-  dataset->SetGeoTransform(transform.data());
+  require_done(dataset->SetGeoTransform(transform.data()), "cannot place the raster", target.path);
   OGRSpatialReference srs;
   srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  if (!target.crs.wkt.empty() && srs.importFromWkt(target.crs.wkt.c_str()) == OGRERR_NONE)
-    dataset->SetSpatialRef(&srs);
+  if (!target.crs.wkt.empty() && srs.importFromWkt(target.crs.wkt.c_str()) == OGRERR_NONE) {
+    require_done(dataset->SetSpatialRef(&srs), "cannot give the raster its CRS", target.path);
+  }
   GDALRasterBand* band = dataset->GetRasterBand(1);
-  band->SetNoDataValue(target.nodata);
+  require_done(band->SetNoDataValue(target.nodata), "cannot set the nodata value", target.path);
   if (target.crs.vertical_unit != "unknown") band->SetUnitType(target.crs.vertical_unit.c_str());
   return dataset;
 }
@@ -229,17 +230,15 @@ struct CopyProgress {
 
 void copy_as_cog(const PendingFile& raw, const PendingFile& file, const RasterTarget& target,
                  CopyProgress& progress) {
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
-  if (driver == nullptr)
-    throw Error(ErrorCode::invalid_argument, "this GDAL was built without COG", target.path);
+  GDALDriver& driver = driver_named("COG");
   CPLErrorReset();
   const GDALDatasetUniquePtr source(GDALDataset::Open(raw.temporary().c_str(), GDAL_OF_RASTER));
   if (!source) throw gdal_failure("cannot read the raster back", target.path);
   const CPLStringList options = options_of(target, true);
-  check_creation_options(driver, options, target.path);
-  GDALDatasetUniquePtr copy(driver->CreateCopy(file.temporary().c_str(), source.get(), FALSE,
-                                               const_cast<char**>(options.List()),
-                                               &CopyProgress::tell, &progress));
+  check_creation_options(&driver, options, target.path);
+  GDALDatasetUniquePtr copy(driver.CreateCopy(file.temporary().c_str(), source.get(), FALSE,
+                                              const_cast<char**>(options.List()),
+                                              &CopyProgress::tell, &progress));
   if (progress.stop.stop_requested())
     throw Error(ErrorCode::cancelled, "the export was cancelled", target.path);
   if (!copy || CPLGetLastErrorType() >= CE_Failure)

@@ -100,13 +100,19 @@ std::string known_vector_extensions() {
   return known;
 }
 
+const VectorFormat* find_vector_format(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".json") return &kGeoJson;
+  for (const VectorFormat& f : kVectorFormats) {
+    if (extension == std::string(".").append(f.extension)) return &f;
+  }
+  return nullptr;
+}
+
 const VectorFormat& vector_format_of(const std::string& path) {
   if (path == "-") return kGeoJson;
+  if (const VectorFormat* format = find_vector_format(path)) return *format;
   const std::string extension = lower_extension(path);
-  if (extension == ".json") return kGeoJson;
-  for (const VectorFormat& f : kVectorFormats) {
-    if (extension == std::string(".").append(f.extension)) return f;
-  }
   const std::string what = extension.empty() ? std::string("the name has no extension")
                                              : std::string("unknown extension ").append(extension);
   throw Error(ErrorCode::invalid_argument,
@@ -133,14 +139,10 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     target = (fs::path(folder_) / wanted.filename()).string();
   }
   try {
-    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(format.driver);
-    if (driver == nullptr) {
-      throw Error(ErrorCode::io_error, std::string("this GDAL has no driver ") + format.driver,
-                  path_);
-    }
+    GDALDriver& driver = driver_named(format.driver);
     const UnsafeSqlite unsafe;
     CPLErrorReset();
-    dataset_.reset(driver->Create(target.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    dataset_.reset(driver.Create(target.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
     const std::unique_ptr<OGRSpatialReference> reference = reference_of(layer.crs_wkt);
     if (dataset_) {
       layer_ = dataset_->CreateLayer(layer.name, reference.get(), layer.geometry, nullptr);

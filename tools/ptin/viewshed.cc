@@ -56,9 +56,7 @@ void check_options(const ViewshedOptions& options) {
     throw Error(ErrorCode::invalid_argument, "the output must be a file: .tif for a raster, " +
                                                  known_vector_extensions() + " for vertices");
   }
-  const std::string extension = lower_extension(options.output);
-  if (!is_raster(options.output) && extension != ".json" &&
-      (extension.empty() || known_vector_extensions().find(extension) == std::string::npos)) {
+  if (!is_raster(options.output) && find_vector_format(options.output) == nullptr) {
     throw Error(ErrorCode::invalid_argument,
                 "the name must end in .tif for a raster, or in one of " +
                     known_vector_extensions() + " for vertices",
@@ -69,19 +67,22 @@ void check_options(const ViewshedOptions& options) {
 
 void write_raster(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt) {
   PendingFile pending(options.output, options.overwrite);
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   const char* creation[] = {"COMPRESS=DEFLATE", "TILED=YES", "BIGTIFF=IF_SAFER", nullptr};
   const int width = static_cast<int>(seen.width);
   const int height = static_cast<int>(seen.height);
-  GDALDatasetUniquePtr file(driver->Create(pending.temporary().c_str(), width, height, 1, GDT_Byte,
-                                           const_cast<char**>(creation)));
+  GDALDatasetUniquePtr file(driver_named("GTiff").Create(
+      pending.temporary().c_str(), width, height, 1, GDT_Byte, const_cast<char**>(creation)));
   if (!file) throw gdal_failure("cannot create the raster", options.output);
   double transform[6] = {seen.first.x - seen.step_x / 2, seen.step_x, 0,
                          seen.first.y + seen.step_y / 2, 0,           -seen.step_y};
-  file->SetGeoTransform(transform);
-  if (!wkt.empty()) file->SetProjection(wkt.c_str());
+  require_done(file->SetGeoTransform(transform), "cannot place the raster", options.output);
+  if (!wkt.empty()) {
+    require_done(file->SetProjection(wkt.c_str()), "cannot give the raster its CRS",
+                 options.output);
+  }
   GDALRasterBand* band = file->GetRasterBand(1);
-  band->SetNoDataValue(static_cast<double>(Sight::kNothing));
+  require_done(band->SetNoDataValue(static_cast<double>(Sight::kNothing)),
+               "cannot set the nodata value", options.output);
   // The mesh is gone by now: half of what was for it does for GDAL.
   const std::uint64_t memory = request_memory(options);
   const GdalCacheLimit cache(std::clamp<std::uint64_t>(memory / 2, kLeastCache, kMostCache));

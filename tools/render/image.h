@@ -39,7 +39,7 @@ struct Image {
 };
 
 /// Writes `image` as PNG, whole or not at all.
-/// @throws Error  as OutputFile; internal when GDAL has no PNG driver
+/// @throws Error  as OutputFile; io_error when GDAL has no PNG driver
 void write_png(const Image& image, const std::string& path, bool overwrite);
 
 }  // namespace ptin::tools

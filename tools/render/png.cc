@@ -7,6 +7,7 @@
 #include <gdal_priv.h>
 
 #include "engine/error.h"
+#include "tools/export/gdal_output.h"
 #include "tools/output_file.h"
 #include "tools/render/image.h"
 
@@ -14,19 +15,10 @@ namespace ptin::tools {
 
 namespace {
 
-GDALDriver& driver(const char* name) {
-  GDALDriver* found = GetGDALDriverManager()->GetDriverByName(name);
-  if (found == nullptr) {
-    throw Error(ErrorCode::internal,
-                std::string("GDAL has no driver ").append(name).append("; install a full GDAL"));
-  }
-  return *found;
-}
-
 using DatasetPtr = std::unique_ptr<GDALDataset, decltype(&GDALClose)>;
 
 DatasetPtr dataset_of(const Image& image) {
-  DatasetPtr data(driver("MEM").Create("", image.width, image.height, 3, GDT_Byte, nullptr),
+  DatasetPtr data(driver_named("MEM").Create("", image.width, image.height, 3, GDT_Byte, nullptr),
                   GDALClose);
   std::vector<std::uint8_t> row(static_cast<std::size_t>(image.width));
   for (int y = 0; data && y < image.height; ++y) {
@@ -54,7 +46,7 @@ void write_png(const Image& image, const std::string& path, bool overwrite) {
   std::string name = "/vsimem/ptin_picture_";
   name.append(std::to_string(reinterpret_cast<std::uintptr_t>(&image)));
   const DatasetPtr png(
-      data ? driver("PNG").CreateCopy(name.c_str(), data.get(), 0, nullptr, nullptr, nullptr)
+      data ? driver_named("PNG").CreateCopy(name.c_str(), data.get(), 0, nullptr, nullptr, nullptr)
            : nullptr,
       GDALClose);
   if (png) png->FlushCache();
