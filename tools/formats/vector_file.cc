@@ -52,10 +52,16 @@ std::unique_ptr<OGRSpatialReference> reference_of(const std::string& wkt) {
   return reference;
 }
 
+OGRFieldType ogr_type(VectorFile::FieldType type) {
+  if (type == VectorFile::FieldType::kReal) return OFTReal;
+  return type == VectorFile::FieldType::kFlag ? OFTInteger : OFTInteger64;
+}
+
 void create_fields(OGRLayer& layer, const VectorFile::Layer& wanted, const std::string& path) {
   for (const VectorFile::Field& f : wanted.fields) {
-    OGRFieldDefn field(f.name, f.type == VectorFile::FieldType::kInteger ? OFTInteger : OFTReal);
-    if (f.type == VectorFile::FieldType::kInteger) field.SetWidth(8);
+    OGRFieldDefn field(f.name, ogr_type(f.type));
+    if (f.type != VectorFile::FieldType::kReal)
+      field.SetWidth(f.type == VectorFile::FieldType::kFlag ? 1 : 18);
     if (layer.CreateField(&field) != OGRERR_NONE) {
       throw gdal_failure(std::string("cannot create the field ") + f.name, path);
     }
@@ -149,7 +155,10 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     }
     if (layer_ == nullptr) throw gdal_failure("cannot create the output", path_);
     create_fields(*layer_, layer, path_);
-    if (dataset_->TestCapability(ODsCTransactions) != 0) dataset_->StartTransaction();
+    if (dataset_->TestCapability(ODsCTransactions) != 0 &&
+        dataset_->StartTransaction() != OGRERR_NONE) {
+      throw gdal_failure("cannot begin to write the output", path_);
+    }
   } catch (...) {
     dataset_.reset();
     if (!folder_.empty()) {

@@ -36,7 +36,9 @@ struct VectorFormat {
 /// without publish(), it removes what it wrote. With "-" features go to stdout as they come.
 class VectorFile {
  public:
-  enum class FieldType { kInteger, kReal };
+  /// kInteger: all of 64 bits; in a shapefile, which keeps digits, 18 of them and a sign. kFlag: 0
+  /// or 1.
+  enum class FieldType { kInteger, kFlag, kReal };
   struct Field {
     const char* name;
     FieldType type;

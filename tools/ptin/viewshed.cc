@@ -103,8 +103,8 @@ void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const 
                   {"viewshed",
                    wkbPoint,
                    {{"height", VectorFile::FieldType::kReal},
-                    {"visible", VectorFile::FieldType::kInteger},
-                    {"certain", VectorFile::FieldType::kInteger}},
+                    {"visible", VectorFile::FieldType::kFlag},
+                    {"certain", VectorFile::FieldType::kFlag}},
                    wkt});
   for (const Viewshed::Target& v : seen.vertices) {
     const VectorFile::Value values[] = {v.height, static_cast<std::int64_t>(v.visible ? 1 : 0),
