@@ -23,6 +23,7 @@
 #include "tools/progress_fd.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
+#include "tools/thread_count.h"
 
 namespace ptin::tools {
 
@@ -250,7 +251,7 @@ class BuildShow {
 void return_freed_memory(int threads) {
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
   mallopt(M_TRIM_THRESHOLD, 4 << 20);
-  mallopt(M_ARENA_MAX, std::max(threads, 1) + 1);
+  mallopt(M_ARENA_MAX, threads + 1);
 }
 
 /// Where the limit leaves room for it, freed blocks are kept for the next tile: giving them back
@@ -303,7 +304,7 @@ int run_build(BuildCommand& command, const Context& context) {
     return found ? kExitDone : kExitNegative;
   }
   check_command(command);
-  return_freed_memory(command.threads);
+  return_freed_memory(thread_count(command.threads));
   install_sigbus_guard();  // a temporary file that loses bytes is an error, not the end
   BuildReport report;
   {

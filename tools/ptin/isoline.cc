@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include <ogr_geometry.h>
 
@@ -24,6 +23,7 @@
 #include "tools/ptin/query_options.h"
 #include "tools/region/cut.h"
 #include "tools/region/tin_mesh.h"
+#include "tools/thread_count.h"
 
 namespace ptin::tools {
 
@@ -237,9 +237,7 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   request.most_lines = options.max_lines;
   if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
   request.temporary_folder = folder_for_temporaries(options);
-  request.threads = options.threads > 0
-                        ? options.threads
-                        : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  request.threads = thread_count(options.threads);
   request.stop = context.stop;
   return options.polygons ? run_polygons(options, request, terrain, crs, context)
                           : run_lines(options, request, terrain, crs, context);
