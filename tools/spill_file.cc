@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/spill_file.h"
 
-#include <cerrno>
-#include <cstdlib>
-
-#include <fcntl.h>
-#include <unistd.h>
+#include <algorithm>
+#include <utility>
 
 #include "engine/error.h"
 #include "tools/output_file.h"
@@ -16,25 +13,24 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
-int open_nameless(const std::string& folder) {
-  int fd = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL || errno == ENOENT)) {
-    std::string name = folder + "/.ptin-spill-XXXXXX";  // a file system without nameless files
-    fd = mkostemp(name.data(), O_CLOEXEC);
-    if (fd >= 0) unlink(name.c_str());
+/// What `act` returns; its errors name the file that the user knows.
+template <typename Act>
+auto for_output(const std::string& output, const Act& act) {
+  try {
+    return act();
+  } catch (const Error& error) {
+    throw Error(error.code(), "its temporary file: " + error.message(), output);
   }
-  return fd;
 }
 
 }  // namespace
 
-SpillFile::SpillFile(std::string output)
-    : output_(std::move(output)), fd_(open_nameless(folder_of(output_))) {
-  if (fd_ < 0) throw system_error(errno, "cannot create a temporary file", output_);
+SpillFile::SpillFile(std::string output, FileLayer& files)
+    : output_(std::move(output)), file_(for_output(output_, [&] {
+        return ScratchFile(files, folder_of(output_), "ptin-spill", true);
+      })) {
   buffer_.reserve(kBufferBytes);
 }
-
-SpillFile::~SpillFile() { close(fd_); }
 
 void SpillFile::write(const void* data, std::size_t bytes) {
   if (buffer_.size() + bytes > kBufferBytes) flush();
@@ -43,27 +39,18 @@ void SpillFile::write(const void* data, std::size_t bytes) {
 }
 
 void SpillFile::flush() {
-  std::size_t done = 0;
-  while (done < buffer_.size()) {
-    const ssize_t n = ::write(fd_, buffer_.data() + done, buffer_.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw system_error(errno, "cannot write a temporary file", output_);
-    done += static_cast<std::size_t>(n);
-  }
+  for_output(output_, [&] { file_.write_at(std::as_bytes(std::span(buffer_)), written_); });
+  written_ += buffer_.size();
   buffer_.clear();
 }
 
 std::span<const char> SpillFile::read() {
   if (!reading_) flush();
   reading_ = true;
-  buffer_.resize(kBufferBytes);
-  ssize_t n = 0;
-  do {
-    n = pread(fd_, buffer_.data(), buffer_.size(), static_cast<off_t>(at_));
-  } while (n < 0 && errno == EINTR);
-  if (n < 0) throw system_error(errno, "cannot read a temporary file", output_);
-  at_ += static_cast<std::uint64_t>(n);
-  return {buffer_.data(), static_cast<std::size_t>(n)};
+  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, written_ - read_)));
+  for_output(output_, [&] { file_.read_at(std::as_writable_bytes(std::span(buffer_)), read_); });
+  read_ += buffer_.size();
+  return buffer_;
 }
 
 }  // namespace ptin::tools

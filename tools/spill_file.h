@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "storage/file_layer.h"
+
 namespace ptin::tools {
 
 /// Bytes on disk that nobody else sees. It has no name, so nothing is left behind however the
@@ -16,25 +18,22 @@ namespace ptin::tools {
 class SpillFile {
  public:
   /// @param output  The file that the bytes are for: they lie in its folder, errors name it.
-  /// @throws Error io_error, resource_exhausted
-  explicit SpillFile(std::string output);
-  SpillFile(const SpillFile&) = delete;
-  SpillFile& operator=(const SpillFile&) = delete;
-  ~SpillFile();
+  /// @throws Error not_found, io_error, resource_exhausted
+  explicit SpillFile(std::string output, FileLayer& files = FileLayer::system());
 
   /// Appends; buffered.  @throws Error resource_exhausted (disk full), io_error
   void write(const void* data, std::size_t bytes);
   /// The next bytes from the beginning, at most a mebibyte at once; empty at the end. No writing
-  /// afterwards.  @throws Error io_error
+  /// afterwards.  @throws Error as write
   [[nodiscard]] std::span<const char> read();
 
  private:
   void flush();
 
   std::string output_;
-  int fd_ = -1;
+  ScratchFile file_;
   bool reading_ = false;
-  std::uint64_t at_ = 0;
+  std::uint64_t written_ = 0, read_ = 0;
   std::vector<char> buffer_;
 };
 
