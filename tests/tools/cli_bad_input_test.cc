@@ -383,5 +383,20 @@ TEST(CliSignals, StopABuildTidily) {
   }
 }
 
+/// What the system does not tell is an error of input or output, not a fault of the program.
+TEST(BadInput, NamesThatTheSystemRefusesAreErrorsOfTheirOwn) {
+  const TestFolder folder;
+  const std::string store = testing::built(folder, "ground_points.csv");
+  const std::string too_long = folder.file(std::string(300, 'a'));
+  std::filesystem::create_symlink("circle", folder.file("circle"));
+  for (const std::string& name : {too_long, folder.file("circle")}) {
+    EXPECT_EQ(run_ptin({"verify", store, "--against", name}).status, 6) << name;
+    EXPECT_EQ(run_ptin({"locate", store, "--points", name}).status, 6) << name;
+  }
+  const auto resumed =
+      run_ptin({"build", testing::test_data("ground_points.csv"), "--resume", "-o", too_long});
+  EXPECT_EQ(resumed.status, 6) << resumed.err;
+}
+
 }  // namespace
 }  // namespace ptin::tools

@@ -15,7 +15,8 @@ namespace {
 
 using testing::TestFolder;
 
-/// A file system without nameless files, where the first name cannot be removed but for `failure` 0.
+/// A file system without nameless files, where the first name cannot be removed but for `failure`
+/// 0.
 class EveryFileHasAName final : public FileLayer {
  public:
   explicit EveryFileHasAName(int failure) : failure_(failure) {}

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "engine/construct/memory_plan.h"
 #include "storage/sigbus_guard.h"
 #include "tools/error_status.h"
+#include "tools/file_name.h"
 #include "tools/output_file.h"
 #include "tools/progress.h"
 #include "tools/progress_fd.h"
@@ -71,8 +71,7 @@ void check_command(BuildCommand& command) {
     }
   }
   // An interrupted build may have been killed when its output had just got its name.
-  const bool is_resumed =
-      command.resume && std::filesystem::exists(Workspace::folder_of(command.output));
+  const bool is_resumed = command.resume && is_there(Workspace::folder_of(command.output));
   check_output(command.output, command.overwrite || is_resumed);
 }
 

@@ -2,11 +2,9 @@
 //
 // ptin export: the TIN at any level of detail, larger than memory too.
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "engine/query/part_refiner.h"
@@ -51,19 +49,13 @@ constexpr std::array<ExportFormat, 5> kFormats = {
      {"GTiff", ".tif", nullptr, false},
      {"COG", "", nullptr, true}}};
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 const ExportFormat& format_of(const ExportOptions& options) {
   const std::string extension = lower_extension(options.output);
   for (const ExportFormat& format : kFormats) {
     if (options.format.empty() ? (!extension.empty() && (extension == format.extension ||
                                                          (extension == ".tiff" &&
                                                           std::string(".tif") == format.extension)))
-                               : lower(options.format) == lower(format.name)) {
+                               : lower_case(options.format) == lower_case(format.name)) {
       return format;
     }
   }
@@ -232,7 +224,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Certificate& certificate = made.certificate;
-  const std::uint64_t bytes = std::filesystem::file_size(options.output);
+  const std::uint64_t bytes = file_bytes(options.output);
   const bool is_raster = format.make_sink == nullptr;
   const StoreFacts& facts = terrain.store().facts();
   if (context.json) {

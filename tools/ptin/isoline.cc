@@ -61,9 +61,11 @@ void check_options(const IsolineOptions& options, const Context& context) {
 
 std::string folder_for_temporaries(const IsolineOptions& options) {
   if (!options.terrain.temporary_folder.empty()) return options.terrain.temporary_folder;
-  if (options.output == "-") return std::filesystem::temp_directory_path().string();
-  const auto folder = std::filesystem::path(options.output).parent_path();
-  return folder.empty() ? "." : folder.string();
+  if (options.output != "-") return folder_of(options.output);
+  std::error_code fault;
+  const auto folder = std::filesystem::temp_directory_path(fault);
+  if (fault) throw system_error(fault.value(), "TMPDIR names no folder; give --tmp", "TMPDIR");
+  return folder.string();
 }
 
 std::vector<double> levels_of(const IsolineOptions& options, const StoreFacts& facts) {

@@ -109,10 +109,7 @@ std::vector<double> rows_of(std::istream& in, const std::string& name, std::size
 }
 
 void require_file(const std::string& path) {
-  std::error_code fault;
-  if (std::filesystem::exists(path, fault)) return;
-  if (fault) throw system_error(fault.value(), "cannot open", path);
-  throw Error(ErrorCode::not_found, "no such file", path);
+  if (!is_there(path)) throw Error(ErrorCode::not_found, "no such file", path);
 }
 
 bool is_text(const std::string& path) {
@@ -141,7 +138,8 @@ void add_lines(const OGRGeometry& geometry, std::vector<std::vector<MapPoint>>& 
 std::vector<double> read_rows(const std::string& path, std::size_t columns) {
   if (path == "-") return rows_of(std::cin, "standard input", columns);
   require_file(path);
-  if (std::filesystem::is_directory(path)) {
+  std::error_code ignored;  // whatever is wrong, opening tells
+  if (std::filesystem::is_directory(path, ignored)) {
     throw Error(ErrorCode::invalid_argument, "is a folder; name a text file with numbers", path);
   }
   errno = 0;

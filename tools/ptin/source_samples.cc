@@ -2,9 +2,9 @@
 #include "tools/ptin/source_samples.h"
 
 #include <cmath>
-#include <filesystem>
 
 #include "engine/error.h"
+#include "tools/file_name.h"
 #include "tools/ptin/crs_facts.h"
 
 namespace ptin::tools {
@@ -47,7 +47,7 @@ std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& path
                                             const StoreFile& store,
                                             const SampleResources& resources) {
   for (const std::string& path : paths) {
-    if (path.rfind("/vsi", 0) != 0 && !std::filesystem::exists(path)) {
+    if (path.rfind("/vsi", 0) != 0 && !is_there(path)) {
       throw Error(ErrorCode::not_found, "no such file", path);
     }
   }

@@ -2,7 +2,6 @@
 #include "tools/ptin/text_samples.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <cpl_vsi.h>
 
 #include "engine/error.h"
+#include "tools/file_name.h"
 
 namespace ptin::tools {
 
@@ -34,13 +34,6 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
-std::string small_letters(std::string_view text) {
-  std::string small(text);
-  std::transform(small.begin(), small.end(), small.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return small;
 }
 
 /// None where the field is no number; NaN and infinities are numbers.
@@ -72,7 +65,7 @@ struct TextSamples::File {
 
 TextSamples::TextSamples(std::string path)
     : path_(std::move(path)), file_(std::make_unique<File>()) {
-  const bool is_packed = small_letters(path_).ends_with(".gz");
+  const bool is_packed = lower_case(path_).ends_with(".gz");
   file_->handle = VSIFOpenL(((is_packed ? "/vsigzip/" : "") + path_).c_str(), "rb");
   if (file_->handle == nullptr) throw Error(ErrorCode::io_error, "cannot be read", path_);
 }
@@ -150,7 +143,7 @@ void TextSamples::choose_columns() {
   for (std::string_view field : fields_) {
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
       field = trimmed(field.substr(1, field.size() - 2));
-    header.push_back(small_letters(field));
+    header.push_back(lower_case(std::string(field)));
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     columns_[axis] = header.size();
