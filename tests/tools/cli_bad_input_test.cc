@@ -127,6 +127,10 @@ TEST(CliBadInput, RastersThatAreNoTerrain) {
   make_raster(folder.file("hills.tif"), {});
   expect_no_build(folder, folder.file("hills.tif"), 2, "bounds", {"--bbox", "1", "1", "2", "2"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "--max-error", {"--max-error", "-1"});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "--void-slope", {"--void-slope", "-1"});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "--resolution", {"--resolution", "0"});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "must be a finite", {"--void-slope", "nan"});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "inverted", {"--bbox", "2", "1", "1", "2"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "EPSG:999999", {"--a-srs", "EPSG:999999"});
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -47,29 +46,12 @@ CostModel cost_of(const std::string& name) {
   return name == "elevation" ? CostModel::kElevation : CostModel::kError;
 }
 
+/// Puts the options together and looks at the output; what their values may be is build()'s matter.
 void check_command(BuildCommand& command) {
   BuildOptions& options = command.options;
   options.cost = cost_of(command.cost);
   if (!command.bbox.empty())
     options.bbox = {command.bbox[0], command.bbox[1], command.bbox[2], command.bbox[3]};
-  if (!(options.max_error >= 0)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--max-error must be a number >= 0, in the height's unit");
-  }
-  if (!(options.void_slope >= 0) || std::isinf(options.void_slope)) {
-    throw Error(ErrorCode::invalid_argument, "--void-slope must be a finite number >= 0");
-  }
-  if (options.resolution && !(*options.resolution > 0)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--resolution must be a number > 0, in the CRS's unit");
-  }
-  if (options.bbox) {
-    const auto& b = *options.bbox;
-    if (!(b[0] < b[2] && b[1] < b[3])) {
-      throw Error(ErrorCode::invalid_argument,
-                  "--bbox is inverted or empty; its order is XMIN YMIN XMAX YMAX");
-    }
-  }
   // An interrupted build may have been killed when its output had just got its name.
   const bool is_resumed = command.resume && is_there(Workspace::folder_of(command.output));
   check_output(command.output, command.overwrite || is_resumed);
@@ -344,10 +326,12 @@ Action declare_build(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"error", "roi", "elevation"}));
   app.add_option("--max-error", options.max_error,
                  "Leave out detail below this error, in the height's unit")
+      ->check(CLI::NonNegativeNumber)
       ->type_name("E");
   app.add_option("--nodata", options.nodata, "This height means void; overrides the source's")
       ->type_name("V");
   app.add_option("--resolution", options.resolution, "Points: the grid unit, in CRS units")
+      ->check(CLI::PositiveNumber)
       ->type_name("R");
   app.add_option("--class", options.classes,
                  "LAS: keep points of these classes, such as 2 for ground; 2,9 for several")
@@ -376,6 +360,7 @@ Action declare_build(CLI::App& app, Context& context) {
       ->type_name("CRS");
   app.add_option("--void-slope", options.void_slope,
                  "Error charged for each ground unit that a void's border moves")
+      ->check(CLI::NonNegativeNumber)
       ->type_name("S")
       ->capture_default_str();
   app.add_option(

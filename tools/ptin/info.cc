@@ -84,7 +84,7 @@ nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
   return {{"file", store.path()},
           {"bytes", store.file_bytes()},
           {"crs", crs_json(crs)},
-          {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+          {"units", units_json(crs)},
           {"bounds", bounds_json(facts)},
           {"grid",
            {{"origin", {facts.map.origin_x, facts.map.origin_y}},

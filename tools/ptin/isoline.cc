@@ -32,9 +32,7 @@ namespace {
 struct IsolineOptions {
   TerrainOptions terrain;
   RegionOptions region;
-  std::vector<double> levels;
-  std::optional<double> interval;
-  double base = 0.0;
+  LevelOptions levels;
   DetailOptions detail;
   bool z = false;
   bool polygons = false;
@@ -45,7 +43,7 @@ struct IsolineOptions {
 };
 
 void check_options(const IsolineOptions& options, const Context& context) {
-  if (options.levels.empty() != options.interval.has_value()) {
+  if (!options.levels.given()) {
     throw Error(ErrorCode::invalid_argument,
                 "the levels are given by --level H... or by --interval D; give one of them");
   }
@@ -68,11 +66,6 @@ std::string folder_for_temporaries(const IsolineOptions& options) {
   return folder.string();
 }
 
-std::vector<double> levels_of(const IsolineOptions& options, const StoreFacts& facts) {
-  if (!options.interval) return options.levels;
-  return levels_at(*options.interval, options.base, facts.min_height, facts.max_height);
-}
-
 void report(const IsolineOptions& options, const Isolines& lines,
             const IsolineLayer::Written& written, const CrsFacts& crs, const Context& context) {
   if (context.json) {
@@ -89,7 +82,7 @@ void report(const IsolineOptions& options, const Isolines& lines,
                 {"certified_error", lines.certified_error},
                 {"certified_deviation", lines.certified_deviation},
                 {"exact", lines.exact},
-                {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+                {"units", units_json(crs)},
                 {"cost", cost_json(lines.cost)}});
   } else if (!context.quiet && options.output != "-") {
     std::printf("%s: %s isolines (%s closed) at %zu levels, %s points; certified %s%s\n",
@@ -209,7 +202,7 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
                 {"certified_error", refined.certified_error},
                 {"certified_deviation", refined.certified_deviation},
                 {"exact", refined.exact},
-                {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+                {"units", units_json(crs)},
                 {"cost", cost_json(refined.cost)}});
   } else if (!context.quiet && options.output != "-") {
     std::printf("%s: %s bands of %s polygons\n", options.output.c_str(), grouped(features).c_str(),
@@ -223,21 +216,14 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   const ProgressiveTin terrain = open_terrain(options.terrain);
   const CrsFacts crs = crs_facts(terrain.store());
   IsolineRequest request;
-  request.levels = levels_of(options, terrain.store().facts());
-  if (request.levels.empty()) {
-    throw Error(
-        ErrorCode::invalid_argument,
-        "no multiple of the interval lies within the heights of the terrain; give a smaller "
-        "--interval, or --base",
-        options.terrain.file);
-  }
+  request.levels = levels_of(options.levels, terrain.store().facts(), options.terrain.file);
   if (const auto region = region_of(options.region, crs.wkt)) {
     request.window = std::get<Window>(*region);
   }
   request.tolerance = options.detail.error;
   request.vertices = options.detail.vertices;
   request.most_lines = options.max_lines;
-  if (!options.memory.empty()) request.memory_limit_bytes = parse_bytes(options.memory);
+  request.memory_limit_bytes = memory_limit_of(options.memory, request.memory_limit_bytes);
   request.temporary_folder = folder_for_temporaries(options);
   request.threads = thread_count(options.threads);
   request.stop = context.stop;
@@ -250,15 +236,11 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
 Action declare_isoline(CLI::App& app, Context& context) {
   const auto options = std::make_shared<IsolineOptions>();
   add_terrain_options(app, options->terrain, true);
-  auto* level = app.add_option("--level,--fl", options->levels, "Heights, in the height's unit")
-                    ->type_name("H...");
-  auto* interval =
-      app.add_option("-i,--interval", options->interval, "Every multiple of D, from the base")
-          ->type_name("D")
-          ->excludes(level);
-  app.add_option("--base,--off", options->base, "Where the intervals are counted from (default 0)")
-      ->type_name("B")
-      ->needs(interval);
+  app.get_option("--tmp")->description(
+      "Folder for temporary files: lines that do not fit in --memory (default: OUT's folder), "
+      "--index spatialindex (default: beside FILE)");
+  add_level_options(app, options->levels, "Heights, in the height's unit",
+                    "Every multiple of D, from the base");
   add_region_options(app, options->region, true);
   add_detail_options(app, options->detail, "",
                      "The isolines of the TIN of the terrain's N most important vertices");
@@ -278,7 +260,7 @@ Action declare_isoline(CLI::App& app, Context& context) {
       ->capture_default_str();
   app.add_option("--memory", options->memory,
                  "Memory for the extraction, as 512M or 2G (default 4G); what does not fit goes to "
-                 "--tmp (default: OUT's folder)")
+                 "--tmp")
       ->type_name("SIZE");
   app.add_option("--threads", options->threads,
                  "Threads (default: all of the machine); the lines are the same for any number")

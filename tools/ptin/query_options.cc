@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/query/levels.h"
 #include "storage/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"
 #include "tools/ptin/counts.h"
@@ -100,6 +101,29 @@ void check_detail(const DetailOptions& options) {
   if (options.error && !(*options.error >= 0)) {
     throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
   }
+}
+
+void add_level_options(CLI::App& app, LevelOptions& options, const std::string& level_help,
+                       const std::string& interval_help) {
+  auto* level = app.add_option("--level,--fl", options.levels, level_help)->type_name("H...");
+  auto* interval = app.add_option("-i,--interval", options.interval, interval_help)
+                       ->type_name("D")
+                       ->excludes(level);
+  app.add_option("--base,--off", options.base, "Where the intervals are counted from (default 0)")
+      ->type_name("B")
+      ->needs(interval);
+}
+
+std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts,
+                              const std::string& file) {
+  if (!options.interval) return options.levels;
+  std::vector<double> levels =
+      levels_at(*options.interval, options.base, facts.min_height, facts.max_height);
+  if (!levels.empty()) return levels;
+  throw Error(ErrorCode::invalid_argument,
+              "no multiple of the interval lies within the heights of the terrain; give a smaller "
+              "--interval, or --base",
+              file);
 }
 
 void add_memory_option(CLI::App& app, std::string& memory) {

@@ -56,6 +56,23 @@ void add_detail_options(CLI::App& app, DetailOptions& options, const std::string
 /// @throws Error invalid_argument  --error negative or not a number
 void check_detail(const DetailOptions& options);
 
+/// --level or --interval with --base: the heights of isolines.
+struct LevelOptions {
+  std::vector<double> levels;
+  std::optional<double> interval;
+  double base = 0.0;
+
+  [[nodiscard]] bool given() const { return !levels.empty() || interval; }
+};
+/// @param level_help, interval_help  What each asks for here.
+void add_level_options(CLI::App& app, LevelOptions& options, const std::string& level_help,
+                       const std::string& interval_help);
+/// The heights: those given, or the multiples of the interval that the terrain has.
+/// @param file  Named in errors.
+/// @throws Error invalid_argument  it has none
+[[nodiscard]] std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts,
+                                            const std::string& file);
+
 /// --memory SIZE
 void add_memory_option(CLI::App& app, std::string& memory);
 /// @throws Error invalid_argument as parse_bytes

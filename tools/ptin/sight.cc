@@ -143,7 +143,7 @@ int run_sight(const SightOptions& options, const Context& context) {
     write_to_stdout(text);
     return kExitDone;
   }
-  const nlohmann::json units = {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}};
+  const nlohmann::json units = units_json(crs);
   if (options.pairs.empty()) {
     nlohmann::json answer = answers.at(0);
     answer["units"] = units;

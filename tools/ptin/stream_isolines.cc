@@ -9,16 +9,8 @@
 namespace ptin::tools {
 
 void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options) {
-  auto* level = app.add_option("--level,--fl", options.levels,
-                               "Write isolines at these heights instead of the mesh")
-                    ->type_name("H...");
-  auto* interval = app.add_option("-i,--interval", options.interval,
-                                  "The same at every multiple of D, from the base")
-                       ->type_name("D")
-                       ->excludes(level);
-  app.add_option("--base,--off", options.base, "Where the intervals are counted from (default 0)")
-      ->type_name("B")
-      ->needs(interval);
+  add_level_options(app, options.levels, "Write isolines at these heights instead of the mesh",
+                    "The same at every multiple of D, from the base");
   app.add_option("--window", options.window, "Cut the isolines at a window, in map units")
       ->expected(4)
       ->type_name("XMIN YMIN XMAX YMAX");
@@ -69,15 +61,7 @@ void StreamIsolines::follow(const StreamReader& reader) {
 
 void StreamIsolines::begin(const StreamReader& reader) {
   const StoreFacts& facts = reader.facts();
-  const std::vector<double> levels =
-      options_.interval
-          ? levels_at(*options_.interval, options_.base, facts.min_height, facts.max_height)
-          : options_.levels;
-  if (levels.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "no multiple of the interval lies within the heights of the terrain; give a "
-                "smaller --interval, or --base");
-  }
+  const std::vector<double> levels = levels_of(options_.levels, facts, {});
   isolines_.emplace(reader.tin(), LevelSet(levels, facts.heights), facts.heights, facts.map,
                     context_);
   if (!output_.empty()) {

@@ -21,14 +21,12 @@ namespace ptin::tools {
 
 /// --level, --interval, --base, --window, --3d, --steps.
 struct StreamIsolineOptions {
-  std::vector<double> levels;
-  std::optional<double> interval;
-  double base = 0.0;
+  LevelOptions levels;
   std::vector<double> window;
   bool z = false;
   bool steps = false;
 
-  [[nodiscard]] bool given() const { return !levels.empty() || interval; }
+  [[nodiscard]] bool given() const { return levels.given(); }
 };
 void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options);
 

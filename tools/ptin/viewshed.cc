@@ -41,8 +41,7 @@ constexpr std::uint64_t kLeastCache = std::uint64_t{1} << 20;
 constexpr std::uint64_t kMostCache = std::uint64_t{64} << 20;
 
 std::uint64_t request_memory(const ViewshedOptions& options) {
-  return options.memory.empty() ? ViewshedRequest{}.memory_limit_bytes
-                                : parse_bytes(options.memory);
+  return memory_limit_of(options.memory, ViewshedRequest{}.memory_limit_bytes);
 }
 
 bool is_raster(const std::string& path) {
@@ -136,7 +135,7 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts
                 {"certified_error", seen.certified_error},
                 {"certified_deviation", seen.certified_deviation},
                 {"exact", seen.exact},
-                {"units", {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}}},
+                {"units", units_json(crs)},
                 {"cost", cost_json(seen.cost)}});
   } else if (!context.quiet) {
     const std::uint64_t visible = raster ? seen.visible_pixels : seen.visible_vertices;
