@@ -13,9 +13,6 @@
 
 namespace ptin::tools {
 
-/// The folder of a file's name; "." when it has none.
-[[nodiscard]] std::string folder_of(const std::string& path);
-
 /// Throws Error invalid_argument when `path` exists and `overwrite` is off (or is no file),
 /// not_found when its folder does not exist. Called before the work, so that nobody waits for an
 /// answer that cannot be kept.

@@ -11,7 +11,7 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kSpillBufferBytes = std::size_t{1} << 20;
 
 /// What `act` returns; its errors name the file that the user knows.
 template <typename Act>
@@ -29,11 +29,11 @@ SpillFile::SpillFile(std::string output, FileLayer& files)
     : output_(std::move(output)), file_(for_output(output_, [&] {
         return ScratchFile(files, folder_of(output_), "ptin-spill", true);
       })) {
-  buffer_.reserve(kBufferBytes);
+  buffer_.reserve(kSpillBufferBytes);
 }
 
 void SpillFile::write(const void* data, std::size_t bytes) {
-  if (buffer_.size() + bytes > kBufferBytes) flush();
+  if (buffer_.size() + bytes > kSpillBufferBytes) flush();
   const char* from = static_cast<const char*>(data);
   buffer_.insert(buffer_.end(), from, from + bytes);
 }
@@ -47,7 +47,8 @@ void SpillFile::flush() {
 std::span<const char> SpillFile::read() {
   if (!reading_) flush();
   reading_ = true;
-  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, written_ - read_)));
+  buffer_.resize(
+      static_cast<std::size_t>(std::min<std::uint64_t>(kSpillBufferBytes, written_ - read_)));
   for_output(output_, [&] { file_.read_at(std::as_writable_bytes(std::span(buffer_)), read_); });
   read_ += buffer_.size();
   return buffer_;

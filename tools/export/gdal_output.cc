@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/export/gdal_output.h"
 
-#include <cpl_error.h>
+#include <cstdint>
+
 #include <gdal_priv.h>
 #include <sys/statvfs.h>
 
@@ -38,11 +39,5 @@ GDALDriver& driver_named(const char* name) {
   }
   return *found;
 }
-
-GdalCacheLimit::GdalCacheLimit(std::uint64_t bytes) : before_(GDALGetCacheMax64()) {
-  GDALSetCacheMax64(static_cast<GIntBig>(bytes));
-}
-
-GdalCacheLimit::~GdalCacheLimit() { GDALSetCacheMax64(before_); }
 
 }  // namespace ptin::tools

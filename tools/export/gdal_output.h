@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What GDAL says when it cannot write, as our own errors; its drivers; and how much it may keep in
-// memory.
+// What GDAL says when it cannot write, as our own errors; and its drivers.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include <cpl_error.h>
@@ -29,17 +27,5 @@ void require_done(CPLErr result, const std::string& action, const std::string& p
 
 /// A driver of GDAL's.  @throws Error io_error  this GDAL was built without it
 [[nodiscard]] GDALDriver& driver_named(const char* name);
-
-/// Sets GDAL's block cache for the time that it lives.
-class GdalCacheLimit {
- public:
-  explicit GdalCacheLimit(std::uint64_t bytes);
-  GdalCacheLimit(const GdalCacheLimit&) = delete;
-  GdalCacheLimit& operator=(const GdalCacheLimit&) = delete;
-  ~GdalCacheLimit();
-
- private:
-  std::int64_t before_;
-};
 
 }  // namespace ptin::tools

@@ -11,6 +11,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include "engine/construct/memory_plan.h"
 #include "engine/error.h"
 #include "tools/export/gdal_output.h"
 #include "tools/pending_file.h"

@@ -84,20 +84,21 @@ void print_report(const BuildCommand& command, const BuildReport& r) {
   std::printf("  samples    %s with a height, %s void\n", grouped(r.source_samples).c_str(),
               grouped(r.void_samples).c_str());
   if (r.lone_samples > 0) {
-    std::printf("  lone       %s samples touch no triangle and are treated as void\n",
-                grouped(r.lone_samples).c_str());
+    std::printf("  lone       %s without a triangle, treated as void\n",
+                counted(r.lone_samples, "sample").c_str());
   }
   if (r.left_out_points > 0) {
-    std::printf("  left out   %s points, by their class or place, withheld, or without a height\n",
-                grouped(r.left_out_points).c_str());
+    std::printf("  left out   %s, by their class or place, withheld, or without a height\n",
+                counted(r.left_out_points, "point").c_str());
   }
   if (r.left_out_triangles + r.void_triangles > 0) {
     std::printf("  triangles  %s void ones fill holes and pockets; %s hidden ones left out\n",
                 grouped(r.void_triangles).c_str(), grouped(r.left_out_triangles).c_str());
   }
   if (r.merged_points > 0) {
-    std::printf("  merged     %s points fell together (largest shift %s in plan, %s in height)\n",
-                grouped(r.merged_points).c_str(), short_number(r.largest_shift_plan).c_str(),
+    std::printf("  merged     %s fell together (largest shift %s in plan, %s in height)\n",
+                counted(r.merged_points, "point").c_str(),
+                short_number(r.largest_shift_plan).c_str(),
                 short_number(r.largest_shift_height).c_str());
   }
   if (r.height_rounding > 0)
@@ -135,13 +136,14 @@ nlohmann::json plan_json(const BuildPlan& p) {
 /// One line of what is to come; a second one when less is used than was asked for.
 void print_plan(const BuildPlan& p) {
   std::fprintf(stderr,
-               "plan: %s%s vertices in %s tiles of %lld, %d thread%s, at most %s of memory, %s of "
+               "plan: %s%s in %s of %lld, %s, at most %s of memory, %s of "
                "temporary disk, %s of output, roughly %s\n",
-               p.is_estimate ? "up to about " : "", grouped(p.vertices).c_str(),
-               grouped(p.leaves).c_str(), static_cast<long long>(p.tile_side), p.threads,
-               p.threads == 1 ? "" : "s", human_bytes(p.memory_expected).c_str(),
-               human_bytes(p.temporary_bytes).c_str(), human_bytes(p.output_bytes).c_str(),
-               human_duration(p.seconds).c_str());
+               p.is_estimate ? "up to about " : "",
+               counted(p.vertices, "vertex", "vertices").c_str(), counted(p.leaves, "tile").c_str(),
+               static_cast<long long>(p.tile_side),
+               counted(static_cast<std::uint64_t>(p.threads), "thread").c_str(),
+               human_bytes(p.memory_expected).c_str(), human_bytes(p.temporary_bytes).c_str(),
+               human_bytes(p.output_bytes).c_str(), human_duration(p.seconds).c_str());
   if (p.threads < p.threads_wanted) {
     std::fprintf(stderr, "plan: %d threads instead of %d, since no more tiles fit into %s\n",
                  p.threads, p.threads_wanted, human_bytes(p.memory_limit).c_str());
@@ -209,7 +211,7 @@ class BuildShow {
     if (!stage_.empty() && style_ == Progress::Style::kSparse && seconds_ > 1.0) {
       progress_.finish();
       std::fprintf(stderr, "  %s%sat most %s of memory so far\n",
-                   facts_.tiles > 0 ? (grouped(facts_.tiles) + " tiles, ").c_str() : "",
+                   facts_.tiles > 0 ? (counted(facts_.tiles, "tile") + ", ").c_str() : "",
                    rate().c_str(), human_bytes(most_memory_).c_str());
     }
     stage_.clear();
@@ -307,27 +309,14 @@ int run_build(BuildCommand& command, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Action declare_build(CLI::App& app, Context& context) {
-  const auto command = std::make_shared<BuildCommand>();
-  BuildOptions& options = command->options;
+/// What is read, and what of it.
+void add_source_options(CLI::App& app, BuildCommand& command) {
+  BuildOptions& options = command.options;
   app.add_option(
-      "INPUT", command->inputs,
+      "INPUT", command.inputs,
       "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz\n"
       "too), or a layer that OGR reads; several files of one CRS; or a TIN: PLY, OBJ, 2DM, "
       "LandXML");
-  app.add_option("-o,--output", command->output, "The .ptin file to write")
-      ->type_name("FILE")
-      ->required();
-  app.add_option("--cost", command->cost,
-                 "In which order vertices go: error (default, for levels of detail), roi (point\n"
-                 "location) or elevation (isolines)")
-      ->check(CLI::IsMember({"error", "roi", "elevation"}));
-  app.add_option("--max-error", options.max_error,
-                 "Leave out detail below this error, in the height's unit")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("E");
   app.add_option("--nodata", options.nodata, "This height means void; overrides the source's")
       ->type_name("V");
   app.add_option("--resolution", options.resolution, "Points: the grid unit, in CRS units")
@@ -350,7 +339,7 @@ Action declare_build(CLI::App& app, Context& context) {
                  "units, or metres\n"
                  "where those are degrees")
       ->type_name("L");
-  app.add_option("--bbox", command->bbox, "Leave out samples outside of this box, in CRS units")
+  app.add_option("--bbox", command.bbox, "Leave out samples outside of this box, in CRS units")
       ->expected(4)
       ->type_name("XMIN YMIN XMAX YMAX");
   app.add_option("--a-srs,--a_srs", options.a_srs,
@@ -358,36 +347,60 @@ Action declare_build(CLI::App& app, Context& context) {
       ->type_name("CRS");
   app.add_option("--vertical-crs", options.vertical_crs, "The vertical CRS, as EPSG:5773")
       ->type_name("CRS");
+}
+
+/// The work: its tiles, memory, threads and temporary files, and whether it goes on.
+void add_work_options(CLI::App& app, BuildCommand& command) {
+  app.add_option(
+         "--tile", command.options.tile,
+         "Rasters: samples along a leaf of the tile hierarchy (default: by the raster's size)")
+      ->type_name("SIDE");
+  app.add_option("--memory", command.memory,
+                 "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less\n"
+                 "where a cgroup or a resource limit allows less)")
+      ->type_name("SIZE");
+  app.add_option("--threads", command.threads,
+                 "Threads (default: one a core); fewer are used where memory is short. The output\n"
+                 "is the same for any number")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  app.add_option("--tmp", command.tmp, "Folder for temporary files (default: beside the output)")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
+  auto* resume = app.add_flag("--resume", command.resume, "Go on with an interrupted build");
+  app.add_flag("--discard", command.discard,
+               "Remove an interrupted build first; without INPUT, only that")
+      ->excludes(resume);
+  app.add_flag("--dry-run", command.dry_run, "Say what the build would need, and stop");
+  app.add_option("--progress-fd", command.progress_fd,
+                 "Write progress as lines of JSON to this file descriptor")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("FD");
+}
+
+}  // namespace
+
+Action declare_build(CLI::App& app, Context& context) {
+  const auto command = std::make_shared<BuildCommand>();
+  BuildOptions& options = command->options;
+  add_source_options(app, *command);
+  app.add_option("-o,--output", command->output, "The .ptin file to write")
+      ->type_name("FILE")
+      ->required();
+  app.add_option("--cost", command->cost,
+                 "In which order vertices go: error (default, for levels of detail), roi (point\n"
+                 "location) or elevation (isolines)")
+      ->check(CLI::IsMember({"error", "roi", "elevation"}));
+  app.add_option("--max-error", options.max_error,
+                 "Leave out detail below this error, in the height's unit")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("E");
   app.add_option("--void-slope", options.void_slope,
                  "Error charged for each ground unit that a void's border moves")
       ->check(CLI::NonNegativeNumber)
       ->type_name("S")
       ->capture_default_str();
-  app.add_option(
-         "--tile", options.tile,
-         "Rasters: samples along a leaf of the tile hierarchy (default: by the raster's size)")
-      ->type_name("SIDE");
-  app.add_option("--memory", command->memory,
-                 "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less\n"
-                 "where a cgroup or a resource limit allows less)")
-      ->type_name("SIZE");
-  app.add_option("--threads", command->threads,
-                 "Threads (default: one a core); fewer are used where memory is short. The output\n"
-                 "is the same for any number")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
-  app.add_option("--tmp", command->tmp, "Folder for temporary files (default: beside the output)")
-      ->check(CLI::ExistingDirectory)
-      ->type_name("DIR");
-  auto* resume = app.add_flag("--resume", command->resume, "Go on with an interrupted build");
-  app.add_flag("--discard", command->discard,
-               "Remove an interrupted build first; without INPUT, only that")
-      ->excludes(resume);
-  app.add_flag("--dry-run", command->dry_run, "Say what the build would need, and stop");
-  app.add_option("--progress-fd", command->progress_fd,
-                 "Write progress as lines of JSON to this file descriptor")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("FD");
+  add_work_options(app, *command);
   app.add_flag("--overwrite", command->overwrite, "Replace an existing output");
   add_common_options(app, context, true);
   return [command, &context] { return run_build(*command, context); };

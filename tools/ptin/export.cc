@@ -69,21 +69,21 @@ const ExportFormat& format_of(const ExportOptions& options) {
 }
 
 /// Shares of --memory. What is left is the program itself and the allocator's slack.
-struct MemoryShares {
+struct ExportMemory {
   static constexpr std::uint64_t kProgram = std::uint64_t{16} << 20;
-  explicit MemoryShares(std::uint64_t bytes)
+  explicit ExportMemory(std::uint64_t bytes)
       : part((bytes - kProgram) / 2), buffers(bytes / 16), index(bytes / 4) {}
   std::uint64_t part;     ///< One refined part, and the patch made from it.
   std::uint64_t buffers;  ///< Each of: pixels, GDAL's cache, the open border.
   std::uint64_t index;    ///< A format's index of features.
 };
 
-MemoryShares memory_of(const ExportOptions& options) {
+ExportMemory memory_of(const ExportOptions& options) {
   constexpr std::uint64_t kLeast = std::uint64_t{32} << 20;
   const std::uint64_t bytes = memory_limit_of(options.memory, std::uint64_t{1} << 30);
   if (bytes < kLeast)
     throw Error(ErrorCode::invalid_argument, "--memory must be at least 32M", options.memory);
-  return MemoryShares(bytes);
+  return ExportMemory(bytes);
 }
 
 void check_options(const ExportOptions& options, const ExportFormat& format) {
@@ -178,7 +178,7 @@ void warn_without_index(const ExportFormat& format, const SinkTarget& target,
 Exported export_as(const ExportFormat& format, const ExportOptions& options,
                    const ProgressiveTin& terrain, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
-  const MemoryShares memory = memory_of(options);
+  const ExportMemory memory = memory_of(options);
   PartRequest request;
   if (format.make_sink != nullptr) request.region = region_of(options.region, crs.wkt);
   request.tolerance = options.detail.error;
@@ -249,8 +249,8 @@ int run_export(const ExportOptions& options, const Context& context) {
     const std::string size =
         is_raster ? grouped(static_cast<std::uint64_t>(made.columns)) + " x " +
                         grouped(static_cast<std::uint64_t>(made.rows)) + " pixels"
-                  : grouped(made.vertices) + " vertices, " + grouped(made.triangles) +
-                        " triangles in " + grouped(made.cells) + " cells";
+                  : counted(made.vertices, "vertex", "vertices") + ", " +
+                        counted(made.triangles, "triangle") + " in " + counted(made.cells, "cell");
     std::printf("%s: %s, %s, %.2f s; within %s at every sample, %s at any point\n",
                 options.output.c_str(), size.c_str(), human_bytes(bytes).c_str(), seconds,
                 short_number(certificate.error).c_str(),

@@ -16,6 +16,10 @@ std::string grouped(std::uint64_t n) {
   return text;
 }
 
+std::string counted(std::uint64_t n, const std::string& one, const std::string& plural) {
+  return grouped(n) + " " + (n == 1 ? one : plural.empty() ? one + "s" : plural);
+}
+
 std::string human_bytes(std::uint64_t bytes) {
   if (bytes < 1024) return std::to_string(bytes).append(" bytes");
   const char* const units[] = {"KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};

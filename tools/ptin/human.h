@@ -10,6 +10,9 @@ namespace ptin::tools {
 
 /// 1234567 -> "1,234,567".
 [[nodiscard]] std::string grouped(std::uint64_t n);
+/// "1 page", "1,234 pages"; `plural` where it is not the word and an s.
+[[nodiscard]] std::string counted(std::uint64_t n, const std::string& one,
+                                  const std::string& plural = {});
 /// Bytes as "3.2 MiB"; below 1024 "512 bytes".
 [[nodiscard]] std::string human_bytes(std::uint64_t bytes);
 /// Seconds as "12 s", "3 min", "1.5 h".

@@ -159,10 +159,10 @@ void print_counts(const StoreFile& store) {
   }
   std::printf("rank       %u\n", unsigned{store.max_rank()});
   const IndexShape shape(store.pages().page_count());
-  std::printf("tree       %s pages of %s under %s nodes in %u levels\n",
-              grouped(store.pages().page_count()).c_str(),
-              human_bytes(store.pages().page_bytes()).c_str(), grouped(shape.total_nodes()).c_str(),
-              shape.levels());
+  std::printf(
+      "tree       %s of %s under %s in %s\n", counted(store.pages().page_count(), "page").c_str(),
+      human_bytes(store.pages().page_bytes()).c_str(), counted(shape.total_nodes(), "node").c_str(),
+      counted(shape.levels(), "level").c_str());
 }
 
 void print_errors(const StoreFile& store) {

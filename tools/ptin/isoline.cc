@@ -85,11 +85,11 @@ void report(const IsolineOptions& options, const Isolines& lines,
                 {"units", units_json(crs)},
                 {"cost", cost_json(lines.cost)}});
   } else if (!context.quiet && options.output != "-") {
-    std::printf("%s: %s isolines (%s closed) at %zu levels, %s points; certified %s%s\n",
-                options.output.c_str(), grouped(written.lines).c_str(),
-                grouped(written.rings).c_str(), lines.levels().size(),
-                grouped(written.points).c_str(), short_number(lines.certified_error).c_str(),
-                lines.exact ? "; exact" : "");
+    std::printf("%s: %s (%s closed) at %s, %s; certified %s%s\n", options.output.c_str(),
+                counted(written.lines, "isoline").c_str(), grouped(written.rings).c_str(),
+                counted(lines.levels().size(), "level").c_str(),
+                counted(written.points, "point").c_str(),
+                short_number(lines.certified_error).c_str(), lines.exact ? "; exact" : "");
   }
 }
 
@@ -205,8 +205,8 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
                 {"units", units_json(crs)},
                 {"cost", cost_json(refined.cost)}});
   } else if (!context.quiet && options.output != "-") {
-    std::printf("%s: %s bands of %s polygons\n", options.output.c_str(), grouped(features).c_str(),
-                grouped(polygons.size()).c_str());
+    std::printf("%s: %s of %s\n", options.output.c_str(), counted(features, "band").c_str(),
+                counted(polygons.size(), "polygon").c_str());
   }
   return kExitDone;
 }

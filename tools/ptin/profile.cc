@@ -239,8 +239,8 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   request.stop = context.stop;
   const ProfileResult result = profile(terrain, lines, request);
   if (result.skipped_lines > 0 && !context.json) {
-    std::fprintf(stderr, "%s of %s lines have no length and are skipped\n",
-                 grouped(result.skipped_lines).c_str(), grouped(lines.size()).c_str());
+    std::fprintf(stderr, "%s of %s: no length, skipped\n", grouped(result.skipped_lines).c_str(),
+                 counted(lines.size(), "line").c_str());
   }
   if (!options.output.empty()) write_profile(options, result, crs);
   if (context.json) {

@@ -60,21 +60,25 @@ nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined
 
 void print_stats(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh) {
   const QueryCost& cost = refined.cost;
-  std::printf("%s: %s vertices, %s triangles written\n", options.output.c_str(),
-              grouped(mesh.vertices.size()).c_str(), grouped(mesh.triangles.size()).c_str());
-  std::printf("  mesh       %s vertices (%s without a height), %s triangles; T0 has %s vertices\n",
-              grouped(refined.vertices).c_str(), grouped(refined.void_vertices).c_str(),
-              grouped(refined.triangles).c_str(), grouped(refined.t0_vertices).c_str());
+  std::printf("%s: %s, %s written\n", options.output.c_str(),
+              counted(mesh.vertices.size(), "vertex", "vertices").c_str(),
+              counted(mesh.triangles.size(), "triangle").c_str());
+  std::printf("  mesh       %s (%s without a height), %s; T0 has %s\n",
+              counted(refined.vertices, "vertex", "vertices").c_str(),
+              grouped(refined.void_vertices).c_str(),
+              counted(refined.triangles, "triangle").c_str(),
+              counted(refined.t0_vertices, "vertex", "vertices").c_str());
   std::printf("  certified  %s at every sample%s, %s at any point%s\n",
               short_number(refined.certified_error).c_str(),
               options.region.given() ? " of the region" : "",
               short_number(refined.certified_deviation).c_str(), refined.exact ? "; exact" : "");
   std::printf(
-      "  cost       %s records retrieved of %s examined, %s applied; %s index nodes, %s pages, %s, "
+      "  cost       %s retrieved of %s examined, %s applied; %s, %s, %s, "
       "%.3f s\n",
-      grouped(cost.records_retrieved).c_str(), grouped(cost.records_examined).c_str(),
-      grouped(cost.records_applied).c_str(), grouped(cost.io.index_nodes).c_str(),
-      grouped(cost.io.pages).c_str(), human_bytes(cost.io.bytes_read).c_str(), cost.seconds);
+      counted(cost.records_retrieved, "record").c_str(), grouped(cost.records_examined).c_str(),
+      grouped(cost.records_applied).c_str(), counted(cost.io.index_nodes, "index node").c_str(),
+      counted(cost.io.pages, "page").c_str(), human_bytes(cost.io.bytes_read).c_str(),
+      cost.seconds);
 }
 
 int run_refine(const RefineOptions& options, const Context& context) {

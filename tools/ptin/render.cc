@@ -163,9 +163,12 @@ int run_render(const RenderOptions& options, const Context& context) {
   } else if (!context.quiet) {
     const std::string level =
         request.tolerance ? "within " + short_number(refined.certified_error) : "the full TIN";
-    std::printf("%s: %d x %d pixels, %s triangles, %s; slopes shaded %s times\n",
-                options.output.c_str(), view.width, view.height, grouped(refined.triangles).c_str(),
-                level.c_str(), short_number(style.exaggeration).c_str());
+    const std::string steepness = style.exaggeration == 1.0
+                                      ? "as they are"
+                                      : short_number(style.exaggeration) + " times as steep";
+    std::printf("%s: %d x %d pixels, %s, %s; slopes shaded %s\n", options.output.c_str(),
+                view.width, view.height, counted(refined.triangles, "triangle").c_str(),
+                level.c_str(), steepness.c_str());
   }
   return kExitDone;
 }

@@ -84,9 +84,10 @@ StreamSummary send(const StreamOptions& options, const StoreFile& store,
 }
 
 void print_stats(const StreamOptions& options, const StreamSummary& s) {
-  std::fprintf(stderr, "%s: %s splits on %s vertices in %s frames, %s\n", options.output.c_str(),
-               grouped(s.splits).c_str(), grouped(s.base_vertices).c_str(),
-               grouped(s.frames).c_str(), human_bytes(s.bytes).c_str());
+  std::fprintf(stderr, "%s: %s on %s in %s, %s\n", options.output.c_str(),
+               counted(s.splits, "split").c_str(),
+               counted(s.base_vertices, "vertex", "vertices").c_str(),
+               counted(s.frames, "frame").c_str(), human_bytes(s.bytes).c_str());
   if (s.splits != 0) {
     std::fprintf(stderr, "  size       %.2f bytes a split\n",
                  static_cast<double>(s.bytes) / static_cast<double>(s.splits));
@@ -94,9 +95,9 @@ void print_stats(const StreamOptions& options, const StreamSummary& s) {
   std::fprintf(stderr, "  certified  %s at every sample, %s at any point of what was asked for\n",
                short_number(s.certificate.error).c_str(),
                short_number(s.certificate.deviation).c_str());
-  std::fprintf(stderr, "  cost       %s records retrieved, %s pages, %.3f s\n",
-               grouped(s.cost.records_retrieved).c_str(), grouped(s.cost.io.pages).c_str(),
-               s.cost.seconds);
+  std::fprintf(stderr, "  cost       %s retrieved, %s, %.3f s\n",
+               counted(s.cost.records_retrieved, "record").c_str(),
+               counted(s.cost.io.pages, "page").c_str(), s.cost.seconds);
 }
 
 int run_stream(const StreamOptions& options, const Context& context) {

@@ -10,6 +10,7 @@
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
 
+#include "engine/construct/point_stream.h"
 #include "engine/error.h"
 #include "tools/file_name.h"
 
@@ -65,8 +66,7 @@ struct TextSamples::File {
 
 TextSamples::TextSamples(std::string path)
     : path_(std::move(path)), file_(std::make_unique<File>()) {
-  const bool is_packed = lower_case(path_).ends_with(".gz");
-  file_->handle = VSIFOpenL(((is_packed ? "/vsigzip/" : "") + path_).c_str(), "rb");
+  file_->handle = VSIFOpenL(((is_packed(path_) ? "/vsigzip/" : "") + path_).c_str(), "rb");
   if (file_->handle == nullptr) throw Error(ErrorCode::io_error, "cannot be read", path_);
 }
 

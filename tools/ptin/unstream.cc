@@ -146,16 +146,17 @@ nlohmann::json answer_of(const UnstreamOptions& options, const Receiver& receive
 void print_report(const Receiver& receiver, const RefinedTin& refined) {
   const StreamReader& reader = receiver.reader();
   std::fprintf(stderr,
-               "%s vertices, %s triangles; certified %s at every sample, %s at any point of "
+               "%s, %s; certified %s at every sample, %s at any point of "
                "what was asked for\n",
-               grouped(refined.vertices).c_str(), grouped(refined.triangles).c_str(),
+               counted(refined.vertices, "vertex", "vertices").c_str(),
+               counted(refined.triangles, "triangle").c_str(),
                short_number(refined.certified_error).c_str(),
                short_number(refined.certified_deviation).c_str());
   if (!receiver.complete()) {
     std::fprintf(stderr,
-                 "the stream was cut: %s of %s splits arrived; for the rest ask "
+                 "the stream was cut: %s of %s arrived; for the rest ask "
                  "`ptin stream FILE ... --have '%s'`\n",
-                 grouped(reader.splits()).c_str(), grouped(reader.splits_in_all()).c_str(),
+                 grouped(reader.splits()).c_str(), counted(reader.splits_in_all(), "split").c_str(),
                  receiver.have().dump().c_str());
   }
 }
@@ -173,9 +174,10 @@ int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
     print_json(answer);
   } else if (!context.quiet) {
     print_report(receiver, refined);
-    std::fprintf(stderr, "%s isolines at %zu levels, kept up to date over %s splits\n",
-                 grouped(lines.at("lines")).c_str(), lines.at("levels").size(),
-                 grouped(lines.at("changed").at("splits")).c_str());
+    std::fprintf(stderr, "%s at %s, kept up to date over %s\n",
+                 counted(lines.at("lines"), "isoline").c_str(),
+                 counted(lines.at("levels").size(), "level").c_str(),
+                 counted(lines.at("changed").at("splits"), "split").c_str());
   }
   return kExitDone;
 }

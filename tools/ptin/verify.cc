@@ -192,17 +192,18 @@ void print_checks(const AgainstReport& report) {
 void print_findings(const VerifyCommand& command, const Findings& f) {
   std::printf("%s: %s\n", command.terrain.file.c_str(),
               f.fault_count == 0 ? "sound" : "DAMAGED or wrong");
-  std::printf("  %s pages, %s records, %s index nodes; %s windows of the full TIN valid\n",
-              grouped(f.store.pages).c_str(), grouped(f.store.records).c_str(),
-              grouped(f.store.index_nodes).c_str(), grouped(f.windows).c_str());
+  std::printf("  %s, %s, %s; %s of the full TIN valid\n", counted(f.store.pages, "page").c_str(),
+              counted(f.store.records, "record").c_str(),
+              counted(f.store.index_nodes, "index node").c_str(),
+              counted(f.windows, "window").c_str());
   if (f.against && !f.against->checks.empty()) {
-    std::printf("against %s: %s samples with a height, %s void\n", command.against.front().c_str(),
-                grouped(f.against->checks.front().samples).c_str(),
+    std::printf("against %s: %s with a height, %s void\n", command.against.front().c_str(),
+                counted(f.against->checks.front().samples, "sample").c_str(),
                 grouped(f.against->checks.front().void_samples).c_str());
     print_checks(*f.against);
   }
   if (f.fault_count == 0) return;
-  std::printf("%s%s faults; the first:\n", grouped(f.fault_count).c_str(),
+  std::printf("%s%s; the first:\n", counted(f.fault_count, "fault").c_str(),
               f.store.stopped_early ? " or more" : "");
   for (const VerifyFault& fault : f.faults) {
     std::printf("  %s%s%s\n", fault.where.c_str(), fault.where.empty() ? "" : ": ",

@@ -10,6 +10,7 @@
 #include <gdal_priv.h>
 #include <ogr_geometry.h>
 
+#include "engine/construct/memory_plan.h"
 #include "tools/error_status.h"
 #include "tools/export/gdal_output.h"
 #include "tools/file_name.h"

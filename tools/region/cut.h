@@ -23,7 +23,10 @@ namespace ptin::tools {
 /// side, are the caller's own. A cut closer to a vertex than the lattice can tell goes through that
 /// vertex. REQUIRES: `refined` holds every triangle that meets the region.
 /// @throws Error invalid_argument  the region is a point or a segment, or a polygon reaches beyond
-/// 2^38 grid units Cost: triangles near the border, and linear for the result.
+///                                 2^38 grid units
+/// Cost: linear in the triangles, and for each corner of the region the walk to it from the one
+/// before. A corner outside of the mesh, and a side with both its ends outside, look at every
+/// triangle: corners outside times triangles.
 [[nodiscard]] Mesh cut_to_region(const RefinedTin& refined, const StoreFacts& facts,
                                  const Region& region);
 

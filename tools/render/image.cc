@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/render/image.h"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -9,7 +11,6 @@
 #include "engine/error.h"
 #include "tools/export/gdal_output.h"
 #include "tools/output_file.h"
-#include "tools/render/image.h"
 
 namespace ptin::tools {
 
