@@ -16,8 +16,6 @@ namespace ptin {
 
 namespace {
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-
 // Measured on terrains of 4097 to 16385 samples a side (bench/README.md), with some room.
 constexpr double kOutputBytesOfVertex = 66.0;
 constexpr double kVerticesPerSecond = 150000.0;  ///< A thread's, both halves of the build.

@@ -16,7 +16,6 @@ namespace ptin::build_internal {
 
 namespace {
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr const char* kBucketFile = "points";
 constexpr const char* kPointsIndex = "points.index";
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/construct/memory_plan.h"
 #include "engine/construct/tile_collapse.h"
 #include "engine/construct/tile_files.h"
 #include "engine/error.h"
@@ -70,7 +71,6 @@ std::optional<std::uint64_t> CollapseStage::next_bytes() {
 }
 
 void CollapseStage::refuse_join(std::uint64_t bytes) const {
-  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
   throw Error(ErrorCode::resource_exhausted,
               "a join of four tiles needs " + std::to_string((bytes - options_.bytes) / kMiB + 1) +
                   " MiB more than --memory leaves for it; go on with that much more");

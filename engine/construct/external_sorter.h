@@ -16,18 +16,12 @@
 #include <utility>
 #include <vector>
 
+#include "engine/construct/external_memory.h"
 #include "engine/construct/run_merger.h"
 #include "engine/error.h"
 #include "storage/file_layer.h"
 
 namespace ptin {
-
-/// Where a step of reading or sorting keeps its temporary files, and how much memory it may take.
-struct ExternalMemory {
-  FileLayer& files;
-  std::string folder;  ///< Must exist. Files in it have no names: they are gone with the process.
-  std::uint64_t bytes = std::uint64_t{64} << 20;
-};
 
 /// What sorting took.
 struct SortCounts {

@@ -13,7 +13,6 @@ namespace ptin {
 
 namespace {
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
 /// The number in a file of one word; no limit where there is none ("max", no such file).

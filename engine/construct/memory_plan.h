@@ -7,12 +7,13 @@
 
 namespace ptin {
 
+inline constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
 /// Memory that this process may take without being asked: 1 GiB, or three quarters of what its
 /// cgroup or resource limits allow where that is less.
 [[nodiscard]] std::uint64_t default_memory();
 
-/// Anonymous memory of this process now, and the most it ever had; bytes. 0 where the system does
-/// not tell.
+/// Anonymous memory of this process now, bytes; 0 where the system does not tell.
 [[nodiscard]] std::uint64_t anonymous_bytes_now();
 
 /// The shares of a limit on anonymous memory.

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "engine/construct/array_file.h"
-#include "engine/construct/build_plan.h"
 #include "engine/construct/hull_collector.h"
 #include "engine/construct/point_sorter.h"
+#include "engine/construct/source_disk.h"
 #include "engine/construct/terrain_source.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/point.h"

@@ -39,23 +39,25 @@ void BorderFinder::clear_piece() {
 
 TinBorder border_in_memory(std::span<const GridEdge> edges) {
   TinBorder border;
-  std::vector<std::pair<VertexKey, double>> vertices;
+  std::vector<GridVertex> vertices;
   for (const GridEdge& e : edges) {  // each vertex of a border is where some edge begins
-    vertices.emplace_back(key_of(e.from.position), e.from.height);
+    vertices.push_back(e.from);
   }
-  std::sort(vertices.begin(), vertices.end());
+  // The lowest of those that share a position.
+  std::sort(vertices.begin(), vertices.end(), [](const GridVertex& a, const GridVertex& b) {
+    return std::pair(key_of(a.position), a.height) < std::pair(key_of(b.position), b.height);
+  });
   vertices.erase(std::unique(vertices.begin(), vertices.end(),
-                             [](const auto& a, const auto& b) { return a.first == b.first; }),
+                             [](const GridVertex& a, const GridVertex& b) {
+                               return a.position == b.position;
+                             }),
                  vertices.end());
-  for (const auto& [key, height] : vertices) {
-    border.positions.push_back(point_of(key));
-    border.heights.push_back(height);
+  for (const GridVertex& v : vertices) {
+    border.positions.push_back(v.position);
+    border.heights.push_back(v.height);
   }
   const auto number = [&](const GridVertex& v) {
-    return static_cast<VertexId>(
-        std::lower_bound(vertices.begin(), vertices.end(), key_of(v.position),
-                         [](const auto& entry, VertexKey key) { return entry.first < key; }) -
-        vertices.begin());
+    return vertex_number(vertices, key_of(v.position));
   };
   for (const GridEdge& e : edges) {
     border.edges.push_back({number(e.from), number(e.to)});

@@ -27,12 +27,7 @@ struct Patch {
   std::vector<std::uint8_t> is_complete;
   std::vector<Corners> triangles;
 
-  [[nodiscard]] VertexId number(VertexKey key) const {
-    const auto at =
-        std::lower_bound(vertices.begin(), vertices.end(), key,
-                         [](const GridVertex& v, VertexKey k) { return key_of(v.position) < k; });
-    return static_cast<VertexId>(at - vertices.begin());
-  }
+  [[nodiscard]] VertexId number(VertexKey key) const { return vertex_number(vertices, key); }
   [[nodiscard]] Corners numbers(const GridTriangle& t) const {
     return {number(key_of(t.corners[0].position)), number(key_of(t.corners[1].position)),
             number(key_of(t.corners[2].position))};

@@ -243,6 +243,13 @@ TinOnGrid GridReader::read() {
 
 }  // namespace
 
+VertexId vertex_number(std::span<const GridVertex> vertices, VertexKey key) noexcept {
+  const auto at =
+      std::lower_bound(vertices.begin(), vertices.end(), key,
+                       [](const GridVertex& v, VertexKey k) { return key_of(v.position) < k; });
+  return static_cast<VertexId>(at - vertices.begin());
+}
+
 std::int64_t GridTriangle::area() const noexcept {
   return orient(corners[0].position, corners[1].position, corners[2].position);
 }

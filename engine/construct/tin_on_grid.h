@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ struct GridVertex {
   GridPoint position;
   double height = 0.0;
 };
+
+/// Where the vertex of a key stands among vertices in the order of their keys.
+/// REQUIRES: it is among them. Cost: O(log n).
+[[nodiscard]] VertexId vertex_number(std::span<const GridVertex> vertices, VertexKey key) noexcept;
 
 /// A triangle by itself.
 struct GridTriangle {

@@ -280,11 +280,7 @@ Tin TinTriangles::part(std::uint64_t i, std::uint64_t n) const {
   }
   tin.has_height.assign(vertices.size(), 1);
   const auto number = [&](const GridVertex& v) {
-    return static_cast<VertexId>(
-        std::lower_bound(
-            vertices.begin(), vertices.end(), key_of(v.position),
-            [](const GridVertex& a, VertexKey key) { return key_of(a.position) < key; }) -
-        vertices.begin());
+    return vertex_number(vertices, key_of(v.position));
   };
   tin.triangles.reserve(triangles.size());
   for (const GridTriangle& t : triangles) {

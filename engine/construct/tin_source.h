@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "engine/construct/array_file.h"
-#include "engine/construct/build_plan.h"
 #include "engine/construct/external_sorter.h"
 #include "engine/construct/hull_collector.h"
 #include "engine/construct/record_file.h"
+#include "engine/construct/source_disk.h"
 #include "engine/construct/terrain_source.h"
 #include "engine/construct/tin_on_grid.h"
 #include "engine/mesh/tin.h"
