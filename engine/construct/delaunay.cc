@@ -12,6 +12,7 @@
 #include <CGAL/spatial_sort.h>
 
 #include "engine/construct/delaunay_kernel_internal.h"
+#include "engine/construct/delaunay_stop_internal.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -55,10 +56,9 @@ Delaunay triangulate(std::span<const GridPoint> positions, const std::stop_token
                          CGAL::make_property_map(std::as_const(points))));
   Delaunay delaunay;
   Delaunay::Face_handle hint;
-  static constexpr std::size_t kBetweenStops = 4096;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i % kBetweenStops == 0 && stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "the triangulation was cancelled");
+    if (i % kBetweenStops == 0) {
+      check_stop(stop);
     }
     const Delaunay::Vertex_handle v = delaunay.insert(points[order[i]], hint);
     v->info() = static_cast<VertexId>(order[i]);

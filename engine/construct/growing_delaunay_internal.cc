@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/check.h"
+#include "engine/construct/delaunay_stop_internal.h"
 #include "engine/construct/unseen_region_internal.h"
 #include "engine/error.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 /// Spacings of points that the first margin is wide.
 constexpr double kMargin = 6.0;
-constexpr std::size_t kBetweenStops = 4096;
 
 /// The round in which a point is inserted: the last with 7 of 8 points, the one before it with 7 of
 /// 8 of the others, and so on. Points in the order of the curve would make quadratic work of rows.
@@ -28,15 +28,9 @@ int rounds_before_last(GridPoint p) noexcept {
 
 }  // namespace
 
-void GrowingDelaunay::check_stop() const {
-  if (stop_.stop_requested()) {
-    throw Error(ErrorCode::cancelled, "the triangulation was cancelled");
-  }
-}
-
 void GrowingDelaunay::insert(const BucketPoint& p, bool own) {
   if (handles_.size() % kBetweenStops == 0) {
-    check_stop();
+    check_stop(stop_);
   }
   const Vertex_handle v = delaunay_.insert(GridKernel::Point_2(p.position.x, p.position.y), hint_);
   v->info() = static_cast<VertexId>(handles_.size());
@@ -258,7 +252,7 @@ void GrowingDelaunay::settle(std::vector<VertexId> vertices) {
   const std::vector<std::uint8_t> of_interest = wanted;
   while (!vertices.empty()) {
     const VertexId v = vertices.back();
-    check_stop();
+    check_stop(stop_);
     inserted_.clear();
     if (settle_star(v)) {
       vertices.pop_back();

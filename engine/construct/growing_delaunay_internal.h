@@ -68,7 +68,6 @@ class GrowingDelaunay {
   [[nodiscard]] bool is_final(const Face_handle& face);
   [[nodiscard]] bool take_from(BucketCache::Bucket& loaded, const UnseenRegion& region);
   [[nodiscard]] bool see(const UnseenRegion& region, GridPoint near);
-  void check_stop() const;
 
   const PointBuckets& buckets_;
   std::uint64_t first_, end_;

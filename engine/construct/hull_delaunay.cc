@@ -12,7 +12,7 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <CGAL/box_intersection_d.h>
 
-#include "engine/error.h"
+#include "engine/construct/delaunay_stop_internal.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/orient.h"
 
@@ -20,6 +20,8 @@ namespace ptin {
 
 namespace {
 
+using delaunay_internal::check_stop;
+using delaunay_internal::kBetweenStops;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 /// How often the surface covers a face; kUnknown before it is reached.
 using Winding = int;
@@ -34,12 +36,6 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
 
 bool is_before(const BorderEdge& a, const BorderEdge& b) {
   return a.from != b.from ? a.from < b.from : a.to < b.to;
-}
-
-void check_stop(const std::stop_token& stop) {
-  if (stop.stop_requested()) {
-    throw Error(ErrorCode::cancelled, "the triangulation was cancelled");
-  }
 }
 
 /// The border's vertices and edges.
@@ -67,7 +63,6 @@ Cdt triangulate(std::span<const GridPoint> positions, std::span<const BorderEdge
     return handles[static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), v) -
                                             ids.begin())];
   };
-  constexpr std::size_t kBetweenStops = 4096;
   for (std::size_t i = 0; i < border.size(); ++i) {
     if (i % kBetweenStops == 0) {
       check_stop(stop);

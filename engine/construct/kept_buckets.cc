@@ -49,7 +49,7 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
   file.put(std::span(&kept, 1));
   put_frame(file, frame_);
   file.put(hull_.corners());
-  file.put(boxes_.front());
+  file.put(boxes_.boxes());
   file.put(ends_);
   file.sync();
   return file.facts();
@@ -93,12 +93,11 @@ PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
   result.bucket_points_ = kept.bucket_points;
   result.codes_are_whole_ = kept.codes_are_whole != 0;
   result.hull_ = ConvexHull(file.take_copy<GridPoint>());
-  result.boxes_.push_back(file.take_copy<GridBox>());
+  result.boxes_ = PackedBoxes(file.take_copy<GridBox>());
   result.ends_ = file.take_copy<std::uint64_t>();
   file.require_undamaged();
   result.file_ = std::make_unique<ScratchFile>(files, buckets, ScratchFile::Kept::kExisting);
   result.check_points(buckets, kept.checksum, stop, progress);
-  result.index_boxes();
   return result;
 }
 

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <queue>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "engine/geometry/box.h"
+#include "engine/geometry/point.h"
 
 namespace ptin {
 
@@ -30,6 +34,10 @@ class PackedBoxes {
     }
   }
 
+  [[nodiscard]] std::span<const GridBox> boxes() const noexcept {
+    return levels_.empty() ? std::span<const GridBox>() : levels_.front();
+  }
+
   /// Calls visit(number) in ascending order for each box that pleases `meets`, which must hold for
   /// every box around one for which it holds.
   template <class Meets, class Visit>
@@ -38,6 +46,10 @@ class PackedBoxes {
       descend(levels_.size() - 1, 0, meets, visit);
     }
   }
+
+  /// The same, the nearest to `from` first, until visit() returns false.
+  template <class Meets, class Visit>
+  void visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const;
 
  private:
   static constexpr std::size_t kFanOut = 16;
@@ -59,5 +71,47 @@ class PackedBoxes {
 
   std::vector<std::vector<GridBox>> levels_;  ///< The boxes, those of 16 of them, and so on.
 };
+
+template <class Meets, class Visit>
+void PackedBoxes::visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const {
+  struct Entry {
+    std::int64_t distance;
+    std::size_t level;
+    std::size_t number;
+    bool operator<(const Entry& other) const noexcept {  // a queue takes the largest first
+      return distance != other.distance ? distance > other.distance
+             : level != other.level     ? level > other.level
+                                        : number > other.number;
+    }
+  };
+  std::priority_queue<Entry> queue;
+  const auto push = [&](std::size_t level, std::size_t number) {
+    const GridBox& b = levels_[level][number];
+    if (meets(b)) {
+      const std::int64_t dx = std::max(
+          {std::int64_t{b.min_x} - from.x, std::int64_t{from.x} - b.max_x, std::int64_t{0}});
+      const std::int64_t dy = std::max(
+          {std::int64_t{b.min_y} - from.y, std::int64_t{from.y} - b.max_y, std::int64_t{0}});
+      queue.push({dx * dx + dy * dy, level, number});
+    }
+  };
+  if (!levels_.empty()) {
+    push(levels_.size() - 1, 0);
+  }
+  while (!queue.empty()) {
+    const Entry top = queue.top();
+    queue.pop();
+    if (top.level == 0) {
+      if (!visit(top.number)) {
+        return;
+      }
+      continue;
+    }
+    const std::size_t end = std::min((top.number + 1) * kFanOut, levels_[top.level - 1].size());
+    for (std::size_t child = top.number * kFanOut; child < end; ++child) {
+      push(top.level - 1, child);
+    }
+  }
+}
 
 }  // namespace ptin

@@ -40,9 +40,7 @@ class PointBuckets::Writer {
         grid_(grid),
         order_(order),
         rule_(rule),
-        heights_(grid.whole, grid.heights.unit()) {
-    to_.boxes_.emplace_back();
-  }
+        heights_(grid.whole, grid.heights.unit()) {}
 
   void add(const KeyedHeight& p) {
     if (merged_ && p.key == key_) {
@@ -57,6 +55,7 @@ class PointBuckets::Writer {
   void finish() {
     put();
     write();
+    to_.boxes_ = PackedBoxes(std::move(boxes_));
     const HeightFit fit = heights_.fit();
     set_heights(to_.frame_, fit);
     to_.codes_are_whole_ = grid_.whole;
@@ -87,17 +86,16 @@ class PointBuckets::Writer {
     if (bucket_.empty()) {
       return;
     }
-    std::vector<GridBox>& boxes = to_.boxes_.front();
     GridBox box;
     for (const PlacedHeight& p : bucket_) {
       box = united(box, p.position);
     }
     pack_bucket(bucket_, box, packed_);
     to_.add_to_checksum(packed_);
-    const std::uint64_t begin = to_.begin_of(boxes.size());
+    const std::uint64_t begin = to_.begin_of(boxes_.size());
     to_.file_->write_at(packed_, begin);
     to_.ends_.push_back(begin + packed_.size());
-    boxes.push_back(box);
+    boxes_.push_back(box);
     bucket_.clear();
   }
 
@@ -107,6 +105,7 @@ class PointBuckets::Writer {
   PointMerge rule_;
   HeightFinder heights_;
   HullCollector hull_;
+  std::vector<GridBox> boxes_;
   std::vector<PlacedHeight> bucket_;
   std::vector<std::byte> packed_;
   std::uint64_t key_ = 0;
@@ -155,17 +154,6 @@ void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rul
   writer.finish();
 }
 
-void PointBuckets::index_boxes() {
-  while (boxes_.back().size() > 1) {
-    const std::vector<GridBox>& below = boxes_.back();
-    std::vector<GridBox> above((below.size() + kFanOut - 1) / kFanOut);
-    for (std::size_t i = 0; i < below.size(); ++i) {
-      above[i / kFanOut] = united(above[i / kFanOut], below[i]);
-    }
-    boxes_.push_back(std::move(above));
-  }
-}
-
 PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const SourceOptions& options,
                                 const ExternalMemory& memory, const std::stop_token& stop,
                                 const Progress& progress, const std::string& keep_as) {
@@ -186,7 +174,6 @@ PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const Sou
   buckets.counts_.left_out_points = reading.left_out;
   buckets.sort(spool, reading.grid, options.merge, memory, stop, progress, keep_as);
   check_area(buckets.hull_, buckets.size_, context);
-  buckets.index_boxes();
   return buckets;
 }
 

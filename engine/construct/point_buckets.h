@@ -4,11 +4,9 @@
 // buckets of equal size whose boxes are kept in memory.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <queue>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -16,6 +14,7 @@
 
 #include "engine/construct/array_file.h"
 #include "engine/construct/hull_collector.h"
+#include "engine/construct/packed_boxes.h"
 #include "engine/construct/point_sorter.h"
 #include "engine/construct/source_disk.h"
 #include "engine/construct/terrain_source.h"
@@ -75,9 +74,9 @@ class PointBuckets {
   /// Distinct positions.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   [[nodiscard]] std::uint64_t bucket_points() const noexcept { return bucket_points_; }
-  [[nodiscard]] std::uint64_t buckets() const noexcept { return boxes_.front().size(); }
+  [[nodiscard]] std::uint64_t buckets() const noexcept { return boxes_.boxes().size(); }
   [[nodiscard]] const GridBox& box(std::uint64_t bucket) const noexcept {
-    return boxes_.front()[bucket];
+    return boxes_.boxes()[bucket];
   }
   /// Points first .. first + count - 1 in the order of the curve.  @throws Error io_error
   void take(std::uint64_t first, std::uint64_t count, std::vector<BucketPoint>& points) const;
@@ -85,7 +84,9 @@ class PointBuckets {
   /// Calls visit(bucket) for each bucket whose box pleases `meets`, the nearest to `from` first,
   /// until it returns false. `meets` must hold for every box around one for which it holds.
   template <class Meets, class Visit>
-  void visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const;
+  void visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const {
+    boxes_.visit_nearest(from, meets, visit);
+  }
 
  private:
   class Writer;
@@ -97,7 +98,6 @@ class PointBuckets {
   void add_to_checksum(std::span<const std::byte> bucket);
   void check_points(const std::string& path, std::uint64_t expected, const std::stop_token& stop,
                     const std::function<void(std::uint64_t, std::uint64_t)>& progress);
-  void index_boxes();
   /// Where a bucket begins in the file.
   [[nodiscard]] std::uint64_t begin_of(std::uint64_t bucket) const noexcept {
     return bucket == 0 ? 0 : ends_[bucket - 1];
@@ -112,49 +112,7 @@ class PointBuckets {
   std::unique_ptr<ScratchFile> file_;
   std::vector<std::uint64_t> ends_;  ///< Of each bucket, in the file.
   std::uint64_t checksum_ = 0;       ///< Of the buckets, each with what came before it.
-  static constexpr std::uint64_t kFanOut = 16;
-  std::vector<std::vector<GridBox>> boxes_;  ///< Of buckets, of groups of 16 of those, and so on.
+  PackedBoxes boxes_;                ///< Of buckets.
 };
-
-template <class Meets, class Visit>
-void PointBuckets::visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const {
-  struct Entry {
-    std::int64_t distance;
-    std::size_t level;
-    std::uint64_t number;
-    bool operator<(const Entry& other) const noexcept {  // a queue takes the largest first
-      return distance != other.distance ? distance > other.distance
-             : level != other.level     ? level > other.level
-                                        : number > other.number;
-    }
-  };
-  std::priority_queue<Entry> queue;
-  const auto push = [&](std::size_t level, std::uint64_t number) {
-    const GridBox& b = boxes_[level][number];
-    if (meets(b)) {
-      const std::int64_t dx = std::max(
-          {std::int64_t{b.min_x} - from.x, std::int64_t{from.x} - b.max_x, std::int64_t{0}});
-      const std::int64_t dy = std::max(
-          {std::int64_t{b.min_y} - from.y, std::int64_t{from.y} - b.max_y, std::int64_t{0}});
-      queue.push({dx * dx + dy * dy, level, number});
-    }
-  };
-  push(boxes_.size() - 1, 0);
-  while (!queue.empty()) {
-    const Entry top = queue.top();
-    queue.pop();
-    if (top.level == 0) {
-      if (!visit(top.number)) {
-        return;
-      }
-      continue;
-    }
-    const std::uint64_t end =
-        std::min<std::uint64_t>((top.number + 1) * kFanOut, boxes_[top.level - 1].size());
-    for (std::uint64_t child = top.number * kFanOut; child < end; ++child) {
-      push(top.level - 1, child);
-    }
-  }
-}
 
 }  // namespace ptin

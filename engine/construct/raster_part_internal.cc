@@ -231,11 +231,11 @@ constexpr GDALDataType kGdalType = std::is_same_v<T, std::int32_t> ? GDT_Int32
 
 /// Reads a window of the grid from a band, and turns it to the grid's orientation.
 template <class T>
-void read_band(GDALRasterBand& band, const RasterShape& shape, const SampleWindow& w,
+void read_band(GDALRasterBand& band, const RasterShape& shape, const SampleRange& w,
                std::span<T> values, const std::string& path) {
   const GdalSession session;
-  const auto column = shape.columns_from_east ? shape.width - w.x - w.width : w.x;
-  const auto row = shape.rows_from_south ? w.y : shape.height - w.y - w.height;
+  const auto column = shape.columns_from_east ? shape.width - w.x0 - w.width : w.x0;
+  const auto row = shape.rows_from_south ? w.y0 : shape.height - w.y0 - w.height;
   const auto status = band.RasterIO(GF_Read, static_cast<int>(column), static_cast<int>(row),
                                     static_cast<int>(w.width), static_cast<int>(w.height),
                                     values.data(), static_cast<int>(w.width),
@@ -263,15 +263,15 @@ bool is_height(T raw, const RasterShape& shape) {
 
 /// Refuses the first valid value of the window that is no height, if there is one.
 template <class T>
-void check_heights(const SampleWindow& w, std::span<const T> values,
+void check_heights(const SampleRange& w, std::span<const T> values,
                    std::span<const std::uint8_t> valid, const RasterShape& shape,
                    const std::string& path) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (valid[i] == 0 || is_height(values[i], shape)) {
       continue;
     }
-    const std::int64_t x = w.x + static_cast<std::int64_t>(i) % w.width;
-    const std::int64_t y = w.y + static_cast<std::int64_t>(i) / w.width;
+    const std::int64_t x = w.x0 + static_cast<std::int64_t>(i) % w.width;
+    const std::int64_t y = w.y0 + static_cast<std::int64_t>(i) / w.width;
     const std::int64_t column = shape.columns_from_east ? shape.width - 1 - x : x;
     const std::int64_t row = shape.rows_from_south ? y : shape.height - 1 - y;
     refuse("the height at column " + std::to_string(column) + ", row " + std::to_string(row) +
@@ -331,7 +331,7 @@ void RasterPart::close() noexcept {
 }
 
 template <class T>
-void RasterPart::read(const SampleWindow& window, std::span<T> values,
+void RasterPart::read(const SampleRange& window, std::span<T> values,
                       std::span<std::uint8_t> valid) {
   if (!is_open()) {
     open();
@@ -350,9 +350,9 @@ void RasterPart::read(const SampleWindow& window, std::span<T> values,
   }
 }
 
-template void RasterPart::read(const SampleWindow&, std::span<std::int32_t>,
+template void RasterPart::read(const SampleRange&, std::span<std::int32_t>,
                                std::span<std::uint8_t>);
-template void RasterPart::read(const SampleWindow&, std::span<float>, std::span<std::uint8_t>);
-template void RasterPart::read(const SampleWindow&, std::span<double>, std::span<std::uint8_t>);
+template void RasterPart::read(const SampleRange&, std::span<float>, std::span<std::uint8_t>);
+template void RasterPart::read(const SampleRange&, std::span<double>, std::span<std::uint8_t>);
 
 }  // namespace ptin

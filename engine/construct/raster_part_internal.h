@@ -12,6 +12,7 @@
 #include <string>
 
 #include "engine/construct/terrain_source.h"
+#include "engine/construct/tile_tree.h"
 
 namespace ptin {
 
@@ -34,12 +35,6 @@ struct RasterShape {
   double scale = 1.0;     ///< height = offset + scale * raw value
   double offset = 0.0;
   std::array<int, 2> block = {1, 1};  ///< Width and height of the file's own blocks.
-};
-
-/// A window of samples, in the grid's orientation.
-struct SampleWindow {
-  std::int64_t x = 0, y = 0;
-  std::int64_t width = 0, height = 0;
 };
 
 /// A raster file, opened when needed. Not thread-safe: one call at a time.
@@ -69,7 +64,7 @@ class RasterPart {
   /// @throws Error  io_error          a block cannot be read
   ///                invalid_argument  a height that is not finite: the message names its pixel
   template <class T>
-  void read(const SampleWindow& window, std::span<T> values, std::span<std::uint8_t> valid);
+  void read(const SampleRange& window, std::span<T> values, std::span<std::uint8_t> valid);
 
  private:
   struct Bands;

@@ -145,13 +145,13 @@ struct RasterSource::Impl {
   void scan(const std::stop_token& stop, const Progress& progress);
   template <class T>
   void scan_as(const std::stop_token& stop, const Progress& progress);
-  [[nodiscard]] SampleWindow scan_step() const;
+  [[nodiscard]] SampleRange scan_step() const;
 
   void touch(PlacedPart& placed);
   template <class T>
-  void read_raw(const SampleWindow& w, std::span<T> values, std::span<std::uint8_t> valid);
+  void read_raw(const SampleRange& w, std::span<T> values, std::span<std::uint8_t> valid);
   template <class T>
-  void overlay(PlacedPart& placed, const SampleWindow& w, std::span<T> values,
+  void overlay(PlacedPart& placed, const SampleRange& w, std::span<T> values,
                std::span<std::uint8_t> valid);
 };
 
@@ -294,7 +294,7 @@ RasterSource RasterSource::duplicate() const {
 
 /// The windows of the first reading: whole rows where the file's blocks are, else a few of its
 /// blocks.
-SampleWindow RasterSource::Impl::scan_step() const {
+SampleRange RasterSource::Impl::scan_step() const {
   const auto [block_width, block_height] = parts[0].part.shape().block;
   const std::int64_t columns =
       block_width >= parts[0].part.shape().width
@@ -314,7 +314,7 @@ void RasterSource::Impl::scan_as(const std::stop_token& stop, const Progress& pr
   std::uint64_t count = 0, done = 0;
   const std::uint64_t total =
       static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  const SampleWindow step = scan_step();
+  const SampleRange step = scan_step();
   std::vector<T> values(static_cast<std::size_t>(step.width * std::min(step.height, height)));
   std::vector<std::uint8_t> valid(values.size());
   for (std::int64_t y = height; y > 0; y -= step.height) {  // from the north, as most files lie
@@ -323,7 +323,7 @@ void RasterSource::Impl::scan_as(const std::stop_token& stop, const Progress& pr
         throw Error(ErrorCode::cancelled, "reading was cancelled", context());
       }
       const std::int64_t south = std::max<std::int64_t>(y - step.height, 0);
-      const SampleWindow w{x, south, std::min(step.width, width - x), y - south};
+      const SampleRange w{x, south, std::min(step.width, width - x), y - south};
       const auto n = static_cast<std::size_t>(w.width * w.height);
       read_raw<T>(w, std::span(values).first(n), std::span(valid).first(n));
       for (std::size_t i = 0; i < n; ++i) {
@@ -391,24 +391,24 @@ void RasterSource::Impl::touch(PlacedPart& placed) {
 
 /// Reads what `placed` has of the window over what is there already.
 template <class T>
-void RasterSource::Impl::overlay(PlacedPart& placed, const SampleWindow& w, std::span<T> values,
+void RasterSource::Impl::overlay(PlacedPart& placed, const SampleRange& w, std::span<T> values,
                                  std::span<std::uint8_t> valid) {
   const RasterShape& shape = placed.part.shape();
-  const std::int64_t x0 = std::max(w.x, placed.x),
-                     x1 = std::min(w.x + w.width, placed.x + shape.width);
-  const std::int64_t y0 = std::max(w.y, placed.y),
-                     y1 = std::min(w.y + w.height, placed.y + shape.height);
+  const std::int64_t x0 = std::max(w.x0, placed.x),
+                     x1 = std::min(w.x0 + w.width, placed.x + shape.width);
+  const std::int64_t y0 = std::max(w.y0, placed.y),
+                     y1 = std::min(w.y0 + w.height, placed.y + shape.height);
   if (x0 >= x1 || y0 >= y1) {
     return;
   }
   touch(placed);
-  const SampleWindow own{x0 - placed.x, y0 - placed.y, x1 - x0, y1 - y0};
+  const SampleRange own{x0 - placed.x, y0 - placed.y, x1 - x0, y1 - y0};
   std::vector<T> own_values(static_cast<std::size_t>(own.width * own.height));
   std::vector<std::uint8_t> own_valid(own_values.size());
   placed.part.read<T>(own, own_values, own_valid);
   std::size_t from = 0;
   for (std::int64_t y = y0; y < y1; ++y) {
-    auto to = static_cast<std::size_t>((y - w.y) * w.width + x0 - w.x);
+    auto to = static_cast<std::size_t>((y - w.y0) * w.width + x0 - w.x0);
     for (std::int64_t x = x0; x < x1; ++x, ++from, ++to) {
       if (own_valid[from]) {
         values[to] = own_values[from];
@@ -419,11 +419,11 @@ void RasterSource::Impl::overlay(PlacedPart& placed, const SampleWindow& w, std:
 }
 
 template <class T>
-void RasterSource::Impl::read_raw(const SampleWindow& w, std::span<T> values,
+void RasterSource::Impl::read_raw(const SampleRange& w, std::span<T> values,
                                   std::span<std::uint8_t> valid) {
   if (parts.size() == 1) {
     PlacedPart& only = parts[0];
-    only.part.read<T>({w.x - only.x, w.y - only.y, w.width, w.height}, values, valid);
+    only.part.read<T>({w.x0 - only.x, w.y0 - only.y, w.width, w.height}, values, valid);
     return;
   }
   std::fill(values.begin(), values.end(), T{});
@@ -442,7 +442,7 @@ void RasterSource::read(std::int64_t x0, std::int64_t y0, std::int64_t w, std::i
     throw Error(ErrorCode::invalid_argument,
                 "a window of samples must lie inside the terrain, and its arrays be of its size");
   }
-  const SampleWindow window{x0, y0, w, h};
+  const SampleRange window{x0, y0, w, h};
   const std::lock_guard lock(impl_->mutex);
   const auto read_as = [&]<class T>(std::span<T> raw, auto to_bits) {
     impl_->read_raw<T>(window, raw, valid);
