@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/construct/raster_tile.h"
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 
 namespace ptin::bench {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 
 namespace ptin {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "engine/construct/array_file.h"
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 
 namespace ptin {
 

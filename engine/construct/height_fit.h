@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 #include "engine/geometry/height.h"
 
 namespace ptin {

@@ -11,6 +11,11 @@
 
 namespace ptin {
 
+/// Counts vertices inside of border edges, and border edges that cross.
+/// Cost: O(b log^2 b + pairs of edges whose boxes meet).
+void check_border(std::span<const GridPoint> positions, std::span<const BorderEdge> border,
+                  TinFaults& faults);
+
 /// The triangles that fill the convex hull around and between surface triangles: a constrained
 /// Delaunay triangulation of the border's vertices with the border's edges kept. Counter-clockwise.
 /// Also counts pieces that the surface covers more than once (another surface on top of it), by

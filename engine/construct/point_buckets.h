@@ -17,7 +17,7 @@
 #include "engine/construct/packed_boxes.h"
 #include "engine/construct/point_sorter.h"
 #include "engine/construct/source_disk.h"
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/point.h"
 #include "storage/file_layer.h"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "engine/construct/point_stream.h"
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 #include "engine/geometry/affine.h"
 #include "engine/geometry/point.h"
 

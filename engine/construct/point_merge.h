@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 
 namespace ptin {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/construct/point_grid.h"
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 
 namespace ptin {
 

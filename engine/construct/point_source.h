@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 #include "engine/geometry/point.h"
 
 namespace ptin {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "engine/construct/raster_tile.h"
+#include "engine/construct/started_tile.h"
 #include "engine/construct/tile_delaunay.h"
 #include "engine/construct/tile_tree.h"
 

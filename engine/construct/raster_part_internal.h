@@ -11,7 +11,7 @@
 #include <span>
 #include <string>
 
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 #include "engine/construct/tile_tree.h"
 
 namespace ptin {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 
 namespace ptin {
 

@@ -10,7 +10,7 @@
 
 #include "engine/construct/build.h"
 #include "engine/construct/segment_output.h"
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 #include "engine/mesh/tin.h"
 #include "storage/store_writer.h"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "engine/construct/cost.h"
-#include "engine/construct/raster_tile.h"
 #include "engine/construct/segment.h"
+#include "engine/construct/started_tile.h"
 #include "engine/construct/tile_push.h"
 #include "engine/construct/tile_tree.h"
 

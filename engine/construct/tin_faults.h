@@ -49,9 +49,4 @@ struct TinFaults {
   void refuse(const AffineMap& map, const std::string& path) const;
 };
 
-/// Counts vertices inside of border edges, and border edges that cross.
-/// Cost: O(b log^2 b + pairs of edges whose boxes meet).
-void check_border(std::span<const GridPoint> positions, std::span<const BorderEdge> border,
-                  TinFaults& faults);
-
 }  // namespace ptin

@@ -17,7 +17,7 @@
 #include "engine/construct/height_fit.h"
 #include "engine/construct/point_grid.h"
 #include "engine/construct/record_file.h"
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 #include "engine/construct/tin_faults.h"
 #include "engine/geometry/point.h"
 

@@ -17,7 +17,7 @@
 #include "engine/construct/hull_collector.h"
 #include "engine/construct/record_file.h"
 #include "engine/construct/source_disk.h"
-#include "engine/construct/terrain_source.h"
+#include "engine/construct/terrain_frame.h"
 #include "engine/construct/tin_on_grid.h"
 #include "engine/mesh/tin.h"
 

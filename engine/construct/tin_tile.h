@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/construct/raster_tile.h"
+#include "engine/construct/started_tile.h"
 #include "engine/construct/tile_tree.h"
 #include "engine/construct/tin_source.h"
 

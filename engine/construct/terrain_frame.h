@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What every source of a terrain delivers: a frame (grid, heights, CRS) and samples on the grid.
-// Raster sources are in raster_source.h, point sources in point_source.h; TINs belong beside
-// them.
+// The frame that every source of a terrain delivers beside its samples (grid, heights, CRS), and
+// the choices by which sources are read. Rasters are in raster_source.h, points in point_buckets.h,
+// TINs in tin_source.h.
 #pragma once
 
 #include <cstdint>
@@ -26,11 +26,11 @@ struct TerrainFrame {
   std::string horizontal_unit;  ///< "metre", "degree", "US survey foot", "unknown".
   std::string vertical_unit;
   double height_rounding = 0.0;  ///< Largest rounding of a height into its encoding, height's unit.
-  double height_quantum =
-      0.0;  ///< Smallest step between heights, > 0: `step` for int32; for float32 the decimal step
-            ///< found, else (rounded int32 too) range / 2^16.
-  double min_height = 0.0,
-         max_height = 0.0;  ///< Of all samples with a height; min > max when there is none.
+  /// Smallest step between heights, > 0: `step` for int32; for float32 the decimal step found, else
+  /// (rounded int32 too) range / 2^16.
+  double height_quantum = 0.0;
+  /// Of all samples with a height; min > max when there is none.
+  double min_height = 0.0, max_height = 0.0;
 };
 
 /// The height of points that fall together on one grid position.
@@ -38,8 +38,8 @@ enum class PointMerge : std::uint8_t { kMean, kLowest, kHighest };
 
 /// Choices that decide what is read from a source.
 struct SourceOptions {
-  std::optional<double>
-      nodata;  ///< Overrides the source's own. Points of this height are left out.
+  /// Overrides the source's own. Points of this height are left out.
+  std::optional<double> nodata;
   std::optional<double> resolution;  ///< Points: grid unit in CRS units.
   struct Bounds {
     double min_x, min_y, max_x, max_y;
