@@ -58,9 +58,9 @@ void BuildLog::note_collapsed(const TileId& id, const CollapsedTile& tile) {
                     {"pushed", json_of(tile.pushed)},
                     {"records", json_of(tile.records)},
                     {"lone", tile.lone_samples}});
-  for (const auto& [facts, ending] : {std::pair{tile.segment, ".segment"},
-                                      {tile.pushed, ".pushed"},
-                                      {tile.records, ".records"}}) {
+  for (const auto& [facts, ending] : {std::pair{tile.segment, kSegmentEnding},
+                                      {tile.pushed, kPushedEnding},
+                                      {tile.records, kRecordsEnding}}) {
     if (facts.bytes > 0) {
       unsynced_.push_back(path(id, ending));
     }
@@ -70,7 +70,7 @@ void BuildLog::note_collapsed(const TileId& id, const CollapsedTile& tile) {
 void BuildLog::note_tightened(const TileId& id, const ArrayFileFacts& bounds) {
   tightened_[id] = bounds;
   lines_.push_back({{"tightened", json_of(id)}, {"bounds", json_of(bounds)}});
-  unsynced_.push_back(path(id, ".bounds"));
+  unsynced_.push_back(path(id, kBoundsEnding));
 }
 
 void BuildLog::note_written(std::uint64_t leaves, std::uint64_t batches) {

@@ -18,6 +18,13 @@
 
 namespace ptin {
 
+/// Endings of the names of a tile's temporary files: its segment; what it pushes up; records of its
+/// leaves that wait to be written; its final bounds.
+inline constexpr const char* kSegmentEnding = ".segment";
+inline constexpr const char* kPushedEnding = ".pushed";
+inline constexpr const char* kRecordsEnding = ".records";
+inline constexpr const char* kBoundsEnding = ".bounds";
+
 /// The files of a tile after its collapses. Those without bytes do not exist.
 struct CollapsedTile {
   ArrayFileFacts segment;
@@ -38,7 +45,7 @@ class BuildLog {
   [[nodiscard]] Workspace& workspace() const noexcept { return workspace_; }
   [[nodiscard]] SegmentOutput& output() const noexcept { return output_; }
 
-  /// `L-X-Y`, with an ending: the name of a tile's temporary file.
+  /// `L-X-Y`, with one of the endings: the name of a tile's temporary file.
   [[nodiscard]] static std::string name(const TileId& id, const char* ending);
   [[nodiscard]] std::string path(const TileId& id, const char* ending) const {
     return workspace_.temporary(name(id, ending));

@@ -135,7 +135,7 @@ std::function<void()> CollapseStage::collapse_above(const TileId& id,
   std::vector<Tile> parts;
   const std::vector<TileId> ids = tree_.children(id);
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    ArrayFileReader file(log_.path(ids[i], ".pushed"), children[i]);
+    ArrayFileReader file(log_.path(ids[i], kPushedEnding), children[i]);
     parts.push_back(read_pushed(file, options_.collapse.units));
   }
   const CollapsedTile result =
@@ -143,20 +143,20 @@ std::function<void()> CollapseStage::collapse_above(const TileId& id,
   return [this, id, result, ids] {
     commit(id, result);
     for (const TileId& child : ids) {
-      log_.remove_later(child, ".pushed");
+      log_.remove_later(child, kPushedEnding);
     }
   };
 }
 
 ArrayFileFacts CollapseStage::write(const TileId& id, const Tile& pushed) {
-  ArrayFileWriter file(log_.workspace().files(), log_.path(id, ".pushed"));
+  ArrayFileWriter file(log_.workspace().files(), log_.path(id, kPushedEnding));
   write_pushed(file, pushed);
   return file.facts();
 }
 
 CollapsedTile CollapseStage::write(const CollapsedInner& inner) {
   CollapsedTile result;
-  ArrayFileWriter file(log_.workspace().files(), log_.path(inner.segment.id, ".segment"));
+  ArrayFileWriter file(log_.workspace().files(), log_.path(inner.segment.id, kSegmentEnding));
   write_segment(file, inner.segment);
   result.segment = file.facts();
   result.pushed = write(inner.segment.id, inner.pushed);

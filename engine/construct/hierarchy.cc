@@ -26,7 +26,7 @@ BuiltHierarchy build_hierarchy(const std::function<LeafStarter()>& make_starter,
     result.lone_samples += tile.lone_samples;
   }
   const TileId root = tree.root();
-  ArrayFileReader file(log.path(root, ".pushed"), log.collapsed().at(root).pushed);
+  ArrayFileReader file(log.path(root, kPushedEnding), log.collapsed().at(root).pushed);
   result.t0 = read_pushed(file, options.collapse.units).tin;
   if (root.level > 1) {  // what measured all samples is final
     TightenStage stage(make_starter, tree, order, result.t0, options, log);

@@ -5,18 +5,12 @@
 
 namespace ptin {
 
-namespace {
-
-constexpr const char* kEnding = ".records";
-
-}  // namespace
-
 InOrderSegments::InOrderSegments(BuildLog& log, const BatchOrder& order)
     : log_(log), order_(order), turn_(log.leaves_written()) {}
 
 /// Hands the segments of a file to the output, and forgets the file.
 void InOrderSegments::write_waiting(std::size_t batch, const ArrayFileFacts& facts) {
-  ArrayFileReader file(log_.path(top(batch), kEnding), facts);
+  ArrayFileReader file(log_.path(top(batch), kRecordsEnding), facts);
   while (!file.at_end()) {
     std::vector<VertexSplit> records = file.take_copy<VertexSplit>();
     log_.output().add_segment(records);
@@ -37,8 +31,8 @@ void InOrderSegments::add(std::size_t batch, std::span<VertexSplit> records) {
     return;
   }
   if (!file) {
-    file =
-        std::make_unique<ArrayFileWriter>(log_.workspace().files(), log_.path(top(batch), kEnding));
+    file = std::make_unique<ArrayFileWriter>(log_.workspace().files(),
+                                             log_.path(top(batch), kRecordsEnding));
   }
   file->put(std::span<const VertexSplit>(records));
 }
@@ -59,13 +53,13 @@ void InOrderSegments::advance() {
     const ArrayFileFacts& facts = log_.collapsed().at(top(turn_)).records;
     if (facts.bytes > 0) {
       write_waiting(turn_, facts);
-      log_.remove_later(top(turn_), kEnding);
+      log_.remove_later(top(turn_), kRecordsEnding);
     }
     ++turn_;
     log_.note_written(turn_, 0);
   }
   for (const TileId& id : std::exchange(written_, {})) {
-    log_.remove_later(id, kEnding);
+    log_.remove_later(id, kRecordsEnding);
   }
 }
 

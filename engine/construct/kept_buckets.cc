@@ -6,19 +6,13 @@
 #include <type_traits>
 
 #include "engine/construct/frame_file_internal.h"
+#include "engine/construct/packed_bucket.h"
 #include "engine/construct/point_buckets.h"
+#include "engine/construct/point_spool.h"
 #include "engine/error.h"
 #include "storage/checksum.h"
 
 namespace ptin {
-
-namespace {
-
-// PointSpool's records, what is sorted, and what a bucket holds at most; point_spool.h,
-// point_sorter.h, packed_bucket.h.
-constexpr std::uint64_t kSpooledBytes = 27, kSortedBytes = 16, kStoredBytes = 16;
-
-}  // namespace
 
 /// The plain values of buckets.
 struct PointBuckets::Kept {
@@ -30,9 +24,9 @@ struct PointBuckets::Kept {
 SourceDisk PointBuckets::disk_of(std::uint64_t points) noexcept {
   // Tiles of points have longer borders than squares, and push up more: 42 bytes a point were
   // measured for 3 million, 67 for 1 million.
-  return {.while_reading = points * (kSpooledBytes + kSortedBytes),
-          .spooled = points * kSpooledBytes,
-          .kept = points * kStoredBytes,
+  return {.while_reading = points * (PointSpool::kRecordBytes + sizeof(KeyedHeight)),
+          .spooled = points * PointSpool::kRecordBytes,
+          .kept = points * kMostPackedBytes,
           .tiles_of_vertex = 72.0};
 }
 

@@ -25,9 +25,10 @@ struct PlacedHeight {
 /// the bits of floats or doubles. Nothing is lost, the sign of a zero included.
 /// @param box   Of the points.
 /// @param to    Overwritten.
-/// At most 16 bytes a point and 10 more.
+/// At most kMostPackedBytes a point and 10 more.
 void pack_bucket(std::span<const PlacedHeight> points, const GridBox& box,
                  std::vector<std::byte>& to);
+inline constexpr std::uint64_t kMostPackedBytes = 16;
 
 /// @param bytes   As packed, with kUnpackSlack bytes of any value behind.
 /// @param points  Its size is that of the bucket; overwritten. No byte behind `bytes` is read, even

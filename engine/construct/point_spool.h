@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/construct/point_sorter.h"
+#include "engine/construct/external_memory.h"
 #include "engine/construct/point_stream.h"
 #include "storage/file_layer.h"
 
@@ -17,6 +17,9 @@ namespace ptin {
 /// A queue on disk: all points in, then all points out, and the disk is free again piece by piece.
 class PointSpool {
  public:
+  /// On disk, of a point: three mantissas and the decimals of each.
+  static constexpr std::size_t kRecordBytes = 3 * 8 + 3;
+
   explicit PointSpool(const ExternalMemory& memory) : memory_(memory) {}
 
   /// @throws Error io_error, resource_exhausted
@@ -27,8 +30,6 @@ class PointSpool {
   [[nodiscard]] bool take(std::vector<SourcePoint>& batch);
 
  private:
-  /// Three mantissas and the decimals of each.
-  static constexpr std::size_t kRecordBytes = 3 * 8 + 3;
   static constexpr std::size_t kBlockRecords = 1 << 15;
   /// Files are small, so that they are given back early, and few, since each has a descriptor: of
   /// kFileBlocks blocks, then of twice as many after kFilesOfSize of a size. 2 TB are 256 files.

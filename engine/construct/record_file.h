@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "engine/construct/external_sorter.h"
+#include "engine/construct/external_memory.h"
 #include "engine/error.h"
 #include "storage/checksum.h"
 #include "storage/file_layer.h"

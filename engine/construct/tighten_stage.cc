@@ -11,8 +11,6 @@ namespace ptin {
 
 namespace {
 
-constexpr const char* kBounds = ".bounds";
-
 /// One entry for each record: the maxima over several leaves.
 void combine(std::vector<BoundsRaise>& raises) {
   std::sort(raises.begin(), raises.end(),
@@ -57,7 +55,7 @@ TightenStage::SharedSegment TightenStage::segment_of(const TileId& id) {
   std::weak_ptr<const SegmentFile>& known = files_[id];
   SharedSegment file = known.lock();
   if (!file) {
-    file = std::make_shared<const SegmentFile>(id, log_.path(id, ".segment"),
+    file = std::make_shared<const SegmentFile>(id, log_.path(id, kSegmentEnding),
                                                log_.collapsed().at(id).segment);
     known = file;
   }
@@ -125,7 +123,7 @@ TightenStage::Replayed TightenStage::replay(const Batch& batch, const LeafStarte
   for (const SharedSegment& file : files) {
     file->require_undamaged();
   }
-  ArrayFileWriter file(log_.workspace().files(), log_.path(batch.top, kBounds));
+  ArrayFileWriter file(log_.workspace().files(), log_.path(batch.top, kBoundsEnding));
   for (const std::vector<BoundsRaise>& r : result.raises) {
     file.put(r);
   }
@@ -163,10 +161,10 @@ void TightenStage::write_closed(const TileId& id) {
   tile.file->require_undamaged();
   log_.output().add_segment(records);
   open_.erase(id);
-  ArrayFileWriter file(log_.workspace().files(), log_.path(id, kBounds));
+  ArrayFileWriter file(log_.workspace().files(), log_.path(id, kBoundsEnding));
   file.put(exported);
   log_.note_tightened(id, file.facts());
-  log_.remove_later(id, ".segment");
+  log_.remove_later(id, kSegmentEnding);
   hand_to_parent(id, exported);
 }
 
@@ -190,7 +188,7 @@ void TightenStage::take_up(const Batch& batch) {
   if (std::all_of(batch.ancestors.begin(), batch.ancestors.end(), is_written)) {
     return;
   }
-  ArrayFileReader file(log_.path(batch.top, kBounds), log_.tightened().at(batch.top));
+  ArrayFileReader file(log_.path(batch.top, kBoundsEnding), log_.tightened().at(batch.top));
   for (const TileId& id : batch.ancestors) {
     const auto raises = file.take<BoundsRaise>();
     if (!is_written(id)) {
@@ -200,7 +198,7 @@ void TightenStage::take_up(const Batch& batch) {
   }
   for (const TileId& id : batch.closed) {
     if (id != tree_.root() && !is_written(BatchOrder::parent_of(id))) {
-      ArrayFileReader closed(log_.path(id, kBounds), log_.tightened().at(id));
+      ArrayFileReader closed(log_.path(id, kBoundsEnding), log_.tightened().at(id));
       hand_to_parent(id, closed.take<RecordBounds>());
       closed.require_undamaged();
     }
