@@ -26,9 +26,8 @@ struct Crs {
 /// @param vertical_crs  Takes the place of the vertical part, or adds one; "" keeps it.
 /// Nothing is fetched from the network.
 /// @throws Error  invalid_argument  GDAL does not understand a text; `a_srs` or `declared` is
-/// neither
-///                                  geographic nor projected nor local; `vertical_crs` is not a
-///                                  vertical CRS, or there is no horizontal one to add it to
+///                                  neither geographic nor projected nor local; `vertical_crs` is
+///                                  not a vertical CRS, or there is no horizontal one to add it to
 /// Cost: up to milliseconds (PROJ's database). Threads: any number of calls at once.
 [[nodiscard]] Crs resolve_crs(const std::string& declared, const std::string& a_srs,
                               const std::string& vertical_crs);

@@ -42,7 +42,8 @@ class LasReader final : public PointStream {
   ///                                       itself or the file's size (truncated files); a class
   ///                                       beyond 0 .. 255
   ///                unsupported_version    of a later version than 1.4
-  /// Memory: 1 MiB and the records before the points, at most 64 MiB of those are looked at.
+  /// Memory: 256 KiB at a time of the points, and the records before them, at most 64 MiB of which
+  /// are looked at.
   LasReader(std::string path, const PointChoice& choice);
   ~LasReader() override;
 

@@ -20,9 +20,8 @@ class OgrPoints final : public PointStream {
  public:
   /// @throws Error  not_found         there is no such file
   ///                invalid_argument  OGR does not read it; no or several layers and none chosen;
-  ///                no such
-  ///                                  layer or attribute; a layer without heights; a layer of lines
-  ///                                  or areas
+  ///                                  no such layer or attribute; a layer without heights; a layer
+  ///                                  of lines or areas
   OgrPoints(std::string path, const PointChoice& choice);
   ~OgrPoints() override;
 

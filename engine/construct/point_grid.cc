@@ -15,7 +15,6 @@ __extension__ using Int128 = __int128;
 
 constexpr double kInt32Max = 2147483647.0;
 
-/// 10^exponent. REQUIRES: 0 <= exponent <= 18.
 /// Refuses an extent beyond the grid, and names the power of ten that would do.
 void check_extent(double extent, double unit, const std::string& context) {
   if (extent / unit <= kGridMax) {

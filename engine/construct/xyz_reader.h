@@ -21,7 +21,7 @@ using XyzPoint = SourcePoint;
 /// the number of fields, and whether it is a header: its first field is no number then. A header
 /// names the columns (x, easting, lon, longitude; y, northing, lat, latitude; z, height, elevation,
 /// altitude; in any case, quoted or not); without one x, y and z are the first three. Further
-/// columns are passed over. Lines end in LF or CR LF; a file whose name ends in .gz is unpacked on
+/// columns are passed over. Lines end in LF or CR LF; a file that is_packed() is unpacked on
 /// the way. Not thread-safe.
 class XyzReader {
  public:
@@ -35,9 +35,8 @@ class XyzReader {
 
   /// The next point; false at the end.
   /// @throws Error  invalid_argument  a line has another number of fields, or no number, NaN or an
-  /// infinite one
-  ///                                  where one belongs; a header lacks a column; a line is longer
-  ///                                  than 64 KiB. The context is "path:line".
+  ///                                  infinite one where one belongs; a header lacks a column; a
+  ///                                  line is longer than 64 KiB. The context is "path:line".
   ///                io_error          the file cannot be read on, or is damaged (.gz)
   /// Cost: about 0.1 us a line; 1 MiB of memory whatever the file's size.
   [[nodiscard]] bool next(XyzPoint& point);
