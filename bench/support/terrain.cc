@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "engine/construct/delaunay.h"
+#include "engine/construct/part_surface.h"
 #include "engine/construct/raster_surface.h"
 #include "engine/construct/raster_tin.h"
-#include "engine/construct/tin_surface.h"
 
 namespace ptin::bench {
 
@@ -84,7 +84,7 @@ Terrain terrain_of(const GridPoints& points, const TerrainFrame& frame) {
   tile.units = measure_units(frame, kVoidSlope);
   tile.tin = make_delaunay_tin(points.positions, points.heights);
   start_tile(tile, {});
-  terrain.started.full = std::make_unique<TinSurface>(tile.tin, frame.heights);
+  terrain.started.full = std::make_unique<PartSurface>(tile.tin, frame.heights);
   return terrain;
 }
 

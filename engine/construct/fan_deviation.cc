@@ -45,8 +45,7 @@ double fan_deviation(const Tile& tile, const StarSamples& s, const FanFrame& fan
   const Star& star = s.star;
   const auto end_of = [&](std::size_t link) {
     const VertexId v = star.link[link];
-    return EdgeEnd{tile.full_ids.empty() ? v : tile.full_ids[v], tile.tin.position(v),
-                   tile.units.heights.code(tile.tin.vertices[v].height)};
+    return EdgeEnd{tile.tin.position(v), tile.units.heights.code(tile.tin.vertices[v].height)};
   };
   const SpokeFilter filter(tile, s, fan);
   const EdgeEnd w = end_of(fan.j);

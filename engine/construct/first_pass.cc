@@ -189,7 +189,7 @@ double FirstPass::gap_along(TriangleId t, int side) const {
     return 0.0;
   }
   const auto code = [&](VertexId v) { return tile_.units.heights.code(tin.vertices[v].height); };
-  return surface_.largest_gap({kNone, p, code(a)}, {kNone, q, code(b)});
+  return surface_.largest_gap({p, code(a)}, {q, code(b)});
 }
 
 /// The free samples in a triangle, the worst one first.

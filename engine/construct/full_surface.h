@@ -9,13 +9,11 @@
 
 #include "engine/geometry/height.h"
 #include "engine/geometry/point.h"
-#include "engine/mesh/tin.h"
 
 namespace ptin {
 
 /// One end of an edge that is asked about: a vertex of the full TIN.
 struct EdgeEnd {
-  VertexId id;  ///< In the full TIN of the tile.
   GridPoint position;
   double code;  ///< Its height code.
 };

@@ -8,6 +8,7 @@
 
 #include "engine/construct/full_surface.h"
 #include "engine/construct/packed_boxes.h"
+#include "engine/mesh/tin.h"
 
 namespace ptin {
 
@@ -19,7 +20,6 @@ class PartSurface final : public FullSurface {
   /// its border.
   PartSurface(const Tin& part, const HeightEncoding& encoding);
 
-  /// Ends are known by their positions; `EdgeEnd::id` is not looked at.
   /// Cost: the crossings, and the logarithm of the length of the border.
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
 

@@ -35,7 +35,9 @@ struct PointCounts {
   std::uint64_t source_points = 0;    ///< Read and not left out.
   std::uint64_t left_out_points = 0;  ///< By class or place, withheld, or without a height.
   std::uint64_t merged_points = 0;    ///< Of the source's: those that share a position with others.
-  double largest_shift_plan = 0.0;    ///< As PointSet.
+  /// How far a point moved at most: in plan when it was snapped to the grid (CRS units; 0 where the
+  /// grid keeps every digit), and in height when it was merged (height's unit).
+  double largest_shift_plan = 0.0;
   double largest_shift_height = 0.0;
 };
 
@@ -45,13 +47,31 @@ class PointBuckets {
  public:
   using Progress = std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)>;
 
-  /// Reads the sources once (read_points() says what becomes of points, by the same rules) and
-  /// sorts what they hold. Disk: 27 bytes a point while it is read, 43 while it is sorted, then
+  /// Reads the sources once, puts what they hold on one grid, and sorts it.
+  ///
+  /// The grid unit is the power of ten of the CRS unit that keeps every digit of every x and y, and
+  /// the origin the smallest x and y; or it is `options.resolution`, and the origin a multiple of
+  /// that. LAS declares its digits with its scale factor; where that is no power of ten, the
+  /// smallest scale factor is the unit, and the origin is aligned with that file's offset. Points
+  /// that fall together are merged: their height is the mean, rounded as heights are, or the lowest
+  /// or highest one. Heights are int32 with the power of ten that keeps every digit, where that
+  /// fits; else as for a Float64 raster. The CRS is the one that all files declare, or
+  /// `options.a_srs`.
+  ///
+  /// The result depends on the set of points alone, not on their order or the files that they come
+  /// from.
+  ///
+  /// Disk: 27 bytes a point while it is read, 43 while it is sorted, then
   /// at most 16, mostly half of that (packed_bucket.h); in memory.folder. Memory: memory.bytes, and
   /// 24 bytes for each of at most 2^20 buckets.
   /// @param keep_as  A file that must not exist: the buckets stay in it, so that load() can take
   ///                 them up; "" keeps them in a file without a name.
-  /// @throws Error as read_points(), and resource_exhausted when the disk is full
+  /// @throws Error  not_found, io_error, unsupported_version  as open_point_stream()
+  ///                invalid_argument    as the streams; CRSs that differ; no points; fewer than 3
+  ///                                    distinct ones; all collinear; an extent of more than 2^30
+  ///                                    grid units (the message names a resolution)
+  ///                resource_exhausted  the disk is full
+  ///                cancelled           `stop` fired
   static PointBuckets read(const std::vector<std::string>& paths, const SourceOptions& options,
                            const ExternalMemory& memory, const std::stop_token& stop = {},
                            const Progress& progress = {}, const std::string& keep_as = "");

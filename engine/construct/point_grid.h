@@ -86,7 +86,7 @@ struct PointGrid {
   [[nodiscard]] AffineMap map() const noexcept;
 };
 
-/// Sees every point once, then knows the grid: point_source.h says which.
+/// Sees every point once, then knows the grid: PointBuckets::read() says which.
 class PointGridScan {
  public:
   /// @throws Error invalid_argument  a resolution that is no length

@@ -24,7 +24,7 @@ struct PointReading {
 
 /// Hands every wanted point to `take`, file after file.
 /// @param memory  For what is sorted before it is handed out (StreamResources).
-/// @throws Error as read_points(), and what `take` throws
+/// @throws Error as PointBuckets::read(), and what `take` throws
 [[nodiscard]] PointReading read_sources(
     const std::vector<std::string>& paths, const SourceOptions& options,
     const std::function<void(const SourcePoint&)>& take, const std::stop_token& stop,

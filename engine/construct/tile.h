@@ -77,9 +77,6 @@ struct Tile {
   /// [dependency_end[i]].
   std::vector<std::uint32_t> dependencies;
   std::vector<std::uint32_t> dependency_end;
-  /// Beside tin.vertices, their ids in the full TIN, where removed ones were dropped (compact());
-  /// empty where ids are those still, and for rasters, whose full surface needs none.
-  std::vector<VertexId> full_ids;
   MeasureUnits units;
   /// Every grid position inside is a sample: rasters. Then samples join into blocks.
   bool samples_fill_grid = false;

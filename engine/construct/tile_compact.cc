@@ -14,10 +14,6 @@ namespace {
 Renumbering compact_vertices(Tile& tile) {
   Tin& tin = tile.tin;
   Renumbering place(tin.vertices.size(), kNone);
-  const bool is_first = tile.full_ids.empty();
-  if (is_first && !tile.samples_fill_grid) {
-    tile.full_ids.resize(tin.vertices.size());
-  }
   VertexId next = 0;
   for (VertexId v = 0; v < tin.vertices.size(); ++v) {
     if (tin.vertices[v].triangle == kNone) {
@@ -26,15 +22,11 @@ Renumbering compact_vertices(Tile& tile) {
     tin.vertices[next] = tin.vertices[v];
     tin.has_height[next] = tin.has_height[v];
     tile.vertex_state[next] = tile.vertex_state[v];
-    if (!tile.full_ids.empty()) {
-      tile.full_ids[next] = is_first ? v : tile.full_ids[v];
-    }
     place[v] = next++;
   }
   tin.vertices.resize(next);
   tin.has_height.resize(next);
   tile.vertex_state.resize(next);
-  tile.full_ids.resize(tile.full_ids.empty() ? 0 : next);
   return place;
 }
 

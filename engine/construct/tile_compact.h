@@ -16,7 +16,7 @@ using Renumbering = std::vector<std::uint32_t>;
 
 /// Drops removed vertices and triangles, and lays the lists of samples out in the order of their
 /// triangles. Vertices and triangles keep their order, so that whatever is decided by it stays the
-/// same; records are not touched. `tile.full_ids` remembers the former indices of vertices.
+/// same; records are not touched.
 /// @param most_samples  Longer lists are cut down to their best witnesses (witness.h).
 /// @return  Of each former vertex its new index.
 /// Cost: linear.

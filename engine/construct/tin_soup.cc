@@ -181,10 +181,4 @@ TinSoup read_soup(TinReader& reader, ByteReader& in, const TinReading& reading) 
   return soup.finish(std::move(facts));
 }
 
-TinSoup read_tin_soup(const std::string& path, const TinReading& reading) {
-  SoupCollector soup(path);
-  TinFileFacts facts = read_tin_file(path, reading, soup);
-  return soup.finish(std::move(facts));
-}
-
 }  // namespace ptin

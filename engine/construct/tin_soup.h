@@ -68,12 +68,6 @@ struct TinReading {
 /// Memory: some hundred KiB, whatever the file's size.
 TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink);
 
-/// The same into memory.
-/// @throws Error  as read_tin_file(); invalid_argument  an id that no vertex has, or that two have
-/// Cost: 48 bytes a vertex, 12 a triangle; memory grows with what is read, never with what a
-/// header claims.
-[[nodiscard]] TinSoup read_tin_soup(const std::string& path, const TinReading& reading);
-
 // The readers. Each documents its own conventions.
 using TinReader = TinFileFacts(ByteReader& in, const TinReading& reading, SoupSink& sink);
 TinReader read_ply, read_obj, read_two_dm, read_land_xml;
@@ -81,6 +75,9 @@ TinReader read_ply, read_obj, read_two_dm, read_land_xml;
 [[nodiscard]] TinReader& tin_reader_of(const std::string& path);
 
 /// What one of them reads, in memory.
+/// @throws Error  as read_tin_file(); invalid_argument  an id that no vertex has, or that two have
+/// Cost: 48 bytes a vertex, 12 a triangle; memory grows with what is read, never with what a
+/// header claims.
 [[nodiscard]] TinSoup read_soup(TinReader& reader, ByteReader& in, const TinReading& reading);
 
 }  // namespace ptin

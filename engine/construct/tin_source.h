@@ -37,7 +37,7 @@ struct TinCounts {
 
 /// The full TIN of a file of triangles, on disk.
 ///
-/// The grid is that of points (point_source.h), but that digits beyond it are dropped: programs
+/// The grid is that of points (point_buckets.h), but that digits beyond it are dropped: programs
 /// write TINs with all digits of a double. Without a resolution the unit is the smallest power of
 /// ten that keeps every digit or, where that spans more than 2^30 units, the smallest that does
 /// not; largest_shift_plan says what that moved. Vertices that share a position and a height are

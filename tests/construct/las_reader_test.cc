@@ -9,9 +9,9 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/construct/crs.h"
-#include "engine/construct/point_source.h"
 #include "engine/error.h"
 #include "tests/construct/memory_file.h"
+#include "tests/construct/point_source.h"
 #include "tests/support/las_file.h"
 
 namespace ptin {

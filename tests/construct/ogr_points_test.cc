@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/construct/point_source.h"
 #include "engine/error.h"
 #include "tests/construct/memory_file.h"
+#include "tests/construct/point_source.h"
 
 namespace ptin {
 namespace {

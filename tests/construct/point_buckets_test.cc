@@ -9,10 +9,10 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/construct/point_order_internal.h"
-#include "engine/construct/point_source.h"
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 #include "tests/construct/point_sets.h"
+#include "tests/construct/point_source.h"
 
 namespace ptin {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/point_source.h"
+#include "tests/construct/point_source.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,11 +15,11 @@
 #include "engine/construct/part_surface.h"
 #include "engine/construct/point_tile.h"
 #include "engine/construct/tile_push.h"
-#include "engine/construct/tin_surface.h"
 #include "engine/mesh/validate.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/point_sets.h"
 #include "tests/construct/store_promises.h"
+#include "tests/construct/tin_surface.h"
 
 namespace ptin {
 namespace {
@@ -162,7 +162,7 @@ TEST_P(PointTiles, PartsOfTheSurfaceAreTheWhole) {
   const TestTerrain terrain = terrain_of(GetParam(), 2000, 9);
   const PointBuckets buckets = buckets_of(GetParam(), 2000, 9);
   const TileTree tree = point_tree(buckets, 6);
-  const TinSurface whole(terrain.full, terrain.tile.units.heights);
+  const oracle::TinSurface whole(terrain.full, terrain.tile.units.heights);
   PointTileStarter starter(buckets, tree, terrain.tile.units, {});
   std::vector<StartedTile> parts;
   for (std::int64_t y = 0; y * y < static_cast<std::int64_t>(tree.leaves()); ++y) {
@@ -173,17 +173,18 @@ TEST_P(PointTiles, PartsOfTheSurfaceAreTheWhole) {
   ASSERT_GE(parts.size(), 4U);
   std::mt19937_64 random(5);
   const auto end_of = [&](VertexId v) {
-    return EdgeEnd{v, terrain.full.position(v),
+    return EdgeEnd{terrain.full.position(v),
                    terrain.tile.units.heights.code(terrain.full.vertices[v].height)};
   };
   for (int i = 0; i < 400; ++i) {
     const auto n = terrain.full.vertices.size();
-    const EdgeEnd a = end_of(static_cast<VertexId>(random() % n));
-    const EdgeEnd b = end_of(i % 3 == 0 ? static_cast<VertexId>((a.id + 1 + random() % 40) % n)
-                                        : static_cast<VertexId>(random() % n));
-    if (a.id == b.id) {
+    const auto from = static_cast<VertexId>(random() % n);
+    const auto to = i % 3 == 0 ? static_cast<VertexId>((from + 1 + random() % 40) % n)
+                               : static_cast<VertexId>(random() % n);
+    if (from == to) {
       continue;
     }
+    const EdgeEnd a = end_of(from), b = end_of(to);
     double largest = 0.0;
     for (const StartedTile& part : parts) {
       largest = std::max(largest, part.full->largest_gap(a, b));

@@ -11,10 +11,10 @@
 #include <gtest/gtest.h>
 
 #include "engine/construct/crs.h"
-#include "engine/construct/point_source.h"
 #include "engine/construct/raster_source.h"
 #include "engine/mesh/star.h"
 #include "engine/mesh/validate.h"
+#include "tests/construct/point_source.h"
 #include "tests/construct/record_oracle.h"
 #include "tests/construct/surface_oracle.h"
 

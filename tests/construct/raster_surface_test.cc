@@ -67,8 +67,8 @@ void expect_gaps(const TestTerrain& terrain, int edges, std::uint64_t seed) {
     const auto corner = [&](VertexId v) {
       return Corner{terrain.full.position(v), heights.code(terrain.full.vertices[v].height)};
     };
-    const double gap = terrain.surface->largest_gap({a, corner(a).position, corner(a).code},
-                                                    {b, corner(b).position, corner(b).code});
+    const double gap = terrain.surface->largest_gap({corner(a).position, corner(a).code},
+                                                    {corner(b).position, corner(b).code});
     const TrueGap is = true_gap(terrain, corner(a), corner(b), gap);
     EXPECT_LE(gap, is.between_heights * (1 + 1e-9L) + 1e-13L * largest_code) << terrain.name;
   }
@@ -103,8 +103,8 @@ TEST(FullSurface, FindsNoGapWhereAllHeightsAreEqual) {
   for (const TestTerrain* terrain : {&raster, &points}) {
     for (VertexId b = 1; b < terrain->full.vertices.size(); ++b) {
       const double code = terrain->tile.units.heights.code(terrain->full.vertices[0].height);
-      EXPECT_EQ(terrain->surface->largest_gap({0, terrain->full.position(0), code},
-                                              {b, terrain->full.position(b), code}),
+      EXPECT_EQ(terrain->surface->largest_gap({terrain->full.position(0), code},
+                                              {terrain->full.position(b), code}),
                 0.0);
     }
   }
@@ -116,7 +116,7 @@ TEST(RasterSurface, SkipsCrossingsInVoids) {
   const auto valid = [](int x, int y) { return y == 0 || y == 6 || x < 3; };
   const TestTerrain terrain =
       oracle::make_raster({"wall", 7, 7, code, valid, {HeightType::int32, 1.0, 0.0}, {}, 0.1});
-  const auto end = [&](VertexId v) { return EdgeEnd{v, terrain.full.position(v), 0.0}; };
+  const auto end = [&](VertexId v) { return EdgeEnd{terrain.full.position(v), 0.0}; };
   EXPECT_EQ(terrain.surface->largest_gap(end(0), end(6 * 7)), 0.0);        // x = 0, all of it data
   EXPECT_NEAR(terrain.surface->largest_gap(end(0), end(6)), 100.0, 1e-9);  // y = 0, over the wall
   EXPECT_NEAR(terrain.surface->largest_gap(end(1 * 7), end(6)), 40.0, 1e-9);  // leaves the data

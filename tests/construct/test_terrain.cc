@@ -8,8 +8,8 @@
 #include "engine/construct/delaunay.h"
 #include "engine/construct/raster_surface.h"
 #include "engine/construct/raster_tin.h"
-#include "engine/construct/tin_surface.h"
 #include "engine/geometry/infinity.h"
+#include "tests/construct/tin_surface.h"
 
 namespace ptin::oracle {
 

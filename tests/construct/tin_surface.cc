@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tin_surface.h"
+#include "tests/construct/tin_surface.h"
 
 #include <cmath>
 
 #include "engine/check.h"
 #include "engine/geometry/orient.h"
 
-namespace ptin {
+namespace ptin::oracle {
 
 /// Where the walk stands: at a vertex that the edge passes through, or about to cross an edge of
 /// the full TIN.
@@ -15,6 +15,13 @@ struct TinSurface::Step {
   TriangleId triangle = kNone;  ///< Otherwise: the triangle to leave ...
   int side = 0;                 ///< ... across this side.
 };
+
+TinSurface::TinSurface(const Tin& full, const HeightEncoding& encoding)
+    : full_(full), encoding_(encoding) {
+  for (VertexId v = 0; v < full_.vertices.size(); ++v) {
+    vertex_at_.emplace(key_of(full_.position(v)), v);
+  }
+}
 
 /// From vertex `v` on the segment: the triangle around it into which the segment runs, or the
 /// neighbour that it runs through.
@@ -72,8 +79,10 @@ double TinSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
   const double length_x = static_cast<double>(b.position.x) - a.position.x;
   const double length_y = static_cast<double>(b.position.y) - a.position.y;
   const bool by_x = std::abs(length_x) >= std::abs(length_y);
-  Step step = leave_vertex(a.id, a.position, b.position);
-  while (step.vertex != b.id) {
+  const VertexId first = vertex_at_.at(key_of(a.position));
+  const VertexId last = vertex_at_.at(key_of(b.position));
+  Step step = leave_vertex(first, a.position, b.position);
+  while (step.vertex != last) {
     if (step.vertex != kNone) {
       const GridPoint p = full_.position(step.vertex);
       const double t = by_x ? (static_cast<double>(p.x) - a.position.x) / length_x
@@ -102,4 +111,4 @@ double TinSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
   return gap.bound();
 }
 
-}  // namespace ptin
+}  // namespace ptin::oracle

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/point_source.h"
+#include "tests/construct/point_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,12 +15,6 @@ namespace ptin {
 namespace {
 
 using Progress = std::function<void(std::uint64_t, std::uint64_t)>;
-
-// ---------------------------------------------------------------------------------------------------
-// Reading.
-
-// ---------------------------------------------------------------------------------------------------
-// Merging.
 
 /// A snapped point. Heights are codes of the decimal step where those fit int32, else heights.
 struct Entry {

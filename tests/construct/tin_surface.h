@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The full surface of a TIN of points: a copy of the full triangulation, walked along an edge.
+// The full surface of a whole TIN, walked along an edge from triangle to triangle: what surfaces of
+// parts are held against.
 #pragma once
 
-#include "engine/construct/full_surface.h"
+#include <unordered_map>
 
-namespace ptin {
+#include "engine/construct/full_surface.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin::oracle {
 
 class TinSurface final : public FullSurface {
  public:
-  /// Keeps a copy of `full`, whose vertex ids are those of the tile.
-  TinSurface(const Tin& full, const HeightEncoding& encoding) : full_(full), encoding_(encoding) {}
+  /// Keeps a copy of `full`.
+  TinSurface(const Tin& full, const HeightEncoding& encoding);
 
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
 
@@ -27,6 +31,7 @@ class TinSurface final : public FullSurface {
 
   Tin full_;
   HeightEncoding encoding_;
+  std::unordered_map<VertexKey, VertexId> vertex_at_;
 };
 
-}  // namespace ptin
+}  // namespace ptin::oracle
