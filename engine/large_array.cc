@@ -17,9 +17,11 @@ void advise_large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size
   if (bytes < kWorthwhile) {
     return;
   }
-  const auto first = (reinterpret_cast<std::uintptr_t>(begin) + kPage - 1) & ~(kPage - 1);
-  const auto last = (reinterpret_cast<std::uintptr_t>(begin) + bytes) & ~(kPage - 1);
-  static_cast<void>(::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE));
+  const auto at = reinterpret_cast<std::uintptr_t>(begin);
+  const std::uintptr_t first = (at + kPage - 1) & ~(kPage - 1);
+  const std::uintptr_t last = (at + bytes) & ~(kPage - 1);
+  static_cast<void>(
+      ::madvise(static_cast<std::byte*>(begin) + (first - at), last - first, MADV_HUGEPAGE));
 #endif
 }
 
