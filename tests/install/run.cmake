@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# Installs the build folder BUILD under SCRATCH, then configures, builds and runs the project in SOURCE against it.
+# Installs the build folder BUILD under SCRATCH, then configures, builds and runs the projects in SOURCE against it.
 file(REMOVE_RECURSE ${SCRATCH})
 set(flags "")
 if(SANITIZE)
@@ -16,11 +16,32 @@ function(run)
 endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix
-    -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${flags} -D CMAKE_BUILD_TYPE=Release)
-run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
+function(build source folder)
+  run(${CMAKE_COMMAND} -S ${source} -B ${folder} -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix
+      -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${flags} -D CMAKE_BUILD_TYPE=Release ${ARGN})
+  run(${CMAKE_COMMAND} --build ${folder})
+endfunction()
+
+build(${SOURCE} ${SCRATCH}/build)
 run(${CMAKE_COMMAND} -E chdir ${SCRATCH} ${SCRATCH}/build/ptin_user)
 run(${SCRATCH}/build/ptin_geometry_user)
+
+set(without "")
+foreach(package IN ITEMS CGAL EXPAT GDAL TBB)
+  list(APPEND without -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+build(${SOURCE}/query ${SCRATCH}/query_build ${without})
+run(${SCRATCH}/query_build/ptin_asker ${SCRATCH}/hill.ptin)
+
+# Libraries that a user must bring along to include a header are linked PUBLIC, and are few.
+file(GLOB_RECURSE headers ${SCRATCH}/prefix/include/ptin/*.h)
+foreach(header IN LISTS headers)
+  file(STRINGS ${header} foreign REGEX "^#include <([^>]*[/.].*)>")
+  list(FILTER foreign EXCLUDE REGEX "<(nlohmann/json_fwd.hpp|sys/types.h)>")
+  if(foreign)
+    message(FATAL_ERROR "${header} is installed and says ${foreign}: link that PUBLIC, then list it here")
+  endif()
+endforeach()
 foreach(file IN ITEMS share/man/man1/ptin.1 share/bash-completion/completions/ptin)
   if(EXISTS ${SCRATCH}/prefix/bin/ptin AND NOT EXISTS ${SCRATCH}/prefix/${file})
     message(FATAL_ERROR "${file} was not installed")
