@@ -2,12 +2,12 @@
 #include "storage/packed_rtree.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
 #include "storage/descriptor.h"
 
 namespace ptin {
@@ -78,7 +78,6 @@ void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& count
   if (shape.levels() == 0) {
     return;
   }
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<Waiting> heap{{kInfinity, false, shape.levels() - 1, 0, nodes_.root_checksum()}};
   double cut_off = -kInfinity;
   while (!heap.empty() && heap.front().bound >= cut_off) {

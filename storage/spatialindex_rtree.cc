@@ -8,7 +8,6 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <limits>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -19,6 +18,7 @@
 
 #include "engine/check.h"
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
 
 namespace ptin {
 
@@ -82,7 +82,6 @@ si::Region region_of(const Attributes& a) {
 
 // The largest attributes that something inside of a node's box can have.
 Attributes attributes_of(const si::Region& r) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const auto whole = [](double v) { return static_cast<std::int32_t>(v); };
   const auto unbounded = [](double v) {
     return v >= kBeyond ? kInfinity : (v <= -kBeyond ? -kInfinity : v);

@@ -15,8 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     while (reader.next(point)) {
       for (const ptin::Decimal d : {point.x, point.y, point.z}) {
-        constexpr std::int64_t kLimit = 1'000'000'000'000'000'000;
-        if (d.decimals < 0 || d.decimals > 18 || d.mantissa > kLimit || d.mantissa < -kLimit) {
+        constexpr std::int64_t kLimit = ptin::power_of_ten(18);  // 18 digits are less
+        if (d.decimals < 0 || d.decimals > 18 || d.mantissa >= kLimit || d.mantissa <= -kLimit) {
           std::abort();
         }
       }
