@@ -16,6 +16,7 @@ TEST(Link, FindsNeighboursAndTrianglesOfVerticesAgain) {
                                 {"AFU", "FBU", "BCU", "CEU.", "EDU", "DAU"});
   Tin tin = d.tin;
   for (Triangle& t : tin.triangles) t.n[0] = t.n[1] = t.n[2] = kNone;
+  for (Vertex& v : tin.vertices) v.triangle = kNone;
   link_tin(tin);
   EXPECT_EQ(validate(tin), "");
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
