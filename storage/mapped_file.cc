@@ -31,8 +31,8 @@ MappedFile::MappedFile(const ReadOnlyFile& file)
 }
 
 void MappedFile::will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept {
-  static const std::uint64_t system_page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  const std::uint64_t begin = offset & ~(system_page - 1);
+  static const std::uint64_t kSystemPage = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  const std::uint64_t begin = offset & ~(kSystemPage - 1);
   auto* address = static_cast<std::byte*>(region_.get_address());
   // The kernel cuts one call short at its read-ahead limit, commonly 128 KiB, and faults in the
   // rest page by page.
