@@ -96,9 +96,9 @@ std::vector<std::string> faults_of_cover(const CoarsestTin& t0, const GridBox& b
       return faults;
     }
     sum += area;
-    for (int k = 0; k < 3; ++k) {
-      used[v[k]] = true;
-      box = united(box, t0.vertices[v[k]].position);
+    for (const std::uint32_t corner : v) {
+      used[corner] = true;
+      box = united(box, t0.vertices[corner].position);
     }
   }
   if (std::find(used.begin(), used.end(), false) != used.end()) {
