@@ -82,6 +82,63 @@ TEST(PendingFile, TakesItsSideFilesAlongHoweverItEnds) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"a.gpkg"});
 }
 
+/// From now on this process's kernel knows no renameat2 and says `failure` to it, as file systems
+/// (EINVAL) and old kernels (ENOSYS) do.
+bool forget_renameat2(int failure) {
+  sock_filter program[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_renameat2, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | static_cast<unsigned>(failure)),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+  const sock_fprog filter = {sizeof program / sizeof *program, program};
+  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) == 0;
+}
+
+/// Publishes onto a name that another took meanwhile; exit status 0 when it was refused.
+[[noreturn]] void publish_onto_anothers(const TestFolder& folder, int failure) {
+  constexpr int kNoFilter = 99;
+  if (!forget_renameat2(failure)) _exit(kNoFilter);
+  OutputFile out(folder.file("file"), false);
+  write_file(folder.file("file"), "another's");
+  const ErrorCode code = code_thrown_by([&] { out.publish(); });
+  const bool kept = read_file(folder.file("file")) == "another's";
+  OutputFile other(folder.file("other"), false);
+  other.publish();
+  const bool made = std::filesystem::exists(folder.file("other"));
+  _exit(code == ErrorCode::invalid_argument && kept && made ? 0 : 1);
+}
+
+TEST(OutputFileDeathTest, DoesNotReplaceWhereTheSystemCannotRefuseToDoSo) {
+  for (const int failure : {EINVAL, ENOSYS}) {
+    const TestFolder folder;
+    const auto refused_or_untestable = [](int status) {
+      return WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 99);
+    };
+    EXPECT_EXIT(publish_onto_anothers(folder, failure), refused_or_untestable, "") << failure;
+  }
+}
+
+/// The folder's names cannot be made durable.
+class NoFolderIsSynced final : public FileLayer {
+ public:
+  int sync_folder(const std::string&) noexcept override { return EIO; }
+};
+
+TEST(OutputFile, SaysWhenTheNameMayNotLast) {
+  const TestFolder folder;
+  NoFolderIsSynced files;
+  OutputFile out(folder.file("file"), false, files);
+  out.write("text");
+  EXPECT_EQ(code_thrown_by([&] { out.publish(); }), ErrorCode::io_error);
+  EXPECT_EQ(read_file(folder.file("file")), "text");
+  write_file(folder.file("from"), "other");
+  EXPECT_EQ(code_thrown_by(
+                [&] { move_into_place(folder.file("from"), folder.file("to"), false, files); }),
+            ErrorCode::io_error);
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"file", "to"}));
+}
+
 TEST(OutputFile, NamesAMissingFolderAndRefusesAFolder) {
   const TestFolder folder;
   EXPECT_EQ(code_thrown_by([&] { check_output(folder.file("none/file"), false); }),
