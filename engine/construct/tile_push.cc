@@ -176,6 +176,9 @@ PushedTile push_up(Tile&& tile, PushedSamples samples) {
     to.records.push_back(tile.records[r]);
   }
   std::vector<Sample> scratch;
+  if (samples == PushedSamples::kAll) {
+    to.samples.reserve(tile.samples.used());
+  }
   for (TriangleId t = 0; t < tile.tin.triangles.size(); ++t) {
     if (triangles[t] == kNone) {
       continue;
@@ -203,11 +206,33 @@ PushedTile push_up(Tile&& tile, PushedSamples samples) {
   return pushed;
 }
 
+namespace {
+
+/// Arrays that grow step by step would be copied, and their pages touched, several times over.
+void reserve_for(const std::vector<Tile>& parts, Tile& to) {
+  std::size_t triangles = 0;
+  std::size_t records = 0;
+  std::size_t samples = 0;
+  for (const Tile& part : parts) {
+    triangles += part.tin.triangles.size();
+    records += part.records.size();
+    samples += part.samples.used();
+  }
+  to.tin.triangles.reserve(triangles);
+  to.tin.classes.reserve(triangles);
+  to.carried.reserve(triangles);
+  to.records.reserve(records);
+  to.samples.reserve(samples + samples / 4);  // the first collapses take new lists
+}
+
+}  // namespace
+
 Tile join_tiles(std::vector<Tile>&& parts, const TileTree& tree, const TileId& parent) {
   Tile to;
   to.units = parts.front().units;
   to.samples_fill_grid = parts.front().samples_fill_grid;
   const JoinedVertices joined = join_vertices(parts, to);
+  reserve_for(parts, to);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     Tile& part = parts[p];
     to.has_voids |= part.has_voids;
