@@ -3,6 +3,7 @@
 // The removed samples that each triangle covers: short arrays in one pool.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -12,7 +13,7 @@
 #include "engine/error.h"
 #include "engine/geometry/height.h"
 #include "engine/geometry/point.h"
-#include "engine/large_array.h"
+#include "engine/growing_array.h"
 
 namespace ptin {
 
@@ -62,10 +63,7 @@ class SampleLists {
       throw Error(ErrorCode::resource_exhausted,
                   "a tile holds more samples than one list of them counts; build in smaller tiles");
     }
-    if (end > pool_.capacity()) {
-      reserve(end + end / 4);  // by less than doubling: the old pool is there while it is copied
-    }
-    pool_.resize(end);
+    pool_.grow(end);
     return {static_cast<std::uint32_t>(offset), count};
   }
 
@@ -96,10 +94,29 @@ class SampleLists {
     return pool_.data() + slot.offset;
   }
 
-  void reserve(std::size_t samples) { reserve_large(pool_, samples); }
+  /// Moves lists to the front of the pool, in the order they have there, and lets the rest of it go
+  /// but for a quarter. Nothing is there twice meanwhile.
+  /// @param slots  Those of all lists; a count may have been lowered (the first elements stay).
+  void close_gaps(std::vector<SampleSlot*> slots) {
+    std::sort(slots.begin(), slots.end(),
+              [](const SampleSlot* a, const SampleSlot* b) { return a->offset < b->offset; });
+    used_ = 0;
+    for (SampleSlot* slot : slots) {
+      const Sample* first = pool_.data() + slot->offset;
+      std::copy(first, first + slot->count, pool_.data() + used_);
+      slot->offset = static_cast<std::uint32_t>(used_);
+      used_ += std::bit_ceil(std::size_t{slot->count});
+    }
+    for (std::vector<std::uint32_t>& free : free_) {
+      free.clear();
+    }
+    pool_.shrink(used_);
+  }
+
+  void reserve(std::size_t samples) { pool_.reserve(samples); }
 
  private:
-  std::vector<Sample> pool_;
+  GrowingArray<Sample> pool_;
   std::size_t used_ = 0;
   std::array<std::vector<std::uint32_t>, 33> free_;
 };

@@ -182,7 +182,7 @@ void Simplifier::collapse(VertexId u, std::size_t j) {
 /// beginning.
 std::size_t Simplifier::most_samples() const {
   if (!is_capped_) {
-    return std::numeric_limits<std::size_t>::max();
+    return kAllSamples;
   }
   return std::clamp(first_samples_ / static_cast<std::size_t>(2 * alive_ + 1), kWitnessesInWork,
                     kMostWitnessesInWork);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cfloat>
-#include <limits>
 #include <memory>
 #include <unordered_map>
 #include <utility>
@@ -196,7 +195,7 @@ RecordBounds Replay::apply(const VertexSplit& record) {
   PTIN_CHECK(split(tile_.tin, site).applied);
   tile_.carried.resize(tile_.tin.triangles.size());
   if (tile_.samples.is_sparse()) {
-    lay_out_samples(tile_, std::numeric_limits<std::size_t>::max());
+    lay_out_samples(tile_);
   }
   gather_star_and_samples(tile_, site.u, star_);
   return measure(site.w);

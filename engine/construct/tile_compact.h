@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/construct/tile.h"
@@ -14,15 +15,19 @@ namespace ptin {
 /// Old index to new one, for those kept; kNone for the others.
 using Renumbering = std::vector<std::uint32_t>;
 
-/// Drops removed vertices and triangles, and lays the lists of samples out in the order of their
-/// triangles. Vertices and triangles keep their order, so that whatever is decided by it stays the
-/// same; records are not touched.
+/// As a limit of the samples of a triangle: none.
+inline constexpr std::size_t kAllSamples = std::numeric_limits<std::size_t>::max();
+
+/// Drops removed vertices and triangles, and what lies unused between lists of samples: with
+/// kAllSamples these are laid out anew. Vertices and triangles keep their order, so that whatever
+/// is decided by it stays the same; records are not touched.
 /// @param most_samples  Longer lists are cut down to their best witnesses (witness.h).
 /// @return  Of each former vertex its new index.
 /// Cost: linear.
 Renumbering compact(Tile& tile, std::size_t most_samples);
 
-/// The last part of it: lists of samples only.
-void lay_out_samples(Tile& tile, std::size_t most_samples);
+/// Lays the lists of samples out in the order of their triangles, so that what is near is near in
+/// memory. The old ones are there meanwhile.
+void lay_out_samples(Tile& tile);
 
 }  // namespace ptin

@@ -11,7 +11,7 @@
 
 namespace ptin {
 
-inline constexpr std::size_t kWitnessesOfTriangle = 12;
+inline constexpr std::size_t kWitnessesOfTriangle = 16;
 /// Samples that a triangle of a tile of witnesses may keep while it is collapsed, at least and at
 /// most: coarse fans would otherwise hold all of them.
 inline constexpr std::size_t kWitnessesInWork = 32;
