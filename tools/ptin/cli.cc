@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/error_status.h"
+#include "tools/ptin/kept_inputs.h"
 #include "tools/standard_output.h"
 
 namespace ptin::tools {
@@ -225,6 +226,7 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
   }
   for (std::size_t i = 0; i < kCommands.size(); ++i) {
     if (!line.app->got_subcommand(kCommands[i].name)) continue;
+    check_inputs_are_kept(*line.app->get_subcommand(kCommands[i].name));
     const int status = line.actions[i]();
     finish_stdout();
     return status;

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/kept_inputs.h"
+
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gdal_priv.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "engine/error.h"
+#include "tools/file_name.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct FileIdentity {
+  dev_t device;
+  ino_t inode;
+  bool operator==(const FileIdentity&) const = default;
+};
+
+/// None where no file has this name: text such as WKT, or a file still to be made.
+std::optional<FileIdentity> identity_of(const std::string& path) {
+  struct stat status {};
+  const int failure = path == "-" ? fstat(STDIN_FILENO, &status) : stat(path.c_str(), &status);
+  if (failure != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  return FileIdentity{status.st_dev, status.st_ino};
+}
+
+bool is_number(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == '\0';
+}
+
+/// The files that a VRT is made of; only of that, since other drivers may read a whole file to open
+/// it.
+std::vector<std::string> files_behind(const std::string& path) {
+  if (lower_extension(path) != ".vrt") return {};
+  const char* drivers[] = {"VRT", "OGR_VRT", nullptr};
+  const GDALDatasetUniquePtr data(
+      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR, drivers));
+  std::vector<std::string> files;
+  if (!data) return files;
+  char** const list = data->GetFileList();
+  for (char** file = list; file != nullptr && *file != nullptr; ++file) files.emplace_back(*file);
+  CSLDestroy(list);
+  return files;
+}
+
+void check_input(const std::string& input, const std::string& output,
+                 const FileIdentity& identity) {
+  if (identity_of(input) == identity) {
+    throw Error(ErrorCode::invalid_argument,
+                "this output is the input " + (input == "-" ? "on standard input" : input) +
+                    " and would destroy it; give another name",
+                output);
+  }
+}
+
+}  // namespace
+
+void check_inputs_are_kept(const CLI::App& command) {
+  const CLI::Option* const output = command.get_option_no_throw("--output");
+  if (output == nullptr || output->count() == 0) return;
+  const std::string path = output->as<std::string>();
+  const std::optional<FileIdentity> identity = path == "-" ? std::nullopt : identity_of(path);
+  if (!identity) return;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option == output) continue;
+    for (const std::string& value : option->results()) {
+      if (is_number(value)) continue;
+      check_input(value, path, *identity);
+      for (const std::string& file : files_behind(value)) check_input(file, path, *identity);
+    }
+  }
+}
+
+}  // namespace ptin::tools
