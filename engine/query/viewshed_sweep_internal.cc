@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/query/horizon.h"
+#include "engine/query/viewshed_rim_internal.h"
 #include "engine/query/viewshed_walk_internal.h"
 
 namespace ptin {
@@ -80,6 +82,8 @@ class Viewer {
     return bias_.slope * std::sqrt(gx * gx + gy * gy) * (1 + 1e-12);
   }
   void look_at_pixels(TriangleId t, const Horizon& horizon);
+  void look_at_pixels_behind(TriangleId t, const Horizon& horizon);
+  void look_at_box(TriangleId t, const Horizon& horizon, std::initializer_list<Offset> points);
   void look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column, std::int64_t row);
   [[nodiscard]] Approach approach_corner(const std::array<Offset, 3>& o, int corner) const noexcept;
   [[nodiscard]] double drop(double x, double y) const noexcept {
@@ -346,13 +350,17 @@ void Viewer::look_at(TriangleId t, Horizon& horizon) {
       see(seen_[v], sees(p, spot_of(tin_.position(v)), approach.side, horizon));
     }
   }
-  if (request_.pixels && is_surface(t)) {
+  if (request_.pixels) {
     look_at_pixels(t, horizon);
   }
 }
 
 /// Pixel centres in the box of the triangle, but for those on its corners, which are vertices.
 void Viewer::look_at_pixels(TriangleId t, const Horizon& horizon) {
+  if (!is_surface(t)) {
+    look_at_pixels_behind(t, horizon);
+    return;
+  }
   const auto& v = tin_.triangles[t].v;
   const GridPoint a = tin_.position(v[0]);
   const GridPoint b = tin_.position(v[1]);
@@ -363,8 +371,33 @@ void Viewer::look_at_pixels(TriangleId t, const Horizon& horizon) {
     return;  // the smallest triangle of a grid has no grid point but its corners
   }
   const auto o = offsets(t);
-  const auto [left, right] = std::minmax({o[0].x, o[1].x, o[2].x});
-  const auto [low, high] = std::minmax({o[0].y, o[1].y, o[2].y});
+  look_at_box(t, horizon, {o[0], o[1], o[2]});
+}
+
+/// The ray to a target on the rim of a void, seen across it, comes through a void triangle: no
+/// surface triangle takes such a target, so the void one does.
+void Viewer::look_at_pixels_behind(TriangleId t, const Horizon& horizon) {
+  const auto o = offsets(t);
+  for (int i = 0; i < 3; ++i) {
+    const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
+    const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
+    if (is_surface(tin_.triangles[t].n[i]) && !(turn(a, b) < 0)) {
+      look_at_box(t, horizon, {a, b});
+    }
+    if (!pixels_on_grid_ && approach_corner(o, i).from_within) {
+      look_at_box(t, horizon, {o[static_cast<std::size_t>(i)]});
+    }
+  }
+}
+
+void Viewer::look_at_box(TriangleId t, const Horizon& horizon,
+                         std::initializer_list<Offset> points) {
+  double left = points.begin()->x, right = left;
+  double low = points.begin()->y, high = low;
+  for (const Offset& p : points) {
+    left = std::min(left, p.x), right = std::max(right, p.x);
+    low = std::min(low, p.y), high = std::max(high, p.y);
+  }
   const auto clamp = [](double value, std::uint32_t size) {
     return static_cast<std::int64_t>(std::clamp(value, -1.0, static_cast<double>(size)));
   };
@@ -410,6 +443,9 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
     }
     weights[i] = w;
     sum += w;
+  }
+  if (!is_surface(t) && !holds_surface(tin_, t, weights)) {
+    return;
   }
   if (p.x == 0 && p.y == 0) {
     pixel = Sight::kVisible;

@@ -12,6 +12,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/geometry/orient.h"
 #include "engine/query/coarsest.h"
 #include "engine/query/viewshed_walk_internal.h"
 #include "tests/query/built_terrain.h"
@@ -70,10 +71,15 @@ std::vector<Offset> offsets_of(const Hierarchy& h, MapPoint eye, double eye_heig
 }
 
 RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed)) {
-  const Hierarchy h = reference::random_hierarchy(seed);
+  std::mt19937_64 random(seed);
+  // A third with voids, and grid points between the samples: so on the rims too.
+  const auto size = [&] { return 3 + static_cast<int>(random() % 12); };
+  const Hierarchy h =
+      seed % 3 == 0
+          ? reference::simplify(reference::random_grid(random, size(), size(), 2, 0.15), random, {})
+          : reference::random_hierarchy(seed);
   const TemporaryStore file(h);
   const ProgressiveTin terrain(file.open());
-  std::mt19937_64 random(seed);
   ViewshedRequest request;
   const GridBox& b = h.facts.bounds;
   double x = double(b.min_x) + double(random() % std::uint64_t(b.max_x - b.min_x + 1));
@@ -136,6 +142,9 @@ RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed))
       const auto column = static_cast<std::uint32_t>(random() % seen.width);
       const Sight s = seen.pixels[std::size_t{row} * seen.width + column];
       const MapPoint at{seen.first.x + column * seen.step_x, seen.first.y - row * seen.step_y};
+      const MapPoint g = h.facts.map.to_grid(at);
+      const GridPoint centre{static_cast<std::int32_t>(std::llround(g.x)),
+                             static_cast<std::int32_t>(std::llround(g.y))};
       for (TriangleId t = 0; t < h.full.triangles.size(); ++t) {
         if (h.full.classes[t] != TriangleClass::kSurface) continue;
         double w[3], z = 0, sum = 0;
@@ -148,7 +157,17 @@ RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed))
           z += w[i] * h.facts.heights.height(h.full.vertices[h.full.triangles[t].v[i]].height);
           sum += w[i];
         }
-        if (std::min({w[0], w[1], w[2]}) <= 1e-6) continue;  // borders: vertices tell of those
+        // Borders count where the pixels are grid points, so that they are decided exactly.
+        const auto& v = h.full.triangles[t].v;
+        const bool on_grid = !request.pixel_size;
+        if (on_grid) {
+          const auto corner = [&](int i) { return h.full.position(v[i % 3]); };
+          bool inside = true;
+          for (int i = 0; i < 3; ++i) inside &= orient(corner(i), corner(i + 1), centre) >= 0;
+          if (!inside) continue;
+        } else if (std::min({w[0], w[1], w[2]}) <= 1e-6) {
+          continue;
+        }
         const double d = std::hypot(at.x - request.eye.x, at.y - request.eye.y);
         if (d > request.radius * (1 + 1e-9)) RC_ASSERT(s == Sight::kNothing);
         if (d >= request.radius * (1 - 1e-9) || d < 1e-9) continue;
@@ -186,6 +205,59 @@ TEST(Viewshed, OfAPlainFromItsOwnHeightTouchesAndSeesEverything) {
   EXPECT_TRUE(std::all_of(seen.vertices.begin(), seen.vertices.end(),
                           [](const Viewshed::Target& t) { return t.visible; }));
   EXPECT_EQ(seen.hidden_pixels, 0U);
+}
+
+/// Plain ground around a void, cells of two grid units: pixels at every corner and on the middle of
+/// every side, so that the rim of the void has pixels of its own.
+TEST(Viewshed, AnswersOnTheRimOfAVoidSeenAcrossIt) {
+  std::mt19937_64 random(1);
+  Tin full = reference::random_grid(random, 5, 5, 2, 0.0);
+  const HeightEncoding heights{HeightType::int32, 0.25, -3.0};
+  for (Vertex& v : full.vertices) v.height = heights.bits(12);
+  for (TriangleId t = 0; t < full.triangles.size(); ++t) {
+    for (const VertexId v : full.triangles[t].v) {
+      if (full.position(v) == GridPoint{4, 4}) full.classes[t] = TriangleClass::kVoid;
+    }
+  }
+  reference::Options options;
+  options.measured = false;
+  const Hierarchy h = reference::simplify(std::move(full), random, options);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  for (const bool by_size : {false, true}) {
+    for (int y = 0; y <= 8; ++y) {
+      for (int x = 0; x <= 8; ++x) {
+        ViewshedRequest request;
+        request.eye = h.facts.map.to_map(x, y);
+        request.eye_height = 5;
+        request.absolute = true;
+        request.curvature.coefficient = 0;
+        request.radius = 12 * h.facts.map.step_x;
+        if (by_size) request.pixel_size = h.facts.map.step_x;
+        const Viewshed seen = viewshed(terrain, request);
+        for (std::uint32_t row = 0; row < seen.height; ++row) {
+          for (std::uint32_t column = 0; column < seen.width; ++column) {
+            const MapPoint g = h.facts.map.to_grid(
+                {seen.first.x + column * seen.step_x, seen.first.y - row * seen.step_y});
+            const GridPoint p{static_cast<std::int32_t>(std::llround(g.x)),
+                              static_cast<std::int32_t>(std::llround(g.y))};
+            bool surface = false;
+            for (TriangleId t = 0; t < h.full.triangles.size(); ++t) {
+              const auto corner = [&](int i) {
+                return h.full.position(h.full.triangles[t].v[i % 3]);
+              };
+              bool inside = h.full.classes[t] == TriangleClass::kSurface;
+              for (int i = 0; i < 3; ++i) inside &= orient(corner(i), corner(i + 1), p) >= 0;
+              surface = surface || inside;
+            }
+            EXPECT_EQ(seen.pixels[std::size_t{row} * seen.width + column],
+                      surface ? Sight::kVisible : Sight::kNothing)
+                << "eye " << x << " " << y << ", pixel " << p.x << " " << p.y;
+          }
+        }
+      }
+    }
+  }
 }
 
 /// A triangle around the eye and a larger one turned by 140 degrees, joined by six that each lie in
