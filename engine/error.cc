@@ -23,6 +23,7 @@ ErrorCode code_of(int errno_value) {
       return ErrorCode::not_found;
     case ENOSPC:
     case EDQUOT:
+    case EFBIG:
     case ENOMEM:
       return ErrorCode::resource_exhausted;
     default:

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/output_file.h"
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -45,7 +47,41 @@ void rename_into_place(FileLayer& files, const std::string& from, const std::str
   }
 }
 
+namespace fs = std::filesystem;
+
+bool is_within(const fs::path& folder, const fs::path& other) {
+  return std::mismatch(other.begin(), other.end(), folder.begin(), folder.end()).first ==
+         other.end();
+}
+
+/// Names there stand for devices and for what a process has open.
+bool is_of_the_system(const fs::path& path) {
+  std::error_code unknown;  // a folder that is not there is somebody else's matter
+  const fs::path folder = fs::canonical(folder_of(path.string()), unknown);
+  return !unknown && (is_within(folder, "/proc") ||
+                      (is_within(folder, "/dev") && !is_within(folder, "/dev/shm")));
+}
+
 }  // namespace
+
+std::string output_target(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as the kernel
+  fs::path at(path);
+  for (int i = 0; i < kMostLinks; ++i) {
+    if (is_of_the_system(at)) {
+      throw Error(ErrorCode::invalid_argument,
+                  "leads under /dev or /proc, where a finished file cannot be put; give a file "
+                  "name, or - where the command can write to standard output",
+                  path);
+    }
+    std::error_code failed;
+    if (!fs::is_symlink(fs::symlink_status(at, failed))) return at.string();
+    const fs::path to = fs::read_symlink(at, failed);
+    if (failed) throw system_error(failed.value(), "cannot follow the link", at.string());
+    at = to.is_absolute() ? to : at.parent_path() / to;
+  }
+  throw system_error(ELOOP, "cannot follow the links of the output", path);
+}
 
 void check_output(const std::string& path, bool overwrite) {
   struct stat status {};
@@ -57,17 +93,22 @@ void check_output(const std::string& path, bool overwrite) {
                   "is a device or a pipe, which a finished file cannot replace; give a file name",
                   path);
     }
+    static_cast<void>(output_target(path));
     if (!overwrite) throw exists_already(path);
-  } else if (stat(folder_of(path).c_str(), &status) != 0) {
+    return;
+  }
+  const std::string folder = folder_of(output_target(path));
+  if (stat(folder.c_str(), &status) != 0) {
     throw Error(ErrorCode::not_found, "the folder of the output does not exist; make it first",
-                folder_of(path));
+                folder);
   }
 }
 
 OutputFile::OutputFile(std::string path, bool overwrite, FileLayer& files)
     : files_(files), path_(std::move(path)), overwrite_(overwrite) {
   check_output(path_, overwrite_);
-  temporary_ = path_ + ".tmp" + std::to_string(getpid());
+  target_ = output_target(path_);
+  temporary_ = target_ + ".tmp" + std::to_string(getpid());
   fd_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (fd_ < 0) throw system_error(errno, "cannot create the output", path_);
   buffer_.reserve(kBufferBytes);
@@ -118,7 +159,7 @@ void OutputFile::publish() {
   const int closed = close(fd_);
   fd_ = -1;
   if (closed != 0) throw system_error(errno, "cannot close", path_);
-  rename_into_place(files_, temporary_, path_, overwrite_);
+  rename_into_place(files_, temporary_, target_, overwrite_);
   temporary_.clear();
 }
 

@@ -13,7 +13,13 @@
 
 namespace ptin::tools {
 
-/// Throws Error invalid_argument when `path` exists and `overwrite` is off (or is no file),
+/// The name that an output really gets: `path`, or where its links lead, so that the link stays and
+/// what it names is replaced.
+/// @throws Error invalid_argument  under /dev (but for /dev/shm) or /proc, where a rename would put a
+/// file in the place of a device or of standard output; io_error when links go in a circle
+[[nodiscard]] std::string output_target(const std::string& path);
+
+/// Throws Error as output_target(); invalid_argument when `path` exists and `overwrite` is off (or is no file),
 /// not_found when its folder does not exist. Called before the work, so that nobody waits for an
 /// answer that cannot be kept.
 void check_output(const std::string& path, bool overwrite);
@@ -57,7 +63,7 @@ class OutputFile {
   void flush();
 
   FileLayer& files_;
-  std::string path_;
+  std::string path_, target_;  ///< As given, for messages; where it leads.
   std::string temporary_;
   bool overwrite_;
   int fd_ = -1;

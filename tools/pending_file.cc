@@ -12,8 +12,9 @@ namespace ptin::tools {
 PendingFile::PendingFile(std::string path, bool overwrite)
     : path_(std::move(path)), overwrite_(overwrite) {
   check_output(path_, overwrite_);
-  temporary_ =
-      path_ + ".tmp" + std::to_string(getpid()) + std::filesystem::path(path_).extension().string();
+  target_ = output_target(path_);
+  temporary_ = target_ + ".tmp" + std::to_string(getpid()) +
+               std::filesystem::path(path_).extension().string();
 }
 
 PendingFile::~PendingFile() {
@@ -30,7 +31,7 @@ void PendingFile::remove_side_files() const noexcept {
 }
 
 void PendingFile::publish() {
-  move_into_place(temporary_, path_, overwrite_);
+  move_into_place(temporary_, target_, overwrite_);
   remove_side_files();  // they bear the name that is gone
   temporary_.clear();
 }

@@ -29,7 +29,7 @@ class PendingFile {
  private:
   void remove_side_files() const noexcept;
 
-  std::string path_;
+  std::string path_, target_;  ///< As given, for messages; where it leads.
   std::string temporary_;
   bool overwrite_;
 };

@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <cstdio>
 
+#include <unistd.h>
+
 #include "engine/error.h"
 
 namespace ptin::tools {
@@ -24,7 +26,13 @@ void write_to_stdout(std::string_view text) {
 
 void finish_stdout() {
   errno = 0;
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw_lost(errno);
+  if (std::fflush(stdout) != 0) throw_lost(errno);
+  if (std::ferror(stdout) == 0) return;
+  // Somebody's write failed before, and its reason is gone with errno: what is there is a part
+  // already, and one byte more tells whether the disk is full.
+  errno = 0;
+  static_cast<void>(::write(STDOUT_FILENO, "\n", 1) == 1);
+  throw_lost(errno);
 }
 
 }  // namespace ptin::tools

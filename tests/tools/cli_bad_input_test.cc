@@ -3,13 +3,16 @@
 // Bad input: the documented exit status, one clear sentence, and nothing left behind.
 #include <algorithm>
 #include <csignal>
+#include <cstring>
 #include <limits>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "tests/storage/seal.h"
 #include "tests/support/test_folder.h"
 #include "tests/tools/program.h"
 
@@ -193,13 +196,14 @@ TEST(CliBadInput, AnswerThatStdoutDoesNotTake) {
         {"profile", store, "--line", line, "-o", "-"},
         {"sight", store, "500100", "3999900", "2", "500700", "3999300", "2"},
         {"highest", store},
-        {"isoline", store, "--interval", "20", "-o", "-", "-q"},
+        {"isoline", store, "--interval", "1", "-o", "-", "-q"},
         {"stream", store, "-o", "-"},
         {"verify", store, "-q", "--json"},
         {"completion", "bash"},
-        {"--help"}}) {
+        {"--help"},
+        {"--version"}}) {
     const Outcome outcome = testing::run_ptin_into("/dev/full", arguments);
-    EXPECT_TRUE(outcome.status == 7 || outcome.status == 6) << arguments[0] << outcome.status;
+    EXPECT_EQ(outcome.status, 7) << arguments[0];
     EXPECT_NE(outcome.err.find("standard output"), std::string::npos)
         << arguments[0] << outcome.err;
   }
@@ -276,6 +280,35 @@ TEST(CliBadInput, DamagedStores) {
   EXPECT_EQ(folder.names(), left);
 }
 
+/// The store with another `source` in its metadata, every checksum right; no longer than before.
+std::string with_source(const std::string& store, const nlohmann::json& source) {
+  test::Bytes bytes(store.size());
+  std::memcpy(bytes.data(), store.data(), store.size());
+  const auto section = test::section_of(bytes, layout::SectionKind::kMetadata);
+  nlohmann::json metadata = nlohmann::json::parse(store.substr(section.offset, section.bytes));
+  metadata["source"] = source;
+  std::string text = metadata.dump();
+  EXPECT_LE(text.size(), section.bytes);
+  text.resize(section.bytes, ' ');
+  std::memcpy(bytes.data() + section.offset, text.data(), text.size());
+  test::seal(bytes);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+TEST(CliBadInput, MetadataOfOtherTypes) {
+  const TestFolder folder;
+  const std::string sound = read_file(small_store(folder));
+  const std::string bad = folder.file("bad.ptin");
+  const auto sources = {nlohmann::json(3), nlohmann::json{{"void_samples", "0"}},
+                        nlohmann::json{{"lone_samples", -1}}};
+  for (const nlohmann::json& source : sources) {
+    write_file(bad, with_source(sound, source));
+    expect_refusal(run_ptin({"export", bad, "-q", "-o", folder.file("a.tif")}), 4, "metadata");
+  }
+  write_file(bad, with_source(sound, nlohmann::json::object()));
+  testing::expect_done({"export", bad, "-q", "-o", folder.file("a.tif")});
+}
+
 TEST(CliBadInput, StoreOfANewerVersion) {
   const TestFolder folder;
   const std::string store = small_store(folder);
@@ -336,6 +369,103 @@ TEST(CliOutput, KeepsTheCapitalsOfAShapefile) {
   }
 }
 
+/// Files that are made from now on may have so many bytes; as `ulimit -f`.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(CliBadInput, FilesLargerThanTheLimitOfTheProcess) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const auto before = folder.names();
+  const FileSizeLimit limit(2048);
+  expect_refusal(run_ptin({"refine", store, "-o", folder.file("a.ply")}), 7, "too large");
+  expect_refusal(run_ptin({"stream", store, "-o", folder.file("a.pts")}), 7, "too large");
+  EXPECT_EQ(run_ptin({"build", folder.file("hills.tif"), "-q", "-o", folder.file("b.ptin")}).status,
+            7);
+  EXPECT_EQ(run_ptin({"build", "--discard", "-q", "-o", folder.file("b.ptin")}).status, 0);
+  EXPECT_EQ(folder.names(), before);
+}
+
+TEST(CliBadInput, OptionsThatMeanNothingToARaster) {
+  const TestFolder folder;
+  make_raster(folder.file("hills.tif"), {});
+  const std::string raster = folder.file("hills.tif");
+  expect_no_build(folder, raster, 2, "--resolution is for points", {"--resolution", "2"});
+  expect_no_build(folder, raster, 2, "--class is for LAS", {"--class", "2"});
+  expect_no_build(folder, raster, 2, "--repair is for TINs", {"--repair"});
+  expect_no_build(folder, raster, 2, "no less than 0 is wanted, and -1 is less; see",
+                  {"--progress-fd", "-1"});
+}
+
+TEST(CliBadInput, ServingsThatAreNoCounts) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const auto before = folder.names();
+  for (const char* splits : {"-5", "5.7", "1e300", "\"5\"", "true"}) {
+    expect_refusal(run_ptin({"stream", store, "-o", folder.file("a.pts"), "--have",
+                             std::string("[{\"splits\":") + splits + "}]"}),
+                   2, "--have");
+  }
+  EXPECT_EQ(folder.names(), before);
+}
+
+/// The link stays, and what it names is replaced.
+TEST(CliOutput, GoesWhereALinkLeads) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  std::filesystem::create_directory(folder.file("real"));
+  const auto question = [&](const std::string& name) {
+    const std::string out = folder.file(name);
+    if (name == "a.ptin")
+      return std::vector<std::string>{"build", folder.file("hills.tif"), "-o", out};
+    if (name == "a.gpkg") return std::vector<std::string>{"isoline", store, "-i", "10", "-o", out};
+    if (name == "a.tif") return std::vector<std::string>{"export", store, "-o", out};
+    return std::vector<std::string>{"refine", store, "-o", out};
+  };
+  for (const std::string name : {"a.ptin", "a.gpkg", "a.tif", "a.ply"}) {
+    std::filesystem::create_symlink("real/x.dat", folder.file(name));
+    std::vector<std::string> arguments = question(name);
+    testing::expect_done(arguments);  // to where nothing is yet
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.file(name))) << name;
+    const std::string written = read_file(folder.file("real/x.dat"));
+    EXPECT_GT(written.size(), 100U) << name;
+    write_file(folder.file("real/x.dat"), "old");
+    arguments.emplace_back("--overwrite");
+    testing::expect_done(arguments);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.file(name))) << name;
+    EXPECT_EQ(read_file(folder.file("real/x.dat")).size(), written.size()) << name;
+    std::filesystem::remove(folder.file("real/x.dat"));
+    EXPECT_TRUE(std::filesystem::is_empty(folder.file("real"))) << name;
+  }
+}
+
+/// Standard output that is a file: what /dev/stdout leads to.
+TEST(CliBadInput, OutputThatLeadsToStandardOutput) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const auto links = {folder.file("a.ply"), folder.file("a.gpkg"), folder.file("a.tif")};
+  for (const std::string& link : links) {
+    std::filesystem::create_symlink("/proc/self/fd/1", link);
+    const Outcome outcome = link.ends_with(".gpkg")
+                                ? run_ptin({"isoline", store, "-i", "9", "--overwrite", "-o", link})
+                                : run_ptin({"export", store, "--overwrite", "-o", link});
+    expect_refusal(outcome, 2, "leads under /dev or /proc");
+    EXPECT_TRUE(std::filesystem::is_symlink(link)) << link;
+  }
+}
+
 TEST(CliBadInput, FullDisk) {
   const TestFolder folder;
   const SmallDisk disk(folder.file("disk"), 1);
@@ -372,7 +502,7 @@ TEST(CliSignals, StopABuildTidily) {
   RasterRecipe large;
   large.width = large.height = 1500;
   make_raster(folder.file("large.tif"), large);
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const Outcome outcome =
         run_ptin({"build", folder.file("large.tif"), "-o", folder.file("large.ptin"), "-q"}, signal,
                  std::chrono::milliseconds(700));

@@ -139,6 +139,18 @@ TEST(OutputFile, SaysWhenTheNameMayNotLast) {
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"file", "to"}));
 }
 
+TEST(OutputFile, HasNoPlaceUnderDevOrProc) {
+  for (const char* path : {"/dev/none.ply", "/dev/fd/none.ply", "/proc/self/fd/none.ply"}) {
+    EXPECT_EQ(code_thrown_by([&] { check_output(path, true); }), ErrorCode::invalid_argument)
+        << path;
+  }
+  EXPECT_EQ(output_target("/dev/shm/a.ply"), "/dev/shm/a.ply");
+  const TestFolder folder;
+  std::filesystem::create_symlink("b", folder.file("a"));
+  std::filesystem::create_symlink("a", folder.file("b"));
+  EXPECT_EQ(code_thrown_by([&] { check_output(folder.file("a"), true); }), ErrorCode::io_error);
+}
+
 TEST(OutputFile, NamesAMissingFolderAndRefusesAFolder) {
   const TestFolder folder;
   EXPECT_EQ(code_thrown_by([&] { check_output(folder.file("none/file"), false); }),

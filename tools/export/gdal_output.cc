@@ -7,6 +7,7 @@
 #include <sys/statvfs.h>
 
 #include "tools/output_file.h"
+#include "tools/standard_output.h"
 
 namespace ptin::tools {
 
@@ -19,8 +20,10 @@ bool is_disk_full(const std::string& path) {
 
 Error gdal_failure(const std::string& action, const std::string& path, bool was_disk_full) {
   const std::string said = CPLGetLastErrorMsg();
+  if (path == "-") finish_stdout();  // says why, where standard output is at fault
   if (was_disk_full || said.find("disk is full") != std::string::npos ||
-      said.find("No space left") != std::string::npos || is_disk_full(path)) {
+      said.find("No space left") != std::string::npos ||
+      said.find("File too large") != std::string::npos || is_disk_full(path)) {
     return {ErrorCode::resource_exhausted,
             action + ": the disk is full; make room or choose another folder", path};
   }

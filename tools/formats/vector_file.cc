@@ -134,7 +134,12 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
   std::string target = "/vsistdout/";
   if (path_ != "-") {
     check_output(path_, overwrite_);
-    const fs::path wanted(path_);
+    target_ = output_target(path_);
+    if (target_ != path_ && lower_extension(path_) == ".shp") {
+      throw Error(ErrorCode::invalid_argument,
+                  "is a link, and a shapefile is several files; give the name it leads to", path_);
+    }
+    const fs::path wanted(target_);
     folder_ = (wanted.parent_path() /
                ("." + wanted.filename().string() + ".tmp" + std::to_string(getpid())))
                   .string();
@@ -142,7 +147,7 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     if (!fs::create_directory(folder_, failed)) {
       throw system_error(failed ? failed.value() : EEXIST, "cannot create the output", path_);
     }
-    target = (fs::path(folder_) / wanted.filename()).string();
+    target = (fs::path(folder_) / fs::path(path_).filename()).string();
   }
   try {
     GDALDriver& driver = driver_named(format.driver);
@@ -214,10 +219,13 @@ void VectorFile::publish() {
   close();
   if (folder_.empty()) return;
   // A shapefile is several files: its own name last, so that what is there is complete.
-  const fs::path target(path_);
+  const fs::path target(target_);
   std::vector<std::pair<std::string, fs::path>> files;  // by the names that they get
   for (const auto& entry : fs::directory_iterator(folder_)) {
-    files.emplace_back(published_name(entry.path(), target), entry.path());
+    const bool is_itself = entry.path().filename() == fs::path(path_).filename();
+    files.emplace_back(
+        is_itself ? target.filename().string() : published_name(entry.path(), target),
+        entry.path());
   }
   std::sort(files.begin(), files.end(), [&](const auto& a, const auto& b) {
     const bool a_last = a.first == target.filename();

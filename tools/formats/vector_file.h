@@ -67,7 +67,8 @@ class VectorFile {
  private:
   void close();
 
-  std::string path_, folder_;  ///< folder_: temporary; empty on stdout.
+  std::string path_, target_;  ///< As given, for messages; where it leads.
+  std::string folder_;         ///< Temporary; empty on stdout.
   bool overwrite_;
   std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> dataset_;
   OGRLayer* layer_ = nullptr;

@@ -14,12 +14,14 @@
 #include <malloc.h>
 
 #include "engine/construct/memory_plan.h"
+#include "engine/construct/point_stream.h"
 #include "storage/sigbus_guard.h"
 #include "tools/error_status.h"
 #include "tools/file_name.h"
 #include "tools/output_file.h"
 #include "tools/progress.h"
 #include "tools/progress_fd.h"
+#include "tools/ptin/counts.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
 #include "tools/thread_count.h"
@@ -46,6 +48,23 @@ CostModel cost_of(const std::string& name) {
   return name == "elevation" ? CostModel::kElevation : CostModel::kError;
 }
 
+/// What says how to read points or TINs means nothing to a raster.
+void check_raster_options(const BuildCommand& command) {
+  const BuildOptions& options = command.options;
+  const char* const misfit = options.resolution         ? "--resolution is for points and TINs"
+                             : !options.classes.empty() ? "--class is for LAS"
+                             : options.repair           ? "--repair is for TINs"
+                                                        : nullptr;
+  if (misfit == nullptr) return;
+  const PointChoice choice{options.classes, options.layer, options.z_field};
+  for (const std::string& input : command.inputs) {
+    if (is_there(input) && !is_point_input(input, choice)) {
+      throw Error(ErrorCode::invalid_argument,
+                  std::string(misfit).append(", and this is a raster; leave it out"), input);
+    }
+  }
+}
+
 /// Puts the options together and looks at the output; what their values may be is build()'s matter.
 void check_command(BuildCommand& command) {
   BuildOptions& options = command.options;
@@ -53,8 +72,10 @@ void check_command(BuildCommand& command) {
   if (!command.bbox.empty())
     options.bbox = {command.bbox[0], command.bbox[1], command.bbox[2], command.bbox[3]};
   // An interrupted build may have been killed when its output had just got its name.
-  const bool is_resumed = command.resume && is_there(Workspace::folder_of(command.output));
+  const bool is_resumed =
+      command.resume && is_there(Workspace::folder_of(output_target(command.output)));
   check_output(command.output, command.overwrite || is_resumed);
+  check_raster_options(command);
 }
 
 nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
@@ -278,7 +299,7 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
 
 int run_build(BuildCommand& command, const Context& context) {
   if (command.discard && command.inputs.empty()) {
-    const bool found = Workspace::discard(FileLayer::system(), command.output);
+    const bool found = Workspace::discard(FileLayer::system(), output_target(command.output));
     if (!context.quiet) {
       std::printf(
           found ? "%s: the unfinished build is removed\n" : "%s: there is no unfinished build\n",
@@ -292,7 +313,7 @@ int run_build(BuildCommand& command, const Context& context) {
   BuildReport report;
   {
     BuildShow show(command, context);
-    report = build(command.inputs, command.output, command.options,
+    report = build(command.inputs, output_target(command.output), command.options,
                    resources_of(command, context, show));
     show.finish();
   }
@@ -374,7 +395,7 @@ void add_work_options(CLI::App& app, BuildCommand& command) {
   app.add_flag("--dry-run", command.dry_run, "Say what the build would need, and stop");
   app.add_option("--progress-fd", command.progress_fd,
                  "Write progress as lines of JSON to this file descriptor")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->type_name("FD");
 }
 
@@ -393,11 +414,11 @@ Action declare_build(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"error", "roi", "elevation"}));
   app.add_option("--max-error", options.max_error,
                  "Leave out detail below this error, in the height's unit")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->type_name("E");
   app.add_option("--void-slope", options.void_slope,
                  "Error charged for each ground unit that a void's border moves")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->type_name("S")
       ->capture_default_str();
   add_work_options(app, *command);

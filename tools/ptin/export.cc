@@ -105,12 +105,30 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
   check_output(options.output, options.overwrite);
 }
 
+/// A count that the build wrote of its source; 0 when it wrote none.
+/// @throws Error corruption  it is no count
+std::uint64_t source_count(const nlohmann::json& metadata, const char* key,
+                           const std::string& path) {
+  const auto source = metadata.find("source");
+  if (source == metadata.end()) return 0;
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::corruption,
+                "the metadata's " + what + "; ptin build did not write this, build the file anew",
+                path);
+  };
+  if (!source->is_object()) refuse("\"source\" is no object");
+  const auto count = source->find(key);
+  if (count == source->end()) return 0;
+  if (!count->is_number_unsigned()) refuse(std::string("\"").append(key) + "\" is no count");
+  return count->get<std::uint64_t>();
+}
+
 /// The size of a pixel: what was asked, or the grid's step where the samples fill the grid.
 std::array<double, 2> pixel_size_of(const ExportOptions& options, const StoreFile& store) {
   if (!options.pixel_size.empty()) return {options.pixel_size.front(), options.pixel_size.back()};
   const StoreFacts& facts = store.facts();
-  const auto source = metadata_of(store).value("source", nlohmann::json::object());
-  const auto number = [&](const char* key) { return source.value(key, std::uint64_t{0}); };
+  const nlohmann::json metadata = metadata_of(store);
+  const auto number = [&](const char* key) { return source_count(metadata, key, store.path()); };
   const std::uint64_t samples =
       facts.source_samples + number("void_samples") + number("lone_samples");
   const std::uint64_t places =

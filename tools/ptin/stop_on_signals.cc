@@ -25,10 +25,14 @@ void wait_for_signals(sigset_t signals, std::stop_source stop) {
 }  // namespace
 
 std::stop_token stop_on_signals() {
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond RLIMIT_FSIZE fails with EFBIG instead
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);  // nohup stays in force
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // threads started later inherit this
   const std::stop_source stop;
   std::thread(wait_for_signals, signals, stop).detach();

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// SIGINT and SIGTERM become a stop token.
+// SIGINT, SIGTERM and SIGHUP become a stop token.
 #pragma once
 
 #include <stop_token>
 
 namespace ptin::tools {
 
-/// From now on the first SIGINT or SIGTERM fires the token, so that work ends tidily with exit
-/// status 8; the second one ends the process as the signal does by default. Called once, before any
-/// other thread starts.
+/// From now on the first SIGINT, SIGTERM or (unless it is ignored) SIGHUP fires the token, so that
+/// work ends tidily with exit status 8; the second one ends the process as the signal does by
+/// default. A file that grows beyond the limit on its size is a failed write, not the end. Called
+/// once, before any other thread starts.
 [[nodiscard]] std::stop_token stop_on_signals();
 
 }  // namespace ptin::tools

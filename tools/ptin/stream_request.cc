@@ -31,6 +31,7 @@ Serving serving_of(const nlohmann::json& json) {
       } else if (name == "levels") {
         value.get_to(serving.levels);
       } else if (name == "splits") {
+        if (!value.is_number_unsigned()) throw_unreadable("splits is no whole number >= 0");
         serving.splits = value.get<std::uint64_t>();
       } else {
         throw_unreadable("\"" + name + "\" is no part of a serving");

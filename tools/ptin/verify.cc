@@ -14,6 +14,7 @@
 #include "tools/output_file.h"
 #include "tools/progress.h"
 #include "tools/ptin/answers.h"
+#include "tools/ptin/counts.h"
 #include "tools/ptin/error_stats.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
@@ -221,7 +222,7 @@ Action declare_verify(CLI::App& app, Context& context) {
       ->type_name("INPUT");
   app.add_option("--tolerance", command->tolerances,
                  "Tolerances to check against the source (default: 0 and four more)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->type_name("E");
   app.add_option("--memory", command->memory,
                  "Memory to sort the points of the source in, as 512M or 2G (default 1G)")
