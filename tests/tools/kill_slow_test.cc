@@ -75,7 +75,8 @@ TEST_P(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
 
   std::mt19937 random(20);
   int killed = 0;
-  for (int moment = 0; moment < kMoments; ++moment) {
+  // A build that was through before its moment counts for nothing; on a busy machine many are.
+  for (int moment = 0; moment < 4 * kMoments && killed < kMoments; ++moment) {
     const std::chrono::milliseconds after(random() % static_cast<unsigned>(whole.count()));
     const auto outcome =
         run_ptin(build(killed_one, {"--resume", "--threads", "2"}), SIGKILL, after);
@@ -92,7 +93,7 @@ TEST_P(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
     std::filesystem::remove(killed_one);
     EXPECT_EQ(folder_.names(), names);
   }
-  EXPECT_GT(killed, kMoments / 2);
+  EXPECT_EQ(killed, kMoments);
 }
 
 TEST_P(KillSlow, ADiskThatFillsUpLosesNothing) {
