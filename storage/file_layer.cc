@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
-#include <system_error>
 #include <vector>
 
 #include <fcntl.h>
@@ -13,6 +11,7 @@
 #include <unistd.h>
 
 #include "engine/error.h"
+#include "storage/file_questions.h"
 
 namespace ptin {
 
@@ -116,18 +115,8 @@ int FileLayer::sync_folder(const std::string& path) noexcept {
   return result;
 }
 
-std::string folder_of(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  return folder.empty() ? "." : folder;
-}
-
 ScratchFile::Kept ScratchFile::kept_at(const std::string& path) {
-  std::error_code failure;
-  const bool exists = std::filesystem::exists(path, failure);
-  if (failure) {
-    throw system_error(failure.value(), "cannot look for", path);
-  }
-  return exists ? Kept::kExisting : Kept::kNew;
+  return is_there(path) ? Kept::kExisting : Kept::kNew;
 }
 
 ScratchFile::ScratchFile(FileLayer& files, const std::string& folder, const std::string& stem,

@@ -57,9 +57,6 @@ class FileLayer {
   virtual int sync_folder(const std::string& path) noexcept;
 };
 
-/// The folder that a path names a file in: "." for a bare name.
-[[nodiscard]] std::string folder_of(const std::string& path);
-
 /// A file being written: closed when destroyed, removed too unless it is a kept one. Errors are
 /// ptin::Error and name the file.
 class ScratchFile {

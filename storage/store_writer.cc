@@ -20,6 +20,7 @@
 #include "storage/error_table.h"
 #include "storage/facts.h"
 #include "storage/file_layer.h"
+#include "storage/file_questions.h"
 #include "storage/index_writer.h"
 #include "storage/layout.h"
 #include "storage/page_slots.h"

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "engine/error.h"
+#include "storage/file_questions.h"
 
 namespace ptin::tools {
 

@@ -15,13 +15,14 @@ namespace ptin::tools {
 
 /// The name that an output really gets: `path`, or where its links lead, so that the link stays and
 /// what it names is replaced.
-/// @throws Error invalid_argument  under /dev (but for /dev/shm) or /proc, where a rename would put a
-/// file in the place of a device or of standard output; io_error when links go in a circle
+/// @throws Error invalid_argument  under /dev (but for /dev/shm) or /proc, where a rename would put
+///                                 a file in the place of a device or of standard output
+///               io_error          links go in a circle
 [[nodiscard]] std::string output_target(const std::string& path);
 
-/// Throws Error as output_target(); invalid_argument when `path` exists and `overwrite` is off (or is no file),
-/// not_found when its folder does not exist. Called before the work, so that nobody waits for an
-/// answer that cannot be kept.
+/// Called before the work, so that nobody waits for an answer that cannot be kept.
+/// @throws Error  as output_target(); invalid_argument when `path` exists and `overwrite` is off, or
+///                is no file; not_found when its folder does not exist
 void check_output(const std::string& path, bool overwrite);
 
 /// Syncs the finished file `from` and gives it the name `to`, in one step; `from` is in the same

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "storage/file_questions.h"
 #include "tools/output_file.h"
 
 namespace ptin::tools {

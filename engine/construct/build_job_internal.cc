@@ -7,7 +7,6 @@
 
 #include <sys/stat.h>
 
-#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/first_pass.h"
 #include "engine/construct/hierarchy.h"
 #include "engine/construct/memory_plan.h"
@@ -15,6 +14,7 @@
 #include "engine/construct/source_files.h"
 #include "engine/construct/store_output.h"
 #include "engine/error.h"
+#include "storage/file_questions.h"
 
 namespace ptin::build_internal {
 

@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 
 #include "engine/construct/build.h"
-#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/error.h"
+#include "storage/file_questions.h"
 
 namespace ptin {
 
@@ -19,11 +19,6 @@ namespace {
 // Measured on terrains of 4097 to 16385 samples a side (bench/README.md), with some room.
 constexpr double kOutputBytesOfVertex = 66.0;
 constexpr double kVerticesPerSecond = 150000.0;  ///< A thread's, both halves of the build.
-
-std::string folder_of(const std::string& path) {
-  const std::string parent = std::filesystem::path(path).parent_path().string();
-  return parent.empty() ? "." : parent;
-}
 
 /// Of the largest leaf: the last one of a row may be half a side longer than the others.
 std::uint64_t samples_of_leaf(const TileTree& tree) {

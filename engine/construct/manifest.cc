@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/file_questions_internal.h"
 #include "storage/checksum.h"
+#include "storage/file_questions.h"
 
 namespace ptin {
 
@@ -24,14 +24,10 @@ std::string checksum_text(const std::string& text) {
   return std::string(kChecksumDigits - shown.size(), '0') + shown;
 }
 
-ScratchFile::Kept kept(const std::string& path) {
-  return is_there(path) ? ScratchFile::Kept::kExisting : ScratchFile::Kept::kNew;
-}
-
 }  // namespace
 
 Manifest::Manifest(FileLayer& files, const std::string& path)
-    : path_(path), file_(files, path, kept(path)) {
+    : path_(path), file_(files, path, ScratchFile::kept_at(path)) {
   read();
 }
 

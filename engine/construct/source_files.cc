@@ -8,10 +8,10 @@
 #include <gdal_priv.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/gdal_session_internal.h"
 #include "engine/construct/point_stream.h"
 #include "engine/construct/tin_soup.h"
+#include "storage/file_questions.h"
 
 namespace ptin {
 

@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/rounding.h"
+#include "storage/file_questions.h"
 
 namespace ptin {
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/construct/file_questions_internal.h"
 #include "engine/construct/record_file.h"
 #include "engine/construct/tin_digits.h"
 #include "engine/construct/tin_names_internal.h"
+#include "storage/file_questions.h"
 
 namespace ptin {
 

@@ -13,9 +13,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "engine/construct/file_questions_internal.h"
 #include "engine/error.h"
 #include "storage/checksum.h"
+#include "storage/file_questions.h"
 
 namespace ptin {
 

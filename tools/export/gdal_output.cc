@@ -6,6 +6,7 @@
 #include <gdal_priv.h>
 #include <sys/statvfs.h>
 
+#include "storage/file_questions.h"
 #include "tools/output_file.h"
 #include "tools/standard_output.h"
 

@@ -15,9 +15,9 @@
 
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/point_stream.h"
+#include "storage/file_questions.h"
 #include "storage/sigbus_guard.h"
 #include "tools/error_status.h"
-#include "tools/file_name.h"
 #include "tools/output_file.h"
 #include "tools/progress.h"
 #include "tools/progress_fd.h"

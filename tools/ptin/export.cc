@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "engine/query/part_refiner.h"
+#include "storage/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/export/raster_export.h"
 #include "tools/export/tin_sink.h"
@@ -242,7 +243,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Certificate& certificate = made.certificate;
-  const std::uint64_t bytes = file_bytes(options.output);
+  const std::uint64_t bytes = bytes_of_file(options.output);
   const bool is_raster = format.make_sink == nullptr;
   const StoreFacts& facts = terrain.store().facts();
   if (context.json) {

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include <ogr_geometry.h>
 
 #include "engine/query/isoline_bands.h"
 #include "engine/query/part_refiner.h"
+#include "storage/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output_file.h"
@@ -60,10 +60,7 @@ void check_options(const IsolineOptions& options, const Context& context) {
 std::string folder_for_temporaries(const IsolineOptions& options) {
   if (!options.terrain.temporary_folder.empty()) return options.terrain.temporary_folder;
   if (options.output != "-") return folder_of(options.output);
-  std::error_code fault;
-  const auto folder = std::filesystem::temp_directory_path(fault);
-  if (fault) throw system_error(fault.value(), "TMPDIR names no folder; give --tmp", "TMPDIR");
-  return folder.string();
+  return system_temporary_folder();
 }
 
 void report(const IsolineOptions& options, const Isolines& lines,

@@ -16,6 +16,7 @@
 #include <ogr_geometry.h>
 
 #include "engine/error.h"
+#include "storage/file_questions.h"
 #include "tools/file_name.h"
 #include "tools/region/vector_input.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/error.h"
-#include "tools/file_name.h"
+#include "storage/file_questions.h"
 #include "tools/ptin/crs_facts.h"
 
 namespace ptin::tools {

@@ -15,7 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/external_sorter.h"
+#include "engine/construct/external_memory.h"
 #include "engine/construct/point_stream.h"
 #include "engine/geometry/box.h"
 #include "storage/store_file.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Points as text for `verify --against`: the rules that engine/construct/xyz_reader.h states, in
-// code that shares nothing with it.
+// code of its own on purpose: what both got wrong together would be found by nobody.
 #pragma once
 
 #include <array>

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "engine/mesh/validate.h"
+#include "storage/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/output_file.h"
 #include "tools/progress.h"

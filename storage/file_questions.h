@@ -10,7 +10,12 @@
 
 namespace ptin {
 
-/// False when there is nothing of this name. @throws Error io_error  the system does not say
+/// The folder that a path names a file in: "." for a bare name.
+[[nodiscard]] std::string folder_of(const std::string& path);
+
+/// False when there is nothing of this name.
+/// @throws Error io_error  the system does not say: a name too long, links in a circle, no right to
+///                         look
 [[nodiscard]] bool is_there(const std::string& path);
 
 /// @throws Error not_found, io_error (a folder, too)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/file_questions_internal.h"
+#include "storage/file_questions.h"
 
 #include <filesystem>
 #include <system_error>
@@ -19,6 +19,11 @@ void require(const std::error_code& failure, const char* action, const std::stri
 }
 
 }  // namespace
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
 
 bool is_there(const std::string& path) {
   std::error_code failure;
