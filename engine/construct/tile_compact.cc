@@ -9,47 +9,6 @@
 
 namespace ptin {
 
-namespace {
-
-Renumbering compact_vertices(Tile& tile) {
-  Tin& tin = tile.tin;
-  Renumbering place(tin.vertices.size(), kNone);
-  VertexId next = 0;
-  for (VertexId v = 0; v < tin.vertices.size(); ++v) {
-    if (tin.vertices[v].triangle == kNone) {
-      continue;
-    }
-    tin.vertices[next] = tin.vertices[v];
-    tin.has_height[next] = tin.has_height[v];
-    tile.vertex_state[next] = tile.vertex_state[v];
-    place[v] = next++;
-  }
-  tin.vertices.resize(next);
-  tin.has_height.resize(next);
-  tile.vertex_state.resize(next);
-  return place;
-}
-
-Renumbering compact_triangles(Tile& tile) {
-  Tin& tin = tile.tin;
-  Renumbering place(tin.triangles.size(), kNone);
-  TriangleId next = 0;
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    if (tin.is_alive(t)) {
-      tin.triangles[next] = tin.triangles[t];
-      tin.classes[next] = tin.classes[t];
-      tile.carried[next] = tile.carried[t];
-      place[t] = next++;
-    }
-  }
-  tin.triangles.resize(next);
-  tin.classes.resize(next);
-  tile.carried.resize(next);
-  return place;
-}
-
-}  // namespace
-
 void lay_out_samples(Tile& tile) {
   SampleLists lists;
   lists.reserve(tile.samples.used() + tile.samples.used() / 4);
@@ -87,17 +46,9 @@ void close_gaps_of_samples(Tile& tile, std::size_t most) {
 }  // namespace
 
 Renumbering compact(Tile& tile, std::size_t most_samples) {
-  Renumbering vertices = compact_vertices(tile);
-  const Renumbering triangles = compact_triangles(tile);
-  for (Vertex& v : tile.tin.vertices) {
-    v.triangle = triangles[v.triangle];
-  }
-  for (Triangle& t : tile.tin.triangles) {
-    for (int i = 0; i < 3; ++i) {
-      t.v[i] = vertices[t.v[i]];
-      t.n[i] = t.n[i] == kNone ? kNone : triangles[t.n[i]];
-    }
-  }
+  keep_numbered(compact_triangles(tile.tin), tile.carried);
+  Renumbering vertices = compact_vertices(tile.tin);
+  keep_numbered(vertices, tile.vertex_state);
   if (most_samples == kAllSamples) {
     lay_out_samples(tile);
   } else {

@@ -4,16 +4,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "engine/construct/tile.h"
+#include "engine/mesh/compact.h"
 
 namespace ptin {
-
-/// Old index to new one, for those kept; kNone for the others.
-using Renumbering = std::vector<std::uint32_t>;
 
 /// As a limit of the samples of a triangle: none.
 inline constexpr std::size_t kAllSamples = std::numeric_limits<std::size_t>::max();
@@ -23,11 +19,11 @@ inline constexpr std::size_t kAllSamples = std::numeric_limits<std::size_t>::max
 /// is decided by it stays the same; records are not touched.
 /// @param most_samples  Longer lists are cut down to their best witnesses (witness.h).
 /// @return  Of each former vertex its new index.
-/// Cost: linear.
+/// Cost: linear; the order of the lists besides, when some may be cut.
 Renumbering compact(Tile& tile, std::size_t most_samples);
 
 /// Lays the lists of samples out in the order of their triangles, so that what is near is near in
-/// memory. The old ones are there meanwhile.
+/// memory. The old ones are there meanwhile. Cost: linear.
 void lay_out_samples(Tile& tile);
 
 }  // namespace ptin

@@ -7,13 +7,11 @@
 
 #include "engine/check.h"
 #include "engine/construct/witness.h"
+#include "engine/mesh/compact.h"
 
 namespace ptin {
 
 namespace {
-
-/// Old index to new one, for those kept; kNone for the others.
-using Renumbering = std::vector<std::uint32_t>;
 
 Renumbering keep_vertices(const Tile& from, Tile& to) {
   Renumbering place(from.tin.vertices.size(), kNone);
