@@ -45,7 +45,7 @@ bool SightPredicate::holds(const Attributes& a) const noexcept {
   if (a.deviation > end_deviation_ && (contains(a.roi, p_) || contains(a.roi, q_))) {
     return true;
   }
-  if (!meets(a.roi, whole_) || !meets_line(a.roi)) {
+  if (!meets(a.roi, whole_) || !line_meets(p_, q_, a.roi)) {
     return false;
   }
   for (std::size_t i = 0; i < stretches_.size(); ++i) {
@@ -63,16 +63,6 @@ SightPredicate SightPredicate::beyond() const {
   std::copy_if(stretches_.begin(), stretches_.end(), std::back_inserter(stretches),
                [](const Stretch& s) { return s.beyond; });
   return {p_, q_, std::move(stretches), end_deviation_, tolerance_};
-}
-
-/// The corners of the box do not all lie strictly on one side of the line through p and q.
-bool SightPredicate::meets_line(const GridBox& b) const noexcept {
-  // The corners farthest to the left and to the right of the direction of the line.
-  const bool east = q_.x >= p_.x;
-  const bool north = q_.y >= p_.y;
-  const GridPoint left{north ? b.min_x : b.max_x, east ? b.max_y : b.min_y};
-  const GridPoint right{north ? b.max_x : b.min_x, east ? b.min_y : b.max_y};
-  return side(p_, q_, left) >= 0 && side(p_, q_, right) <= 0;
 }
 
 }  // namespace ptin

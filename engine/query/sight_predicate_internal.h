@@ -33,8 +33,6 @@ class SightPredicate final : public AttributePredicate {
   [[nodiscard]] SightPredicate beyond() const;
 
  private:
-  [[nodiscard]] bool meets_line(const GridBox& b) const noexcept;
-
   Spot p_, q_;
   std::vector<Stretch> stretches_;
   std::vector<GridBox> around_;  ///< Beside the stretches: boxes around them, outward.

@@ -58,6 +58,17 @@ struct Spot {
   return Int128{q.x - p.x} * (to.y - p.y) - Int128{q.y - p.y} * (to.x - p.x);
 }
 
+/// The corners of the box (grid units) do not all lie strictly on one side of the line through p
+/// and q. Exact.
+[[nodiscard]] constexpr bool line_meets(Spot p, Spot q, const GridBox& b) noexcept {
+  // The corners farthest to the left and to the right of the direction of the line.
+  const bool east = q.x >= p.x;
+  const bool north = q.y >= p.y;
+  const GridPoint left{north ? b.min_x : b.max_x, east ? b.max_y : b.min_y};
+  const GridPoint right{north ? b.max_x : b.min_x, east ? b.min_y : b.max_y};
+  return side(p, q, left) >= 0 && side(p, q, right) <= 0;
+}
+
 /// From map positions to spots.
 ///
 /// The grid position of a map position is (X - origin) / step in doubles, rounded to the nearest

@@ -82,12 +82,7 @@ bool SpotPath::segment_meets(std::size_t segment, const SpotBox& box,
                              const GridBox& grid) const noexcept {
   const auto& [p, q] = segments_[segment];
   if (box.min_x <= p.x && p.x <= box.max_x && box.min_y <= p.y && p.y <= box.max_y) return true;
-  // The corners farthest to the left and to the right of the direction of the line.
-  const bool east = q.x >= p.x;
-  const bool north = q.y >= p.y;
-  const GridPoint left{north ? grid.min_x : grid.max_x, east ? grid.max_y : grid.min_y};
-  const GridPoint right{north ? grid.max_x : grid.min_x, east ? grid.min_y : grid.max_y};
-  return side(p, q, left) >= 0 && side(p, q, right) <= 0;
+  return line_meets(p, q, grid);
 }
 
 }  // namespace ptin
