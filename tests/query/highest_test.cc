@@ -208,9 +208,7 @@ Hierarchy hierarchy_with_lone_samples(std::mt19937_64& random, int side) {
       full.vertices[v].height += 1000000;  // of codes: above all others
     }
   }
-  reference::Options options;
-  options.measured = false;
-  return reference::simplify(std::move(full), random, options);
+  return reference::simplify_unmeasured(std::move(full), random);
 }
 
 TEST(Highest, ListsAnyNumberOfVerticesOverVoids) {
@@ -233,10 +231,8 @@ TEST(Highest, ListsAnyNumberOfVerticesOverVoids) {
 
 TEST(Highest, TakesStepsInProportionToTheVerticesListedOverVoids) {
   std::mt19937_64 random(9);
-  reference::Options options;
-  options.measured = false;
   const Hierarchy h =
-      reference::simplify(reference::random_grid(random, 90, 90, 4, 0.05), random, options);
+      reference::simplify_unmeasured(reference::random_grid(random, 90, 90, 4, 0.05), random);
   const TemporaryStore file(h);
   const ProgressiveTin terrain(file.open());
   HighestRequest request;
@@ -266,10 +262,8 @@ std::uint64_t least_limit(const Ask& ask) {
 
 TEST(Highest, CountsItsOwnMemoryBesideThatOfLocatingItsVertices) {
   std::mt19937_64 random(9);
-  reference::Options options;
-  options.measured = false;
   const Hierarchy h =
-      reference::simplify(reference::random_grid(random, 60, 60, 4, 0.0), random, options);
+      reference::simplify_unmeasured(reference::random_grid(random, 60, 60, 4, 0.0), random);
   const TemporaryStore file(h);
   const ProgressiveTin terrain(file.open());
   HighestRequest request;
@@ -295,10 +289,8 @@ TEST(Highest, CountsItsOwnMemoryBesideThatOfLocatingItsVertices) {
 
 TEST(Highest, OfALargeTerrainReadsFewPagesOfIt) {
   std::mt19937_64 random(5);
-  reference::Options options;
-  options.measured = false;
   const Hierarchy h =
-      reference::simplify(reference::random_grid(random, 120, 120, 4, 0.0), random, options);
+      reference::simplify_unmeasured(reference::random_grid(random, 120, 120, 4, 0.0), random);
   const TemporaryStore file(h);
   const auto store = file.open();
   ProgressiveTin terrain(store);

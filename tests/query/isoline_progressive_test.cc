@@ -165,10 +165,8 @@ RC_GTEST_PROP(ProgressiveIsolines, NeedOnlyTheSplitsOfTheirLevels, (std::uint64_
 
 TEST(ProgressiveIsolines, CostWhatChanges) {
   std::mt19937_64 random(7);
-  reference::Options options;
-  options.measured = false;
   const Hierarchy h =
-      reference::simplify(reference::random_grid(random, 90, 80, 8, 0.03), random, options);
+      reference::simplify_unmeasured(reference::random_grid(random, 90, 80, 8, 0.03), random);
   const TemporaryStore file(h);
   const ProgressiveTin terrain(file.open());
   const LevelSet levels(random_levels(random, h, 20), h.facts.heights);

@@ -243,9 +243,7 @@ struct LargeTerrain {
   static Hierarchy make() {
     std::mt19937_64 random(7);
     Tin full = reference::random_grid(random, 70, 60, 8, 0.05);
-    reference::Options options;
-    options.measured = false;
-    return reference::simplify(std::move(full), random, options);
+    return reference::simplify_unmeasured(std::move(full), random);
   }
   Hierarchy hierarchy;
   TemporaryStore file;

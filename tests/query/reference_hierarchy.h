@@ -10,6 +10,7 @@
 #include <random>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "engine/mesh/tin.h"
@@ -43,6 +44,12 @@ struct Options {
 [[nodiscard]] Tin random_points(std::mt19937_64& random, int count, int side);
 
 [[nodiscard]] Hierarchy simplify(Tin full, std::mt19937_64& random, const Options& options = {});
+/// The same with Options::measured off.
+[[nodiscard]] inline Hierarchy simplify_unmeasured(Tin full, std::mt19937_64& random) {
+  Options options;
+  options.measured = false;
+  return simplify(std::move(full), random, options);
+}
 
 /// Any of the above terrains, of moderate size.
 [[nodiscard]] Hierarchy random_hierarchy(std::uint64_t seed);

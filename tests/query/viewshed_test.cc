@@ -188,9 +188,7 @@ Hierarchy plain_with_wall(double wall) {
   for (Vertex& v : full.vertices) {
     v.height = heights.bits(((v.position.x == 14 ? wall : 0.0) + 3.0) / 0.25);
   }
-  reference::Options options;
-  options.measured = false;
-  return reference::simplify(std::move(full), random, options);
+  return reference::simplify_unmeasured(std::move(full), random);
 }
 
 TEST(Viewshed, OfAPlainFromItsOwnHeightTouchesAndSeesEverything) {
@@ -219,9 +217,7 @@ TEST(Viewshed, AnswersOnTheRimOfAVoidSeenAcrossIt) {
       if (full.position(v) == GridPoint{4, 4}) full.classes[t] = TriangleClass::kVoid;
     }
   }
-  reference::Options options;
-  options.measured = false;
-  const Hierarchy h = reference::simplify(std::move(full), random, options);
+  const Hierarchy h = reference::simplify_unmeasured(std::move(full), random);
   const TemporaryStore file(h);
   const ProgressiveTin terrain(file.open());
   for (const bool by_size : {false, true}) {
