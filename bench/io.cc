@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What queries read, cold and warm: records, pages, bytes, faults and time, by reader and page size.
+// What queries read, cold and warm: records, pages, bytes, faults and time, by reader and size of
+// pages.
 //
 //   readers  mapped, pread (the two page stores, packed R-tree); spatialindex (mapped pages,
 //            libspatialindex's tree); uring (mapped index, pages through io_uring with 64 reads

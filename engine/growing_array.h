@@ -41,7 +41,8 @@ class GrowingArray {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 
-  /// Room for `capacity` elements, on large pages when it is much.
+  /// Room for `capacity` elements, on large pages when it is much. Cost: none for the elements where
+  /// the system moves pages, else a copy of them.
   /// @throws std::bad_alloc  nothing has changed
   void reserve(std::size_t capacity) {
     if (capacity <= capacity_) {
@@ -58,7 +59,8 @@ class GrowingArray {
     advise();
   }
 
-  /// To `size` elements, and room for a quarter more when there was not enough.
+  /// To `size` elements, and room for a quarter more when there was not enough. Cost, errors: as
+  /// reserve(), which is called once for each quarter.
   void grow(std::size_t size) {
     if (size > capacity_) {
       reserve(size + size / 4);
@@ -67,6 +69,7 @@ class GrowingArray {
   }
 
   /// To `size` elements, fewer than there are, and gives back room beyond a quarter more.
+  /// Cost: as reserve().
   void shrink(std::size_t size) noexcept {
     size_ = size;
     const std::size_t capacity = size + size / 4;

@@ -97,6 +97,7 @@ class SampleLists {
   /// Moves lists to the front of the pool, in the order they have there, and lets the rest of it go
   /// but for a quarter. Nothing is there twice meanwhile.
   /// @param slots  Those of all lists; a count may have been lowered (the first elements stay).
+  /// Cost: linear in the pool, and n log n in the lists.
   void close_gaps(std::vector<SampleSlot*> slots) {
     std::sort(slots.begin(), slots.end(),
               [](const SampleSlot* a, const SampleSlot* b) { return a->offset < b->offset; });
@@ -113,6 +114,7 @@ class SampleLists {
     pool_.shrink(used_);
   }
 
+  /// Room for so many in all.  @throws std::bad_alloc
   void reserve(std::size_t samples) { pool_.reserve(samples); }
 
  private:

@@ -32,8 +32,8 @@ struct ReplaySegment {
 /// @param chain  Segments of the leaf's ancestors, the root's first.
 /// @param t0     The coarsest TIN: what the root's collapses left. Every vertex alive.
 /// @param leaf   The leaf as it was started: start_raster_tile(), PointTileStarter,
-/// start_tin_tile(). Used up. Cost: about 2.5 residuals a sample for each halving of the vertices
-/// above the leaf.
+///               start_tin_tile(). Used up.
+/// Cost: about 2.5 residuals a sample for each halving of the vertices above the leaf.
 void replay_over_leaf(std::span<const ReplaySegment> chain, const Tin& t0, StartedTile&& leaf);
 
 }  // namespace ptin

@@ -12,7 +12,7 @@ struct TileBytes {
   std::uint64_t collapse_of_sample = 1200;  ///< A leaf's, with its batch's join.
   std::uint64_t replay_of_sample = 500;     ///< A leaf's.
   double join_of_pushed = 2.0;              ///< Times the bytes of the files of the children.
-  std::uint64_t pushed_of_vertex = 820;     ///< In those files; of a seam half as much, twice.
+  std::uint64_t pushed_of_vertex = 820;     ///< In those files: plan only.
   std::uint64_t fixed = 8U << 20;
 
   [[nodiscard]] std::uint64_t of_batch(std::uint64_t leaf_samples) const noexcept {

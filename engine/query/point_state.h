@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a point of the plane can be to a terrain.
 #pragma once
 
 #include <cstdint>

@@ -94,8 +94,7 @@ class ProgressiveTin {
   /// rank (counting sort), applies them. Exact (P1), certified (P2), valid (P3), closed and lean
   /// (P4), joined (P5).
   /// @throws Error invalid_argument    tolerance negative or NaN; `vertices` below |T0|; both
-  /// given;
-  ///                                   region not finite
+  ///                                   given; region not finite
   ///               resource_exhausted  the index says that the answer exceeds memory_limit_bytes;
   ///                                   names `export`
   ///               corruption, io_error, cancelled
