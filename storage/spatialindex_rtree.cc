@@ -19,6 +19,7 @@
 #include "engine/check.h"
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
+#include "storage/sealed_storage_internal.h"
 
 namespace ptin {
 
@@ -29,7 +30,8 @@ namespace {
 
 constexpr std::uint32_t kDimensions = 4;
 constexpr std::uint32_t kDiskPageBytes = 4096;
-// An entry takes 76 bytes (eight doubles, an id, a length), a node 76 more: 52 would just fit.
+// An entry takes 76 bytes (eight doubles, an id, a length), a node 76 more, its checksum 8: 52
+// would just fit.
 constexpr std::uint32_t kCapacity = 50;
 constexpr double kFill = 0.99;
 // What the bulk loader keeps for each entry: a record on the heap with a region of eight doubles.
@@ -43,7 +45,7 @@ struct Stamp {
   std::uint64_t fingerprint, file_bytes, pages;
   std::int64_t tree_id;  // of the tree's header in the storage manager
 };
-constexpr std::array<char, 8> kStampMagic = {'P', 'T', 'I', 'N', 'S', 'I', 'D', '1'};
+constexpr std::array<char, 8> kStampMagic = {'P', 'T', 'I', 'N', 'S', 'I', 'D', '2'};
 
 bool belongs_to(const Stamp& stamp, const StoreFile& store) {
   return stamp.magic == kStampMagic && stamp.fingerprint == store.fingerprint() &&
@@ -192,9 +194,8 @@ Tools::PropertySet tree_properties(std::uint64_t entries_in_memory) {
   return p;
 }
 
-void bulk_load(const StoreFile& store, std::string base, std::uint64_t memory_bytes) {
-  const std::unique_ptr<si::IStorageManager> disk(
-      si::StorageManager::createNewDiskStorageManager(base, kDiskPageBytes));
+void bulk_load(const StoreFile& store, const std::string& base, std::uint64_t memory_bytes) {
+  std::unique_ptr<SealedStorage> disk = SealedStorage::create(base, kDiskPageBytes);
   Stamp stamp{kStampMagic, store.fingerprint(), store.file_bytes(), store.pages().page_count(), -1};
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(&stamp);
   si::id_type stamp_id = si::StorageManager::NewPage;
@@ -209,7 +210,7 @@ void bulk_load(const StoreFile& store, std::string base, std::uint64_t memory_by
     stamp.tree_id = tree_id;
     disk->storeByteArray(stamp_id, sizeof stamp, bytes);
   }
-  disk->flush();
+  SealedStorage::seal(std::move(disk));
 }
 
 // The external sorter puts its runs into the current folder. A thread can have one of its own: the
@@ -269,17 +270,17 @@ struct SpatialIndexRTree::Tree {
   std::shared_ptr<const StoreFile> store;
   std::string base;
   bool was_built = false;
-  std::unique_ptr<si::IStorageManager> disk;
+  std::unique_ptr<SealedStorage> disk;
   std::unique_ptr<si::ISpatialIndex> tree;  // none when there are no pages
   mutable std::mutex turn;
 
-  // False when the files are not there, cannot be read or are of another store.
+  // False when the files are not there, cannot be read, are damaged or are of another store.
   bool load() {
-    if (!fs::exists(base + ".dat") || !fs::exists(base + ".idx")) {
-      return false;
-    }
     try {
-      disk.reset(si::StorageManager::loadDiskStorageManager(base));
+      disk = SealedStorage::open(base);
+      if (!disk) {
+        return false;
+      }
       std::uint32_t bytes = 0;
       std::uint8_t* content = nullptr;
       disk->loadByteArray(0, bytes, &content);
@@ -298,6 +299,10 @@ struct SpatialIndexRTree::Tree {
       return true;
     } catch (Tools::Exception&) {
     } catch (const std::ios_base::failure&) {
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::corruption) {
+        throw;
+      }
     }
     disk.reset();
     return false;

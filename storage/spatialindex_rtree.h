@@ -28,9 +28,9 @@ struct SpatialIndexOptions {
 /// infinite deviation, which is no dimension of the tree; what a leaf holds is asked exactly, by
 /// the page's descriptor. So the answers are those of the packed R-tree.
 ///
-/// The tree is built when it is not there or is of another store (its first page holds the store's
-/// fingerprint). It is a cache: written under temporary names and renamed, but not synced; its own
-/// bytes carry no checksums, and libspatialindex trusts them. Remove the two files when in doubt.
+/// The tree is built when it is not there, is of another store (its first page holds the store's
+/// fingerprint) or its table of pages is damaged. It is a cache: written under temporary names and
+/// renamed, but not synced. Every page carries a checksum, verified whenever it is read.
 ///
 /// Threads: searches take turns, since libspatialindex reads through one stream.
 class SpatialIndexRTree final : public RecordIndex {
@@ -41,7 +41,7 @@ class SpatialIndexRTree final : public RecordIndex {
                                                  const SpatialIndexOptions& options = {});
   ~SpatialIndexRTree() override;
 
-  /// As RecordIndex::search.  @throws Error corruption, io_error
+  /// As RecordIndex::search.  @throws Error corruption (of the tree, too), io_error
   void search(const AttributePredicate& predicate, std::vector<PageId>& pages,
               IoCounters& counters) const override;
 
