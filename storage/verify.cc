@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
+#include "engine/geometry/interval.h"
 #include "storage/checksum.h"
 #include "storage/descriptor.h"
 #include "storage/error_table.h"
@@ -47,6 +49,8 @@ class Verifier {
   std::optional<layout::NodeEntry> look_at_page(PageId id, const layout::NodeEntry& descriptor);
   bool read_page(PageId id, const layout::NodeEntry& descriptor);
   void count(const std::vector<VertexSplit>& records);
+  void count_height(HeightBits bits);
+  void look_at_height(const VertexSplit& r);
   void compare_totals();
   bool same(const layout::NodeEntry& a, const layout::NodeEntry& b) const;
 
@@ -63,7 +67,8 @@ class Verifier {
   ErrorTable errors_;
   std::uint32_t max_rank_ = 0;
   bool makes_void_ = false;
-  bool all_seen_ = true;  // no page was left out because of damage
+  Interval heights_{kInfinity, -kInfinity};  // of the vertices that have one
+  bool all_seen_ = true;                     // no page was left out because of damage
   std::vector<std::byte> page_;
   std::vector<VertexSplit> records_;
 };
@@ -290,10 +295,33 @@ void Verifier::count(const std::vector<VertexSplit>& records) {
     errors_.add(r);
     makes_void_ = makes_void_ || (r.flags & VertexSplit::kAnyVoid) != 0;
     max_rank_ = std::max<std::uint32_t>(max_rank_, r.rank);
+    look_at_height(r);
     if (!contains(front_.facts.bounds, r.roi)) {
       report("a region of influence reaches out of the bounds",
              "record of (" + std::to_string(r.u.x) + ", " + std::to_string(r.u.y) + ")");
     }
+  }
+}
+
+void Verifier::count_height(HeightBits bits) {
+  const double height = front_.facts.heights.height(bits);
+  heights_ = {std::min(heights_.lo, height), std::max(heights_.hi, height)};
+}
+
+// The interval covers the triangles of u that are surface, and so u when it has one. Whether it
+// has, the record knows of the two that it makes.
+void Verifier::look_at_height(const VertexSplit& r) {
+  if ((r.flags & VertexSplit::kVertexVoid) != 0) {
+    return;
+  }
+  count_height(r.height);
+  const bool is_surface = (r.flags & (VertexSplit::kNoLeft | VertexSplit::kLeftVoid)) == 0 ||
+                          (r.flags & (VertexSplit::kNoRight | VertexSplit::kRightVoid)) == 0;
+  const HeightEncoding& heights = front_.facts.heights;
+  if (is_surface &&
+      !contains(attributes_of(r, heights).heights, static_cast<double>(heights.code(r.height)))) {
+    report("a height lies out of the record's own interval of heights",
+           "record of (" + std::to_string(r.u.x) + ", " + std::to_string(r.u.y) + ")");
   }
 }
 
@@ -313,6 +341,15 @@ void Verifier::compare_totals() {
   if (max_rank_ != front_.header.max_rank) {
     report("the header says that the largest rank is " + std::to_string(front_.header.max_rank) +
                ", it is " + std::to_string(max_rank_),
+           "header");
+  }
+  for (const CoarsestTin::V& v : front_.t0.vertices) {
+    if (v.has_height != 0) {
+      count_height(v.height);
+    }
+  }
+  if (heights_.lo < front_.facts.min_height || heights_.hi > front_.facts.max_height) {
+    report("the heights of the vertices reach out of the least and largest in the header",
            "header");
   }
   if (front_.facts.free_of_voids && (makes_void_ || has_void(front_.t0))) {

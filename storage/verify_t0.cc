@@ -57,15 +57,25 @@ std::vector<std::uint32_t> border_of(const std::vector<Edge>& edges) {
   return border.size() == next.size() ? border : std::vector<std::uint32_t>{};
 }
 
+// To the right or up.
+bool is_rising(GridPoint from, GridPoint to) {
+  return to.y > from.y || (to.y == from.y && to.x > from.x);
+}
+
+// Turns to the left only, and once around: a star of five turns to the left only, twice around.
 bool is_convex(const CoarsestTin& t0, const std::vector<std::uint32_t>& border) {
   const std::size_t n = border.size();
+  int rounds = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    if (orient(t0.vertices[border[i]].position, t0.vertices[border[(i + 1) % n]].position,
-               t0.vertices[border[(i + 2) % n]].position) < 0) {
+    const GridPoint a = t0.vertices[border[i]].position;
+    const GridPoint b = t0.vertices[border[(i + 1) % n]].position;
+    const GridPoint c = t0.vertices[border[(i + 2) % n]].position;
+    if (orient(a, b, c) < 0) {
       return false;
     }
+    rounds += !is_rising(a, b) && is_rising(b, c) ? 1 : 0;
   }
-  return true;
+  return rounds == 1;
 }
 
 WideArea area_inside(const CoarsestTin& t0, const std::vector<std::uint32_t>& border) {

@@ -236,6 +236,38 @@ TEST_F(Verify, FindsTotalsThatDoNotAddUp) {
                     "the table is not"));
 }
 
+TEST_F(Verify, FindsHeightsOutOfTheHeaderAndOutOfTheirIntervals) {
+  StoreContent content = random_content({.segments = 1, .records = 100});
+  const auto told = [&](const std::function<void(StoreContent&)>& change, const std::string& what) {
+    StoreContent changed = content;
+    change(changed);
+    write(changed);
+    return tells(verify_store(path_), what);
+  };
+  EXPECT_FALSE(told([](auto&) {}, ""));
+  const std::string header = "in the header", own = "own interval";
+  EXPECT_TRUE(told([](auto& c) { c.facts.max_height = 11.5; }, header));
+  EXPECT_TRUE(told([](auto& c) { c.facts.min_height = 12.5; }, header));
+  const HeightEncoding heights = content.facts.heights;
+  EXPECT_TRUE(told(
+      [&](auto& c) {
+        VertexSplit& r = c.segments[0][3];
+        r.flags = 0;
+        r.height = heights.bits(100.0);
+        r.height_lo = heights.bits(90.0);
+        r.height_hi = heights.bits(99.0);
+      },
+      own));
+  EXPECT_TRUE(told(
+      [&](auto& c) {
+        VertexSplit& r = c.segments[0][3];
+        r.flags = VertexSplit::kLeftVoid;
+        r.height = heights.bits(100.0);
+        r.height_lo = r.height_hi = heights.bits(101.0);
+      },
+      own));
+}
+
 TEST_F(Verify, FindsAVertexThatComesTwice) {
   // By one bit a position in the small square, by sorting parts in the large one.
   for (const std::int32_t side : {1000, 1 << 20}) {
@@ -277,7 +309,10 @@ TEST_F(Verify, FindsVoidsThatTheHeaderDenies) {
     StoreContent content = random_content({});
     content.facts.free_of_voids = true;
     for (auto& segment : content.segments) {
-      for (VertexSplit& r : segment) r.flags &= ~VertexSplit::kAnyVoid;
+      for (VertexSplit& r : segment) {
+        r.flags &= ~VertexSplit::kAnyVoid;
+        r.height_lo = r.height_hi = r.height;
+      }
     }
     change(content);
     write(content);
@@ -317,6 +352,22 @@ TEST_F(Verify, FindsT0ThatDoesNotCoverItsDomain) {
         c.t0.triangles = {{{0, 1, 2}, 0}, {{3, 4, 5}, 0}};
       },
       "border"));
+}
+
+TEST_F(Verify, FindsAT0ThatIsWoundTwice) {
+  StoreContent content = flat_square(1000);
+  const HeightBits h = content.t0.vertices[0].height;
+  // A star of five around a vertex: all turns to the left, twice around, and the areas of its five
+  // triangles add up to what its border has inside.
+  content.t0.vertices = {{{500, 1000}, h, 1}, {{206, 95}, h, 1}, {{976, 655}, h, 1},
+                         {{24, 655}, h, 1},   {{794, 95}, h, 1}, {{500, 500}, h, 1}};
+  content.facts.bounds = {24, 95, 976, 1000};
+  content.t0.triangles.clear();
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    content.t0.triangles.push_back({{5, i, (i + 1) % 5}, 0});
+  }
+  write(content);
+  EXPECT_TRUE(tells(verify_store(path_), "border"));
 }
 
 TEST_F(Verify, StopsWhenAsked) {
