@@ -13,6 +13,7 @@
 
 #include "engine/error.h"
 #include "storage/file_questions.h"
+#include "tools/companion_files.h"
 
 namespace ptin::tools {
 
@@ -85,6 +86,10 @@ std::string output_target(const std::string& path) {
 }
 
 void check_output(const std::string& path, bool overwrite) {
+  if (path == "-") {
+    throw Error(ErrorCode::invalid_argument,
+                "standard output does not take this; give a file name (./- for one of that name)");
+  }
   struct stat status {};
   if (stat(path.c_str(), &status) == 0) {
     if (S_ISDIR(status.st_mode))
@@ -160,6 +165,7 @@ void OutputFile::publish() {
   const int closed = close(fd_);
   fd_ = -1;
   if (closed != 0) throw system_error(errno, "cannot close", path_);
+  if (overwrite_) remove_companions(target_);
   rename_into_place(files_, temporary_, target_, overwrite_);
   temporary_.clear();
 }

@@ -21,8 +21,8 @@ namespace ptin::tools {
 [[nodiscard]] std::string output_target(const std::string& path);
 
 /// Called before the work, so that nobody waits for an answer that cannot be kept.
-/// @throws Error  as output_target(); invalid_argument when `path` exists and `overwrite` is off, or
-///                is no file; not_found when its folder does not exist
+/// @throws Error  as output_target(); invalid_argument when `path` exists and `overwrite` is off,
+///                is no file, or is -, standard output; not_found when its folder does not exist
 void check_output(const std::string& path, bool overwrite);
 
 /// Syncs the finished file `from` and gives it the name `to`, in one step; `from` is in the same
@@ -55,7 +55,8 @@ class OutputFile {
   /// @throws Error as write
   void replace(std::uint64_t offset, std::string_view bytes);
 
-  /// Makes the file appear under its name.  @throws Error resource_exhausted, io_error (also when
+  /// Makes the file appear under its name; with `overwrite` the companions of what it replaces go
+  /// first (tools/companion_files.h).  @throws Error resource_exhausted, io_error (also when
   /// the folder cannot be synced: the file has its name then); invalid_argument when the target
   /// appeared meanwhile and `overwrite` is off
   void publish();

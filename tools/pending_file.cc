@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include "tools/companion_files.h"
 #include "tools/output_file.h"
 
 namespace ptin::tools {
@@ -31,6 +32,7 @@ void PendingFile::remove_side_files() const noexcept {
 }
 
 void PendingFile::publish() {
+  if (overwrite_) remove_companions(target_);
   move_into_place(temporary_, target_, overwrite_);
   remove_side_files();  // they bear the name that is gone
   temporary_.clear();

@@ -20,8 +20,8 @@ class PendingFile {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] const std::string& temporary() const noexcept { return temporary_; }
 
-  /// Syncs the temporary file, renames it, syncs the folder, and removes the side files. REQUIRES:
-  /// written and closed.
+  /// Syncs the temporary file, renames it, syncs the folder, and removes the side files. With
+  /// `overwrite` the companions of what it replaces go first. REQUIRES: written and closed.
   /// @throws Error resource_exhausted, io_error; invalid_argument when the target appeared
   /// meanwhile and `overwrite` is off
   void publish();

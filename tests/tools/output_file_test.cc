@@ -82,6 +82,26 @@ TEST(PendingFile, TakesItsSideFilesAlongHoweverItEnds) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"a.gpkg"});
 }
 
+// A new GeoPackage beside the journal of the one that it replaced is a broken one.
+TEST(OutputFile, RemovesTheCompanionsOfWhatItReplaces) {
+  const TestFolder folder;
+  const auto put = [&](std::initializer_list<const char*> names) {
+    for (const char* name : names) write_file(folder.file(name), "of the old one");
+  };
+  put({"a.gpkg", "a.gpkg-wal", "a.gpkg-shm", "a.gpkg.aux.xml", "a.gpkg.qml", "b.gpkg-wal"});
+  {
+    PendingFile file(folder.file("a.gpkg"), true);
+    write_file(file.temporary(), "new");
+    EXPECT_TRUE(std::filesystem::exists(folder.file("a.gpkg-wal")));
+    file.publish();
+  }
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.gpkg", "a.gpkg.qml", "b.gpkg-wal"}));
+  put({"c.PNG", "c.PNG.aux.xml"});
+  OutputFile out(folder.file("c.PNG"), true);
+  out.publish();
+  EXPECT_FALSE(std::filesystem::exists(folder.file("c.PNG.aux.xml")));
+}
+
 /// From now on this process's kernel knows no renameat2 and says `failure` to it, as file systems
 /// (EINVAL) and old kernels (ENOSYS) do.
 bool forget_renameat2(int failure) {

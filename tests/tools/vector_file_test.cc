@@ -49,5 +49,29 @@ TEST(VectorFile, KeepsWholeNumbersOfAnySize) {
   }
 }
 
+/// An index or a CRS of the shapefile that was replaced would be believed.
+TEST(VectorFile, LeavesNothingOfAShapefileThatItReplaces) {
+  GDALAllRegister();
+  const testing::TestFolder folder;
+  for (const char* name : {"a.shp", "a.shx", "a.dbf", "a.prj", "a.qix", "a.sbn", "a.qml"}) {
+    testing::write_file(folder.file(name), "of the old one");
+  }
+  {
+    VectorFile file(folder.file("a.shp"), true, {"points", wkbPoint, {{"ID", Type::kInteger}}, ""});
+    const VectorFile::Value values[] = {std::int64_t{1}};
+    file.add(std::make_unique<OGRPoint>(2.0, 1.0), values);
+    file.publish();
+  }
+  const std::vector<std::string> expected = {"a.dbf", "a.qml", "a.shp", "a.shx"};
+  std::vector<std::string> names = folder.names();
+  std::erase(names, "a.cpg");  // as GDAL likes
+  EXPECT_EQ(names, expected);
+  const std::unique_ptr<GDALDataset> read(
+      GDALDataset::Open(folder.file("a.shp").c_str(), GDAL_OF_VECTOR));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->GetLayer(0)->GetFeatureCount(), 1);
+  EXPECT_EQ(read->GetLayer(0)->GetSpatialRef(), nullptr);
+}
+
 }  // namespace
 }  // namespace ptin::tools

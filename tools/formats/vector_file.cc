@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "engine/error.h"
+#include "tools/companion_files.h"
 #include "tools/export/gdal_output.h"
 #include "tools/file_name.h"
 #include "tools/output_file.h"
@@ -232,6 +233,7 @@ void VectorFile::publish() {
     const bool b_last = b.first == target.filename();
     return a_last != b_last ? b_last : a < b;
   });
+  if (overwrite_) remove_companions(target_);
   for (const auto& [name, file] : files) {
     move_into_place(file.string(), (target.parent_path() / name).string(), overwrite_);
   }
