@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
@@ -36,6 +37,14 @@ GridBox bounds_of(const Tin& tin) {
   return bounds;
 }
 
+/// JSON has no numbers for NaN and the infinities: they are words.
+nlohmann::json number_or_word(double value) {
+  if (std::isfinite(value)) {
+    return value;
+  }
+  return std::isnan(value) ? "nan" : (value > 0 ? "inf" : "-inf");
+}
+
 template <class T>
 nlohmann::json value_or_null(const std::optional<T>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
@@ -59,11 +68,13 @@ nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildRe
 }  // namespace
 
 nlohmann::json options_json(const BuildOptions& o) {
-  nlohmann::json json{
-      {"cost", name_of(o.cost)},           {"max_error", o.max_error},
-      {"nodata", value_or_null(o.nodata)}, {"resolution", value_or_null(o.resolution)},
-      {"bbox", value_or_null(o.bbox)},     {"tile", value_or_null(o.tile)},
-      {"void_slope", o.void_slope}};
+  nlohmann::json json{{"cost", name_of(o.cost)},
+                      {"max_error", o.max_error},
+                      {"nodata", o.nodata ? number_or_word(*o.nodata) : nlohmann::json(nullptr)},
+                      {"resolution", value_or_null(o.resolution)},
+                      {"bbox", value_or_null(o.bbox)},
+                      {"tile", value_or_null(o.tile)},
+                      {"void_slope", o.void_slope}};
   if (o.repair) {
     json["repair"] = true;
   }

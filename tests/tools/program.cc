@@ -96,6 +96,10 @@ void make_raster(const std::string& path, const RasterRecipe& r) {
   const std::unique_ptr<GDALDataset> data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
       path.c_str(), r.width, r.height, 1, GDT_Float32, nullptr));
   double transform[6] = {r.west, r.pixel, 0, r.north, 0, -r.pixel};
+  if (r.columns_go_west) {
+    transform[0] += r.width * r.pixel;
+    transform[1] = -r.pixel;
+  }
   data->SetGeoTransform(transform);
   OGRSpatialReference srs;
   srs.importFromEPSG(r.epsg);

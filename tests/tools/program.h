@@ -47,6 +47,7 @@ struct RasterRecipe {
   double west = 500000.0;
   double north = 4000000.0;
   double pixel = 30.0;
+  bool columns_go_west = false;  ///< The first column is the easternmost: a negative pixel width.
   int epsg = 32611;
 };
 /// Writes it as a Float32 GeoTIFF.

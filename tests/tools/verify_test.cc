@@ -76,6 +76,31 @@ TEST(Verify, FindsAGoodFileGood) {
   }
 }
 
+TEST(Verify, ReadsRastersWhoseColumnsGoWest) {
+  const TestFolder folder;
+  RasterRecipe recipe = hills_with_voids();
+  recipe.columns_go_west = true;
+  const std::string store = built_raster(folder, recipe);
+  const Outcome outcome = verified(store, folder.file("source.tif"));
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+
+// The value that the build was given takes the place of the band's own: -9999 is a height then.
+TEST(Verify, KnowsNodataThatIsNoNumber) {
+  const TestFolder folder;
+  make_raster(folder.file("source.tif"), hills_with_voids());
+  for (const std::string nodata : {"nan", "inf", "-inf", "-9999"}) {
+    const std::string store = folder.file("store.ptin");
+    const Outcome made = run_ptin({"build", folder.file("source.tif"), "-o", store, "-q",
+                                   "--overwrite", "--nodata=" + nodata});
+    ASSERT_EQ(made.status, 0) << nodata << made.err;
+    const Outcome outcome = verified(store, folder.file("source.tif"));
+    EXPECT_EQ(outcome.status, 0) << nodata << outcome.out << outcome.err;
+    const auto info = nlohmann::json::parse(run_ptin({"info", store, "--json"}).out);
+    EXPECT_EQ(info.at("free_of_voids"), nodata != "-9999");
+  }
+}
+
 TEST(Verify, FindsErrorsThatAreTooSmall) {
   const TestFolder folder;
   const std::string store = built_raster(folder, hills_with_voids());

@@ -16,20 +16,24 @@ namespace ptin::tools {
 
 namespace {
 
-/// One file, and where its pixels are on the grid: x = first_x + column, y = first_y + direction *
-/// row.
+/// One file, and where its pixels are on the grid: x = first_x + x_step * column, y = first_y +
+/// y_step * row.
 struct RasterFile {
   std::string path;
   std::unique_ptr<GDALDataset> data;
   std::int64_t first_x = 0;
   std::int64_t first_y = 0;
-  int direction = -1;
+  int x_step = 1;  ///< 1 or -1.
+  int y_step = -1;
   int columns = 0;
   int rows = 0;
   double scale = 1.0;
   double offset = 0.0;
 
-  [[nodiscard]] std::int64_t low_y() const { return direction < 0 ? first_y - rows + 1 : first_y; }
+  [[nodiscard]] std::int64_t low_x() const { return x_step < 0 ? first_x - columns + 1 : first_x; }
+  [[nodiscard]] std::int64_t high_x() const { return low_x() + columns - 1; }
+  [[nodiscard]] std::int64_t low_y() const { return y_step < 0 ? first_y - rows + 1 : first_y; }
+  [[nodiscard]] std::int64_t high_y() const { return low_y() + rows - 1; }
 };
 
 class RasterSamples final : public SourceSamples {
@@ -59,7 +63,8 @@ class RasterSamples final : public SourceSamples {
 void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   std::array<double, 6> t{0, 1, 0, 0, 0, -1};
   if (file.data->GetGeoTransform(t.data()) != CE_None) t = {-0.5, 1, 0, file.rows - 0.5, 0, -1};
-  file.direction = t[5] < 0 ? -1 : 1;
+  file.x_step = t[1] < 0 ? -1 : 1;
+  file.y_step = t[5] < 0 ? -1 : 1;
   const auto grid = [&](int column, int row) {
     return facts.map.to_grid({t[0] + (column + 0.5) * t[1], t[3] + (row + 0.5) * t[5]});
   };
@@ -67,9 +72,10 @@ void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   const MapPoint last = grid(file.columns - 1, file.rows - 1);
   file.first_x = std::llround(first.x);
   file.first_y = std::llround(first.y);
-  const auto expected_x = static_cast<double>(file.first_x + file.columns - 1);
+  const auto expected_x =
+      static_cast<double>(file.first_x + std::int64_t{file.x_step} * (file.columns - 1));
   const auto expected_y =
-      static_cast<double>(file.first_y + std::int64_t{file.direction} * (file.rows - 1));
+      static_cast<double>(file.first_y + std::int64_t{file.y_step} * (file.rows - 1));
   const double off = std::max({std::abs(first.x - static_cast<double>(file.first_x)),
                                std::abs(first.y - static_cast<double>(file.first_y)),
                                std::abs(last.x - expected_x), std::abs(last.y - expected_y)});
@@ -86,10 +92,10 @@ void RasterSamples::compare_extent(const GridBox& bounds) {
   std::int64_t high_x = INT64_MIN;
   std::int64_t high_y = INT64_MIN;
   for (const RasterFile& file : files_) {
-    low_x = std::min(low_x, file.first_x);
+    low_x = std::min(low_x, file.low_x());
     low_y = std::min(low_y, file.low_y());
-    high_x = std::max(high_x, file.first_x + file.columns - 1);
-    high_y = std::max(high_y, file.low_y() + file.rows - 1);
+    high_x = std::max(high_x, file.high_x());
+    high_y = std::max(high_y, file.high_y());
   }
   const bool same = low_x == bounds.min_x && low_y == bounds.min_y && high_x == bounds.max_x &&
                     high_y == bounds.max_y;
@@ -118,16 +124,16 @@ SampleWindow RasterSamples::read(const GridBox& box) {
 
 void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
   const GridBox& box = window.box;
-  const std::int64_t low_x = std::max<std::int64_t>(box.min_x, file.first_x);
-  const std::int64_t high_x = std::min<std::int64_t>(box.max_x, file.first_x + file.columns - 1);
+  const std::int64_t low_x = std::max<std::int64_t>(box.min_x, file.low_x());
+  const std::int64_t high_x = std::min<std::int64_t>(box.max_x, file.high_x());
   const std::int64_t low_y = std::max<std::int64_t>(box.min_y, file.low_y());
-  const std::int64_t high_y = std::min<std::int64_t>(box.max_y, file.low_y() + file.rows - 1);
+  const std::int64_t high_y = std::min<std::int64_t>(box.max_y, file.high_y());
   if (low_x > high_x || low_y > high_y) return;
   const int width = static_cast<int>(high_x - low_x + 1);
   const int height = static_cast<int>(high_y - low_y + 1);
-  const int column = static_cast<int>(low_x - file.first_x);
-  const int row =
-      static_cast<int>(file.direction < 0 ? file.first_y - high_y : low_y - file.first_y);
+  const int column =
+      static_cast<int>(file.x_step < 0 ? file.first_x - high_x : low_x - file.first_x);
+  const int row = static_cast<int>(file.y_step < 0 ? file.first_y - high_y : low_y - file.first_y);
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   std::vector<double> values(count);
   std::vector<std::uint8_t> mask(count, 255);
@@ -144,8 +150,9 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
   const bool is_float = band.GetRasterDataType() == GDT_Float32;
   const std::size_t stride = static_cast<std::size_t>(box.max_x - box.min_x) + 1;
   for (int j = 0; j < height; ++j) {
-    const std::int64_t y = file.direction < 0 ? high_y - j : low_y + j;
+    const std::int64_t y = file.y_step < 0 ? high_y - j : low_y + j;
     for (int i = 0; i < width; ++i) {
+      const std::int64_t x = file.x_step < 0 ? high_x - i : low_x + i;
       const std::size_t from = static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
                                static_cast<std::size_t>(i);
       const double value = values[from];
@@ -155,7 +162,7 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
            (is_float && static_cast<float>(value) == static_cast<float>(*choices_.nodata)));
       if (mask[from] == 0 || std::isnan(value) || is_nodata) continue;
       Sample& sample = window.samples[static_cast<std::size_t>(y - box.min_y) * stride +
-                                      static_cast<std::size_t>(low_x + i - box.min_x)];
+                                      static_cast<std::size_t>(x - box.min_x)];
       sample.height = file.offset + file.scale * value;
       sample.is_void = false;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/source_samples.h"
 
-#include <cmath>
+#include <limits>
 
 #include "engine/error.h"
 #include "storage/file_questions.h"
@@ -9,14 +9,28 @@
 
 namespace ptin::tools {
 
+namespace {
+
+/// A number; "nan", "inf" and "-inf" are words, since JSON has no numbers for them.
+std::optional<double> nodata_of(const nlohmann::json& value) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (value.is_number()) return value.get<double>();
+  if (value == "nan") return std::numeric_limits<double>::quiet_NaN();
+  if (value == "inf") return kInfinity;
+  if (value == "-inf") return -kInfinity;
+  return std::nullopt;
+}
+
+}  // namespace
+
 SampleChoices choices_of(const StoreFile& store) {
   const nlohmann::json metadata = metadata_of(store);
   const auto it = metadata.find("options");
   const nlohmann::json options =
       it != metadata.end() && it->is_object() ? *it : nlohmann::json::object();
   SampleChoices choices;
-  if (const auto nodata = options.find("nodata"); nodata != options.end() && nodata->is_number()) {
-    choices.nodata = nodata->get<double>();
+  if (const auto nodata = options.find("nodata"); nodata != options.end()) {
+    choices.nodata = nodata_of(*nodata);
   }
   if (const auto slope = options.find("void_slope"); slope != options.end() && slope->is_number()) {
     choices.void_slope = slope->get<double>();

@@ -284,7 +284,8 @@ std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& wind
           height_in(tin, t,
                     {static_cast<double>(weights.w[0]), static_cast<double>(weights.w[1]),
                      static_cast<double>(weights.w[2])});
-      f.residual = std::min(f.residual, std::abs(height - window.samples[i].height));
+      const double distance = std::abs(height - window.samples[i].height);
+      f.residual = std::min(f.residual, std::max(0.0, distance - slack_));
     };
     if (window.is_grid) {
       scan_triangle(corners, window.box, [&](std::int32_t x, std::int32_t y) {
@@ -322,7 +323,7 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
       judge_class(window, sample, allowed, check);
     } else if (!sample.is_void) {
       check.worst_error = std::max(check.worst_error, f.residual);
-      if (f.residual > allowed + slack_) {
+      if (f.residual > allowed) {
         fault(&check, "the sample at " + place_text(sample.x, sample.y) + " is off by " +
                           short_number(f.residual) + ", more than the certified " +
                           short_number(allowed) +

@@ -23,7 +23,9 @@ struct ToleranceCheck {
   std::optional<double> tolerance;  ///< None: the full TIN.
   double certified_error = 0.0;     ///< Largest that an answer promised.
   double certified_deviation = 0.0;
-  double worst_error = 0.0;      ///< Largest vertical distance at a sample of the right class.
+  /// Largest vertical distance at a sample of the right class, less the rounding of the arithmetic
+  /// that measures it (10^-12 of the largest height).
+  double worst_error = 0.0;
   double worst_deviation = 0.0;  ///< Largest vertical distance to the full TIN at a random point.
   std::uint64_t samples = 0;     ///< With a height.
   std::uint64_t void_samples = 0;
