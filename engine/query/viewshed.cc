@@ -104,6 +104,16 @@ class Certainty {
   Viewshed& seen_;
 };
 
+/// How far the file's full TIN is from the source's; 0 where heights alone were rounded, which
+/// decides what the heights are.
+double deviation_of_left_out(const StoreFacts& facts) {
+  const double largest = std::max(std::abs(facts.min_height), std::abs(facts.max_height));
+  const double rounding =
+      facts.heights.type == HeightType::int32 ? facts.heights.step / 2 : largest * 0x1p-24;
+  constexpr double kSlack = 1.001;  // the bound itself is rounded up
+  return facts.base_deviation <= kSlack * rounding ? 0.0 : facts.base_deviation;
+}
+
 /// The mesh of a request, and what it leaves open.
 class ViewshedSearch {
  public:
@@ -112,39 +122,49 @@ class ViewshedSearch {
         request_(request),
         context_(request.stop, request.memory_limit_bytes, store_.path()),
         detail_({request.tolerance, request.vertices}, {store_, terrain.index()}, context_),
-        mesh_(terrain, detail_) {}
+        mesh_(terrain, detail_),
+        left_out_(deviation_of_left_out(store_.facts())) {}
 
   Viewshed run() {
-    const bool is_open = detail_.is_asked() && !detail_.certificate().complete;
-    refine(is_open);
+    const bool is_coarse = detail_.is_asked() && !detail_.certificate().complete;
+    refine(is_coarse);
     Viewshed result = sweep({});
-    if (is_open) {
+    if (is_coarse || left_out_ > 0) {
       Certainty certainty(result);
-      const bool voids = !store_.facts().free_of_voids;
-      certainty.add(sweep({1, slope_, voids}), Sight::kVisible);
-      if (!voids) {
-        certainty.add(sweep({-1, slope_, false}), Sight::kHidden);
-      }
+      tell_apart(certainty);
       certainty.count();
     }
     store_.pages().check_unchanged();
     result.certified_error = detail_.certificate().error;
-    result.certified_deviation = is_open ? std::max(allowed(), store_.facts().base_deviation)
-                                         : detail_.certificate().deviation;
+    result.certified_deviation = is_coarse ? std::max(allowed(), store_.facts().base_deviation)
+                                           : detail_.certificate().deviation;
     result.exact = detail_.is_exact(store_.facts());
     result.cost = context_.cost;
     return result;
   }
 
  private:
-  void refine(bool is_open) {
+  void tell_apart(Certainty& certainty) {
+    if (!std::isfinite(left_out_)) {
+      return;
+    }
+    // The eye stands on ground that is not known either.
+    const double base = request_.absolute ? left_out_ : 2 * left_out_;
+    const bool voids = !store_.facts().free_of_voids;
+    certainty.add(sweep({1, slope_, voids, base}), Sight::kVisible);
+    if (!voids) {
+      certainty.add(sweep({-1, slope_, false, base}), Sight::kHidden);
+    }
+  }
+
+  void refine(bool is_coarse) {
     const AffineMap& map = store_.facts().map;
     const double reach_x = request_.radius / request_.ground_per_map_x;
     const double reach_y = request_.radius / request_.ground_per_map_y;
     const MapPoint eye = request_.eye;
     const PredicatePtr near = meets_region(
         Window{eye.x - reach_x, eye.y - reach_y, eye.x + reach_x, eye.y + reach_y}, map);
-    if (!is_open) {
+    if (!is_coarse) {
       mesh_.refine(*all_of({near, std::make_shared<AboveError>(detail_.tolerance())}), context_);
       return;
     }
@@ -171,6 +191,7 @@ class ViewshedSearch {
   QueryContext context_;
   Detail detail_;
   BoundedMesh mesh_;
+  double left_out_;  ///< Deviation of the file's full TIN from the source's.
   double slope_ = 0;
 };
 

@@ -61,7 +61,7 @@ struct Viewshed {
     MapPoint position;
     double height = 0;
     bool visible = false;
-    bool certain = true;  ///< The full TIN answers so.
+    bool certain = true;  ///< The source's full TIN answers so.
   };
   std::vector<Target> vertices;
   /// For certain; always, of the full TIN.
@@ -95,9 +95,12 @@ struct Viewshed {
 /// itself lowered, and its height is twice that: a bump that the level leaves out may always hide
 /// the ground itself. A void may be filled there: in a terrain with voids nothing is hidden for
 /// certain, and voids of the level may hold ground of any of the terrain's heights. With curvature
-/// both are for certain up to the straightness of edges above.
-/// @throws Error invalid_argument    as Detail; the eye is outside of the terrain or on a void
-///                                   without an absolute height; a length means nothing
+/// both are for certain up to the straightness of edges above. A file that left records out (its
+/// base_deviation is more than rounding) is a level of detail throughout: its full TIN deviates by
+/// that at any distance, the ground below an eye that stands on it included.
+/// @throws Error invalid_argument    as Detail; the eye is outside of the terrain, on a void
+///                                   without an absolute height, or below the surface; a length
+///                                   means nothing
 ///               resource_exhausted, corruption, io_error, cancelled
 /// Cost: linear in the triangles within the radius, and in practice a few pieces of horizon each;
 /// at a level of detail three times that.

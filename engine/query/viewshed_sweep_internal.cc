@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/query/horizon.h"
+#include "engine/query/viewshed_eye_internal.h"
 #include "engine/query/viewshed_rim_internal.h"
 #include "engine/query/viewshed_walk_internal.h"
 
@@ -32,18 +33,14 @@ class Viewer {
   Viewer(const Tin& tin, const StoreFacts& facts, const ViewshedRequest& request,
          const QueryContext& context, const SightBias& bias)
       : tin_(tin), facts_(facts), request_(request), context_(context), bias_(bias) {
-    const auto spot = SpotMap(facts.map, facts.bounds).spot(request.eye);
-    if (!spot) {
-      refuse("the observer stands outside of the terrain");
-    }
-    spot_ = *spot;
-    eye_ = grid_of(spot_);
+    eye_ = find_eye(tin, facts, request);
+    eye_at_ = grid_of(eye_.spot);
     ground_x_ = facts.map.step_x * request.ground_per_map_x;
     ground_y_ = facts.map.step_y * request.ground_per_map_y;
   }
 
   Viewshed run() {
-    find_eye_height();
+    result_.eye_height = eye_.height;
     if (request_.pixels) {
       place_pixels();
     }
@@ -56,7 +53,6 @@ class Viewer {
   }
 
  private:
-  void find_eye_height();
   void admit() const;
   void place_vertices();
   void place_pixels();
@@ -69,8 +65,8 @@ class Viewer {
     return static_cast<std::size_t>(std::clamp(4 * across, 64.0, kMostBuckets));
   }
   [[nodiscard]] Spot spot_at(const Offset& p) const noexcept {
-    return {spot_.x + std::llround(std::ldexp(p.x, kSpotBits)),
-            spot_.y + std::llround(std::ldexp(p.y, kSpotBits))};
+    return {eye_.spot.x + std::llround(std::ldexp(p.x, kSpotBits)),
+            eye_.spot.y + std::llround(std::ldexp(p.y, kSpotBits))};
   }
   void look_at(TriangleId t, Horizon& horizon);
   void raise(TriangleId t, TriangleId n, Offset a, Offset b, Horizon& horizon) const;
@@ -79,7 +75,7 @@ class Viewer {
   [[nodiscard]] double unknown_at(double x, double y) const noexcept {
     const double gx = x * ground_x_;
     const double gy = y * ground_y_;
-    return bias_.slope * std::sqrt(gx * gx + gy * gy) * (1 + 1e-12);
+    return bias_.slope * std::sqrt(gx * gx + gy * gy) * (1 + 1e-12) + bias_.base;
   }
   void look_at_pixels(TriangleId t, const Horizon& horizon);
   void look_at_pixels_behind(TriangleId t, const Horizon& horizon);
@@ -114,9 +110,8 @@ class Viewer {
   const ViewshedRequest& request_;
   const QueryContext& context_;
   SightBias bias_;
-  Spot spot_;
-  MapPoint eye_;  ///< The spot in grid units.
-  TriangleId eye_triangle_ = 0;
+  ViewshedEye eye_;
+  MapPoint eye_at_;  ///< Grid units.
   double ground_x_ = 1, ground_y_ = 1;
   std::vector<Offset> offsets_;       ///< Beside the vertices: grid units, and height's unit.
   std::vector<Sight> seen_;           ///< Beside the vertices; kNothing: not looked at yet.
@@ -126,23 +121,6 @@ class Viewer {
   std::optional<WalkedView> walked_;  ///< Once no order is left.
   Viewshed result_;
 };
-
-void Viewer::find_eye_height() {
-  const Place place = find_spot(tin_, spot_, 0);
-  if (place.lies == Lies::kOutside) {
-    refuse("the observer stands outside of the terrain");
-  }
-  eye_triangle_ = place.triangle;
-  result_.eye_height = request_.eye_height;
-  if (request_.absolute) {
-    return;
-  }
-  if (!is_surface(answering_triangle(tin_, place))) {
-    refuse("the observer stands on a void, where no height is known; give an absolute height");
-  }
-  const Footing footing = footing_of(tin_, spot_, place);
-  result_.eye_height += facts_.heights.height_of_code(code_at(tin_, facts_.heights, footing));
-}
 
 /// Mesh, raster and horizon together, before any of them is taken.
 void Viewer::admit() const {
@@ -160,8 +138,8 @@ void Viewer::place_vertices() {
     if (offsets_.size() % kStopInterval == 0) {
       context_.check_stop();
     }
-    const double x = v.position.x - eye_.x;
-    const double y = v.position.y - eye_.y;
+    const double x = v.position.x - eye_at_.x;
+    const double y = v.position.y - eye_at_.y;
     offsets_.push_back({x, y, facts_.heights.height(v.height) - result_.eye_height - drop(x, y)});
   }
   seen_.assign(tin_.vertices.size(), Sight::kNothing);
@@ -178,13 +156,13 @@ void Viewer::place_pixels() {
     refuse("the raster has more than 200 000 pixels a side: give a larger pixel size");
   }
   // On the grid: centres are the grid points, whatever the eye.
-  const double centre_x = pixels_on_grid_ ? std::floor(eye_.x + 0.5) - eye_.x : 0.0;
-  const double centre_y = pixels_on_grid_ ? std::floor(eye_.y + 0.5) - eye_.y : 0.0;
+  const double centre_x = pixels_on_grid_ ? std::floor(eye_at_.x + 0.5) - eye_at_.x : 0.0;
+  const double centre_y = pixels_on_grid_ ? std::floor(eye_at_.y + 0.5) - eye_at_.y : 0.0;
   result_.width = static_cast<std::uint32_t>(2 * reach_x) + 1;
   result_.height = static_cast<std::uint32_t>(2 * reach_y) + 1;
   first_x_ = centre_x - reach_x * pixel_x_;
   first_y_ = centre_y + reach_y * pixel_y_;
-  result_.first = facts_.map.to_map(eye_.x + first_x_, eye_.y + first_y_);
+  result_.first = facts_.map.to_map(eye_at_.x + first_x_, eye_at_.y + first_y_);
   result_.step_x = pixel_x_ * facts_.map.step_x;
   result_.step_y = pixel_y_ * facts_.map.step_y;
 }
@@ -245,8 +223,8 @@ void Viewer::sweep() {
   }
 }
 
-/// Along the ray, what is not known grows with the distance: so between two sides it changes no
-/// slope by more than at them. Curvature does, by a quarter of the drop over a side, within the
+/// Along the ray, what is not known grows with the distance, in a straight line: so between two
+/// sides it changes no slope by more than at them. Curvature does, by a quarter of the drop over a side, within the
 /// triangle and again along its side.
 void Viewer::raise(TriangleId t, TriangleId n, Offset a, Offset b, Horizon& horizon) const {
   const bool surface = is_surface(t) || is_surface(n);
@@ -285,7 +263,7 @@ double Viewer::longest_side(TriangleId t) const noexcept {
 /// Triangles that hide one another in a ring, and all behind: only where the mesh is far from
 /// Delaunay.
 void Viewer::walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon) {
-  walked_.emplace(tin_, offsets_, spot_);
+  walked_.emplace(tin_, offsets_, eye_.spot);
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
     if (tin_.is_alive(t) && waits[t] != 0) {
       context_.check_stop();
@@ -302,11 +280,14 @@ bool Viewer::sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon
   p.z -= bias_.sign * unknown_at(p.x, p.y);
   if (!walked_) {
     // The ground just before a target that is lower than this may hide it.
-    const bool stands_out = bias_.sign <= 0 || request_.target_height >= 2 * unknown_at(p.x, p.y);
+    // Ground beside the observer that is higher than the observer may hide everything.
+    const bool stands_out =
+        bias_.sign <= 0 ||
+        (request_.target_height >= 2 * unknown_at(p.x, p.y) && eye_.above_ground >= bias_.base);
     return stands_out && horizon.sees(p, side);
   }
   ++result_.walked_targets;
-  return walked_->sees(spot, p.z, eye_triangle_);
+  return walked_->sees(spot, p.z, eye_.triangle);
 }
 
 /// The ray to a corner comes through the triangle when the eye is on the inner side of both sides
@@ -456,7 +437,7 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
     p.z += weights[i] / sum * (o[i].z + drop(o[i].x, o[i].y));
   }
   p.z += request_.target_height - drop(p.x, p.y);
-  see(pixel, sees(p, walked_ ? spot_at(p) : spot_, side, horizon));
+  see(pixel, sees(p, walked_ ? spot_at(p) : eye_.spot, side, horizon));
 }
 
 void Viewer::collect() {

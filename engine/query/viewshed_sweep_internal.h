@@ -15,11 +15,12 @@ struct SightBias {
   double sign = 0;     ///< 1: before a target higher; -1: lower; 0: as it is.
   double slope = 0;    ///< What is not known, per ground unit of distance.
   bool voids = false;  ///< Void triangles may be ground of any height.
+  double base = 0;     ///< What is not known besides, at any distance.
 };
 
 /// What the eye sees of `tin`; of the result, certificates and cost are left out. Every target is
 /// told visible or hidden.
-/// @throws Error invalid_argument    the eye is outside or on a void without an absolute height
+/// @throws Error invalid_argument    as find_eye() (viewshed_eye_internal.h)
 ///               resource_exhausted, cancelled
 [[nodiscard]] Viewshed sweep_viewshed(const Tin& tin, const StoreFacts& facts,
                                       const ViewshedRequest& request, const QueryContext& context,
