@@ -90,15 +90,16 @@ TEST(WriteGlb, StandsAroundALocalOriginYUp) {
   EXPECT_EQ(read.triangles, mesh.triangles);
 }
 
-TEST(WriteGlb, MakesDegreesMetres) {
+TEST(WriteGlb, MakesUnitsMetres) {
   Mesh mesh;
-  mesh.geographic = true;
-  mesh.vertices = {{10.0, 60.0, 0.0}, {10.01, 60.0, 0.0}, {10.0, 60.01, 0.0}};
+  mesh.metres_per_unit = {55'660, 111'320, 0.5};
+  mesh.vertices = {{10.0, 60.0, 0.0}, {10.01, 60.0, 0.0}, {10.0, 60.01, 8.0}};
   mesh.triangles = {{0, 1, 2}};
   const ReadMesh read = testing::read_glb(written(mesh, "glb"));
   EXPECT_NEAR(read.vertices[1][0] - read.vertices[0][0], 556.5,
               1.0);  // half a degree of the equator
   EXPECT_NEAR(read.vertices[0][2] - read.vertices[2][2], 1113.2, 1.0);
+  EXPECT_NEAR(read.vertices[2][1] - read.vertices[0][1], 4.0, 1e-4);
 }
 
 TEST(WriteGlb, HoldsAnEmptyMesh) {

@@ -11,17 +11,19 @@
 namespace ptin::tools {
 namespace {
 
+constexpr MapPoint kUnits{1, 1};
+
 TEST(MakeView, KeepsTheAspectOfTheGround) {
-  const View view = make_view({0, 0, 200, 100}, false, 0, 0);
+  const View view = make_view({0, 0, 200, 100}, kUnits, 0, 0);
   EXPECT_EQ(view.width, 1200);
   EXPECT_EQ(view.height, 600);
-  const View north = make_view({10, 59.5, 11, 60.5}, true, 0, 0);
+  const View north = make_view({10, 59.5, 11, 60.5}, {55'660, 111'320}, 0, 0);
   EXPECT_EQ(north.height, 1200);
   EXPECT_NEAR(north.width, 600, 1);  // a degree of longitude is half as long at 60 degrees
 }
 
 TEST(MakeView, CentresTheWindowInAGivenSize) {
-  const View view = make_view({0, 0, 100, 100}, false, 400, 200);
+  const View view = make_view({0, 0, 100, 100}, kUnits, 400, 200);
   EXPECT_DOUBLE_EQ(view.pixel_x(0), 100);
   EXPECT_DOUBLE_EQ(view.pixel_x(100), 300);
   EXPECT_DOUBLE_EQ(view.pixel_y(100), 0);
@@ -29,8 +31,9 @@ TEST(MakeView, CentresTheWindowInAGivenSize) {
 }
 
 TEST(MakeView, RefusesWhatHasNoArea) {
-  EXPECT_THROW(static_cast<void>(make_view({0, 0, 0, 100}, false, 0, 0)), Error);
-  EXPECT_THROW(static_cast<void>(make_view({0, 0, 1, 1}, false, -1, 5)), Error);
+  EXPECT_THROW(static_cast<void>(make_view({0, 0, 0, 100}, kUnits, 0, 0)), Error);
+  EXPECT_THROW(static_cast<void>(make_view({0, 0, 1, 1}, kUnits, -1, 5)), Error);
+  EXPECT_THROW(static_cast<void>(make_view({0, 0, 1, 1}, kUnits, 0, 500)), Error);
 }
 
 /// One square of two triangles on a slope that rises to the east; the eastern one void when asked.
@@ -54,7 +57,7 @@ TEST(Rasterize, FillsEveryPixelOnceWithTheHeightOfItsMiddle) {
   StoreFacts facts;
   const RefinedTin refined = slope(facts, false);
   const TerrainRaster raster =
-      rasterize(refined, facts, make_view({-5, -5, 15, 15}, false, 40, 40));
+      rasterize(refined, facts, make_view({-5, -5, 15, 15}, kUnits, 40, 40));
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 40; ++x) {
       const bool inside = x >= 10 && x < 30 && y >= 10 && y < 30;
@@ -69,7 +72,7 @@ TEST(Rasterize, FillsEveryPixelOnceWithTheHeightOfItsMiddle) {
 
 TEST(DrawRelief, IsDarkAwayFromTheLightAndGreyInVoids) {
   StoreFacts facts;
-  const View view = make_view({0, 0, 10, 10}, false, 50, 50);
+  const View view = make_view({0, 0, 10, 10}, kUnits, 50, 50);
   const auto brightness = [&](const RefinedTin& refined, int x, int y) {
     const TerrainRaster raster = rasterize(refined, facts, supersampled(view, 2));
     Image image = draw_relief(raster, view, 2, choose_style(raster, view, false, 1));
@@ -105,7 +108,7 @@ TEST(Render, KnowsItsMemoryAndCanBeStopped) {
   stop.request_stop();
   StoreFacts facts;
   const RefinedTin refined = slope(facts, false);
-  const View view = make_view({0, 0, 10, 10}, false, 50, 50);
+  const View view = make_view({0, 0, 10, 10}, kUnits, 50, 50);
   Image image(50, 50, {0, 0, 0});
   EXPECT_THROW(static_cast<void>(rasterize(refined, facts, view, stop.get_token())), Error);
   EXPECT_THROW(static_cast<void>(

@@ -3,11 +3,10 @@
 // glTF 2.0 binary. Positions are float32, so they stand around a local origin, the middle of the
 // mesh: coordinates of millions of metres would jitter. The origin is in `extras` of the node (x,
 // y, z of the CRS, as doubles), not in its translation, because several programs add that in
-// float32 again. glTF is y-up: (x, y, z) becomes (x, z, -y). Degrees become metres on the way (a
-// metre a unit, as glTF says), at the latitude of the origin; `extras.scale` has the factors: crs =
-// origin + local / scale.
+// float32 again. glTF is y-up: (x, y, z) becomes (x, z, -y). Degrees and feet become metres on the
+// way (a metre a unit, as glTF says), as long as they are at the origin; `extras.scale` has the
+// factors: crs = origin + local / scale.
 #include <cmath>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -33,23 +32,8 @@ struct LocalFrame {
 };
 
 LocalFrame frame_of(const Mesh& mesh) {
-  LocalFrame frame;
-  if (mesh.vertices.empty()) return frame;
-  std::array<double, 3> low = mesh.vertices[0];
-  std::array<double, 3> high = low;
-  for (const auto& vertex : mesh.vertices) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], vertex[i]);
-      high[i] = std::max(high[i], vertex[i]);
-    }
-  }
-  for (std::size_t i = 0; i < 3; ++i) frame.origin[i] = low[i] + (high[i] - low[i]) / 2;
-  if (mesh.geographic) {
-    constexpr double kMetresPerDegree = 111'319.490'793;  // of the equator, WGS 84
-    frame.scale = {kMetresPerDegree * std::cos(frame.origin[1] * std::numbers::pi / 180.0),
-                   kMetresPerDegree, 1.0};
-  }
-  return frame;
+  if (mesh.vertices.empty()) return {};
+  return {middle_of(mesh), mesh.metres_per_unit};
 }
 
 /// Area-weighted vertex normals, so that viewers shade smoothly.

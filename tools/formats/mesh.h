@@ -18,7 +18,11 @@ struct Mesh {
   std::string
       crs;  ///< "EPSG:32611" where the CRS has a code, else WKT2 on one line; empty when unknown.
   std::string vertical_crs;  ///< Likewise; empty when unknown.
-  bool geographic = false;   ///< x, y are degrees.
+  /// Of x and y at the middle of the mesh, and of heights; 1 where nothing is known of them.
+  std::array<double, 3> metres_per_unit{1.0, 1.0, 1.0};
 };
+
+/// The middle of the box around all vertices; there is at least one.
+[[nodiscard]] std::array<double, 3> middle_of(const Mesh& mesh);
 
 }  // namespace ptin::tools

@@ -10,9 +10,14 @@ namespace ptin::tools {
 
 namespace {
 
-/// Metres in a unit of height: that of the vertical CRS, else metres.
-double metres_per_height(const OGRSpatialReference& srs) {
-  return srs.IsCompound() != 0 ? srs.GetTargetLinearUnits("VERT_CS", nullptr) : 1.0;
+/// Metres in a unit of height: that of the vertical CRS, of the source's band, or, where neither
+/// says anything, of the plane, as GDAL's tools take it.
+double metres_per_height(const OGRSpatialReference& srs, const std::string& unit) {
+  if (srs.IsCompound() != 0) return srs.GetTargetLinearUnits("VERT_CS", nullptr);
+  if (unit == "metre") return 1.0;
+  if (unit == "foot") return 0.3048;
+  if (unit == "US survey foot") return 1200.0 / 3937.0;
+  return srs.IsGeographic() != 0 ? 1.0 : srs.GetLinearUnits();
 }
 
 /// By the radii of curvature across the meridian and along it.
@@ -30,12 +35,17 @@ std::function<MapPoint(MapPoint)> on_ellipsoid(const OGRSpatialReference& srs, d
 
 }  // namespace
 
-Ground ground_of(const std::string& crs_wkt) {
+std::string unit_of_ground(const CrsFacts& crs) {
+  if (crs.vertical_unit != "unknown") return crs.vertical_unit;
+  return crs.geographic ? "metre" : crs.horizontal_unit;
+}
+
+Ground ground_of(const CrsFacts& crs) {
   Ground ground;
   OGRSpatialReference srs;
-  const bool known = !crs_wkt.empty() && srs.importFromWkt(crs_wkt.c_str()) == OGRERR_NONE;
+  const bool known = !crs.wkt.empty() && srs.importFromWkt(crs.wkt.c_str()) == OGRERR_NONE;
   if (known) {
-    ground.metres_per_height = metres_per_height(srs);
+    ground.metres_per_height = metres_per_height(srs, crs.vertical_unit);
     ground.earth_diameter = 2 * srs.GetSemiMajor() / ground.metres_per_height;
   }
   if (known && srs.IsGeographic() != 0) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/geometry/affine.h"
+#include "tools/ptin/crs_facts.h"
 
 namespace ptin::tools {
 
@@ -18,11 +19,15 @@ struct Ground {
   /// geographic CRS on the ellipsoid there.
   std::function<MapPoint(MapPoint)> per_map_unit;
   double earth_diameter = 2 * 6378137.0;  ///< Twice the semi-major axis, as GDAL takes it.
-  double metres_per_height = 1.0;         ///< 1 when the CRS says nothing of heights.
-  bool geographic = false;                ///< Map units are angles.
+  double metres_per_height = 1.0;
+  bool geographic = false;  ///< Map units are angles.
 };
 
-/// @param crs_wkt  Empty or unknown: plane metres.
-[[nodiscard]] Ground ground_of(const std::string& crs_wkt);
+/// The unit of lengths over ground, by name: that of heights, or what is taken for it.
+[[nodiscard]] std::string unit_of_ground(const CrsFacts& crs);
+
+/// @param crs  One without WKT, or whose WKT is not understood: plane metres, and heights in metres.
+///             Heights of no known unit are in that of the plane, over degrees in metres.
+[[nodiscard]] Ground ground_of(const CrsFacts& crs);
 
 }  // namespace ptin::tools

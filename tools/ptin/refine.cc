@@ -9,6 +9,7 @@
 #include "tools/formats/mesh_writer.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
+#include "tools/ptin/mesh_crs.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/cut.h"
 #include "tools/region/tin_mesh.h"
@@ -84,6 +85,7 @@ void print_stats(const RefineOptions& options, const RefinedTin& refined, const 
 int run_refine(const RefineOptions& options, const Context& context) {
   check_options(options);
   const ProgressiveTin terrain = open_terrain(options.terrain);
+  warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request;
   request.region = region_of(options.region, crs.wkt);
@@ -97,9 +99,7 @@ int run_refine(const RefineOptions& options, const Context& context) {
   const StoreFacts& facts = terrain.store().facts();
   Mesh mesh =
       options.cut ? cut_to_region(refined, facts, *request.region) : surface_mesh(refined, facts);
-  mesh.crs = crs.horizontal_text();
-  mesh.vertical_crs = crs.vertical_text();
-  mesh.geographic = crs.geographic;
+  set_crs(mesh, crs);
   write_mesh(mesh, options.output, options.overwrite);
   if (mesh.triangles.empty() && !context.quiet) {
     std::fprintf(stderr, "ptin: warning: the region holds no surface; %s has no triangle\n",
@@ -119,8 +119,10 @@ Action declare_refine(CLI::App& app, Context& context) {
   const auto options = std::make_shared<RefineOptions>();
   add_terrain_options(app, options->terrain, true);
   add_region_options(app, options->region);
-  add_detail_options(app, options->detail, "",
-                     "Exactly this many vertices, the most important ones (of the region)");
+  add_detail_options(
+      app, options->detail, "",
+      "Exactly this many vertices, the most important ones of the region; --clip and\n"
+      "--cut leave some of them out");
   auto* clip =
       app.add_flag("--clip", options->clip, "Keep only the triangles that meet the region, whole");
   app.add_flag("--cut", options->cut, "Cut the triangles at the border of the region")

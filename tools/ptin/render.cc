@@ -10,6 +10,7 @@
 #include "tools/output_file.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/error_stats.h"
+#include "tools/ptin/ground.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
 #include "tools/render/overlay.h"
@@ -86,11 +87,21 @@ std::optional<double> tolerance_for(const StoreFile& store, double share, const 
   return tolerances.empty() ? 0.0 : tolerances.back();
 }
 
-std::string unit_of(const CrsFacts& crs) {
-  const std::string& unit = crs.geographic ? std::string("metre") : crs.horizontal_unit;
+std::string short_unit(const std::string& unit) {
   if (unit == "metre" || unit == "m" || unit == "meter") return "m";
   return unit.find("foot") != std::string::npos || unit.find("feet") != std::string::npos ? "ft"
                                                                                           : "";
+}
+
+View view_of(const RenderOptions& options, const Window& window, const CrsFacts& crs) {
+  const MapPoint middle{(window.min_x + window.max_x) / 2, (window.min_y + window.max_y) / 2};
+  const bool sized = !options.size.empty();
+  if (sized && (options.size[0] < 1 || options.size[1] < 1)) {
+    throw Error(ErrorCode::invalid_argument, "the picture's sides must be from 1 to 32768 pixels",
+                "--size");
+  }
+  return make_view(window, ground_of(crs).per_map_unit(middle), sized ? options.size[0] : 0,
+                   sized ? options.size[1] : 0);
 }
 
 /// The window and what else of the map is seen beside it when the picture has another shape.
@@ -121,14 +132,13 @@ Image draw(const RenderOptions& options, const RefinedTin& refined, const StoreF
 int run_render(const RenderOptions& options, const Context& context) {
   check_options(options);
   const ProgressiveTin terrain = open_terrain(options.terrain);
+  warn_of_base_error(terrain.store(), options.error, context);
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
   const std::optional<Region> region = region_of(options.region, crs.wkt);
   const Window whole = whole_window(store.facts());
   const Window window = region ? std::get<Window>(*region) : whole;
-  const bool sized = !options.size.empty();
-  const View view =
-      make_view(window, crs.geographic, sized ? options.size[0] : 0, sized ? options.size[1] : 0);
+  const View view = view_of(options, window, crs);
 
   RefineRequest request;
   request.memory_limit_bytes = memory_beside_picture(options, view);
@@ -142,8 +152,13 @@ int run_render(const RenderOptions& options, const Context& context) {
   const RefinedTin refined = terrain.refine(request);
   ReliefStyle style;
   Image image = draw(options, refined, store.facts(), view, context.stop, style);
-  if (!options.no_legend) draw_legend(image, view, style, unit_of(crs));
+  if (!options.no_legend)
+    draw_legend(image, view, style, short_unit(unit_of_ground(crs)), short_unit(crs.vertical_unit));
   write_png(image, options.output, options.overwrite);
+  if (refined.triangles == 0 && !context.quiet) {
+    std::fprintf(stderr, "ptin: warning: the window lies beside the terrain; %s shows nothing\n",
+                 options.output.c_str());
+  }
 
   const nlohmann::json answer = {
       {"output", options.output},

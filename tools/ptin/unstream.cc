@@ -12,6 +12,7 @@
 #include "tools/formats/mesh_writer.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
+#include "tools/ptin/mesh_crs.h"
 #include "tools/ptin/query_options.h"
 #include "tools/ptin/stream_isolines.h"
 #include "tools/ptin/stream_request.h"
@@ -222,9 +223,7 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   refined.tin = receiver.reader().tin();
   Mesh mesh = surface_mesh(refined, receiver.reader().facts());
   const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
-  mesh.crs = crs.horizontal_text();
-  mesh.vertical_crs = crs.vertical_text();
-  mesh.geographic = crs.geographic;
+  set_crs(mesh, crs);
   if (!options.output.empty()) write_mesh(mesh, options.output, options.overwrite);
   if (context.json) {
     print_json(answer_of(options, receiver, refined, mesh, crs));

@@ -176,12 +176,12 @@ void draw_wireframe(Image& image, const RefinedTin& refined, const StoreFacts& f
 }
 
 void draw_legend(Image& image, const View& view, const ReliefStyle& style,
-                 const std::string& unit) {
+                 const std::string& length_unit, const std::string& height_unit) {
   const double ground = round_below(view.ground_per_pixel() * image.width * 0.22);
   const int bar = static_cast<int>(std::lround(ground / view.ground_per_pixel()));
-  const std::string length = length_text(ground, unit);
-  const std::string low = height_text(style.low, style.high - style.low, unit);
-  const std::string high = height_text(style.high, style.high - style.low, unit);
+  const std::string length = length_text(ground, length_unit);
+  const std::string low = height_text(style.low, style.high - style.low, height_unit);
+  const std::string high = height_text(style.high, style.high - style.low, height_unit);
   constexpr int kRampWidth = 90;
   const bool has_ramp = !style.by_page && style.high > style.low;
   const int ramp_width = has_ramp ? 24 + text_width(low) + kRampWidth + 8 + text_width(high) : 0;

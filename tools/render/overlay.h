@@ -30,7 +30,8 @@ void draw_wireframe(Image& image, const RefinedTin& refined, const StoreFacts& f
 
 /// A scale bar and, when colours tell heights, the colours with their lowest and highest height; in
 /// the lower left corner.
-/// @param unit  Of lengths and heights: "m", "ft", or "" when unknown.
-void draw_legend(Image& image, const View& view, const ReliefStyle& style, const std::string& unit);
+/// @param length_unit, height_unit  Of ground units and of heights: "m", "ft", or "" when unknown.
+void draw_legend(Image& image, const View& view, const ReliefStyle& style,
+                 const std::string& length_unit, const std::string& height_unit);
 
 }  // namespace ptin::tools

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "engine/error.h"
 
 namespace ptin::tools {
 
-View make_view(const Window& window, bool geographic, int width, int height) {
+View make_view(const Window& window, const MapPoint& ground_per_unit, int width, int height) {
   View view;
   view.window = window;
   const double map_width = window.max_x - window.min_x;
@@ -18,12 +17,9 @@ View make_view(const Window& window, bool geographic, int width, int height) {
     throw Error(ErrorCode::invalid_argument,
                 "the window to draw has no area; give one with XMIN < XMAX and YMIN < YMAX");
   }
-  if (geographic) {
-    constexpr double kMetresPerDegree = 111'319.490'793;
-    const double middle = (window.min_y + window.max_y) / 2 * std::numbers::pi / 180.0;
-    view.ground_y = kMetresPerDegree;
-    view.ground_x = kMetresPerDegree * std::max(0.01, std::cos(middle));
-  }
+  constexpr double kNarrowest = 0.01;  // at the poles a degree of longitude has no length
+  view.ground_y = ground_per_unit.y;
+  view.ground_x = std::max(ground_per_unit.x, kNarrowest * ground_per_unit.y);
   const double ground_width = map_width * view.ground_x;
   const double ground_height = map_height * view.ground_y;
   if (width == 0 && height == 0) {

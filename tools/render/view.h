@@ -30,10 +30,12 @@ struct View {
 };
 
 /// A view of `window`. Width and height 0: the longer side has 1200 pixels and the picture the
-/// window's own aspect. Degrees are shown as they are long on the ground at the middle of the
-/// window.
-/// @throws Error invalid_argument  the window has no area; a side is negative or above 32768
-[[nodiscard]] View make_view(const Window& window, bool geographic, int width, int height);
+/// window's own aspect.
+/// @param ground_per_unit  Ground units in a map unit along x and y, at the middle of the window.
+/// @throws Error invalid_argument  the window has no area; one side alone is 0, or one is negative
+///                                 or above 32768
+[[nodiscard]] View make_view(const Window& window, const MapPoint& ground_per_unit, int width,
+                             int height);
 
 /// The same view with `factor` times the pixels in each direction.
 [[nodiscard]] View supersampled(const View& view, int factor);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/ground.h"
+
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+
+namespace ptin::tools {
+namespace {
+
+std::string wkt_of(const char* code) {
+  OGRSpatialReference srs;
+  EXPECT_EQ(srs.SetFromUserInput(code), OGRERR_NONE) << code;
+  char* text = nullptr;
+  srs.exportToWkt(&text);
+  std::string wkt(text);
+  CPLFree(text);
+  return wkt;
+}
+
+CrsFacts facts_of(const char* code, const std::string& unit_of_heights) {
+  CrsFacts facts = crs_facts(wkt_of(code));
+  if (facts.vertical_unit == "unknown") facts.vertical_unit = unit_of_heights;
+  return facts;
+}
+
+constexpr double kSurveyFoot = 1200.0 / 3937.0;
+
+TEST(Ground, TakesHeightsOfNoKnownUnitToBeInThatOfThePlane) {
+  const Ground feet = ground_of(facts_of("EPSG:2225", "unknown"));  // California, US survey feet
+  EXPECT_DOUBLE_EQ(feet.metres_per_height, kSurveyFoot);
+  EXPECT_DOUBLE_EQ(feet.distance({0, 0}, {300, 400}), 500);
+  const Ground metres = ground_of(facts_of("EPSG:32610", "unknown"));
+  EXPECT_EQ(metres.metres_per_height, 1);
+  EXPECT_EQ(ground_of(facts_of("EPSG:4326", "unknown")).metres_per_height, 1);
+  EXPECT_EQ(ground_of(CrsFacts{}).metres_per_height, 1);
+}
+
+TEST(Ground, TakesTheUnitOfHeightsThatTheSourceTells) {
+  const Ground metres = ground_of(facts_of("EPSG:2225", "metre"));
+  EXPECT_NEAR(metres.distance({0, 0}, {300, 400}), 500 * kSurveyFoot, 1e-9);
+  EXPECT_EQ(ground_of(facts_of("EPSG:32610", "foot")).metres_per_height, 0.3048);
+}
+
+TEST(Ground, TakesTheVerticalCrsBeforeAnythingElse) {
+  const Ground feet = ground_of(facts_of("EPSG:32610+6360", "metre"));  // NAVD88, US survey feet
+  EXPECT_DOUBLE_EQ(feet.metres_per_height, kSurveyFoot);
+  EXPECT_NEAR(feet.distance({0, 0}, {300, 400}), 500 / kSurveyFoot, 1e-9);
+}
+
+}  // namespace
+}  // namespace ptin::tools

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a mesh on its way out says of its CRS.
+#pragma once
+
+#include "tools/formats/mesh.h"
+#include "tools/ptin/crs_facts.h"
+
+namespace ptin::tools {
+
+/// The names of the CRS, and how long its units are at the middle of the mesh.
+void set_crs(Mesh& mesh, const CrsFacts& crs);
+
+}  // namespace ptin::tools
