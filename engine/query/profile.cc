@@ -19,7 +19,7 @@ namespace ptin {
 
 namespace {
 
-/// The spots of a line, and the plane distance at which each stands.
+/// The spots of a line, and the distance at which each stands.
 struct SpotLine {
   std::uint32_t number = 0;
   std::vector<Spot> spots;
@@ -43,10 +43,19 @@ std::string no_length(std::size_t count) {
   return text.append(": expected at least two different points");
 }
 
+double distance_between(const MapPoint& a, const MapPoint& b, const ProfileRequest& request) {
+  if (request.ground_distance) {
+    return request.ground_distance(a, b);
+  }
+  const double dx = b.x - a.x;
+  const double dy = b.y - a.y;
+  return std::sqrt(dx * dx + dy * dy);
+}
+
 /// With fewer than two spots when the line has no length.
 /// @param count  Of the lines.
 SpotLine spot_line(std::span<const MapPoint> line, std::size_t number, std::size_t count,
-                   const StoreFacts& facts) {
+                   const StoreFacts& facts, const ProfileRequest& request) {
   const SpotMap map(facts.map, facts.bounds);
   SpotLine made;
   made.number = static_cast<std::uint32_t>(number);
@@ -62,9 +71,7 @@ SpotLine spot_line(std::span<const MapPoint> line, std::size_t number, std::size
     }
     double distance = 0.0;
     if (!made.spots.empty()) {
-      const double dx = p.x - made.positions.back().x;
-      const double dy = p.y - made.positions.back().y;
-      distance = made.distances.back() + std::sqrt(dx * dx + dy * dy);
+      distance = made.distances.back() + distance_between(made.positions.back(), p, request);
     }
     made.spots.push_back(*spot);
     made.positions.push_back(p);
@@ -89,11 +96,9 @@ class SegmentWriter {
     }
     while (walk.next()) {
       const LinePiece& piece = walk.piece();
-      const bool surface = piece.is_surface(tin_);
-      put(piece.from.share(), surface ? &piece.from : nullptr,
-          surface ? PointState::kSurface : PointState::kVoid);
-      put(piece.to.share(), surface ? &piece.to : nullptr,
-          surface ? PointState::kSurface : PointState::kVoid);
+      const PointState state = piece.is_surface(tin_) ? PointState::kSurface : PointState::kVoid;
+      put(piece.from.share(), ground_at(piece, piece.from), state);
+      put(piece.to.share(), ground_at(piece, piece.to), state);
       reached = piece.to.share();
       near = piece.triangle;
     }
@@ -107,6 +112,14 @@ class SegmentWriter {
   }
 
  private:
+  /// `end`, one of the piece's, when the piece is surface, or touches surface there at a vertex.
+  [[nodiscard]] const Crossing* ground_at(const LinePiece& piece, const Crossing& end) const {
+    const Footing& f = end.footing;
+    const bool surface = piece.is_surface(tin_) ||
+                         (f.lies() == Lies::kOnVertex && touches_surface(tin_, f.vertex[0]));
+    return surface ? &end : nullptr;
+  }
+
   /// `entry` when it is the line's end on a surface, else nothing.
   [[nodiscard]] const Crossing* touched(const Crossing& entry, std::size_t end,
                                         TriangleId near) const {
@@ -177,7 +190,7 @@ class Profiling {
     std::vector<SpotLine> group;
     std::size_t segments = 0;
     for (const OrderedLine& next : order) {
-      SpotLine line = spot_line(lines[next.index], next.index, lines.size(), facts());
+      SpotLine line = spot_line(lines[next.index], next.index, lines.size(), facts(), request_);
       const std::size_t own = line.spots.size() - 1;
       if (!group.empty() && segments + own > kGroupSegments) {
         walk_group(group);
@@ -209,7 +222,7 @@ class Profiling {
     std::vector<OrderedLine> order;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       context_.check_stop();
-      const SpotLine line = spot_line(lines[i], i, lines.size(), facts());
+      const SpotLine line = spot_line(lines[i], i, lines.size(), facts(), request_);
       if (line.spots.size() < 2) {
         ++result_.skipped_lines;
         continue;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -15,6 +16,9 @@
 namespace ptin {
 
 struct ProfileRequest {
+  /// Distance over ground between two map positions; none: in the plane of the map. For the
+  /// ellipsoid below geographic coordinates.
+  std::function<double(MapPoint, MapPoint)> ground_distance;
   /// Certified error asked for, in the height's unit, >= 0. None: exact.
   std::optional<double> tolerance;
   /// The profile of the TIN of the first so many vertices of the terrain (detail.h). Excludes
@@ -30,7 +34,7 @@ struct ProfileRequest {
 /// of the TIN. Between two points the surface is straight.
 struct ProfilePoint {
   MapPoint position;      ///< Map units.
-  double distance = 0.0;  ///< Along its line, plane, map units.
+  double distance = 0.0;  ///< Along its line, over ground; in between in proportion.
   /// Height's unit; NaN where no surface touches the line.
   double height = std::numeric_limits<double>::quiet_NaN();
   /// What the stretch that begins here runs over; of a last point, what the one before does.

@@ -21,6 +21,7 @@
 #include "tools/output_file.h"
 #include "tools/ptin/answers.h"
 #include "tools/ptin/crs_facts.h"
+#include "tools/ptin/ground.h"
 #include "tools/ptin/human.h"
 #include "tools/ptin/number_rows.h"
 #include "tools/ptin/query_options.h"
@@ -39,6 +40,11 @@ struct ProfileOptions {
   std::string output;
   bool overwrite = false;
 };
+
+/// Of distances along the lines.
+std::string unit_of_lengths(const CrsFacts& crs) {
+  return crs.geographic ? "metre" : crs.horizontal_unit;
+}
 
 /// The points of each line.
 std::vector<std::span<const ProfilePoint>> lines_of(const ProfileResult& profile) {
@@ -59,16 +65,21 @@ double length_of(const ProfileResult& profile) {
   return length;
 }
 
+/// Heights with the interval that the certificate guarantees.
 std::string csv_of(const ProfileResult& profile) {
-  std::string text = "distance,x,y,height,state,line\n";
+  std::string text = "distance,x,y,height,state,line,height_min,height_max\n";
   for (const ProfilePoint& p : profile.points) {
     for (const double value : {p.distance, p.position.x, p.position.y}) {
       append_number(text, value);
       text += ',';
     }
     if (std::isfinite(p.height)) append_number(text, p.height);
-    text.append(",").append(name_of(p.state)).append(",");
-    text.append(std::to_string(p.line)).append("\n");
+    text.append(",").append(name_of(p.state)).append(",").append(std::to_string(p.line));
+    for (const double off : {-profile.certified_deviation, profile.certified_deviation}) {
+      text += ',';
+      if (std::isfinite(p.height + off)) append_number(text, p.height + off);
+    }
+    text += '\n';
   }
   return text;
 }
@@ -162,7 +173,11 @@ Image plot_of(const ProfileResult& profile, const CrsFacts& crs) {
     draw_text(image, kMargin, kMargin - 12, label_of(high, crs.vertical_unit));
     draw_text(image, kMargin, kHeight - kMargin + 6, label_of(low, crs.vertical_unit));
   }
-  const std::string end = label_of(length, crs.horizontal_unit);
+  if (profile.certified_deviation > 0) {
+    const std::string within = "within " + label_of(profile.certified_deviation, crs.vertical_unit);
+    draw_text(image, kWidth - kMargin - text_width(within), kMargin - 12, within);
+  }
+  const std::string end = label_of(length, unit_of_lengths(crs));
   draw_text(image, kWidth - kMargin - text_width(end), kHeight - kMargin + 6, end);
   return image;
 }
@@ -204,6 +219,8 @@ void check_output_name(const ProfileOptions& options, bool json) {
 
 nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& result,
                          const CrsFacts& crs) {
+  nlohmann::json units = units_json(crs);
+  units["length"] = unit_of_lengths(crs);
   nlohmann::json answer = {
       {"output", options.output.empty() ? nlohmann::json() : nlohmann::json(options.output)},
       {"lines", lines_of(result).size()},
@@ -212,7 +229,7 @@ nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& res
       {"certified_error", result.certified_error},
       {"certified_deviation", result.certified_deviation},
       {"exact", result.exact},
-      {"units", units_json(crs)},
+      {"units", units},
       {"cost", cost_json(result.cost)},
       {"points", nlohmann::json::array()}};
   for (const ProfilePoint& p : result.points) {
@@ -230,6 +247,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   check_output_name(options, context.json);
   check_detail(options.detail);
   const ProgressiveTin terrain = open_terrain(options.terrain);
+  warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const std::vector<std::vector<MapPoint>> lines = read_lines(options.line, crs.wkt);
   ProfileRequest request;
@@ -237,6 +255,11 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   request.vertices = options.detail.vertices;
   request.memory_limit_bytes = memory_limit_of(options.memory);
   request.stop = context.stop;
+  if (const Ground ground = ground_of(crs); ground.geographic) {  // degrees are no lengths
+    request.ground_distance = [ground](MapPoint a, MapPoint b) {
+      return ground.distance(a, b) * ground.metres_per_height;
+    };
+  }
   const ProfileResult result = profile(terrain, lines, request);
   if (result.skipped_lines > 0 && !context.json) {
     std::fprintf(stderr, "%s of %s: no length, skipped\n", grouped(result.skipped_lines).c_str(),
