@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/xyz_reader.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <span>
@@ -11,6 +9,7 @@
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
 
+#include "engine/construct/column_names.h"
 #include "engine/construct/gdal_session_internal.h"
 #include "engine/error.h"
 
@@ -21,13 +20,6 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 
 constexpr std::array<const char*, 3> kRoles = {"x", "y", "z"};
-constexpr std::array<std::string_view, 7> kNamesOfX = {"x",         "easting", "east", "e",
-                                                       "longitude", "lon",     "long"};
-constexpr std::array<std::string_view, 6> kNamesOfY = {"y", "northing", "north",
-                                                       "n", "latitude", "lat"};
-constexpr std::array<std::string_view, 7> kNamesOfZ = {"z",    "height",   "h",  "elevation",
-                                                       "elev", "altitude", "alt"};
-
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 std::string_view trimmed(std::string_view text) {
@@ -40,13 +32,6 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
 /// At most 40 characters of a field, with others than printable ones replaced, for messages.
 std::string shown(std::string_view field) {
   std::string text(field.substr(0, 40));
@@ -54,18 +39,6 @@ std::string shown(std::string_view field) {
     c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
   }
   return "'" + text + (field.size() > 40 ? "...'" : "'");
-}
-
-template <std::size_t N>
-std::size_t find_column(const std::vector<std::string>& names,
-                        const std::array<std::string_view, N>& wanted) {
-  for (const std::string_view name : wanted) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) {
-      return static_cast<std::size_t>(found - names.begin());
-    }
-  }
-  return names.size();
 }
 
 }  // namespace
@@ -196,17 +169,10 @@ void XyzReader::begin(std::string_view line) {
 }
 
 void XyzReader::find_columns() {
-  std::vector<std::string> names;
-  for (std::string_view field : fields_) {
-    if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
-      field = trimmed(field.substr(1, field.size() - 2));
-    }
-    names.push_back(lower_case(field));
-  }
-  columns_ = {find_column(names, kNamesOfX), find_column(names, kNamesOfY),
-              find_column(names, kNamesOfZ)};
+  columns_ = {find_column(fields_, Coordinate::kX), find_column(fields_, Coordinate::kY),
+              find_column(fields_, Coordinate::kZ)};
   for (std::size_t role = 0; role < 3; ++role) {
-    if (columns_[role] == names.size()) {
+    if (columns_[role] == fields_.size()) {
       refuse(std::string("the first line is taken for a header, since ") + shown(fields_[0]) +
              " is no number, but names no column for " + kRoles[role] +
              "; columns are named x, y, z or easting, northing, height or lon, lat, elevation");

@@ -68,6 +68,59 @@ TEST(LocateCommand, ReadsManyPointsAndKeepsTheirOrder) {
   EXPECT_LT(outcome.out.find("outside"), outcome.out.find("surface,10,10,10"));
 }
 
+TEST(LocateCommand, TakesTheColumnsThatTheHeaderNames) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string points = folder.file("p.csv");
+  const auto located = [&](const std::string& text) {
+    write_file(points, text);
+    return run_ptin({"locate", terrain, "--points", points});
+  };
+  const std::string x = east(15.5), y = south(20);
+  for (const std::string& text :
+       {"y,x\n" + y + "," + x + "\n", "id;\"Easting\";name; NORTHING\n7;" + x + ";a;" + y + "\n",
+        "lat lon\r\n" + y + " " + x + "\r\n", "first,second\n" + x + "," + y + "\n"}) {
+    const Outcome outcome = located(text);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("surface,55,55,55"), std::string::npos) << text << outcome.out;
+  }
+  const Outcome half = located("id,y\n1,2\n");
+  EXPECT_EQ(half.status, 2);
+  EXPECT_NE(half.err.find("none for x"), std::string::npos) << half.err;
+  EXPECT_EQ(located("id,y,x\n1,2\n").status, 2) << "a field is missing";
+}
+
+/// On the corner of a void: ground touches the line there, though it runs from outside into the
+/// void.
+TEST(ProfileCommand, TellsTheHeightWhereGroundTouchesTheLine) {
+  const TestFolder folder;
+  write_file(folder.file("a.asc"),
+             "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9\n"
+             "1 2 3\n4 -9 6\n7 8 9\n");
+  const Outcome made = run_ptin({"build", folder.file("a.asc"), "-o", folder.file("a.ptin"), "-q"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Outcome outcome =
+      run_ptin({"profile", folder.file("a.ptin"), "--line", "LINESTRING(0 15, 30 15)"});
+  EXPECT_NE(
+      outcome.out.find("\n5,5,15,4,void,0,4,4\n15,15,15,,void,0,,\n25,25,15,6,outside,0,6,6\n"),
+      std::string::npos)
+      << outcome.out;
+}
+
+TEST(ProfileCommand, MeasuresDegreesOnTheEllipsoid) {
+  const TestFolder folder;
+  const std::string terrain = testing::built(folder, "coast_257.tif");
+  const json answer =
+      answer_of({"profile", terrain, "--line", "LINESTRING(-124.25 48.46,-124.2 48.46)", "--json"});
+  // 0.05 degrees of the parallel at 48.46 N of GRS 80: N cos(lat) = 4239.5 km; a geodesic is a
+  // little shorter.
+  EXPECT_NEAR(answer.at("length").get<double>(), 3697.9, 2.0);
+  EXPECT_EQ(answer.at("units").at("length"), "metre");
+  const json sight = answer_of(
+      {"sight", terrain, "-124.25", "48.46", "5000", "-124.2", "48.46", "5000", "--json"});
+  EXPECT_NEAR(sight.at("length").get<double>(), answer.at("length").get<double>(), 1e-6);
+}
+
 TEST(LocateCommand, NamesTheLineThatIsNoPoint) {
   const TestFolder folder;
   const std::string terrain = wall(folder);

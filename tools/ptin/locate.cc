@@ -73,6 +73,7 @@ int run_locate(const LocateOptions& options, const Context& context) {
   }
   check_detail(options.detail);
   const ProgressiveTin terrain = open_terrain(options.terrain);
+  warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const std::vector<MapPoint> points =
       options.points.empty() ? std::vector<MapPoint>{{options.point[0], options.point[1]}}
@@ -107,8 +108,8 @@ Action declare_locate(CLI::App& app, Context& context) {
   add_terrain_options(app, options->terrain, true);
   app.add_option("X_Y", options->point, "A point in map units")->expected(2)->type_name("X Y");
   app.add_option("--points", options->points,
-                 "Points: text with x and y in the first columns (- reads standard input), or a "
-                 "vector file (transformed to the terrain's CRS)")
+                 "Points: text with x and y in the first columns, or in those that a header names "
+                 "so (- reads standard input), or a vector file (transformed to the terrain's CRS)")
       ->type_name("FILE");
   add_detail_options(app, options->detail, "; heights come with intervals",
                      "Ask the TIN of the terrain's N most important vertices; heights come with "

@@ -6,8 +6,10 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -15,6 +17,7 @@
 
 #include <ogr_geometry.h>
 
+#include "engine/construct/column_names.h"
 #include "engine/error.h"
 #include "storage/file_questions.h"
 #include "tools/file_name.h"
@@ -71,19 +74,38 @@ bool looks_like_number(std::string_view field) {
          (begin != std::string_view::npos && field[begin] >= '0' && field[begin] <= '9');
 }
 
-[[noreturn]] void throw_bad_line(std::size_t number, const std::string& what, std::size_t columns,
-                                 const std::string& name) {
+[[noreturn]] void throw_bad_line(std::size_t number, const std::string& what,
+                                 std::span<const std::size_t> columns, const std::string& name) {
   throw Error(ErrorCode::invalid_argument,
               "line " + std::to_string(number) + " " + what + ", expected " +
-                  std::to_string(columns) + " numbers separated by commas or spaces",
+                  std::to_string(columns.size()) + " numbers separated by commas or spaces",
               name);
 }
 
-void append_row(std::span<const std::string_view> fields, std::size_t columns, std::size_t line,
-                const std::string& name, std::vector<double>& rows) {
-  for (std::size_t i = 0; i < columns; ++i) {
-    if (i == fields.size()) {
-      throw_bad_line(line, "has only " + std::to_string(i) + " numbers", columns, name);
+/// Chooses columns by a header's names.
+using ByHeader =
+    std::function<void(std::span<const std::string_view> names, std::vector<std::size_t>& columns)>;
+
+/// x and y where the header names them. One that names neither says nothing of the order.
+void choose_x_and_y(std::span<const std::string_view> names, std::vector<std::size_t>& columns) {
+  const std::size_t x = find_column(names, Coordinate::kX);
+  const std::size_t y = find_column(names, Coordinate::kY);
+  if (x == names.size() && y == names.size()) return;
+  if (x == names.size() || y == names.size()) {
+    throw Error(ErrorCode::invalid_argument,
+                std::string("the header names a column for ") + (x == names.size() ? "y" : "x") +
+                    ", but none for " + (x == names.size() ? "x" : "y") +
+                    "; columns are named x, y or easting, northing or lon, lat");
+  }
+  columns = {x, y};
+}
+
+/// The numbers of the fields `columns`, in this order.
+void append_row(std::span<const std::string_view> fields, std::span<const std::size_t> columns,
+                std::size_t line, const std::string& name, std::vector<double>& rows) {
+  for (const std::size_t i : columns) {
+    if (i >= fields.size()) {
+      throw_bad_line(line, "has only " + std::to_string(fields.size()) + " fields", columns, name);
     }
     const std::string place = "field " + std::to_string(i + 1);
     if (fields[i].empty()) throw_bad_line(line, "has nothing in " + place, columns, name);
@@ -93,7 +115,9 @@ void append_row(std::span<const std::string_view> fields, std::size_t columns, s
   }
 }
 
-std::vector<double> rows_of(std::istream& in, const std::string& name, std::size_t columns) {
+/// @param columns  Where there is no header, or none of use to `by_header`.
+std::vector<double> rows_of(std::istream& in, const std::string& name,
+                            std::vector<std::size_t> columns, const ByHeader& by_header) {
   std::vector<double> rows;
   std::vector<std::string_view> fields;
   std::string line;
@@ -103,7 +127,11 @@ std::vector<double> rows_of(std::istream& in, const std::string& name, std::size
     if (fields.empty()) continue;
     const bool header =
         number == 1 && std::none_of(fields.begin(), fields.end(), looks_like_number);
-    if (!header) append_row(fields, columns, number, name, rows);
+    if (header) {
+      by_header(fields, columns);
+    } else {
+      append_row(fields, columns, number, name, rows);
+    }
   }
   if (in.bad()) throw Error(ErrorCode::io_error, "cannot be read to its end", name);
   return rows;
@@ -115,8 +143,8 @@ void require_file(const std::string& path) {
 
 bool is_text(const std::string& path) {
   const std::string extension = lower_extension(path);
-  return path == "-" || extension == ".csv" || extension == ".txt" || extension == ".xyz" ||
-         extension.empty();
+  return path == "-" || extension == ".csv" || extension == ".tsv" || extension == ".txt" ||
+         extension == ".xyz" || extension.empty();
 }
 
 void add_lines(const OGRGeometry& geometry, std::vector<std::vector<MapPoint>>& lines) {
@@ -134,10 +162,9 @@ void add_lines(const OGRGeometry& geometry, std::vector<std::vector<MapPoint>>& 
   }
 }
 
-}  // namespace
-
-std::vector<double> read_rows(const std::string& path, std::size_t columns) {
-  if (path == "-") return rows_of(std::cin, "standard input", columns);
+std::vector<double> rows_of_file(const std::string& path, const std::vector<std::size_t>& columns,
+                                 const ByHeader& by_header) {
+  if (path == "-") return rows_of(std::cin, "standard input", columns, by_header);
   require_file(path);
   std::error_code ignored;  // whatever is wrong, opening tells
   if (std::filesystem::is_directory(path, ignored)) {
@@ -146,13 +173,21 @@ std::vector<double> read_rows(const std::string& path, std::size_t columns) {
   errno = 0;
   std::ifstream in(path);
   if (!in) throw system_error(errno, "cannot open", path);
-  return rows_of(in, path, columns);
+  return rows_of(in, path, columns, by_header);
+}
+
+}  // namespace
+
+std::vector<double> read_rows(const std::string& path, std::size_t columns) {
+  std::vector<std::size_t> first(columns);
+  std::iota(first.begin(), first.end(), std::size_t{0});
+  return rows_of_file(path, first, [](const auto&, const auto&) {});
 }
 
 std::vector<MapPoint> read_points(const std::string& path, const std::string& crs_wkt) {
   std::vector<MapPoint> points;
   if (is_text(path)) {
-    const std::vector<double> rows = read_rows(path, 2);
+    const std::vector<double> rows = rows_of_file(path, {0, 1}, choose_x_and_y);
     for (std::size_t i = 0; i + 1 < rows.size(); i += 2) points.push_back({rows[i], rows[i + 1]});
     return points;
   }
