@@ -2,6 +2,7 @@
 #include "engine/construct/crs.h"
 
 #include <cmath>
+#include <cstdio>
 
 #include <cpl_conv.h>
 #include <ogr_spatialref.h>
@@ -136,7 +137,7 @@ Crs resolve_crs(const std::string& declared, const std::string& a_srs,
     if (!vertical_crs.empty()) {
       throw Error(ErrorCode::invalid_argument,
                   "there is no horizontal CRS to add the vertical CRS '" + vertical_crs +
-                      "' to; give that one as well (a_srs)");
+                      "' to; give that one as well by --a-srs");
     }
     return {};
   }
@@ -167,6 +168,21 @@ void set_crs(TerrainFrame& frame, const Crs& crs) {
   frame.geographic = crs.geographic;
   frame.horizontal_unit = crs.horizontal_unit;
   frame.vertical_unit = crs.vertical_unit;
+}
+
+void require_latitudes(const TerrainFrame& frame, std::int64_t rows, const std::string& context) {
+  constexpr double kMost = 91.0;  // pixels of global grids reach beyond the poles
+  const double south = frame.map.to_map(0.0, 0.0).y;
+  const double north = frame.map.to_map(0.0, static_cast<double>(rows)).y;
+  if (frame.horizontal_unit != "degree" || (south >= -kMost && north <= kMost)) {
+    return;
+  }
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "y from %.10g to %.10g are no latitudes, but the CRS has degrees; name the CRS of "
+                "these coordinates by --a-srs",
+                south, north);
+  throw Error(ErrorCode::invalid_argument, text, context);
 }
 
 GroundMetric::GroundMetric(const TerrainFrame& frame) : map_(frame.map) {

@@ -38,6 +38,10 @@ struct Crs {
 /// Writes what `crs` says into `frame`.
 void set_crs(TerrainFrame& frame, const Crs& crs);
 
+/// @param rows  Grid steps from the southernmost to the northernmost sample.
+/// @throws Error invalid_argument  the CRS has degrees, and y is none: metres, most likely
+void require_latitudes(const TerrainFrame& frame, std::int64_t rows, const std::string& context);
+
 /// Lengths of one grid step on the ground.
 struct GroundStep {
   double x = 1.0;

@@ -170,6 +170,7 @@ PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const Sou
       &memory);
   set_crs(buckets.frame_, resolve_crs(reading.crs, options.a_srs, options.vertical_crs));
   buckets.frame_.map = reading.grid.map();
+  require_latitudes(buckets.frame_, reading.grid.north - reading.grid.south, context);
   buckets.counts_.source_points = reading.points;
   buckets.counts_.left_out_points = reading.left_out;
   buckets.sort(spool, reading.grid, options.merge, memory, stop, progress, keep_as);

@@ -84,14 +84,14 @@ std::string mismatch(const RasterShape& a, const RasterShape& b, bool compare_cr
     return "its type, scale or offset (" + b.type_name + ") is not that of the first raster (" +
            a.type_name + "); rewrite it with 'gdal_translate -ot " + a.type_name + "'";
   }
+  if (compare_crs && !is_same_crs(a.crs, b.crs)) {
+    return "its CRS is not that of the first raster; warp it with 'gdalwarp -t_srs', or name the "
+           "CRS of all by --a-srs";
+  }
   const auto extent = static_cast<double>(std::max({a.width, a.height, b.width, b.height}));
   if (std::abs(b.map.step_x / a.map.step_x - 1.0) * extent > kFileSlack ||
       std::abs(b.map.step_y / a.map.step_y - 1.0) * extent > kFileSlack) {
     return "its pixel size is not that of the first raster; warp it with 'gdalwarp -tr'";
-  }
-  if (compare_crs && !is_same_crs(a.crs, b.crs)) {
-    return "its CRS is not that of the first raster; warp it with 'gdalwarp -t_srs', or name the "
-           "CRS of all (a_srs)";
   }
   return "";
 }
@@ -185,6 +185,7 @@ void RasterSource::Impl::open_parts(const std::vector<std::string>& paths,
     frame.vertical_unit = normal_unit(first.unit);
   }
   place();
+  require_latitudes(frame, height - 1, paths.front());
 }
 
 /// Gives each part its place on the common grid, whose origin is the south-western corner of all.

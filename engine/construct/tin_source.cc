@@ -213,6 +213,7 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
           resolve_crs(tin.crs, options.a_srs,
                       options.vertical_crs.empty() ? tin.vertical_crs : options.vertical_crs));
   to.frame_.map = tin.grid.map();
+  require_latitudes(to.frame_, tin.grid.north - tin.grid.south, path);
   set_heights(to.frame_, tin.heights);
   to.codes_are_whole_ = tin.grid.whole;
   to.counts_.left_out_triangles = tin.left_out_triangles;

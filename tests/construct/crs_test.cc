@@ -104,6 +104,26 @@ TEST(Crs, RefusesAVerticalPartThatIsNone) {
   expect_crs_refused("", "", "EPSG:5773", "no horizontal CRS");
 }
 
+// EPSG:4326 given by mistake over metres: distances and voids would be nonsense without a word.
+TEST(Crs, OfDegreesIsRefusedOverMetres) {
+  TerrainFrame frame;
+  set_crs(frame, resolve_crs("EPSG:4326", "", ""));
+  frame.map = {376328, 3806732, 30, 30};
+  try {
+    require_latitudes(frame, 100, "a.tif");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
+    EXPECT_NE(e.message().find("--a-srs"), std::string::npos) << e.message();
+  }
+  frame.map = {-180, -90, 0.5, 0.5};
+  EXPECT_NO_THROW(require_latitudes(frame, 360, ""));
+  EXPECT_THROW(require_latitudes(frame, 366, ""), Error);
+  set_crs(frame, resolve_crs("EPSG:32611", "", ""));
+  frame.map = {376328, 3806732, 30, 30};
+  EXPECT_NO_THROW(require_latitudes(frame, 100, ""));
+}
+
 TEST(IsSameCrs, ComparesMeaningAndNotText) {
   const std::string utm = resolve_crs("EPSG:32611", "", "").wkt;
   EXPECT_TRUE(is_same_crs("", ""));

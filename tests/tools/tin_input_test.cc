@@ -141,12 +141,13 @@ TEST(TinInput, RealOnes) {
   expect_done(
       {"verify", folder.file("x.ptin"), "--against", data + "/landxml_total_topp.xml", "-q"});
   const Outcome dirty =
-      run_ptin({"build", data + "/mdal_test_mesh.ply", "-o", folder.file("m.ptin"), "-q"});
+      run_ptin({"build", data + "/mdal_test_mesh.ply", "-o", folder.file("m.ptin"), "-q", "--a-srs",
+                "EPSG:27700"});  // it says degrees of metres
   EXPECT_EQ(dirty.status, 2);
   EXPECT_NE(dirty.err.find("9110 triangles have no area"), std::string::npos) << dirty.err;
   EXPECT_NE(dirty.err.find("532 triangles are turned over"), std::string::npos) << dirty.err;
-  expect_done(
-      {"build", data + "/mdal_test_mesh.ply", "-o", folder.file("m.ptin"), "-q", "--repair"});
+  expect_done({"build", data + "/mdal_test_mesh.ply", "-o", folder.file("m.ptin"), "-q", "--repair",
+               "--a-srs", "EPSG:27700"});
 }
 
 }  // namespace
