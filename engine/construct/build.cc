@@ -101,6 +101,9 @@ BuildReport build(const std::vector<std::string>& inputs, const std::string& out
   const auto begin = std::chrono::steady_clock::now();
   check_options(options);
   Job job{inputs, output, options, resources, {}};
+  if (resources.unfinished == Unfinished::kRefuse && !resources.dry_run) {
+    Workspace::refuse_unfinished(output);  // rasters are read before their plan is known
+  }
   if (!options.repair && std::any_of(inputs.begin(), inputs.end(), is_tin_file)) {
     build_tin(job);
   } else if (are_points(inputs, job.source_options().points)) {

@@ -223,8 +223,8 @@ void note_index(Workspace& workspace, const std::string& key, const ArrayFileFac
 BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk) {
   disk.is_there = true;
   disk.may_be_less = job.report.resumed;
-  const BuildPlan plan =
-      plan_build(tree, job.output, job.options, job.resources, kPointTileBytes, disk);
+  BuildPlan plan = plan_build(tree, job.output, job.options, job.resources, kPointTileBytes, disk);
+  plan.is_estimate = true;  // as if all tiles were full
   if (job.resources.plan) {
     job.resources.plan(plan);
   }

@@ -48,7 +48,7 @@ std::uint64_t bytes_of_largest(std::uint64_t leaf_samples, const TileTree& tree,
   return std::max(leaf, tile_bytes.of_join((leaf_samples + seams) * tile_bytes.pushed_of_vertex));
 }
 
-/// The longest side whose tiles fit into `bytes`.
+/// The longest side below the tree's whose tiles fit into `bytes`; 0 when none of 32 or more does.
 std::int64_t side_that_fits(std::uint64_t bytes, const TileTree& tree,
                             const TileBytes& tile_bytes) {
   std::int64_t side = tree.side();
@@ -56,10 +56,10 @@ std::int64_t side_that_fits(std::uint64_t bytes, const TileTree& tree,
     const auto longest = static_cast<std::uint64_t>(side + side / 2);
     return bytes_of_largest(longest * longest, tree, tile_bytes) <= bytes;
   };
-  while (side > 32 && !fits()) {
+  while (side >= 32 && (side == tree.side() || !fits())) {
     side -= 16;
   }
-  return side;
+  return side >= 32 ? side : 0;
 }
 
 void plan_memory(BuildPlan& plan, const TileTree& tree, const BuildResources& resources,
@@ -68,6 +68,7 @@ void plan_memory(BuildPlan& plan, const TileTree& tree, const BuildResources& re
   const std::uint64_t samples = samples_of_leaf(tree);
   const std::uint64_t one = bytes_of_largest(samples, tree, tile_bytes);
   plan.memory_limit = resources.memory_bytes != 0 ? resources.memory_bytes : default_memory();
+  plan.memory_allowed = allowed_memory();
   plan.threads_wanted = resources.threads > 0
                             ? resources.threads
                             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -85,12 +86,12 @@ void plan_memory(BuildPlan& plan, const TileTree& tree, const BuildResources& re
     while (share_memory(enough, present, 1).tiles < one) {
       enough += kMiB;
     }
+    const std::int64_t side = side_that_fits(shares.tiles, tree, tile_bytes);
     throw Error(ErrorCode::resource_exhausted,
                 "a tile of " + std::to_string(plan.tile_side) + " samples a side needs " +
                     in_mib(enough) + " of memory in all and the limit is " +
                     in_mib(plan.memory_limit) + "; give --memory " + in_mib(enough) +
-                    ", or --tile " +
-                    std::to_string(side_that_fits(shares.tiles, tree, tile_bytes)));
+                    (side == 0 ? "" : ", or --tile " + std::to_string(side)));
   }
   plan.gdal_cache = shares.gdal_cache;
   plan.tile_bytes = shares.tiles;

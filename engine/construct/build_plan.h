@@ -21,6 +21,7 @@ struct BuildPlan {
   int levels = 0;
   std::uint64_t vertices = 0;
   std::uint64_t memory_limit = 0;     ///< Bytes of anonymous memory.
+  std::uint64_t memory_allowed = 0;   ///< By cgroups and resource limits; may be less.
   std::uint64_t memory_expected = 0;  ///< At most, by estimate.
   std::uint64_t gdal_cache = 0;
   std::uint64_t tile_bytes = 0;  ///< Share of all tiles in work.
@@ -30,8 +31,10 @@ struct BuildPlan {
   std::uint64_t output_bytes = 0;     ///< At most.
   std::uint64_t temporary_free = 0, output_free = 0;
   bool same_disk = true;
-  double seconds = 0.0;      ///< Roughly.
-  bool is_estimate = false;  ///< Points that are not counted yet: as many as their files may hold.
+  double seconds = 0.0;  ///< Roughly.
+  /// Of `vertices`: points that are not counted yet, as many as their files may hold, or tiles of
+  /// points that are not full.
+  bool is_estimate = false;
 };
 
 /// @param tree  Of the terrain's tiles.

@@ -61,10 +61,12 @@ std::uint64_t resource_limit(int resource) {
 
 }  // namespace
 
+std::uint64_t allowed_memory() {
+  return std::min({cgroup_limit(), resource_limit(RLIMIT_DATA), resource_limit(RLIMIT_AS)});
+}
+
 std::uint64_t default_memory() {
-  const std::uint64_t least =
-      std::min({cgroup_limit(), resource_limit(RLIMIT_DATA), resource_limit(RLIMIT_AS)});
-  return std::min(std::uint64_t{1024} * kMiB, least / 4 * 3);
+  return std::min(std::uint64_t{1024} * kMiB, allowed_memory() / 4 * 3);
 }
 
 std::uint64_t anonymous_bytes_now() {

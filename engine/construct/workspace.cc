@@ -213,6 +213,24 @@ void Workspace::lock_folder() {
   }
 }
 
+namespace {
+
+Error unfinished_is_here(const std::string& output) {
+  return {ErrorCode::invalid_argument,
+          "an unfinished build of " + output +
+              " is here; go on with it by --resume, or remove it by --discard",
+          Workspace::folder_of(output)};
+}
+
+}  // namespace
+
+void Workspace::refuse_unfinished(const std::string& output) {
+  const std::string manifest = manifest_in(folder_of(output));
+  if (is_there(manifest) && bytes_of_file(manifest) > 0) {
+    throw unfinished_is_here(output);
+  }
+}
+
 Workspace::Workspace(FileLayer& files, const std::string& output, const std::string& tmp,
                      Unfinished unfinished, const nlohmann::json& fingerprint)
     : files_(files), folder_(folder_of(output)), tmp_(folder_) {
@@ -233,10 +251,7 @@ Workspace::Workspace(FileLayer& files, const std::string& output, const std::str
     return;
   }
   if (unfinished != Unfinished::kResume) {
-    throw Error(ErrorCode::invalid_argument,
-                "an unfinished build of " + output +
-                    " is here; go on with it by --resume, or remove it by --discard",
-                folder_);
+    throw unfinished_is_here(output);
   }
   take_up(fingerprint);
 }

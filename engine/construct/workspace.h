@@ -31,6 +31,10 @@ class Workspace {
   /// @param tmp          A folder for temporary files; "" for beside the output.
   /// @param fingerprint  What decides the bytes of the output: options and inputs. An interrupted
   ///                     build is taken up again only where it is the same.
+  /// The constructor's refusal, before a source is read.
+  /// @throws Error invalid_argument  an interrupted build of `output` is there
+  static void refuse_unfinished(const std::string& output);
+
   /// @throws Error invalid_argument  an interrupted build is there and `unfinished` is kRefuse, or
   ///                                 it is of another input or other options; another process is
   ///                                 at it; a folder of that name is not one of ours
