@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Wavefront OBJ: `v x y z` and `f a b c` (a/t/n too; negative indices count from the last vertex),
-// z up. Everything else is passed over.
+// z up. Comments (#, to the end of the line) and everything else are passed
+// over.
 #include "engine/construct/tin_reader_internal.h"
 #include "engine/error.h"
 
@@ -26,7 +27,7 @@ TinFileFacts read_obj(ByteReader& in, const TinReading& reading, SoupSink& sink)
   std::string_view line;
   std::vector<std::string_view> words;
   while (in.line(line)) {
-    split_words(line, words);
+    split_words(line.substr(0, line.find('#')), words);
     if (words.empty()) {
       continue;
     }

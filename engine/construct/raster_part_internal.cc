@@ -40,8 +40,9 @@ GDALDatasetUniquePtr open_dataset(const std::string& path) {
       VSIFCloseL(file);
     }
   }
-  refuse(session.explain("this is not a raster that GDAL reads; points as text are known by a "
-                         "name that ends in .csv, .xyz or .txt"),
+  refuse(session.explain("this is neither a raster nor a layer that GDAL reads; LAS, text and "
+                         "TINs are known by their names: .las, .csv, .xyz, .txt, .ply, .obj, .2dm, "
+                         ".xml"),
          path);
 }
 
@@ -276,7 +277,7 @@ void check_heights(const SampleRange& w, std::span<const T> values,
     const std::int64_t row = shape.rows_from_south ? y : shape.height - 1 - y;
     refuse("the height at column " + std::to_string(column) + ", row " + std::to_string(row) +
                " (counted from 0, as stored) is infinite or beyond 3.4e38; if such values "
-               "mean no data, say so with nodata",
+               "mean no data, say so with --nodata",
            path);
   }
 }

@@ -25,7 +25,7 @@ TEST(RasterSource, SaysThatAFileIsNoRaster) {
                                   reinterpret_cast<GByte*>(VSIStrdup("Dear Sir, ...")), 13, TRUE));
   const Error e = open_error({path});
   EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
-  EXPECT_NE(e.message().find("not a raster"), std::string::npos) << e.what();
+  EXPECT_NE(e.message().find("neither a raster"), std::string::npos) << e.what();
   EXPECT_NE(e.message().find(".xyz"), std::string::npos) << e.what();
 }
 

@@ -80,7 +80,7 @@ void expect_square(const TinSoup& soup) {
 
 const std::string kObj =
     "v 0.1 0 -1 0.5 0.5 0.5\nv 10 0.5 0\nvn 0 0 1\nv 10 10 1\nf 1/1 2/2 3/3\n"
-    "v 0 10 2\nf -4 -2//1 -1\n";
+    "v 0 10 2 # the last\n#f 1 2\nf -4 -2//1 -1 # 4 3 4\n";
 const std::string kTwoDm =
     "MESH2D\nMESHNAME \"m\"\nE3T 1 11 22 33 1\nND 11 0.1 0 -1\nND 22 10 0.5 0\n"
     "ND 33 10 10 1\nND 5 0 10 2\nE3T 2 11 33 5 1\nNS 11 22 -33\n";

@@ -321,6 +321,21 @@ TEST(Export, RasterOfTheFullTinIsTheSource) {
   }
 }
 
+TEST(Export, TakesSeveralCreationOptions) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  const auto size = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"export", file, "-q", "-o", folder.file("a.tif")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    arguments.emplace_back("--overwrite");
+    expect_done(arguments);
+    return read_file(folder.file("a.tif")).size();
+  };
+  const std::size_t deflated = size({"--co", "COMPRESS=DEFLATE"});
+  EXPECT_LT(deflated, size({"--co", "COMPRESS=NONE"}));
+  EXPECT_NE(size({"--co", "COMPRESS=DEFLATE", "--co", "ZLEVEL=1"}), deflated);
+}
+
 TEST(Export, RasterDoesNotDependOnMemory) {
   const TestFolder folder;
   const ProgressiveTin terrain = ProgressiveTin::open(built(folder, "mountains_257.tif"));
@@ -443,6 +458,13 @@ TEST(Export, RefusesWhatMeansNothing) {
   fails({"-o", folder.file("a.ply"), "--error", "-1"}, "--error");
   fails({"-o", folder.file("a.ply"), "--memory", "1M"}, "--memory");
   fails({"-o", folder.file("a.tif"), "--pixel-size", "5", "--co", "COMPRESS=NONSENSE"}, "COMPRESS");
+  fails({"-o", folder.file("a.gpkg"), "--format", "FlatGeobuf"}, ".fgb");
+  fails({"-o", "-"}, "extension");
+  EXPECT_EQ(run_ptin({"export", points, "-o", folder.file("a.tif"), "--pixel-size", "0.0002",
+                      "--memory", "32M"})
+                .status,
+            7)
+      << "the table of blocks alone is larger";
   EXPECT_EQ(read_file(folder.file("old.ply")), "old");
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"ground_points.csv.ptin", "old.ply"}));
 }

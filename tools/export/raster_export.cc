@@ -55,6 +55,26 @@ CPLStringList options_of(const RasterTarget& target, bool for_copy) {
   return options;
 }
 
+/// GDAL keeps the place and the size of every block in memory, of a COG those of the raster it is
+/// copied from too, and of the overviews.
+void check_table(const PixelGrid& grid, const RasterTarget& target) {
+  const std::int64_t side = std::stoi(kBlockSide);
+  const auto across = [&](std::int64_t pixels) {
+    return static_cast<std::uint64_t>((pixels + side - 1) / side);
+  };
+  constexpr std::uint64_t kBytes = 2 * sizeof(std::uint64_t);
+  const std::uint64_t copies = target.is_cog ? 3 : 1;
+  const std::uint64_t table = copies * kBytes * across(grid.columns()) * across(grid.rows());
+  if (table <= target.table_bytes) return;
+  throw Error(ErrorCode::resource_exhausted,
+              "a raster of " + std::to_string(grid.columns()) + " x " +
+                  std::to_string(grid.rows()) + " pixels takes " + std::to_string(table >> 20) +
+                  " MiB of memory for the table of its blocks, and " +
+                  std::to_string(target.table_bytes >> 20) +
+                  " MiB are there for it; give a larger --pixel-size, a --window or more --memory",
+              target.path);
+}
+
 /// Fills a dataset, region by region.
 class RasterWriter {
  public:
@@ -257,6 +277,7 @@ double default_nodata(const StoreFacts& facts) noexcept {
 
 void export_raster(const PartRefiner& refiner, const PixelGrid& grid, const RasterTarget& target,
                    const std::function<void(double)>& progress) {
+  check_table(grid, target);
   const GdalCacheLimit cache(target.buffer_bytes);
   PendingFile file(target.path, target.overwrite);
   const StoreFacts& facts = refiner.terrain().store().facts();

@@ -23,6 +23,7 @@ struct RasterTarget {
   std::vector<std::string> creation_options;  ///< KEY=VALUE for the driver; override ours.
   CrsFacts crs;
   std::uint64_t buffer_bytes = std::uint64_t{64} << 20;  ///< For pixels and GDAL's cache, each.
+  std::uint64_t table_bytes = std::uint64_t{64} << 20;   ///< For GDAL's table of blocks.
 };
 
 /// Samples the TIN of `refiner` at the centres of `grid` and writes it: Float32, or Float64 where
@@ -32,7 +33,8 @@ struct RasterTarget {
 /// size of the raster alone. A COG is copied by GDAL from a GeoTIFF beside it, with its overviews.
 /// @param progress  Share done, 0 to 1; may be empty.
 /// @throws Error  invalid_argument    GDAL refuses an option, or the output exists
-///                resource_exhausted  what a single pixel needs does not fit; disk full
+///                resource_exhausted  what a single pixel needs does not fit; so many blocks that
+///                                    their table does not; disk full
 ///                as PartRefiner::refine; io_error; cancelled. Nothing is left behind.
 void export_raster(const PartRefiner& refiner, const PixelGrid& grid, const RasterTarget& target,
                    const std::function<void(double)>& progress);

@@ -15,6 +15,7 @@
 
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/point_stream.h"
+#include "engine/construct/tin_soup.h"
 #include "storage/file_questions.h"
 #include "storage/sigbus_guard.h"
 #include "tools/error_status.h"
@@ -48,19 +49,42 @@ CostModel cost_of(const std::string& name) {
   return name == "elevation" ? CostModel::kElevation : CostModel::kError;
 }
 
-/// What says how to read points or TINs means nothing to a raster.
-void check_raster_options(const BuildCommand& command) {
+enum class InputKind : std::uint8_t { kRaster, kPoints, kTin };
+
+/// Why an option that was given means nothing to inputs of this kind; null when all do.
+const char* misfit_of(const BuildOptions& o, InputKind kind) {
+  if (kind == InputKind::kRaster) {
+    if (o.resolution) return "--resolution is for points and TINs, and this is a raster";
+    if (!o.classes.empty()) return "--class is for LAS, and this is a raster";
+    if (o.repair) return "--repair is for TINs, and this is a raster";
+    if (o.max_edge) return "--max-edge is for points, and this is a raster";
+  } else if (kind == InputKind::kPoints) {
+    if (o.repair) return "--repair is for TINs, and these are points";
+  } else {
+    if (!o.classes.empty()) return "--class is for LAS, and this is a TIN";
+    if (!o.layer.empty() || !o.z_field.empty())
+      return "--layer and --z-field are for points, and this is a TIN";
+    if (o.max_edge && !o.repair)
+      return "--max-edge is for points, and for TINs with --repair, and this is a TIN";
+  }
+  return nullptr;
+}
+
+/// What would be ignored without a word is refused.
+void check_kind_of_input(const BuildCommand& command) {
   const BuildOptions& options = command.options;
-  const char* const misfit = options.resolution         ? "--resolution is for points and TINs"
-                             : !options.classes.empty() ? "--class is for LAS"
-                             : options.repair           ? "--repair is for TINs"
-                                                        : nullptr;
-  if (misfit == nullptr) return;
+  const bool may_misfit = options.resolution || options.max_edge || options.repair ||
+                          !options.classes.empty() || !options.layer.empty() ||
+                          !options.z_field.empty();
+  if (!may_misfit) return;
   const PointChoice choice{options.classes, options.layer, options.z_field};
   for (const std::string& input : command.inputs) {
-    if (is_there(input) && !is_point_input(input, choice)) {
-      throw Error(ErrorCode::invalid_argument,
-                  std::string(misfit).append(", and this is a raster; leave it out"), input);
+    if (!is_there(input)) continue;
+    const InputKind kind = is_tin_file(input)              ? InputKind::kTin
+                           : is_point_input(input, choice) ? InputKind::kPoints
+                                                           : InputKind::kRaster;
+    if (const char* misfit = misfit_of(options, kind)) {
+      throw Error(ErrorCode::invalid_argument, std::string(misfit).append("; leave it out"), input);
     }
   }
 }
@@ -75,7 +99,7 @@ void check_command(BuildCommand& command) {
   const bool is_resumed =
       command.resume && is_there(Workspace::folder_of(output_target(command.output)));
   check_output(command.output, command.overwrite || is_resumed);
-  check_raster_options(command);
+  check_kind_of_input(command);
 }
 
 nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
@@ -109,8 +133,9 @@ void print_report(const BuildCommand& command, const BuildReport& r) {
                 counted(r.lone_samples, "sample").c_str());
   }
   if (r.left_out_points > 0) {
-    std::printf("  left out   %s, by their class or place, withheld, or without a height\n",
-                counted(r.left_out_points, "point").c_str());
+    std::printf(
+        "  left out   %s, by class or place, withheld, without a height, or in no triangle\n",
+        counted(r.left_out_points, "point").c_str());
   }
   if (r.left_out_triangles + r.void_triangles > 0) {
     std::printf("  triangles  %s void ones fill holes and pockets; %s hidden ones left out\n",
@@ -165,9 +190,15 @@ void print_plan(const BuildPlan& p) {
                counted(static_cast<std::uint64_t>(p.threads), "thread").c_str(),
                human_bytes(p.memory_expected).c_str(), human_bytes(p.temporary_bytes).c_str(),
                human_bytes(p.output_bytes).c_str(), human_duration(p.seconds).c_str());
+  if (p.memory_limit > p.memory_allowed) {
+    std::fprintf(stderr,
+                 "plan: warning: --memory %s is more than the system lets this process have, %s\n",
+                 human_bytes(p.memory_limit).c_str(), human_bytes(p.memory_allowed).c_str());
+  }
   if (p.threads < p.threads_wanted) {
-    std::fprintf(stderr, "plan: %d threads instead of %d, since no more tiles fit into %s\n",
-                 p.threads, p.threads_wanted, human_bytes(p.memory_limit).c_str());
+    std::fprintf(stderr, "plan: %s instead of %d, since no more tiles fit into %s\n",
+                 counted(static_cast<std::uint64_t>(p.threads), "thread").c_str(), p.threads_wanted,
+                 human_bytes(p.memory_limit).c_str());
   }
 }
 
@@ -338,7 +369,8 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
       "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz\n"
       "too), or a layer that OGR reads; several files of one CRS; or a TIN: PLY, OBJ, 2DM, "
       "LandXML");
-  app.add_option("--nodata", options.nodata, "This height means void; overrides the source's")
+  app.add_option("--nodata", options.nodata,
+                 "This stored value (before scale and offset) means void; overrides the source's")
       ->type_name("V");
   app.add_option("--resolution", options.resolution, "Points: the grid unit, in CRS units")
       ->check(CLI::PositiveNumber)
@@ -374,7 +406,8 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
 void add_work_options(CLI::App& app, BuildCommand& command) {
   app.add_option(
          "--tile", command.options.tile,
-         "Rasters: samples along a leaf of the tile hierarchy (default: by the raster's size)")
+         "Samples along a leaf of the tile hierarchy, of points and TINs about as many (default:\n"
+         "by the number of samples)")
       ->type_name("SIDE");
   app.add_option("--memory", command.memory,
                  "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less\n"

@@ -76,7 +76,7 @@ struct ExportMemory {
       : part((bytes - kProgram) / 2), buffers(bytes / 16), index(bytes / 4) {}
   std::uint64_t part;     ///< One refined part, and the patch made from it.
   std::uint64_t buffers;  ///< Each of: pixels, GDAL's cache, the open border.
-  std::uint64_t index;    ///< A format's index of features.
+  std::uint64_t index;    ///< A format's index of features, or of blocks.
 };
 
 ExportMemory memory_of(const ExportOptions& options) {
@@ -102,6 +102,11 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
   if (is_raster && !options.region.polygon.empty()) {
     throw Error(ErrorCode::invalid_argument,
                 "a raster has a --window; cut it by a polygon with gdalwarp -cutline");
+  }
+  if (format.make_sink == make_flatgeobuf_sink && lower_extension(options.output) != ".fgb") {
+    throw Error(ErrorCode::invalid_argument,
+                "GDAL makes a folder of a FlatGeobuf whose name does not end in .fgb; name it so",
+                options.output);
   }
   check_output(options.output, options.overwrite);
 }
@@ -219,6 +224,10 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options,
     made = export_triangles(refiner, format, target, report);
     progress.finish();
     warn_without_index(format, target, context);
+    if (made.triangles == 0 && !context.quiet) {
+      std::fprintf(stderr, "ptin: warning: the region holds no surface; %s has no triangle\n",
+                   options.output.c_str());
+    }
   } else {
     const RasterTarget target{options.output,
                               options.overwrite,
@@ -226,7 +235,8 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options,
                               options.nodata.value_or(default_nodata(terrain.store().facts())),
                               options.creation_options,
                               crs,
-                              memory.buffers};
+                              memory.buffers,
+                              memory.index};
     made = export_pixels(refiner, options, target, report);
   }
   progress.finish();
@@ -239,6 +249,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   check_options(options, format);
   const auto start = std::chrono::steady_clock::now();
   const ProgressiveTin terrain = open_terrain(options.terrain);
+  warn_of_base_error(terrain.store(), options.detail.error, context);
   const Exported made = export_as(format, options, terrain, context);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -302,9 +313,9 @@ Action declare_export(CLI::App& app, Context& context) {
   app.add_option("--nodata", options->nodata,
                  "Rasters: the value where there is no surface (default -9999)")
       ->type_name("V");
-  app.add_option("--co", options->creation_options, "Rasters: a creation option of GDAL's driver")
+  app.add_option("--co", options->creation_options,
+                 "Rasters: a creation option of GDAL's driver; may be given several times")
       ->type_name("KEY=VALUE")
-      ->expected(1)
       ->allow_extra_args(false);
   app.add_option("--memory", options->memory, "Memory to work in, as 512M or 2G (default 1G)")
       ->type_name("SIZE");

@@ -49,6 +49,7 @@ void print_text(const HighestResult& result, const HighestOptions& options) {
 int run_highest(const HighestOptions& options, const Context& context) {
   check_detail(options.detail);
   const ProgressiveTin terrain = open_terrain(options.terrain);
+  warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   HighestRequest request;
   if (const auto region = region_of(options.region, crs.wkt)) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/query_options.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "engine/construct/memory_plan.h"
 #include "engine/error.h"
 #include "engine/query/levels.h"
 #include "storage/sigbus_guard.h"
@@ -103,6 +106,16 @@ void check_detail(const DetailOptions& options) {
   }
 }
 
+void warn_of_base_error(const StoreFile& store, const std::optional<double>& error,
+                        const Context& context) {
+  const double base = store.facts().base_error;
+  if (!error || *error >= base || context.quiet || context.json) return;
+  std::fprintf(stderr,
+               "ptin: warning: %s certifies no error below %s (built with --max-error, or heights "
+               "were rounded); the answer is within that, not within %s\n",
+               store.path().c_str(), short_number(base).c_str(), short_number(*error).c_str());
+}
+
 void add_level_options(CLI::App& app, LevelOptions& options, const std::string& level_help,
                        const std::string& interval_help) {
   auto* level = app.add_option("--level,--fl", options.levels, level_help)->type_name("H...");
@@ -132,7 +145,8 @@ void add_memory_option(CLI::App& app, std::string& memory) {
 }
 
 std::uint64_t memory_limit_of(const std::string& memory, std::uint64_t otherwise) {
-  return memory.empty() ? otherwise : parse_bytes(memory);
+  if (!memory.empty()) return parse_bytes(memory);
+  return std::min(otherwise, allowed_memory() / 4 * 3);  // as builds do by themselves
 }
 
 nlohmann::json cost_json(const QueryCost& cost) {

@@ -55,6 +55,10 @@ void add_detail_options(CLI::App& app, DetailOptions& options, const std::string
                         const std::string& vertices_help);
 /// @throws Error invalid_argument  --error negative or not a number
 void check_detail(const DetailOptions& options);
+/// A line on stderr where the file keeps less detail than --error asks for (`build --max-error`):
+/// answers certify what there is.
+void warn_of_base_error(const StoreFile& store, const std::optional<double>& error,
+                        const Context& context);
 
 /// --level or --interval with --base: the heights of isolines.
 struct LevelOptions {
@@ -75,7 +79,8 @@ void add_level_options(CLI::App& app, LevelOptions& options, const std::string& 
 
 /// --memory SIZE
 void add_memory_option(CLI::App& app, std::string& memory);
-/// @throws Error invalid_argument as parse_bytes
+/// What was given; else `otherwise`, or three quarters of what the process is allowed where that is
+/// less.  @throws Error invalid_argument as parse_bytes
 [[nodiscard]] std::uint64_t memory_limit_of(const std::string& memory,
                                             std::uint64_t otherwise = std::uint64_t{4} << 30);
 

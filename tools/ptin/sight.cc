@@ -32,7 +32,7 @@ struct SightOptions {
   bool absolute = false;
   bool verdict_only = false;
   double curvature = Curvature{}.coefficient;
-  double frequency = 0.0;
+  std::optional<double> frequency;
   DetailOptions detail;
   std::optional<std::uint64_t> budget;
   std::string memory;
@@ -52,15 +52,15 @@ std::vector<SightPair> pairs_of(const SightOptions& options) {
 }
 
 SightRequest request_of(const SightOptions& options, const Ground& ground, const Context& context) {
-  if (!(options.frequency >= 0) || !std::isfinite(options.frequency)) {
-    throw Error(ErrorCode::invalid_argument, "--frequency must be a number >= 0, in hertz");
+  if (options.frequency && !(*options.frequency > 0 && std::isfinite(*options.frequency))) {
+    throw Error(ErrorCode::invalid_argument, "--frequency must be a number > 0, in hertz");
   }
   SightRequest request;
   request.absolute = options.absolute;
   request.curvature = {options.curvature, ground.earth_diameter};
   request.ground_distance = ground.distance;
-  if (options.frequency > 0) {
-    request.wavelength = kSpeedOfLight / options.frequency / ground.metres_per_height;
+  if (options.frequency) {
+    request.wavelength = kSpeedOfLight / *options.frequency / ground.metres_per_height;
   }
   request.tolerance = options.detail.error;
   request.vertices = options.detail.vertices;
@@ -123,8 +123,9 @@ int run_sight(const SightOptions& options, const Context& context) {
   check_detail(options.detail);
   const std::vector<SightPair> pairs = pairs_of(options);
   const ProgressiveTin terrain = open_terrain(options.terrain);
+  warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const SightRequest request = request_of(options, ground_of(crs.wkt), context);
+  const SightRequest request = request_of(options, ground_of(crs), context);
   SightSolver solver(terrain, request, pairs.size() < kFewPairs ? 0 : std::uint64_t{1} << 15);
   nlohmann::json answers = nlohmann::json::array();
   std::string text =
@@ -143,7 +144,8 @@ int run_sight(const SightOptions& options, const Context& context) {
     write_to_stdout(text);
     return kExitDone;
   }
-  const nlohmann::json units = units_json(crs);
+  nlohmann::json units = units_json(crs);
+  units["length"] = unit_of_ground(crs);
   if (options.pairs.empty()) {
     nlohmann::json answer = answers.at(0);
     answer["units"] = units;
@@ -168,11 +170,13 @@ Action declare_sight(CLI::App& app, Context& context) {
                  "Text with such six numbers in each row (- reads standard input)")
       ->type_name("FILE");
   app.add_flag("--absolute", options->absolute, "Heights of the ends are absolute");
-  app.add_flag("--verdict", options->verdict_only,
-               "Only the verdict: faster; obstruction is then any point below ground");
+  auto* verdict =
+      app.add_flag("--verdict", options->verdict_only,
+                   "Only the verdict: faster; obstruction is then any point below ground");
   add_curvature_option(app, options->curvature);
   app.add_option("--frequency", options->frequency,
                  "Measure the first Fresnel zone at this frequency, in hertz")
+      ->excludes(verdict)
       ->type_name("HZ");
   add_detail_options(app, options->detail, ": finer records are left out; may answer undecided",
                      "Leave out what is not among the terrain's N most important vertices; may "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/stop_on_signals.h"
 
+#include <chrono>
 #include <csignal>
 #include <thread>
 
@@ -16,7 +17,10 @@ void wait_for_signals(sigset_t signals, std::stop_source stop) {
   int signal = 0;
   sigwait(&signals, &signal);
   stop.request_stop();
-  sigwait(&signals, &signal);
+  const auto asked = std::chrono::steady_clock::now();
+  do {  // `timeout` and terminals signal a process and its group: twice within a moment is once
+    sigwait(&signals, &signal);
+  } while (std::chrono::steady_clock::now() - asked < std::chrono::milliseconds(300));
   std::signal(signal, SIG_DFL);
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
   raise(signal);

@@ -218,11 +218,12 @@ void print_findings(const VerifyCommand& command, const Findings& f) {
 Action declare_verify(CLI::App& app, Context& context) {
   const auto command = std::make_shared<VerifyCommand>();
   add_terrain_options(app, command->terrain, false);
-  app.add_option("--against", command->against,
-                 "The source: certified errors are checked at each of its samples")
-      ->type_name("INPUT");
+  auto* against = app.add_option("--against", command->against,
+                                 "The source: certified errors are checked at each of its samples")
+                      ->type_name("INPUT");
   app.add_option("--tolerance", command->tolerances,
                  "Tolerances to check against the source (default: 0 and four more)")
+      ->needs(against)
       ->check(not_negative())
       ->type_name("E");
   app.add_option("--memory", command->memory,

@@ -62,6 +62,10 @@ void check_options(const ViewshedOptions& options) {
                     known_vector_extensions() + " for vertices",
                 options.output);
   }
+  if (!is_raster(options.output) && options.pixel_size) {
+    throw Error(ErrorCode::invalid_argument, "--pixel-size is for rasters (.tif); leave it out",
+                options.output);
+  }
   check_output(options.output, options.overwrite);
 }
 
@@ -153,13 +157,14 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts
 int run_viewshed(const ViewshedOptions& options, const Context& context) {
   check_options(options);
   const ProgressiveTin terrain = open_terrain(options.terrain);
+  warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   ViewshedRequest request;
   request.eye = {options.x, options.y};
   request.eye_height = options.height;
   request.absolute = options.absolute;
   request.target_height = options.target_height;
-  const Ground ground = ground_of(crs.wkt);
+  const Ground ground = ground_of(crs);
   request.curvature = {options.curvature, ground.earth_diameter};
   const MapPoint per_unit = ground.per_map_unit(request.eye);
   request.ground_per_map_x = per_unit.x;

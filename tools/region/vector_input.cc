@@ -136,8 +136,10 @@ void read_geometries(const std::string& text, std::initializer_list<const char*>
     return;
   }
   if (!exists(text)) {
-    throw Error(ErrorCode::not_found,
-                "no such file, and not WKT either; write " + example + " or name a file", text);
+    throw Error(
+        ErrorCode::not_found,
+        "no such file, and not the WKT that is expected here; write " + example + " or name a file",
+        text);
   }
   errno = 0;
   std::ifstream in(text);
