@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The one table from error codes to the exit status of the program and the HTTP status of the
-// service.
+// The one table from error codes to the exit status of the program and the HTTP status that a
+// service built on the library would answer.
 #pragma once
 
 #include "engine/error.h"

@@ -34,7 +34,7 @@ struct BucketPoint {
 struct PointCounts {
   std::uint64_t source_points = 0;    ///< Read and not left out.
   std::uint64_t left_out_points = 0;  ///< By class or place, withheld, or without a height.
-  std::uint64_t merged_points = 0;    ///< Of the source's: those that share a position with others.
+  std::uint64_t merged_points = 0;    ///< Of the source's, less the positions that they fell on.
   /// How far a point moved at most: in plan when it was snapped to the grid (CRS units; 0 where the
   /// grid keeps every digit), and in height when it was merged (height's unit).
   double largest_shift_plan = 0.0;
