@@ -120,6 +120,9 @@ std::size_t StreamReader::feed(std::span<const std::byte> bytes, bool one_frame)
       waiting_.insert(waiting_.end(), bytes.begin(),
                       bytes.begin() + static_cast<std::ptrdiff_t>(taken));
       bytes = bytes.subspan(taken);
+      if (expects_ == Expects::kHead) {
+        check_magic();
+      }
       if (taken < missing) {
         return given;
       }
@@ -152,11 +155,18 @@ void StreamReader::take(std::span<const std::byte> bytes) {
   ++sequence_;
 }
 
-void StreamReader::take_head(std::span<const std::byte> bytes) {
-  const auto head = read_object<stream::Head>(bytes);
-  if (head.magic != stream::kMagic) {
+/// Of as much of the head as there is: a few other bytes are no stream that was cut.
+void StreamReader::check_magic() const {
+  const std::size_t bytes = std::min(waiting_.size(), stream::kMagic.size());
+  if (!std::equal(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(bytes),
+                  stream::kMagic.begin(),
+                  [](std::byte a, std::uint8_t b) { return a == std::byte{b}; })) {
     reject("this is no stream of ptin; the first bytes are others");
   }
+}
+
+void StreamReader::take_head(std::span<const std::byte> bytes) {
+  const auto head = read_object<stream::Head>(bytes);
   if (head.major_version > stream::kMajorVersion) {
     throw Error(ErrorCode::unsupported_version,
                 "the stream has version " + std::to_string(head.major_version) +

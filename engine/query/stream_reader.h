@@ -87,6 +87,7 @@ class StreamReader {
   [[nodiscard]] std::size_t wanted() const;
   std::size_t feed(std::span<const std::byte> bytes, bool one_frame);
   void take(std::span<const std::byte> bytes);
+  void check_magic() const;
   void take_head(std::span<const std::byte> bytes);
   void take_frame(const stream::FrameHead& head, std::span<const std::byte> payload);
   void take_start(std::span<const std::byte> payload);

@@ -119,6 +119,12 @@ TEST_F(StreamReaderRejects, NothingWhenNothingIsWrong) {
   expect(ErrorCode::internal);
 }
 TEST_F(StreamReaderRejects, AnotherMagic) { frames.head.magic[1] = 'X', expect(); }
+TEST_F(StreamReaderRejects, AFewOtherBytes) {
+  for (const char* text : {"j", "junk"}) {
+    const auto* bytes = reinterpret_cast<const std::byte*>(text);
+    EXPECT_EQ(rejected({bytes, bytes + std::strlen(text)}), ErrorCode::corruption) << text;
+  }
+}
 TEST_F(StreamReaderRejects, ANewerMajorVersion) {
   frames.head.major_version = 2, expect(ErrorCode::unsupported_version);
 }
