@@ -81,6 +81,15 @@ TEST(Validate, I2NamesANeighbourMissingOnOneSideAlone) {
             "I2");
 }
 
+TEST(Validate, I3NamesAVertexThatStandsInNoTriangle) {
+  // Areas cannot tell: with I2 they always add up to what the border has inside.
+  EXPECT_EQ(fault_after([](Drawing& d) {
+              d.tin.vertices.push_back({{1, 1}, 0, d.triangle("ABU")});
+              d.tin.has_height.push_back(1);
+            }),
+            "I3");
+}
+
 TEST(Validate, I4NamesAStarThatGoesRoundTwice) {
   // Every triangle around U is counter-clockwise and has its neighbours, but the star winds twice:
   // a disk that covers its middle doubly. Areas and V - E + F do not tell.

@@ -227,6 +227,10 @@ TEST_F(StoreOpen, RejectsHeadersThatNoProgramWrote) {
     expect_header_rejected("origin x", [=](FileHeader& h) { h.origin_x = layout::to_bits(v); });
     expect_header_rejected("origin y", [=](FileHeader& h) { h.origin_y = layout::to_bits(v); });
   }
+  for (const double v : {1.0, -0.5}) {
+    expect_header_rejected("float offset",
+                           [=](FileHeader& h) { h.height_offset = layout::to_bits(v); });
+  }
   expect_header_rejected("float step", [](FileHeader& h) { h.height_step = layout::to_bits(2.0); });
   expect_header_rejected("bounds off the grid", [](FileHeader& h) { h.bounds[0] = -1; });
   expect_header_rejected("bounds off the grid", [](FileHeader& h) { h.bounds[2] = kGridMax + 1; });

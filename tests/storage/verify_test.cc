@@ -268,6 +268,32 @@ TEST_F(Verify, FindsHeightsOutOfTheHeaderAndOutOfTheirIntervals) {
       own));
 }
 
+TEST_F(Verify, FindsARegionOfInfluenceThatReachesOutOfTheBounds) {
+  constexpr std::int32_t kSide = 1000;
+  const auto told = [&](const std::function<void(GridBox&)>& change) {
+    StoreContent content = random_content({.segments = 1, .records = 100, .side = kSide});
+    // Within the domain, and away from 0 so that there is room on the grid on every side.
+    const auto move = [](GridPoint& p) { p = {p.x + 10, p.y + 10}; };
+    for (CoarsestTin::V& v : content.t0.vertices) move(v.position);
+    content.facts.bounds = {10, 10, kSide + 10, kSide + 10};
+    for (VertexSplit& r : content.segments[0]) {
+      for (GridPoint* p : {&r.u, &r.w, &r.vl, &r.vr}) move(*p);
+      r.roi = {r.roi.min_x + 10, r.roi.min_y + 10, r.roi.max_x + 10, r.roi.max_y + 10};
+    }
+    change(content.segments[0][42].roi);
+    write(content);
+    const VerifyReport report = verify_store(path_);
+    EXPECT_LE(report.faults.size(), 1U);
+    return tells(report, "reaches out of the bounds");
+  };
+  EXPECT_FALSE(told([](GridBox&) {}));
+  EXPECT_FALSE(told([](GridBox& b) { b = {10, 10, kSide + 10, kSide + 10}; })) << "all of it";
+  EXPECT_TRUE(told([](GridBox& b) { b.min_x = 9; }));
+  EXPECT_TRUE(told([](GridBox& b) { b.min_y = 9; }));
+  EXPECT_TRUE(told([](GridBox& b) { b.max_x = kSide + 11; }));
+  EXPECT_TRUE(told([](GridBox& b) { b.max_y = kSide + 11; }));
+}
+
 TEST_F(Verify, FindsAVertexThatComesTwice) {
   // By one bit a position in the small square, by sorting parts in the large one.
   for (const std::int32_t side : {1000, 1 << 20}) {
@@ -310,8 +336,10 @@ TEST_F(Verify, FindsVoidsThatTheHeaderDenies) {
     content.facts.free_of_voids = true;
     for (auto& segment : content.segments) {
       for (VertexSplit& r : segment) {
+        if ((r.flags & VertexSplit::kVertexVoid) != 0) {
+          r.height_lo = r.height_hi = r.height;  // it had no interval
+        }
         r.flags &= ~VertexSplit::kAnyVoid;
-        r.height_lo = r.height_hi = r.height;
       }
     }
     change(content);
