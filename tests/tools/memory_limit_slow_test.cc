@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
 
+#include "tests/support/resource_limit.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -22,23 +22,10 @@ constexpr rlim_t kMiB = rlim_t{1} << 20;
 /// What was measured on 4097 x 4097 samples, and a third more; bench/README.md.
 constexpr rlim_t kMargin = 64 * kMiB;
 
-/// A limit on private memory, of this program and those that are run, while it lives.
-class DataLimit {
+/// On private memory.
+class DataLimit : public test::ResourceLimit {
  public:
-  explicit DataLimit(rlim_t bytes) {
-    ::getrlimit(RLIMIT_DATA, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    is_set_ = ::setrlimit(RLIMIT_DATA, &limit) == 0;
-  }
-  DataLimit(const DataLimit&) = delete;
-  DataLimit& operator=(const DataLimit&) = delete;
-  ~DataLimit() { ::setrlimit(RLIMIT_DATA, &before_); }
-  [[nodiscard]] bool is_set() const { return is_set_; }
-
- private:
-  rlimit before_{};
-  bool is_set_ = false;
+  explicit DataLimit(rlim_t bytes) : ResourceLimit(RLIMIT_DATA, bytes) {}
 };
 
 /// Whether this program is refused private memory beyond a limit.
