@@ -23,12 +23,12 @@ namespace ptin::tools::testing {
 
 namespace {
 
-/// Starts the program with stdout and stderr in files; returns its process.
+/// Starts the program with stdin, stdout and stderr in files; returns its process.
 pid_t start_ptin(const std::vector<std::string>& arguments, const std::string& out,
-                 const std::string& err) {
+                 const std::string& err, const std::string& in = "/dev/null") {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 0, in.c_str(), O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT, 0600);
   std::vector<char*> argv{const_cast<char*>(PTIN_PROGRAM)};
@@ -77,6 +77,17 @@ std::string read_file(const std::string& path) {
   std::ostringstream content;
   content << in.rdbuf();
   return content.str();
+}
+
+Outcome run_ptin_reading(const std::string& input, const std::vector<std::string>& arguments) {
+  const TestFolder folder;
+  write_file(folder.file("in"), input);
+  Outcome outcome;
+  outcome.status =
+      status_of(start_ptin(arguments, folder.file("out"), folder.file("err"), folder.file("in")));
+  outcome.out = read_file(folder.file("out"));
+  outcome.err = read_file(folder.file("err"));
+  return outcome;
 }
 
 void write_file(const std::string& path, const std::string& content) {

@@ -33,6 +33,9 @@ Outcome run_ptin(const std::vector<std::string>& arguments,
                  std::optional<int> signal = std::nullopt,
                  std::chrono::milliseconds after = std::chrono::milliseconds(0));
 
+/// Runs `ptin ARGUMENTS` with these bytes on its standard input.
+Outcome run_ptin_reading(const std::string& input, const std::vector<std::string>& arguments);
+
 [[nodiscard]] std::string read_file(const std::string& path);
 void write_file(const std::string& path, const std::string& content);
 /// Number of lines that are not empty.

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin sight against numbers computed by hand: the Fresnel zone, the length over ground; and where
+// its pairs come from.
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using nlohmann::json;
+using testing::answer_of;
+using testing::Outcome;
+using testing::run_ptin;
+using testing::run_ptin_reading;
+using testing::TestFolder;
+using testing::write_file;
+
+constexpr double kPixel = 30;
+constexpr double kWavelength = 299792458.0 / 1e9;  // m, at 1 GHz
+constexpr double kEarthDiameter = 2 * 6378137.0;
+
+std::string east(double column) { return std::to_string(500015.0 + kPixel * column); }
+const char* const kNorth = "3999385";  // row 20
+
+/// Flat ground of 10 with a wall of 100 across column 16.
+class SightNumbers : public ::testing::Test {
+ protected:
+  SightNumbers() {
+    testing::RasterRecipe recipe;
+    recipe.value = [](int column, int) { return column == 16 ? 100.0 : 10.0; };
+    testing::make_raster(folder_.file("wall.tif"), recipe);
+    testing::expect_done({"build", folder_.file("wall.tif"), "-o", file_, "-q"});
+  }
+  /// Along row 20, both ends at one height.
+  [[nodiscard]] json asked(double from, double to, const std::string& height,
+                           const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {"sight",  file_,  east(from), kNorth,  height,
+                                    east(to), kNorth, height,     "--json"};
+    all.insert(all.end(), more.begin(), more.end());
+    return answer_of(all);
+  }
+  TestFolder folder_;
+  std::string file_ = folder_.file("wall.ptin");
+};
+
+/// Of the first Fresnel zone.
+double radius(double d1, double d2) { return std::sqrt(kWavelength * d1 * d2 / (d1 + d2)); }
+
+TEST_F(SightNumbers, FresnelRatioIsTheClearanceOverTheRadiusOfTheZone) {
+  // Above ground 140, so 50 above the wall, 180 m from one end and 360 m from the other.
+  const json flat = asked(10, 28, "140", {"--frequency", "1e9", "--curvature", "0"});
+  EXPECT_EQ(flat.at("verdict"), "visible");
+  EXPECT_NEAR(flat.at("fresnel").at("ratio").get<double>(), 50 / radius(180, 360), 1e-9);
+  EXPECT_NEAR(flat.at("fresnel").at("distance").get<double>(), 180, 1e-6);
+  EXPECT_NEAR(flat.at("fresnel").at("height").get<double>(), 150, 1e-9);
+  const double sinks = 0.5 * 180 * 360 / kEarthDiameter;
+  const json bent = asked(10, 28, "140", {"--frequency", "1e9", "--curvature", "0.5"});
+  EXPECT_NEAR(bent.at("fresnel").at("ratio").get<double>(), (50 - sinks) / radius(180, 360), 1e-9);
+  EXPECT_EQ(asked(10, 28, "140", {}).count("fresnel"), 0U) << "not asked for";
+}
+
+TEST_F(SightNumbers, FresnelRatioOfAHiddenLineIsBelowZero) {
+  // 40 above ground is 50 below the wall's top.
+  const json low = asked(10, 28, "40", {"--frequency", "1e9", "--curvature", "0"});
+  EXPECT_EQ(low.at("verdict"), "hidden");
+  EXPECT_NEAR(low.at("fresnel").at("ratio").get<double>(), -50 / radius(180, 360), 1e-9);
+}
+
+TEST_F(SightNumbers, FresnelRatioOverFlatGroundIsLeastInTheMiddle) {
+  const json over = asked(18, 30, "7", {"--frequency", "1e9", "--curvature", "0"});
+  EXPECT_NEAR(over.at("fresnel").at("ratio").get<double>(), 7 / radius(180, 180), 1e-9);
+  EXPECT_NEAR(over.at("fresnel").at("distance").get<double>(), 180, 1e-3);
+  // Half of the frequency: a zone wider by the root of two.
+  const json wider = asked(18, 30, "7", {"--frequency", "0.5e9", "--curvature", "0"});
+  EXPECT_NEAR(wider.at("fresnel").at("ratio").get<double>(), 7 / radius(180, 180) / std::sqrt(2.0),
+              1e-9);
+}
+
+TEST_F(SightNumbers, VerdictAloneIsTheSameVerdict) {
+  for (const auto& [height, verdict] : {std::pair{"5", "hidden"}, std::pair{"140", "visible"}}) {
+    const json whole = asked(4, 28, height, {});
+    const json alone = asked(4, 28, height, {"--verdict"});
+    EXPECT_EQ(whole.at("verdict"), verdict);
+    EXPECT_EQ(alone.at("verdict"), verdict);
+    EXPECT_FALSE(whole.at("clearance").is_null());
+    EXPECT_TRUE(alone.at("clearance").is_null());
+    EXPECT_EQ(alone.at("obstruction").is_null(), whole.at("obstruction").is_null());
+    EXPECT_LE(alone.at("cost").at("records_retrieved"), whole.at("cost").at("records_retrieved"));
+  }
+  // Some point below ground: on the wall, whose sides are at 11 and 13 columns.
+  const json alone = asked(4, 28, "5", {"--verdict"});
+  EXPECT_GT(alone.at("obstruction").at("distance"), kPixel * 11);
+  EXPECT_LT(alone.at("obstruction").at("distance"), kPixel * 13);
+}
+
+TEST_F(SightNumbers, PairsOnStandardInputAreThoseOfAFile) {
+  std::ostringstream rows;
+  rows << "x1,y1,h1,x2,y2,h2\n";
+  for (const char* height : {"1", "200", "5", "150"}) {
+    rows << east(4) << ',' << kNorth << ',' << height << ',' << east(28) << ',' << kNorth << ','
+         << height << '\n';
+  }
+  write_file(folder_.file("pairs.csv"), rows.str());
+  const Outcome of_file = run_ptin({"sight", file_, "--pairs", folder_.file("pairs.csv")});
+  const Outcome of_input = run_ptin_reading(rows.str(), {"sight", file_, "--pairs", "-"});
+  EXPECT_EQ(of_input.status, 0) << of_input.err;
+  EXPECT_EQ(of_input.out, of_file.out);
+  std::istringstream lines(of_input.out);
+  std::string line;
+  std::getline(lines, line);
+  for (const char* verdict : {"hidden,", "visible,", "hidden,", "visible,"}) {
+    std::getline(lines, line);
+    EXPECT_EQ(line.find(verdict), 0U) << line;
+  }
+  EXPECT_EQ(run_ptin_reading("1 2 3 4 5\n", {"sight", file_, "--pairs", "-"}).status, 2);
+}
+
+/// Length of the meridian of WGS 84 between two latitudes, degrees: Simpson's rule over its radius
+/// of curvature.
+double meridian(double from, double to) {
+  constexpr double kA = 6378137.0, kF = 1 / 298.257223563, kE2 = kF * (2 - kF);
+  const auto at = [](double degrees) {
+    const double sine = std::sin(degrees * M_PI / 180);
+    return kA * (1 - kE2) / std::pow(1 - kE2 * sine * sine, 1.5);
+  };
+  constexpr int kSteps = 1000;
+  const double h = (to - from) / kSteps;
+  double sum = at(from) + at(to);
+  for (int i = 1; i < kSteps; ++i) sum += (i % 2 == 1 ? 4 : 2) * at(from + i * h);
+  return sum * h / 3 * M_PI / 180;
+}
+
+TEST(SightInDegrees, MeasuresAlongTheEllipsoid) {
+  const TestFolder folder;
+  testing::RasterRecipe recipe;
+  recipe.value = [](int, int) { return 0.0; };
+  recipe.epsg = 4326;
+  recipe.pixel = 0.05;
+  recipe.west = 10 - 0.025;
+  recipe.north = 46 + 0.025;
+  testing::make_raster(folder.file("flat.tif"), recipe);
+  const std::string file = folder.file("flat.ptin");
+  testing::expect_done({"build", folder.file("flat.tif"), "-o", file, "-q"});
+  const auto length = [&](const char* x1, const char* y1, const char* x2, const char* y2) {
+    return answer_of({"sight", file, x1, y1, "9", x2, y2, "9", "--json", "--curvature", "0"})
+        .at("length")
+        .get<double>();
+  };
+  EXPECT_NEAR(meridian(44.5, 45.5), 111131.778, 1e-3);
+  EXPECT_NEAR(length("10.5", "44.5", "10.5", "45.5"), meridian(44.5, 45.5), 1e-4);
+  EXPECT_NEAR(length("10.5", "45.5", "10.5", "45.55"), meridian(45.5, 45.55), 1e-4);
+  // Across meridians the shortest way is a little shorter than the parallel: a cos(lat) / w a radian.
+  const double parallel = 78846.835;  // a degree at 45 N
+  const double across = length("10.1", "45", "11.1", "45");
+  EXPECT_LT(across, parallel);
+  EXPECT_NEAR(across, parallel, 1.0);
+  EXPECT_NEAR(length("10.1", "45", "10.2", "45"), parallel / 10, 1e-2);
+  const json answer =
+      answer_of({"sight", file, "10.5", "44.5", "9", "10.5", "45.5", "9", "--json"});
+  EXPECT_EQ(answer.at("verdict"), "hidden") << "the Earth's curvature, in metres";
+}
+
+}  // namespace
+}  // namespace ptin::tools
