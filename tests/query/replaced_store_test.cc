@@ -169,13 +169,6 @@ std::vector<Question> questions() {
        [](const ProgressiveTin& t, const Store&) -> Asking {
          return [&] { (void)highest(t, {}); };
        }},
-      {"HighestOutside",  // decided without a record
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
-         const MapPoint far = at(s->facts(), 7, 7), farther = at(s->facts(), 8, 8);
-         HighestRequest request;
-         request.window = Window{far.x, far.y, farther.x, farther.y};
-         return [&t, request] { (void)highest(t, request); };
-       }},
       {"IsolinesAboveAll",
        [](const ProgressiveTin& t, const Store& s) -> Asking {
          IsolineRequest request;
