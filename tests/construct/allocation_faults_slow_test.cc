@@ -32,8 +32,8 @@
 namespace {
 
 /// Allocations until one fails; the one after it succeeds again. Far below 0: none does.
-constexpr std::int64_t kNever = std::int64_t{-1} << 62;
-std::atomic<std::int64_t> allocations_left{kNever};
+constexpr std::int64_t kNoneFails = std::int64_t{-1} << 62;
+std::atomic<std::int64_t> allocations_left{kNoneFails};
 
 /// Functions of libraries that allocate where they must not throw, and so end the process without
 /// memory. Nobody else is excused.
@@ -61,7 +61,7 @@ bool is_excused() {
 
 /// Whether this is the one that fails.
 bool fails() {
-  if (allocations_left.load(std::memory_order_relaxed) <= kNever ||
+  if (allocations_left.load(std::memory_order_relaxed) <= kNoneFails ||
       allocations_left.fetch_sub(1, std::memory_order_relaxed) != 1) {
     return false;
   }
@@ -114,7 +114,7 @@ class FailingAllocation {
   explicit FailingAllocation(std::int64_t nth) : nth_(nth) { allocations_left = nth; }
   FailingAllocation(const FailingAllocation&) = delete;
   FailingAllocation& operator=(const FailingAllocation&) = delete;
-  ~FailingAllocation() { allocations_left = kNever; }
+  ~FailingAllocation() { allocations_left = kNoneFails; }
   [[nodiscard]] std::int64_t allocations() const { return nth_ - allocations_left; }
 
  private:

@@ -264,12 +264,12 @@ int highest_rank(const Built& b) {
 
 /// 4 x 4 tiles, so small that one sample in 27 is on a seam (of tiles of 256, which builds take,
 /// one in 128), over one tile. Counts are those of every run.
-constexpr int kSize = 161;
-constexpr std::int64_t kSide = 40;
+constexpr int kSamplesAlong = 161;
+constexpr std::int64_t kTileSide = 40;
 
 TEST(Hierarchy, NeedsHardlyMoreVerticesThanOneTile) {
-  const TestTerrain terrain = hills(kSize, 4, false);
-  const Built tiled = build_tiled(terrain, kSide);
+  const TestTerrain terrain = hills(kSamplesAlong, 4, false);
+  const Built tiled = build_tiled(terrain, kTileSide);
   const Built whole = build_tiled(terrain, 1000);
   // 1.016, 1.028, 1.016, 0.966, 0.992 and 1.029 when this was written.
   for (const double tolerance : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
@@ -279,16 +279,16 @@ TEST(Hierarchy, NeedsHardlyMoreVerticesThanOneTile) {
 }
 
 TEST(Hierarchy, RetrievesHardlyMoreRecordsThanOneTile) {
-  const TestTerrain terrain = hills(kSize, 4, false);
-  const Built tiled = build_tiled(terrain, kSide);
+  const TestTerrain terrain = hills(kSamplesAlong, 4, false);
+  const Built tiled = build_tiled(terrain, kTileSide);
   const Built whole = build_tiled(terrain, 1000);
   for (const double tolerance : {0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
     SCOPED_TRACE(tolerance);
     // The aim is 1.05 for windows. These have a seam each or two, and the largest of the ratios were
     // 1.033 for windows of 20 and 1.053 for those of 40 (tiles of 80 in 321 x 321: 1.027).
     for (const int side : {20, 40}) {
-      EXPECT_LT(records_in_windows(tiled, kSize, side, tolerance),
-                1.07 * records_in_windows(whole, kSize, side, tolerance))
+      EXPECT_LT(records_in_windows(tiled, kSamplesAlong, side, tolerance),
+                1.07 * records_in_windows(whole, kSamplesAlong, side, tolerance))
           << "windows of " << side;
     }
     // The aim is 1.10 for points; 0.94 to 0.99: boxes that stay within a tile are smaller.
@@ -297,7 +297,7 @@ TEST(Hierarchy, RetrievesHardlyMoreRecordsThanOneTile) {
 }
 
 TEST(Hierarchy, ChainsDoNotGrowWithTheNumberOfTiles) {
-  const TestTerrain terrain = hills(kSize, 4, false);
+  const TestTerrain terrain = hills(kSamplesAlong, 4, false);
   const int whole = highest_rank(build_tiled(terrain, 1000));
   // 47 as one tile; 48, 47 and 53 in 4, 16 and 64 tiles.
   for (const std::int64_t side : {80, 40, 20}) {

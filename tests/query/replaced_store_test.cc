@@ -59,13 +59,13 @@ void write_over(const std::string& from, const std::string& to) {
   out << bytes;
 }
 
-struct Change {
+struct FileChange {
   const char* name;
   /// @param other  A good store of another terrain, to be used up.
   std::function<void(const std::string& path, const std::string& other)> make;
 };
 
-std::vector<Change> changes() {
+std::vector<FileChange> changes() {
   return {
       {"Replaced",
        [](const std::string& path, const std::string& other) { fs::rename(other, path); }},
@@ -86,14 +86,14 @@ std::vector<Change> changes() {
 
 /// Something to ask again and again; `terrain` outlives it.
 using Asking = std::function<void()>;
-struct Question {
+struct KindOfQuestion {
   const char* name;
   std::function<Asking(const ProgressiveTin& terrain, std::shared_ptr<const StoreFile> store)>
       prepare;
 };
-void PrintTo(const Question& question, std::ostream* out) { *out << question.name; }
+void PrintTo(const KindOfQuestion& question, std::ostream* out) { *out << question.name; }
 
-MapPoint at(const StoreFacts& facts, double share_x, double share_y) {
+MapPoint spot_at(const StoreFacts& facts, double share_x, double share_y) {
   return facts.map.to_map(facts.bounds.max_x * share_x, facts.bounds.max_y * share_y);
 }
 
@@ -101,8 +101,8 @@ Asking moves_of(std::shared_ptr<const StoreFile> store) {
   const auto window = std::make_shared<MovingWindow>(store);
   return [window, store, n = 0]() mutable {
     const double share = 0.1 * (n++ % 8);
-    const MapPoint lower = at(store->facts(), share, share);
-    const MapPoint upper = at(store->facts(), share + 0.2, share + 0.2);
+    const MapPoint lower = spot_at(store->facts(), share, share);
+    const MapPoint upper = spot_at(store->facts(), share + 0.2, share + 0.2);
     const auto before = reference::canonical(window->tin());
     try {
       window->move_to(meets_region(Window{lower.x, lower.y, upper.x, upper.y}, store->facts().map));
@@ -113,7 +113,7 @@ Asking moves_of(std::shared_ptr<const StoreFile> store) {
   };
 }
 
-std::vector<Question> questions() {
+std::vector<KindOfQuestion> questions() {
   using Store = std::shared_ptr<const StoreFile>;
   return {
       {"Refine",
@@ -133,11 +133,11 @@ std::vector<Question> questions() {
        }},
       {"Locate",
        [](const ProgressiveTin& t, const Store& s) -> Asking {
-         return [&t, p = at(s->facts(), 0.4, 0.6)] { (void)locate(t, std::span(&p, 1)); };
+         return [&t, p = spot_at(s->facts(), 0.4, 0.6)] { (void)locate(t, std::span(&p, 1)); };
        }},
       {"LocateAtACount",
        [](const ProgressiveTin& t, const Store& s) -> Asking {
-         return [&t, p = at(s->facts(), 0.4, 0.6)] {
+         return [&t, p = spot_at(s->facts(), 0.4, 0.6)] {
            LocateRequest request;
            request.vertices = t.t0().vertices.size() + 40;
            (void)locate(t, std::span(&p, 1), request);
@@ -145,24 +145,23 @@ std::vector<Question> questions() {
        }},
       {"Profile",
        [](const ProgressiveTin& t, const Store& s) -> Asking {
-         return [&t, line = std::vector{at(s->facts(), 0.1, 0.1), at(s->facts(), 0.9, 0.8)}] {
-           (void)profile(t, line);
-         };
+         return [&t, line = std::vector{spot_at(s->facts(), 0.1, 0.1),
+                                        spot_at(s->facts(), 0.9, 0.8)}] { (void)profile(t, line); };
        }},
       {"Sight",
        [](const ProgressiveTin& t, const Store& s) -> Asking {
-         const SightPair pair{at(s->facts(), 0.1, 0.1), 2, at(s->facts(), 0.9, 0.8), 2};
+         const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 2, spot_at(s->facts(), 0.9, 0.8), 2};
          return [&t, pair] { (void)sight(t, pair); };
        }},
       {"SightSolver",
        [](const ProgressiveTin& t, const Store& s) -> Asking {
-         const SightPair pair{at(s->facts(), 0.1, 0.1), 2, at(s->facts(), 0.9, 0.8), 2};
+         const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 2, spot_at(s->facts(), 0.9, 0.8), 2};
          const auto solver = std::make_shared<SightSolver>(t, SightRequest{});
          return [solver, pair] { (void)solver->solve(pair); };
        }},
       {"UprightSight",  // decided without a record
        [](const ProgressiveTin& t, const Store& s) -> Asking {
-         const SightPair pair{at(s->facts(), 0.1, 0.1), 1, at(s->facts(), 0.1, 0.1), 2};
+         const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 1, spot_at(s->facts(), 0.1, 0.1), 2};
          return [&t, pair] { (void)sight(t, pair); };
        }},
       {"Highest",
@@ -178,7 +177,7 @@ std::vector<Question> questions() {
       {"ViewshedAtAnError",
        [](const ProgressiveTin& t, const Store& s) -> Asking {
          ViewshedRequest request;
-         request.eye = at(s->facts(), 0.5, 0.5);
+         request.eye = spot_at(s->facts(), 0.5, 0.5);
          request.eye_height = 5;
          request.radius = s->facts().map.to_map(30, 0).x - s->facts().map.to_map(0, 0).x;
          request.tolerance = (s->facts().max_height - s->facts().min_height) / 10;
@@ -193,7 +192,7 @@ std::vector<Question> questions() {
       {"Viewshed",
        [](const ProgressiveTin& t, const Store& s) -> Asking {
          ViewshedRequest request;
-         request.eye = at(s->facts(), 0.5, 0.5);
+         request.eye = spot_at(s->facts(), 0.5, 0.5);
          request.eye_height = 5;
          request.radius = s->facts().map.to_map(30, 0).x - s->facts().map.to_map(0, 0).x;
          return [&t, request] { (void)viewshed(t, request); };
@@ -214,7 +213,7 @@ std::vector<Question> questions() {
   };
 }
 
-class ReplacedStore : public ::testing::TestWithParam<Question> {
+class ReplacedStore : public ::testing::TestWithParam<KindOfQuestion> {
  protected:
   static std::optional<Error> error_of(const Asking& ask) {
     try {
@@ -226,7 +225,7 @@ class ReplacedStore : public ::testing::TestWithParam<Question> {
   }
 
   /// @param is_warm  Asked before the change too: a mapped store has then verified its pages.
-  static void expect_noticed(const Change& change, PageAccess access, bool is_warm) {
+  static void expect_noticed(const FileChange& change, PageAccess access, bool is_warm) {
     SCOPED_TRACE(std::string(change.name) + (is_warm ? ", asked before" : ", not asked before"));
     const TemporaryStore file(terrain_of(1));
     const TemporaryStore other(terrain_of(2));
@@ -248,14 +247,14 @@ class ReplacedStore : public ::testing::TestWithParam<Question> {
 
 TEST_P(ReplacedStore, IsNoticedThroughAMapping) {
   install_sigbus_guard();
-  for (const Change& change : changes()) {
+  for (const FileChange& change : changes()) {
     expect_noticed(change, PageAccess::kMapped, false);
     expect_noticed(change, PageAccess::kMapped, true);
   }
 }
 
 TEST_P(ReplacedStore, IsNoticedByReads) {
-  for (const Change& change : changes()) {
+  for (const FileChange& change : changes()) {
     expect_noticed(change, PageAccess::kPread, false);
     expect_noticed(change, PageAccess::kPread, true);
   }

@@ -32,7 +32,7 @@ using testing::TestFolder;
 
 using Arguments = std::vector<std::string>;
 
-Arguments with(Arguments command, const Arguments& more) {
+Arguments together(Arguments command, const Arguments& more) {
   command.insert(command.end(), more.begin(), more.end());
   return command;
 }
@@ -83,7 +83,7 @@ class EveryIndexAndReader : public Options {
 
  private:
   static Told told(const Arguments& question, const Arguments& more) {
-    json answer = answer_of(with(with(question, more), {"--json"}));
+    json answer = answer_of(together(together(question, more), {"--json"}));
     answer.at("cost").erase("seconds");
     if (question[0] == "highest") {
       for (json& vertex : answer.at("vertices")) {
@@ -131,25 +131,26 @@ TEST_F(StreamHave, SaysTheSameAsTheListOfServings) {
       {"level", {"--level", level, "--error", "4"}, {"--have-level", level, "--have-error", "4"}},
       {"T0", {"--splits", "0"}, {"--have-splits", "0"}},
       {"all",
-       with(with({"--window"}, window), {"--error", "3", "--level", level, "--splits", "50"}),
-       with(with({"--have-window"}, window),
-            {"--have-error", "3", "--have-level", level, "--have-splits", "50"})}};
+       together(together({"--window"}, window),
+                {"--error", "3", "--level", level, "--splits", "50"}),
+       together(together({"--have-window"}, window),
+                {"--have-error", "3", "--have-level", level, "--have-splits", "50"})}};
   for (const Serving& s : servings) {
     SCOPED_TRACE(s.name);
     const Arguments overwritten = {"--overwrite", "--json"};
     const json first =
-        answer_of(with(with({"stream", store, "-o", file("a.pts")}, s.asked), overwritten));
+        answer_of(together(together({"stream", store, "-o", file("a.pts")}, s.asked), overwritten));
     const json has = answer_of({"unstream", file("a.pts"), "--json"}).at("have");
     const Arguments rest = {"stream", store, "--error", "1"};
-    const json listed =
-        answer_of(with(with(rest, {"--have", has.dump(), "-o", file("listed.pts")}), overwritten));
+    const json listed = answer_of(
+        together(together(rest, {"--have", has.dump(), "-o", file("listed.pts")}), overwritten));
     const json said =
-        answer_of(with(with(with(rest, s.had), {"-o", file("said.pts")}), overwritten));
+        answer_of(together(together(together(rest, s.had), {"-o", file("said.pts")}), overwritten));
     EXPECT_EQ(said.at("splits"), listed.at("splits"));
     EXPECT_EQ(said.at("base_vertices"), listed.at("base_vertices"));
     EXPECT_EQ(read_file(file("said.pts")), read_file(file("listed.pts")));
-    const json whole = answer_of(
-        with({"unstream", file("a.pts"), file("said.pts"), "-o", file("whole.ply")}, overwritten));
+    const json whole = answer_of(together(
+        {"unstream", file("a.pts"), file("said.pts"), "-o", file("whole.ply")}, overwritten));
     EXPECT_TRUE(whole.at("complete"));
     const auto count = [](const json& answer, const char* what) {
       return answer.at(what).get<int>();
@@ -164,8 +165,8 @@ using IsolineLevels = Options;
 TEST_F(IsolineLevels, AreCountedFromTheBase) {
   const std::string store = built(folder_, "mountains_257.tif");
   const auto asked = [&](const Arguments& levels) {
-    const json answer =
-        answer_of(with({"isoline", store, "-o", file("i.fgb"), "--overwrite", "--json"}, levels));
+    const json answer = answer_of(
+        together({"isoline", store, "-o", file("i.fgb"), "--overwrite", "--json"}, levels));
     return std::pair(answer.at("levels").get<std::vector<double>>(), read_file(file("i.fgb")));
   };
   const auto by_interval = asked({"--interval", "100", "--base", "37"});
@@ -281,7 +282,8 @@ TEST_F(ExportNodata, IsWrittenWhereThereIsNoSurfaceAndSaidInTheRaster) {
   expect_done({"build", file("t.tif"), "-o", file("t.ptin"), "-q"});
   for (const Arguments& more : {Arguments{}, Arguments{"--nodata", "-77.5"}}) {
     const double expected = more.empty() ? -9999.0 : -77.5;
-    expect_done(with({"export", file("t.ptin"), "-o", file("e.tif"), "-q", "--overwrite"}, more));
+    expect_done(
+        together({"export", file("t.ptin"), "-o", file("e.tif"), "-q", "--overwrite"}, more));
     GDALAllRegister();
     const GDALDatasetUniquePtr data(GDALDataset::Open(file("e.tif").c_str()));
     ASSERT_NE(data, nullptr);

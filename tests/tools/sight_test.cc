@@ -24,12 +24,12 @@ using testing::run_ptin_reading;
 using testing::TestFolder;
 using testing::write_file;
 
-constexpr double kPixel = 30;
+constexpr double kColumnWidth = 30;
 constexpr double kWavelength = 299792458.0 / 1e9;  // m, at 1 GHz
 constexpr double kEarthDiameter = 2 * 6378137.0;
 
-std::string east(double column) { return std::to_string(500015.0 + kPixel * column); }
-const char* const kNorth = "3999385";  // row 20
+std::string x_of(double column) { return std::to_string(500015.0 + kColumnWidth * column); }
+const char* const kRowY = "3999385";  // row 20
 
 /// Flat ground of 10 with a wall of 100 across column 16.
 class SightNumbers : public ::testing::Test {
@@ -43,8 +43,8 @@ class SightNumbers : public ::testing::Test {
   /// Along row 20, both ends at one height.
   [[nodiscard]] json asked(double from, double to, const std::string& height,
                            const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {"sight",  file_,  east(from), kNorth,  height,
-                                    east(to), kNorth, height,     "--json"};
+    std::vector<std::string> all = {"sight",  file_, x_of(from), kRowY,   height,
+                                    x_of(to), kRowY, height,     "--json"};
     all.insert(all.end(), more.begin(), more.end());
     return answer_of(all);
   }
@@ -53,18 +53,19 @@ class SightNumbers : public ::testing::Test {
 };
 
 /// Of the first Fresnel zone.
-double radius(double d1, double d2) { return std::sqrt(kWavelength * d1 * d2 / (d1 + d2)); }
+double zone_radius(double d1, double d2) { return std::sqrt(kWavelength * d1 * d2 / (d1 + d2)); }
 
 TEST_F(SightNumbers, FresnelRatioIsTheClearanceOverTheRadiusOfTheZone) {
   // Above ground 140, so 50 above the wall, 180 m from one end and 360 m from the other.
   const json flat = asked(10, 28, "140", {"--frequency", "1e9", "--curvature", "0"});
   EXPECT_EQ(flat.at("verdict"), "visible");
-  EXPECT_NEAR(flat.at("fresnel").at("ratio").get<double>(), 50 / radius(180, 360), 1e-9);
+  EXPECT_NEAR(flat.at("fresnel").at("ratio").get<double>(), 50 / zone_radius(180, 360), 1e-9);
   EXPECT_NEAR(flat.at("fresnel").at("distance").get<double>(), 180, 1e-6);
   EXPECT_NEAR(flat.at("fresnel").at("height").get<double>(), 150, 1e-9);
   const double sinks = 0.5 * 180 * 360 / kEarthDiameter;
   const json bent = asked(10, 28, "140", {"--frequency", "1e9", "--curvature", "0.5"});
-  EXPECT_NEAR(bent.at("fresnel").at("ratio").get<double>(), (50 - sinks) / radius(180, 360), 1e-9);
+  EXPECT_NEAR(bent.at("fresnel").at("ratio").get<double>(), (50 - sinks) / zone_radius(180, 360),
+              1e-9);
   EXPECT_EQ(asked(10, 28, "140", {}).count("fresnel"), 0U) << "not asked for";
 }
 
@@ -72,17 +73,17 @@ TEST_F(SightNumbers, FresnelRatioOfAHiddenLineIsBelowZero) {
   // 40 above ground is 50 below the wall's top.
   const json low = asked(10, 28, "40", {"--frequency", "1e9", "--curvature", "0"});
   EXPECT_EQ(low.at("verdict"), "hidden");
-  EXPECT_NEAR(low.at("fresnel").at("ratio").get<double>(), -50 / radius(180, 360), 1e-9);
+  EXPECT_NEAR(low.at("fresnel").at("ratio").get<double>(), -50 / zone_radius(180, 360), 1e-9);
 }
 
 TEST_F(SightNumbers, FresnelRatioOverFlatGroundIsLeastInTheMiddle) {
   const json over = asked(18, 30, "7", {"--frequency", "1e9", "--curvature", "0"});
-  EXPECT_NEAR(over.at("fresnel").at("ratio").get<double>(), 7 / radius(180, 180), 1e-9);
+  EXPECT_NEAR(over.at("fresnel").at("ratio").get<double>(), 7 / zone_radius(180, 180), 1e-9);
   EXPECT_NEAR(over.at("fresnel").at("distance").get<double>(), 180, 1e-3);
   // Half of the frequency: a zone wider by the root of two.
   const json wider = asked(18, 30, "7", {"--frequency", "0.5e9", "--curvature", "0"});
-  EXPECT_NEAR(wider.at("fresnel").at("ratio").get<double>(), 7 / radius(180, 180) / std::sqrt(2.0),
-              1e-9);
+  EXPECT_NEAR(wider.at("fresnel").at("ratio").get<double>(),
+              7 / zone_radius(180, 180) / std::sqrt(2.0), 1e-9);
 }
 
 TEST_F(SightNumbers, VerdictAloneIsTheSameVerdict) {
@@ -98,15 +99,15 @@ TEST_F(SightNumbers, VerdictAloneIsTheSameVerdict) {
   }
   // Some point below ground: on the wall, whose sides are at 11 and 13 columns.
   const json alone = asked(4, 28, "5", {"--verdict"});
-  EXPECT_GT(alone.at("obstruction").at("distance"), kPixel * 11);
-  EXPECT_LT(alone.at("obstruction").at("distance"), kPixel * 13);
+  EXPECT_GT(alone.at("obstruction").at("distance"), kColumnWidth * 11);
+  EXPECT_LT(alone.at("obstruction").at("distance"), kColumnWidth * 13);
 }
 
 TEST_F(SightNumbers, PairsOnStandardInputAreThoseOfAFile) {
   std::ostringstream rows;
   rows << "x1,y1,h1,x2,y2,h2\n";
   for (const char* height : {"1", "200", "5", "150"}) {
-    rows << east(4) << ',' << kNorth << ',' << height << ',' << east(28) << ',' << kNorth << ','
+    rows << x_of(4) << ',' << kRowY << ',' << height << ',' << x_of(28) << ',' << kRowY << ','
          << height << '\n';
   }
   write_file(folder_.file("pairs.csv"), rows.str());

@@ -95,15 +95,15 @@ SeenPoints points_in(const std::string& path) {
 }
 
 // 33 x 33 samples 30 apart, the centre of the first at (500015, 3999985).
-constexpr int kSide = 33;
-constexpr double kPixel = 30;
+constexpr int kSamples = 33;
+constexpr double kSpacing = 30;
 constexpr int kEyeColumn = 5, kEyeRow = 10;
 const char* const kEyeX = "500165";
 const char* const kEyeY = "3999685";
 
 /// Ground of 10 with a wall of 100 across column 16 and a pond without heights north of the eye.
 bool is_pond(int column, int row) { return column > 2 && column < 8 && row > 3 && row < 7; }
-double ground(int column, int row) {
+double wall_and_pond(int column, int row) {
   return is_pond(column, row) ? -9999.0 : column == 16 ? 100.0 : 10.0;
 }
 
@@ -134,7 +134,7 @@ class ViewshedOutput : public ::testing::Test {
 };
 
 TEST_F(ViewshedOutput, RasterLiesOnTheSamplesAndTellsVisibleHiddenAndNoTargetApart) {
-  build(ground);
+  build(wall_and_pond);
   const json told = seen("seen.tif", "5", "600");
   const SeenRaster raster(folder_.file("seen.tif"));
   constexpr int kReach = 20;  // pixels
@@ -143,8 +143,8 @@ TEST_F(ViewshedOutput, RasterLiesOnTheSamplesAndTellsVisibleHiddenAndNoTargetApa
   EXPECT_EQ(told.at("width"), raster.width);
   EXPECT_EQ(told.at("height"), raster.height);
   EXPECT_EQ(raster.place,
-            (std::array<double, 6>{500165.0 - kReach * kPixel - kPixel / 2, kPixel, 0,
-                                   3999685.0 + kReach * kPixel + kPixel / 2, 0, -kPixel}));
+            (std::array<double, 6>{500165.0 - kReach * kSpacing - kSpacing / 2, kSpacing, 0,
+                                   3999685.0 + kReach * kSpacing + kSpacing / 2, 0, -kSpacing}));
   EXPECT_EQ(raster.epsg, "32611");
   EXPECT_EQ(raster.nodata, 128);
   std::set<int> met;
@@ -153,7 +153,7 @@ TEST_F(ViewshedOutput, RasterLiesOnTheSamplesAndTellsVisibleHiddenAndNoTargetApa
       const int column = kEyeColumn + i - kReach, row = kEyeRow + j - kReach;
       const bool is_near =
           (i - kReach) * (i - kReach) + (j - kReach) * (j - kReach) <= kReach * kReach;
-      const bool is_there = column >= 0 && row >= 0 && column < kSide && row < kSide;
+      const bool is_there = column >= 0 && row >= 0 && column < kSamples && row < kSamples;
       const int expected = !is_near || !is_there || is_pond(column, row) ? 128
                            : column <= 16                                ? 255
                                                                          : 0;
@@ -167,7 +167,7 @@ TEST_F(ViewshedOutput, RasterLiesOnTheSamplesAndTellsVisibleHiddenAndNoTargetApa
 }
 
 TEST_F(ViewshedOutput, PixelsOfAnotherSizeHaveTheEyeInTheirMiddle) {
-  build(ground);
+  build(wall_and_pond);
   seen("seen.tif", "5", "600", {"--pixel-size", "40"});
   const SeenRaster raster(folder_.file("seen.tif"));
   ASSERT_EQ(raster.width, 31);
@@ -181,20 +181,20 @@ TEST_F(ViewshedOutput, PixelsOfAnotherSizeHaveTheEyeInTheirMiddle) {
 }
 
 TEST_F(ViewshedOutput, LayerHasTheVerticesWithWhatIsSeenOfThem) {
-  build(ground);
+  build(wall_and_pond);
   for (const char* name : {"seen.gpkg", "seen.fgb"}) {
     const json told = seen(name, "5", "600");
     const SeenPoints points = points_in(folder_.file(name));
     std::size_t expected = 0;
-    for (int row = 0; row < kSide; ++row) {
-      for (int column = 0; column < kSide; ++column) {
-        const double dx = kPixel * (column - kEyeColumn), dy = kPixel * (kEyeRow - row);
+    for (int row = 0; row < kSamples; ++row) {
+      for (int column = 0; column < kSamples; ++column) {
+        const double dx = kSpacing * (column - kEyeColumn), dy = kSpacing * (kEyeRow - row);
         const auto found = points.find({500165.0 + dx, 3999685.0 + dy});
         const bool is_target = dx * dx + dy * dy <= 600.0 * 600.0 && !is_pond(column, row);
         ASSERT_EQ(found != points.end(), is_target) << column << " " << row;
         if (!is_target) continue;
         ++expected;
-        EXPECT_EQ(found->second.height, ground(column, row));
+        EXPECT_EQ(found->second.height, wall_and_pond(column, row));
         EXPECT_EQ(found->second.visible, column <= 16) << column << " " << row;
         EXPECT_TRUE(found->second.certain);
       }
@@ -255,7 +255,7 @@ TEST_F(ViewshedOutput, LayerAtAnErrorIsRightWhereItIsCertain) {
 }
 
 TEST_F(ViewshedOutput, InDegreesTakesItsRadiusInMetres) {
-  build(ground, 4326);
+  build(wall_and_pond, 4326);
   expect_done({"viewshed", file_, "10", "45", "5", "--radius", "1000", "--curvature", "0", "-o",
                folder_.file("seen.tif")});
   const SeenRaster raster(folder_.file("seen.tif"));
@@ -274,7 +274,7 @@ TEST_F(ViewshedOutput, InDegreesTakesItsRadiusInMetres) {
       const double distance = std::hypot((i - reach_x) * kEastPixel, (j - reach_y) * kNorthPixel);
       ASSERT_GT(std::abs(distance - 1000), 0.01) << "too near to tell";
       const int column = kEyeColumn + i - reach_x, row = kEyeRow + j - reach_y;
-      const bool is_there = column >= 0 && row >= 0 && column < kSide && row < kSide;
+      const bool is_there = column >= 0 && row >= 0 && column < kSamples && row < kSamples;
       const int expected = distance > 1000 || !is_there || is_pond(column, row) ? 128
                            : column <= 16                                       ? 255
                                                                                 : 0;
@@ -284,7 +284,7 @@ TEST_F(ViewshedOutput, InDegreesTakesItsRadiusInMetres) {
 }
 
 TEST_F(ViewshedOutput, TakesAnAbsoluteHeightAlsoAboveAVoid) {
-  build(ground);
+  build(wall_and_pond);
   const json above = seen("above.tif", "60", "800");
   const json absolute = seen("absolute.tif", "70", "800", {"--absolute"});
   EXPECT_EQ(above.at("eye_height"), 70.0);
