@@ -144,7 +144,7 @@ void BM_Load(benchmark::State& state, const std::string& index) {
   if (it == nullptr)
     return state.SkipWithError("needs PTIN_BENCH_STORE or the terrains of PTIN_SHARED_DATA");
   const HeightEncoding heights = it->store->facts().heights;
-  int built = 0;
+  static int built = 0;  // of all repetitions: what is there is opened, not built
   for (auto _ : state) {
     if (index == "packed") {
       IndexWriter writer(FileLayer::system(), it->folder.file(""), "load", heights);
