@@ -33,7 +33,16 @@ using test::ResourceLimit;
 
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 
-TEST(DefaultMemory, IsThreeQuartersOfTheSmallestLimit) {
+class DefaultMemory : public ::testing::Test {
+ protected:
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "needs a process without the memory of a sanitizer, which is beyond any limit";
+#endif
+  }
+};
+
+TEST_F(DefaultMemory, IsThreeQuartersOfTheSmallestLimit) {
   const std::uint64_t unlimited = default_memory();  // a cgroup may have a limit already
   EXPECT_LE(unlimited, kGiB);
   EXPECT_GT(unlimited, 0U);
@@ -49,7 +58,7 @@ TEST(DefaultMemory, IsThreeQuartersOfTheSmallestLimit) {
   EXPECT_EQ(default_memory(), std::min(unlimited, 450 * kMiB));
 }
 
-TEST(DefaultMemory, IsWhatAPlanTakesUnlessItIsToldOtherwise) {
+TEST_F(DefaultMemory, IsWhatAPlanTakesUnlessItIsToldOtherwise) {
   const ScratchFolder folder;
   const TileTree tree(1000, 1000, 256);
   BuildResources resources;
