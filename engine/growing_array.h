@@ -41,8 +41,8 @@ class GrowingArray {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 
-  /// Room for `capacity` elements, on large pages when it is much. Cost: none for the elements where
-  /// the system moves pages, else a copy of them.
+  /// Room for `capacity` elements, on large pages when it is much. Cost: none for the elements
+  /// where the system moves pages, else a copy of them.
   /// @throws std::bad_alloc  nothing has changed
   void reserve(std::size_t capacity) {
     if (capacity <= capacity_) {

@@ -85,10 +85,10 @@ struct Viewshed {
 /// Computes it. A target is hidden when some point of the segment from the eye to it, its ends left
 /// out, lies strictly below the surface; touching is visible, and voids hide nothing. Triangles are
 /// taken front to back, and each target is held against the horizon of the edges before it
-/// (horizon.h), so the answer is that of a sight line to each, up to the rounding of doubles: sight()
-/// decides exactly. With an eye on the grid, whole heights and no curvature, while products of three
-/// offsets fit 53 bits, nothing rounds but the direction in which two edges cross. Memory, the
-/// raster included, is known before the sweep begins.
+/// (horizon.h), so the answer is that of a sight line to each, up to the rounding of doubles:
+/// sight() decides exactly. With an eye on the grid, whole heights and no curvature, while products
+/// of three offsets fit 53 bits, nothing rounds but the direction in which two edges cross. Memory,
+/// the raster included, is known before the sweep begins.
 ///
 /// At a level of detail the full TIN lies within certified_deviation * distance / radius of the TIN
 /// that is swept. A target is hidden for certain when it is although all before it is lowered by

@@ -224,8 +224,8 @@ void Viewer::sweep() {
 }
 
 /// Along the ray, what is not known grows with the distance, in a straight line: so between two
-/// sides it changes no slope by more than at them. Curvature does, by a quarter of the drop over a side, within the
-/// triangle and again along its side.
+/// sides it changes no slope by more than at them. Curvature does, by a quarter of the drop over a
+/// side, within the triangle and again along its side.
 void Viewer::raise(TriangleId t, TriangleId n, Offset a, Offset b, Horizon& horizon) const {
   const bool surface = is_surface(t) || is_surface(n);
   if (bias_.sign == 0) {

@@ -26,7 +26,7 @@ struct Ground {
 /// The unit of lengths over ground, by name: that of heights, or what is taken for it.
 [[nodiscard]] std::string unit_of_ground(const CrsFacts& crs);
 
-/// @param crs  One without WKT, or whose WKT is not understood: plane metres, and heights in metres.
+/// @param crs  One without WKT, or whose WKT is not understood: plane metres, heights in metres.
 ///             Heights of no known unit are in that of the plane, over degrees in metres.
 [[nodiscard]] Ground ground_of(const CrsFacts& crs);
 
