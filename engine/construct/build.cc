@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <new>
 
 #include "engine/construct/build_job_internal.h"
 #include "engine/construct/memory_plan.h"
@@ -14,6 +15,7 @@
 #include "engine/construct/store_output.h"
 #include "engine/construct/tin_soup.h"
 #include "engine/error.h"
+#include "storage/file_questions.h"
 
 namespace ptin {
 
@@ -94,6 +96,15 @@ bool are_points(const std::vector<std::string>& inputs, const PointChoice& choic
   return points != 0;
 }
 
+Error out_of_memory(const std::string& output) {
+  const std::string folder = Workspace::folder_of(output);
+  const std::string kept = is_there(folder) ? "; what is done is kept in " + folder +
+                                                  ": go on by --resume, or remove it by --discard"
+                                            : "";
+  return {ErrorCode::resource_exhausted, "the system has no more memory for this build" + kept,
+          output};
+}
+
 }  // namespace
 
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
@@ -104,12 +115,16 @@ BuildReport build(const std::vector<std::string>& inputs, const std::string& out
   if (resources.unfinished == Unfinished::kRefuse && !resources.dry_run) {
     Workspace::refuse_unfinished(output);  // rasters are read before their plan is known
   }
-  if (!options.repair && std::any_of(inputs.begin(), inputs.end(), is_tin_file)) {
-    build_tin(job);
-  } else if (are_points(inputs, job.source_options().points)) {
-    build_points(job);
-  } else {
-    build_raster(job);
+  try {
+    if (!options.repair && std::any_of(inputs.begin(), inputs.end(), is_tin_file)) {
+      build_tin(job);
+    } else if (are_points(inputs, job.source_options().points)) {
+      build_points(job);
+    } else {
+      build_raster(job);
+    }
+  } catch (const std::bad_alloc&) {  // before the work began, or after it
+    throw out_of_memory(output);
   }
   job.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

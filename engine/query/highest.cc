@@ -93,6 +93,7 @@ class Search {
     result.certified_deviation = detail.certificate().deviation;
     result.exact = detail.is_exact(facts_);
     if (region_ && !region_->meets(facts_.bounds)) {
+      store_.pages().check_unchanged();  // bounds of a file that is gone say nothing
       result.state = PointState::kOutside;
       result.cost = context_.cost;
       return result;

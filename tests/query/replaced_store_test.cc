@@ -168,6 +168,13 @@ std::vector<KindOfQuestion> questions() {
        [](const ProgressiveTin& t, const Store&) -> Asking {
          return [&] { (void)highest(t, {}); };
        }},
+      {"HighestOutside",  // decided by the bounds alone
+       [](const ProgressiveTin& t, const Store& s) -> Asking {
+         const MapPoint low = spot_at(s->facts(), 7, 7), high = spot_at(s->facts(), 8, 8);
+         HighestRequest request;
+         request.window = Window{low.x, low.y, high.x, high.y};
+         return [&t, request] { (void)highest(t, request); };
+       }},
       {"IsolinesAboveAll",
        [](const ProgressiveTin& t, const Store& s) -> Asking {
          IsolineRequest request;
