@@ -105,30 +105,35 @@ Error out_of_memory(const std::string& output) {
           output};
 }
 
-}  // namespace
-
-BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
-                  const BuildOptions& options, const BuildResources& resources) {
+BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::string& output,
+                          const BuildOptions& options, const BuildResources& resources) {
   const auto begin = std::chrono::steady_clock::now();
   check_options(options);
   Job job{inputs, output, options, resources, {}};
   if (resources.unfinished == Unfinished::kRefuse && !resources.dry_run) {
     Workspace::refuse_unfinished(output);  // rasters are read before their plan is known
   }
-  try {
-    if (!options.repair && std::any_of(inputs.begin(), inputs.end(), is_tin_file)) {
-      build_tin(job);
-    } else if (are_points(inputs, job.source_options().points)) {
-      build_points(job);
-    } else {
-      build_raster(job);
-    }
-  } catch (const std::bad_alloc&) {  // before the work began, or after it
-    throw out_of_memory(output);
+  if (!options.repair && std::any_of(inputs.begin(), inputs.end(), is_tin_file)) {
+    build_tin(job);
+  } else if (are_points(inputs, job.source_options().points)) {
+    build_points(job);
+  } else {
+    build_raster(job);
   }
   job.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return job.report;
+}
+
+}  // namespace
+
+BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
+                  const BuildOptions& options, const BuildResources& resources) {
+  try {
+    return build_of_kind(inputs, output, options, resources);
+  } catch (const std::bad_alloc&) {  // before the work began, or after it
+    throw out_of_memory(output);
+  }
 }
 
 }  // namespace ptin
