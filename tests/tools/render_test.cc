@@ -13,6 +13,18 @@ namespace {
 
 constexpr MapPoint kUnits{1, 1};
 
+TEST(DrawText, KnowsEveryLetterOfNumbersAndUnits) {
+  for (const char letter : std::string("0123456789.-+/ekmft")) {
+    Image image(8, 10, {255, 255, 255});
+    draw_text(image, 1, 1, std::string(1, letter));
+    int drawn = 0;
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) drawn += image.at(x, y)[0] < 200 ? 1 : 0;
+    }
+    EXPECT_GT(drawn, 1) << letter;
+  }
+}
+
 TEST(MakeView, KeepsTheAspectOfTheGround) {
   const View view = make_view({0, 0, 200, 100}, kUnits, 0, 0);
   EXPECT_EQ(view.width, 1200);

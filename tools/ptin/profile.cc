@@ -174,7 +174,7 @@ Image plot_of(const ProfileResult& profile, const CrsFacts& crs) {
     draw_text(image, kMargin, kHeight - kMargin + 6, label_of(low, crs.vertical_unit));
   }
   if (profile.certified_deviation > 0) {
-    const std::string within = "within " + label_of(profile.certified_deviation, crs.vertical_unit);
+    const std::string within = "+/- " + label_of(profile.certified_deviation, crs.vertical_unit);
     draw_text(image, kWidth - kMargin - text_width(within), kMargin - 12, within);
   }
   const std::string end = label_of(length, unit_of_lengths(crs));
