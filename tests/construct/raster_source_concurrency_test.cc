@@ -25,8 +25,7 @@ Samples read(const RasterSource& source, std::int64_t x, std::int64_t y, std::in
 }
 
 TEST(RasterSourceConcurrency, GivesEveryThreadTheSameSamples) {
-  const RasterSource source =
-      RasterSource::open({std::string(PTIN_TEST_DATA) + "/coast_257.tif"}, {});
+  const RasterSource source = RasterSource::open({PTIN_TEST_DATA "/coast_257.tif"}, {});
   std::vector<Samples> expected;
   for (std::int64_t i = 0; i < 16; ++i) {
     expected.push_back(read(source, i * 12, i * 11, 65));
