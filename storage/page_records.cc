@@ -27,12 +27,9 @@ template <class Code>
 class Bounds {
  public:
   explicit Bounds(const layout::NodeEntry& e) : box_(lanes::load<Int4>(&e.min_x)) {
-    const auto lowest = std::bit_cast<std::uint32_t>(least_code());
-    const auto highest = std::bit_cast<std::uint32_t>(most_code());
-    const std::array<std::uint32_t, 4> least{e.height_lo, lowest, e.error_min, 0};
-    const std::array<std::uint32_t, 4> most{highest, e.height_hi, e.error_max, e.deviation_max};
-    least_ = std::bit_cast<Lanes<Code>>(least);
-    most_ = std::bit_cast<Lanes<Code>>(most);
+    const auto lane = [](auto bits) { return std::bit_cast<Code>(bits); };
+    least_ = Lanes<Code>{lane(e.height_lo), least_code(), lane(e.error_min), Code{0}};
+    most_ = Lanes<Code>{most_code(), lane(e.height_hi), lane(e.error_max), lane(e.deviation_max)};
   }
 
   [[nodiscard]] bool excludes(const VertexSplit& r) const {
@@ -122,18 +119,25 @@ void DescribedPage::decode_matching(std::span<const std::byte> bytes,
   const std::size_t before = out.size();
   std::array<std::uint16_t, kMostRecords> near;  // NOLINT: written before it is read
   const std::size_t count = find_near(bytes, predicate.reach(), near);
+  std::size_t matching = 0;  // without branches, as find_near()
   for (std::size_t k = 0; k < count; ++k) {
-    const std::span<const std::byte> in = bytes.subspan(near[k] * step, step);
     layout::RecordHead head;
-    std::memcpy(&head, in.data(), sizeof head);
-    if (!predicate.holds(attributes_of(head, heights_))) {
-      continue;
-    }
-    VertexSplit& r = out.emplace_back();
-    if (!decode_record(in, kind(), r) || admitted({&r, 1}) == 0) [[unlikely]] {
-      out.resize(before);
-      report(near[k]);
-    }
+    std::memcpy(&head, bytes.data() + near[k] * step, sizeof head);
+    const bool holds = predicate.holds(attributes_of(head, heights_));
+    near[matching] = near[k];
+    matching += holds ? 1 : 0;
+  }
+  out.resize(before + matching);
+  const std::span<VertexSplit> decoded(out.data() + before, matching);
+  std::size_t sound = 0;
+  while (sound < matching &&
+         decode_record(bytes.subspan(near[sound] * step, step), kind(), decoded[sound])) {
+    ++sound;
+  }
+  sound = std::min(sound, admitted(decoded.first(sound)));
+  if (sound < matching) [[unlikely]] {
+    out.resize(before);
+    report(near[sound]);
   }
 }
 

@@ -124,51 +124,45 @@ bool sides_fit(const Tin& tin, const SplitSite& s, const Fan& fan) {
   return left && right && (s.has_left || s.has_right);
 }
 
-TriangleId put(Tin& tin, TriangleId id, const Triangle& triangle, TriangleClass c) {
+void put(Tin& tin, TriangleId id, const Triangle& triangle, TriangleClass c) {
   tin.triangles[id] = triangle;
   tin.classes[id] = c;
-  return id;
 }
 
 }  // namespace
 
-SplitResult split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId right) {
+bool split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId right) {
   const Fan fan = move_fan(tin, site);
   if (!fan.fits || !sides_fit(tin, site, fan)) [[unlikely]] {
     if (fan.last != kNone) {
       replace_corner(tin, fan.first, fan.last, site.u, site.w);
     }
-    return {};
+    return false;
   }
-  SplitResult result;
-  result.applied = true;
+  left = site.has_left ? left : kNone;
+  right = site.has_right ? right : kNone;
   if (site.has_left) {
-    result.left = put(tin, left, {{site.u, site.w, site.vl}, {fan.outer_left, fan.first, kNone}},
-                      site.left_class);
-    replace_neighbour(tin, fan.outer_left, fan.first, result.left);
+    put(tin, left, {{site.u, site.w, site.vl}, {fan.outer_left, fan.first, right}},
+        site.left_class);
+    replace_neighbour(tin, fan.outer_left, fan.first, left);
   }
   Triangle& first = tin.triangles[fan.first];
-  first.n[kPrevious[place_of(first.v, site.u)]] = result.left;
+  first.n[kPrevious[place_of(first.v, site.u)]] = left;
   if (site.has_right) {
-    result.right =
-        put(tin, right, {{site.u, site.vr, site.w}, {fan.outer_right, result.left, fan.last}},
-            site.right_class);
-    replace_neighbour(tin, fan.outer_right, fan.last, result.right);
-  }
-  if (result.left != kNone) {
-    tin.triangles[result.left].n[2] = result.right;
+    put(tin, right, {{site.u, site.vr, site.w}, {fan.outer_right, left, fan.last}},
+        site.right_class);
+    replace_neighbour(tin, fan.outer_right, fan.last, right);
   }
   Triangle& last = tin.triangles[fan.last];
-  last.n[kNext[place_of(last.v, site.u)]] = result.right;
+  last.n[kNext[place_of(last.v, site.u)]] = right;
 
-  tin.vertices[site.u].triangle = site.has_right ? fan.first : result.left;
-  const TriangleId of_w = site.has_left ? result.left : result.right;
+  tin.vertices[site.u].triangle = site.has_right ? fan.first : left;
   TriangleId& known = tin.vertices[site.w].triangle;
-  known = fan.holds_triangle_of_w ? of_w : known;
+  known = fan.holds_triangle_of_w ? (site.has_left ? left : right) : known;
   if (site.has_right && fan.outer_right == kNone) {
-    tin.vertices[site.vr].triangle = result.right;  // the border edge (vr, w) now begins there
+    tin.vertices[site.vr].triangle = right;  // the border edge (vr, w) now begins there
   }
-  return result;
+  return true;
 }
 
 SplitResult split(Tin& tin, const SplitSite& site) {
@@ -176,12 +170,12 @@ SplitResult split(Tin& tin, const SplitSite& site) {
   const TriangleId right = before + (site.has_left ? 1 : 0);
   tin.triangles.resize(right + (site.has_right ? 1 : 0), kRemoved);
   tin.classes.resize(tin.triangles.size(), TriangleClass::kSurface);
-  const SplitResult result = split_into(tin, site, before, right);
-  if (!result.applied) {
+  if (!split_into(tin, site, before, right)) {
     tin.triangles.resize(before);
     tin.classes.resize(before);
+    return {};
   }
-  return result;
+  return {site.has_left ? before : kNone, site.has_right ? right : kNone, true};
 }
 
 }  // namespace ptin

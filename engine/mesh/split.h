@@ -35,7 +35,8 @@ SplitResult split(Tin& tin, const SplitSite& site);
 
 /// The same, but the new triangles take the places `left` and `right`, of removed triangles: so a
 /// caller that knows all splits beforehand decides which triangles lie near each other in memory.
-/// The place of a side that does not exist is left alone.
-SplitResult split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId right);
+/// The place of a side that does not exist is left alone. Returns whether it was applied: one word,
+/// since a struct of three goes through memory, and the caller waits for it to get there.
+[[nodiscard]] bool split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId right);
 
 }  // namespace ptin

@@ -33,7 +33,8 @@ class Collector {
   [[nodiscard]] bool is_in_tile(const Triangle& t) const noexcept;
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> bands_of(const Triangle& t) const noexcept {
     const std::vector<std::uint32_t>& bands = crossings_.bands;
-    return std::minmax({bands[t.v[0]], bands[t.v[1]], bands[t.v[2]]});
+    const std::uint32_t a = bands[t.v[0]], b = bands[t.v[1]], c = bands[t.v[2]];
+    return {std::min(std::min(a, b), c), std::max(std::max(a, b), c)};
   }
 
   const Tin& tin_;

@@ -227,12 +227,12 @@ PredicatePtr seen_from(const View& view, const AffineMap& map, const HeightEncod
 
 PredicatePtr all_of(std::vector<PredicatePtr> parts) {
   check_parts(parts);
-  return std::make_shared<AllOf>(std::move(parts));
+  return parts.size() == 1 ? parts.front() : std::make_shared<AllOf>(std::move(parts));
 }
 
 PredicatePtr any_of(std::vector<PredicatePtr> parts) {
   check_parts(parts);
-  return std::make_shared<AnyOf>(std::move(parts));
+  return parts.size() == 1 ? parts.front() : std::make_shared<AnyOf>(std::move(parts));
 }
 
 }  // namespace ptin

@@ -36,7 +36,7 @@ PredicatePtr predicate_of(const RefineRequest& request, const StoreFacts& facts)
   if (request.also != nullptr) {
     parts.push_back(borrowed(*request.also));
   }
-  return parts.size() == 1 ? parts.front() : all_of(std::move(parts));
+  return all_of(std::move(parts));
 }
 
 std::uint64_t records_wanted(const RefineRequest& request, const StoreFile& store) {

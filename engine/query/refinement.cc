@@ -22,18 +22,32 @@ bool has_heights(const Tin& tin, VertexId a, VertexId b, VertexId c) noexcept {
 }
 
 /// Invariant I5 around a new vertex: only a vertex with a height stands in surface triangles.
-bool classes_fit(const Tin& tin, const SplitSite& s, const SplitResult& made) {
+bool classes_fit(const Tin& tin, const SplitSite& s) {
   if (tin.has_height[s.u] == 0) {
     Star star;
     walk_star(tin, s.u, star);
     return std::all_of(star.triangles.begin(), star.triangles.end(),
                        [&](TriangleId t) { return tin.classes[t] == TriangleClass::kVoid; });
   }
-  const bool left = made.left == kNone || s.left_class == TriangleClass::kVoid ||
-                    has_heights(tin, s.u, s.w, s.vl);
-  const bool right = made.right == kNone || s.right_class == TriangleClass::kVoid ||
-                     has_heights(tin, s.u, s.w, s.vr);
+  const bool left =
+      !s.has_left || s.left_class == TriangleClass::kVoid || has_heights(tin, s.u, s.w, s.vl);
+  const bool right =
+      !s.has_right || s.right_class == TriangleClass::kVoid || has_heights(tin, s.u, s.w, s.vr);
   return left && right;
+}
+
+[[noreturn]] void throw_too_many(const QueryContext& context) {
+  throw Error(ErrorCode::resource_exhausted,
+              "the answer has more triangles than one mesh can number (2^32 - 1): ask for less, "
+              "or use export",
+              context.file());
+}
+
+/// Before they are numbered in 32 bits.
+void refuse_too_many(std::span<const PendingSplit> splits, const QueryContext& context) {
+  if (splits.size() >= kNone) {
+    throw_too_many(context);
+  }
 }
 
 /// Fetches ahead of the splits what they will touch: the record, its slots in the table of keys,
@@ -137,6 +151,7 @@ void Refinement::restart(const Tin& t0) {
 
 void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& context) {
   static constexpr std::size_t kFew = 4096;  // a mesh that stays in the caches by itself
+  refuse_too_many(splits, context);
   order_ = order_of(splits);
   const Batch batch = reserve(splits, context);
   if (splits.size() < kFew) {
@@ -220,10 +235,7 @@ Refinement::Batch Refinement::reserve(std::span<const PendingSplit> splits,
   const std::size_t triangles =
       tin_.triangles.size() + batch.triangles - std::min(batch.triangles, free_triangles_.size());
   if (triangles >= kNone || vertices >= kNone) {
-    throw Error(ErrorCode::resource_exhausted,
-                "the answer has more triangles than one mesh can number (2^32 - 1): ask for less, "
-                "or use export",
-                context.file());
+    throw_too_many(context);
   }
   const auto grown = [](std::size_t wanted, std::size_t capacity) {
     return wanted > capacity ? std::max(wanted, capacity + capacity / 2) : capacity;
@@ -279,12 +291,12 @@ void Refinement::apply_one(const Resolved& s, const Batch& batch,
   // none.
   const TriangleId left = triangle_place(batch, s.triangle);
   const TriangleId right = triangle_place(batch, s.triangle + (site.has_left ? 1 : 0));
-  const SplitResult made = w_is_there ? split_into(tin_, site, left, right) : SplitResult{};
-  if (!made.applied || !classes_fit(tin_, site, made)) [[unlikely]] {
+  const bool is_applied = w_is_there && split_into(tin_, site, left, right);
+  if (!is_applied || !classes_fit(tin_, site)) [[unlikely]] {
     const VertexKey key = key_of(tin_.position(s.u));
     throw_refused(*std::find_if(splits.begin(), splits.end(),
                                 [key](const PendingSplit& p) { return p.u == key; }),
-                  made.applied ? "its classes do not fit its heights" : "it does not fit the mesh",
+                  is_applied ? "its classes do not fit its heights" : "it does not fit the mesh",
                   context);
   }
   if (track_pages_) {

@@ -3,11 +3,11 @@
 // What applying and undoing splits have in common.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/mesh/split.h"
@@ -22,22 +22,21 @@ class RankOrder {
  public:
   explicit RankOrder(std::span<const PendingSplit> splits) {
     for (const PendingSplit& s : splits) {
-      largest_ = std::max(largest_, s.rank);
+      if (s.rank >= next_.size()) [[unlikely]] {
+        next_.resize(std::size_t{s.rank} + 1);
+      }
+      ++next_[s.rank];
     }
-    next_.assign(std::size_t{largest_} + 2, 0);
-    for (const PendingSplit& s : splits) {
-      ++next_[largest_ - s.rank + 1];
-    }
-    for (std::size_t i = 1; i < next_.size(); ++i) {
-      next_[i] += next_[i - 1];
+    std::uint32_t before = 0;
+    for (std::size_t rank = next_.size(); rank-- > 0;) {
+      before += std::exchange(next_[rank], before);
     }
   }
   /// The place of the next record of this rank.
-  std::uint32_t take(std::uint16_t rank) noexcept { return next_[largest_ - rank]++; }
+  std::uint32_t take(std::uint16_t rank) noexcept { return next_[rank]++; }
 
  private:
-  std::uint16_t largest_ = 0;
-  std::vector<std::uint32_t> next_;
+  std::vector<std::uint32_t> next_;  ///< Of each rank: how many were counted, then the next place.
 };
 
 /// New triangles of a split: one at a border, otherwise two. A record that has neither is refused

@@ -5,6 +5,7 @@
 #include "engine/query/predicate.h"
 
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -255,6 +256,51 @@ TEST(Compositions, AreEverythingAndNothingWhenEmpty) {
   EXPECT_TRUE(everything()->holds({}));
   EXPECT_TRUE(all_of({})->holds({}));
   EXPECT_FALSE(any_of({})->holds({}));
+}
+
+TEST(Compositions, OfOnePartAreThatPart) {
+  std::mt19937_64 random(9);
+  for (int i = 0; i < 200; ++i) {
+    const PredicatePtr part = reference::random_predicate(random, domain(), 2);
+    const auto* bounded_part = dynamic_cast<const BoundedPredicate*>(part.get());
+    ASSERT_NE(bounded_part, nullptr);
+    for (const PredicatePtr& composed : {all_of({part}), any_of({part})}) {
+      EXPECT_EQ(composed->reach(), part->reach());
+      const auto* bounded = dynamic_cast<const BoundedPredicate*>(composed.get());
+      ASSERT_NE(bounded, nullptr);
+      for (int k = 0; k < 20; ++k) {
+        const Attributes a = random_attributes(random);
+        EXPECT_EQ(composed->holds(a), part->holds(a));
+        EXPECT_EQ(bounded->holds_for_all(a, a.error / 2),
+                  bounded_part->holds_for_all(a, a.error / 2));
+      }
+    }
+  }
+}
+
+/// Tells nothing of many records at once.
+class OnTheLeft final : public AttributePredicate {
+ public:
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
+    return a.roi.min_x < 1000;
+  }
+};
+
+TEST(Compositions, OfOnePartAreNoMoreCertainThanIt) {
+  const PredicatePtr part = std::make_shared<OnTheLeft>();
+  for (const PredicatePtr& composed : {all_of({part}), any_of({part})}) {
+    const auto* bounded = dynamic_cast<const BoundedPredicate*>(composed.get());
+    EXPECT_TRUE(bounded == nullptr || !bounded->holds_for_all(at(0, 0, 0, 0, 1), 1));
+    EXPECT_TRUE(composed->holds(at(0, 0, 0, 0, 1)));
+    EXPECT_FALSE(composed->holds(at(1000, 0, 0, 0, 1)));
+  }
+}
+
+TEST(Compositions, OfOnePartKeepItAliveAndRefuseNull) {
+  const PredicatePtr both = [] { return any_of({all_of({error_above(1.0)})}); }();
+  EXPECT_TRUE(both->holds(at(0, 0, 0, 0, 2.0)));
+  EXPECT_FALSE(both->holds(at(0, 0, 0, 0, 1.0)));
+  EXPECT_THROW(static_cast<void>(any_of({nullptr})), Error);
 }
 
 TEST(Compositions, KeepTheirPartsAlive) {
