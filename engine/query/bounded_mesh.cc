@@ -37,10 +37,13 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
   const StoreFile& store = terrain_.store();
   const HeightEncoding& heights = store.facts().heights;
   const std::uint64_t most = most_records(store, pages);
-  context.admit(bytes_of(tin()) + refinement_bytes(most) + most * sizeof(Made));
+  context.admit(bytes_of(tin()) + made_.size() * sizeof(Made) + refinement_bytes(most) +
+                2 * most * sizeof(Made));
   store.pages().announce(pages, context.cost.io);
   splits_.clear();
   entering_.clear();
+  splits_.reserve(most);  // what was admitted: growing would take twice as much
+  entering_.reserve(most);
   for (const PageId page : pages) {
     context.check_stop();
     records_.clear();
@@ -64,6 +67,19 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
     made_.push_back(entering_[i]);
   }
   return splits_.size();
+}
+
+std::uint64_t BoundedMesh::bytes() const noexcept {
+  return bytes_of(tin()) + (made_.capacity() + entering_.capacity()) * sizeof(Made) +
+         records_.capacity() * sizeof(VertexSplit) + splits_.capacity() * sizeof(PendingSplit) +
+         refinement_.applied_order().size() * sizeof(std::uint32_t);
+}
+
+void BoundedMesh::release_records() noexcept {
+  // Assigning {} would keep the memory.
+  std::vector<Made>().swap(entering_);
+  std::vector<VertexSplit>().swap(records_);
+  std::vector<PendingSplit>().swap(splits_);
 }
 
 SurfaceBounds BoundedMesh::bounds(TriangleId t) const noexcept {

@@ -55,6 +55,11 @@ class BoundedMesh {
 
   [[nodiscard]] SurfaceBounds bounds(TriangleId t) const noexcept;
 
+  /// What it holds, the records that were added last included.
+  [[nodiscard]] std::uint64_t bytes() const noexcept;
+  /// Gives back what only another refine() would use.
+  void release_records() noexcept;
+
  private:
   /// Of the record that made a vertex.
   struct Made {

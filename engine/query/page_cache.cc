@@ -30,9 +30,14 @@ std::span<const VertexSplit> PageCache::records(PageId page, QueryContext& conte
   entry.records.reserve(store_.page_info(page).records);
   store_.read_records(page, entry.records, context.cost.io);
   make_room(entry.bytes());
-  bytes_ += entry.bytes();
   entries_.push_front(std::move(entry));
-  places_.emplace(index_of(page), entries_.begin());
+  try {
+    places_.emplace(index_of(page), entries_.begin());
+  } catch (...) {
+    entries_.pop_front();
+    throw;
+  }
+  bytes_ += entries_.front().bytes();
   return entries_.front().records;
 }
 

@@ -268,7 +268,9 @@ class Profiling {
     terrain_.index().search(path, pages, context_.cost.io);
     context_.check_stop();
     const std::uint64_t records = most_records(terrain_.store(), pages);
-    const std::uint64_t bytes = bytes_of(terrain_.t0()) + refinement_bytes(records) + held();
+    // About as many points as records: the line crosses their triangles.
+    const std::uint64_t bytes = bytes_of(terrain_.t0()) + refinement_bytes(records) + held() +
+                                records * sizeof(ProfilePoint);
     const bool fits = bytes <= request_.memory_limit_bytes;
     if (parts.size() > 1 && (!fits || records > kGroupRecords)) {
       walk(parts.first(parts.size() / 2));
@@ -304,7 +306,7 @@ class Profiling {
       for (std::size_t i = part.first; i < part.end; ++i) {
         context_.check_stop();
         near = writer.write(static_cast<std::uint32_t>(i), near);
-        context_.admit(held());
+        context_.admit(bytes_of(refinement_.tin()) + held());
       }
     }
   }

@@ -128,8 +128,11 @@ class ViewshedSearch {
   Viewshed run() {
     const bool is_coarse = detail_.is_asked() && !detail_.certificate().complete;
     refine(is_coarse);
+    mesh_.release_records();
+    const bool leaves_open = is_coarse || left_out_ > 0;
+    results_held_ = leaves_open ? 2 : 1;
     Viewshed result = sweep({});
-    if (is_coarse || left_out_ > 0) {
+    if (leaves_open) {
       Certainty certainty(result);
       tell_apart(certainty);
       certainty.count();
@@ -183,7 +186,8 @@ class ViewshedSearch {
   }
 
   Viewshed sweep(const SightBias& bias) {
-    return sweep_viewshed(mesh_.tin(), store_.facts(), request_, context_, bias);
+    return sweep_viewshed(mesh_.tin(), store_.facts(), request_, context_, bias,
+                          {mesh_.bytes(), results_held_});
   }
 
   const StoreFile& store_;
@@ -193,6 +197,7 @@ class ViewshedSearch {
   BoundedMesh mesh_;
   double left_out_;  ///< Deviation of the file's full TIN from the source's.
   double slope_ = 0;
+  std::uint64_t results_held_ = 1;  ///< The plain sweep's, and beside it one that is biased.
 };
 
 }  // namespace

@@ -31,8 +31,8 @@ struct Approach {
 class Viewer {
  public:
   Viewer(const Tin& tin, const StoreFacts& facts, const ViewshedRequest& request,
-         const QueryContext& context, const SightBias& bias)
-      : tin_(tin), facts_(facts), request_(request), context_(context), bias_(bias) {
+         const QueryContext& context, const SightBias& bias, const HeldBySweeps& held)
+      : tin_(tin), facts_(facts), request_(request), context_(context), bias_(bias), held_(held) {
     eye_ = find_eye(tin, facts, request);
     eye_at_ = grid_of(eye_.spot);
     ground_x_ = facts.map.step_x * request.ground_per_map_x;
@@ -110,6 +110,7 @@ class Viewer {
   const ViewshedRequest& request_;
   const QueryContext& context_;
   SightBias bias_;
+  HeldBySweeps held_;
   ViewshedEye eye_;
   MapPoint eye_at_;  ///< Grid units.
   double ground_x_ = 1, ground_y_ = 1;
@@ -122,14 +123,13 @@ class Viewer {
   Viewshed result_;
 };
 
-/// Mesh, raster and horizon together, before any of them is taken.
+/// Mesh, rasters and horizon together, before any of them is taken.
 void Viewer::admit() const {
-  const std::uint64_t sweeps = request_.tolerance || request_.vertices ? 2 : 1;
-  context_.admit(
-      sweeps * std::uint64_t{result_.width} * result_.height +
-      tin_.vertices.size() * (sizeof(Vertex) + 1 + kVertexBytes +
-                              (request_.list_vertices ? sweeps * sizeof(Viewshed::Target) : 0)) +
-      tin_.triangles.size() * (sizeof(Triangle) + 1 + kTriangleBytes) + buckets() * kBucketBytes);
+  const std::uint64_t a_vertex =
+      kVertexBytes + (request_.list_vertices ? held_.results * sizeof(Viewshed::Target) : 0);
+  context_.admit(held_.mesh_bytes + held_.results * result_.width * result_.height +
+                 tin_.vertices.size() * a_vertex + tin_.triangles.size() * kTriangleBytes +
+                 buckets() * kBucketBytes);
 }
 
 void Viewer::place_vertices() {
@@ -474,8 +474,9 @@ void Viewer::collect() {
 }  // namespace
 
 Viewshed sweep_viewshed(const Tin& tin, const StoreFacts& facts, const ViewshedRequest& request,
-                        const QueryContext& context, const SightBias& bias) {
-  return Viewer(tin, facts, request, context, bias).run();
+                        const QueryContext& context, const SightBias& bias,
+                        const HeldBySweeps& held) {
+  return Viewer(tin, facts, request, context, bias, held).run();
 }
 
 }  // namespace ptin

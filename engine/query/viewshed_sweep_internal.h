@@ -3,6 +3,8 @@
 // One sweep over a mesh around an eye, front to back.
 #pragma once
 
+#include <cstdint>
+
 #include "engine/mesh/tin.h"
 #include "engine/query/viewshed.h"
 #include "storage/store_file.h"
@@ -18,12 +20,18 @@ struct SightBias {
   double base = 0;     ///< What is not known besides, at any distance.
 };
 
+struct HeldBySweeps {
+  std::uint64_t mesh_bytes = 0;
+  std::uint64_t results = 1;  ///< Of sweeps at once, that of the one to come included.
+};
+
 /// What the eye sees of `tin`; of the result, certificates and cost are left out. Every target is
 /// told visible or hidden.
+/// @param held  What the caller holds beside: it counts against the memory limit.
 /// @throws Error invalid_argument    as find_eye() (viewshed_eye_internal.h)
 ///               resource_exhausted, cancelled
 [[nodiscard]] Viewshed sweep_viewshed(const Tin& tin, const StoreFacts& facts,
                                       const ViewshedRequest& request, const QueryContext& context,
-                                      const SightBias& bias);
+                                      const SightBias& bias, const HeldBySweeps& held);
 
 }  // namespace ptin

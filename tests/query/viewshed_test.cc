@@ -413,6 +413,39 @@ TEST(Viewshed, EndsBehindAWall) {
   EXPECT_LT(viewshed(terrain, request).visible_pixels, 100U);
 }
 
+/// The least limit, in steps of 2^14 bytes, within which a request is answered.
+std::uint64_t least_memory(const ProgressiveTin& terrain, ViewshedRequest request) {
+  for (request.memory_limit_bytes = 0;; request.memory_limit_bytes += 1U << 14U) {
+    try {
+      static_cast<void>(viewshed(terrain, request));
+      return request.memory_limit_bytes;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::resource_exhausted) << e.what();
+      if (e.code() != ErrorCode::resource_exhausted) return 0;
+    }
+  }
+}
+
+TEST(Viewshed, CountsTheRastersThatAFileWithoutItsDetailsNeeds) {
+  Hierarchy h = plain_with_wall(5.0);
+  ViewshedRequest request;
+  request.eye = h.facts.map.to_map(7, 9);
+  request.eye_height = 2;
+  request.radius = 20 * h.facts.map.step_x;
+  request.pixel_size = h.facts.map.step_x / 16;
+  request.list_vertices = false;
+  const TemporaryStore whole(h);
+  h.facts.base_deviation = 0.5;  // larger than rounding: details were left out
+  const TemporaryStore without(h);
+  const ProgressiveTin exact(whole.open());
+  const ProgressiveTin left_out(without.open());
+  const std::uint64_t raster = viewshed(exact, request).pixels.size();
+  ASSERT_GT(raster, 1U << 18U);
+  // One sweep is held while the next tells what is certain.
+  EXPECT_NEAR(double(least_memory(left_out, request)),
+              double(least_memory(exact, request) + raster), 1U << 15U);
+}
+
 TEST(Viewshed, RefusesWhatMeansNothing) {
   const Hierarchy h = plain_with_wall(0.0);
   const TemporaryStore file(h);
