@@ -130,19 +130,17 @@ std::size_t GridRegion::slab_of(double y) const noexcept {
   return static_cast<std::size_t>(std::clamp(slab, 0.0, last));
 }
 
-void GridRegion::count_slabs(std::size_t slabs) {
+/// Returns how many entries the lists of that many slabs would have.
+std::uint64_t GridRegion::set_slabs(std::size_t slabs) {
   slab_begin_.assign(slabs + 1, 0);
   const double height = max_y_ - min_y_;
   slab_scale_ = height > 0 ? static_cast<double>(slabs) / height : 0.0;
   slab_scale_ = std::isfinite(slab_scale_) ? slab_scale_ : 0.0;
+  std::uint64_t entries = 0;
   for (const Edge& e : edges_) {
-    for (std::size_t s = slab_of(e.min_y); s <= slab_of(e.max_y); ++s) {
-      ++slab_begin_[s + 1];
-    }
+    entries += slab_of(e.max_y) - slab_of(e.min_y) + 1;
   }
-  for (std::size_t s = 0; s < slabs; ++s) {
-    slab_begin_[s + 1] += slab_begin_[s];
-  }
+  return entries;
 }
 
 void GridRegion::sort_edges_into_slabs() {
@@ -153,9 +151,16 @@ void GridRegion::sort_edges_into_slabs() {
     min_y_ = std::min(min_y_, e.min_y), max_y_ = std::max(max_y_, e.max_y);
   }
   std::size_t slabs = std::clamp<std::size_t>(edges_.size() / 2, 1, kMostSlabs);
-  for (count_slabs(slabs); slabs > 1 && slab_begin_.back() > 8 * edges_.size();
-       count_slabs(slabs)) {
+  while (set_slabs(slabs) > 8 * edges_.size() && slabs > 1) {
     slabs /= 2;  // tall edges: fewer slabs keep the lists linear in the edges
+  }
+  for (const Edge& e : edges_) {
+    for (std::size_t s = slab_of(e.min_y); s <= slab_of(e.max_y); ++s) {
+      ++slab_begin_[s + 1];
+    }
+  }
+  for (std::size_t s = 0; s < slabs; ++s) {
+    slab_begin_[s + 1] += slab_begin_[s];
   }
   slab_edges_.resize(slab_begin_.back());
   std::vector<std::uint32_t> next(slab_begin_.begin(), slab_begin_.end() - 1);

@@ -99,7 +99,7 @@ class GridRegion {
   void add_edge(const WidenedPoint& a, const WidenedPoint& b);
   void add_ring(const std::vector<MapPoint>& ring, const AffineMap& map);
   void sort_edges_into_slabs();
-  void count_slabs(std::size_t slabs);
+  std::uint64_t set_slabs(std::size_t slabs);
   [[nodiscard]] std::size_t slab_of(double y) const noexcept;
   [[nodiscard]] Side side_of(GridPoint p) const noexcept;
   [[nodiscard]] bool rectangle_meets(const GridPoint (&triangle)[3]) const noexcept;

@@ -268,6 +268,41 @@ TEST(GridRegion, ManyEdgesAgreeWithFew) {
   }
 }
 
+/// Teeth that stand side by side on the line y = 0. But for that line each edge crosses every
+/// horizontal slab, and there are so many that the lists of the edges by slabs would have more
+/// entries than 32 bits count.
+struct Teeth {
+  static constexpr int kEdges = 1 << 20;
+  static constexpr int kStep = 512;  ///< From the foot of a tooth to its tip.
+  static constexpr int kTip = 1000;
+
+  [[nodiscard]] static Polygon polygon() {
+    Polygon teeth{{{}}};
+    teeth.rings[0].reserve(kEdges + 1);
+    for (int i = 0; i <= kEdges; ++i) {
+      teeth.rings[0].push_back({double(kStep) * i, i % 2 == 0 ? 0.0 : double(kTip)});
+    }
+    return teeth;
+  }
+};
+
+TEST(GridRegion, SortsAMillionEdgesFromTheBottomToTheTop) {
+  const GridRegion region(Region(Teeth::polygon()), kIdentity);
+  // The tip of a tooth in the middle, which beside it is at least 900 high for 40 units.
+  constexpr int kTipAt = (Teeth::kEdges / 2 + 1) * Teeth::kStep;
+  EXPECT_TRUE(region.contains(GridBox{kTipAt - 40, 800, kTipAt + 40, 900}));
+  EXPECT_FALSE(region.contains(GridBox{kTipAt - 40, 900, kTipAt + 40, 990}));
+  EXPECT_TRUE(region.meets({kTipAt, 999}, {kTipAt + 2, 1200}, {kTipAt - 2, 1200}));
+  // Between it and the next one, where both are below 100.
+  constexpr int kGapAt = kTipAt + Teeth::kStep;
+  EXPECT_FALSE(region.meets(GridBox{kGapAt - 40, 100, kGapAt + 40, 120}));
+  EXPECT_TRUE(region.meets(GridBox{kGapAt - 80, 100, kGapAt + 40, 120}));
+  // The last edge.
+  constexpr int kEnd = Teeth::kEdges * Teeth::kStep;
+  EXPECT_TRUE(region.meets(GridBox{kEnd, 0, kEnd + 9, 1}));
+  EXPECT_FALSE(region.meets(GridBox{kEnd + 1, 0, kEnd + 9, Teeth::kTip}));
+}
+
 TEST(GridRegion, RejectsWhatIsNoRegion) {
   const auto rejected = [](const Region& region) {
     try {
