@@ -67,6 +67,9 @@ MoveResult MovingWindow::move_to(PredicatePtr predicate, const std::stop_token& 
     throw Error(ErrorCode::invalid_argument, "the predicate to move to is null");
   }
   const auto start = std::chrono::steady_clock::now();
+  if (is_spoilt_) {
+    reset();
+  }
   QueryContext context(stop, options_.memory_limit_bytes, store_->path());
   const std::vector<Candidate> pages = candidates(*predicate, context);
   Change change = compare(pages, *predicate, context);
@@ -173,13 +176,20 @@ void MovingWindow::compare_page(const Candidate& page, const AttributePredicate&
 
 /// First what leaves: what stays then is the records of both predicates, a closed set.
 void MovingWindow::carry_out(Change& change, QueryContext& context) {
+  is_spoilt_ = true;
   try {
     refinement_.undo(change.leaving, context);
     refinement_.apply(change.entering, context);
+    note(change);
   } catch (...) {
-    reset();
+    reset();  // or, where there is no memory for that, before the next move
     throw;
   }
+  is_spoilt_ = false;
+}
+
+/// What the pages and the mesh hold now.
+void MovingWindow::note(Change& change) {
   for (auto& [page, held] : change.pages) {
     if (held.count == 0) {
       held_.erase(index_of(page));
@@ -200,6 +210,7 @@ void MovingWindow::reset() {
   predicate_ = nullptr;
   held_.clear();
   errors_ = AppliedErrors(*store_);
+  is_spoilt_ = false;
 }
 
 Tin MovingWindow::compact_tin() const {

@@ -62,7 +62,8 @@ class MovingWindow {
   /// Makes the mesh that of `predicate`.
   /// @throws Error invalid_argument (null), resource_exhausted (before a page is read), corruption,
   /// io_error, cancelled. The mesh stays as it was; when the error came while it was changed (a
-  /// damaged record, a late cancellation) it is T0 again. Either way the next move works.
+  /// damaged record, a late cancellation, no memory) it is T0 again, or will be when the next move
+  /// begins, where there is no memory for T0 either. Either way the next move works.
   /// Cost: index entries of what changed or is near it; the pages of border and change (read once,
   /// then kept); O(1) expected for each record that enters or leaves.
   MoveResult move_to(PredicatePtr predicate, const std::stop_token& stop = {});
@@ -103,6 +104,7 @@ class MovingWindow {
   void compare_page(const Candidate& page, const AttributePredicate& predicate,
                     QueryContext& context, Change& change);
   void carry_out(Change& change, QueryContext& context);
+  void note(Change& change);
   void reset();
 
   std::shared_ptr<const StoreFile> store_;
@@ -112,6 +114,7 @@ class MovingWindow {
   PredicatePtr predicate_;                        ///< Of the mesh; null: nothing is applied.
   std::unordered_map<std::uint64_t, Held> held_;  ///< By page; those of which a record is applied.
   AppliedErrors errors_;
+  bool is_spoilt_ = false;  ///< Changed in part: to be reset before it is used again.
   PageCache cache_;
 };
 
