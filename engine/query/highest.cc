@@ -13,7 +13,7 @@
 #include "engine/query/above_error.h"
 #include "engine/query/detail.h"
 #include "engine/query/highest_gather_internal.h"
-#include "engine/query/locate.h"
+#include "engine/query/locate_internal.h"
 #include "engine/query/refinement.h"
 #include "engine/query/spot.h"
 
@@ -211,7 +211,7 @@ class Search {
         gatherer.held_bytes() + best.capacity() * sizeof(HighCandidate) +
         keys.capacity() * sizeof(VertexKey) + points.capacity() * sizeof(MapPoint));
     request.stop = request_.stop;
-    const LocateResult located = locate(terrain_, points, request);
+    const LocateResult located = locate_at(terrain_, points, request, gatherer.detail());
     context_.cost.add_counts(located.cost);
     for (std::size_t i = 0; i < keys.size(); ++i) {
       gatherer.tell(keys[i], located.points[i].state == PointState::kSurface);

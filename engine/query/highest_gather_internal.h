@@ -59,6 +59,7 @@ class HighGatherer final : public BestFirstVisitor {
   /// Cost: n log n.
   [[nodiscard]] std::vector<HighCandidate> take_best();
 
+  [[nodiscard]] const Detail& detail() const noexcept { return detail_; }
   /// What is kept between searches: the records so far, and what was told.
   [[nodiscard]] std::uint64_t held_bytes() const noexcept;
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,8 @@
 #include "engine/geometry/infinity.h"
 #include "engine/query/bounded_mesh.h"
 #include "engine/query/detail.h"
+#include "engine/query/locate_internal.h"
+#include "engine/query/refinement.h"
 #include "engine/query/retrieval.h"
 #include "engine/query/spot_set.h"
 #include "engine/query/walk.h"
@@ -35,13 +38,15 @@ struct Ordered {
 
 class Locating {
  public:
-  Locating(const ProgressiveTin& terrain, const LocateRequest& request)
+  /// @param detail  Of the request, where it was found before; else none.
+  Locating(const ProgressiveTin& terrain, const LocateRequest& request, const Detail* detail)
       : terrain_(terrain),
         facts_(terrain.store().facts()),
         request_(request),
         context_(request.stop, request.memory_limit_bytes, terrain.store().path()),
-        detail_({request.tolerance, request.vertices}, {terrain.store(), terrain.index()},
-                context_) {}
+        detail_(detail != nullptr ? *detail
+                                  : Detail({request.tolerance, request.vertices},
+                                           {terrain.store(), terrain.index()}, context_)) {}
 
   LocateResult run(std::span<const MapPoint> points) {
     result_.points.resize(points.size());
@@ -76,6 +81,9 @@ class Locating {
   const LocateRequest& request_;
   QueryContext context_;
   Detail detail_;
+  // Of the group at hand: the next one uses the same memory.
+  std::vector<PendingSplit> splits_;
+  std::optional<Refinement> refinement_;
   LocateResult result_;
 };
 
@@ -135,11 +143,15 @@ void Locating::locate_group(std::span<const Ordered> group) {
 
 void Locating::locate_exactly(std::span<const Ordered> group, std::span<const PageId> pages,
                               const SpotSet& wanted) {
-  std::vector<PendingSplit> splits;
-  read_pages(terrain_.store(), pages, wanted, context_, splits);
-  Refinement refinement(terrain_.t0());
-  refinement.apply(splits, context_);
-  walk_group(refinement.tin(), group, [](TriangleId) {
+  splits_.clear();
+  read_pages(terrain_.store(), pages, wanted, context_, splits_);
+  if (refinement_) {
+    refinement_->restart(terrain_.t0());
+  } else {
+    refinement_.emplace(terrain_.t0());
+  }
+  refinement_->apply(splits_, context_);
+  walk_group(refinement_->tin(), group, [](TriangleId) {
     return SurfaceBounds{0.0, {-kInfinity, kInfinity}};
   });
 }
@@ -219,10 +231,15 @@ void Locating::set_interval(const SurfaceBounds& bounds, LocatedPoint& point) co
 LocateResult locate(const ProgressiveTin& terrain, std::span<const MapPoint> points,
                     const LocateRequest& request) {
   const auto start = std::chrono::steady_clock::now();
-  LocateResult result = Locating(terrain, request).run(points);
+  LocateResult result = Locating(terrain, request, nullptr).run(points);
   result.cost.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+LocateResult locate_at(const ProgressiveTin& terrain, std::span<const MapPoint> points,
+                       const LocateRequest& request, const Detail& detail) {
+  return Locating(terrain, request, &detail).run(points);
 }
 
 }  // namespace ptin

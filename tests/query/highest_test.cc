@@ -243,6 +243,32 @@ TEST(Highest, TakesStepsInProportionToTheVerticesListedOverVoids) {
   EXPECT_LE(cost.records_applied, 2 * h.records.size());
 }
 
+/// That locating one point at the same level of detail reads.
+std::uint64_t pages_of_one_point(const ProgressiveTin& terrain, const HighestRequest& request,
+                                 MapPoint point) {
+  LocateRequest where;
+  where.vertices = request.vertices;
+  return locate(terrain, {&point, 1}, where).cost.io.pages;
+}
+
+// Finding the last of the first so many vertices reads most of their pages: more than all else.
+TEST(Highest, FindsTheLastVertexOfALevelOfDetailOnce) {
+  std::mt19937_64 random(3);
+  const Hierarchy h =
+      reference::simplify_unmeasured(reference::random_grid(random, 90, 90, 4, 0.05), random);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  for (const std::size_t share : {2U, 4U, 8U}) {
+    HighestRequest request;
+    request.vertices = h.t0.vertices.size() + h.records.size() / share;
+    const HighestResult found = highest(terrain, request);
+    ASSERT_EQ(found.state, PointState::kSurface);
+    const std::uint64_t one = pages_of_one_point(terrain, request, found.point.position);
+    EXPECT_GT(one, 20U);
+    EXPECT_LT(2 * found.cost.io.pages, 3 * one) << "1/" << share;
+  }
+}
+
 /// The least memory limit, to a KiB, at which `ask` is not refused for want of memory.
 template <typename Ask>
 std::uint64_t least_limit(const Ask& ask) {
