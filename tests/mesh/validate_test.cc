@@ -4,11 +4,14 @@
 #include "engine/mesh/validate.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "engine/mesh/link.h"
 #include "tests/mesh/drawn.h"
 
 namespace ptin {
@@ -98,6 +101,68 @@ TEST(Validate, I4NamesAStarThatGoesRoundTwice) {
       {"ABU", "BCU", "CDU", "DaU", "abU", "bcU", "cdU", "dAU"});
   std::fill(d.tin.classes.begin(), d.tin.classes.end(), TriangleClass::kVoid);
   EXPECT_EQ(validate(d.tin).substr(0, 2), "I4") << validate(d.tin);
+}
+
+/// Half of the grid's side: what lies around its middle has areas near the largest.
+constexpr int kMiddle = 1 << 29;
+
+/// Adds a vertex around the middle of the grid, with a height.
+void add_around_middle(Tin& tin, double radius, double degrees) {
+  const double angle = degrees / 180 * std::acos(-1.0);
+  tin.vertices.push_back({{static_cast<int>(std::lround(kMiddle + radius * std::cos(angle))),
+                           static_cast<int>(std::lround(kMiddle + radius * std::sin(angle)))},
+                          0,
+                          kNone});
+  tin.has_height.push_back(1);
+}
+
+void add_surface_triangle(Tin& tin, VertexId a, VertexId b, VertexId c) {
+  tin.triangles.push_back({{a, b, c}, {kNone, kNone, kNone}});
+  tin.classes.push_back(TriangleClass::kSurface);
+}
+
+// The areas of the two meshes below add up to more than 64 bits hold: they must not be added up
+// before the border is known to go round once. The undefined sanitizer would tell.
+TEST(Validate, I4NamesALargeStarThatGoesRoundManyTimes) {
+  constexpr std::uint32_t kRim = 40;
+  Tin tin;
+  for (std::uint32_t i = 0; i < kRim; ++i) {
+    add_around_middle(tin, 5.3e8, 81.0 * i);  // nine times round, at every multiple of 9 degrees
+  }
+  add_around_middle(tin, 0, 0);
+  for (std::uint32_t i = 0; i < kRim; ++i) {
+    add_surface_triangle(tin, kRim, i, (i + 1) % kRim);
+  }
+  link_tin(tin);
+  EXPECT_EQ(validate(tin), "I4: the border goes round 9 times");
+}
+
+TEST(Validate, I4NamesALargeSpiral) {
+  constexpr std::uint32_t kSteps = 8 * 8;  // eight times round
+  Tin tin;
+  for (std::uint32_t i = 0; i <= kSteps; ++i) {
+    add_around_middle(tin, 1e6 + 1000.0 * i, 45.0 * i);
+    add_around_middle(tin, 5.3e8 - 1000.0 * i, 45.0 * i);
+  }
+  for (VertexId v = 0; v < 2 * kSteps; v += 2) {
+    add_surface_triangle(tin, v, v + 1, v + 3);
+    add_surface_triangle(tin, v, v + 3, v + 2);
+  }
+  link_tin(tin);
+  EXPECT_EQ(validate(tin).substr(0, 2), "I4") << validate(tin);
+}
+
+TEST(Validate, TakesADomainAsLargeAsTheGrid) {
+  Tin tin;
+  for (const GridPoint p : {GridPoint{0, 0}, {kGridMax, 0}, {kGridMax, kGridMax}, {0, kGridMax}}) {
+    tin.vertices.push_back({p, 0, kNone});
+    tin.has_height.push_back(1);
+  }
+  add_surface_triangle(tin, 0, 1, 2);
+  add_surface_triangle(tin, 0, 2, 3);
+  link_tin(tin);
+  EXPECT_EQ(validate(tin), "");
+  EXPECT_EQ(twice_area(tin), std::int64_t{1} << 61);
 }
 
 TEST(Validate, I4NamesADomainThatIsNotConvex) {
