@@ -10,6 +10,7 @@
 #include "storage/checksum.h"
 #include "storage/error_table.h"
 #include "storage/facts.h"
+#include "storage/metadata_text.h"
 
 namespace ptin {
 
@@ -247,6 +248,10 @@ StoreFront read_front(const ReadOnlyFile& file) {
   const std::vector<char> metadata =
       read_section<char>(front.sections, SectionKind::kMetadata, file);
   front.metadata.assign(metadata.begin(), metadata.end());
+  if (nesting_of(front.metadata) > kMostNesting) {
+    throw Error(ErrorCode::corruption, "the metadata is nested deeper than any program writes",
+                file.path());
+  }
   front.t0 = read_t0(front.sections, front.facts, file);
   front.bins = read_bins(front.sections, front.header, file);
   return front;

@@ -104,7 +104,7 @@ void Verifier::run() {
     report(fault, "T0");
   }
   const std::uint64_t vertices = front_.header.record_count + front_.t0.vertices.size();
-  keys_.emplace(front_.facts.bounds, vertices, options_.memory_bytes);
+  keys_.emplace(front_.facts.bounds, vertices, options_.memory_bytes, options_.max_faults);
   report_.key_passes = keys_->passes();
   for (pass_ = 0; pass_ < keys_->passes(); ++pass_) {
     keys_->begin(pass_);
@@ -120,8 +120,8 @@ void Verifier::run() {
 
 // Everything before the index and the pages: gaps, metadata, and sections of later minor versions.
 void Verifier::look_at_sections() {
-  if (!nlohmann::json::accept(front_.metadata)) {
-    report("the metadata is not JSON", "section \"metadata\"");
+  if (!nlohmann::json::parse(front_.metadata, nullptr, false).is_object()) {
+    report("the metadata is not a JSON object", "section \"metadata\"");
   }
   std::uint64_t end =
       sizeof(layout::FileHeader) + front_.sections.size() * sizeof(layout::SectionEntry);

@@ -11,6 +11,7 @@
 #include "engine/query/coarsest.h"
 #include "engine/query/refinement_internal.h"
 #include "storage/facts.h"
+#include "storage/metadata_text.h"
 #include "storage/store_front.h"
 
 namespace ptin {
@@ -210,7 +211,8 @@ void StreamReader::take_start(std::span<const std::byte> payload) {
     reject(std::string("the start of the stream: ").append(fault));
   }
   if (start.metadata_bytes != text.size() || (start.flags & ~stream::kIsDelta) != 0 ||
-      !is_bound(now.error) || !is_bound(now.deviation)) {
+      !is_bound(now.error) || !is_bound(now.deviation) ||
+      nesting_of({reinterpret_cast<const char*>(text.data()), text.size()}) > kMostNesting) {
     reject("the start of the stream holds values that no program wrote");
   }
   const bool is_delta = (start.flags & stream::kIsDelta) != 0;

@@ -218,7 +218,7 @@ TEST_F(Verify, FindsMetadataThatIsNotJson) {
   StoreContent content = flat_square(10);
   content.metadata = "{\"a\":";
   write(content);
-  EXPECT_TRUE(tells(verify_store(path_), "not JSON"));
+  EXPECT_TRUE(tells(verify_store(path_), "not a JSON object"));
 }
 
 TEST_F(Verify, FindsTotalsThatDoNotAddUp) {
