@@ -17,6 +17,11 @@ namespace ip = boost::interprocess;
 
 namespace {
 
+[[noreturn]] void throw_irregular(const std::string& path) {
+  throw Error(ErrorCode::invalid_argument, "this is no regular file; a .ptin file is expected",
+              path);
+}
+
 // Looked at before opening, since opening a pipe would wait for its other end.
 void require_regular(const std::string& path) {
   struct stat s {};
@@ -24,8 +29,7 @@ void require_regular(const std::string& path) {
     throw system_error(errno, "cannot open", path);
   }
   if (!S_ISREG(s.st_mode)) {
-    throw Error(ErrorCode::invalid_argument, "this is no regular file; a .ptin file is expected",
-                path);
+    throw_irregular(path);
   }
 }
 
@@ -51,6 +55,9 @@ ReadOnlyFile::Seen ReadOnlyFile::look() const {
   struct stat s {};
   if (::fstat(descriptor(), &s) != 0) {
     throw system_error(errno, "cannot look at the open file", path_);
+  }
+  if (!S_ISREG(s.st_mode)) {  // it was another one when it was looked at before opening
+    throw_irregular(path_);
   }
   return {static_cast<std::uint64_t>(s.st_size), s.st_mtim.tv_sec, s.st_mtim.tv_nsec,
           s.st_ctim.tv_sec, s.st_ctim.tv_nsec};

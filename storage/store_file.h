@@ -77,10 +77,11 @@ enum class PageAccess { kMapped, kPread };
 class StoreFile {
  public:
   /// Opens and checks: magic, version, size against the header, every section inside of the file,
-  /// checksums of header, tables, metadata, T0 and index; not of record pages (those are verified
-  /// when first read, or by verify()). Cost: a few reads at the front of the file; O(|T0|),
-  /// whatever the number of records. Index nodes are checked when visited.
-  /// @throws Error not_found, io_error, corruption, unsupported_version
+  /// checksums of header, tables, metadata and T0. Index nodes and record pages are verified when
+  /// they are first visited, or by verify(). Cost: a few reads at the front of the file; O(|T0|),
+  /// whatever the number of records.
+  /// @throws Error not_found, io_error, corruption, unsupported_version; invalid_argument when it
+  ///               is no regular file
   static std::shared_ptr<const StoreFile> open(const std::string& path,
                                                PageAccess access = PageAccess::kMapped);
   StoreFile(const StoreFile&) = delete;

@@ -18,9 +18,12 @@ namespace ptin {
 /// sort them.
 class UniqueKeys {
  public:
-  /// @param keys  How many will come, at most.
-  UniqueKeys(const GridBox& bounds, std::uint64_t keys, std::uint64_t memory_bytes)
+  /// @param keys        How many will come, at most.
+  /// @param most_twice  As many that come twice are kept; the others are as bad.
+  UniqueKeys(const GridBox& bounds, std::uint64_t keys, std::uint64_t memory_bytes,
+             std::size_t most_twice)
       : bounds_(bounds),
+        most_twice_(most_twice),
         width_(std::uint64_t{static_cast<std::uint32_t>(bounds.max_x - bounds.min_x)} + 1) {
     const std::uint64_t height =
         std::uint64_t{static_cast<std::uint32_t>(bounds.max_y - bounds.min_y)} + 1;
@@ -30,7 +33,8 @@ class UniqueKeys {
       bits_.resize(positions / 64 + 1);
     } else {
       const std::uint64_t at_once = std::max<std::uint64_t>(memory_bytes / sizeof(VertexKey), 1024);
-      passes_ = (keys + keys / 64) / at_once + 1;  // parts are not quite equal
+      passes_ = (keys + keys / 64) / at_once + 1;          // parts are not quite equal
+      part_.reserve(std::min(at_once, keys + keys / 64));  // growing would take twice as much
     }
   }
 
@@ -46,7 +50,7 @@ class UniqueKeys {
                               static_cast<std::uint64_t>(p.x - bounds_.min_x);
       const std::uint64_t bit = std::uint64_t{1} << (i % 64);
       if ((bits_[i / 64] & bit) != 0) {
-        twice_.push_back(key_of(p));
+        keep_twice(key_of(p));
       }
       bits_[i / 64] |= bit;
     } else if (!by_bits_ && (key_of(p) * 0x9E3779B97F4A7C15U >> 32) % passes_ == pass_) {
@@ -58,7 +62,7 @@ class UniqueKeys {
     std::sort(part_.begin(), part_.end());
     for (std::size_t i = 1; i < part_.size(); ++i) {
       if (part_[i] == part_[i - 1]) {
-        twice_.push_back(part_[i]);
+        keep_twice(part_[i]);
       }
     }
     part_.clear();
@@ -66,7 +70,14 @@ class UniqueKeys {
   [[nodiscard]] const std::vector<VertexKey>& twice() const noexcept { return twice_; }
 
  private:
+  void keep_twice(VertexKey key) {
+    if (twice_.size() < most_twice_) {
+      twice_.push_back(key);
+    }
+  }
+
   GridBox bounds_;
+  std::size_t most_twice_;
   std::uint64_t width_;
   bool by_bits_ = false;
   std::uint64_t passes_ = 1;
