@@ -8,9 +8,10 @@
 namespace ptin {
 
 void check(const Curvature& curvature) {
-  if (!(curvature.coefficient >= 0) || !std::isfinite(curvature.coefficient)) {
+  constexpr double kMost = 1000;  // a ball of 13 km
+  if (!(curvature.coefficient >= 0) || !(curvature.coefficient <= kMost)) {
     throw Error(ErrorCode::invalid_argument,
-                "the curvature coefficient is negative or not finite: expected 0 (a flat Earth) "
+                "the curvature coefficient is negative or too large: expected 0 (a flat Earth) "
                 "to 1 (no refraction)");
   }
   if (!(curvature.earth_diameter > 0)) {

@@ -167,8 +167,9 @@ void SightSolver::Impl::renew_mesh() {
 }
 
 Spot SightSolver::Impl::spot_of_end(MapPoint p, double height) const {
-  if (!std::isfinite(height)) {
-    throw_invalid("the height of an end is not a finite number");
+  constexpr double kMost = 1e30;  // differences and products of such are finite
+  if (!(std::abs(height) <= kMost)) {
+    throw_invalid("the height of an end is not a finite number, or beyond 1e30");
   }
   const std::optional<Spot> spot = map_.spot(p);
   if (!spot) {

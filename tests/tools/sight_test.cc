@@ -125,6 +125,26 @@ TEST_F(SightNumbers, PairsOnStandardInputAreThoseOfAFile) {
   EXPECT_EQ(run_ptin_reading("1 2 3 4 5\n", {"sight", file_, "--pairs", "-"}).status, 2);
 }
 
+// Their products are infinite, and the difference of two such is no number.
+TEST_F(SightNumbers, AreRefusedWhereTheyAreTooLargeToReckonWith) {
+  const std::vector<std::string> line = {x_of(4), kRowY, "5", x_of(28), kRowY, "5"};
+  const auto expect_refused = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"sight", file_});
+    const Outcome outcome = run_ptin(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.out;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(testing::lines_in(outcome.err), 1U) << outcome.err;
+  };
+  std::vector<std::string> bent = line;
+  bent.emplace_back("--curvature=1e308");
+  expect_refused(bent);
+  std::vector<std::string> near_end = line, far_end = line;
+  near_end[2] = far_end[5] = "1e308";
+  far_end.emplace_back("--absolute");
+  expect_refused(near_end);
+  expect_refused(far_end);
+}
+
 /// Length of the meridian of WGS 84 between two latitudes, degrees: Simpson's rule over its radius
 /// of curvature.
 double meridian(double from, double to) {
