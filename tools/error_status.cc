@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <new>
+#include <system_error>
 
 namespace ptin::tools {
 
@@ -37,6 +38,13 @@ Error current_error() noexcept {
     return {ErrorCode::resource_exhausted,
             "the system gives no more memory; ask for less (a window, a larger --error) or close "
             "other programs"};
+  } catch (const std::system_error& error) {  // a thread, in all that we call
+    if (error.code() == std::errc::resource_unavailable_try_again) {
+      return {ErrorCode::resource_exhausted,
+              "the system gives no more threads; raise the limit on processes, or close other "
+              "programs"};
+    }
+    return system_error(error.code().value(), error.what(), "");
   } catch (const std::exception& error) {
     return {ErrorCode::internal, std::string("a fault of this program: ") + error.what()};
   } catch (...) {

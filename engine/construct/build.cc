@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <new>
 
 #include "engine/construct/build_job_internal.h"
 #include "engine/construct/memory_plan.h"
@@ -96,15 +95,6 @@ bool are_points(const std::vector<std::string>& inputs, const PointChoice& choic
   return points != 0;
 }
 
-Error out_of_memory(const std::string& output) {
-  const std::string folder = Workspace::folder_of(output);
-  const std::string kept = is_there(folder) ? "; what is done is kept in " + folder +
-                                                  ": go on by --resume, or remove it by --discard"
-                                            : "";
-  return {ErrorCode::resource_exhausted, "the system has no more memory for this build" + kept,
-          output};
-}
-
 BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::string& output,
                           const BuildOptions& options, const BuildResources& resources) {
   const auto begin = std::chrono::steady_clock::now();
@@ -131,8 +121,13 @@ BuildReport build(const std::vector<std::string>& inputs, const std::string& out
                   const BuildOptions& options, const BuildResources& resources) {
   try {
     return build_of_kind(inputs, output, options, resources);
-  } catch (const std::bad_alloc&) {  // before the work began, or after it
-    throw out_of_memory(output);
+  } catch (const Error&) {
+    throw;
+  } catch (...) {  // before the work began, or after it
+    const Error e = error_in_flight();
+    const Error named(e.code(), e.message(), e.context().empty() ? output : e.context());
+    const std::string folder = Workspace::folder_of(output);
+    throw is_there(folder) ? told_as_kept(named, folder) : named;
   }
 }
 

@@ -57,26 +57,6 @@ bool is_kept(const Workspace& workspace, const Job& job, ErrorCode code) {
                                                        code == ErrorCode::io_error));
 }
 
-/// What is being handled, as an Error: what libraries throw, and the caller's own functions.
-Error error_in_flight() {
-  try {
-    throw;
-  } catch (const Error& e) {
-    return e;
-  } catch (const std::bad_alloc&) {
-    return {ErrorCode::resource_exhausted,
-            "the system gives no more memory; give a lower --memory, or close other programs"};
-  } catch (const std::filesystem::filesystem_error& e) {
-    return system_error(e.code().value(), "the file system refused", e.path1().string());
-  } catch (const std::exception& e) {
-    return {ErrorCode::internal,
-            std::string("something else than an error of ours was thrown: ") + e.what()};
-  } catch (...) {
-    return {ErrorCode::internal,
-            "something was thrown that is no exception of the standard library"};
-  }
-}
-
 /// Removes what a failed build began, and throws its error on, whatever becomes of that.
 [[noreturn]] void give_up(Workspace& workspace, const Error& error) {
   const std::string folder = workspace.folder();
@@ -89,7 +69,44 @@ Error error_in_flight() {
   throw Error(error.code(), error.message() + left, error.context());
 }
 
+Error no_threads_or(bool no_threads, const std::string& what) {
+  if (no_threads) {
+    return {ErrorCode::resource_exhausted,
+            "the system gives no more threads; give fewer --threads, or close other programs"};
+  }
+  return {ErrorCode::internal, "something else than an error of ours was thrown: " + what};
+}
+
 }  // namespace
+
+Error error_in_flight() {
+  try {
+    throw;
+  } catch (const Error& e) {
+    return e;
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::resource_exhausted,
+            "the system gives no more memory; give a lower --memory, or close other programs"};
+  } catch (const std::filesystem::filesystem_error& e) {
+    return system_error(e.code().value(), "the file system refused", e.path1().string());
+  } catch (const std::system_error& e) {
+    return no_threads_or(e.code() == std::errc::resource_unavailable_try_again, e.what());
+  } catch (const std::exception& e) {
+    // oneTBB has no type of its own for a thread that it cannot start.
+    return no_threads_or(
+        std::string_view(e.what()).find("pthread_create") != std::string_view::npos, e.what());
+  } catch (...) {
+    return {ErrorCode::internal,
+            "something was thrown that is no exception of the standard library"};
+  }
+}
+
+Error told_as_kept(const Error& error, const std::string& folder) {
+  return {error.code(),
+          error.message() + "; what is done is kept in " + folder +
+              ": go on by --resume, or remove it by --discard",
+          error.context()};
+}
 
 FileLayer& Job::files() const {
   return resources.files != nullptr ? *resources.files : FileLayer::system();
@@ -156,10 +173,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   } catch (...) {
     const Error e = error_in_flight();
     if (is_kept(workspace, job, e.code())) {
-      throw Error(e.code(),
-                  e.message() + "; what is done is kept in " + workspace.folder() +
-                      ": go on by --resume, or remove it by --discard",
-                  e.context());
+      throw told_as_kept(e, workspace.folder());
     }
     give_up(workspace, e);
   }

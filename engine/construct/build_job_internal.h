@@ -53,6 +53,13 @@ struct Terrain {
   std::function<LeafStarter()> make_starter;  ///< Called once for each thread.
 };
 
+/// What is being handled, as an Error: what libraries throw, and the caller's own functions.
+/// To be called while an exception is handled.
+[[nodiscard]] Error error_in_flight();
+
+/// The same error, and that the work in `folder` can be gone on with.
+[[nodiscard]] Error told_as_kept(const Error& error, const std::string& folder);
+
 /// What decides the bytes of the output, that its inputs are still the ones it began with, and the
 /// program, whose temporary files another version may not understand. To be taken before anything
 /// is read: a file that is replaced meanwhile is another one then.

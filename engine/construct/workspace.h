@@ -27,14 +27,11 @@ enum class Unfinished : std::uint8_t {
 /// in `tmp`. Locked while in use; unlocked by the system when the process dies.
 class Workspace {
  public:
+  /// Takes the folder of a build, or makes it, and locks it.
   /// @param output       The file to be built.
   /// @param tmp          A folder for temporary files; "" for beside the output.
   /// @param fingerprint  What decides the bytes of the output: options and inputs. An interrupted
   ///                     build is taken up again only where it is the same.
-  /// The constructor's refusal, before a source is read.
-  /// @throws Error invalid_argument  an interrupted build of `output` is there
-  static void refuse_unfinished(const std::string& output);
-
   /// @throws Error invalid_argument  an interrupted build is there and `unfinished` is kRefuse, or
   ///                                 it is of another input or other options; another process is
   ///                                 at it; a folder of that name is not one of ours
@@ -45,6 +42,9 @@ class Workspace {
   Workspace(const Workspace&) = delete;
   Workspace& operator=(const Workspace&) = delete;
 
+  /// The constructor's refusal where `unfinished` is kRefuse, before a source is read.
+  /// @throws Error invalid_argument  an interrupted build of `output` is there
+  static void refuse_unfinished(const std::string& output);
   /// Where the build of `output` has its folder.
   [[nodiscard]] static std::string folder_of(const std::string& output);
   /// Removes an interrupted build of `output`; false when there is none.
