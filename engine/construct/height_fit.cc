@@ -10,8 +10,6 @@
 namespace ptin {
 namespace {
 
-/// Decimals that heights are tested for.
-constexpr int kMaxDecimals = 4;
 constexpr double kInt32Max = 2147483647.0;
 
 /// A height whose last bit is 2^-23 of itself (float32) or 2^-52 (float64) was a decimal before it
@@ -32,10 +30,12 @@ double nearest_integer(double v) {
 }  // namespace
 
 double decimal_step(int decimals) noexcept {
-  static constexpr std::array<double, 23> kPowers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                                     1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                                     1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-  return 1.0 / kPowers[static_cast<std::size_t>(decimals)];  // powers are exact: rounded once
+  // Quotients of exact powers: rounded once.
+  static constexpr std::array<double, 23> kSteps = {
+      1 / 1e0,  1 / 1e1,  1 / 1e2,  1 / 1e3,  1 / 1e4,  1 / 1e5,  1 / 1e6,  1 / 1e7,
+      1 / 1e8,  1 / 1e9,  1 / 1e10, 1 / 1e11, 1 / 1e12, 1 / 1e13, 1 / 1e14, 1 / 1e15,
+      1 / 1e16, 1 / 1e17, 1 / 1e18, 1 / 1e19, 1 / 1e20, 1 / 1e21, 1 / 1e22};
+  return kSteps[static_cast<std::size_t>(decimals)];
 }
 
 void HeightScan::add(double height) {
@@ -51,20 +51,26 @@ void HeightScan::add(double height) {
   }
 }
 
+/// A height is measured against finer steps than its own too: a later one may need them, and a
+/// whole number of hundredths is another double than as many hundreds of ten thousandths.
 void HeightScan::test_decimals(double height) {
-  for (; decimals_ <= kMaxDecimals; ++decimals_) {
-    const double step = decimal_step(decimals_);
+  bool fits = false;
+  for (int decimals = decimals_; decimals <= kMaxDecimals; ++decimals) {
+    const double step = decimal_step(decimals);
     const double steps = height / step;
     if (std::abs(steps) > kInt32Max) {
-      decimals_ = kMaxDecimals;  // finer steps do not fit either
-      continue;
+      break;  // finer steps do not fit either
     }
     const double distance = std::abs(height - nearest_integer(steps) * step);
-    if (distance <= tolerance(given_, height, step)) {
-      decimal_rounding_ = std::max(decimal_rounding_, distance);
-      return;
+    fits = fits || distance <= tolerance(given_, height, step);
+    decimals_ += fits ? 0 : 1;
+    double& rounding = decimal_rounding_[static_cast<std::size_t>(decimals)];
+    rounding = std::max(rounding, distance);
+    if (fits && given_ == Given::kFloat32) {
+      return;  // stays as it is, and rounds nothing
     }
   }
+  decimals_ = fits ? decimals_ : kMaxDecimals + 1;
 }
 
 HeightFit HeightScan::fit() const {
@@ -86,7 +92,7 @@ HeightFit HeightScan::fit() const {
   } else if (decimal) {
     fit.encoding = {HeightType::int32, decimal_step(decimals_), 0.0};
     fit.quantum = fit.encoding.step;
-    fit.rounding = decimal_rounding_;
+    fit.rounding = decimal_rounding_[static_cast<std::size_t>(decimals_)];
   } else {
     choose_rounded(fit);
   }

@@ -3,6 +3,7 @@
 // Which 32-bit encoding holds the heights of a source, found in one pass over them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -39,6 +40,7 @@ class HeightScan {
   [[nodiscard]] HeightFit fit() const;
 
  private:
+  static constexpr int kMaxDecimals = 4;  ///< That heights are tested for.
   void test_decimals(double height);
   void choose_rounded(HeightFit& fit) const;
   [[nodiscard]] double float_quantum() const;
@@ -50,7 +52,8 @@ class HeightScan {
   bool all_int32_ = true;
   bool all_float32_ = true;
   int decimals_ = 0;  ///< Fewest that all heights seen have; kMaxDecimals + 1: too many.
-  double decimal_rounding_ = 0.0;  ///< Largest distance to a multiple of the decimal step.
+  /// Largest distance of any height to a multiple of each step from decimals_ on.
+  std::array<double, kMaxDecimals + 1> decimal_rounding_{};
 };
 
 /// Writes what `fit` says into `frame`.
