@@ -8,12 +8,12 @@
 namespace ptin {
 namespace {
 
-constexpr std::array<std::string_view, 7> kNamesOfX = {"x",         "easting", "east", "e",
-                                                       "longitude", "lon",     "long"};
-constexpr std::array<std::string_view, 6> kNamesOfY = {"y", "northing", "north",
-                                                       "n", "latitude", "lat"};
-constexpr std::array<std::string_view, 7> kNamesOfZ = {"z",    "height",   "h",  "elevation",
-                                                       "elev", "altitude", "alt"};
+constexpr std::array<std::string_view, 8> kNamesOfX = {"x",         "easting", "east", "e",
+                                                       "longitude", "lon",     "long", "point_x"};
+constexpr std::array<std::string_view, 7> kNamesOfY = {"y",        "northing", "north",  "n",
+                                                       "latitude", "lat",      "point_y"};
+constexpr std::array<std::string_view, 8> kNamesOfZ = {"z",    "height",   "h",   "elevation",
+                                                       "elev", "altitude", "alt", "point_z"};
 
 std::span<const std::string_view> names_of(Coordinate which) {
   if (which == Coordinate::kX) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/construct/crs.h"
+#include "engine/construct/grid_precision.h"
 #include "engine/construct/height_finder_internal.h"
 #include "engine/construct/packed_bucket.h"
 #include "engine/construct/point_grid.h"
@@ -168,12 +169,18 @@ PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const Sou
         }
       },
       &memory);
-  set_crs(buckets.frame_, resolve_crs(reading.crs, options.a_srs, options.vertical_crs));
+  set_crs(buckets.frame_,
+          resolve_crs(reading.crs, options.a_srs,
+                      options.vertical_crs.empty() ? reading.vertical_crs : options.vertical_crs));
   buckets.frame_.map = reading.grid.map();
+  require_resolvable(buckets.frame_.map, reading.grid.east - reading.grid.west,
+                     reading.grid.north - reading.grid.south, "give a coarser --resolution",
+                     context);
   require_latitudes(buckets.frame_, reading.grid.north - reading.grid.south, context);
   buckets.counts_.source_points = reading.points;
   buckets.counts_.left_out_points = reading.left_out;
   buckets.sort(spool, reading.grid, options.merge, memory, stop, progress, keep_as);
+  buckets.counts_.largest_shift_plan += reading.largest_shift;
   check_area(buckets.hull_, buckets.size_, context);
   return buckets;
 }

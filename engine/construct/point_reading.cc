@@ -39,7 +39,7 @@ PointReading read_sources(const std::vector<std::string>& paths, const SourceOpt
                           const ExternalMemory* memory) {
   PointReading reading;
   PointGridScan scan(options.resolution, paths.empty() ? "" : paths[0]);
-  CommonCrs crs;
+  CommonCrs crs, vertical_crs;
   std::vector<SourcePoint> batch;
   std::uint64_t count = 0;
   for (const std::string& path : paths) {
@@ -47,6 +47,7 @@ PointReading read_sources(const std::vector<std::string>& paths, const SourceOpt
         open_point_stream(path, options.points, options.nodata, {memory, stop, progress});
     if (options.a_srs.empty()) {
       crs.add(stream->facts().crs, path);
+      vertical_crs.add(stream->facts().vertical_crs, path);
     }
     scan.add_source(stream->facts());
     while (stream->next(batch)) {
@@ -65,6 +66,7 @@ PointReading read_sources(const std::vector<std::string>& paths, const SourceOpt
       }
     }
     reading.left_out += stream->left_out();
+    reading.largest_shift = std::max(reading.largest_shift, stream->largest_shift());
   }
   if (scan.points() == 0) {
     refuse(count + reading.left_out == 0
@@ -77,6 +79,7 @@ PointReading read_sources(const std::vector<std::string>& paths, const SourceOpt
   reading.points = scan.points();
   reading.grid = scan.grid();
   reading.crs = crs.text();
+  reading.vertical_crs = options.vertical_crs.empty() ? vertical_crs.text() : "";
   return reading;
 }
 

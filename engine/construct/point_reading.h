@@ -17,7 +17,9 @@ namespace ptin {
 /// What is known when the last point has been read.
 struct PointReading {
   PointGrid grid;
-  std::string crs;  ///< As all files declare it; "" with options.a_srs.
+  std::string crs;             ///< As all files declare it; "" with options.a_srs.
+  std::string vertical_crs;    ///< Likewise; "" with options.vertical_crs, too.
+  double largest_shift = 0.0;  ///< That the sources made themselves, CRS units.
   std::uint64_t points = 0;
   std::uint64_t left_out = 0;
 };

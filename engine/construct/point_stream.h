@@ -35,7 +35,8 @@ struct SourceLattice {
 
 /// What a source declares before its first point is read.
 struct PointStreamFacts {
-  std::string crs;  ///< Anything GDAL understands; "" when the source does not say.
+  std::string crs;           ///< Anything GDAL understands; "" when the source does not say.
+  std::string vertical_crs;  ///< Likewise, where it is told apart from `crs`.
   /// Digits after the point that coordinates and heights are declared to have: at least so many are
   /// kept.
   int plan_decimals = 0;
@@ -71,6 +72,8 @@ class PointStream {
 
   /// Points so far that the choice, or the source itself (withheld; no height), leaves out.
   [[nodiscard]] virtual std::uint64_t left_out() const noexcept { return 0; }
+  /// How far dropping digits has moved a point so far, CRS units.
+  [[nodiscard]] virtual double largest_shift() const noexcept { return 0.0; }
   /// Progress in units of its own; total 0 when that is unknown.
   [[nodiscard]] virtual std::uint64_t done() const noexcept = 0;
   [[nodiscard]] virtual std::uint64_t total() const noexcept = 0;

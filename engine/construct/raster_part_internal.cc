@@ -67,10 +67,14 @@ GDALRasterBand* height_band(GDALDataset& data, const std::string& path) {
   return data.GetRasterBand(1);
 }
 
-/// The band that says where samples are masked out, or null where the nodata value alone decides.
-GDALRasterBand* mask_band(GDALRasterBand& band) {
+/// The band that says where samples are masked out, or null where the band's nodata value alone
+/// decides: one of the whole dataset (NODATA_VALUES) is known to its mask only.
+/// @param is_overridden  Another nodata value takes the place of any declared one.
+GDALRasterBand* mask_band(GDALRasterBand& band, bool is_overridden) {
   const int flags = band.GetMaskFlags();
-  return (flags & (GMF_ALL_VALID | GMF_NODATA)) != 0 ? nullptr : band.GetMaskBand();
+  const bool by_value =
+      (flags & GMF_NODATA) != 0 && (is_overridden || (flags & GMF_PER_DATASET) == 0);
+  return by_value || (flags & GMF_ALL_VALID) != 0 ? nullptr : band.GetMaskBand();
 }
 
 std::optional<double> declared_nodata(GDALRasterBand& band) {
@@ -89,16 +93,29 @@ std::optional<double> declared_nodata(GDALRasterBand& band) {
   return has != 0 ? std::optional<double>(value) : std::nullopt;
 }
 
+/// Before GDAL 3.7 there is no type for signed bytes: they are handed out as 0 to 255.
+bool holds_signed_bytes(GDALRasterBand& band) {
+  const char* pixel_type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return band.GetRasterDataType() == GDT_Byte && pixel_type != nullptr &&
+         EQUAL(pixel_type, "SIGNEDBYTE");
+}
+
 void describe_values(GDALRasterBand& band, const std::string& path, RasterShape& shape) {
   const GDALDataType type = band.GetRasterDataType();
   shape.type_name = GDALGetDataTypeName(type);
   if (GDALDataTypeIsComplex(type)) {
     refuse("this raster holds complex numbers (" + shape.type_name + "), not heights", path);
   }
+  shape.signed_bytes = holds_signed_bytes(band);
   shape.scale = band.GetScale();
   shape.offset = band.GetOffset();
   if (!std::isfinite(shape.scale) || !std::isfinite(shape.offset) || shape.scale == 0.0) {
     refuse("the raster's scale must be finite and not 0, and its offset finite", path);
+  }
+  // Whole numbers are not looked at one by one; floats are (check_heights).
+  constexpr double kMostWhole = 4294967296.0;
+  if (std::abs(shape.scale) * kMostWhole + std::abs(shape.offset) > FLT_MAX) {
+    refuse("the raster's scale or offset is so large that heights would be beyond 3.4e38", path);
   }
   const bool scaled = shape.scale != 1.0 || shape.offset != 0.0;
   const bool fits_int32 =
@@ -315,7 +332,7 @@ void RasterPart::open() {
   bands->data = open_dataset(path_);
   const GdalSession session;
   bands->height = height_band(*bands->data, path_);
-  bands->mask = mask_band(*bands->height);
+  bands->mask = mask_band(*bands->height, nodata_override_.has_value());
   const bool changed = shape_.width != 0 && (bands->data->GetRasterXSize() != shape_.width ||
                                              bands->data->GetRasterYSize() != shape_.height);
   if (changed) {
@@ -338,6 +355,10 @@ void RasterPart::read(const SampleRange& window, std::span<T> values,
     open();
   }
   read_band(*bands_->height, shape_, window, values, path_);
+  if (shape_.signed_bytes) {
+    std::transform(values.begin(), values.end(), values.begin(),
+                   [](T v) { return v > T{127} ? v - T{256} : v; });
+  }
   const bool all_heights = find_valid<T>(values, valid, nodata_, shape_);
   if (bands_->mask != nullptr) {
     std::vector<std::uint8_t> mask(valid.size());

@@ -31,8 +31,9 @@ struct RasterShape {
   std::string crs;                 ///< WKT2:2019 as declared; empty when unknown.
   std::string unit;                ///< Of heights; empty when unknown.
   RawType raw = RawType::kInt32;
-  std::string type_name;  ///< GDAL's: "Int16", "Float32" ...
-  double scale = 1.0;     ///< height = offset + scale * raw value
+  std::string type_name;      ///< GDAL's: "Int16", "Float32" ...
+  bool signed_bytes = false;  ///< Of the type Byte, but from -128 to 127.
+  double scale = 1.0;         ///< height = offset + scale * raw value
   double offset = 0.0;
   std::array<int, 2> block = {1, 1};  ///< Width and height of the file's own blocks.
 };

@@ -7,13 +7,14 @@
 #include <bit>
 #include <cmath>
 #include <mutex>
-#include <string_view>
 #include <utility>
 
 #include <sys/resource.h>
 
 #include "engine/construct/crs.h"
+#include "engine/construct/grid_precision.h"
 #include "engine/construct/height_fit.h"
+#include "engine/construct/height_unit.h"
 #include "engine/construct/raster_part_internal.h"
 #include "engine/error.h"
 #include "engine/geometry/point.h"
@@ -50,30 +51,6 @@ struct PlacedPart {
   std::int64_t x = 0, y = 0;  ///< Of its south-western sample, in the terrain.
   std::uint64_t last_used = 0;
 };
-
-/// One name for each unit, as the CRS would give it.
-std::string normal_unit(const std::string& unit) {
-  if (unit.empty()) {
-    return "unknown";
-  }
-  static constexpr std::array<std::array<std::string_view, 2>, 9> kNames = {{
-      {"m", "metre"},
-      {"meter", "metre"},
-      {"meters", "metre"},
-      {"metres", "metre"},
-      {"ft", "foot"},
-      {"feet", "foot"},
-      {"us-ft", "US survey foot"},
-      {"ftUS", "US survey foot"},
-      {"US survey feet", "US survey foot"},
-  }};
-  for (const auto& [alias, name] : kNames) {
-    if (unit == alias) {
-      return std::string(name);
-    }
-  }
-  return unit;
-}
 
 /// Why `b` cannot stand beside `a` in one terrain; empty when it can.
 std::string mismatch(const RasterShape& a, const RasterShape& b, bool compare_crs) {
@@ -182,9 +159,11 @@ void RasterSource::Impl::open_parts(const std::vector<std::string>& paths,
   const Crs crs = resolve_crs(first.crs, options.a_srs, options.vertical_crs);
   set_crs(frame, crs);
   if (frame.vertical_unit == "unknown") {
-    frame.vertical_unit = normal_unit(first.unit);
+    frame.vertical_unit = height_unit_named(first.unit);
   }
   place();
+  require_resolvable(frame.map, width - 1, height - 1, "is its geotransform what was meant?",
+                     paths.front());
   require_latitudes(frame, height - 1, paths.front());
 }
 

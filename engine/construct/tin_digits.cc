@@ -45,12 +45,13 @@ void TinDigits::add(const SourcePoint& p) noexcept {
 }
 
 int TinDigits::kept() const noexcept {
-  constexpr double kRoom = 4.0;  // so that rounding cannot exceed the grid
+  constexpr double kRoom = 4.0;          // so that rounding cannot exceed the grid
+  constexpr double kMostSteps = 0x1p46;  // from 0, so that doubles tell them apart well enough
   const auto fits = [&](int decimals) {
     const double step = decimal_step(decimals);
     return std::all_of(axes_.begin(), axes_.end(), [&](const Axis& a) {
       return (a.high - a.low) / step <= kGridMax - kRoom &&
-             std::max(std::abs(a.low), std::abs(a.high)) / step < 0x1p62;
+             std::max(std::abs(a.low), std::abs(a.high)) / step <= kMostSteps;
     });
   };
   int decimals = decimals_;

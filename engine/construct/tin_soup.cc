@@ -41,6 +41,11 @@ const TinFormat* format_of(std::string_view path) {
 
 bool is_tin_file(std::string_view path) { return format_of(path) != nullptr; }
 
+bool may_have_surfaces(std::string_view path) {
+  const TinFormat* format = format_of(path);
+  return format != nullptr && format->read == read_land_xml;
+}
+
 TinReader& tin_reader_of(const std::string& path) {
   const TinFormat* format = format_of(path);
   if (format == nullptr) {

@@ -58,6 +58,8 @@ struct TinReading {
 
 /// True when a name is that of a TIN: .ply, .obj, .2dm, .xml or .landxml, in any case.
 [[nodiscard]] bool is_tin_file(std::string_view path);
+/// True when it is that of a format whose files hold several surfaces, by name: LandXML.
+[[nodiscard]] bool may_have_surfaces(std::string_view path);
 
 /// Reads a TIN by its name's extension. At least one vertex and one triangle are handed out.
 /// @throws Error  not_found, io_error

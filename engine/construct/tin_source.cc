@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/construct/crs.h"
+#include "engine/construct/grid_precision.h"
 #include "engine/construct/height_fit.h"
 #include "engine/construct/hull_delaunay.h"
 #include "engine/construct/point_order_internal.h"
@@ -209,10 +210,13 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   }
   TinOnGrid tin = read_on_grid(path, {options, memory, stop, progress});
   TinTriangles to;
-  set_crs(to.frame_,
-          resolve_crs(tin.crs, options.a_srs,
-                      options.vertical_crs.empty() ? tin.vertical_crs : options.vertical_crs));
+  // What --a-srs takes the place of is the source's CRS with its vertical part.
+  const bool keeps_vertical = options.a_srs.empty() && options.vertical_crs.empty();
+  set_crs(to.frame_, resolve_crs(tin.crs, options.a_srs,
+                                 keeps_vertical ? tin.vertical_crs : options.vertical_crs));
   to.frame_.map = tin.grid.map();
+  require_resolvable(to.frame_.map, tin.grid.east - tin.grid.west, tin.grid.north - tin.grid.south,
+                     "give a coarser --resolution", path);
   require_latitudes(to.frame_, tin.grid.north - tin.grid.south, path);
   set_heights(to.frame_, tin.heights);
   to.codes_are_whole_ = tin.grid.whole;

@@ -2,6 +2,7 @@
 #include "engine/construct/tin_vertices.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/construct/record_file.h"
@@ -45,6 +46,7 @@ TinVertices::TinVertices(const std::string& path, const PointChoice& choice,
   };
   NamedTin tin = read_named_tin(path, {options, memory, resources.stop, progress}, memory);
   facts_.crs = tin.facts.crs;
+  facts_.vertical_crs = tin.facts.vertical_crs;
   left_out_ = tin.unused_vertices;
   vertices_ = std::make_unique<const Vertices>(std::move(tin.vertices));
   TinDigits digits;
@@ -64,7 +66,8 @@ bool TinVertices::next(std::vector<SourcePoint>& batch) {
   batch.clear();
   for (const NamedVertex& v : vertices) {
     batch.push_back(v.point());
-    static_cast<void>(drop_digits(batch.back(), decimals_));
+    const DroppedDigits moved = drop_digits(batch.back(), decimals_);
+    largest_shift_ = std::max(largest_shift_, std::sqrt(moved.x * moved.x + moved.y * moved.y));
   }
   return !batch.empty();
 }

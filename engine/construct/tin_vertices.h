@@ -36,6 +36,7 @@ class TinVertices final : public PointStream {
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
   [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
+  [[nodiscard]] double largest_shift() const noexcept override { return largest_shift_; }
   [[nodiscard]] std::uint64_t done() const noexcept override { return next_; }
   [[nodiscard]] std::uint64_t total() const noexcept override;
 
@@ -44,6 +45,7 @@ class TinVertices final : public PointStream {
   PointStreamFacts facts_;
   std::unique_ptr<const Vertices> vertices_;
   int decimals_ = 0;
+  double largest_shift_ = 0.0;
   std::uint64_t next_ = 0;
   std::uint64_t left_out_ = 0;
 };

@@ -104,8 +104,11 @@ std::size_t lines_in(const std::string& text) {
 
 void make_raster(const std::string& path, const RasterRecipe& r) {
   GDALAllRegister();
+  CPLStringList creation;
+  for (const std::string& option : r.creation) creation.AddString(option.c_str());
   const std::unique_ptr<GDALDataset> data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      path.c_str(), r.width, r.height, 1, GDT_Float32, nullptr));
+      path.c_str(), r.width, r.height, 1, GDALGetDataTypeByName(r.type.c_str()), creation.List()));
+  if (!data) throw std::runtime_error("cannot create " + path);
   double transform[6] = {r.west, r.pixel, 0, r.north, 0, -r.pixel};
   if (r.columns_go_west) {
     transform[0] += r.width * r.pixel;
@@ -117,6 +120,7 @@ void make_raster(const std::string& path, const RasterRecipe& r) {
   data->SetSpatialRef(&srs);
   GDALRasterBand& band = *data->GetRasterBand(1);
   if (r.nodata) band.SetNoDataValue(*r.nodata);
+  if (!r.unit.empty()) band.SetUnitType(r.unit.c_str());
   std::vector<double> row(static_cast<std::size_t>(r.width));
   for (int y = 0; y < r.height; ++y) {
     for (int x = 0; x < r.width; ++x)

@@ -52,8 +52,11 @@ struct RasterRecipe {
   double pixel = 30.0;
   bool columns_go_west = false;  ///< The first column is the easternmost: a negative pixel width.
   int epsg = 32611;
+  std::string type = "Float32";       ///< By GDAL's name.
+  std::string unit;                   ///< Of the heights, as the band declares it.
+  std::vector<std::string> creation;  ///< Options of GDAL's driver.
 };
-/// Writes it as a Float32 GeoTIFF.
+/// Writes it as a GeoTIFF.
 void make_raster(const std::string& path, const RasterRecipe& recipe);
 /// Hills: smooth, no two alike, about 100 m high.
 [[nodiscard]] double hills(int column, int row);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // TINs through the whole program: built, exported, built again; broken ones; real ones.
+#include <array>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -99,6 +102,45 @@ TEST(TinInput, IsRepairedWithVoidsWhereEdgesAreLong) {
   };
   EXPECT_EQ(state_between({}), "surface");
   EXPECT_EQ(state_between({"--max-edge", "20"}), "void");
+}
+
+/// Two surfaces of two triangles each, A from 1 to 4, B from 5 to 9.
+std::string landxml_of_two_surfaces() {
+  const auto surface = [](const std::string& name, const std::array<int, 4>& heights) {
+    const auto point = [&](int id, const char* place) {
+      return "<P id=\"" + std::to_string(id) + "\">" + place + " " +
+             std::to_string(heights.at(static_cast<std::size_t>(id) - 1)) + "</P>";
+    };
+    return "<Surface name=\"" + name + "\"><Definition surfType=\"TIN\"><Pnts>" + point(1, "0 0") +
+           point(2, "0 10") + point(3, "10 0") + point(4, "10 10") +
+           "</Pnts><Faces><F>1 2 4</F><F>1 4 3</F></Faces></Definition></Surface>";
+  };
+  return "<?xml version=\"1.0\"?>\n"
+         "<LandXML xmlns=\"http://www.landxml.org/schema/LandXML-1.2\" version=\"1.2\"><Surfaces>" +
+         surface("A", {1, 2, 3, 4}) + surface("B", {5, 6, 7, 9}) + "</Surfaces></LandXML>\n";
+}
+
+TEST(TinInput, TakesTheSurfaceOfLandXmlThatIsNamed) {
+  const TestFolder folder;
+  testing::write_file(folder.file("two.xml"), landxml_of_two_surfaces());
+  testing::write_file(folder.file("one.obj"), "v 0 0 0\nv 9 0 1\nv 9 9 2\nf 1 2 3\n");
+  const auto refusal = [&](const char* input, const std::vector<std::string>& options) {
+    std::vector<std::string> all = {"build", folder.file(input), "-o", folder.file("no.ptin"),
+                                    "-q"};
+    all.insert(all.end(), options.begin(), options.end());
+    const Outcome outcome = run_ptin(all);
+    EXPECT_EQ(outcome.status, 2) << input << outcome.err;
+    return outcome.err;
+  };
+  expect_done({"build", folder.file("two.xml"), "--layer", "B", "-o", folder.file("b.ptin"), "-q"});
+  const json heights = testing::answer_of({"info", folder.file("b.ptin"), "--json"}).at("heights");
+  EXPECT_EQ(heights.at("min"), 5.0);
+  EXPECT_EQ(heights.at("max"), 9.0);
+  EXPECT_NE(refusal("two.xml", {}).find("--layer"), std::string::npos);
+  EXPECT_NE(refusal("two.xml", {"--layer", "C"}).find("'C'"), std::string::npos);
+  EXPECT_NE(refusal("one.obj", {"--layer", "B"}).find("--layer"), std::string::npos);
+  EXPECT_NE(refusal("two.xml", {"--layer", "B", "--z-field", "z"}).find("--z-field"),
+            std::string::npos);
 }
 
 TEST(TinInput, IsRefusedForWhatItNames) {

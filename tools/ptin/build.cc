@@ -52,7 +52,7 @@ CostModel cost_of(const std::string& name) {
 enum class InputKind : std::uint8_t { kRaster, kPoints, kTin };
 
 /// Why an option that was given means nothing to inputs of this kind; null when all do.
-const char* misfit_of(const BuildOptions& o, InputKind kind) {
+const char* misfit_of(const BuildOptions& o, InputKind kind, const std::string& input) {
   if (kind == InputKind::kRaster) {
     if (o.resolution) return "--resolution is for points and TINs, and this is a raster";
     if (!o.classes.empty()) return "--class is for LAS, and this is a raster";
@@ -62,8 +62,9 @@ const char* misfit_of(const BuildOptions& o, InputKind kind) {
     if (o.repair) return "--repair is for TINs, and these are points";
   } else {
     if (!o.classes.empty()) return "--class is for LAS, and this is a TIN";
-    if (!o.layer.empty() || !o.z_field.empty())
-      return "--layer and --z-field are for points, and this is a TIN";
+    if (!o.z_field.empty()) return "--z-field is for points, and this is a TIN";
+    if (!o.layer.empty() && !may_have_surfaces(input))
+      return "--layer is for points and for the surfaces of LandXML, and this is another TIN";
     if (o.max_edge && !o.repair)
       return "--max-edge is for points, and for TINs with --repair, and this is a TIN";
   }
@@ -83,7 +84,7 @@ void check_kind_of_input(const BuildCommand& command) {
     const InputKind kind = is_tin_file(input)              ? InputKind::kTin
                            : is_point_input(input, choice) ? InputKind::kPoints
                                                            : InputKind::kRaster;
-    if (const char* misfit = misfit_of(options, kind)) {
+    if (const char* misfit = misfit_of(options, kind, input)) {
       throw Error(ErrorCode::invalid_argument, std::string(misfit).append("; leave it out"), input);
     }
   }

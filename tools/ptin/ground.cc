@@ -2,9 +2,12 @@
 #include "tools/ptin/ground.h"
 
 #include <cmath>
+#include <optional>
 
 #include <geodesic.h>
 #include <ogr_spatialref.h>
+
+#include "engine/construct/height_unit.h"
 
 namespace ptin::tools {
 
@@ -14,9 +17,7 @@ namespace {
 /// says anything, of the plane, as GDAL's tools take it.
 double metres_per_height(const OGRSpatialReference& srs, const std::string& unit) {
   if (srs.IsCompound() != 0) return srs.GetTargetLinearUnits("VERT_CS", nullptr);
-  if (unit == "metre") return 1.0;
-  if (unit == "foot") return 0.3048;
-  if (unit == "US survey foot") return 1200.0 / 3937.0;
+  if (const std::optional<double> metres = metres_in(unit)) return *metres;
   return srs.IsGeographic() != 0 ? 1.0 : srs.GetLinearUnits();
 }
 
@@ -36,7 +37,8 @@ std::function<MapPoint(MapPoint)> on_ellipsoid(const OGRSpatialReference& srs, d
 }  // namespace
 
 std::string unit_of_ground(const CrsFacts& crs) {
-  if (crs.vertical_unit != "unknown") return crs.vertical_unit;
+  const bool is_known = !crs.vertical_name.empty() || metres_in(crs.vertical_unit).has_value();
+  if (is_known) return crs.vertical_unit;
   return crs.geographic ? "metre" : crs.horizontal_unit;
 }
 

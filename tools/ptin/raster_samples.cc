@@ -62,11 +62,15 @@ class RasterSamples final : public SourceSamples {
 /// Where the middle of the first pixel, and the next, lie on the grid.
 void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   std::array<double, 6> t{0, 1, 0, 0, 0, -1};
-  if (file.data->GetGeoTransform(t.data()) != CE_None) t = {-0.5, 1, 0, file.rows - 0.5, 0, -1};
+  // One that says nothing, which is what no geotransform reads as, is none.
+  if (file.data->GetGeoTransform(t.data()) != CE_None ||
+      t == std::array<double, 6>{0, 1, 0, 0, 0, 1})
+    t = {-0.5, 1, 0, file.rows - 0.5, 0, -1};
   file.x_step = t[1] < 0 ? -1 : 1;
   file.y_step = t[5] < 0 ? -1 : 1;
   const auto grid = [&](int column, int row) {
-    return facts.map.to_grid({t[0] + (column + 0.5) * t[1], t[3] + (row + 0.5) * t[5]});
+    return facts.map.to_grid({t[0] + (column + 0.5) * t[1] + (row + 0.5) * t[2],
+                              t[3] + (column + 0.5) * t[4] + (row + 0.5) * t[5]});
   };
   const MapPoint first = grid(0, 0);
   const MapPoint last = grid(file.columns - 1, file.rows - 1);
@@ -76,10 +80,15 @@ void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
       static_cast<double>(file.first_x + std::int64_t{file.x_step} * (file.columns - 1));
   const auto expected_y =
       static_cast<double>(file.first_y + std::int64_t{file.y_step} * (file.rows - 1));
-  const double off = std::max({std::abs(first.x - static_cast<double>(file.first_x)),
+  // The other two corners, which a skew moves apart.
+  const MapPoint across = grid(file.columns - 1, 0);
+  const MapPoint along = grid(0, file.rows - 1);
+  const double skew = std::max({std::abs(across.y - first.y), std::abs(across.x - last.x),
+                                std::abs(along.x - first.x), std::abs(along.y - last.y)});
+  const double off = std::max({skew, std::abs(first.x - static_cast<double>(file.first_x)),
                                std::abs(first.y - static_cast<double>(file.first_y)),
                                std::abs(last.x - expected_x), std::abs(last.y - expected_y)});
-  if (t[2] != 0 || t[4] != 0 || off > 0.02) {
+  if (off > 0.02) {
     misfits_.add(file.path +
                  ": its samples do not stand on the grid of the terrain; they are off by up to " +
                  short_number(off) + " grid units");
@@ -108,6 +117,23 @@ void RasterSamples::compare_extent(const GridBox& bounds) {
   };
   misfits_.add("the source covers grid points " + box(low_x, low_y, high_x, high_y) +
                ", the terrain " + box(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y));
+}
+
+/// Signed bytes come from GDAL before 3.7 as 0 to 255, and its mask does not know a nodata value
+/// below 0.
+bool is_signed_byte(GDALRasterBand& band) {
+  const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return type != nullptr && EQUAL(type, "SIGNEDBYTE");
+}
+
+void take_signs(GDALRasterBand& band, std::vector<double>& values,
+                std::vector<std::uint8_t>& mask) {
+  int has_nodata = 0;
+  const double nodata = band.GetNoDataValue(&has_nodata);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] > 127) values[i] -= 256;
+    if (has_nodata != 0 && values[i] == nodata) mask[i] = 0;
+  }
 }
 
 SampleWindow RasterSamples::read(const GridBox& box) {
@@ -148,6 +174,7 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
   if (status != CE_None)
     throw Error(ErrorCode::io_error, "GDAL cannot read its samples", file.path);
   const bool is_float = band.GetRasterDataType() == GDT_Float32;
+  if (is_signed_byte(band)) take_signs(band, values, mask);
   const std::size_t stride = static_cast<std::size_t>(box.max_x - box.min_x) + 1;
   for (int j = 0; j < height; ++j) {
     const std::int64_t y = file.y_step < 0 ? high_y - j : low_y + j;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Units of height by name: what bands call them, and how long they are.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ptin {
+
+/// One name for each unit, as a CRS would give it: "metre" for "m", "Meter" and "metres". Capitals
+/// do not matter. A name that nobody knows stays as it is; an empty one is "unknown".
+[[nodiscard]] std::string height_unit_named(const std::string& text);
+
+/// Metres in the unit of that name, in the form of height_unit_named(); none where it is not known.
+[[nodiscard]] std::optional<double> metres_in(std::string_view unit) noexcept;
+
+}  // namespace ptin
