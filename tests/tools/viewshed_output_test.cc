@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
@@ -297,6 +298,37 @@ TEST_F(ViewshedOutput, TakesAnAbsoluteHeightAlsoAboveAVoid) {
   std::vector<std::string> over_it = on_the_pond;
   over_it.insert(over_it.end(), {"--absolute", "--json"});
   EXPECT_EQ(answer_of(over_it).at("eye_height"), 60.0);
+}
+
+// The grid of points is as fine as their digits, which is no size of a pixel.
+TEST(ViewshedPixels, HaveToBeChosenWhereTheTerrainIsNoRaster) {
+  const TestFolder folder;
+  const std::string points = testing::built(folder, "ground_points.csv");
+  testing::write_file(folder.file("m.obj"),
+                      "v 0 0 1\nv 100 0 2\nv 100 100 3\nv 0 100 4\nf 1 2 3\nf 1 3 4\n");
+  const std::string tin = folder.file("m.ptin");
+  expect_done({"build", folder.file("m.obj"), "-o", tin, "-q"});
+  const json bounds = answer_of({"info", points, "--json"}).at("bounds");
+  const auto middle = [&](const char* low, const char* high) {
+    return std::to_string((bounds.at(low).get<double>() + bounds.at(high).get<double>()) / 2);
+  };
+  const auto before = folder.names();
+  for (const auto& [terrain, x, y] :
+       {std::array<std::string, 3>{points, middle("min_x", "max_x"), middle("min_y", "max_y")},
+        {tin, "40", "50"}}) {
+    std::vector<std::string> asked = {
+        "viewshed", terrain, x, y, "5", "--radius", "20", "-o", folder.file("seen.tif"), "-q"};
+    const testing::Outcome outcome = run_ptin(asked);
+    EXPECT_EQ(outcome.status, 2) << terrain;
+    EXPECT_NE(outcome.err.find("--pixel-size"), std::string::npos) << outcome.err;
+    EXPECT_EQ(folder.names(), before);
+    asked.insert(asked.end(), {"--pixel-size", "2"});
+    expect_done(asked);
+    const SeenRaster raster(folder.file("seen.tif"));
+    EXPECT_EQ(raster.width, 21);
+    EXPECT_GT(raster.count(255), 0);
+    std::filesystem::remove(folder.file("seen.tif"));
+  }
 }
 
 }  // namespace

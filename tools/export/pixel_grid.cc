@@ -135,6 +135,7 @@ class Facet {
     const std::int64_t dy = std::abs(b.spot.y - a.spot.y);
     const std::int64_t way = dx >= dy ? std::abs(p.x - a.spot.x) : std::abs(p.y - a.spot.y);
     const std::int64_t length = std::max(dx, dy);
+    if (way == 0 || way == length) return way == 0 ? a.code : b.code;  // as it is, bit for bit
     return weighted({Int128{length - way}, Int128{way}, Int128{0}}, {a.code, b.code, a.code},
                     whole_);
   }

@@ -22,11 +22,18 @@ namespace {
 
 constexpr const char* kBlockSide = "512";
 
-/// Float64 where Float32 would lose digits of whole codes.
+/// Float64 where Float32 does not hold every height of a vertex: whole multiples of a power of two
+/// that take 24 bits it does, tenths it does not.
 GDALDataType type_for(const StoreFacts& facts) {
-  if (facts.heights.type != HeightType::int32) return GDT_Float32;
+  const HeightEncoding& heights = facts.heights;
+  if (heights.type != HeightType::int32) return GDT_Float32;
+  int exponent = 0;
+  const bool is_power = std::frexp(heights.step, &exponent) == 0.5;
+  const double steps_to_offset = heights.offset / heights.step;
   const double largest = std::max(std::abs(facts.min_height), std::abs(facts.max_height));
-  return largest / facts.heights.step <= 16777216.0 ? GDT_Float32 : GDT_Float64;
+  const bool fits = is_power && steps_to_offset == std::trunc(steps_to_offset) &&
+                    largest / heights.step <= 0x1p24;
+  return fits ? GDT_Float32 : GDT_Float64;
 }
 
 CPLStringList options_of(const RasterTarget& target, bool for_copy) {
@@ -93,6 +100,9 @@ class RasterWriter {
   }
 
   void run() { write({0, 0, blocks(grid_.columns(), block_width_), rows_of_blocks()}); }
+
+  /// How far a written height is from that of the TIN, at most.
+  [[nodiscard]] double largest_rounding() const noexcept { return largest_rounding_; }
 
  private:
   static std::int64_t blocks(std::int64_t pixels, std::int64_t side) {
@@ -178,8 +188,12 @@ class RasterWriter {
       const std::int64_t from =
           (pixels.row + y - rect.row) * rect.width + pixels.column - rect.column;
       std::transform(heights_.begin() + from, heights_.begin() + from + pixels.width,
-                     block.begin() + y * block_width_,
-                     [](double height) { return static_cast<T>(height); });
+                     block.begin() + y * block_width_, [&](double height) {
+                       const T written = static_cast<T>(height);
+                       largest_rounding_ = std::max(
+                           largest_rounding_, std::abs(static_cast<double>(written) - height));
+                       return written;
+                     });
     }
     CPLErrorReset();
     if (band_.WriteBlock(static_cast<int>(b.column), static_cast<int>(b.row), block.data()) !=
@@ -196,6 +210,7 @@ class RasterWriter {
   std::int64_t block_width_ = 0;
   std::int64_t block_height_ = 0;
   std::int64_t blocks_done_ = 0;
+  double largest_rounding_ = 0.0;
   std::vector<double> heights_;
 };
 
@@ -275,15 +290,18 @@ double default_nodata(const StoreFacts& facts) noexcept {
   return static_cast<double>(std::numeric_limits<float>::lowest());
 }
 
-void export_raster(const PartRefiner& refiner, const PixelGrid& grid, const RasterTarget& target,
-                   const std::function<void(double)>& progress) {
+double export_raster(const PartRefiner& refiner, const PixelGrid& grid, const RasterTarget& target,
+                     const std::function<void(double)>& progress) {
   check_table(grid, target);
   const GdalCacheLimit cache(target.buffer_bytes);
   PendingFile file(target.path, target.overwrite);
   const StoreFacts& facts = refiner.terrain().store().facts();
+  double rounding = 0.0;
   if (!target.is_cog) {
     GDALDatasetUniquePtr dataset = create(file, grid, target, facts);
-    RasterWriter(refiner, grid, target, *dataset, progress).run();
+    RasterWriter writer(refiner, grid, target, *dataset, progress);
+    writer.run();
+    rounding = writer.largest_rounding();
     close_checked(dataset, target.path);
   } else {
     const PendingFile raw(target.path + ".raw.tif", true);
@@ -291,12 +309,15 @@ void export_raster(const PartRefiner& refiner, const PixelGrid& grid, const Rast
       if (progress) progress(done / 2);
     };
     GDALDatasetUniquePtr dataset = create(raw, grid, target, facts);
-    RasterWriter(refiner, grid, target, *dataset, first_half).run();
+    RasterWriter writer(refiner, grid, target, *dataset, first_half);
+    writer.run();
+    rounding = writer.largest_rounding();
     close_checked(dataset, target.path);
     CopyProgress copying{progress, refiner.request().stop};
     copy_as_cog(raw, file, target, copying);
   }
   file.publish();
+  return rounding;
 }
 
 }  // namespace ptin::tools

@@ -27,7 +27,10 @@ struct RasterTarget {
 };
 
 /// Samples the TIN of `refiner` at the centres of `grid` and writes it: Float32, or Float64 where
-/// whole codes of more than 24 bits would lose digits. Where there is no surface: nodata.
+/// Float32 does not hold every height of a vertex. Where there is no surface: nodata.
+///
+/// Returns how far a written height is from that of the TIN at most: what Float32 rounds between
+/// vertices.
 ///
 /// Blocks are sampled together as far as memory allows, and written in an order that depends on the
 /// size of the raster alone. A COG is copied by GDAL from a GeoTIFF beside it, with its overviews.
@@ -36,8 +39,9 @@ struct RasterTarget {
 ///                resource_exhausted  what a single pixel needs does not fit; so many blocks that
 ///                                    their table does not; disk full
 ///                as PartRefiner::refine; io_error; cancelled. Nothing is left behind.
-void export_raster(const PartRefiner& refiner, const PixelGrid& grid, const RasterTarget& target,
-                   const std::function<void(double)>& progress);
+[[nodiscard]] double export_raster(const PartRefiner& refiner, const PixelGrid& grid,
+                                   const RasterTarget& target,
+                                   const std::function<void(double)>& progress);
 
 /// A value for pixels without a height: -9999, or one below every height when the terrain has it.
 [[nodiscard]] double default_nodata(const StoreFacts& facts) noexcept;

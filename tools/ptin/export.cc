@@ -17,6 +17,7 @@
 #include "tools/progress.h"
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/human.h"
+#include "tools/ptin/own_pixel_size.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -111,42 +112,10 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
   check_output(options.output, options.overwrite);
 }
 
-/// A count that the build wrote of its source; 0 when it wrote none.
-/// @throws Error corruption  it is no count
-std::uint64_t source_count(const nlohmann::json& metadata, const char* key,
-                           const std::string& path) {
-  const auto source = metadata.find("source");
-  if (source == metadata.end()) return 0;
-  const auto refuse = [&](const std::string& what) {
-    throw Error(ErrorCode::corruption,
-                "the metadata's " + what + "; ptin build did not write this, build the file anew",
-                path);
-  };
-  if (!source->is_object()) refuse("\"source\" is no object");
-  const auto count = source->find(key);
-  if (count == source->end()) return 0;
-  if (!count->is_number_unsigned()) refuse(std::string("\"").append(key) + "\" is no count");
-  return count->get<std::uint64_t>();
-}
-
-/// The size of a pixel: what was asked, or the grid's step where the samples fill the grid.
+/// What was asked, or the grid's step.
 std::array<double, 2> pixel_size_of(const ExportOptions& options, const StoreFile& store) {
   if (!options.pixel_size.empty()) return {options.pixel_size.front(), options.pixel_size.back()};
-  const StoreFacts& facts = store.facts();
-  const nlohmann::json metadata = metadata_of(store);
-  const auto number = [&](const char* key) { return source_count(metadata, key, store.path()); };
-  const std::uint64_t samples =
-      facts.source_samples + number("void_samples") + number("lone_samples");
-  const std::uint64_t places =
-      (static_cast<std::uint64_t>(facts.bounds.max_x - facts.bounds.min_x) + 1) *
-      (static_cast<std::uint64_t>(facts.bounds.max_y - facts.bounds.min_y) + 1);
-  if (samples < places) {
-    throw Error(ErrorCode::invalid_argument,
-                "this terrain was not built from a raster, so it has no pixel size of its own; "
-                "give --pixel-size",
-                store.path());
-  }
-  return {facts.map.step_x, facts.map.step_y};
+  return own_pixel_size(store);
 }
 
 /// What was made, for the report.
@@ -154,6 +123,7 @@ struct Exported {
   std::uint64_t vertices = 0, triangles = 0, cells = 0;
   std::int64_t columns = 0, rows = 0;
   Certificate certificate;
+  double rounding = 0.0;  ///< Of pixels, when they were written.
 };
 
 using Report = std::function<void(double)>;
@@ -182,8 +152,8 @@ Exported export_pixels(const PartRefiner& refiner, const ExportOptions& options,
   if (const auto region = region_of(options.region, target.crs.wkt))
     window = std::get<Window>(*region);
   const PixelGrid grid(store.facts(), pixel_size_of(options, store), window);
-  export_raster(refiner, grid, target, report);
   Exported made;
+  made.rounding = export_raster(refiner, grid, target, report);
   made.columns = grid.columns();
   made.rows = grid.rows();
   return made;
@@ -241,6 +211,8 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options,
   }
   progress.finish();
   made.certificate = refiner.detail().certificate();
+  made.certificate.error += made.rounding;
+  made.certificate.deviation += made.rounding;
   return made;
 }
 
@@ -258,14 +230,15 @@ int run_export(const ExportOptions& options, const Context& context) {
   const bool is_raster = format.make_sink == nullptr;
   const StoreFacts& facts = terrain.store().facts();
   if (context.json) {
-    nlohmann::json answer = {{"output", options.output},
-                             {"format", format.name},
-                             {"certified_error", certificate.error},
-                             {"certified_deviation", certificate.deviation},
-                             {"exact", certificate.complete && facts.base_error == 0},
-                             {"units", units_json(crs_facts(terrain.store()))},
-                             {"bytes", bytes},
-                             {"seconds", seconds}};
+    nlohmann::json answer = {
+        {"output", options.output},
+        {"format", format.name},
+        {"certified_error", certificate.error},
+        {"certified_deviation", certificate.deviation},
+        {"exact", certificate.complete && facts.base_error == 0 && made.rounding == 0},
+        {"units", units_json(crs_facts(terrain.store()))},
+        {"bytes", bytes},
+        {"seconds", seconds}};
     if (is_raster) {
       answer["width"] = made.columns;
       answer["height"] = made.rows;
@@ -281,9 +254,11 @@ int run_export(const ExportOptions& options, const Context& context) {
                         grouped(static_cast<std::uint64_t>(made.rows)) + " pixels"
                   : counted(made.vertices, "vertex", "vertices") + ", " +
                         counted(made.triangles, "triangle") + " in " + counted(made.cells, "cell");
-    std::printf("%s: %s, %s, %.2f s; within %s at every sample, %s at any point\n",
+    const bool may_change_class = !facts.free_of_voids && !certificate.complete;
+    std::printf("%s: %s, %s, %.2f s; within %s at every sample%s, %s at any point\n",
                 options.output.c_str(), size.c_str(), human_bytes(bytes).c_str(), seconds,
                 short_number(certificate.error).c_str(),
+                may_change_class ? " (but where voids moved)" : "",
                 short_number(certificate.deviation).c_str());
   }
   return kExitDone;

@@ -20,6 +20,7 @@
 #include "tools/ptin/crs_facts.h"
 #include "tools/ptin/ground.h"
 #include "tools/ptin/human.h"
+#include "tools/ptin/own_pixel_size.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -69,7 +70,31 @@ void check_options(const ViewshedOptions& options) {
   check_output(options.output, options.overwrite);
 }
 
-void write_raster(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt) {
+void check_stop(const Context& context, const ViewshedOptions& options) {
+  if (context.stop.stop_requested()) {
+    throw Error(ErrorCode::cancelled, "cancelled while writing", options.output);
+  }
+}
+
+/// By rows of blocks, between which it may be stopped.
+void write_pixels(GDALRasterBand& band, const Viewshed& seen, const ViewshedOptions& options,
+                  const Context& context) {
+  const int width = band.GetXSize();
+  int block_width = 0, block_height = 0;
+  band.GetBlockSize(&block_width, &block_height);
+  for (int row = 0; row < band.GetYSize(); row += block_height) {
+    check_stop(context, options);
+    const int rows = std::min(block_height, band.GetYSize() - row);
+    const Sight* const first =
+        seen.pixels.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+    require_done(band.RasterIO(GF_Write, 0, row, width, rows, const_cast<Sight*>(first), width,
+                               rows, GDT_Byte, 0, 0, nullptr),
+                 "cannot write the raster", options.output);
+  }
+}
+
+void write_raster(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt,
+                  const Context& context) {
   PendingFile pending(options.output, options.overwrite);
   const char* creation[] = {"COMPRESS=DEFLATE", "TILED=YES", "BIGTIFF=IF_SAFER", nullptr};
   const int width = static_cast<int>(seen.width);
@@ -91,18 +116,17 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
   const std::uint64_t memory = request_memory(options);
   const GdalCacheLimit cache(std::clamp<std::uint64_t>(memory / 2, kLeastCache, kMostCache));
   CPLErrorReset();
-  const CPLErr written =
-      band->RasterIO(GF_Write, 0, 0, width, height, const_cast<Sight*>(seen.pixels.data()), width,
-                     height, GDT_Byte, 0, 0, nullptr);
+  write_pixels(*band, seen, options, context);
   file->FlushCache(true);
   file.reset();
-  if (written != CE_None || CPLGetLastErrorType() == CE_Failure) {
+  if (CPLGetLastErrorType() == CE_Failure) {
     throw gdal_failure("cannot write the raster", options.output);
   }
   pending.publish();
 }
 
-void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt) {
+void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt,
+                    const Context& context) {
   VectorFile file(options.output, options.overwrite,
                   {"viewshed",
                    wkbPoint,
@@ -110,7 +134,9 @@ void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const 
                     {"visible", VectorFile::FieldType::kFlag},
                     {"certain", VectorFile::FieldType::kFlag}},
                    wkt});
+  std::size_t written = 0;
   for (const Viewshed::Target& v : seen.vertices) {
+    if (written++ % kStopInterval == 0) check_stop(context, options);
     const VectorFile::Value values[] = {v.height, static_cast<std::int64_t>(v.visible ? 1 : 0),
                                         static_cast<std::int64_t>(v.certain ? 1 : 0)};
     file.add(std::make_unique<OGRPoint>(v.position.x, v.position.y), values);
@@ -158,6 +184,10 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   check_options(options);
   const ProgressiveTin terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
+  // A grid of points is far finer than what anybody wants to see.
+  if (is_raster(options.output) && !options.pixel_size) {
+    static_cast<void>(own_pixel_size(terrain.store()));
+  }
   const CrsFacts crs = crs_facts(terrain.store());
   ViewshedRequest request;
   request.eye = {options.x, options.y};
@@ -180,9 +210,9 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   request.list_vertices = !request.pixels;
   const Viewshed seen = viewshed(terrain, request);
   if (is_raster(options.output)) {
-    write_raster(seen, options, crs.wkt);
+    write_raster(seen, options, crs.wkt, context);
   } else {
-    write_vertices(seen, options, crs.wkt);
+    write_vertices(seen, options, crs.wkt, context);
   }
   report(options, seen, crs, context);
   return kExitDone;
