@@ -106,6 +106,35 @@ TEST(PointBuild, MakesTrianglesWithLongEdgesVoidAndVerifyKnowsTheLonePoints) {
       0);
 }
 
+// Half a step is no double here: a build and a verification that round it apart see other points.
+TEST(PointBuild, RoundsCoordinatesInTheMiddleOfTwoStepsAsVerifyDoes) {
+  const TestFolder folder;
+  std::string text = "x,y,z\n";
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      const std::string east = std::to_string(481200 + x) + "." + std::to_string(10 + 3 * x) + "50";
+      const std::string north =
+          std::to_string(3912300 + y) + "." + std::to_string(20 + (7 * x + y) % 70) + "50";
+      text += east + "," + north + "," + std::to_string((x * y) % 13) + ".25\n";
+    }
+  }
+  write_file(folder.file("a.csv"), text);
+  built_points(folder, {folder.file("a.csv"), "--resolution", "0.01"});
+  expect_verified(folder, "a.csv");
+}
+
+// At 123 456 789 the next double is 1.5e-8 away.
+TEST(PointBuild, RefusesAGridFinerThanItsCoordinates) {
+  const TestFolder folder;
+  write_file(folder.file("a.csv"),
+             "x,y,z\n123456789.012345678,5.000000001,1\n123456789.012345679,5.000000004,2\n"
+             "123456789.012345671,5.000000009,3\n123456789.012345673,5.000000002,4\n");
+  const auto outcome = run_ptin({"build", folder.file("a.csv"), "-o", folder.file("a.ptin"), "-q"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("--resolution"), std::string::npos) << outcome.err;
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.csv"});
+}
+
 TEST(PointBuild, SaysBeforeItReadsWhatItExpectsToNeed) {
   const TestFolder folder;
   write_file(folder.file("a.las"), las());

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
+#include <ogr_spatialref.h>
 
 namespace ptin::tools {
 namespace {
@@ -61,10 +63,24 @@ TEST(DropLoneSamples, TakesThoseWithoutASurfaceTriangle) {
 
 TEST(GroundSteps, AreMetresInDegrees) {
   const AffineMap map{0.0, 60.0, 0.01, 0.01};
-  const GroundSteps steps = ground_steps(map, true, 0);
+  const auto ground_in = [](const std::string& crs) {
+    OGRSpatialReference srs;
+    EXPECT_EQ(srs.SetFromUserInput(crs.c_str()), OGRERR_NONE);
+    char* wkt = nullptr;
+    EXPECT_EQ(srs.exportToWkt(&wkt), OGRERR_NONE);
+    const std::string text(wkt);
+    CPLFree(wkt);
+    return ground_of(crs_facts(text));
+  };
+  const GroundSteps steps = ground_steps(map, ground_in("EPSG:4326"), 0);
   EXPECT_NEAR(steps.x, 558.0, 0.1);
   EXPECT_NEAR(steps.y, 1114.1, 0.1);
-  EXPECT_EQ(ground_steps(map, false, 0).x, 0.01);
+  EXPECT_EQ(ground_steps(map, ground_in("EPSG:32633"), 0).x, 0.01);
+  // The Moon is a ball: half a degree of longitude at 60 degrees is as long as a degree of latitude
+  // halved again.
+  const GroundSteps moon = ground_steps(map, ground_in("+proj=longlat +R=1737400"), 0);
+  EXPECT_NEAR(moon.y, 0.01 * M_PI / 180 * 1737400, 1e-6);
+  EXPECT_NEAR(moon.x, moon.y / 2, 1e-6);
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ class PointSamples final : public SourceSamples {
  private:
   void read_text(const std::string& path, const std::stop_token& stop);
   void read_stream(const std::string& path, const SampleResources& resources);
+  [[nodiscard]] MapPoint grid_point_of(MapPoint p) const;
   void add(const std::array<double, 3>& p, const std::string& path, const char* what,
            std::uint64_t number);
 
@@ -85,12 +86,25 @@ void PointSamples::read_stream(const std::string& path, const SampleResources& r
   }
 }
 
+/// A chosen step counts from 0, not from the grid's origin: that decides where the points in the
+/// middle between two steps go.
+MapPoint PointSamples::grid_point_of(MapPoint p) const {
+  const AffineMap& map = facts_.map;
+  if (choices_.resolution) {
+    const double step = *choices_.resolution;
+    return {std::round(p.x / step) - std::round(map.origin_x / step),
+            std::round(p.y / step) - std::round(map.origin_y / step)};
+  }
+  const MapPoint grid = map.to_grid(p);
+  return {std::round(grid.x), std::round(grid.y)};
+}
+
 void PointSamples::add(const std::array<double, 3>& p, const std::string& path, const char* what,
                        std::uint64_t number) {
   if (choices_.nodata && p[2] == *choices_.nodata) return;
-  const MapPoint grid = facts_.map.to_grid({p[0], p[1]});
-  const double x = std::round(grid.x);
-  const double y = std::round(grid.y);
+  const MapPoint grid = grid_point_of({p[0], p[1]});
+  const double x = grid.x;
+  const double y = grid.y;
   const GridBox& b = facts_.bounds;
   if (x >= b.min_x && x <= b.max_x && y >= b.min_y && y <= b.max_y) {
     samples_.add({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)}, p[2]);

@@ -35,6 +35,9 @@ SampleChoices choices_of(const StoreFile& store) {
   if (const auto slope = options.find("void_slope"); slope != options.end() && slope->is_number()) {
     choices.void_slope = slope->get<double>();
   }
+  if (const auto step = options.find("resolution"); step != options.end() && step->is_number()) {
+    choices.resolution = step->get<double>();
+  }
   if (const auto edge = options.find("max_edge"); edge != options.end() && edge->is_number()) {
     choices.max_edge = edge->get<double>();
   }

@@ -26,7 +26,8 @@ namespace ptin::tools {
 struct SampleChoices {
   PointChoice points;
   std::optional<double> nodata;
-  std::optional<GridBox> bbox;  ///< Samples outside were left out.
+  std::optional<double> resolution;  ///< Points: the grid's step, CRS units, where it was chosen.
+  std::optional<GridBox> bbox;       ///< Samples outside were left out.
   double void_slope = 0.1;
   std::optional<double> max_edge;  ///< Points: longer triangles are void; on the ground.
 };

@@ -25,9 +25,9 @@ constexpr const char* kBlanks = " \t\r";
 /// In the order in which they are looked for.
 const std::array<std::vector<std::string>, 3>& column_names() {
   static const std::array<std::vector<std::string>, 3> names = {
-      {{"x", "easting", "east", "e", "longitude", "lon", "long"},
-       {"y", "northing", "north", "n", "latitude", "lat"},
-       {"z", "height", "h", "elevation", "elev", "altitude", "alt"}}};
+      {{"x", "easting", "east", "e", "longitude", "lon", "long", "point_x"},
+       {"y", "northing", "north", "n", "latitude", "lat", "point_y"},
+       {"z", "height", "h", "elevation", "elev", "altitude", "alt", "point_z"}}};
   return names;
 }
 

@@ -44,7 +44,7 @@ class Verifier {
         options_(options),
         facts_(terrain.store().facts()),
         choices_(choices_of(terrain.store())),
-        geographic_(crs_facts(terrain.store()).geographic) {
+        ground_(ground_of(crs_facts(terrain.store()))) {
     for (const auto& tolerance : options.tolerances)
       report_.checks.push_back({.tolerance = tolerance});
     const double height = std::max(std::abs(facts_.min_height), std::abs(facts_.max_height));
@@ -80,7 +80,7 @@ class Verifier {
   const AgainstOptions& options_;
   const StoreFacts& facts_;
   SampleChoices choices_;
-  bool geographic_;
+  Ground ground_;
   double slack_ = 0.0;
   AgainstReport report_;
   std::mt19937_64 random_{20260101};
@@ -166,7 +166,7 @@ SampleWindow Verifier::read_with_margin(const GridBox& box) const {
   double largest = 0.0;
   for (const auto& tolerance : options_.tolerances)
     largest = std::max(largest, tolerance.value_or(0.0));
-  const GroundSteps steps = ground_steps(facts_.map, geographic_, (box.min_y + box.max_y) / 2.0);
+  const GroundSteps steps = ground_steps(facts_.map, ground_, (box.min_y + box.max_y) / 2.0);
   constexpr double kMargin = 1024.0;
   const double depth =
       choices_.void_slope > 0 ? largest / choices_.void_slope / std::min(steps.x, steps.y) : 0.0;
@@ -190,11 +190,11 @@ SampleWindow Verifier::read_with_margin(const GridBox& box) const {
 
 bool Verifier::is_too_long(GridPoint a, GridPoint b) const {
   const GroundSteps steps =
-      ground_steps(facts_.map, geographic_, (static_cast<double>(a.y) + b.y) / 2.0);
+      ground_steps(facts_.map, ground_, (static_cast<double>(a.y) + b.y) / 2.0);
   constexpr double kFormulas = 0.999;  // lengths of a degree, between two formulas
   return std::hypot((static_cast<double>(a.x) - b.x) * steps.x,
                     (static_cast<double>(a.y) - b.y) * steps.y) >
-         *choices_.max_edge * (geographic_ ? kFormulas : 1.0 - 1e-9);
+         *choices_.max_edge * (ground_.geographic ? kFormulas : 1.0 - 1e-9);
 }
 
 /// Points all of whose triangles in the full TIN are void, each for its long edge, have no surface
@@ -342,7 +342,7 @@ void Verifier::judge_class(const SampleWindow& window, const Sample& sample, dou
                                       : " lies in no surface triangle"));
     return;
   }
-  const GroundSteps steps = ground_steps(facts_.map, geographic_, sample.y);
+  const GroundSteps steps = ground_steps(facts_.map, ground_, sample.y);
   constexpr double kFormulas = 1.001;  // lengths of a degree, between two formulas
   const double limit = choices_.void_slope > 0 ? allowed / choices_.void_slope * kFormulas
                                                : std::numeric_limits<double>::infinity();

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace ptin::tools {
 
@@ -17,15 +16,11 @@ const Sample& sample_at(const SampleWindow& w, std::int64_t x, std::int64_t y) {
 
 }  // namespace
 
-GroundSteps ground_steps(const AffineMap& map, bool geographic, double grid_y) {
-  if (!geographic) return {map.step_x, map.step_y};
-  // Lengths of a degree on the WGS 84 ellipsoid, as series in the latitude.
-  const double phi = (map.origin_y + map.step_y * grid_y) * std::numbers::pi / 180.0;
-  const double along =
-      111412.84 * std::cos(phi) - 93.5 * std::cos(3 * phi) + 0.118 * std::cos(5 * phi);
-  const double north = 111132.92 - 559.82 * std::cos(2 * phi) + 1.175 * std::cos(4 * phi) -
-                       0.0023 * std::cos(6 * phi);
-  return {map.step_x * std::max(along, 0.0), map.step_y * north};
+GroundSteps ground_steps(const AffineMap& map, const Ground& ground, double grid_y) {
+  if (!ground.geographic) return {map.step_x, map.step_y};
+  const MapPoint unit = ground.per_map_unit({map.origin_x, map.origin_y + map.step_y * grid_y});
+  return {map.step_x * unit.x * ground.metres_per_height,
+          map.step_y * unit.y * ground.metres_per_height};
 }
 
 double depth_at(const SampleWindow& window, std::int32_t x, std::int32_t y,

@@ -4,16 +4,17 @@
 #pragma once
 
 #include "engine/geometry/affine.h"
+#include "tools/ptin/ground.h"
 #include "tools/ptin/source_samples.h"
 
 namespace ptin::tools {
 
-/// Lengths of a grid step on the ground: metres at a row in degrees, else map units.
+/// Lengths of a grid step on the ground: metres at a row of angles, else map units.
 struct GroundSteps {
   double x = 1.0;
   double y = 1.0;
 };
-[[nodiscard]] GroundSteps ground_steps(const AffineMap& map, bool geographic, double grid_y);
+[[nodiscard]] GroundSteps ground_steps(const AffineMap& map, const Ground& ground, double grid_y);
 
 /// The distance on the ground from grid point (x, y) to the nearest sample of the other class in
 /// `window`, all of one row's steps; +infinity when there is none within `limit`. REQUIRES:
