@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <sstream>
+#include <string>
 
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -124,6 +126,50 @@ TEST(IsolineProgram, PolygonsAreValidAndCoverTheSurface) {
       EXPECT_NEAR(area / (256 * 256 * g[1] * -g[5]), 1.0, 1e-9);
     }
   }
+}
+
+/// A TIN of 40 x 40 points, all used, on which every other cell of a part is a hole: its vertices
+/// are a full grid, its surface is none.
+std::string grid_with_holes(int* holes) {
+  constexpr int kAcross = 40;
+  std::ostringstream vertices, faces;
+  int count = 0;
+  for (int y = 0; y < kAcross; ++y) {
+    for (int x = 0; x < kAcross; ++x) {
+      vertices << x << ' ' << y << ' ' << x + 0.03 * ((x * 7 + y * 13) % 10) << '\n';
+      if (x + 1 == kAcross || y + 1 == kAcross) continue;
+      if (20 <= x && x < 34 && 8 <= y && y < 30 && x % 2 == 0 && y % 2 == 0) {
+        ++*holes;
+        continue;
+      }
+      const int a = y * kAcross + x;
+      faces << "3 " << a << ' ' << a + 1 << ' ' << a + kAcross + 1 << "\n3 " << a << ' '
+            << a + kAcross + 1 << ' ' << a + kAcross << '\n';
+      count += 2;
+    }
+  }
+  return "ply\nformat ascii 1.0\nelement vertex 1600\nproperty double x\nproperty double y\n"
+         "property double z\nelement face " +
+         std::to_string(count) + "\nproperty list uchar int vertex_indices\nend_header\n" +
+         vertices.str() + faces.str();
+}
+
+TEST(IsolineProgram, PolygonsLeaveOutTheHolesOfATin) {
+  const TestFolder folder;
+  int holes = 0;
+  testing::write_file(folder.file("holes.ply"), grid_with_holes(&holes));
+  ASSERT_EQ(holes, 77);
+  testing::expect_done({"build", folder.file("holes.ply"), "-o", folder.file("holes.ptin"),
+                        "--a-srs", "EPSG:32611", "-q"});
+  const json answer =
+      testing::answer_of({"isoline", folder.file("holes.ptin"), "--polygons", "--interval", "5",
+                          "-o", folder.file("bands.gpkg"), "--json"});
+  EXPECT_EQ(answer.at("exact"), true);
+  double area = 0;
+  for (const Feature& f : read_layer(folder.file("bands.gpkg"))) {
+    area += f.geometry->toMultiPolygon()->get_Area();
+  }
+  EXPECT_NEAR(area, 39 * 39 - holes, 1e-6);
 }
 
 TEST(IsolineProgram, PolygonsOfTwoWindowsShareTheirBorder) {

@@ -79,14 +79,14 @@ TEST(LocateCommand, TakesTheColumnsThatTheHeaderNames) {
   const std::string x = east(15.5), y = south(20);
   for (const std::string& text :
        {"y,x\n" + y + "," + x + "\n", "id;\"Easting\";name; NORTHING\n7;" + x + ";a;" + y + "\n",
-        "lat lon\r\n" + y + " " + x + "\r\n", "first,second\n" + x + "," + y + "\n"}) {
+        "lat lon\r\n" + y + " " + x + "\r\n", "POINT_Y,POINT_X\n" + y + "," + x + "\n"}) {
     const Outcome outcome = located(text);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("surface,55,55,55"), std::string::npos) << text << outcome.out;
   }
   const Outcome half = located("id,y\n1,2\n");
   EXPECT_EQ(half.status, 2);
-  EXPECT_NE(half.err.find("none for x"), std::string::npos) << half.err;
+  EXPECT_NE(half.err.find("for x"), std::string::npos) << half.err;
   EXPECT_EQ(located("id,y,x\n1,2\n").status, 2) << "a field is missing";
 }
 
@@ -142,10 +142,10 @@ TEST(LocateCommand, LosesNoFirstRow) {
     return answer_of({"locate", terrain, "--points", points, "--json"}).at("points").size();
   };
   EXPECT_EQ(count("\xEF\xBB\xBF" + row + "\r\n" + row + "\r\n"), 2u);
-  EXPECT_EQ(count("\xEF\xBB\xBFx1,y1\n" + row + "\n"), 1u);
+  EXPECT_EQ(count("\xEF\xBB\xBFx,y\n" + row + "\n"), 1u);
   EXPECT_EQ(
       count("\n  " + east(3) + " , \t" + south(3) + " ,,,name\n" + east(3) + "   " + south(3)), 2u);
-  for (const char* first : {"\"380000\",\"3802000\"", "380000m 3802000m", "here,380000,3802000"}) {
+  for (const char* first : {"380000m 3802000m", "here,380000,3802000"}) {
     write_file(points, first + ("\n" + row + "\n"));
     const Outcome outcome = run_ptin({"locate", terrain, "--points", points});
     EXPECT_EQ(outcome.status, 2) << first;
@@ -177,6 +177,37 @@ TEST(LocateCommand, SaysWhenItCannotReadThePoints) {
   const Outcome fault = run_ptin({"locate", terrain, "--points", "/proc/self/mem"});
   EXPECT_EQ(fault.status, 6);
   EXPECT_NE(fault.err.find("/proc/self/mem"), std::string::npos) << fault.err;
+}
+
+// Under such a header the first two columns would be taken for coordinates.
+TEST(LocateCommand, KnowsPointXAndRefusesAHeaderThatNamesNoCoordinate) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string row = "7," + east(15.5) + "," + south(20) + "\n";
+  const Outcome known =
+      testing::run_ptin_reading("id,POINT_X,POINT_Y\n" + row, {"locate", terrain, "--points", "-"});
+  EXPECT_EQ(known.status, 0) << known.err;
+  EXPECT_NE(known.out.find("surface,55,55,55"), std::string::npos) << known.out;
+  const Outcome refused =
+      testing::run_ptin_reading("id,foo,bar\n" + row, {"locate", terrain, "--points", "-"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_EQ(lines_in(refused.err), 1u) << refused.err;
+}
+
+TEST(LocateCommand, TakesNumbersInQuotes) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string row = "\"" + east(15.5) + "\",\"" + south(20) + "\"\n";
+  for (const std::string& text : {"x,y\n" + row, row + row}) {
+    const Outcome outcome =
+        testing::run_ptin_reading(text, {"locate", terrain, "--points", "-", "--json"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const json answer = json::parse(outcome.out, nullptr, false);
+    ASSERT_TRUE(answer.is_object()) << outcome.out;
+    EXPECT_EQ(answer.at("points").size(), lines_in(text) - (text[0] == 'x' ? 1 : 0));
+    EXPECT_EQ(answer.at("points").at(0).at("height"), 55.0);
+  }
 }
 
 TEST(ProfileCommand, BreaksAtEveryEdgeAndWritesThreeFormats) {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <ogr_spatialref.h>
 
+#include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -143,6 +144,40 @@ TEST(VectorInput, SkipsLinesWithoutLengthAmongOthersAndSaysHowMany) {
   refused("LINESTRING" + none, "the line has no length");
   refused("MULTILINESTRING(" + none + "," + none + ")", "none of the 2 lines");
   refused("MULTILINESTRING(" + line + ",(1e30 0, 0 0))", "line 2 of 2");
+}
+
+// Even-odd would leave out what two features share.
+TEST(VectorInput, CoversWhatAnyOfTwoOverlappingPolygonsCovers) {
+  const TestFolder folder;
+  testing::RasterRecipe recipe;
+  recipe.pixel = 1;
+  recipe.west = 0;
+  recipe.north = 33;
+  testing::make_raster(folder.file("t.tif"), recipe);
+  testing::expect_done({"build", folder.file("t.tif"), "-o", folder.file("t.ptin"), "-q"});
+  const auto square = [](double low) {
+    const double high = low + 10;
+    return json{
+        {"type", "Feature"},
+        {"properties", json::object()},
+        {"geometry",
+         {{"type", "Polygon"},
+          {"coordinates", {{{low, low}, {high, low}, {high, high}, {low, high}, {low, low}}}}}}};
+  };
+  const json crs = {{"type", "name"}, {"properties", {{"name", "urn:ogc:def:crs:EPSG::32611"}}}};
+  const json both = {
+      {"type", "FeatureCollection"}, {"crs", crs}, {"features", {square(2), square(7)}}};
+  write_file(folder.file("two.geojson"), both.dump());
+  testing::expect_done({"refine", folder.file("t.ptin"), "--polygon", folder.file("two.geojson"),
+                        "--cut", "-o", folder.file("cut.ply"), "-q"});
+  const testing::ReadMesh mesh = testing::read_ply(testing::read_file(folder.file("cut.ply")));
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const auto &a = mesh.vertices.at(t[0]), &b = mesh.vertices.at(t[1]),
+               &c = mesh.vertices.at(t[2]);
+    area += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+  }
+  EXPECT_NEAR(area, 2 * 100 - 25, 1e-6);
 }
 
 TEST(VectorInput, SaysWhatIsNoLine) {

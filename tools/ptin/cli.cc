@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/error_status.h"
+#include "tools/ptin/human.h"
 #include "tools/ptin/kept_inputs.h"
 #include "tools/standard_output.h"
 
@@ -242,7 +243,7 @@ void report_error(const Error& error, bool json) {
     std::fprintf(stderr, "%s\n",
                  answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
-    std::fprintf(stderr, "ptin: %s\n", error.what());
+    std::fprintf(stderr, "ptin: %s\n", printable(error.what()).c_str());
   }
 }
 

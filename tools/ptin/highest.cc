@@ -29,21 +29,23 @@ nlohmann::json position_json(const HeightAt& p) {
   return {{"x", p.position.x}, {"y", p.position.y}, {"height", p.height}};
 }
 
-void print_text(const HighestResult& result, const HighestOptions& options) {
+void print_text(const HighestResult& result, const HighestOptions& options, bool has_voids) {
   if (result.state != PointState::kSurface) {
     std::printf("%s\n", name_of(result.state));
     return;
   }
-  std::printf("%s %.17g at %.17g %.17g (%s)\n", options.lowest ? "lowest" : "highest",
-              result.point.height, result.point.position.x, result.point.position.y,
+  const auto text = [](const HeightAt& v) {
+    return exact_number(v.height) + " at " + exact_number(v.position.x) + " " +
+           exact_number(v.position.y);
+  };
+  std::printf("%s %s (%s)\n", options.lowest ? "lowest" : "highest", text(result.point).c_str(),
               result.at_vertex ? "a vertex" : "on the window's border");
   if (!result.exact) {
-    std::printf("  the source's lies between %.17g and %.17g\n", result.height_min,
-                result.height_max);
+    std::printf("  the source's lies between %s and %s%s\n",
+                exact_number(result.height_min).c_str(), exact_number(result.height_max).c_str(),
+                has_voids ? ", as long as no void of either comes into it" : "");
   }
-  for (const HeightAt& v : result.vertices) {
-    std::printf("  vertex %.17g at %.17g %.17g\n", v.height, v.position.x, v.position.y);
-  }
+  for (const HeightAt& v : result.vertices) std::printf("  vertex %s\n", text(v).c_str());
 }
 
 int run_highest(const HighestOptions& options, const Context& context) {
@@ -63,11 +65,12 @@ int run_highest(const HighestOptions& options, const Context& context) {
   request.stop = context.stop;
   const HighestResult result = highest(terrain, request);
   if (!context.json) {
-    print_text(result, options);
+    print_text(result, options, !terrain.store().facts().free_of_voids);
     return kExitDone;
   }
   nlohmann::json answer = {{"state", name_of(result.state)},
                            {"lowest", options.lowest},
+                           {"point", nullptr},
                            {"vertices", nlohmann::json::array()},
                            {"certified_error", result.certified_error},
                            {"certified_deviation", result.certified_deviation},

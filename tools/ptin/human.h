@@ -19,6 +19,10 @@ namespace ptin::tools {
 [[nodiscard]] std::string human_duration(double seconds);
 /// Six significant digits without trailing zeros; "inf" when infinite.
 [[nodiscard]] std::string short_number(double value);
+/// Control characters as question marks: what a file says must not steer the terminal.
+[[nodiscard]] std::string printable(std::string text);
+/// As few digits as read back as the same number.
+[[nodiscard]] std::string exact_number(double value);
 /// A size in bytes from "512M", "2G", "4096": suffixes K, M, G, T are powers of 1024.
 /// @throws Error invalid_argument
 [[nodiscard]] std::uint64_t parse_bytes(const std::string& text);

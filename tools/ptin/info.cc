@@ -116,7 +116,7 @@ void print_metadata(const nlohmann::json& object, const std::string& prefix) {
       print_metadata(value, name);
     } else {
       const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-      if (!text.empty()) std::printf("  %-28s %s\n", name.c_str(), text.c_str());
+      if (!text.empty()) std::printf("  %-28s %s\n", name.c_str(), printable(text).c_str());
     }
   }
 }
@@ -129,18 +129,19 @@ void print_place(const StoreFile& store, const CrsFacts& crs) {
   if (crs.vertical_name.empty()) {
     std::printf("vertical   unknown; build with --vertical-crs to state it\n");
   } else {
-    std::printf("vertical   %s%s\n", crs.vertical_name.c_str(),
+    std::printf("vertical   %s%s\n", printable(crs.vertical_name).c_str(),
                 crs.vertical_code.empty() ? "" : (" (" + crs.vertical_code + ")").c_str());
   }
   const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
   const MapPoint high = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
-  std::printf("bounds     %.10g %.10g %.10g %.10g (%s)\n", low.x, low.y, high.x, high.y,
-              crs.horizontal_unit.c_str());
+  std::printf("bounds     %s %s %s %s (%s)\n", exact_number(low.x).c_str(),
+              exact_number(low.y).c_str(), exact_number(high.x).c_str(),
+              exact_number(high.y).c_str(), printable(crs.horizontal_unit).c_str());
   if (facts.min_height > facts.max_height) {
     std::printf("heights    none: all void\n");
   } else {
     std::printf("heights    %s to %s (%s)\n", short_number(facts.min_height).c_str(),
-                short_number(facts.max_height).c_str(), crs.vertical_unit.c_str());
+                short_number(facts.max_height).c_str(), printable(crs.vertical_unit).c_str());
   }
 }
 

@@ -60,6 +60,9 @@ void split_fields(std::string_view line, std::vector<std::string_view>& fields) 
 }
 
 std::optional<double> number_of(std::string_view field) {
+  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
+    field = field.substr(1, field.size() - 2);
+  }
   if (field.starts_with('+')) field.remove_prefix(1);
   double value = 0.0;
   const auto [end, fault] = std::from_chars(field.data(), field.data() + field.size(), value);
@@ -86,16 +89,18 @@ bool looks_like_number(std::string_view field) {
 using ByHeader =
     std::function<void(std::span<const std::string_view> names, std::vector<std::size_t>& columns)>;
 
-/// x and y where the header names them. One that names neither says nothing of the order.
+/// x and y where the header names them.
 void choose_x_and_y(std::span<const std::string_view> names, std::vector<std::size_t>& columns) {
   const std::size_t x = find_column(names, Coordinate::kX);
   const std::size_t y = find_column(names, Coordinate::kY);
-  if (x == names.size() && y == names.size()) return;
   if (x == names.size() || y == names.size()) {
     throw Error(ErrorCode::invalid_argument,
-                std::string("the header names a column for ") + (x == names.size() ? "y" : "x") +
-                    ", but none for " + (x == names.size() ? "x" : "y") +
-                    "; columns are named x, y or easting, northing or lon, lat");
+                std::string("the header names no column for ") +
+                    (x != names.size()   ? "y"
+                     : y != names.size() ? "x"
+                                         : "x and none for y") +
+                    "; columns are named x, y or easting, northing or lon, lat or point_x, "
+                    "point_y; without a header x and y come first");
   }
   columns = {x, y};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/stream_request.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/error.h"
@@ -59,6 +60,21 @@ PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts) {
     parts.push_back(LevelSet(serving.levels, facts.heights).crossing());
   }
   return all_of(std::move(parts));
+}
+
+bool covers(const Serving& served, const Serving& asked) {
+  const std::vector<double>& outer = served.window;
+  const std::vector<double>& inner = asked.window;
+  const bool window =
+      outer.empty() || (!inner.empty() && outer[0] <= inner[0] && outer[1] <= inner[1] &&
+                        inner[2] <= outer[2] && inner[3] <= outer[3]);
+  const auto is_served = [&](double level) {
+    return std::find(served.levels.begin(), served.levels.end(), level) != served.levels.end();
+  };
+  const bool levels =
+      served.levels.empty() ||
+      (!asked.levels.empty() && std::all_of(asked.levels.begin(), asked.levels.end(), is_served));
+  return window && levels;
 }
 
 nlohmann::json to_json(const Serving& serving) {

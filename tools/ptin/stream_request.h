@@ -28,6 +28,10 @@ struct Serving {
   }
 };
 
+/// True when all of `asked` is in what was served: its window in the served one, its levels among
+/// the served ones. Errors and splits do not matter.
+[[nodiscard]] bool covers(const Serving& served, const Serving& asked);
+
 /// @throws Error invalid_argument  an inverted window, a negative error, a number that is not
 /// finite
 [[nodiscard]] PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts);

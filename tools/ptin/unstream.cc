@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/query/stream_reader.h"
@@ -91,10 +93,21 @@ class Receiver {
   [[nodiscard]] const StreamReader& reader() const { return reader_; }
   [[nodiscard]] const nlohmann::json& have() const { return have_; }
   [[nodiscard]] bool complete() const { return !within_ && reader_.has_mesh(); }
-  /// The last stream came whole, and what it was asked for is as the source has it.
-  [[nodiscard]] bool exact() const {
-    return complete() && reader_.facts().base_error == 0 && !have_.back().contains("error") &&
-           !have_.back().contains("splits");
+  /// What the certificate of the last stream holds for: its window and levels.
+  [[nodiscard]] Serving certified_for() const {
+    const Serving& last = servings_.back();
+    return {last.window, std::nullopt, last.levels, std::nullopt};
+  }
+  /// The last stream came whole, holds all of `asked`, and that is as the source has it.
+  [[nodiscard]] bool exact(const Serving& asked) const {
+    const Serving& last = servings_.back();
+    return complete() && reader_.facts().base_error == 0 && !last.error && !last.splits &&
+           covers(last, asked);
+  }
+  /// Some stream brought all of `asked`, at whatever error.
+  [[nodiscard]] bool holds(const Serving& asked) const {
+    return std::any_of(servings_.begin(), servings_.end(),
+                       [&](const Serving& served) { return covers(served, asked); });
   }
 
  private:
@@ -102,12 +115,14 @@ class Receiver {
     Serving serving = serving_in(metadata_of(reader_));
     if (!reader_.is_complete()) serving.splits = reader_.splits();
     have_.push_back(to_json(serving));
+    servings_.push_back(std::move(serving));
   }
 
   StreamReader reader_;
   StreamIsolines* isolines_;
   nlohmann::json have_ = nlohmann::json::array();
-  bool within_ = true;  ///< The last stream was not read to its end.
+  std::vector<Serving> servings_;  ///< The same.
+  bool within_ = true;             ///< The last stream was not read to its end.
 };
 
 /// All but the mesh itself.
@@ -124,9 +139,24 @@ RefinedTin counts_of(const StreamReader& reader) {
   return refined;
 }
 
+/// What lies beyond what was served is whatever came along, which no error bounds.
+void warn_of_what_is_beyond(const Receiver& receiver, const Serving& asked,
+                            const Context& context) {
+  if (context.quiet || receiver.holds(asked)) return;
+  const Serving certified = receiver.certified_for();
+  std::fprintf(stderr,
+               "ptin: warning: the stream was asked for %s alone: what is beyond that is coarse, "
+               "and nothing is certified there\n",
+               certified.window.empty()   ? "some levels"
+               : certified.levels.empty() ? "a window"
+                                          : "some levels in a window");
+}
+
 nlohmann::json answer_of(const UnstreamOptions& options, const Receiver& receiver,
-                         const RefinedTin& refined, const Mesh& mesh, const CrsFacts& crs) {
+                         const RefinedTin& refined, const Mesh& mesh, const CrsFacts& crs,
+                         const Serving& asked) {
   const StreamReader& reader = receiver.reader();
+  const Serving certified = receiver.certified_for();
   return {{"output", options.output.empty() ? nlohmann::json() : nlohmann::json(options.output)},
           {"complete", receiver.complete()},
           {"splits", reader.splits()},
@@ -138,7 +168,8 @@ nlohmann::json answer_of(const UnstreamOptions& options, const Receiver& receive
           {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
           {"certified_error", refined.certified_error},
           {"certified_deviation", refined.certified_deviation},
-          {"exact", receiver.exact()},
+          {"certified_for", certified.given() ? to_json(certified) : nlohmann::json()},
+          {"exact", receiver.exact(asked)},
           {"units", units_json(crs)},
           {"bytes_used", reader.bytes_used()},
           {"have", receiver.have()}};
@@ -167,9 +198,12 @@ int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
                    StreamIsolines& isolines, const Context& context) {
   const nlohmann::json lines = isolines.finish(receiver.reader());
   const RefinedTin refined = counts_of(receiver.reader());
+  const Serving asked{options.isolines.window, std::nullopt,
+                      lines.at("levels").get<std::vector<double>>(), std::nullopt};
+  warn_of_what_is_beyond(receiver, asked, context);
   if (context.json) {
     const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
-    nlohmann::json answer = answer_of(options, receiver, refined, {}, crs);
+    nlohmann::json answer = answer_of(options, receiver, refined, {}, crs, asked);
     answer.erase("written");
     answer["isolines"] = lines;
     print_json(answer);
@@ -225,8 +259,10 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
   set_crs(mesh, crs);
   if (!options.output.empty()) write_mesh(mesh, options.output, options.overwrite);
+  const Serving everywhere;
+  if (!options.output.empty()) warn_of_what_is_beyond(receiver, everywhere, context);
   if (context.json) {
-    print_json(answer_of(options, receiver, refined, mesh, crs));
+    print_json(answer_of(options, receiver, refined, mesh, crs, everywhere));
   } else if (!context.quiet) {
     print_report(receiver, refined);
   }

@@ -10,7 +10,8 @@
 namespace ptin::tools {
 
 /// The polygon in `text`: WKT when it reads "POLYGON..." or "MULTIPOLYGON...", else the name of a
-/// file. All polygons of the first layer of a vector file are taken together (even-odd). A file
+/// file. A feature's rings are told apart by nesting (even-odd); what any polygon of the
+/// first layer of a vector file covers is inside. A file
 /// with a CRS of its own is transformed into `crs_wkt` when both are known.
 /// @throws Error not_found         no such file
 ///               invalid_argument  not a polygon; not a vector file; the CRS cannot be transformed

@@ -48,25 +48,18 @@ struct Glyph {
   char letter;
   std::array<std::uint8_t, 7> rows;
 };
-constexpr std::array<Glyph, 19> kGlyphs = {{{'0', {14, 17, 19, 21, 25, 17, 14}},
-                                            {'1', {4, 12, 4, 4, 4, 4, 14}},
-                                            {'2', {14, 17, 1, 2, 4, 8, 31}},
-                                            {'3', {31, 2, 4, 2, 1, 17, 14}},
-                                            {'4', {2, 6, 10, 18, 31, 2, 2}},
-                                            {'5', {31, 16, 30, 1, 1, 17, 14}},
-                                            {'6', {6, 8, 16, 30, 17, 17, 14}},
-                                            {'7', {31, 1, 2, 4, 8, 8, 8}},
-                                            {'8', {14, 17, 17, 14, 17, 17, 14}},
-                                            {'9', {14, 17, 17, 15, 1, 2, 12}},
-                                            {'.', {0, 0, 0, 0, 0, 12, 12}},
-                                            {'-', {0, 0, 0, 31, 0, 0, 0}},
-                                            {'+', {0, 4, 4, 31, 4, 4, 0}},
-                                            {'/', {1, 1, 2, 4, 8, 16, 16}},
-                                            {'e', {0, 0, 14, 17, 31, 16, 14}},
-                                            {'k', {16, 16, 18, 20, 24, 20, 18}},
-                                            {'m', {0, 0, 26, 21, 21, 17, 17}},
-                                            {'f', {6, 9, 8, 28, 8, 8, 8}},
-                                            {'t', {8, 8, 28, 8, 8, 9, 6}}}};
+constexpr std::array<Glyph, 21> kGlyphs = {
+    {{'0', {14, 17, 19, 21, 25, 17, 14}}, {'1', {4, 12, 4, 4, 4, 4, 14}},
+     {'2', {14, 17, 1, 2, 4, 8, 31}},     {'3', {31, 2, 4, 2, 1, 17, 14}},
+     {'4', {2, 6, 10, 18, 31, 2, 2}},     {'5', {31, 16, 30, 1, 1, 17, 14}},
+     {'6', {6, 8, 16, 30, 17, 17, 14}},   {'7', {31, 1, 2, 4, 8, 8, 8}},
+     {'8', {14, 17, 17, 14, 17, 17, 14}}, {'9', {14, 17, 17, 15, 1, 2, 12}},
+     {'.', {0, 0, 0, 0, 0, 12, 12}},      {'-', {0, 0, 0, 31, 0, 0, 0}},
+     {'+', {0, 4, 4, 31, 4, 4, 0}},       {'/', {1, 1, 2, 4, 8, 16, 16}},
+     {'<', {1, 2, 4, 8, 4, 2, 1}},        {'>', {16, 8, 4, 2, 4, 8, 16}},
+     {'e', {0, 0, 14, 17, 31, 16, 14}},   {'k', {16, 16, 18, 20, 24, 20, 18}},
+     {'m', {0, 0, 26, 21, 21, 17, 17}},   {'f', {6, 9, 8, 28, 8, 8, 8}},
+     {'t', {8, 8, 28, 8, 8, 9, 6}}}};
 
 constexpr int kLetterWidth = 6;
 constexpr int kLetterHeight = 7;
@@ -183,8 +176,10 @@ void draw_legend(Image& image, const View& view, const ReliefStyle& style,
   const double ground = round_below(view.ground_per_pixel() * image.width * 0.22);
   const int bar = static_cast<int>(std::lround(ground / view.ground_per_pixel()));
   const std::string length = length_text(ground, length_unit);
-  const std::string low = height_text(style.low, style.high - style.low, height_unit);
-  const std::string high = height_text(style.high, style.high - style.low, height_unit);
+  const std::string low =
+      (style.any_below ? "<" : "") + height_text(style.low, style.high - style.low, height_unit);
+  const std::string high =
+      (style.any_above ? ">" : "") + height_text(style.high, style.high - style.low, height_unit);
   constexpr int kRampWidth = 90;
   const bool has_ramp = !style.by_page && style.high > style.low;
   const int ramp_width = has_ramp ? 24 + text_width(low) + kRampWidth + 8 + text_width(high) : 0;

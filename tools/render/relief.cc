@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "engine/mesh/tin.h"
 #include "tools/stop.h"
@@ -108,15 +109,18 @@ ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_
   style.reach = reach;
   style.by_page = by_page;
   std::vector<float> heights;
+  float lowest = std::numeric_limits<float>::infinity(), highest = -lowest;
   double squares = 0.0;
   const int step = std::max(1, std::max(raster.width, raster.height) / 600);
   const double ground = view.ground_per_pixel() * view.width / raster.width;
   for (int y = 0; y < raster.height; y += step) {
     for (int x = 0; x < raster.width; x += step) {
       if (raster.classes[raster.place(x, y)] != PixelClass::kSurface) continue;
+      const float height = raster.heights[raster.place(x, y)];
+      lowest = std::min(lowest, height), highest = std::max(highest, height);
       const Slope slope = slope_at(raster, x, y, ground, style.reach);
       if (slope.x == 0.0 && slope.y == 0.0) continue;
-      heights.push_back(raster.heights[raster.place(x, y)]);
+      heights.push_back(height);
       squares += slope.x * slope.x + slope.y * slope.y;
     }
   }
@@ -124,6 +128,8 @@ ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_
   std::sort(heights.begin(), heights.end());
   style.low = heights[heights.size() / 200];
   style.high = heights[heights.size() - 1 - heights.size() / 500];
+  style.any_below = lowest < style.low;
+  style.any_above = highest > style.high;
   constexpr double kPleasantSlope = 0.38;  // as in the mountains
   const double slope = std::sqrt(squares / static_cast<double>(heights.size()));
   style.exaggeration = slope > 0 ? std::clamp(kPleasantSlope / slope, 1.0, 12.0) : 1.0;

@@ -13,8 +13,9 @@ namespace ptin::tools {
 
 /// How heights become colours and slopes become shades; chosen from what is visible.
 struct ReliefStyle {
-  float low = 0.0F;   ///< Height of the lowest colour.
-  float high = 1.0F;  ///< Height of the highest colour.
+  float low = 0.0F;   ///< Height of the lowest colour, which all below have too.
+  float high = 1.0F;  ///< Height of the highest colour, which all above have too.
+  bool any_below = false, any_above = false;  ///< There are such.
   double exaggeration =
       1.0;  ///< Of heights, for the shading alone; more than 1 where the terrain is flat.
   bool by_page = false;  ///< Colours tell the page that a triangle came from.

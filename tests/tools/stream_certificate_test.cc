@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What `ptin unstream` says of its answer: exact only where the streams hold all of it, and a
+// warning where none does.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program.h"
+
+namespace ptin::tools {
+namespace {
+
+using nlohmann::json;
+using testing::expect_done;
+using testing::Outcome;
+using testing::run_ptin;
+using testing::TestFolder;
+
+/// Hills of 35 to 165.
+class StreamCertificate : public ::testing::Test {
+ protected:
+  StreamCertificate() {
+    testing::make_raster(folder_.file("t.tif"), {});
+    expect_done({"build", folder_.file("t.tif"), "-o", folder_.file("t.ptin"), "-q"});
+  }
+  void stream(const std::vector<std::string>& what) const {
+    std::vector<std::string> all = {"stream", folder_.file("t.ptin"), "-o", stream_, "-q"};
+    all.insert(all.end(), what.begin(), what.end());
+    expect_done(all);
+  }
+  [[nodiscard]] Outcome received(const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {"unstream", stream_, "--overwrite", "--json"};
+    all.insert(all.end(), more.begin(), more.end());
+    Outcome outcome = run_ptin(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome;
+  }
+  void expect_exact(const std::vector<std::string>& more, const json& certified_for) const {
+    const Outcome outcome = received(more);
+    const json answer = json::parse(outcome.out);
+    EXPECT_EQ(answer.at("exact"), true);
+    EXPECT_EQ(answer.at("certified_for"), certified_for);
+    EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
+  }
+  void expect_warning(const std::vector<std::string>& more, const json& certified_for) const {
+    const Outcome outcome = received(more);
+    const json answer = json::parse(outcome.out);
+    EXPECT_EQ(answer.at("exact"), false);
+    EXPECT_EQ(answer.at("certified_for"), certified_for);
+    EXPECT_NE(outcome.err.find("warning"), std::string::npos) << outcome.err;
+  }
+  TestFolder folder_;
+  std::string stream_ = folder_.file("s.pts"), mesh_ = folder_.file("x.ply"),
+              lines_ = folder_.file("l.geojson");
+};
+
+TEST_F(StreamCertificate, OfLevelsHoldsForTheirIsolinesAlone) {
+  stream({"--level", "80", "120"});
+  const json levels = {{"levels", {80.0, 120.0}}};
+  expect_exact({"--level", "80", "-o", lines_}, levels);
+  expect_exact({"--level", "80", "120", "-o", lines_}, levels);
+  expect_warning({"--level", "100", "-o", lines_}, levels);
+  expect_warning({"--level", "80", "100", "-o", lines_}, levels);
+  expect_warning({"-o", mesh_}, levels);
+  EXPECT_EQ(received({"-o", mesh_, "-q"}).err, "");
+}
+
+TEST_F(StreamCertificate, OfAWindowHoldsInItAlone) {
+  const std::vector<std::string> window = {"500200", "3999300", "500600", "3999700"};
+  stream({"--window", window[0], window[1], window[2], window[3]});
+  const json certified = {{"window", {500200.0, 3999300.0, 500600.0, 3999700.0}}};
+  expect_warning({"-o", mesh_}, certified);
+  expect_exact(
+      {"--level", "100", "-o", lines_, "--window", "500250", "3999350", "500550", "3999650"},
+      certified);
+  expect_warning(
+      {"--level", "100", "-o", lines_, "--window", "500250", "3999350", "500650", "3999650"},
+      certified);
+}
+
+TEST_F(StreamCertificate, OfAWholeTerrainHoldsEverywhere) {
+  stream({});
+  expect_exact({"-o", mesh_}, nullptr);
+  expect_exact({"--level", "100", "-o", lines_}, nullptr);
+}
+
+// It holds everywhere, so nothing is to be warned of; it only is not the source.
+TEST_F(StreamCertificate, OfACoarseTerrainIsNotExact) {
+  stream({"--error", "10"});
+  const Outcome outcome = received({"-o", mesh_});
+  const json answer = json::parse(outcome.out);
+  EXPECT_EQ(answer.at("exact"), false);
+  EXPECT_TRUE(answer.at("certified_for").is_null());
+  EXPECT_GT(answer.at("certified_error"), 0.0);
+  EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace ptin::tools
