@@ -262,30 +262,41 @@ class Profiling {
         segments.push_back({part.line->spots[i], part.line->spots[i + 1]});
       }
     }
-    const bool is_one = segments.size() == 1;
     const SpotPath path(std::move(segments), detail_.tolerance());
     std::vector<PageId> pages;
     terrain_.index().search(path, pages, context_.cost.io);
     context_.check_stop();
     const std::uint64_t records = most_records(terrain_.store(), pages);
-    // About as many points as records: the line crosses their triangles.
-    const std::uint64_t bytes = bytes_of(terrain_.t0()) + refinement_bytes(records) + held() +
-                                records * sizeof(ProfilePoint);
-    const bool fits = bytes <= request_.memory_limit_bytes;
-    if (parts.size() > 1 && (!fits || records > kGroupRecords)) {
+    const std::uint64_t bytes = bytes_of(terrain_.t0()) + refinement_bytes(records) + held();
+    const bool fits = bytes <= request_.memory_limit_bytes && records <= kGroupRecords;
+    if (!fits && may_halve(parts, bytes)) {
+      walk_halves(parts);
+      return;
+    }
+    context_.admit(bytes);
+    refine(path, pages);
+    if (!write(parts)) {
+      walk_halves(parts);
+    }
+  }
+
+  /// A single line is halved for its memory alone, and a segment never.
+  [[nodiscard]] bool may_halve(std::span<const LinePart> parts, std::uint64_t bytes) const {
+    return parts.size() > 1 ||
+           (parts.front().end - parts.front().first > 1 && bytes > request_.memory_limit_bytes);
+  }
+
+  void walk_halves(std::span<const LinePart> parts) {
+    if (parts.size() > 1) {
       walk(parts.first(parts.size() / 2));
       walk(parts.subspan(parts.size() / 2));
-    } else if (!fits && !is_one) {
-      const auto& [line, first, end] = parts.front();
-      const std::size_t middle = first + (end - first) / 2;
-      const LinePart halves[] = {{line, first, middle}, {line, middle, end}};
-      walk({&halves[0], 1});
-      walk({&halves[1], 1});
-    } else {
-      context_.admit(bytes);
-      refine(path, pages);
-      write(parts);
+      return;
     }
+    const auto& [line, first, end] = parts.front();
+    const std::size_t middle = first + (end - first) / 2;
+    const LinePart halves[] = {{line, first, middle}, {line, middle, end}};
+    walk({&halves[0], 1});
+    walk({&halves[1], 1});
   }
 
   void refine(const SpotPath& path, std::span<const PageId> pages) {
@@ -296,7 +307,9 @@ class Profiling {
     refinement_.apply(splits, context_);
   }
 
-  void write(std::span<const LinePart> parts) {
+  /// False, and nothing written, when mesh and points do not fit together, but halves may.
+  [[nodiscard]] bool write(std::span<const LinePart> parts) {
+    const std::size_t before = result_.points.size();
     TriangleId near = 0;
     for (const LinePart& part : parts) {
       if (part.first == 0) {
@@ -305,9 +318,24 @@ class Profiling {
       SegmentWriter writer(refinement_.tin(), facts(), *part.line, result_.points);
       for (std::size_t i = part.first; i < part.end; ++i) {
         context_.check_stop();
+        make_room();
         near = writer.write(static_cast<std::uint32_t>(i), near);
-        context_.admit(bytes_of(refinement_.tin()) + held());
+        const std::uint64_t bytes = bytes_of(refinement_.tin()) + held();
+        if (bytes > request_.memory_limit_bytes && may_halve(parts, bytes)) {
+          result_.points.resize(before);
+          return false;
+        }
+        context_.admit(bytes);
       }
+    }
+    return true;
+  }
+
+  /// By a quarter: what doubles takes room for points that never come.
+  void make_room() {
+    std::vector<ProfilePoint>& points = result_.points;
+    if (points.capacity() - points.size() < points.size() / 8) {
+      points.reserve(points.size() + points.size() / 4);
     }
   }
 
