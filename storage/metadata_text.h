@@ -13,8 +13,8 @@ namespace ptin {
 /// come from anybody.
 inline constexpr std::size_t kMostNesting = 64;
 
-/// How deep brackets and braces of a JSON text are nested, those in strings left out. Of a text that
-/// is no JSON a number all the same. Cost: linear.
+/// How deep brackets and braces of a JSON text are nested, those in strings left out. Of a text
+/// that is no JSON a number all the same. Cost: linear.
 [[nodiscard]] inline std::size_t nesting_of(std::string_view json) noexcept {
   std::size_t depth = 0, deepest = 0;
   bool in_string = false;

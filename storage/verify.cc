@@ -104,7 +104,8 @@ void Verifier::run() {
     report(fault, "T0");
   }
   const std::uint64_t vertices = front_.header.record_count + front_.t0.vertices.size();
-  keys_.emplace(front_.facts.bounds, vertices, options_.memory_bytes, options_.max_faults);
+  // One more than may be told: then there are more.
+  keys_.emplace(front_.facts.bounds, vertices, options_.memory_bytes, options_.max_faults + 1);
   report_.key_passes = keys_->passes();
   for (pass_ = 0; pass_ < keys_->passes(); ++pass_) {
     keys_->begin(pass_);

@@ -44,7 +44,7 @@ Error current_error() noexcept {
               "the system gives no more threads; raise the limit on processes, or close other "
               "programs"};
     }
-    return system_error(error.code().value(), error.what(), "");
+    return {ErrorCode::io_error, std::string("the system refused: ") + error.what()};
   } catch (const std::exception& error) {
     return {ErrorCode::internal, std::string("a fault of this program: ") + error.what()};
   } catch (...) {

@@ -15,9 +15,7 @@ void require_resolvable(const AffineMap& map, std::int64_t columns, std::int64_t
   const MapPoint low = map.to_map(0.0, 0.0);
   const MapPoint high = map.to_map(static_cast<double>(columns), static_cast<double>(rows));
   const auto is_fine = [](double a, double b, double step) {
-    constexpr double kShare = 64;  // of a step; a double is off by half of its last place
-    const double largest = std::max(std::abs(a), std::abs(b));
-    return std::nextafter(largest, INFINITY) - largest <= step / kShare;
+    return std::max(std::abs(a), std::abs(b)) / step <= kMostStepsFromZero;
   };
   if (is_fine(low.x, high.x, map.step_x) && is_fine(low.y, high.y, map.step_y)) {
     return;

@@ -112,11 +112,6 @@ void describe_values(GDALRasterBand& band, const std::string& path, RasterShape&
   if (!std::isfinite(shape.scale) || !std::isfinite(shape.offset) || shape.scale == 0.0) {
     refuse("the raster's scale must be finite and not 0, and its offset finite", path);
   }
-  // Whole numbers are not looked at one by one; floats are (check_heights).
-  constexpr double kMostWhole = 4294967296.0;
-  if (std::abs(shape.scale) * kMostWhole + std::abs(shape.offset) > FLT_MAX) {
-    refuse("the raster's scale or offset is so large that heights would be beyond 3.4e38", path);
-  }
   const bool scaled = shape.scale != 1.0 || shape.offset != 0.0;
   const bool fits_int32 =
       type == GDT_Byte || type == GDT_UInt16 || type == GDT_Int16 || type == GDT_Int32;
@@ -126,6 +121,12 @@ void describe_values(GDALRasterBand& band, const std::string& path, RasterShape&
     shape.raw = RawType::kFloat32;
   } else {
     shape.raw = RawType::kFloat64;
+  }
+  // Whole numbers are not looked at one by one; floats are (check_heights).
+  const double largest = std::ldexp(1.0, type == GDT_Byte ? 8 : type == GDT_Int32 ? 31 : 16);
+  if (shape.raw == RawType::kInt32 &&
+      std::abs(shape.scale) * largest + std::abs(shape.offset) > FLT_MAX) {
+    refuse("the raster's scale or offset is so large that heights may be beyond 3.4e38", path);
   }
   shape.unit = band.GetUnitType();
   band.GetBlockSize(&shape.block[0], &shape.block[1]);

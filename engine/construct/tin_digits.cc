@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "engine/construct/grid_precision.h"
 #include "engine/construct/height_fit.h"
 #include "engine/geometry/point.h"
 
@@ -45,13 +46,12 @@ void TinDigits::add(const SourcePoint& p) noexcept {
 }
 
 int TinDigits::kept() const noexcept {
-  constexpr double kRoom = 4.0;          // so that rounding cannot exceed the grid
-  constexpr double kMostSteps = 0x1p46;  // from 0, so that doubles tell them apart well enough
+  constexpr double kRoom = 4.0;  // so that rounding cannot exceed the grid
   const auto fits = [&](int decimals) {
     const double step = decimal_step(decimals);
     return std::all_of(axes_.begin(), axes_.end(), [&](const Axis& a) {
       return (a.high - a.low) / step <= kGridMax - kRoom &&
-             std::max(std::abs(a.low), std::abs(a.high)) / step <= kMostSteps;
+             std::max(std::abs(a.low), std::abs(a.high)) / step <= kMostStepsFromZero;
     });
   };
   int decimals = decimals_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/bounded_mesh.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/geometry/infinity.h"
@@ -37,8 +38,9 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
   const StoreFile& store = terrain_.store();
   const HeightEncoding& heights = store.facts().heights;
   const std::uint64_t most = most_records(store, pages);
-  context.admit(bytes_of(tin()) + made_.size() * sizeof(Made) + refinement_bytes(most) +
-                2 * most * sizeof(Made));
+  // Room for what is made grows by half, with the old room beside the new, and what enters.
+  const std::uint64_t made = made_.size() * 5 / 2 + 2 * most;
+  context.admit(bytes_of(tin()) + refinement_bytes(most) + made * sizeof(Made));
   store.pages().announce(pages, context.cost.io);
   splits_.clear();
   entering_.clear();
@@ -63,6 +65,9 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
     }
   }
   refinement_.apply(splits_, context);
+  if (made_.capacity() < made_.size() + splits_.size()) {
+    made_.reserve(made_.size() + std::max(splits_.size(), made_.size() / 2));
+  }
   for (const std::uint32_t i : refinement_.applied_order()) {
     made_.push_back(entering_[i]);
   }

@@ -9,7 +9,7 @@ namespace ptin {
 /// convention (`gdal_viewshed -cc`, default 0.85714 = 1 - 1/7, and twice the semi-major axis),
 /// which GRASS's `r.viewshed -cr` shares but for its last digits (0.14286).
 struct Curvature {
-  /// The share that light feels: 1 without refraction, 0 for a flat Earth.
+  /// The share that light feels: 1 without refraction, 0 for a flat Earth; up to 1000.
   double coefficient = 0.85714;
   double earth_diameter = 2 * 6378137.0;  ///< Height's unit.
 

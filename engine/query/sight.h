@@ -108,8 +108,8 @@ class SightSolver {
   /// Cost of the coarse mesh, and of finding the last of `vertices`; not part of any result's.
   [[nodiscard]] const QueryCost& base_cost() const noexcept;
 
-  /// @throws Error invalid_argument (a number is not finite, a position more than 2^31 grid units
-  /// away), resource_exhausted, corruption, io_error, cancelled
+  /// @throws Error invalid_argument (a number is not finite, a height beyond 1e30, a position more
+  /// than 2^31 grid units away), resource_exhausted, corruption, io_error, cancelled
   [[nodiscard]] SightResult solve(const SightPair& pair);
 
  private:

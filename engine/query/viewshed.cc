@@ -130,7 +130,7 @@ class ViewshedSearch {
     refine(is_coarse);
     mesh_.release_records();
     const bool leaves_open = is_coarse || left_out_ > 0;
-    results_held_ = leaves_open ? 2 : 1;
+    results_held_ = leaves_open && std::isfinite(left_out_) ? 2 : 1;
     Viewshed result = sweep({});
     if (leaves_open) {
       Certainty certainty(result);

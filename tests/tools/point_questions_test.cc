@@ -195,6 +195,17 @@ TEST(LocateCommand, KnowsPointXAndRefusesAHeaderThatNamesNoCoordinate) {
   EXPECT_EQ(lines_in(refused.err), 1u) << refused.err;
 }
 
+TEST(LocateCommand, SkipsCommentsBeforeAHeaderToo) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string text =
+      "# y and x of one point\ny,x\n" + south(20) + "," + east(15.5) + "\n# the end\n";
+  const Outcome outcome = testing::run_ptin_reading(text, {"locate", terrain, "--points", "-"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("surface,55,55,55"), std::string::npos) << outcome.out;
+  EXPECT_EQ(lines_in(outcome.out), 2u) << outcome.out;
+}
+
 TEST(LocateCommand, TakesNumbersInQuotes) {
   const TestFolder folder;
   const std::string terrain = wall(folder);

@@ -101,6 +101,14 @@ TEST_F(RasterKinds, SignedBytesHaveNodataBelowZero) {
   expect_sound("s.tif");
 }
 
+TEST_F(RasterKinds, SignedBytesTakeAnotherNodataInThePlaceOfTheirOwn) {
+  RasterRecipe recipe = signed_bytes();
+  recipe.nodata = -9.0;
+  make_raster(folder_.file("s.tif"), recipe);
+  EXPECT_GT(built("s.tif", {"--nodata", "5"}).at("void_samples"), 0);
+  expect_sound("s.tif");
+}
+
 /// Hills above 30, with a square of 36 samples of 5 and one of 16 samples of 7.
 double two_squares(int x, int y) {
   if (x >= 5 && x < 11 && y >= 8 && y < 14) return 5.0;
@@ -151,7 +159,7 @@ TEST_F(RasterKinds, ScaleThatMakesHeightsInfiniteIsRefused) {
 TEST_F(RasterKinds, PixelsFinerThanTheirCoordinatesAreRefused) {
   make_raster(folder_.file("r.tif"), {});
   write_file(folder_.file("r.vrt"),
-             vrt_text("r.tif", "Float32", "500000, 1e-9, 0, 500000, 0, -1e-9", "", ""));
+             vrt_text("r.tif", "Float32", "500000, 1e-10, 0, 500000, 0, -1e-10", "", ""));
   expect_refused("r.vrt");
 }
 

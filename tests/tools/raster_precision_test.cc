@@ -138,6 +138,19 @@ TEST_F(RasterPrecision, WholeNumbersNeedNoDoubles) {
   EXPECT_EQ(told.at("exact"), true);
 }
 
+// A pixel without a height rounds none, though floats do not hold the value that says so.
+TEST_F(RasterPrecision, NodataRoundsNoHeight) {
+  RasterRecipe recipe = whole_numbers();
+  recipe.nodata = -9999.0;
+  recipe.value = [](int x, int y) { return x > 10 && y > 10 ? -9999.0 : 20000.0 + x * y; };
+  build(recipe);
+  for (const char* nodata : {"-9999.9", "-1e300"}) {
+    const json told = exported({"--nodata", nodata});
+    EXPECT_EQ(told.at("exact"), true) << nodata;
+    EXPECT_EQ(told.at("certified_deviation"), 0.0) << nodata;
+  }
+}
+
 /// 1281/2048 of the source's: every centre is a double, and heights there have 26 places or more.
 constexpr const char* kOtherPixel = "18.7646484375";
 

@@ -84,6 +84,25 @@ TEST_F(StreamCertificate, OfAWholeTerrainHoldsEverywhere) {
   expect_exact({"--level", "100", "-o", lines_}, nullptr);
 }
 
+TEST_F(StreamCertificate, OfAWindowAroundTheTerrainHoldsEverywhere) {
+  stream({"--window", "0", "0", "1e6", "1e7"});
+  const json certified = {{"window", {0.0, 0.0, 1e6, 1e7}}};
+  expect_exact({"-o", mesh_}, certified);
+  expect_exact({"--level", "100", "-o", lines_}, certified);
+}
+
+TEST_F(StreamCertificate, OfTwoStreamsHoldsForTheLevelsOfBoth) {
+  stream({"--level", "80"});
+  const std::string second = folder_.file("second.pts");
+  expect_done({"stream", folder_.file("t.ptin"), "--level", "120", "--have-level", "80", "-o",
+               second, "-q"});
+  const Outcome outcome =
+      run_ptin({"unstream", stream_, second, "--level", "80", "120", "-o", lines_, "--json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out).at("exact"), true);
+  EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
+}
+
 // It holds everywhere, so nothing is to be warned of; it only is not the source.
 TEST_F(StreamCertificate, OfACoarseTerrainIsNotExact) {
   stream({"--error", "10"});

@@ -2,6 +2,7 @@
 //
 // Points and lines as callers give them: layers in any CRS, WKT of any length, lines of several
 // parts.
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -146,38 +147,65 @@ TEST(VectorInput, SkipsLinesWithoutLengthAmongOthersAndSaysHowMany) {
   refused("MULTILINESTRING(" + line + ",(1e30 0, 0 0))", "line 2 of 2");
 }
 
-// Even-odd would leave out what two features share.
-TEST(VectorInput, CoversWhatAnyOfTwoOverlappingPolygonsCovers) {
-  const TestFolder folder;
-  testing::RasterRecipe recipe;
-  recipe.pixel = 1;
-  recipe.west = 0;
-  recipe.north = 33;
-  testing::make_raster(folder.file("t.tif"), recipe);
-  testing::expect_done({"build", folder.file("t.tif"), "-o", folder.file("t.ptin"), "-q"});
-  const auto square = [](double low) {
-    const double high = low + 10;
-    return json{
-        {"type", "Feature"},
-        {"properties", json::object()},
-        {"geometry",
-         {{"type", "Polygon"},
-          {"coordinates", {{{low, low}, {high, low}, {high, high}, {low, high}, {low, low}}}}}}};
-  };
-  const json crs = {{"type", "name"}, {"properties", {{"name", "urn:ogc:def:crs:EPSG::32611"}}}};
-  const json both = {
-      {"type", "FeatureCollection"}, {"crs", crs}, {"features", {square(2), square(7)}}};
-  write_file(folder.file("two.geojson"), both.dump());
-  testing::expect_done({"refine", folder.file("t.ptin"), "--polygon", folder.file("two.geojson"),
-                        "--cut", "-o", folder.file("cut.ply"), "-q"});
-  const testing::ReadMesh mesh = testing::read_ply(testing::read_file(folder.file("cut.ply")));
-  double area = 0;
-  for (const auto& t : mesh.triangles) {
-    const auto &a = mesh.vertices.at(t[0]), &b = mesh.vertices.at(t[1]),
-               &c = mesh.vertices.at(t[2]);
-    area += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+class PolygonLayer : public ::testing::Test {
+ protected:
+  PolygonLayer() {
+    testing::RasterRecipe recipe;
+    recipe.pixel = 1;
+    recipe.west = 0;
+    recipe.north = 33;
+    testing::make_raster(folder_.file("t.tif"), recipe);
+    testing::expect_done({"build", folder_.file("t.tif"), "-o", folder_.file("t.ptin"), "-q"});
   }
-  EXPECT_NEAR(area, 2 * 100 - 25, 1e-6);
+  using Ring = std::vector<std::array<double, 2>>;
+  static Ring square(double low) {
+    const double high = low + 10;
+    return {{low, low}, {high, low}, {high, high}, {low, high}, {low, low}};
+  }
+  /// Of what is cut out by features with these rings.
+  double area_of(const std::vector<std::vector<Ring>>& features) {
+    json layer = {
+        {"type", "FeatureCollection"},
+        {"crs", {{"type", "name"}, {"properties", {{"name", "urn:ogc:def:crs:EPSG::32611"}}}}},
+        {"features", json::array()}};
+    for (const std::vector<Ring>& polygons : features) {
+      json parts = json::array();
+      for (const Ring& ring : polygons) parts.push_back(json::array({ring}));
+      layer["features"].push_back(
+          {{"type", "Feature"},
+           {"properties", json::object()},
+           {"geometry", {{"type", "MultiPolygon"}, {"coordinates", parts}}}});
+    }
+    write_file(folder_.file("layer.geojson"), layer.dump());
+    testing::expect_done({"refine", folder_.file("t.ptin"), "--polygon",
+                          folder_.file("layer.geojson"), "--cut", "-o", folder_.file("cut.ply"),
+                          "-q", "--overwrite"});
+    const testing::ReadMesh mesh = testing::read_ply(testing::read_file(folder_.file("cut.ply")));
+    double area = 0;
+    for (const auto& t : mesh.triangles) {
+      const auto &a = mesh.vertices.at(t[0]), &b = mesh.vertices.at(t[1]),
+                 &c = mesh.vertices.at(t[2]);
+      area += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+    }
+    return area;
+  }
+  TestFolder folder_;
+};
+
+// Even-odd would leave out what two features share.
+TEST_F(PolygonLayer, CoversWhatAnyOfTwoOverlappingPolygonsCovers) {
+  EXPECT_NEAR(area_of({{square(2)}, {square(7)}}), 2 * 100 - 25, 1e-6);
+}
+
+// Whatever else is in the layer, a feature is what an odd number of its rings surround.
+TEST_F(PolygonLayer, HasTheSameFeaturesTogetherAsAlone) {
+  const std::vector<Ring> overlapping = {square(2), square(7)};
+  const std::vector<Ring> crossing = {{{2, 2}, {12, 12}, {12, 2}, {2, 12}, {2, 2}}};
+  const std::vector<Ring> apart = {square(20)};
+  EXPECT_NEAR(area_of({overlapping}), 150, 1e-6);
+  EXPECT_NEAR(area_of({overlapping, apart}), 250, 1e-6);
+  EXPECT_NEAR(area_of({crossing}), 50, 1e-6);
+  EXPECT_NEAR(area_of({crossing, apart}), 150, 1e-6);
 }
 
 TEST(VectorInput, SaysWhatIsNoLine) {

@@ -190,8 +190,7 @@ class RasterWriter {
       std::transform(heights_.begin() + from, heights_.begin() + from + pixels.width,
                      block.begin() + y * block_width_, [&](double height) {
                        const T written = static_cast<T>(height);
-                       largest_rounding_ = std::max(
-                           largest_rounding_, std::abs(static_cast<double>(written) - height));
+                       note_rounding(height, static_cast<double>(written));
                        return written;
                      });
     }
@@ -199,6 +198,13 @@ class RasterWriter {
     if (band_.WriteBlock(static_cast<int>(b.column), static_cast<int>(b.row), block.data()) !=
         CE_None) {
       throw gdal_failure("cannot write the raster", target_.path);
+    }
+  }
+
+  void note_rounding(double height, double written) noexcept {
+    if (height != target_.nodata) {
+      // Exact: they are nearly the same.
+      largest_rounding_ = std::max(largest_rounding_, std::abs(written - height));
     }
   }
 

@@ -118,6 +118,11 @@ std::array<double, 2> pixel_size_of(const ExportOptions& options, const StoreFil
   return own_pixel_size(store);
 }
 
+/// The sum of two bounds, rounded up.
+double sum_above(double a, double b) {
+  return a == 0 || b == 0 ? a + b : std::nextafter(a + b, HUGE_VAL);
+}
+
 /// What was made, for the report.
 struct Exported {
   std::uint64_t vertices = 0, triangles = 0, cells = 0;
@@ -211,8 +216,8 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options,
   }
   progress.finish();
   made.certificate = refiner.detail().certificate();
-  made.certificate.error += made.rounding;
-  made.certificate.deviation += made.rounding;
+  made.certificate.error = sum_above(made.certificate.error, made.rounding);
+  made.certificate.deviation = sum_above(made.certificate.deviation, made.rounding);
   return made;
 }
 

@@ -103,8 +103,8 @@ int run_lines(const IsolineOptions& options, const IsolineRequest& request,
   return kExitDone;
 }
 
-/// A full grid without a void: its triangles away from the levels may stay coarse, since its border is
-/// straight. Otherwise the borders of voids are wanted everywhere, and the index knows none.
+/// A full grid without a void: its triangles away from the levels may stay coarse, since its border
+/// is straight. Otherwise the borders of voids are wanted everywhere, and the index knows none.
 bool has_straight_border(const StoreFile& store) {
   const GridBox& b = store.facts().bounds;
   const std::uint64_t full = (static_cast<std::uint64_t>(b.max_x - b.min_x) + 1) *

@@ -126,12 +126,13 @@ std::vector<double> rows_of(std::istream& in, const std::string& name,
   std::vector<double> rows;
   std::vector<std::string_view> fields;
   std::string line;
+  bool is_first = true;  // but for blank lines and comments
   for (std::size_t number = 1; std::getline(in, line); ++number) {
     if (number == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
     split_fields(line, fields);
-    if (fields.empty()) continue;
-    const bool header =
-        number == 1 && std::none_of(fields.begin(), fields.end(), looks_like_number);
+    if (fields.empty() || fields.front().starts_with('#')) continue;
+    const bool header = is_first && std::none_of(fields.begin(), fields.end(), looks_like_number);
+    is_first = false;
     if (header) {
       by_header(fields, columns);
     } else {

@@ -59,6 +59,8 @@ class RasterSamples final : public SourceSamples {
   SampleChoices choices_;
 };
 
+double last_place(double v) { return std::nextafter(std::abs(v), HUGE_VAL) - std::abs(v); }
+
 /// Where the middle of the first pixel, and the next, lie on the grid.
 void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   std::array<double, 6> t{0, 1, 0, 0, 0, -1};
@@ -88,7 +90,10 @@ void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   const double off = std::max({skew, std::abs(first.x - static_cast<double>(file.first_x)),
                                std::abs(first.y - static_cast<double>(file.first_y)),
                                std::abs(last.x - expected_x), std::abs(last.y - expected_y)});
-  if (off > 0.02) {
+  constexpr double kPlaces = 4;  // that rounding may cost where steps are near to them
+  const double coarse =
+      std::max(last_place(t[0]) / std::abs(t[1]), last_place(t[3]) / std::abs(t[5]));
+  if (off > 0.02 + kPlaces * coarse) {
     misfits_.add(file.path +
                  ": its samples do not stand on the grid of the terrain; they are off by up to " +
                  short_number(off) + " grid units");
@@ -126,13 +131,14 @@ bool is_signed_byte(GDALRasterBand& band) {
   return type != nullptr && EQUAL(type, "SIGNEDBYTE");
 }
 
-void take_signs(GDALRasterBand& band, std::vector<double>& values,
+/// @param with_nodata  The band's own value masks samples out.
+void take_signs(GDALRasterBand& band, bool with_nodata, std::vector<double>& values,
                 std::vector<std::uint8_t>& mask) {
   int has_nodata = 0;
   const double nodata = band.GetNoDataValue(&has_nodata);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i] > 127) values[i] -= 256;
-    if (has_nodata != 0 && values[i] == nodata) mask[i] = 0;
+    if (with_nodata && has_nodata != 0 && values[i] == nodata) mask[i] = 0;
   }
 }
 
@@ -174,7 +180,7 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
   if (status != CE_None)
     throw Error(ErrorCode::io_error, "GDAL cannot read its samples", file.path);
   const bool is_float = band.GetRasterDataType() == GDT_Float32;
-  if (is_signed_byte(band)) take_signs(band, values, mask);
+  if (is_signed_byte(band)) take_signs(band, !choices_.nodata, values, mask);
   const std::size_t stride = static_cast<std::size_t>(box.max_x - box.min_x) + 1;
   for (int j = 0; j < height; ++j) {
     const std::int64_t y = file.y_step < 0 ? high_y - j : low_y + j;

@@ -62,19 +62,25 @@ PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts) {
   return all_of(std::move(parts));
 }
 
-bool covers(const Serving& served, const Serving& asked) {
-  const std::vector<double>& outer = served.window;
+bool covers(const std::vector<Serving>& served, const Serving& asked) {
   const std::vector<double>& inner = asked.window;
-  const bool window =
-      outer.empty() || (!inner.empty() && outer[0] <= inner[0] && outer[1] <= inner[1] &&
-                        inner[2] <= outer[2] && inner[3] <= outer[3]);
-  const auto is_served = [&](double level) {
-    return std::find(served.levels.begin(), served.levels.end(), level) != served.levels.end();
+  const auto has_window = [&](const Serving& s) {
+    const std::vector<double>& outer = s.window;
+    return outer.empty() || (outer[0] <= inner[0] && outer[1] <= inner[1] && inner[2] <= outer[2] &&
+                             inner[3] <= outer[3]);
   };
-  const bool levels =
-      served.levels.empty() ||
-      (!asked.levels.empty() && std::all_of(asked.levels.begin(), asked.levels.end(), is_served));
-  return window && levels;
+  const auto has = [&](const Serving& s, double level) {
+    return has_window(s) && (s.levels.empty() ||
+                             std::find(s.levels.begin(), s.levels.end(), level) != s.levels.end());
+  };
+  if (asked.levels.empty()) {
+    return std::any_of(served.begin(), served.end(),
+                       [&](const Serving& s) { return has_window(s) && s.levels.empty(); });
+  }
+  return std::all_of(asked.levels.begin(), asked.levels.end(), [&](double level) {
+    return std::any_of(served.begin(), served.end(),
+                       [&](const Serving& s) { return has(s, level); });
+  });
 }
 
 nlohmann::json to_json(const Serving& serving) {

@@ -28,9 +28,10 @@ struct Serving {
   }
 };
 
-/// True when all of `asked` is in what was served: its window in the served one, its levels among
-/// the served ones. Errors and splits do not matter.
-[[nodiscard]] bool covers(const Serving& served, const Serving& asked);
+/// True when all of `asked` is in what was served: each of its levels, or all heights, by one that
+/// has its window. Errors and splits do not matter.
+/// @param asked  Its window is that of the terrain where everything is asked for.
+[[nodiscard]] bool covers(const std::vector<Serving>& served, const Serving& asked);
 
 /// @throws Error invalid_argument  an inverted window, a negative error, a number that is not
 /// finite

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -98,16 +99,27 @@ class Receiver {
     const Serving& last = servings_.back();
     return {last.window, std::nullopt, last.levels, std::nullopt};
   }
-  /// The last stream came whole, holds all of `asked`, and that is as the source has it.
+  /// The last stream came whole, and what came whole holds all of `asked` as the source has it.
   [[nodiscard]] bool exact(const Serving& asked) const {
-    const Serving& last = servings_.back();
-    return complete() && reader_.facts().base_error == 0 && !last.error && !last.splits &&
-           covers(last, asked);
+    std::vector<Serving> whole;
+    std::copy_if(servings_.begin(), servings_.end(), std::back_inserter(whole),
+                 [](const Serving& s) { return !s.error && !s.splits; });
+    return complete() && reader_.facts().base_error == 0 && covers(whole, asked);
   }
-  /// Some stream brought all of `asked`, at whatever error.
-  [[nodiscard]] bool holds(const Serving& asked) const {
-    return std::any_of(servings_.begin(), servings_.end(),
-                       [&](const Serving& served) { return covers(served, asked); });
+  /// The streams brought all of `asked`, at whatever error.
+  [[nodiscard]] bool holds(const Serving& asked) const { return covers(servings_, asked); }
+  /// What is asked for within the terrain.
+  [[nodiscard]] Serving within_terrain(Serving asked) const {
+    const StoreFacts& facts = reader_.facts();
+    const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
+    const MapPoint high = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
+    if (asked.window.empty()) {
+      asked.window = {low.x, low.y, high.x, high.y};
+    } else {
+      asked.window = {std::max(asked.window[0], low.x), std::max(asked.window[1], low.y),
+                      std::min(asked.window[2], high.x), std::min(asked.window[3], high.y)};
+    }
+    return asked;
   }
 
  private:
@@ -198,8 +210,9 @@ int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
                    StreamIsolines& isolines, const Context& context) {
   const nlohmann::json lines = isolines.finish(receiver.reader());
   const RefinedTin refined = counts_of(receiver.reader());
-  const Serving asked{options.isolines.window, std::nullopt,
-                      lines.at("levels").get<std::vector<double>>(), std::nullopt};
+  const Serving asked =
+      receiver.within_terrain({options.isolines.window, std::nullopt,
+                               lines.at("levels").get<std::vector<double>>(), std::nullopt});
   warn_of_what_is_beyond(receiver, asked, context);
   if (context.json) {
     const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
@@ -259,7 +272,7 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
   set_crs(mesh, crs);
   if (!options.output.empty()) write_mesh(mesh, options.output, options.overwrite);
-  const Serving everywhere;
+  const Serving everywhere = receiver.within_terrain({});
   if (!options.output.empty()) warn_of_what_is_beyond(receiver, everywhere, context);
   if (context.json) {
     print_json(answer_of(options, receiver, refined, mesh, crs, everywhere));

@@ -235,7 +235,7 @@ Action declare_viewshed(CLI::App& app, Context& context) {
       ->type_name("T");
   add_curvature_option(app, options->curvature);
   app.add_option("--pixel-size", options->pixel_size,
-                 "Side of a pixel, map units (default: the grid's)")
+                 "Side of a pixel, map units (default: that of the raster it was built from)")
       ->type_name("S");
   add_detail_options(
       app, options->detail,

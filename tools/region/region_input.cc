@@ -45,25 +45,40 @@ Polygon rings_of(const OGRGeometry& geometry) {
   return polygon;
 }
 
-}  // namespace
-
-Polygon read_polygon(const std::string& text, const std::string& crs_wkt) {
+/// What any feature covers, each by even-odd: that is what GEOS makes of one whose rings cross.
+Polygon united(const std::vector<std::unique_ptr<OGRMultiPolygon>>& features,
+               const std::string& text) {
   OGRMultiPolygon all;
-  int features = 0;
-  read_geometries(text, {"POLYGON", "MULTIPOLYGON"}, "POLYGON((x y, x y, x y, x y))", crs_wkt,
-                  [&](const OGRGeometry& geometry) {
-                    const int before = all.getNumGeometries();
-                    for_each_polygon(geometry, [&](const OGRPolygon& p) { all.addGeometry(&p); });
-                    features += all.getNumGeometries() > before ? 1 : 0;
-                  });
-  // Features may overlap, where even-odd would leave them out.
-  const std::unique_ptr<OGRGeometry> united(features > 1 ? all.UnionCascaded() : nullptr);
-  if (features > 1 && !united) {
+  for (const auto& feature : features) {
+    const std::unique_ptr<OGRGeometry> valid(feature->IsValid() ? nullptr : feature->MakeValid());
+    for_each_polygon(valid ? *valid : *feature, [&](const OGRPolygon& p) { all.addGeometry(&p); });
+  }
+  const std::unique_ptr<OGRGeometry> one(all.UnionCascaded());
+  if (!one) {
     throw Error(ErrorCode::invalid_argument,
                 "its polygons cannot be united; make each of them valid by 'ogr2ogr -makevalid'",
                 text);
   }
-  const Polygon polygon = rings_of(united ? *united : all);
+  return rings_of(*one);
+}
+
+}  // namespace
+
+Polygon read_polygon(const std::string& text, const std::string& crs_wkt) {
+  std::vector<std::unique_ptr<OGRMultiPolygon>> features;
+  read_geometries(text, {"POLYGON", "MULTIPOLYGON"}, "POLYGON((x y, x y, x y, x y))", crs_wkt,
+                  [&](const OGRGeometry& geometry) {
+                    auto feature = std::make_unique<OGRMultiPolygon>();
+                    for_each_polygon(geometry,
+                                     [&](const OGRPolygon& p) { feature->addGeometry(&p); });
+                    if (!feature->IsEmpty()) features.push_back(std::move(feature));
+                  });
+  Polygon polygon;
+  if (features.size() == 1) {
+    polygon = rings_of(*features.front());
+  } else if (!features.empty()) {
+    polygon = united(features, text);
+  }
   if (polygon.rings.empty()) {
     const std::string where = text.size() > 64 ? text.substr(0, 64) + "..." : text;
     throw Error(ErrorCode::invalid_argument, "holds no polygon", where);
