@@ -180,10 +180,12 @@ void draw_legend(Image& image, const View& view, const ReliefStyle& style,
       (style.any_below ? "<" : "") + height_text(style.low, style.high - style.low, height_unit);
   const std::string high =
       (style.any_above ? ">" : "") + height_text(style.high, style.high - style.low, height_unit);
-  constexpr int kRampWidth = 90;
   const bool has_ramp = !style.by_page && style.high > style.low;
-  const int ramp_width = has_ramp ? 24 + text_width(low) + kRampWidth + 8 + text_width(high) : 0;
-  const int width = 10 + bar + 8 + text_width(length) + ramp_width + 10;
+  const int texts = has_ramp ? 24 + text_width(low) + 8 + text_width(high) : 0;
+  const int beside_ramp = 10 + bar + 8 + text_width(length) + texts + 10;
+  constexpr int kMostRamp = 90, kLeastRamp = 40;
+  const int ramp = has_ramp ? std::clamp(image.width - 16 - beside_ramp, kLeastRamp, kMostRamp) : 0;
+  const int width = beside_ramp + ramp;
   constexpr int kHeight = 21;
   if (width + 16 > image.width || kHeight + 16 > image.height) return;
   const int left = 8;
@@ -200,12 +202,12 @@ void draw_legend(Image& image, const View& view, const ReliefStyle& style,
   x += text_width(length) + 16;
   draw_text(image, x, top + 7, low);
   x += text_width(low) + 4;
-  for (int i = 0; i < kRampWidth; ++i) {
-    const float height =
-        style.low + (style.high - style.low) * (static_cast<float>(i) + 0.5F) / kRampWidth;
+  for (int i = 0; i < ramp; ++i) {
+    const float share = (static_cast<float>(i) + 0.5F) / static_cast<float>(ramp);
+    const float height = style.low + (style.high - style.low) * share;
     fill(image, x + i, top + 6, x + i + 1, top + 15, height_colour(height, style), 1.0);
   }
-  draw_text(image, x + kRampWidth + 4, top + 7, high);
+  draw_text(image, x + ramp + 4, top + 7, high);
 }
 
 }  // namespace ptin::tools
