@@ -75,7 +75,9 @@ TEST(HeightScan, BoundsTheRoundingOfHeightsThatCameBeforeAFinerOne) {
       std::vector<double> heights = exact ? exact_hundredths(5000) : hundredths(3, 4, 5000);
       heights.push_back(decimal(5, last_decimals));
       expect_decimals(heights, last_decimals);
-      EXPECT_GT(fit_of(heights).rounding, 0.0) << "exact as hundredths alone";
+      if (last_decimals == 4) {  // thousandths give those of hundredths back, these do not
+        EXPECT_GT(fit_of(heights).rounding, 0.0) << "exact as hundredths alone";
+      }
     }
   }
 }
