@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <new>
 #include <optional>
 #include <random>
@@ -27,12 +26,12 @@
 #include "engine/error.h"
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/made_raster.h"
+#include "tests/support/replaced_new.h"
 
 namespace {
 
-/// Allocations until one fails; the one after it succeeds again. Far below 0: none does.
-constexpr std::int64_t kNoneFails = std::int64_t{-1} << 62;
-std::atomic<std::int64_t> allocations_left{kNoneFails};
+/// Allocations until one fails; the one after it succeeds again.
+std::atomic<std::int64_t> allocations_left{0};
 
 /// Functions of libraries that allocate where they must not throw, and so end the process without
 /// memory. Nobody else is excused.
@@ -60,8 +59,7 @@ bool is_excused() {
 
 /// Whether this is the one that fails.
 bool fails() {
-  if (allocations_left.load(std::memory_order_relaxed) <= kNoneFails ||
-      allocations_left.fetch_sub(1, std::memory_order_relaxed) != 1) {
+  if (allocations_left.fetch_sub(1, std::memory_order_relaxed) != 1) {
     return false;
   }
   if (is_excused()) {
@@ -71,40 +69,7 @@ bool fails() {
   return true;
 }
 
-[[maybe_unused]] void* allocate(std::size_t bytes, std::size_t alignment) {
-  if (fails()) {
-    throw std::bad_alloc();
-  }
-  bytes = std::max<std::size_t>(bytes, 1);
-  void* const memory =
-      alignment == 0
-          ? std::malloc(bytes)
-          : std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (memory == nullptr) {
-    throw std::bad_alloc();
-  }
-  return memory;
-}
-
 }  // namespace
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have their own
-#define PTIN_TEST_ALLOCATES
-
-// Of the whole test program, libraries included; the array and nothrow forms call these.
-void* operator new(std::size_t bytes) { return allocate(bytes, 0); }
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return allocate(bytes, static_cast<std::size_t>(alignment));
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
-#endif
 
 namespace ptin {
 namespace {
@@ -113,13 +78,11 @@ namespace {
 class FailingAllocation {
  public:
   explicit FailingAllocation(std::int64_t nth) : nth_(nth) { allocations_left = nth; }
-  FailingAllocation(const FailingAllocation&) = delete;
-  FailingAllocation& operator=(const FailingAllocation&) = delete;
-  ~FailingAllocation() { allocations_left = kNoneFails; }
   [[nodiscard]] std::int64_t allocations() const { return nth_ - allocations_left; }
 
  private:
   std::int64_t nth_;
+  test::AskedAllocations asked_{fails};
 };
 
 std::string few_points() {

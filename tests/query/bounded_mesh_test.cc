@@ -11,6 +11,7 @@
 #include "engine/error.h"
 #include "engine/query/above_error.h"
 #include "engine/query/viewshed.h"
+#include "tests/query/least_memory.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin {
@@ -76,28 +77,10 @@ TEST(BoundedMesh, IsTheSameMeshWithoutItsRecords) {
   }
 }
 
-/// The least limit, to two KiB, at which `ask` is not refused for want of memory.
-template <typename Ask>
-std::uint64_t least_admitted(const Ask& ask) {
-  std::uint64_t refused = 0, enough = std::uint64_t{1} << 22;
-  ask(enough);
-  while (enough - refused > 2048) {
-    const std::uint64_t middle = (refused + enough) / 2;
-    try {
-      ask(middle);
-      enough = middle;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ErrorCode::resource_exhausted) << e.message();
-      refused = middle;
-    }
-  }
-  return enough;
-}
-
 TEST(BoundedMesh, IsRefusedBelowWhatItsRecordsAndArraysTake) {
   const HeldTerrain t;
   std::uint64_t held = 0;
-  const std::uint64_t least = least_admitted([&](std::uint64_t limit) {
+  const std::uint64_t least = reference::least_memory([&](std::uint64_t limit) {
     QueryContext context({}, limit, "a test");
     BoundedMesh mesh(t.terrain);
     mesh.refine(AboveError(4.0), context);
@@ -124,7 +107,7 @@ TEST(BoundedMesh, IsCountedByAViewshedBesideItsSweep) {
   for (const bool listed : {false, true}) {
     request.list_vertices = listed;
     Viewshed seen;
-    const std::uint64_t least = least_admitted([&](std::uint64_t limit) {
+    const std::uint64_t least = reference::least_memory([&](std::uint64_t limit) {
       request.memory_limit_bytes = limit;
       seen = viewshed(t.terrain, request);
     });

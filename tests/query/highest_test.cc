@@ -15,6 +15,7 @@
 #include "engine/query/locate.h"
 #include "storage/spatialindex_rtree.h"
 #include "tests/query/built_terrain.h"
+#include "tests/query/least_memory.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin {
@@ -269,23 +270,6 @@ TEST(Highest, FindsTheLastVertexOfALevelOfDetailOnce) {
   }
 }
 
-/// The least memory limit, to a KiB, at which `ask` is not refused for want of memory.
-template <typename Ask>
-std::uint64_t least_limit(const Ask& ask) {
-  std::uint64_t refused = 0, enough = std::uint64_t{1} << 30;
-  while (enough - refused > 1024) {
-    const std::uint64_t middle = (refused + enough) / 2;
-    try {
-      ask(middle);
-      enough = middle;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ErrorCode::resource_exhausted) << e.message();
-      refused = middle;
-    }
-  }
-  return enough;
-}
-
 TEST(Highest, CountsItsOwnMemoryBesideThatOfLocatingItsVertices) {
   std::mt19937_64 random(9);
   const Hierarchy h =
@@ -300,11 +284,11 @@ TEST(Highest, CountsItsOwnMemoryBesideThatOfLocatingItsVertices) {
   for (const HeightAt& v : all.vertices) points.push_back(v.position);
   LocateRequest where;
   where.tolerance = request.tolerance;
-  const std::uint64_t located = least_limit([&](std::uint64_t limit) {
+  const std::uint64_t located = reference::least_memory([&](std::uint64_t limit) {
     where.memory_limit_bytes = limit;
     static_cast<void>(locate(terrain, points, where));
   });
-  const std::uint64_t listed = least_limit([&](std::uint64_t limit) {
+  const std::uint64_t listed = reference::least_memory([&](std::uint64_t limit) {
     request.memory_limit_bytes = limit;
     static_cast<void>(highest(terrain, request));
   });

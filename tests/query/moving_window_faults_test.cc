@@ -2,11 +2,9 @@
 //
 // Moves in which the n-th allocation fails, or it and all behind it: the mesh is one that the
 // promises name, and the next move makes what it would have made anyway.
-#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <new>
 #include <random>
@@ -20,10 +18,11 @@
 #include "engine/query/moving_window.h"
 #include "engine/query/progressive_tin.h"
 #include "tests/query/reference_hierarchy.h"
+#include "tests/support/replaced_new.h"
 
 namespace {
 
-/// Allocations until the first that fails, and how many fail from there on. None: 0.
+/// Allocations until the first that fails, and how many fail from there on.
 std::atomic<std::int64_t> moves_allocations_left{0};
 std::atomic<std::int64_t> moves_allocations_that_fail{0};
 
@@ -38,40 +37,7 @@ bool fails_in_a_move() {
   return true;
 }
 
-[[maybe_unused]] void* allocate_in_a_move(std::size_t bytes, std::size_t alignment) {
-  if (fails_in_a_move()) {
-    throw std::bad_alloc();
-  }
-  bytes = std::max<std::size_t>(bytes, 1);
-  void* const memory =
-      alignment == 0
-          ? std::malloc(bytes)
-          : std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (memory == nullptr) {
-    throw std::bad_alloc();
-  }
-  return memory;
-}
-
 }  // namespace
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have their own
-#define PTIN_TEST_ALLOCATES_IN_MOVES
-
-// Of the whole test program, libraries included; the array and nothrow forms call these.
-void* operator new(std::size_t bytes) { return allocate_in_a_move(bytes, 0); }
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return allocate_in_a_move(bytes, static_cast<std::size_t>(alignment));
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
-#endif
 
 namespace ptin {
 namespace {
@@ -87,9 +53,9 @@ class FailingMoves {
     moves_allocations_left = nth;
     moves_allocations_that_fail = how_many;
   }
-  FailingMoves(const FailingMoves&) = delete;
-  FailingMoves& operator=(const FailingMoves&) = delete;
-  ~FailingMoves() { moves_allocations_that_fail = 0; }
+
+ private:
+  test::AskedAllocations asked_{fails_in_a_move};
 };
 
 constexpr std::int64_t kThisOne = 1;
@@ -98,7 +64,7 @@ constexpr std::int64_t kAllBehind = std::int64_t{1} << 40;
 class MovingWindowFaults : public ::testing::Test {
  protected:
   void SetUp() override {
-#ifndef PTIN_TEST_ALLOCATES_IN_MOVES
+#ifndef PTIN_TEST_ALLOCATES
     GTEST_SKIP() << "needs a program without a sanitizer, which allocates by itself";
 #endif
   }

@@ -16,6 +16,7 @@
 #include "engine/query/coarsest.h"
 #include "engine/query/viewshed_walk_internal.h"
 #include "tests/query/built_terrain.h"
+#include "tests/query/least_memory.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/query/sight_oracle.h"
 
@@ -413,19 +414,6 @@ TEST(Viewshed, EndsBehindAWall) {
   EXPECT_LT(viewshed(terrain, request).visible_pixels, 100U);
 }
 
-/// The least limit, in steps of 2^14 bytes, within which a request is answered.
-std::uint64_t least_memory(const ProgressiveTin& terrain, ViewshedRequest request) {
-  for (request.memory_limit_bytes = 0;; request.memory_limit_bytes += 1U << 14U) {
-    try {
-      static_cast<void>(viewshed(terrain, request));
-      return request.memory_limit_bytes;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ErrorCode::resource_exhausted) << e.what();
-      if (e.code() != ErrorCode::resource_exhausted) return 0;
-    }
-  }
-}
-
 TEST(Viewshed, CountsTheRastersThatAFileWithoutItsDetailsNeeds) {
   Hierarchy h = plain_with_wall(5.0);
   ViewshedRequest request;
@@ -442,8 +430,15 @@ TEST(Viewshed, CountsTheRastersThatAFileWithoutItsDetailsNeeds) {
   const std::uint64_t raster = viewshed(exact, request).pixels.size();
   ASSERT_GT(raster, 1U << 18U);
   // One sweep is held while the next tells what is certain.
-  EXPECT_NEAR(double(least_memory(left_out, request)),
-              double(least_memory(exact, request) + raster), 1U << 15U);
+  const auto least = [&](const ProgressiveTin& terrain) {
+    return reference::least_memory(
+        [&](std::uint64_t limit) {
+          request.memory_limit_bytes = limit;
+          static_cast<void>(viewshed(terrain, request));
+        },
+        1U << 14U);
+  };
+  EXPECT_NEAR(double(least(left_out)), double(least(exact) + raster), 1U << 15U);
 }
 
 TEST(Viewshed, RefusesWhatMeansNothing) {

@@ -7,34 +7,23 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <new>
 #include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "tests/support/replaced_new.h"
+
 namespace {
 
 std::atomic<std::int64_t> key_allocations{0};
 
-}  // namespace
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have their own
-#define PTIN_TEST_COUNTS_ALLOCATIONS
-
-// Of the whole test program, libraries included; the array and nothrow forms call these.
-void* operator new(std::size_t bytes) {
+[[maybe_unused]] bool counts_key_allocations() {
   key_allocations.fetch_add(1, std::memory_order_relaxed);
-  void* const memory = std::malloc(std::max<std::size_t>(bytes, 1));
-  if (memory == nullptr) {
-    throw std::bad_alloc();
-  }
-  return memory;
+  return false;
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-#endif
+
+}  // namespace
 
 namespace ptin {
 namespace {
@@ -123,10 +112,11 @@ TEST(UniqueKeys, TakesAsManyPassesAsItsPartsNeed) {
   EXPECT_EQ(UniqueKeys(kWide, std::uint64_t{1} << 33, std::uint64_t{1} << 20, 1).passes(), 66561U);
 }
 
-#ifdef PTIN_TEST_COUNTS_ALLOCATIONS
+#ifdef PTIN_TEST_ALLOCATES
 // Memory that grows is held twice while it moves.
 TEST(UniqueKeys, ReservesItsPartOnce) {
   const std::vector<GridPoint> points = spread_points(300'000);
+  const test::AskedAllocations counting(counts_key_allocations);
   for (const std::uint64_t memory : {1U << 10U, 1U << 20U, 3U << 20U}) {
     const std::int64_t before = key_allocations;
     UniqueKeys keys(kWide, points.size(), memory, 100);
