@@ -23,7 +23,7 @@
 
 #include "bench/support/scratch.h"
 #include "bench/support/terrain.h"
-#include "engine/construct/simplify.h"
+#include "engine/construct/collapse/simplify.h"
 #include "engine/mesh/collapse.h"
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"

@@ -13,7 +13,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
-#include "engine/query/highest.h"
+#include "engine/query/heights/highest.h"
 
 namespace {
 

@@ -26,7 +26,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/scratch.h"
-#include "engine/query/predicate.h"
+#include "engine/query/select/predicate.h"
 #include "storage/index_writer.h"
 #include "storage/spatialindex_rtree.h"
 #include "storage/store_file.h"

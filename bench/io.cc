@@ -40,9 +40,9 @@
 #include "bench/support/uring_pages.h"
 #include "engine/construct/build.h"
 #include "engine/error.h"
-#include "engine/query/predicate.h"
-#include "engine/query/retrieval.h"
-#include "storage/checksum.h"
+#include "engine/query/select/predicate.h"
+#include "engine/query/select/retrieval.h"
+#include "storage/file/checksum.h"
 #include "storage/spatialindex_rtree.h"
 
 namespace {

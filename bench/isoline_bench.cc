@@ -14,11 +14,11 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/scratch.h"
-#include "engine/query/isoline.h"
-#include "engine/query/isoline_progressive.h"
-#include "engine/query/refinement.h"
-#include "engine/query/retrieval.h"
-#include "engine/query/total_order.h"
+#include "engine/query/isoline/isoline.h"
+#include "engine/query/isoline/isoline_progressive.h"
+#include "engine/query/refine/refinement.h"
+#include "engine/query/select/retrieval.h"
+#include "engine/query/select/total_order.h"
 
 namespace {
 

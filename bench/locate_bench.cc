@@ -15,7 +15,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
-#include "engine/query/locate.h"
+#include "engine/query/heights/locate.h"
 
 namespace {
 

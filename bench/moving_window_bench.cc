@@ -14,8 +14,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
-#include "engine/query/moving_window.h"
 #include "engine/query/progressive_tin.h"
+#include "engine/query/refine/moving_window.h"
 
 namespace {
 

@@ -31,7 +31,7 @@
 #include "bench/support/scratch.h"
 #include "bench/support/terrain.h"
 #include "engine/construct/build.h"
-#include "engine/construct/simplify.h"
+#include "engine/construct/collapse/simplify.h"
 #include "engine/construct/store_output.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/split.h"

@@ -22,10 +22,10 @@
 
 #include "engine/mesh/collapse.h"
 #include "engine/mesh/star.h"
-#include "engine/query/coarsest.h"
 #include "engine/query/progressive_tin.h"
-#include "engine/query/refinement.h"
-#include "engine/query/retrieval.h"
+#include "engine/query/refine/refinement.h"
+#include "engine/query/select/coarsest.h"
+#include "engine/query/select/retrieval.h"
 #include "storage/store_writer.h"
 
 namespace {

@@ -16,7 +16,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
-#include "engine/query/sight.h"
+#include "engine/query/sight/sight.h"
 
 namespace {
 

@@ -13,8 +13,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
-#include "engine/query/stream_reader.h"
-#include "engine/query/stream_writer.h"
+#include "engine/query/stream/stream_reader.h"
+#include "engine/query/stream/stream_writer.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 # are what the program `ptin` itself includes of the engine, the few of `also` below, and what these include in turn; the
 # others are how a room works inside.
 cmake_policy(VERSION 3.25)
-set(also engine/error.h engine/geometry/orient.h engine/mesh/validate.h engine/query/moving_window.h storage/store_writer.h)
+set(also engine/error.h engine/geometry/orient.h engine/mesh/validate.h engine/query/refine/moving_window.h storage/store_writer.h)
 
 file(GLOB_RECURSE users RELATIVE "${SOURCE}" "${SOURCE}/tools/*.h" "${SOURCE}/tools/*.cc")
 set(headers "")

@@ -23,7 +23,7 @@ struct Attributes {
 
 /// A monotone test: once true, it stays true when the arguments grow (DESIGN.md, section 2). The
 /// index asks it of nodes and pages, the refinement of records. Implementations are in
-/// engine/query/predicate.h. Threads: const, callable from several threads at once.
+/// engine/query/select/predicate.h. Threads: const, callable from several threads at once.
 class AttributePredicate {
  public:
   AttributePredicate() = default;

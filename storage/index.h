@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "storage/attributes.h"
-#include "storage/io_counters.h"
+#include "storage/file/io_counters.h"
 #include "storage/page_store.h"
 
 namespace ptin {

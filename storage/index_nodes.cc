@@ -5,7 +5,7 @@
 #include <span>
 
 #include "engine/error.h"
-#include "storage/checksum.h"
+#include "storage/file/checksum.h"
 
 namespace ptin {
 

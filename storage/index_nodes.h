@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "storage/file/io_counters.h"
+#include "storage/file/mapped_file.h"
+#include "storage/file/read_only_file.h"
 #include "storage/index_shape.h"
-#include "storage/io_counters.h"
 #include "storage/layout.h"
-#include "storage/mapped_file.h"
 #include "storage/page_store.h"
-#include "storage/read_only_file.h"
 #include "storage/touch_bits.h"
 
 namespace ptin {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/check.h"
-#include "storage/checksum.h"
+#include "storage/file/checksum.h"
 
 namespace ptin {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "storage/descriptor.h"
-#include "storage/file_layer.h"
+#include "storage/file/file_layer.h"
 #include "storage/index_shape.h"
 
 namespace ptin {

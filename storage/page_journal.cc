@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "engine/error.h"
-#include "storage/checksum.h"
+#include "storage/file/checksum.h"
 
 namespace ptin {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "storage/file_layer.h"
+#include "storage/file/file_layer.h"
 #include "storage/layout.h"
 
 namespace ptin {

@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "engine/error.h"
-#include "storage/lanes_internal.h"
+#include "storage/box_lanes.h"
 
 namespace ptin {
 

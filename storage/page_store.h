@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "storage/io_counters.h"
+#include "storage/file/io_counters.h"
 
 namespace ptin {
 

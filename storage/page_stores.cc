@@ -5,7 +5,7 @@
 
 #include "engine/check.h"
 #include "engine/error.h"
-#include "storage/checksum.h"
+#include "storage/file/checksum.h"
 
 namespace ptin {
 

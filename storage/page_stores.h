@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <span>
 
+#include "storage/file/mapped_file.h"
+#include "storage/file/read_only_file.h"
 #include "storage/index_nodes.h"
-#include "storage/mapped_file.h"
 #include "storage/page_slots.h"
 #include "storage/page_store.h"
-#include "storage/read_only_file.h"
 #include "storage/touch_bits.h"
 
 namespace ptin {

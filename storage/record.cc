@@ -7,7 +7,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "storage/lanes_internal.h"
+#include "storage/box_lanes.h"
 #include "storage/layout.h"
 
 namespace ptin {

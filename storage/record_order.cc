@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "storage/lanes_internal.h"
+#include "storage/box_lanes.h"
 #include "storage/layout.h"
 
 namespace ptin {

@@ -19,7 +19,7 @@
 #include "engine/check.h"
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
-#include "storage/sealed_storage_internal.h"
+#include "storage/sealed_storage.h"
 
 namespace ptin {
 

@@ -7,8 +7,8 @@
 
 #include "engine/error.h"
 #include "storage/descriptor.h"
+#include "storage/file/mapped_file.h"
 #include "storage/index_nodes.h"
-#include "storage/mapped_file.h"
 #include "storage/packed_rtree.h"
 #include "storage/page_records.h"
 #include "storage/page_stores.h"

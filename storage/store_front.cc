@@ -7,9 +7,9 @@
 #include <span>
 
 #include "engine/error.h"
-#include "storage/checksum.h"
 #include "storage/error_table.h"
 #include "storage/facts.h"
+#include "storage/file/checksum.h"
 #include "storage/metadata_text.h"
 
 namespace ptin {

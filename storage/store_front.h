@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "storage/file/read_only_file.h"
 #include "storage/index_shape.h"
 #include "storage/layout.h"
 #include "storage/page_slots.h"
-#include "storage/read_only_file.h"
 #include "storage/store_file.h"
 
 namespace ptin {

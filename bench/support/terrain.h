@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/raster_tile.h"
-#include "engine/construct/terrain_frame.h"
+#include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/raster/raster_tile.h"
 
 namespace ptin::bench {
 

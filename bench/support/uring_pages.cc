@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "storage/file/read_only_file.h"
 #include "storage/layout.h"
-#include "storage/read_only_file.h"
 #include "storage/store_file.h"
 
 #ifdef PTIN_BENCH_URING

@@ -7,14 +7,14 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/construct/build_job_internal.h"
+#include "engine/construct/build_job.h"
 #include "engine/construct/memory_plan.h"
-#include "engine/construct/raster_source.h"
-#include "engine/construct/raster_tile.h"
+#include "engine/construct/raster/raster_source.h"
+#include "engine/construct/raster/raster_tile.h"
+#include "engine/construct/read/tin_soup.h"
 #include "engine/construct/store_output.h"
-#include "engine/construct/tin_soup.h"
 #include "engine/error.h"
-#include "storage/file_questions.h"
+#include "storage/file/file_questions.h"
 
 namespace ptin {
 

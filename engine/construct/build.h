@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "engine/construct/build_plan.h"
-#include "engine/construct/cost.h"
-#include "engine/construct/workspace.h"
+#include "engine/construct/scratch/workspace.h"
+#include "engine/construct/tile/cost.h"
 
 namespace ptin {
 

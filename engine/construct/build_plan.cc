@@ -10,7 +10,7 @@
 #include "engine/construct/build.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/error.h"
-#include "storage/file_questions.h"
+#include "storage/file/file_questions.h"
 
 namespace ptin {
 

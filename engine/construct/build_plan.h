@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/construct/source_disk.h"
-#include "engine/construct/tile_bytes.h"
-#include "engine/construct/tile_tree.h"
+#include "engine/construct/grid/source_disk.h"
+#include "engine/construct/hierarchy/tile_bytes.h"
+#include "engine/construct/tile/tile_tree.h"
 
 namespace ptin {
 

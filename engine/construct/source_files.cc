@@ -8,10 +8,10 @@
 #include <gdal_priv.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/gdal_session_internal.h"
-#include "engine/construct/point_stream.h"
-#include "engine/construct/tin_soup.h"
-#include "storage/file_questions.h"
+#include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/read/point_stream.h"
+#include "engine/construct/read/tin_soup.h"
+#include "storage/file/file_questions.h"
 
 namespace ptin {
 

@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/rounding.h"
-#include "storage/file_questions.h"
+#include "engine/geometry/rounding.h"
+#include "storage/file/file_questions.h"
 
 namespace ptin {
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "engine/construct/build.h"
-#include "engine/construct/segment_output.h"
-#include "engine/construct/terrain_frame.h"
+#include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/hierarchy/segment_output.h"
 #include "engine/mesh/tin.h"
 #include "storage/store_writer.h"
 

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/query/certificate.h"
-#include "engine/query/clip.h"
-#include "engine/query/coarsest.h"
-#include "engine/query/detail.h"
-#include "engine/query/refinement.h"
-#include "engine/query/retrieval.h"
-#include "engine/query/total_order.h"
+#include "engine/query/refine/clip.h"
+#include "engine/query/refine/refinement.h"
+#include "engine/query/select/certificate.h"
+#include "engine/query/select/coarsest.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/retrieval.h"
+#include "engine/query/select/total_order.h"
 
 namespace ptin {
 

@@ -13,8 +13,8 @@
 
 #include "engine/geometry/affine.h"
 #include "engine/mesh/tin.h"
-#include "engine/query/accounting.h"
-#include "engine/query/predicate.h"
+#include "engine/query/select/accounting.h"
+#include "engine/query/select/predicate.h"
 #include "storage/index.h"
 #include "storage/store_file.h"
 

@@ -22,7 +22,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/construct/build.h"
-#include "engine/construct/workspace.h"
+#include "engine/construct/scratch/workspace.h"
 #include "engine/error.h"
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/made_raster.h"

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/construct/workspace.h"
+#include "engine/construct/scratch/workspace.h"
 #include "tests/construct/resume_fixture.h"
 
 namespace ptin {

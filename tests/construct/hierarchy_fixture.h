@@ -13,8 +13,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/segment_output.h"
-#include "storage/file_layer.h"
+#include "engine/construct/hierarchy/segment_output.h"
+#include "storage/file/file_layer.h"
 
 namespace ptin::test {
 

@@ -18,8 +18,8 @@
 
 #include "engine/construct/build.h"
 #include "engine/construct/build_plan.h"
-#include "engine/construct/tile_tree.h"
-#include "engine/construct/workspace.h"
+#include "engine/construct/scratch/workspace.h"
+#include "engine/construct/tile/tile_tree.h"
 #include "engine/error.h"
 #include "tests/construct/made_raster.h"
 #include "tests/support/resource_limit.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/point_buckets.h"
+#include "engine/construct/points/point_buckets.h"
 #include "engine/geometry/point.h"
 #include "tests/construct/memory_file.h"
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/construct/crs.h"
-#include "engine/construct/height_fit.h"
-#include "engine/construct/point_merge.h"
-#include "engine/construct/point_reading.h"
+#include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/height_fit.h"
+#include "engine/construct/grid/point_merge.h"
+#include "engine/construct/points/point_reading.h"
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 

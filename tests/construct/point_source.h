@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/terrain_frame.h"
+#include "engine/construct/grid/terrain_frame.h"
 #include "engine/geometry/point.h"
 
 namespace ptin {

@@ -15,10 +15,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "engine/construct/array_file.h"
-#include "engine/construct/manifest.h"
-#include "engine/construct/workspace.h"
-#include "storage/sigbus_guard.h"
+#include "engine/construct/scratch/array_file.h"
+#include "engine/construct/scratch/manifest.h"
+#include "engine/construct/scratch/workspace.h"
+#include "storage/file/sigbus_guard.h"
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/resume_fixture.h"
 

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "engine/construct/fan_measure.h"
-#include "engine/construct/star_samples.h"
-#include "engine/construct/tile.h"
+#include "engine/construct/measure/fan_measure.h"
+#include "engine/construct/measure/star_samples.h"
+#include "engine/construct/tile/tile.h"
 #include "tests/construct/exact_oracle.h"
 #include "tests/construct/surface_oracle.h"
 #include "tests/construct/test_terrain.h"

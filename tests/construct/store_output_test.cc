@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/query/coarsest.h"
+#include "engine/query/select/coarsest.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
 

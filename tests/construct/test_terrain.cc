@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/construct/delaunay.h"
-#include "engine/construct/raster_surface.h"
-#include "engine/construct/raster_tin.h"
+#include "engine/construct/delaunay/delaunay.h"
+#include "engine/construct/raster/raster_surface.h"
+#include "engine/construct/raster/raster_tin.h"
 #include "engine/geometry/infinity.h"
 #include "tests/construct/tin_surface.h"
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/full_surface.h"
-#include "engine/construct/simplify.h"
-#include "engine/construct/tile.h"
+#include "engine/construct/collapse/simplify.h"
+#include "engine/construct/tile/full_surface.h"
+#include "engine/construct/tile/tile.h"
 
 namespace ptin::oracle {
 

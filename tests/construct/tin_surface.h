@@ -6,7 +6,7 @@
 
 #include <unordered_map>
 
-#include "engine/construct/full_surface.h"
+#include "engine/construct/tile/full_surface.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin::oracle {

@@ -8,7 +8,7 @@
 
 #include <cpl_vsi.h>
 
-#include "engine/construct/las_reader.h"
+#include "engine/construct/read/las_reader.h"
 #include "engine/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -12,7 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/stream_reader.h"
+#include "engine/query/stream/stream_reader.h"
 
 namespace {
 

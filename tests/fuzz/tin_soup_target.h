@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "engine/construct/tin_soup.h"
+#include "engine/construct/read/tin_soup.h"
 #include "engine/error.h"
 
 namespace ptin::fuzz {

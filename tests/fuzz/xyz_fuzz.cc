@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "engine/construct/xyz_reader.h"
+#include "engine/construct/read/xyz_reader.h"
 #include "engine/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

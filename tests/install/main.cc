@@ -9,8 +9,8 @@
 #include <engine/construct/build.h>
 #include <engine/error.h>
 #include <engine/geometry/orient.h>
-#include <engine/query/part_refiner.h>
 #include <engine/query/progressive_tin.h>
+#include <engine/query/refine/part_refiner.h>
 
 namespace {
 

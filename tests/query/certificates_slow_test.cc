@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/query/locate.h"
-#include "engine/query/sight.h"
+#include "engine/query/heights/locate.h"
+#include "engine/query/sight/sight.h"
 #include "tests/query/built_terrain.h"
 
 namespace ptin {

@@ -13,7 +13,7 @@
 
 #include "engine/geometry/height.h"
 #include "engine/mesh/tin.h"
-#include "engine/query/spot.h"
+#include "engine/query/walk/spot.h"
 
 namespace ptin::reference {
 

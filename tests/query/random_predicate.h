@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "engine/query/predicate.h"
+#include "engine/query/select/predicate.h"
 #include "storage/store_file.h"
 
 namespace ptin::reference {

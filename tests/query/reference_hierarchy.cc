@@ -19,7 +19,7 @@
 #include "engine/geometry/orient.h"
 #include "engine/mesh/collapse.h"
 #include "engine/mesh/star.h"
-#include "engine/query/coarsest.h"
+#include "engine/query/select/coarsest.h"
 #include "storage/store_writer.h"
 
 namespace ptin::reference {

@@ -20,17 +20,17 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/highest.h"
-#include "engine/query/isoline.h"
-#include "engine/query/locate.h"
-#include "engine/query/moving_window.h"
-#include "engine/query/part_refiner.h"
-#include "engine/query/profile.h"
+#include "engine/query/heights/highest.h"
+#include "engine/query/heights/locate.h"
+#include "engine/query/heights/profile.h"
+#include "engine/query/isoline/isoline.h"
 #include "engine/query/progressive_tin.h"
-#include "engine/query/sight.h"
-#include "engine/query/stream_writer.h"
-#include "engine/query/viewshed.h"
-#include "storage/sigbus_guard.h"
+#include "engine/query/refine/moving_window.h"
+#include "engine/query/refine/part_refiner.h"
+#include "engine/query/sight/sight.h"
+#include "engine/query/sight/viewshed.h"
+#include "engine/query/stream/stream_writer.h"
+#include "storage/file/sigbus_guard.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "storage/file_layer.h"
+#include "storage/file/file_layer.h"
 #include "tests/storage/store_fixture.h"
 
 namespace ptin::test {

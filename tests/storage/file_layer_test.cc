@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "storage/file_layer.h"
+#include "storage/file/file_layer.h"
 
 #include <array>
 #include <cerrno>

@@ -12,8 +12,8 @@
 #include <signal.h>
 #include <sys/mman.h>
 
+#include "storage/file/sigbus_guard.h"
 #include "storage/layout.h"
-#include "storage/sigbus_guard.h"
 #include "tests/storage/failing_files.h"
 
 namespace ptin::test {

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "storage/checksum.h"
+#include "storage/file/checksum.h"
 #include "storage/index_shape.h"
 #include "storage/layout.h"
 #include "storage/page_slots.h"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
-#include "storage/sigbus_guard.h"
+#include "storage/file/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"
 #include "storage/store_file.h"
 #include "tests/storage/store_fixture.h"

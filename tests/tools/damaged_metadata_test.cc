@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/query/stream_format.h"
+#include "engine/query/stream/stream_format.h"
 #include "storage/store_file.h"
 #include "storage/store_writer.h"
 #include "tests/tools/program.h"

@@ -14,7 +14,7 @@
 #include <ogrsf_frmts.h>
 
 #include "engine/error.h"
-#include "engine/query/part_refiner.h"
+#include "engine/query/refine/part_refiner.h"
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
 #include "tools/export/raster_export.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ptin/ground.h"
+#include "tools/facts/ground.h"
 
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/output_file.h"
+#include "tools/output/output_file.h"
 
 #include <cerrno>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 #include "engine/error.h"
 #include "tests/tools/program.h"
-#include "tools/pending_file.h"
+#include "tools/output/pending_file.h"
 
 namespace ptin::tools {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ptin/scan_triangle.h"
+#include "tools/verify/scan_triangle.h"
 
 #include <random>
 #include <set>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ptin/sorted_samples.h"
+#include "tools/verify/sorted_samples.h"
 
 #include <algorithm>
 #include <map>

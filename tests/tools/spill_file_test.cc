@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/spill_file.h"
+#include "tools/output/spill_file.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/query/stream_writer.h"
+#include "engine/query/stream/stream_writer.h"
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
 

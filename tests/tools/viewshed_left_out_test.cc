@@ -4,7 +4,7 @@
 // whole terrain answers.
 #include <gtest/gtest.h>
 
-#include "engine/query/viewshed.h"
+#include "engine/query/sight/viewshed.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ptin/void_depth.h"
+#include "tools/verify/void_depth.h"
 
 #include <cmath>
 #include <limits>

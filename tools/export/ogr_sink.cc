@@ -9,9 +9,9 @@
 #include <ogrsf_frmts.h>
 
 #include "engine/error.h"
-#include "tools/export/gdal_output.h"
 #include "tools/export/tin_sink.h"
-#include "tools/pending_file.h"
+#include "tools/output/gdal_output.h"
+#include "tools/output/pending_file.h"
 
 namespace ptin::tools {
 

@@ -3,8 +3,8 @@
 
 #include "engine/error.h"
 #include "tools/export/tin_sink.h"
-#include "tools/output_file.h"
-#include "tools/spill_file.h"
+#include "tools/output/output_file.h"
+#include "tools/output/spill_file.h"
 
 namespace ptin::tools {
 

@@ -13,8 +13,8 @@
 
 #include "engine/construct/memory_plan.h"
 #include "engine/error.h"
-#include "tools/export/gdal_output.h"
-#include "tools/pending_file.h"
+#include "tools/output/gdal_output.h"
+#include "tools/output/pending_file.h"
 
 namespace ptin::tools {
 

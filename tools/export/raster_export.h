@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/part_refiner.h"
+#include "engine/query/refine/part_refiner.h"
 #include "tools/export/pixel_grid.h"
-#include "tools/ptin/crs_facts.h"
+#include "tools/facts/crs_facts.h"
 
 namespace ptin::tools {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "tools/export/tin_patch.h"
-#include "tools/ptin/crs_facts.h"
+#include "tools/facts/crs_facts.h"
 
 namespace ptin::tools {
 

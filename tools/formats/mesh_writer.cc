@@ -4,7 +4,7 @@
 #include <array>
 
 #include "engine/error.h"
-#include "tools/file_name.h"
+#include "tools/output/file_name.h"
 
 namespace ptin::tools {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "tools/formats/mesh.h"
-#include "tools/output_file.h"
+#include "tools/output/output_file.h"
 
 namespace ptin::tools {
 

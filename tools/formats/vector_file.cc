@@ -15,10 +15,10 @@
 #include <unistd.h>
 
 #include "engine/error.h"
-#include "tools/companion_files.h"
-#include "tools/export/gdal_output.h"
-#include "tools/file_name.h"
-#include "tools/output_file.h"
+#include "tools/output/companion_files.h"
+#include "tools/output/file_name.h"
+#include "tools/output/gdal_output.h"
+#include "tools/output/output_file.h"
 
 namespace ptin::tools {
 

@@ -14,16 +14,16 @@
 #include <malloc.h>
 
 #include "engine/construct/memory_plan.h"
-#include "engine/construct/point_stream.h"
-#include "engine/construct/tin_soup.h"
-#include "storage/file_questions.h"
-#include "storage/sigbus_guard.h"
+#include "engine/construct/read/point_stream.h"
+#include "engine/construct/read/tin_soup.h"
+#include "storage/file/file_questions.h"
+#include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
-#include "tools/output_file.h"
+#include "tools/facts/counts.h"
+#include "tools/facts/human.h"
+#include "tools/output/output_file.h"
 #include "tools/progress.h"
 #include "tools/progress_fd.h"
-#include "tools/ptin/counts.h"
-#include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
 #include "tools/thread_count.h"
 

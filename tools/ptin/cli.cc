@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/error_status.h"
-#include "tools/ptin/human.h"
+#include "tools/facts/human.h"
+#include "tools/output/standard_output.h"
 #include "tools/ptin/kept_inputs.h"
-#include "tools/standard_output.h"
 
 namespace ptin::tools {
 

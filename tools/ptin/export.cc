@@ -7,16 +7,16 @@
 #include <cstdio>
 #include <memory>
 
-#include "engine/query/part_refiner.h"
-#include "storage/file_questions.h"
+#include "engine/query/refine/part_refiner.h"
+#include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/export/raster_export.h"
 #include "tools/export/tin_sink.h"
-#include "tools/file_name.h"
-#include "tools/output_file.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/human.h"
+#include "tools/output/file_name.h"
+#include "tools/output/output_file.h"
 #include "tools/progress.h"
-#include "tools/ptin/crs_facts.h"
-#include "tools/ptin/human.h"
 #include "tools/ptin/own_pixel_size.h"
 #include "tools/ptin/query_options.h"
 

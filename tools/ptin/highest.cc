@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin highest: the highest or lowest point of a window.
-#include "engine/query/highest.h"
+#include "engine/query/heights/highest.h"
 
 #include <cstdio>
 #include <memory>
 
 #include "tools/error_status.h"
-#include "tools/ptin/answers.h"
-#include "tools/ptin/crs_facts.h"
-#include "tools/ptin/human.h"
+#include "tools/facts/answers.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/human.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {

@@ -8,10 +8,10 @@
 
 #include "storage/index_shape.h"
 #include "tools/error_status.h"
-#include "tools/ptin/answers.h"
-#include "tools/ptin/crs_facts.h"
+#include "tools/facts/answers.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/human.h"
 #include "tools/ptin/error_stats.h"
-#include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin isoline: isolines as a vector layer, by gdal_contour's conventions.
-#include "engine/query/isoline.h"
+#include "engine/query/isoline/isoline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,15 +10,15 @@
 
 #include <ogr_geometry.h>
 
-#include "engine/query/isoline_bands.h"
-#include "engine/query/part_refiner.h"
-#include "storage/file_questions.h"
+#include "engine/query/isoline/isoline_bands.h"
+#include "engine/query/refine/part_refiner.h"
+#include "storage/file/file_questions.h"
 #include "tools/error_status.h"
+#include "tools/facts/counts.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/human.h"
 #include "tools/formats/vector_file.h"
-#include "tools/output_file.h"
-#include "tools/ptin/counts.h"
-#include "tools/ptin/crs_facts.h"
-#include "tools/ptin/human.h"
+#include "tools/output/output_file.h"
 #include "tools/ptin/isoline_layer.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/cut.h"

@@ -2,7 +2,7 @@
 #include "tools/ptin/isoline_layer.h"
 
 #include "engine/error.h"
-#include "engine/query/isoline_clip.h"
+#include "engine/query/isoline/isoline_clip.h"
 
 namespace ptin::tools {
 

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "engine/error.h"
-#include "tools/file_name.h"
+#include "tools/output/file_name.h"
 
 namespace ptin::tools {
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin locate: triangle and height at points.
-#include "engine/query/locate.h"
+#include "engine/query/heights/locate.h"
 
 #include <cmath>
 #include <memory>
 
 #include "engine/error.h"
 #include "tools/error_status.h"
+#include "tools/facts/answers.h"
+#include "tools/facts/crs_facts.h"
 #include "tools/formats/number_text.h"
-#include "tools/ptin/answers.h"
-#include "tools/ptin/crs_facts.h"
+#include "tools/output/standard_output.h"
 #include "tools/ptin/number_rows.h"
 #include "tools/ptin/query_options.h"
-#include "tools/standard_output.h"
 
 namespace ptin::tools {
 

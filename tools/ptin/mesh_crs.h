@@ -3,8 +3,8 @@
 // What a mesh on its way out says of its CRS.
 #pragma once
 
+#include "tools/facts/crs_facts.h"
 #include "tools/formats/mesh.h"
-#include "tools/ptin/crs_facts.h"
 
 namespace ptin::tools {
 

@@ -17,10 +17,10 @@
 
 #include <ogr_geometry.h>
 
-#include "engine/construct/column_names.h"
+#include "engine/construct/read/column_names.h"
 #include "engine/error.h"
-#include "storage/file_questions.h"
-#include "tools/file_name.h"
+#include "storage/file/file_questions.h"
+#include "tools/output/file_name.h"
 #include "tools/region/vector_input.h"
 
 namespace ptin::tools {

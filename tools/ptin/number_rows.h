@@ -20,7 +20,7 @@ namespace ptin::tools {
 [[nodiscard]] std::vector<double> read_rows(const std::string& path, std::size_t columns);
 
 /// The points of a text file as read_rows(), but that a header's names choose the columns
-/// (engine/construct/column_names.h; the first two where it names neither); or of the first layer
+/// (engine/construct/read/column_names.h; the first two where it names neither); or of the first layer
 /// of a vector file that GDAL reads, transformed to the terrain's CRS (region/vector_input.h).
 /// @throws Error as read_rows(); invalid_argument  a header names one of x and y alone
 [[nodiscard]] std::vector<MapPoint> read_points(const std::string& path,

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/error.h"
-#include "tools/ptin/crs_facts.h"
+#include "tools/facts/crs_facts.h"
 
 namespace ptin::tools {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin profile: heights along a line, as CSV, GeoJSON or a picture.
-#include "engine/query/profile.h"
+#include "engine/query/heights/profile.h"
 
 #include <algorithm>
 #include <array>
@@ -16,17 +16,17 @@
 
 #include "engine/error.h"
 #include "tools/error_status.h"
-#include "tools/file_name.h"
+#include "tools/facts/answers.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/ground.h"
+#include "tools/facts/human.h"
 #include "tools/formats/number_text.h"
-#include "tools/output_file.h"
-#include "tools/ptin/answers.h"
-#include "tools/ptin/crs_facts.h"
-#include "tools/ptin/ground.h"
-#include "tools/ptin/human.h"
+#include "tools/output/file_name.h"
+#include "tools/output/output_file.h"
+#include "tools/output/standard_output.h"
 #include "tools/ptin/number_rows.h"
 #include "tools/ptin/query_options.h"
 #include "tools/render/overlay.h"
-#include "tools/standard_output.h"
 
 namespace ptin::tools {
 

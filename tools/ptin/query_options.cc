@@ -7,13 +7,13 @@
 
 #include "engine/construct/memory_plan.h"
 #include "engine/error.h"
-#include "engine/query/levels.h"
-#include "storage/sigbus_guard.h"
+#include "engine/query/isoline/levels.h"
+#include "storage/file/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"
-#include "tools/ptin/counts.h"
-#include "tools/ptin/human.h"
+#include "tools/facts/counts.h"
+#include "tools/facts/human.h"
+#include "tools/output/standard_output.h"
 #include "tools/region/region_input.h"
-#include "tools/standard_output.h"
 
 namespace ptin::tools {
 

@@ -42,7 +42,7 @@ void add_region_options(CLI::App& app, RegionOptions& options, bool window_only 
 [[nodiscard]] std::optional<Region> region_of(const RegionOptions& options,
                                               const std::string& crs_wkt);
 
-/// --curvature, of whatever looks over the ground (engine/query/curvature.h).
+/// --curvature, of whatever looks over the ground (engine/query/sight/curvature.h).
 void add_curvature_option(CLI::App& app, double& coefficient);
 
 /// --error and --vertices: how finely the terrain is looked at; at most one.

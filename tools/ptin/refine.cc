@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "tools/error_status.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/human.h"
 #include "tools/formats/mesh_writer.h"
-#include "tools/ptin/crs_facts.h"
-#include "tools/ptin/human.h"
 #include "tools/ptin/mesh_crs.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/cut.h"

@@ -7,11 +7,11 @@
 #include <memory>
 
 #include "tools/error_status.h"
-#include "tools/output_file.h"
-#include "tools/ptin/crs_facts.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/ground.h"
+#include "tools/facts/human.h"
+#include "tools/output/output_file.h"
 #include "tools/ptin/error_stats.h"
-#include "tools/ptin/ground.h"
-#include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
 #include "tools/render/overlay.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin sight: is one point seen from another.
-#include "engine/query/sight.h"
+#include "engine/query/sight/sight.h"
 
 #include <cmath>
 #include <cstdio>
@@ -9,14 +9,14 @@
 
 #include "engine/error.h"
 #include "tools/error_status.h"
+#include "tools/facts/answers.h"
+#include "tools/facts/counts.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/ground.h"
 #include "tools/formats/number_text.h"
-#include "tools/ptin/answers.h"
-#include "tools/ptin/counts.h"
-#include "tools/ptin/crs_facts.h"
-#include "tools/ptin/ground.h"
+#include "tools/output/standard_output.h"
 #include "tools/ptin/number_rows.h"
 #include "tools/ptin/query_options.h"
-#include "tools/standard_output.h"
 
 namespace ptin::tools {
 

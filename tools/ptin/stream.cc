@@ -6,15 +6,15 @@
 
 #include <unistd.h>
 
-#include "engine/query/stream_writer.h"
+#include "engine/query/stream/stream_writer.h"
 #include "tools/error_status.h"
-#include "tools/output_file.h"
-#include "tools/ptin/counts.h"
-#include "tools/ptin/crs_facts.h"
-#include "tools/ptin/human.h"
+#include "tools/facts/counts.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/human.h"
+#include "tools/output/output_file.h"
+#include "tools/output/standard_output.h"
 #include "tools/ptin/query_options.h"
 #include "tools/ptin/stream_request.h"
-#include "tools/standard_output.h"
 
 namespace ptin::tools {
 

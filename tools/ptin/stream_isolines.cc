@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "tools/ptin/crs_facts.h"
+#include "tools/facts/crs_facts.h"
 
 namespace ptin::tools {
 

@@ -11,8 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/query/isoline_progressive.h"
-#include "engine/query/stream_reader.h"
+#include "engine/query/isoline/isoline_progressive.h"
+#include "engine/query/stream/stream_reader.h"
 #include "tools/ptin/command.h"
 #include "tools/ptin/isoline_layer.h"
 #include "tools/ptin/query_options.h"

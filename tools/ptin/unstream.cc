@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "engine/query/stream_reader.h"
+#include "engine/query/stream/stream_reader.h"
 #include "tools/error_status.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/human.h"
 #include "tools/formats/mesh_writer.h"
-#include "tools/ptin/crs_facts.h"
-#include "tools/ptin/human.h"
 #include "tools/ptin/mesh_crs.h"
 #include "tools/ptin/query_options.h"
 #include "tools/ptin/stream_isolines.h"

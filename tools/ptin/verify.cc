@@ -10,16 +10,16 @@
 #include <memory>
 
 #include "engine/mesh/validate.h"
-#include "storage/file_questions.h"
+#include "storage/file/file_questions.h"
 #include "tools/error_status.h"
-#include "tools/output_file.h"
+#include "tools/facts/answers.h"
+#include "tools/facts/counts.h"
+#include "tools/facts/human.h"
+#include "tools/output/output_file.h"
 #include "tools/progress.h"
-#include "tools/ptin/answers.h"
-#include "tools/ptin/counts.h"
 #include "tools/ptin/error_stats.h"
-#include "tools/ptin/human.h"
 #include "tools/ptin/query_options.h"
-#include "tools/ptin/verify_against.h"
+#include "tools/verify/verify_against.h"
 
 namespace ptin::tools {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin viewshed: what one observer sees, as a raster or as points.
-#include "engine/query/viewshed.h"
+#include "engine/query/sight/viewshed.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -12,14 +12,14 @@
 
 #include "engine/construct/memory_plan.h"
 #include "tools/error_status.h"
-#include "tools/export/gdal_output.h"
-#include "tools/file_name.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/ground.h"
+#include "tools/facts/human.h"
 #include "tools/formats/vector_file.h"
-#include "tools/output_file.h"
-#include "tools/pending_file.h"
-#include "tools/ptin/crs_facts.h"
-#include "tools/ptin/ground.h"
-#include "tools/ptin/human.h"
+#include "tools/output/file_name.h"
+#include "tools/output/gdal_output.h"
+#include "tools/output/output_file.h"
+#include "tools/output/pending_file.h"
 #include "tools/ptin/own_pixel_size.h"
 #include "tools/ptin/query_options.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/error.h"
-#include "tools/region/cut_mesh_internal.h"
+#include "tools/region/cut_mesh.h"
 
 namespace ptin::tools {
 

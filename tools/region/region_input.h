@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "engine/query/predicate.h"
+#include "engine/query/select/predicate.h"
 
 namespace ptin::tools {
 

@@ -9,8 +9,8 @@
 #include <gdal_priv.h>
 
 #include "engine/error.h"
-#include "tools/export/gdal_output.h"
-#include "tools/output_file.h"
+#include "tools/output/gdal_output.h"
+#include "tools/output/output_file.h"
 
 namespace ptin::tools {
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "engine/query/accounting.h"
+#include "engine/query/select/accounting.h"
 #include "tools/stop.h"
 
 namespace ptin::tools {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/query/accounting.h"
+#include "engine/query/select/accounting.h"
 #include "tools/stop.h"
 
 namespace ptin::tools {

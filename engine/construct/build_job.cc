@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/build_job.h"
+
+#include <filesystem>
+#include <new>
+#include <string>
+
+#include <sys/stat.h>
+
+#include "engine/construct/collapse/first_pass.h"
+#include "engine/construct/delaunay/point_tile.h"
+#include "engine/construct/hierarchy/hierarchy.h"
+#include "engine/construct/memory_plan.h"
+#include "engine/construct/source_files.h"
+#include "engine/construct/store_output.h"
+#include "engine/error.h"
+#include "storage/file/file_questions.h"
+
+namespace ptin::build_internal {
+
+namespace {
+
+/// Of the temporary files: to be raised when their bytes mean something else.
+constexpr int kTemporaryFormat = 3;
+
+/// The number of a file on its disk, which stays the same when it gets another name; none when
+/// there is no such file.
+std::optional<std::uint64_t> inode_of(const std::string& path) {
+  struct stat s {};
+  return ::stat(path.c_str(), &s) == 0 ? std::optional<std::uint64_t>(s.st_ino) : std::nullopt;
+}
+
+std::string pages_in(const Workspace& workspace) { return workspace.folder() + "/pages"; }
+
+/// True when an interrupted build had got as far as giving the output its name. Its pages may still
+/// have theirs, too (FileLayer::rename).
+bool is_published(const Job& job, const Workspace& workspace) {
+  const std::vector<nlohmann::json> lines = workspace.lines();
+  if (lines.empty() || !lines.back().contains("publishing")) {
+    return false;
+  }
+  return inode_of(job.output) == lines.back()["publishing"].get<std::uint64_t>();
+}
+
+void report_published(Job& job) {
+  const auto store = StoreFile::open(job.output);
+  job.report.records = store->record_count();
+  job.report.t0_vertices = store->t0().vertices.size();
+  job.report.max_rank = store->max_rank();
+  job.report.file_bytes = bytes_of_file(job.output);
+}
+
+/// Worth keeping: faults of the system, and whatever comes when hours of work may be there.
+bool is_kept(const Workspace& workspace, const Job& job, ErrorCode code) {
+  return workspace.has_work() || (!job.begins_anew && (code == ErrorCode::cancelled ||
+                                                       code == ErrorCode::resource_exhausted ||
+                                                       code == ErrorCode::io_error));
+}
+
+/// Removes what a failed build began, and throws its error on, whatever becomes of that.
+[[noreturn]] void give_up(Workspace& workspace, const Error& error) {
+  const std::string folder = workspace.folder();
+  std::string left;
+  try {
+    workspace.remove_all();
+  } catch (const Error& e) {
+    left = "; and " + folder + " could not be removed: " + e.message();
+  }
+  throw Error(error.code(), error.message() + left, error.context());
+}
+
+Error no_threads_or(bool no_threads, const std::string& what) {
+  if (no_threads) {
+    return {ErrorCode::resource_exhausted,
+            "the system gives no more threads; give fewer --threads, or close other programs"};
+  }
+  return {ErrorCode::internal, "something else than an error of ours was thrown: " + what};
+}
+
+}  // namespace
+
+Error error_in_flight() {
+  try {
+    throw;
+  } catch (const Error& e) {
+    return e;
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::resource_exhausted,
+            "the system gives no more memory; give a lower --memory, or close other programs"};
+  } catch (const std::filesystem::filesystem_error& e) {
+    return system_error(e.code().value(), "the file system refused", e.path1().string());
+  } catch (const std::system_error& e) {
+    return no_threads_or(e.code() == std::errc::resource_unavailable_try_again, e.what());
+  } catch (const std::exception& e) {
+    // oneTBB has no type of its own for a thread that it cannot start.
+    return no_threads_or(
+        std::string_view(e.what()).find("pthread_create") != std::string_view::npos, e.what());
+  } catch (...) {
+    return {ErrorCode::internal,
+            "something was thrown that is no exception of the standard library"};
+  }
+}
+
+Error told_as_kept(const Error& error, const std::string& folder) {
+  return {error.code(),
+          error.message() + "; what is done is kept in " + folder +
+              ": go on by --resume, or remove it by --discard",
+          error.context()};
+}
+
+FileLayer& Job::files() const {
+  return resources.files != nullptr ? *resources.files : FileLayer::system();
+}
+
+std::uint64_t Job::memory() const {
+  return resources.memory_bytes != 0 ? resources.memory_bytes : default_memory();
+}
+
+std::function<void(std::uint64_t, std::uint64_t)> Job::stage(const char* name) const {
+  return [this, name](std::uint64_t done, std::uint64_t total) {
+    if (resources.progress) {
+      resources.progress(name, done, total);
+    }
+  };
+}
+
+SourceOptions Job::source_options() const {
+  SourceOptions source;
+  source.nodata = options.nodata;
+  source.resolution = options.resolution;
+  if (options.bbox) {
+    source.bbox = {(*options.bbox)[0], (*options.bbox)[1], (*options.bbox)[2], (*options.bbox)[3]};
+  }
+  source.a_srs = options.a_srs;
+  source.points = {options.classes, options.layer, options.z_field};
+  source.vertical_crs = options.vertical_crs;
+  return source;
+}
+
+nlohmann::json fingerprint(const Job& job) {
+  return {{"options", options_json(job.options)},
+          {"page_bytes", job.options.page_bytes},
+          {"inputs", input_fingerprint(job.inputs)},
+          {"program", {PTIN_VERSION, kTemporaryFormat}}};
+}
+
+void announce(const Job& job, const std::function<SourceDisk(const PointCount&)>& disk_of) {
+  const PointCount count = count_points(job.inputs, job.source_options());
+  if (!count.is_known) {
+    if (job.resources.dry_run) {
+      throw Error(ErrorCode::invalid_argument,
+                  "how much a build from a pipe needs is not known before it is read");
+    }
+    return;
+  }
+  SourceDisk disk = disk_of(count);
+  disk.is_estimate = true;
+  disk.may_be_less = count.may_be_less;
+  const BuildPlan plan = plan_build(expected_point_tree(count.points, job.options.tile), job.output,
+                                    job.options, job.resources, kPointTileBytes, disk);
+  if (job.resources.plan) {
+    job.resources.plan(plan);
+  }
+}
+
+void in_workspace(Job& job, const nlohmann::json& fingerprint,
+                  const std::function<void(Workspace&)>& work) {
+  Workspace workspace(job.files(), job.output, job.resources.tmp, job.resources.unfinished,
+                      fingerprint);
+  job.report.resumed = !workspace.lines().empty();
+  try {
+    work(workspace);
+  } catch (...) {
+    const Error e = error_in_flight();
+    if (is_kept(workspace, job, e.code())) {
+      throw told_as_kept(e, workspace.folder());
+    }
+    give_up(workspace, e);
+  }
+  try {
+    workspace.remove_all();
+  } catch (const Error& e) {  // the output is complete all the same
+    job.report.left_behind = std::string(e.what());
+  }
+}
+
+void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const BuildPlan& plan) {
+  if (is_published(job, workspace)) {
+    report_published(job);
+    return;
+  }
+  StoreOutput store(job.output, job.options, job.resources.overwrite, terrain.frame,
+                    job.resources.files, workspace.folder());
+  HierarchyOptions options;
+  options.collapse.cost = job.options.cost;
+  options.collapse.units = terrain.units;
+  options.collapse.first_pass =
+      (kFirstPassShare * job.options.max_error - terrain.frame.height_rounding) /
+      terrain.frame.heights.step;
+  options.threads = plan.threads;
+  options.bytes = plan.tile_bytes;
+  options.give_back = [&job, limit = job.memory()](std::uint64_t bytes) {
+    // Memory that is given back is taken again a page at a time: a fifth of the time, where it
+    // happens before every larger piece.
+    if (job.resources.give_back && anonymous_bytes_now() + bytes > limit) {
+      job.resources.give_back();
+    }
+  };
+  options.checkpoint_interval = job.resources.checkpoint_interval;
+  options.stop = job.resources.stop;
+  options.progress = job.resources.progress;
+  options.tiles = job.resources.tiles;
+  const BuiltHierarchy built =
+      build_hierarchy(terrain.make_starter, terrain.tree, options, workspace, store);
+  job.report.lone_samples = built.lone_samples;
+  job.stage("writing")(0, 1);
+  workspace.append({{{"publishing", inode_of(pages_in(workspace)).value_or(0)}}});
+  store.publish(built.t0, job.inputs, job.report);
+  job.stage("writing")(1, 1);
+}
+
+std::optional<ArrayFileFacts> kept_index(const Workspace& workspace, const std::string& key) {
+  for (const nlohmann::json& line : workspace.lines()) {
+    if (line.contains(key)) {
+      const auto& facts = line[key];
+      return ArrayFileFacts{facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()};
+    }
+  }
+  return std::nullopt;
+}
+
+void note_index(Workspace& workspace, const std::string& key, const ArrayFileFacts& index) {
+  workspace.sync_names();
+  workspace.append({{{key, {index.bytes, index.checksum}}}});
+}
+
+BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk) {
+  disk.is_there = true;
+  disk.may_be_less = job.report.resumed;
+  BuildPlan plan = plan_build(tree, job.output, job.options, job.resources, kPointTileBytes, disk);
+  plan.is_estimate = true;  // as if all tiles were full
+  if (job.resources.plan) {
+    job.resources.plan(plan);
+  }
+  return plan;
+}
+
+}  // namespace ptin::build_internal

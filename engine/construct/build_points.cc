@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A build over points: counted first, sorted into buckets, then tiles.
+#include <algorithm>
+#include <memory>
+
+#include "engine/construct/build_job.h"
+#include "engine/construct/delaunay/point_tile.h"
+#include "engine/construct/memory_plan.h"
+#include "engine/construct/points/point_buckets.h"
+#include "engine/construct/points/point_count.h"
+#include "engine/construct/tin/tin_vertices.h"
+#include "engine/error.h"
+
+namespace ptin::build_internal {
+
+namespace {
+
+constexpr const char* kBucketFile = "points";
+constexpr const char* kPointsIndex = "points.index";
+
+ExternalMemory memory_for_sorting(const Job& job, const Workspace& workspace) {
+  return {job.files(), workspace.temporary_folder(),
+          std::clamp(job.memory() / 8, kMiB, 256 * kMiB)};
+}
+
+/// Vertices of TINs are sorted before they are points.
+SourceDisk disk_of(const Job& job, const PointCount& count) {
+  SourceDisk disk = PointBuckets::disk_of(count.points);
+  disk.while_reading =
+      std::max(disk.while_reading,
+               disk.spooled + count.of_largest_tin *
+                                  TinVertices::disk_of_vertex(job.options.nodata.has_value()));
+  return disk;
+}
+
+/// The points as an interrupted build had sorted them, or else read and sorted now.
+PointBuckets sorted_points(Job& job, Workspace& workspace) {
+  const std::string buckets = workspace.temporary(kBucketFile);
+  const std::string index = workspace.temporary(kPointsIndex);
+  if (const auto facts = kept_index(workspace, "points")) {
+    return PointBuckets::load(job.files(), buckets, index, *facts, job.resources.stop,
+                              job.stage("checking"));
+  }
+  workspace.remove(kBucketFile);
+  PointBuckets points =
+      PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
+                         job.resources.stop, job.resources.progress, buckets);
+  note_index(workspace, "points", points.save(job.files(), index));
+  return points;
+}
+
+void report_counts(BuildReport& report, const PointBuckets& points) {
+  report.source_samples = report.vertices = points.size();
+  report.left_out_points = points.counts().left_out_points;
+  report.merged_points = points.counts().merged_points;
+  report.largest_shift_plan = points.counts().largest_shift_plan;
+  report.largest_shift_height = points.counts().largest_shift_height;
+  report.height_rounding = points.frame().height_rounding;
+}
+
+void build_points_in(Workspace& workspace, Job& job) {
+  const PointBuckets points = sorted_points(job, workspace);
+  report_counts(job.report, points);
+  Terrain terrain{points.frame(),
+                  measure_units(points.frame(), job.options.void_slope),
+                  point_tree(points, job.options.tile),
+                  {}};
+  const BuildPlan plan = plan_sorted(job, terrain.tree, PointBuckets::disk_of(points.size()));
+  terrain.make_starter = [&]() -> LeafStarter {
+    const auto starter = std::make_shared<PointTileStarter>(
+        points, terrain.tree, terrain.units, job.options.max_edge, job.resources.stop);
+    return [starter](const SampleRange& window) { return starter->start(window); };
+  };
+  build_tiles(workspace, job, terrain, plan);
+}
+
+}  // namespace
+
+void build_points(Job& job) {
+  const GdalCacheLimit cache(share_memory(job.memory(), 0, 1).gdal_cache);
+  announce(job, [&](const PointCount& count) { return disk_of(job, count); });
+  if (job.resources.dry_run) {
+    return;
+  }
+  in_workspace(job, fingerprint(job),
+               [&](Workspace& workspace) { build_points_in(workspace, job); });
+}
+
+}  // namespace ptin::build_internal

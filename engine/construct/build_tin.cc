@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A build over somebody else's triangles: counted first, sorted on disk, then tiles.
+#include <algorithm>
+
+#include "engine/construct/build_job.h"
+#include "engine/construct/memory_plan.h"
+#include "engine/construct/points/point_count.h"
+#include "engine/construct/tin/tin_source.h"
+#include "engine/construct/tin/tin_tile.h"
+#include "engine/error.h"
+
+namespace ptin::build_internal {
+
+namespace {
+
+constexpr const char* kTinFile = "tin";
+constexpr const char* kTinIndex = "tin.index";
+
+/// The triangles as an interrupted build had sorted them, or else read and sorted now.
+TinTriangles sorted_triangles(Job& job, Workspace& workspace) {
+  const std::string kept_as = workspace.temporary(kTinFile);
+  const std::string index = workspace.temporary(kTinIndex);
+  if (const auto facts = kept_index(workspace, "tin")) {
+    return TinTriangles::load(job.files(), kept_as, index, *facts, job.resources.stop,
+                              job.stage("checking"));
+  }
+  for (const std::string& name : TinTriangles::kept_files(kTinFile)) {
+    workspace.remove(name);
+  }
+  TinTriangles triangles = TinTriangles::read(job.inputs[0], job.source_options(),
+                                              {job.files(), workspace.temporary_folder(),
+                                               std::max<std::uint64_t>(job.memory() / 2, 1U << 20)},
+                                              job.resources.stop, job.resources.progress, kept_as);
+  note_index(workspace, "tin", triangles.save(job.files(), index));
+  return triangles;
+}
+
+void report_counts(BuildReport& report, const TinTriangles& triangles) {
+  const TinCounts& counts = triangles.counts();
+  report.source_samples = report.vertices = counts.vertices;
+  report.left_out_points = counts.unused_vertices;
+  report.left_out_triangles = counts.left_out_triangles;
+  report.void_triangles = counts.void_triangles;
+  report.merged_points = counts.merged_vertices;
+  report.largest_shift_plan = counts.largest_shift_plan;
+  report.height_rounding = triangles.frame().height_rounding;
+}
+
+void build_tin_in(Workspace& workspace, Job& job) {
+  job.begins_anew = true;
+  const TinTriangles triangles = sorted_triangles(job, workspace);
+  job.begins_anew = false;
+  report_counts(job.report, triangles);
+  Terrain terrain{triangles.frame(),
+                  measure_units(triangles.frame(), job.options.void_slope),
+                  tin_tree(triangles, job.options.tile),
+                  {}};
+  const BuildPlan plan =
+      plan_sorted(job, terrain.tree, TinTriangles::disk_of(triangles.counts().vertices));
+  terrain.make_starter = [&]() -> LeafStarter {
+    return [&](const SampleRange& window) {
+      return start_tin_tile(triangles, terrain.tree, window, terrain.units);
+    };
+  };
+  build_tiles(workspace, job, terrain, plan);
+}
+
+}  // namespace
+
+void build_tin(Job& job) {
+  if (job.inputs.size() != 1) {
+    throw Error(ErrorCode::invalid_argument, "several inputs, a TIN among them; build a TIN alone");
+  }
+  announce(job, [](const PointCount& count) { return TinTriangles::disk_of(count.points); });
+  if (job.resources.dry_run) {
+    return;
+  }
+  in_workspace(job, fingerprint(job), [&](Workspace& workspace) { build_tin_in(workspace, job); });
+}
+
+}  // namespace ptin::build_internal

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/collapse/first_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "engine/construct/collapse/edge_middles.h"
+#include "engine/construct/collapse/right_triangles.h"
+#include "engine/construct/measure/fan_error.h"
+#include "engine/construct/measure/sample_blocks.h"
+#include "engine/construct/measure/saturation.h"
+#include "engine/mesh/triangle_holds.h"
+
+namespace ptin {
+
+namespace {
+
+/// The heights and cells of a full TIN over a raster.
+struct Samples {
+  std::vector<double> codes;
+  std::vector<std::uint8_t> rising;
+  SampleGrid grid;
+
+  Samples(const Tile& full, const GridBox& box) {
+    const Tin& tin = full.tin;
+    grid.width = box.max_x - box.min_x + 1;
+    grid.height = box.max_y - box.min_y + 1;
+    codes.resize(tin.vertices.size());
+    rising.resize(tin.vertices.size());
+    for (std::size_t v = 0; v < codes.size(); ++v) {
+      codes[v] = full.units.heights.code(tin.vertices[v].height);
+    }
+    std::size_t cell = 0;
+    for (std::int32_t y = 0; y + 1 < grid.height; ++y) {
+      for (std::int32_t x = 0; x + 1 < grid.width; ++x, ++cell) {
+        // The first half of a cell ends at its upper right corner, or at its upper left one.
+        const std::size_t last = tin.triangles[2 * cell].v[2];
+        rising[grid.at(x, y)] = last == grid.at(x + 1, y + 1) ? 1 : 0;
+      }
+    }
+    grid.codes = codes;
+    grid.valid = tin.has_height;
+    grid.rising = rising;
+  }
+};
+
+/// The plane of a triangle, relative to its first corner. Twice its area is a power of two, so
+/// whole heights give it without rounding.
+struct Plane {
+  GridPoint at;
+  double code, slope_x, slope_y;
+
+  Plane(const Tile& tile, const Triangle& triangle) {
+    const auto code_of = [&](int i) {
+      return tile.units.heights.code(tile.tin.vertices[triangle.v[i]].height);
+    };
+    at = tile.tin.position(triangle.v[0]);
+    code = code_of(0);
+    const GridPoint b = tile.tin.position(triangle.v[1]), c = tile.tin.position(triangle.v[2]);
+    const double bx = b.x - at.x, by = b.y - at.y, bz = code_of(1) - code;
+    const double cx = c.x - at.x, cy = c.y - at.y, cz = code_of(2) - code;
+    const double area = bx * cy - by * cx;
+    slope_x = (bz * cy - cz * by) / area;
+    slope_y = (cz * bx - bz * cx) / area;
+  }
+  /// A bound on the residual of a sample; tight up to rounding.
+  [[nodiscard]] double residual(GridPoint p, double sample, bool exact) const noexcept {
+    const double z = sample - code;
+    const double x = slope_x * static_cast<double>(p.x - at.x);
+    const double y = slope_y * static_cast<double>(p.y - at.y);
+    const double size = std::abs(z) + std::abs(x) + std::abs(y);
+    return std::abs(z - (x + y)) + (exact ? 0.0 : 0x1p-47 * size);
+  }
+};
+
+class FirstPass {
+ public:
+  FirstPass(const Tile& full, const FullSurface& surface, const GridBox& box)
+      : full_(full), surface_(surface), box_(box), samples_(full, box) {}
+
+  Tile run(double tolerance);
+
+ private:
+  void take_vertices(const std::vector<std::uint8_t>& needed);
+  void take_triangles(const std::vector<RightTriangle>& triangles);
+  void link();
+  [[nodiscard]] double gap_along(TriangleId t, int side) const;
+  void collect(TriangleId t);
+  [[nodiscard]] Interval codes_of(const Triangle& triangle) const;
+  void store(TriangleId t);
+
+  const Tile& full_;
+  const FullSurface& surface_;
+  const GridBox& box_;
+  Samples samples_;
+  std::vector<std::uint8_t> is_free_;  ///< Samples that are no vertex and in no list yet.
+  std::vector<VertexId> place_;        ///< Of each sample that is a vertex.
+  Tile tile_;
+  std::vector<double> gap_;  ///< Beside the triangles: the largest along an edge.
+  std::vector<Sample> list_;
+  double worst_ = 0.0;  ///< Residual in list_.
+};
+
+Tile FirstPass::run(double tolerance) {
+  tile_.units = full_.units;
+  tile_.samples_fill_grid = true;
+  const std::vector<std::uint8_t> needed = needed_corners(samples_.grid, tolerance);
+  take_vertices(needed);
+  take_triangles(right_triangles(samples_.grid, needed));
+  link();
+  for (TriangleId t = 0; t < tile_.tin.triangles.size(); ++t) {
+    collect(t);
+    if (!list_.empty() || gap_[t] > 0.0) {
+      store(t);
+    }
+  }
+  return std::move(tile_);
+}
+
+void FirstPass::take_vertices(const std::vector<std::uint8_t>& needed) {
+  place_.assign(needed.size(), kNone);
+  is_free_.resize(needed.size());
+  for (std::size_t v = 0; v < needed.size(); ++v) {
+    is_free_[v] = needed[v] == 0 ? 1 : 0;
+    if (needed[v] != 0) {
+      place_[v] = static_cast<VertexId>(tile_.tin.vertices.size());
+      tile_.tin.vertices.push_back(full_.tin.vertices[v]);
+      tile_.tin.has_height.push_back(full_.tin.has_height[v]);
+    }
+  }
+}
+
+void FirstPass::take_triangles(const std::vector<RightTriangle>& triangles) {
+  Tin& tin = tile_.tin;
+  tin.triangles.reserve(triangles.size());
+  for (const RightTriangle& t : triangles) {
+    tin.triangles.push_back({{place_[t[0]], place_[t[1]], place_[t[2]]}, {kNone, kNone, kNone}});
+    const bool surface = std::all_of(t.begin(), t.end(),
+                                     [&](std::uint32_t v) { return samples_.grid.valid[v] != 0; });
+    tin.classes.push_back(surface ? TriangleClass::kSurface : TriangleClass::kVoid);
+  }
+}
+
+/// Neighbours, gaps along edges, and what every tile starts with.
+void FirstPass::link() {
+  Tin& tin = tile_.tin;
+  gap_.assign(tin.triangles.size(), 0.0);
+  EdgeMiddles middles(box_);
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const EdgeMiddles::Side other = middles.match(tin, {t, i});
+      if (other.triangle == kNone) {
+        continue;
+      }
+      tin.triangles[t].n[i] = other.triangle;
+      tin.triangles[other.triangle].n[other.side] = t;
+      const double gap = gap_along(t, i);
+      gap_[t] = std::max(gap_[t], gap);
+      gap_[other.triangle] = std::max(gap_[other.triangle], gap);
+    }
+  }
+  point_vertices(tin);
+  std::vector<float> depths;
+  depths.reserve(tin.vertices.size());
+  for (std::size_t v = 0; v < place_.size(); ++v) {
+    if (place_[v] != kNone) {
+      depths.push_back(std::abs(full_.vertex_state[v].depth));
+    }
+  }
+  start_tile(tile_, depths);
+  for (std::size_t v = 0; v < place_.size(); ++v) {
+    if (place_[v] != kNone) {
+      tile_.vertex_state[place_[v]].locked = full_.vertex_state[v].locked;
+    }
+  }
+}
+
+/// To the full surface. Edges of cells are its own, and without heights there is no gap.
+double FirstPass::gap_along(TriangleId t, int side) const {
+  const Tin& tin = tile_.tin;
+  const VertexId a = tin.triangles[t].v[next_corner(side)];
+  const VertexId b = tin.triangles[t].v[previous_corner(side)];
+  const GridPoint p = tin.position(a), q = tin.position(b);
+  if (std::abs(p.x - q.x) + std::abs(p.y - q.y) == 1 || tin.has_height[a] == 0 ||
+      tin.has_height[b] == 0) {
+    return 0.0;
+  }
+  const auto code = [&](VertexId v) { return tile_.units.heights.code(tin.vertices[v].height); };
+  return surface_.largest_gap({p, code(a)}, {q, code(b)});
+}
+
+/// The free samples in a triangle, the worst one first.
+void FirstPass::collect(TriangleId t) {
+  list_.clear();
+  worst_ = 0.0;
+  const Triangle& triangle = tile_.tin.triangles[t];
+  GridBox box;
+  for (const VertexId v : triangle.v) {
+    box = united(box, tile_.tin.position(v));
+  }
+  if (box.max_x - box.min_x <= 1 && box.max_y - box.min_y <= 1) {
+    return;
+  }
+  const bool is_void = tile_.tin.classes[t] == TriangleClass::kVoid;
+  const Plane plane(tile_, triangle);
+  for (std::int32_t y = box.min_y; y <= box.max_y; ++y) {
+    for (std::int32_t x = box.min_x; x <= box.max_x; ++x) {
+      const std::size_t v = samples_.grid.at(x - box_.min_x, y - box_.min_y);
+      if (is_free_[v] == 0 || !triangle_holds(tile_.tin, triangle, {x, y})) {
+        continue;
+      }
+      is_free_[v] = 0;
+      list_.push_back({{x, y}, full_.tin.vertices[v].height, full_.vertex_state[v].depth, 0});
+      const double residual =
+          is_void ? 0.0 : plane.residual({x, y}, samples_.codes[v], tile_.units.exact_codes);
+      if (residual > worst_) {
+        worst_ = residual;
+        std::swap(list_.front(), list_.back());
+      }
+    }
+  }
+}
+
+/// Of its corners and of list_.
+Interval FirstPass::codes_of(const Triangle& triangle) const {
+  const HeightEncoding& heights = tile_.units.heights;
+  Interval codes;
+  for (const VertexId v : triangle.v) {
+    codes = united(codes, heights.code(tile_.tin.vertices[v].height));
+  }
+  for (const Sample& s : list_) {
+    codes = united(codes, heights.code(s.height));
+  }
+  return codes;
+}
+
+/// Gives the triangle list_, and a record that says what it leaves out.
+void FirstPass::store(TriangleId t) {
+  const HeightEncoding& heights = tile_.units.heights;
+  const Triangle& triangle = tile_.tin.triangles[t];
+  VertexSplit r;
+  r.error = height_bound(worst_, heights);
+  r.deviation = height_bound(std::max(worst_, gap_[t]), heights);
+  const bool is_void = tile_.tin.classes[t] == TriangleClass::kVoid;
+  std::tie(r.height_lo, r.height_hi) =
+      height_bits(is_void ? Interval{} : codes_of(triangle), heights);
+  r.u = r.w = tile_.tin.position(triangle.v[0]);
+  r.vl = tile_.tin.position(triangle.v[1]);
+  r.vr = tile_.tin.position(triangle.v[2]);
+  r.roi = united(united(box_of(r.u), r.vl), r.vr);
+
+  CarriedState& carried = tile_.carried[t];
+  carry_record(carried, r, static_cast<std::uint32_t>(tile_.records.size()));
+  tile_.records.push_back(r);
+  carried.holds_heights = !list_.empty() && !is_void;
+  carried.holds_voids = !list_.empty() && is_void;
+  const double length = 2.0 * static_cast<double>(half_perimeter(r.roi));
+  join_where_alike(list_, length);
+  carried.samples = tile_.samples.take(static_cast<std::uint32_t>(list_.size()));
+  std::copy(list_.begin(), list_.end(), tile_.samples.samples(carried.samples).begin());
+}
+
+}  // namespace
+
+void run_first_pass(Tile& tile, const FullSurface& full, const GridBox& box, double tolerance) {
+  tile = FirstPass(tile, full, box).run(tolerance);
+}
+
+}  // namespace ptin

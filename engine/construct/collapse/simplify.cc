@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/collapse/simplify.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "engine/check.h"
+#include "engine/construct/collapse/collapse_choice.h"
+#include "engine/construct/collapse/collapse_queue.h"
+#include "engine/construct/collapse/record_maker.h"
+#include "engine/construct/collapse/tile_compact.h"
+#include "engine/construct/collapse/witness.h"
+#include "engine/construct/measure/saturation.h"
+#include "engine/large_array.h"
+#include "engine/prefetch.h"
+
+namespace ptin {
+
+namespace {
+
+/// What the queue knows about a vertex.
+enum class QueueState : std::uint8_t {
+  kAbsent,  ///< No collapse was allowed when it was last measured, or it is locked or gone.
+  kClean,   ///< In the queue, with the measure of its star.
+  kStale,   ///< In the queue, but its star has changed since.
+};
+
+class Simplifier {
+ public:
+  Simplifier(Tile& tile, const FullSurface* full, const SimplifyOptions& options)
+      : tile_(tile),
+        options_(options),
+        is_capped_(full == nullptr),
+        first_samples_(tile.samples.used()),
+        maker_(tile, full),
+        scale_(scale_of(tile, options.cost)) {}
+
+  void run();
+
+ private:
+  struct Evaluation {
+    CollapseChoice choice;
+    std::uint64_t priority = 0;
+  };
+  [[nodiscard]] static PriorityScale scale_of(const Tile& tile, CostModel cost);
+  void fill_queue();
+  void check_in();
+  [[nodiscard]] Evaluation evaluate(VertexId u);
+  void take_top();
+  void collapse(VertexId u, std::size_t j);
+  [[nodiscard]] std::size_t most_samples() const;
+  void compact_when_sparse();
+  void prefetch_upcoming() const;
+  void prefetch_beside(VertexId v) const;
+  void prefetch_beyond(VertexId v) const;
+  void prefetch_star(VertexId v) const;
+  void prefetch_samples(VertexId v) const;
+  template <class Visit>
+  void for_each_around(VertexId v, const Visit& visit) const;
+
+  Tile& tile_;
+  const SimplifyOptions& options_;
+  bool is_capped_;             ///< Lists are cut down to witnesses at each compaction.
+  std::size_t first_samples_;  ///< In all lists at the beginning.
+  RecordMaker maker_;
+  CollapseChooser chooser_;
+  PriorityScale scale_;
+  CollapseQueue queue_;
+  StarSamples star_;
+  std::vector<QueueState> state_;
+  std::vector<VertexId> target_;  ///< Of a clean vertex: the chosen w.
+  std::uint64_t left_ = 0;        ///< Vertices that are neither locked nor gone.
+  std::uint64_t alive_ = 0;       ///< Vertices that are not gone.
+  std::uint64_t collapsed_ = 0;
+  std::uint64_t steps_ = 0;
+};
+
+PriorityScale Simplifier::scale_of(const Tile& tile, CostModel cost) {
+  GridBox bounds;
+  std::uint64_t alive = 0;
+  for (const Vertex& v : tile.tin.vertices) {
+    if (v.triangle != kNone) {
+      bounds = united(bounds, v.position);
+      ++alive;
+    }
+  }
+  return {cost, bounds, alive};
+}
+
+/// Looks at the stop token and reports, every few thousand steps.
+void Simplifier::check_in() {
+  if ((++steps_ & 0xfff) != 0) {
+    return;
+  }
+  if (options_.stop.stop_requested()) {
+    throw Error(ErrorCode::cancelled, "the build was cancelled");
+  }
+  if (options_.progress) {
+    options_.progress(collapsed_);
+  }
+}
+
+/// Measures the star of `u`, which stays in star_.
+Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
+  gather_star(tile_, u, star_);
+  Evaluation e;
+  e.choice = chooser_.choose(tile_, star_);
+  if (e.choice.j == CollapseChoice::kNoNeighbour) {
+    return e;
+  }
+  CollapseMeasure measure;
+  measure.vertex = tile_.tin.position(u);
+  measure.error_quanta = e.choice.error / tile_.units.quantum_code;
+  measure.roi = saturated_box(tile_, star_.star);
+  measure.chain = saturated_chain(tile_, star_.star);
+  if (options_.cost == CostModel::kElevation) {
+    const Interval heights = saturated_heights(tile_, star_.star);
+    measure.height_quanta =
+        is_empty(heights) ? 0.0 : (heights.hi - heights.lo) / tile_.units.quantum_code;
+  }
+  e.priority = scale_(measure);
+  return e;
+}
+
+void Simplifier::fill_queue() {
+  const std::size_t n = tile_.tin.vertices.size();
+  state_.assign(n, QueueState::kAbsent);
+  target_.assign(n, kNone);
+  for (VertexId v = 0; v < n; ++v) {
+    if (tile_.tin.vertices[v].triangle == kNone) {
+      continue;
+    }
+    ++alive_;
+    if (tile_.vertex_state[v].locked) {
+      continue;
+    }
+    ++left_;
+    check_in();
+    const Evaluation e = evaluate(v);
+    if (e.choice.j != CollapseChoice::kNoNeighbour) {
+      queue_.push({e.priority, v});
+      state_[v] = QueueState::kClean;
+      target_[v] = star_.star.link[e.choice.j];
+    }
+  }
+}
+
+/// Collapses the centre of star_ and marks its link: those stars have changed.
+void Simplifier::collapse(VertexId u, std::size_t j) {
+  const auto degree = static_cast<std::uint16_t>(star_.star.degree());
+  const bool closed = star_.star.closed;
+  const VertexId w = star_.star.link[j];
+  const CollapseSite site = collapse_site(star_.star, j);
+  maker_.collapse_and_record(star_, j);
+  state_[u] = QueueState::kAbsent;
+  // w takes over the link but for itself and its two neighbours there (one at a border); those lose
+  // u and had w already.
+  std::vector<VertexState>& vertices = tile_.vertex_state;
+  vertices[w].degree = static_cast<std::uint16_t>(vertices[w].degree + degree - (closed ? 4 : 3));
+  if (site.left != kNone) {
+    --vertices[site.vl].degree;
+  }
+  if (site.right != kNone) {
+    --vertices[site.vr].degree;
+  }
+  for (const VertexId v : star_.star.link) {
+    if (state_[v] == QueueState::kClean) {
+      state_[v] = QueueState::kStale;
+    } else if (state_[v] == QueueState::kAbsent && !vertices[v].locked) {
+      state_[v] = QueueState::kStale;
+      queue_.push({0, v});  // measured at once: its priority is not known
+    }
+  }
+  --left_;
+  --alive_;
+  ++collapsed_;
+}
+
+/// Samples that a triangle keeps at a compaction: all lists together hardly more than at the
+/// beginning.
+std::size_t Simplifier::most_samples() const {
+  if (!is_capped_) {
+    return kAllSamples;
+  }
+  return std::clamp(first_samples_ / static_cast<std::size_t>(2 * alive_ + 1), kWitnessesInWork,
+                    kMostWitnessesInWork);
+}
+
+void Simplifier::compact_when_sparse() {
+  const std::size_t length = tile_.tin.vertices.size();
+  const bool is_worthwhile = length > options_.compact_above && 2 * alive_ <= length;
+  const bool never = options_.compact_above == std::numeric_limits<std::size_t>::max();
+  if (never || (!is_worthwhile && !tile_.samples.is_sparse())) {
+    return;
+  }
+  const Renumbering place = compact(tile_, most_samples());
+  for (std::size_t v = 0; v < length; ++v) {
+    if (place[v] != kNone) {
+      state_[place[v]] = state_[v];
+      target_[place[v]] = target_[v] == kNone ? kNone : place[target_[v]];
+    }
+  }
+  state_.resize(tile_.tin.vertices.size());
+  target_.resize(tile_.tin.vertices.size());
+  queue_.rename(place);
+}
+
+/// Calls visit(triangle id, place of v in it) for each triangle around v, in the order of its star.
+template <class Visit>
+void Simplifier::for_each_around(VertexId v, const Visit& visit) const {
+  const Tin& tin = tile_.tin;
+  const TriangleId first = tin.vertices[v].triangle;
+  TriangleId t = first;
+  do {
+    const Triangle& triangle = tin.triangles[t];
+    const int c = corner_of(triangle, v);
+    visit(t, c);
+    t = triangle.n[next_corner(c)];
+  } while (t != first && t != kNone);
+}
+
+/// The first triangle of a star is there: asks for those on both sides of it.
+void Simplifier::prefetch_beside(VertexId v) const {
+  const Tin& tin = tile_.tin;
+  const Triangle& first = tin.triangles[tin.vertices[v].triangle];
+  const int c = corner_of(first, v);
+  for (const TriangleId t : {first.n[next_corner(c)], first.n[previous_corner(c)]}) {
+    if (t != kNone) {
+      prefetch(&tin.triangles[t]);
+    }
+  }
+}
+
+/// Those on both sides are there: asks for what lies beyond them in the star.
+void Simplifier::prefetch_beyond(VertexId v) const {
+  const Tin& tin = tile_.tin;
+  const Triangle& first = tin.triangles[tin.vertices[v].triangle];
+  const int c = corner_of(first, v);
+  const auto prefetch_next = [&](TriangleId t, int (*side)(int)) {
+    if (t != kNone) {
+      const TriangleId next = tin.triangles[t].n[side(corner_of(tin.triangles[t], v))];
+      if (next != kNone) {
+        prefetch(&tin.triangles[next]);
+      }
+    }
+  };
+  prefetch_next(first.n[next_corner(c)], next_corner);
+  prefetch_next(first.n[previous_corner(c)], previous_corner);
+}
+
+void Simplifier::prefetch_star(VertexId v) const {
+  for_each_around(v, [this](TriangleId t, int c) {
+    prefetch(&tile_.carried[t]);
+    const VertexId link = tile_.tin.triangles[t].v[next_corner(c)];
+    prefetch(&tile_.tin.vertices[link]);
+    prefetch(&tile_.vertex_state[link]);
+  });
+}
+
+void Simplifier::prefetch_samples(VertexId v) const {
+  constexpr std::uint32_t kLine = 64;
+  static constexpr std::uint32_t kSamplesAtMost = 32;
+  for_each_around(v, [this](TriangleId t, int) {
+    const SampleSlot slot = tile_.carried[t].samples;
+    const auto* bytes = reinterpret_cast<const char*>(tile_.samples.data(slot));
+    const std::size_t length = std::min(slot.count, kSamplesAtMost) * sizeof(Sample);
+    for (std::size_t i = 0; i < length; i += kLine) {
+      prefetch(bytes + i);
+    }
+  });
+}
+
+/// Most of the time would go by waiting for memory, and the queue says what will be wanted: asks
+/// for it some steps ahead, in the order in which one thing leads to the next.
+void Simplifier::prefetch_upcoming() const {
+  const Tin& tin = tile_.tin;
+  if (const QueueEntry* e = queue_.upcoming(16)) {
+    prefetch(&tin.vertices[e->vertex]);
+    prefetch(&state_[e->vertex]);
+  }
+  if (const QueueEntry* e = queue_.upcoming(12)) {
+    prefetch(&tin.triangles[tin.vertices[e->vertex].triangle]);
+  }
+  if (const QueueEntry* e = queue_.upcoming(9)) {
+    prefetch_beside(e->vertex);
+  }
+  if (const QueueEntry* e = queue_.upcoming(6)) {
+    prefetch_beyond(e->vertex);
+  }
+  if (const QueueEntry* e = queue_.upcoming(4)) {
+    prefetch_star(e->vertex);
+  }
+  if (const QueueEntry* e = queue_.upcoming(1)) {
+    prefetch_samples(e->vertex);
+  }
+}
+
+void Simplifier::take_top() {
+  const QueueEntry top = queue_.top();
+  queue_.pop();
+  if (state_[top.vertex] == QueueState::kClean) {
+    gather_star(tile_, top.vertex, star_);
+    std::size_t j = 0;
+    while (star_.star.link[j] != target_[top.vertex]) {
+      ++j;
+      PTIN_DCHECK(j < star_.star.degree());
+    }
+    collapse(top.vertex, j);
+    return;
+  }
+  const Evaluation e = evaluate(top.vertex);
+  if (e.choice.j == CollapseChoice::kNoNeighbour) {
+    state_[top.vertex] = QueueState::kAbsent;
+    return;
+  }
+  const QueueEntry measured{e.priority, top.vertex};
+  if (queue_.empty() || measured < queue_.top()) {
+    collapse(top.vertex, e.choice.j);
+    return;
+  }
+  queue_.push(measured);
+  state_[top.vertex] = QueueState::kClean;
+  target_[top.vertex] = star_.star.link[e.choice.j];
+}
+
+void Simplifier::run() {
+  fill_queue();
+  while (!queue_.empty() && left_ > options_.keep) {
+    check_in();
+    compact_when_sparse();
+    prefetch_upcoming();
+    take_top();
+  }
+}
+
+}  // namespace
+
+void simplify(Tile& tile, const FullSurface& full, const SimplifyOptions& options) {
+  Simplifier(tile, &full, options).run();
+}
+
+void simplify_witnesses(Tile& tile, const SimplifyOptions& options) {
+  Simplifier(tile, nullptr, options).run();
+}
+
+}  // namespace ptin

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/delaunay/growing_delaunay.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "engine/check.h"
+#include "engine/construct/delaunay/unseen_region.h"
+#include "engine/error.h"
+#include "engine/stop.h"
+
+namespace ptin::delaunay_internal {
+
+namespace {
+
+/// Spacings of points that the first margin is wide.
+constexpr double kMargin = 6.0;
+
+/// The round in which a point is inserted: the last with 7 of 8 points, the one before it with 7 of
+/// 8 of the others, and so on. Points in the order of the curve would make quadratic work of rows.
+int rounds_before_last(GridPoint p) noexcept {
+  std::uint64_t h = key_of(p) * 0x9e3779b97f4a7c15U;
+  h = (h ^ (h >> 31)) * 0xbf58476d1ce4e5b9U;
+  return std::countl_zero(h | 1) / 3;
+}
+
+}  // namespace
+
+void GrowingDelaunay::insert(const BucketPoint& p, bool own) {
+  if (handles_.size() % kBetweenStops == 0) {
+    check_stop(stop_);
+  }
+  const Vertex_handle v = delaunay_.insert(GridKernel::Point_2(p.position.x, p.position.y), hint_);
+  v->info() = static_cast<VertexId>(handles_.size());
+  hint_ = v->face();
+  handles_.push_back(v);
+  heights_.push_back(p.height);
+  own_.push_back(own ? 1 : 0);
+  inserted_.push_back(v->info());
+}
+
+/// The box of the tile's points, and a margin around it, as wide as does not double the work.
+void GrowingDelaunay::choose_box(const std::vector<BucketPoint>& own) {
+  GridBox tight;
+  for (const BucketPoint& p : own) {
+    tight = united(tight, p.position);
+  }
+  const double width = static_cast<double>(tight.max_x) - tight.min_x + 1.0;
+  const double height = static_cast<double>(tight.max_y) - tight.min_y + 1.0;
+  double margin = kMargin * std::sqrt(width * height / static_cast<double>(own.size())) + 1.0;
+  const std::uint64_t most =
+      bucket_of(end_ - 1) - bucket_of(first_) + 16 + own.size() / buckets_.bucket_points();
+  for (;; margin = margin < 1.0 ? 0.0 : margin / 4.0) {
+    const auto m = static_cast<std::int64_t>(std::min(margin, static_cast<double>(kGridMax)));
+    const auto bounded = [](std::int64_t v) {
+      return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, -1, kGridMax + 1));
+    };
+    box_ = {bounded(tight.min_x - m), bounded(tight.min_y - m), bounded(tight.max_x + m),
+            bounded(tight.max_y + m)};
+    std::uint64_t touched = 0;
+    buckets_.visit_nearest(
+        {tight.min_x, tight.min_y}, [&](const GridBox& b) { return meets(b, box_); },
+        [&](std::uint64_t) { return ++touched <= most; });
+    if (touched <= most || margin == 0.0) {
+      cache_.set_box(box_);
+      return;
+    }
+  }
+}
+
+void GrowingDelaunay::triangulate() {
+  std::vector<BucketPoint> points;
+  buckets_.take(first_, end_ - first_, points);
+  choose_box(points);
+  // Everything in the order of the curve, which makes each point next to the one before.
+  std::vector<std::uint64_t> around;
+  buckets_.visit_nearest(
+      points.front().position, [&](const GridBox& b) { return meets(b, box_); },
+      [&](std::uint64_t bucket) {
+        around.push_back(bucket);
+        return true;
+      });
+  std::sort(around.begin(), around.end());
+  std::vector<NewPoint> all;
+  const auto gather = [&](std::uint64_t begin, std::uint64_t end) {
+    buckets_.take(begin, end - begin, points);
+    for (std::uint64_t i = begin; i < end; ++i) {
+      const BucketPoint& p = points[i - begin];
+      const bool own = i >= first_ && i < end_;
+      if (own || contains(box_, p.position)) {
+        all.push_back({p, own});
+      }
+    }
+  };
+  for (const std::uint64_t bucket : around) {
+    const std::uint64_t begin = bucket * buckets_.bucket_points();
+    gather(begin, std::min(begin + buckets_.bucket_points(), buckets_.size()));
+    if (contains(box_, buckets_.box(bucket))) {
+      cache_.set_used_up(bucket);
+    }
+  }
+  insert_all(all);
+  span_area();
+  inserted_.clear();
+}
+
+/// Points on one line have no triangles: goes on with the nearest ones around until they have.
+void GrowingDelaunay::span_area() {
+  if (delaunay_.dimension() == 2) {
+    return;
+  }
+  buckets_.visit_nearest(
+      position_of(handles_.front()), [](const GridBox&) { return true; },
+      [&](std::uint64_t bucket) {
+        BucketCache::Bucket& loaded = cache_.load(bucket);
+        for (std::size_t i = 0; i < loaded.points.size() && delaunay_.dimension() < 2; ++i) {
+          if (loaded.is_in[i] == 0) {
+            insert(loaded.points[i], false);
+            loaded.is_in[i] = 1;
+            loaded.has_more = true;
+          }
+        }
+        cache_.tidy();
+        return delaunay_.dimension() < 2;
+      });
+  PTIN_CHECK(delaunay_.dimension() == 2);  // the terrain has an area
+}
+
+/// Inserts points that are given in the order of the curve: round by round, each along the curve
+/// (Amenta, Choi, Rote: incremental constructions con BRIO, 2003).
+void GrowingDelaunay::insert_all(const std::vector<NewPoint>& points) {
+  static constexpr std::size_t kRounds = 22;
+  std::array<std::vector<std::uint32_t>, kRounds> rounds;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    rounds[static_cast<std::size_t>(rounds_before_last(points[i].point.position))].push_back(i);
+  }
+  for (std::size_t r = kRounds; r-- > 0;) {
+    for (const std::uint32_t i : rounds[r]) {
+      insert(points[i].point, points[i].own);
+    }
+  }
+}
+
+/// Inserts the points of a bucket that lie in the region and are not in yet. True when there are
+/// any.
+bool GrowingDelaunay::take_from(BucketCache::Bucket& loaded, const UnseenRegion& region) {
+  constexpr std::size_t kBlock = BucketCache::kBlock;
+  std::vector<NewPoint> found;
+  for (std::size_t block = 0; block < loaded.boxes.size(); ++block) {
+    if (is_empty(loaded.boxes[block]) || !region.may_meet(loaded.boxes[block])) {
+      continue;
+    }
+    GridBox left;
+    const std::size_t end = std::min((block + 1) * kBlock, loaded.points.size());
+    for (std::size_t i = block * kBlock; i < end; ++i) {
+      const BucketPoint& p = loaded.points[i];
+      if (loaded.is_in[i] != 0) {
+        continue;
+      }
+      if (region.holds(p.position)) {
+        found.push_back({p, false});
+        loaded.is_in[i] = 1;
+        loaded.has_more = true;
+      } else {
+        left = united(left, p.position);
+      }
+    }
+    loaded.boxes[block] = left;
+  }
+  insert_all(found);
+  return !found.empty();
+}
+
+/// Looks for points in the region that are not in yet, from `near` outwards, and inserts those of
+/// the first bucket that has any. True when there was none.
+bool GrowingDelaunay::see(const UnseenRegion& region, GridPoint near) {
+  bool found = false;
+  buckets_.visit_nearest(
+      near, [&](const GridBox& b) { return region.may_meet(b); },
+      [&](std::uint64_t bucket) {
+        if (cache_.is_used_up(bucket)) {
+          return true;
+        }
+        BucketCache::Bucket& loaded = cache_.load(bucket);
+        found = take_from(loaded, region);
+        if (loaded.is_used_up()) {
+          cache_.set_used_up(bucket);
+        }
+        cache_.tidy();
+        return !found;
+      });
+  return !found;
+}
+
+/// True when nothing unseen lies in the face's disc; else points were inserted, and the face may be
+/// gone.
+bool GrowingDelaunay::is_final(const Face_handle& face) {
+  if (delaunay_.is_infinite(face)) {
+    const int i = face->index(delaunay_.infinite_vertex());
+    const Vertex_handle a = face->vertex(next_corner(i)), b = face->vertex(previous_corner(i));
+    const Corners side{{a->info(), b->info(), kNone}};
+    if (final_.contains(side)) {
+      return true;
+    }
+    // Counter-clockwise about the outside: the hull lies to the right of a -> b.
+    const GridPoint pa = position_of(a), pb = position_of(b);
+    if (!see(UnseenRegion(pb, pa), pa)) {
+      return false;
+    }
+    final_.insert(side);
+    return true;
+  }
+  std::array<GridPoint, 3> p;
+  Corners corners;
+  for (int i = 0; i < 3; ++i) {
+    p[i] = position_of(face->vertex(i));
+    corners.v[i] = face->vertex(i)->info();
+  }
+  if (disc_lies_in(box_, p[0], p[1], p[2])) {
+    return true;
+  }
+  std::rotate(corners.v.begin(), std::min_element(corners.v.begin(), corners.v.end()),
+              corners.v.end());
+  if (final_.contains(corners)) {
+    return true;
+  }
+  if (!see(UnseenRegion(Circumdisc(p[0], p[1], p[2])), p[0])) {
+    return false;
+  }
+  final_.insert(corners);
+  return true;
+}
+
+bool GrowingDelaunay::settle_star(VertexId v) {
+  auto face = delaunay_.incident_faces(handles_[v]);
+  const auto first = face;
+  do {
+    if (!is_final(face)) {
+      return false;
+    }
+  } while (++face != first);
+  return true;
+}
+
+void GrowingDelaunay::settle(std::vector<VertexId> vertices) {
+  std::vector<std::uint8_t> wanted(handles_.size(), 0);
+  for (const VertexId v : vertices) {
+    wanted[v] = 1;
+  }
+  const std::vector<std::uint8_t> of_interest = wanted;
+  while (!vertices.empty()) {
+    const VertexId v = vertices.back();
+    check_stop(stop_);
+    inserted_.clear();
+    if (settle_star(v)) {
+      vertices.pop_back();
+      wanted[v] = 0;
+      continue;
+    }
+    // Faces at the new points are new: those of them at vertices of interest are to be looked at.
+    for (const VertexId q : inserted_) {
+      auto n = delaunay_.incident_vertices(handles_[q]);
+      const auto begin = n;
+      do {
+        if (!delaunay_.is_infinite(n)) {
+          const VertexId u = n->info();
+          if (u < own_.size() && u < wanted.size() && (own_[u] != 0 || of_interest[u] != 0) &&
+              wanted[u] == 0) {
+            wanted[u] = 1;
+            vertices.push_back(u);
+          }
+        }
+      } while (++n != begin);
+    }
+  }
+}
+
+std::vector<VertexId> GrowingDelaunay::own_vertices_to_settle() {
+  std::vector<std::uint8_t> marked(handles_.size(), 0);
+  std::vector<VertexId> vertices;
+  for (auto f = delaunay_.all_faces_begin(); f != delaunay_.all_faces_end(); ++f) {
+    bool own = false;
+    const bool infinite = delaunay_.is_infinite(f);
+    for (int i = 0; i < 3; ++i) {
+      const Vertex_handle v = f->vertex(i);
+      own = own || (!(infinite && delaunay_.is_infinite(v)) && own_[v->info()] != 0);
+    }
+    if (!own || (!infinite && disc_lies_in(box_, position_of(f->vertex(0)),
+                                           position_of(f->vertex(1)), position_of(f->vertex(2))))) {
+      continue;
+    }
+    for (int i = 0; i < 3; ++i) {
+      const Vertex_handle v = f->vertex(i);
+      if (!(infinite && delaunay_.is_infinite(v)) && own_[v->info()] != 0 &&
+          marked[v->info()] == 0) {
+        marked[v->info()] = 1;
+        vertices.push_back(v->info());
+      }
+    }
+  }
+  return vertices;
+}
+
+}  // namespace ptin::delaunay_internal

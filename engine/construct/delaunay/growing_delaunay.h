@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The Delaunay triangulation around a tile's points, grown until the faces that matter are those of
+// the whole. For tile_delaunay.cc.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <stop_token>
+#include <unordered_set>
+#include <vector>
+
+#include "engine/construct/delaunay/bucket_cache.h"
+#include "engine/construct/delaunay/delaunay_kernel.h"
+#include "engine/construct/points/point_buckets.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin::delaunay_internal {
+
+class UnseenRegion;
+
+/// The points of one tile with as many others around them as decide their triangles. Vertices are
+/// numbered as they come.
+class GrowingDelaunay {
+ public:
+  using Vertex_handle = Delaunay::Vertex_handle;
+  using Face_handle = Delaunay::Face_handle;
+
+  /// @param cache_bytes  Memory for points that were looked at and not taken.
+  GrowingDelaunay(const PointBuckets& buckets, std::uint64_t first, std::uint64_t count,
+                  std::size_t cache_bytes, const std::stop_token& stop)
+      : buckets_(buckets),
+        first_(first),
+        end_(first + count),
+        stop_(stop),
+        cache_(buckets, first, first + count, cache_bytes) {}
+
+  /// Inserts the tile's points and those of a margin. @throws Error io_error, cancelled
+  void triangulate();
+  /// Makes every face at the given vertices final. @throws Error io_error, cancelled
+  void settle(std::vector<VertexId> vertices);
+  [[nodiscard]] std::vector<VertexId> own_vertices_to_settle();
+
+  [[nodiscard]] bool holds_everything() const noexcept {
+    return first_ == 0 && end_ == buckets_.size();
+  }
+  [[nodiscard]] std::uint64_t own_points() const noexcept { return end_ - first_; }
+  [[nodiscard]] std::size_t points() const noexcept { return handles_.size(); }
+  [[nodiscard]] bool is_own(VertexId v) const noexcept { return own_[v] != 0; }
+  [[nodiscard]] HeightBits height(VertexId v) const noexcept { return heights_[v]; }
+  [[nodiscard]] Vertex_handle handle(VertexId v) const noexcept { return handles_[v]; }
+  [[nodiscard]] Delaunay& delaunay() noexcept { return delaunay_; }
+  [[nodiscard]] const Delaunay& delaunay() const noexcept { return delaunay_; }
+
+ private:
+  void choose_box(const std::vector<BucketPoint>& own);
+  struct NewPoint {
+    BucketPoint point;
+    bool own;
+  };
+  void insert(const BucketPoint& p, bool own);
+  void insert_all(const std::vector<NewPoint>& points);
+  void span_area();
+  [[nodiscard]] std::uint64_t bucket_of(std::uint64_t point) const noexcept {
+    return point / buckets_.bucket_points();
+  }
+  [[nodiscard]] bool settle_star(VertexId v);
+  [[nodiscard]] bool is_final(const Face_handle& face);
+  [[nodiscard]] bool take_from(BucketCache::Bucket& loaded, const UnseenRegion& region);
+  [[nodiscard]] bool see(const UnseenRegion& region, GridPoint near);
+
+  const PointBuckets& buckets_;
+  std::uint64_t first_, end_;
+  std::stop_token stop_;
+  GridBox box_;  ///< Everything inside of it is in.
+  Delaunay delaunay_;
+  Face_handle hint_;
+  std::vector<Vertex_handle> handles_;
+  std::vector<HeightBits> heights_;
+  std::vector<std::uint8_t> own_;
+  BucketCache cache_;               ///< Of what lies around the box.
+  std::vector<VertexId> inserted_;  ///< Since it was last cleared.
+  struct Corners {
+    std::array<VertexId, 3> v;
+    friend bool operator==(const Corners&, const Corners&) = default;
+  };
+  struct HashCorners {
+    std::size_t operator()(const Corners& c) const noexcept {
+      std::uint64_t h = 0;
+      for (const VertexId v : c.v) {
+        h = (h ^ v) * 0x9e3779b97f4a7c15U;
+        h ^= h >> 29;
+      }
+      return h;
+    }
+  };
+  std::unordered_set<Corners, HashCorners>
+      final_;  ///< Faces that took more than a look at the box.
+};
+
+}  // namespace ptin::delaunay_internal

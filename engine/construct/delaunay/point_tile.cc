@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/delaunay/point_tile.h"
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "engine/construct/tile/part_surface.h"
+
+namespace ptin {
+
+PointTileStarter::PointTileStarter(const PointBuckets& buckets, const TileTree& tree,
+                                   const MeasureUnits& units, std::optional<double> longest_edge,
+                                   std::stop_token stop)
+    : buckets_(buckets),
+      tree_(tree),
+      units_(units),
+      tiler_(buckets, longest_edge),
+      stop_(std::move(stop)) {}
+
+StartedTile PointTileStarter::start(const SampleRange& window) {
+  __extension__ using Uint128 = unsigned __int128;
+  const std::uint64_t leaf = tree_.leaf_number(window);
+  const auto begin_of = [&](std::uint64_t i) {
+    return static_cast<std::uint64_t>(Uint128{buckets_.size()} * i / tree_.leaves());
+  };
+  DelaunayTile part = tiler_.make(begin_of(leaf), begin_of(leaf + 1) - begin_of(leaf), stop_);
+  StartedTile started;
+  started.tile.units = units_;
+  started.tile.tin = std::move(part.tin);
+  started.lone_samples = part.lone_points;
+  start_tile(started.tile, {});
+  for (const Vertex& v : started.tile.tin.vertices) {
+    started.box = united(started.box, v.position);
+  }
+  started.full = std::make_unique<PartSurface>(started.tile.tin, units_.heights);
+  return started;
+}
+
+namespace {
+
+TileTree tree_over(std::uint64_t points, std::optional<std::int64_t> side,
+                   std::shared_ptr<const ConvexHull> hull) {
+  const auto across = static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(points))));
+  return TileTree::over_points(points, side.value_or(TileTree::default_side(across, across)),
+                               std::move(hull));
+}
+
+}  // namespace
+
+TileTree point_tree(const PointBuckets& buckets, std::optional<std::int64_t> side) {
+  return tree_over(buckets.size(), side, std::make_shared<const ConvexHull>(buckets.hull()));
+}
+
+TileTree expected_point_tree(std::uint64_t points, std::optional<std::int64_t> side) {
+  return tree_over(points, side, nullptr);
+}
+
+}  // namespace ptin

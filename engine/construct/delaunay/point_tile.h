@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A tile that starts from points in buckets.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+
+#include "engine/construct/delaunay/tile_delaunay.h"
+#include "engine/construct/tile/started_tile.h"
+#include "engine/construct/tile/tile_tree.h"
+
+namespace ptin {
+
+/// Starts leaf after leaf of points. Threads: one for each; any number on the same buckets.
+class PointTileStarter {
+ public:
+  /// @param longest_edge  As DelaunayTiler.
+  /// The buckets and the tree must live as long as this.
+  PointTileStarter(const PointBuckets& buckets, const TileTree& tree, const MeasureUnits& units,
+                   std::optional<double> longest_edge, std::stop_token stop = {});
+
+  /// The leaf of this window: its part of the one Delaunay triangulation (tile_delaunay.h), and its
+  /// part of the full surface.
+  /// @throws Error as DelaunayTiler::make()
+  [[nodiscard]] StartedTile start(const SampleRange& window);
+
+ private:
+  const PointBuckets& buckets_;
+  const TileTree& tree_;
+  MeasureUnits units_;
+  DelaunayTiler tiler_;
+  std::stop_token stop_;
+};
+
+/// The tree over the points of buckets. @param side  As TileTree; none means
+/// TileTree::default_side() of a square of as many samples.
+[[nodiscard]] TileTree point_tree(const PointBuckets& buckets, std::optional<std::int64_t> side);
+/// The same for so many points, before they are known: for estimates, since it has no hull.
+[[nodiscard]] TileTree expected_point_tree(std::uint64_t points, std::optional<std::int64_t> side);
+
+}  // namespace ptin

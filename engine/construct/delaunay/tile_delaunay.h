@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The Delaunay triangulation of any number of points, a tile at a time.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "engine/construct/grid/crs.h"
+#include "engine/construct/points/point_buckets.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin {
+
+/// The part of the one Delaunay triangulation of all points that belongs to a tile: the triangles
+/// whose smallest vertex (by key: the lowest, then leftmost) is one of the tile's own points. In
+/// general a polygon with holes, of several pieces, that may touch itself at a vertex.
+struct DelaunayTile {
+  /// Vertices in the order of their keys, triangles as make_delaunay_tin(). Beyond the border lies
+  /// another tile or the outside.
+  Tin tin;
+  std::uint64_t own_points = 0;
+  std::uint64_t lone_points = 0;   ///< Own ones that touch no surface triangle: without a height.
+  std::uint64_t other_points = 0;  ///< Of other tiles, that were triangulated along.
+};
+
+/// Cuts tiles out of one triangulation.
+///
+/// A tile's points are triangulated with what surrounds them: a margin first, then bucket by bucket
+/// what lies in the closed circumdisc of a triangle at one of its own points (or beyond an edge of
+/// the hull so far). A triangle is final when everything inside of its disc has been seen; where
+/// many points lie on a circle the tie is broken by coordinates alone (delaunay.h). So tiles are
+/// pieces of exactly the triangulation that make_delaunay_tin() would give.
+///
+/// Not thread-safe: one for each thread; any number on the same buckets.
+class DelaunayTiler {
+ public:
+  /// @param longest_edge  Triangles with a longer edge are void; on the ground (crs.h): metres in a
+  ///                      geographic CRS, else CRS units. None: no voids.
+  /// @param cache_bytes   Memory for points that were looked at around a tile and not taken.
+  explicit DelaunayTiler(const PointBuckets& buckets, std::optional<double> longest_edge = {},
+                         std::size_t cache_bytes = std::size_t{16} << 20);
+
+  /// The tile of points first .. first + count - 1 in the order of the buckets.
+  /// @throws Error io_error, cancelled
+  ///               resource_exhausted  more points than one mesh in memory counts
+  /// Cost: about 2 us and 250 bytes a point of the tile and its margin; more points are read, and
+  /// kept while they are needed, where discs are large (at the hull, and between clusters).
+  [[nodiscard]] DelaunayTile make(std::uint64_t first, std::uint64_t count,
+                                  const std::stop_token& stop = {});
+
+ private:
+  const PointBuckets& buckets_;
+  std::optional<double> longest_edge_;
+  GroundMetric ground_;
+  std::size_t cache_bytes_;
+};
+
+}  // namespace ptin

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where unseen points would change a face of a Delaunay triangulation. For
+// growing_delaunay.cc.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "engine/geometry/box.h"
+#include "engine/geometry/circumdisc.h"
+#include "engine/geometry/orient.h"
+
+namespace ptin::delaunay_internal {
+
+/// What must be empty of unseen points for a face to be final: the closed circumdisc of a finite
+/// one; beyond an edge of the hull the open half-plane and the edge itself.
+class UnseenRegion {
+ public:
+  explicit UnseenRegion(const Circumdisc& disc) : disc_(disc) {}
+  /// To the right of a -> b.
+  UnseenRegion(GridPoint a, GridPoint b) : a_(a), b_(b) {}
+
+  [[nodiscard]] bool holds(GridPoint p) const noexcept {
+    if (disc_) {
+      return disc_->holds(p);
+    }
+    const std::int64_t side = orient(a_, b_, p);
+    return side < 0 || (side == 0 && contains(united(box_of(a_), b_), p));
+  }
+  [[nodiscard]] bool may_meet(const GridBox& box) const noexcept {
+    if (disc_) {
+      return disc_->may_meet(box);
+    }
+    const GridPoint corner{b_.y - a_.y > 0 ? box.max_x : box.min_x,
+                           b_.x - a_.x > 0 ? box.min_y : box.max_y};
+    const std::int64_t side = orient(a_, b_, corner);  // the corner farthest to the right
+    return side < 0 || (side == 0 && meets(united(box_of(a_), b_), box));
+  }
+
+ private:
+  std::optional<Circumdisc> disc_;
+  GridPoint a_, b_;
+};
+
+/// True when the closed circumdisc of a triangle lies in the box, for certain; computed in doubles.
+inline bool disc_lies_in(const GridBox& box, GridPoint a, GridPoint b, GridPoint c) noexcept {
+  const double bx = static_cast<double>(b.x) - a.x, by = static_cast<double>(b.y) - a.y;
+  const double cx = static_cast<double>(c.x) - a.x, cy = static_cast<double>(c.y) - a.y;
+  const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
+  const double twice = 2.0 * static_cast<double>(orient(a, b, c));
+  const double ux = (b2 * cy - c2 * by) / twice, uy = (c2 * bx - b2 * cx) / twice;
+  // Each of b2, c2, the products and their difference, and the quotient is rounded once: below
+  // 2^-50 of the sizes of the terms.
+  const double slack =
+      0x1p-49 * (b2 + c2) * (std::abs(bx) + std::abs(by) + std::abs(cx) + std::abs(cy)) / twice;
+  const double radius = std::sqrt(ux * ux + uy * uy) * (1.0 + 0x1p-50) + 2.0 * slack + 0x1p-20;
+  return a.x + ux - radius > box.min_x && a.x + ux + radius < box.max_x &&
+         a.y + uy - radius > box.min_y && a.y + uy + radius < box.max_y;
+}
+
+}  // namespace ptin::delaunay_internal

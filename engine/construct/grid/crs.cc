@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/grid/crs.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <cpl_conv.h>
+#include <ogr_spatialref.h>
+
+#include "engine/construct/grid/gdal_session.h"
+#include "engine/error.h"
+
+namespace ptin {
+namespace {
+
+/// Reads any text that GDAL understands. `role` names it in the error.
+OGRSpatialReference parse(const std::string& text, const char* role) {
+  const GdalSession session;
+  OGRSpatialReference srs;
+  const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+  if (srs.SetFromUserInput(text.c_str(), options) != OGRERR_NONE) {
+    throw Error(ErrorCode::invalid_argument,
+                session.explain(std::string("the ") + role + " '" + text.substr(0, 80) +
+                                "' is not one that GDAL understands; give a code such as "
+                                "EPSG:32611, WKT or PROJJSON"));
+  }
+  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return srs;
+}
+
+std::string to_wkt2(const OGRSpatialReference& srs) {
+  char* text = nullptr;
+  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  const OGRErr status = srs.exportToWkt(&text, options);
+  std::string wkt = text == nullptr ? "" : text;
+  CPLFree(text);
+  if (status != OGRERR_NONE || wkt.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "the CRS cannot be written as WKT2:2019; give another one instead");
+  }
+  return wkt;
+}
+
+std::string unit_of_metres(double metres) {
+  const auto is = [&](double m) { return std::abs(metres - m) <= 1e-9 * m; };
+  if (is(1.0)) {
+    return "metre";
+  }
+  if (is(0.3048)) {
+    return "foot";
+  }
+  if (is(1200.0 / 3937.0)) {
+    return "US survey foot";
+  }
+  return "unknown";
+}
+
+std::string or_unknown(const char* name) {
+  return name == nullptr || *name == '\0' ? "unknown" : name;
+}
+
+/// The unit of heights, of a CRS with a vertical part.
+std::string vertical_unit(const OGRSpatialReference& srs) {
+  const char* name = nullptr;
+  if (srs.IsCompound()) {
+    srs.GetTargetLinearUnits("COMPD_CS|VERT_CS", &name);
+    return or_unknown(name);
+  }
+  double metres = 0.0;
+  OGRAxisOrientation orientation = OAO_Other;
+  if (srs.GetAxis(nullptr, 2, &orientation, &metres) == nullptr) {
+    return "unknown";
+  }
+  return unit_of_metres(metres);
+}
+
+void check_horizontal(const OGRSpatialReference& srs, const char* role) {
+  if (srs.IsGeographic() || srs.IsProjected() || srs.IsLocal()) {
+    return;
+  }
+  const char* kind = srs.IsVertical() ? "a vertical CRS alone" : "neither geographic nor projected";
+  throw Error(ErrorCode::invalid_argument,
+              std::string("the ") + role + " '" + or_unknown(srs.GetName()) + "' is " + kind +
+                  "; a terrain needs a geographic or projected CRS (a vertical one can be added to "
+                  "it)");
+}
+
+/// `horizontal` with `vertical_crs` as its vertical part.
+OGRSpatialReference with_vertical(OGRSpatialReference horizontal, const std::string& vertical_crs) {
+  const OGRSpatialReference vertical = parse(vertical_crs, "vertical CRS");
+  if (!vertical.IsVertical() || vertical.IsCompound()) {
+    throw Error(ErrorCode::invalid_argument,
+                "the vertical CRS '" + vertical_crs +
+                    "' is not a vertical CRS; give one such as EPSG:5773 (EGM96 height)");
+  }
+  if (horizontal.IsCompound()) {
+    horizontal.StripVertical();
+  }
+  if (horizontal.GetAxesCount() == 3) {
+    horizontal.DemoteTo2D(nullptr);
+  }
+  const std::string name =
+      or_unknown(horizontal.GetName()) + " + " + or_unknown(vertical.GetName());
+  OGRSpatialReference compound;
+  if (compound.SetCompoundCS(name.c_str(), &horizontal, &vertical) != OGRERR_NONE) {
+    throw Error(ErrorCode::invalid_argument, "the vertical CRS '" + vertical_crs +
+                                                 "' cannot be added to '" +
+                                                 or_unknown(horizontal.GetName()) + "'");
+  }
+  return compound;
+}
+
+Crs describe(const OGRSpatialReference& srs) {
+  Crs crs;
+  crs.wkt = to_wkt2(srs);
+  crs.geographic = srs.IsGeographic() != 0;
+  const char* name = nullptr;
+  if (crs.geographic) {
+    srs.GetAngularUnits(&name);
+  } else {
+    srs.GetLinearUnits(&name);
+  }
+  crs.horizontal_unit = or_unknown(name);
+  crs.vertical_known = srs.IsCompound() != 0 || srs.GetAxesCount() == 3;
+  if (crs.vertical_known) {
+    crs.vertical_unit = vertical_unit(srs);
+  }
+  return crs;
+}
+
+}  // namespace
+
+Crs resolve_crs(const std::string& declared, const std::string& a_srs,
+                const std::string& vertical_crs) {
+  const std::string& text = a_srs.empty() ? declared : a_srs;
+  if (text.empty()) {
+    if (!vertical_crs.empty()) {
+      throw Error(ErrorCode::invalid_argument,
+                  "there is no horizontal CRS to add the vertical CRS '" + vertical_crs +
+                      "' to; give that one as well by --a-srs");
+    }
+    return {};
+  }
+  const char* role = a_srs.empty() ? "source's CRS" : "CRS";
+  OGRSpatialReference srs = parse(text, role);
+  const GdalSession session;
+  check_horizontal(srs, role);
+  return describe(vertical_crs.empty() ? srs : with_vertical(srs, vertical_crs));
+}
+
+bool is_same_crs(const std::string& wkt_a, const std::string& wkt_b) {
+  if (wkt_a == wkt_b) {
+    return true;
+  }
+  if (wkt_a.empty() || wkt_b.empty()) {
+    return false;
+  }
+  const OGRSpatialReference a = parse(wkt_a, "CRS"), b = parse(wkt_b, "CRS");
+  const GdalSession session;
+  const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
+                                 "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
+  return a.IsSame(&b, options) != 0;
+}
+
+void set_crs(TerrainFrame& frame, const Crs& crs) {
+  frame.crs_wkt = crs.wkt;
+  frame.vertical_crs_known = crs.vertical_known;
+  frame.geographic = crs.geographic;
+  frame.horizontal_unit = crs.horizontal_unit;
+  frame.vertical_unit = crs.vertical_unit;
+}
+
+void require_latitudes(const TerrainFrame& frame, std::int64_t rows, const std::string& context) {
+  constexpr double kMost = 91.0;  // pixels of global grids reach beyond the poles
+  const double south = frame.map.to_map(0.0, 0.0).y;
+  const double north = frame.map.to_map(0.0, static_cast<double>(rows)).y;
+  if (frame.horizontal_unit != "degree" || (south >= -kMost && north <= kMost)) {
+    return;
+  }
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "y from %.10g to %.10g are no latitudes, but the CRS has degrees; name the CRS of "
+                "these coordinates by --a-srs",
+                south, north);
+  throw Error(ErrorCode::invalid_argument, text, context);
+}
+
+GroundMetric::GroundMetric(const TerrainFrame& frame) : map_(frame.map) {
+  if (!frame.geographic) {
+    return;
+  }
+  const OGRSpatialReference srs = parse(frame.crs_wkt, "terrain's CRS");
+  const GdalSession session;
+  radians_per_unit_ = srs.GetAngularUnits();
+  semi_major_m_ = srs.GetSemiMajor();
+  const double inverse_flattening = srs.GetInvFlattening();
+  const double flattening = inverse_flattening == 0.0 ? 0.0 : 1.0 / inverse_flattening;
+  eccentricity_squared_ = flattening * (2.0 - flattening);
+}
+
+GroundStep GroundMetric::at(double grid_y) const noexcept {
+  if (is_uniform()) {
+    return {map_.step_x, map_.step_y};
+  }
+  // Radii of curvature of the ellipsoid, along the meridian (m) and across it (n).
+  const double latitude = (map_.origin_y + map_.step_y * grid_y) * radians_per_unit_;
+  const double sine = std::sin(latitude);
+  const double w2 = 1.0 - eccentricity_squared_ * sine * sine;
+  const double n = semi_major_m_ / std::sqrt(w2);
+  const double m = n * (1.0 - eccentricity_squared_) / w2;
+  const double cosine = std::max(0.0, std::cos(latitude));
+  return {map_.step_x * radians_per_unit_ * n * cosine, map_.step_y * radians_per_unit_ * m};
+}
+
+}  // namespace ptin

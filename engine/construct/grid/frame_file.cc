@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/grid/frame_file.h"
+
+#include <type_traits>
+
+namespace ptin {
+
+namespace {
+
+struct PlainFrame {
+  AffineMap map;
+  HeightEncoding heights;
+  double height_rounding, height_quantum, min_height, max_height;
+  std::uint32_t vertical_crs_known, geographic;
+};
+static_assert(std::is_trivially_copyable_v<PlainFrame>);
+
+void put_text(ArrayFileWriter& file, const std::string& text) {
+  file.put(std::span<const char>(text));
+}
+
+std::string take_text(ArrayFileReader& file) {
+  const std::span<const char> text = file.take<char>();
+  return {text.begin(), text.end()};
+}
+
+}  // namespace
+
+void put_frame(ArrayFileWriter& file, const TerrainFrame& f) {
+  const PlainFrame plain{f.map,
+                         f.heights,
+                         f.height_rounding,
+                         f.height_quantum,
+                         f.min_height,
+                         f.max_height,
+                         f.vertical_crs_known ? 1U : 0U,
+                         f.geographic ? 1U : 0U};
+  file.put(std::span(&plain, 1));
+  for (const std::string& text : {f.crs_wkt, f.horizontal_unit, f.vertical_unit}) {
+    put_text(file, text);
+  }
+}
+
+TerrainFrame take_frame(ArrayFileReader& file) {
+  const PlainFrame plain = file.take<PlainFrame>()[0];
+  TerrainFrame f;
+  f.map = plain.map;
+  f.heights = plain.heights;
+  f.height_rounding = plain.height_rounding;
+  f.height_quantum = plain.height_quantum;
+  f.min_height = plain.min_height;
+  f.max_height = plain.max_height;
+  f.vertical_crs_known = plain.vertical_crs_known != 0;
+  f.geographic = plain.geographic != 0;
+  f.crs_wkt = take_text(file);
+  f.horizontal_unit = take_text(file);
+  f.vertical_unit = take_text(file);
+  return f;
+}
+
+}  // namespace ptin

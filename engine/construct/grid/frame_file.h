@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The frame of a terrain in a temporary file.
+#pragma once
+
+#include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/scratch/array_file.h"
+
+namespace ptin {
+
+/// @throws Error io_error, resource_exhausted
+void put_frame(ArrayFileWriter& file, const TerrainFrame& frame);
+/// @throws Error corruption
+[[nodiscard]] TerrainFrame take_frame(ArrayFileReader& file);
+
+}  // namespace ptin

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/grid/grid_precision.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/error.h"
+
+namespace ptin {
+
+void require_resolvable(const AffineMap& map, std::int64_t columns, std::int64_t rows,
+                        const std::string& remedy, const std::string& context) {
+  const MapPoint low = map.to_map(0.0, 0.0);
+  const MapPoint high = map.to_map(static_cast<double>(columns), static_cast<double>(rows));
+  const auto is_fine = [](double a, double b, double step) {
+    return std::max(std::abs(a), std::abs(b)) / step <= kMostStepsFromZero;
+  };
+  if (is_fine(low.x, high.x, map.step_x) && is_fine(low.y, high.y, map.step_y)) {
+    return;
+  }
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "steps of %g and %g are too fine for coordinates such as %.10g %.10g, which are "
+                "kept as doubles",
+                map.step_x, map.step_y, high.x, high.y);
+  throw Error(ErrorCode::invalid_argument, text + ("; " + remedy), context);
+}
+
+}  // namespace ptin

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/grid/height_unit.h"
+
+#include <algorithm>
+#include <array>
+
+namespace ptin {
+
+namespace {
+
+struct Unit {
+  std::string_view name;
+  double metres;
+  std::array<std::string_view, 8> aliases;  ///< In small letters.
+};
+
+constexpr std::array<Unit, 9> kUnits = {{
+    {"metre", 1.0, {"metre", "m", "meter", "meters", "metres", "mtr", "metri"}},
+    {"foot", 0.3048, {"foot", "ft", "feet", "international foot", "international feet", "ift"}},
+    {"US survey foot",
+     1200.0 / 3937.0,
+     {"us survey foot", "us-ft", "ftus", "us survey feet", "us_survey_foot", "foot_us", "us ft",
+      "sft"}},
+    {"kilometre", 1000.0, {"kilometre", "km", "kilometer", "kilometers", "kilometres"}},
+    {"decimetre", 0.1, {"decimetre", "dm", "decimeter", "decimeters", "decimetres"}},
+    {"centimetre", 0.01, {"centimetre", "cm", "centimeter", "centimeters", "centimetres"}},
+    {"millimetre", 0.001, {"millimetre", "mm", "millimeter", "millimeters", "millimetres"}},
+    {"yard", 0.9144, {"yard", "yd", "yards"}},
+    {"fathom", 1.8288, {"fathom", "fathoms", "ftm"}},
+}};
+
+}  // namespace
+
+std::string height_unit_named(const std::string& text) {
+  if (text.empty()) {
+    return "unknown";
+  }
+  std::string small = text;
+  std::transform(small.begin(), small.end(), small.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  for (const Unit& unit : kUnits) {
+    if (std::find(unit.aliases.begin(), unit.aliases.end(), small) != unit.aliases.end()) {
+      return std::string(unit.name);
+    }
+  }
+  return text;
+}
+
+std::optional<double> metres_in(std::string_view unit) noexcept {
+  for (const Unit& known : kUnits) {
+    if (known.name == unit) {
+      return known.metres;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace ptin

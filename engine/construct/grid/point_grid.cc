@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/grid/point_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/construct/grid/height_fit.h"
+#include "engine/error.h"
+
+namespace ptin {
+namespace {
+
+__extension__ using Int128 = __int128;
+
+constexpr double kInt32Max = 2147483647.0;
+
+/// Refuses an extent beyond the grid, and names the power of ten that would do.
+void check_extent(double extent, double unit, const std::string& context) {
+  if (extent / unit <= kGridMax) {
+    return;
+  }
+  const double enough = std::pow(10.0, std::ceil(std::log10(extent / kGridMax)));
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the points span %.9g units in steps of %g: more than the 2^30 steps of the grid; "
+                "give a coarser resolution, such as %g",
+                extent, unit, enough);
+  throw Error(ErrorCode::invalid_argument, text, context);
+}
+
+}  // namespace
+
+std::int64_t StepCounter::steps(Decimal value) const noexcept {
+  static constexpr std::int64_t kFar = std::int64_t{1} << 62;
+  if (unit_ > 0.0) {
+    const double steps = std::round((to_double(value) - origin_) / unit_);
+    return std::abs(steps) < 9007199254740992.0 ? static_cast<std::int64_t>(steps)
+                                                : (steps < 0 ? -kFar : kFar);
+  }
+  if (value.decimals == decimals_) {
+    return value.mantissa;
+  }
+  const Int128 steps = Int128{value.mantissa} * power_of_ten(decimals_ - value.decimals);
+  return static_cast<std::int64_t>(std::clamp<Int128>(steps, -kFar, kFar));
+}
+
+double StepCounter::unit() const noexcept { return unit_ > 0.0 ? unit_ : decimal_step(decimals_); }
+
+double StepCounter::coordinate(std::int64_t steps) const noexcept {
+  return unit_ > 0.0 ? origin_ + static_cast<double>(steps) * unit_
+                     : static_cast<double>(steps) / static_cast<double>(power_of_ten(decimals_));
+}
+
+double StepCounter::distance(Decimal value) const noexcept {
+  return std::abs(to_double(value) - coordinate(steps(value)));
+}
+
+int DecimalRange::decimals() const noexcept {
+  for (int d = 18; d > 0; --d) {
+    if (extremes_[static_cast<std::size_t>(d)].low <= extremes_[static_cast<std::size_t>(d)].high) {
+      return d;
+    }
+  }
+  return 0;
+}
+
+std::int64_t DecimalRange::lowest(const StepCounter& counter) const noexcept {
+  std::int64_t low = INT64_MAX;
+  for (int d = 0; d <= decimals(); ++d) {
+    const Extreme& e = extremes_[static_cast<std::size_t>(d)];
+    if (e.low <= e.high) {
+      low = std::min(low, counter.steps({e.low, d}));
+    }
+  }
+  return low;
+}
+
+std::int64_t DecimalRange::highest(const StepCounter& counter) const noexcept {
+  std::int64_t high = INT64_MIN;
+  for (int d = 0; d <= decimals(); ++d) {
+    const Extreme& e = extremes_[static_cast<std::size_t>(d)];
+    if (e.low <= e.high) {
+      high = std::max(high, counter.steps({e.high, d}));
+    }
+  }
+  return high;
+}
+
+double PointGrid::shift(const SourcePoint& p) const noexcept {
+  if (x.is_exact() && y.is_exact()) {
+    return 0.0;
+  }
+  const double dx = x.shift(p.x), dy = y.shift(p.y);
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+AffineMap PointGrid::map() const noexcept {
+  return {x.coordinate(west), y.coordinate(south), x.unit(), y.unit()};
+}
+
+PointGridScan::PointGridScan(std::optional<double> resolution, const std::string& context)
+    : resolution_(resolution), context_(context) {
+  if (resolution_ && !(std::isfinite(*resolution_) && *resolution_ > 0)) {
+    throw Error(ErrorCode::invalid_argument, "the resolution must be a finite length above 0",
+                context_);
+  }
+}
+
+void PointGridScan::add_source(const PointStreamFacts& facts) {
+  plan_decimals_ = std::max(plan_decimals_, facts.plan_decimals);
+  height_decimals_ = std::max(height_decimals_, facts.height_decimals);
+  if (facts.lattice && (!lattice_ || facts.lattice->unit < lattice_->unit)) {
+    lattice_ = facts.lattice;
+  }
+}
+
+void PointGridScan::choose_steps(PointGrid& grid) const {
+  if (resolution_) {
+    grid.x = grid.y = StepCounter(*resolution_, 0.0);
+  } else if (lattice_) {
+    grid.x = StepCounter(lattice_->unit, lattice_->origin_x);
+    grid.y = StepCounter(lattice_->unit, lattice_->origin_y);
+  } else {
+    grid.x = grid.y = StepCounter(std::max({plan_decimals_, x_.decimals(), y_.decimals()}));
+  }
+}
+
+PointGrid PointGridScan::grid() const {
+  PointGrid grid;
+  choose_steps(grid);
+  grid.west = x_.lowest(grid.x);
+  grid.south = y_.lowest(grid.y);
+  // Differences of numbers up to 2^62 fit; as doubles they are near enough for a limit of 2^30.
+  grid.east = x_.highest(grid.x);
+  grid.north = y_.highest(grid.y);
+  const double width = static_cast<double>(grid.east) - static_cast<double>(grid.west);
+  const double height = static_cast<double>(grid.north) - static_cast<double>(grid.south);
+  check_extent(std::max(width, height) * grid.x.unit(), grid.x.unit(), context_);
+  grid.heights = StepCounter(std::max(height_decimals_, z_.decimals()));
+  grid.whole = static_cast<double>(z_.lowest(grid.heights)) >= -kInt32Max &&
+               static_cast<double>(z_.highest(grid.heights)) <= kInt32Max;
+  return grid;
+}
+
+bool is_wanted(const SourcePoint& p, const SourceOptions& options) noexcept {
+  if (options.nodata && to_double(p.z) == *options.nodata) {
+    return false;
+  }
+  if (!options.bbox) {
+    return true;
+  }
+  const double x = to_double(p.x), y = to_double(p.y);
+  return options.bbox->min_x <= x && x <= options.bbox->max_x && options.bbox->min_y <= y &&
+         y <= options.bbox->max_y;
+}
+
+}  // namespace ptin

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The one height of points that fall together.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "engine/construct/grid/terrain_frame.h"
+
+namespace ptin {
+
+/// Heights of points that share a position, given in ascending order, so that the sum does not
+/// depend on the order of the source.
+class MergedHeight {
+ public:
+  explicit MergedHeight(double lowest) noexcept : low_(lowest), high_(lowest), sum_(lowest) {}
+  /// REQUIRES: not below the ones before.
+  void add(double height) noexcept {
+    high_ = height;
+    sum_ += height;
+    ++count_;
+  }
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  /// @param whole  Heights are codes: the mean is rounded to one, ties to even.
+  [[nodiscard]] double height(PointMerge rule, bool whole) const noexcept {
+    if (rule != PointMerge::kMean || low_ == high_) {
+      return rule == PointMerge::kHighest ? high_ : low_;
+    }
+    const double mean = sum_ / static_cast<double>(count_);
+    return whole ? std::nearbyint(mean) : mean;
+  }
+  /// How far the farthest of them is from `height`.
+  [[nodiscard]] double shift(double height) const noexcept {
+    return std::max(height - low_, high_ - height);
+  }
+
+ private:
+  double low_, high_, sum_;
+  std::uint64_t count_ = 1;
+};
+
+}  // namespace ptin

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Points to be sorted along a curve.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/construct/scratch/external_sorter.h"
+
+namespace ptin {
+
+/// A point to be sorted: by key, then height.
+struct KeyedHeight {
+  std::uint64_t key = 0;
+  double height = 0.0;  ///< No NaN.
+  friend bool operator==(const KeyedHeight&, const KeyedHeight&) = default;
+};
+
+struct ByKeyThenHeight {
+  bool operator()(const KeyedHeight& a, const KeyedHeight& b) const noexcept {
+    return a.key != b.key ? a.key < b.key : a.height < b.height;
+  }
+};
+
+using PointSorter = ExternalSorter<KeyedHeight, ByKeyThenHeight>;
+
+}  // namespace ptin

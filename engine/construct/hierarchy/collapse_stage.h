@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The first half of a build: all tiles are collapsed, from the leaves to the root.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "engine/construct/hierarchy/batch_order.h"
+#include "engine/construct/hierarchy/build_log.h"
+#include "engine/construct/hierarchy/hierarchy.h"
+#include "engine/construct/hierarchy/in_order_segments.h"
+#include "engine/construct/hierarchy/piece_runner.h"
+#include "engine/construct/hierarchy/tile_collapse.h"
+
+namespace ptin {
+
+/// Pieces are batches, in their order, and tiles above them as soon as their children are done:
+/// those go first, since they make temporary files superfluous.
+class CollapseStage final : public PieceSource {
+ public:
+  CollapseStage(const std::function<LeafStarter()>& make_starter, const TileTree& tree,
+                const BatchOrder& order, const HierarchyOptions& options, BuildLog& log);
+
+  [[nodiscard]] std::optional<std::uint64_t> next_bytes() override;
+  [[nodiscard]] Piece take(int worker) override;
+  /// To be called when all pieces are done: makes that durable.
+  void finish() { segments_.checkpoint(true); }
+
+ private:
+  [[nodiscard]] Piece take_batch(int worker);
+  [[nodiscard]] Piece take_inner();
+  std::function<void()> collapse_batch(std::size_t batch, const LeafStarter& start,
+                                       const std::stop_token& stop);
+  std::function<void()> collapse_above(const TileId& id,
+                                       const std::vector<ArrayFileFacts>& children,
+                                       const std::stop_token& stop);
+  CollapsedTile write(const CollapsedInner& inner);
+  ArrayFileFacts write(const TileId& id, const Tile& pushed);
+  void commit(const TileId& id, const CollapsedTile& tile);
+  void look_for_parent(const TileId& id);
+  void skip_done_batches();
+  [[noreturn]] void refuse_join(std::uint64_t bytes) const;
+  void report(std::uint64_t samples);
+
+  const TileTree& tree_;
+  const BatchOrder& order_;
+  const HierarchyOptions& options_;
+  BuildLog& log_;
+  InOrderSegments segments_;
+  std::vector<LeafStarter> starters_;  ///< One for each thread.
+  std::size_t next_batch_ = 0;
+  std::set<TileId> ready_;  ///< Above batches: all children are collapsed.
+  std::mutex report_mutex_;
+  std::uint64_t samples_done_ = 0, leaves_done_ = 0;
+};
+
+}  // namespace ptin

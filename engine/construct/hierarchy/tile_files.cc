@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/hierarchy/tile_files.h"
+
+#include <algorithm>
+
+#include "engine/check.h"
+
+namespace ptin {
+
+namespace {
+
+/// CarriedState without what the record tells (the box) and what the reader makes (the slot).
+struct StoredCarried {
+  std::uint32_t record;
+  std::uint32_t samples;
+  std::uint32_t holds;  ///< Bit 0: heights, bit 1: voids.
+};
+
+struct StoredFlags {
+  std::uint8_t samples_fill_grid;
+  std::uint8_t has_voids;
+};
+
+}  // namespace
+
+void write_pushed(ArrayFileWriter& out, const Tile& tile) {
+  std::vector<float> depths;
+  for (const VertexState& v : tile.vertex_state) {
+    depths.push_back(v.depth);
+  }
+  std::vector<StoredCarried> carried;
+  std::vector<Sample> samples;
+  for (const CarriedState& c : tile.carried) {
+    const std::span<const Sample> own = tile.samples.samples(c.samples);
+    carried.push_back({c.record, static_cast<std::uint32_t>(own.size()),
+                       (c.holds_heights ? 1U : 0U) | (c.holds_voids ? 2U : 0U)});
+    samples.insert(samples.end(), own.begin(), own.end());
+  }
+  const StoredFlags flags{static_cast<std::uint8_t>(tile.samples_fill_grid ? 1 : 0),
+                          static_cast<std::uint8_t>(tile.has_voids ? 1 : 0)};
+  out.put(std::span<const StoredFlags>(&flags, 1));
+  out.put(tile.tin.vertices);
+  out.put(tile.tin.has_height);
+  out.put(depths);
+  out.put(tile.tin.triangles);
+  out.put(tile.tin.classes);
+  out.put(carried);
+  out.put(samples);
+  out.put(tile.records);
+}
+
+Tile read_pushed(ArrayFileReader& in, const MeasureUnits& units) {
+  Tile tile;
+  tile.units = units;
+  const StoredFlags flags = in.take<StoredFlags>()[0];
+  tile.samples_fill_grid = flags.samples_fill_grid != 0;
+  tile.has_voids = flags.has_voids != 0;
+  tile.tin.vertices = in.take_copy<Vertex>();
+  tile.tin.has_height = in.take_copy<std::uint8_t>();
+  for (const float depth : in.take<float>()) {
+    tile.vertex_state.push_back({depth, 0, false});
+  }
+  tile.tin.triangles = in.take_copy<Triangle>();
+  tile.tin.classes = in.take_copy<TriangleClass>();
+  const auto carried = in.take<StoredCarried>();
+  const auto samples = in.take<Sample>();
+  tile.records = in.take_copy<VertexSplit>();
+  tile.carried.reserve(carried.size());
+  auto next = samples.begin();
+  for (const StoredCarried& c : carried) {
+    CarriedState state;
+    if (c.record != kNone) {
+      carry_record(state, tile.records[c.record], c.record);
+    }
+    state.samples = tile.samples.take(c.samples);
+    std::copy_n(next, c.samples, tile.samples.samples(state.samples).begin());
+    next += c.samples;
+    state.holds_heights = (c.holds & 1U) != 0;
+    state.holds_voids = (c.holds & 2U) != 0;
+    tile.carried.push_back(state);
+  }
+  in.require_undamaged();
+  return tile;
+}
+
+void write_segment(ArrayFileWriter& out, const InnerSegment& segment) {
+  out.put(segment.foreign);
+  out.put(segment.child_begin);
+  out.put(segment.records);
+  out.put(segment.dependencies);
+  out.put(segment.dependency_end);
+  out.put(segment.exported);
+}
+
+SegmentFile::SegmentFile(const TileId& id, const std::string& path, const ArrayFileFacts& facts)
+    : file_(path, facts) {
+  view_.id = id;
+  view_.foreign = file_.take<RecordBounds>();
+  view_.child_begin = file_.take<std::uint32_t>();
+  view_.records = file_.take<VertexSplit>();
+  view_.dependencies = file_.take<std::uint32_t>();
+  view_.dependency_end = file_.take<std::uint32_t>();
+  view_.exported = file_.take<std::uint32_t>();
+}
+
+}  // namespace ptin

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/measure/fan_deviation.h"
+
+#include <algorithm>
+
+#include "engine/mesh/collapse.h"
+
+namespace ptin {
+
+namespace {
+
+/// Which spokes count.
+class SpokeFilter {
+ public:
+  SpokeFilter(const Tile& tile, const StarSamples& s, const FanFrame& fan)
+      : tile_(tile), star_(s.star), fan_(fan), site_(collapse_site(s.star, fan.j)) {}
+
+  [[nodiscard]] bool counts(std::size_t spoke) const {
+    if (spoke == 0) {
+      return is_void(site_.left) && is_surface(0);
+    }
+    if (spoke == fan_.triangles()) {
+      return is_void(site_.right) && is_surface(spoke - 1);
+    }
+    return is_surface(spoke - 1) || is_surface(spoke);
+  }
+
+ private:
+  [[nodiscard]] bool is_void(TriangleId t) const {
+    return t != kNone && tile_.tin.classes[t] == TriangleClass::kVoid;
+  }
+  [[nodiscard]] bool is_surface(std::size_t i) const {
+    return !is_void(star_.triangles[fan_.star_triangle[i]]);
+  }
+  const Tile& tile_;
+  const Star& star_;
+  const FanFrame& fan_;
+  CollapseSite site_;
+};
+
+}  // namespace
+
+double fan_deviation(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                     const FullSurface& full, const GridBox& within) {
+  const Star& star = s.star;
+  const auto end_of = [&](std::size_t link) {
+    const VertexId v = star.link[link];
+    return EdgeEnd{tile.tin.position(v), tile.units.heights.code(tile.tin.vertices[v].height)};
+  };
+  const SpokeFilter filter(tile, s, fan);
+  const EdgeEnd w = end_of(fan.j);
+  double worst = 0.0;
+  for (std::size_t i = 0; i <= fan.triangles(); ++i) {
+    if (filter.counts(i)) {
+      const EdgeEnd end = end_of((fan.j + 1 + i) % star.degree());
+      if (meets(united(box_of(w.position), end.position), within)) {
+        worst = std::max(worst, full.largest_gap(w, end));
+      }
+    }
+  }
+  return worst;
+}
+
+}  // namespace ptin

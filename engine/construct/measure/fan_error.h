@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The error of one fan over all samples that it covers.
+#pragma once
+
+#include <vector>
+
+#include "engine/construct/measure/fan_measure.h"
+#include "engine/construct/measure/star_samples.h"
+#include "engine/construct/tile/tile.h"
+
+namespace ptin {
+
+/// The own part of a collapse, in height codes, rounded up.
+struct FanError {
+  double error = 0.0;  ///< Residuals, and charges for samples of the wrong class; may be +infinity.
+  double deviation = 0.0;  ///< Residuals alone: the deviation at samples.
+};
+
+/// Of each element of a gathered star (padded): the fan triangle that it goes to, and its residual
+/// there.
+struct FanAssignment {
+  std::vector<double> triangle;
+  std::vector<double> residual;
+};
+
+/// Measures a fan over every sample of the star and says where each goes. A sample on a spoke goes
+/// to the side of its own class; elements that are blocks are not assigned (sample_hand_over.h
+/// takes them apart). REQUIRES: gather_samples() and gather_sources() were called. Cost: samples
+/// times degree.
+[[nodiscard]] FanError measure_fan(const Tile& tile, const StarSamples& s, FanFrame& fan,
+                                   FanAssignment& assignment);
+
+/// Assigns elements to triangles of the frame by class: one on a spoke goes to the side of its own.
+/// Changes `triangle` alone.
+void assign_by_class(const Tile& tile, const StarSamples& s, const FanFrame& frame,
+                     FanAssignment& assignment);
+
+/// A bound in codes as records hold it: in the height's unit, rounded up.
+[[nodiscard]] float height_bound(double codes, const HeightEncoding& heights) noexcept;
+
+}  // namespace ptin

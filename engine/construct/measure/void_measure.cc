@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/measure/void_measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/construct/measure/lanes.h"
+#include "engine/construct/measure/sample_blocks.h"
+
+namespace ptin {
+
+namespace {
+
+bool is_void(const Tile& tile, const StarSamples& s, std::size_t star_triangle) {
+  return tile.tin.classes[s.star.triangles[star_triangle]] == TriangleClass::kVoid;
+}
+
+/// Where a sample lies in the fan.
+struct Place {
+  std::size_t surface = kNone;   ///< A surface triangle that holds it (closed), if any.
+  std::size_t any = kNone;       ///< Some triangle that holds it; a void one if any.
+  bool in_open_surface = false;  ///< Inside of a surface triangle, on no edge.
+  double residual = 0.0;         ///< To `surface`; without one, to the edge that it lies on.
+};
+
+/// The |vertical distance| of a sample to the plane of fan triangle i.
+double residual_to(const FanFrame& fan, std::size_t i, double before, double after, double qz) {
+  const double numerator =
+      fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before);
+  return std::abs(numerator) * fan.inverse[i];
+}
+
+/// True when a sample in (void) fan triangle i lies on an edge of it whose ends both have heights:
+/// a surface triangle may come to lie beyond, now or in another refinement, and hold the sample
+/// too.
+bool on_edge_with_heights(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                          std::size_t i, bool on_first_spoke, bool on_second_spoke, bool on_link) {
+  const std::size_t degree = s.star.degree();
+  const auto has_height = [&](std::size_t link) {
+    return tile.tin.has_height[s.star.link[link % degree]] != 0;
+  };
+  const bool w = has_height(fan.j);
+  const bool first = has_height(fan.j + 1 + i);
+  const bool second = has_height(fan.j + 2 + i);
+  return (on_first_spoke && w && first) || (on_second_spoke && w && second) ||
+         (on_link && first && second);
+}
+
+Place locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, double x, double y,
+             double z) {
+  Place place;
+  const double qx = x - fan.w_x;
+  const double qy = y - fan.w_y;
+  const double qz = z - fan.w_z;
+  double on_edge = 0.0;
+  std::int64_t before = cross_exact(fan.spoke_x[0], fan.spoke_y[0], qx, qy);
+  for (std::size_t i = 0; i < fan.triangles(); ++i) {
+    const std::int64_t after = cross_exact(fan.spoke_x[i + 1], fan.spoke_y[i + 1], qx, qy);
+    if (before >= 0 && after <= 0) {
+      const auto b = static_cast<double>(before);
+      const auto a = static_cast<double>(after);
+      const double link_side = fan.determinant[i] - b + a;  // 0 on the link edge
+      if (is_void(tile, s, fan.star_triangle[i])) {
+        place.any = i;
+        if (on_edge_with_heights(tile, s, fan, i, before == 0, after == 0, link_side == 0.0)) {
+          on_edge = std::max(on_edge, residual_to(fan, i, b, a, qz));
+        }
+      } else {
+        place.any = place.any == kNone ? i : place.any;
+        place.surface = i;
+        place.in_open_surface = before > 0 && after < 0 && link_side > 0.0;
+        place.residual = residual_to(fan, i, b, a, qz);
+      }
+    }
+    before = after;
+  }
+  if (place.surface == kNone) {
+    place.residual = on_edge;
+  }
+  return place;
+}
+
+void charge(VoidMeasure& measure, double amount) {
+  measure.charge = std::max(measure.charge, amount);
+  measure.error = std::max(measure.error, amount);
+}
+
+/// Charges one sample at its place.
+void measure_sample(const Tile& tile, const Place& place, float depth, VoidMeasure& measure) {
+  if (depth < 0.0F) {
+    if (place.in_open_surface) {
+      charge(measure, tile.units.charge(depth));
+    }
+  } else if (place.surface != kNone) {
+    measure.error = std::max(measure.error, place.residual);
+    measure.deviation = std::max(measure.deviation, place.residual);
+  } else {
+    charge(measure, tile.units.charge(depth));
+    measure.error = std::max(measure.error, place.residual);
+  }
+}
+
+/// What kSampleLanes samples are found to be.
+struct LaneMeasure {
+  Lanes residual;  ///< Of those with a height: in surface triangles; -1 where they are in none.
+  Lanes charge;    ///< Of those without.
+};
+
+PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,
+                                     const unsigned char* is_surface, std::size_t k) noexcept {
+  const Lanes none = Lanes{} - 1.0;
+  const Lanes qx = load_lanes(s.x.data() + k) - fan.w_x;
+  const Lanes qy = load_lanes(s.y.data() + k) - fan.w_y;
+  const Lanes qz = load_lanes(s.z.data() + k) - fan.w_z;
+  Lanes residual = none;
+  Lanes inside = {};  // above 0 inside of a surface triangle, on no edge
+  Lanes before = fan.spoke_x[0] * qy - fan.spoke_y[0] * qx;
+  for (std::size_t i = 0; i < fan.triangles(); ++i) {
+    const Lanes after = fan.spoke_x[i + 1] * qy - fan.spoke_y[i + 1] * qx;
+    if (is_surface[i] != 0) {
+      const Lanes within = smaller(before, -after);
+      const Lanes r = magnitude(
+          (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
+          fan.inverse[i]);
+      residual = larger(residual, within < 0.0 ? none : r);
+      inside = larger(inside, smaller(within, fan.determinant[i] - before + after));
+    }
+    before = after;
+  }
+  const Lanes is_void = load_lanes(s.is_void.data() + k);
+  const Lanes charge = load_lanes(s.charge.data() + k);
+  LaneMeasure m;
+  m.residual = is_void > 0.0 ? Lanes{} : residual;
+  m.charge = is_void > 0.0 ? (inside > 0.0 ? charge : Lanes{}) : Lanes{};
+  return m;
+}
+
+/// Measures from sample `begin` on while every sample with a height has a surface triangle and the
+/// error does not exceed `stop_above`. Returns where it stopped: the first lanes that hold one that
+/// has none, or the end.
+PTIN_VERSIONS
+std::size_t measure_while_found(const StarSamples& s, const FanFrame& fan,
+                                const unsigned char* is_surface, std::size_t begin,
+                                double stop_above, double& residual, double& charge) noexcept {
+  for (std::size_t k = begin; k < s.x.size(); k += kSampleLanes) {
+    const LaneMeasure m = measure_lanes(s, fan, is_surface, k);
+    if (largest_lane(-m.residual) > 0.0) {
+      return k;
+    }
+    residual = std::max(residual, largest_lane(m.residual));
+    charge = std::max(charge, largest_lane(m.charge));
+    if (std::max(residual, charge) > stop_above) {
+      return s.x.size();
+    }
+  }
+  return s.x.size();
+}
+
+/// Charges a block: each corner as a sample; and where the corners are in different triangles, the
+/// classes between.
+void measure_block(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                   const SampleBlock& b, VoidMeasure& measure) {
+  std::size_t first = fan.triangles();
+  std::size_t last = 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const Place place = locate(tile, s, fan, corner == 0 || corner == 3 ? b.x0 : b.x1,
+                               corner < 2 ? b.y0 : b.y1, b.z);
+    measure_sample(tile, place, b.depth, measure);
+    first = std::min(first, place.any);
+    last = std::max(last, place.any);
+  }
+  for (std::size_t i = first; i <= last && first != last; ++i) {
+    const bool is_wrong = is_void(tile, s, fan.star_triangle[i]) == (b.depth >= 0.0F);
+    if (is_wrong) {
+      charge(measure, tile.units.charge(b.depth));
+    }
+  }
+}
+
+/// One by one: coordinates beyond the exact range of doubles, and samples that lose their surface.
+void measure_singly(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::size_t begin,
+                    std::size_t end, VoidMeasure& measure) {
+  for (std::size_t k = begin; k < std::min(end, s.count); ++k) {
+    const Place place = locate(tile, s, fan, s.x[k], s.y[k], s.z[k]);
+    if (s.is_void[k] != 0.0) {
+      charge(measure, place.in_open_surface ? s.charge[k] : 0.0);
+      continue;
+    }
+    if (place.surface == kNone) {
+      charge(measure, s.charge[k]);
+    } else {
+      measure.deviation = std::max(measure.deviation, place.residual);
+    }
+    measure.error = std::max(measure.error, place.residual);
+  }
+}
+
+void measure_samples(const Tile& tile, const StarSamples& s, FanFrame& fan, double stop_above,
+                     VoidMeasure& measure) {
+  if (s.is_wide()) {
+    measure_singly(tile, s, fan, 0, s.count, measure);
+    return;
+  }
+  fan.is_surface.resize(fan.triangles());
+  for (std::size_t i = 0; i < fan.triangles(); ++i) {
+    fan.is_surface[i] = is_void(tile, s, fan.star_triangle[i]) ? 0 : 1;
+  }
+  std::size_t k = 0;
+  while (k < s.x.size() && measure.error <= stop_above) {
+    double residual = 0.0;
+    double charged = 0.0;
+    k = measure_while_found(s, fan, fan.is_surface.data(), k, stop_above, residual, charged);
+    charge(measure, charged);
+    measure.error = std::max(measure.error, residual);
+    measure.deviation = std::max(measure.deviation, residual);
+    if (k < s.x.size()) {
+      measure_singly(tile, s, fan, k, k + kSampleLanes, measure);
+      k += kSampleLanes;
+    }
+  }
+}
+
+void measure_blocks(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                    VoidMeasure& measure) {
+  bool data_blocks = false;
+  for (const SampleBlock& b : s.blocks) {
+    measure_block(tile, s, fan, b, measure);
+    data_blocks |= b.depth >= 0.0F;
+  }
+  if (data_blocks) {
+    const double straddling = straddling_residual(s, fan);
+    measure.error = std::max(measure.error, straddling);
+    measure.deviation = std::max(measure.deviation, straddling);
+  }
+}
+
+/// True when link vertex `k` touches a surface triangle of the star, before the collapse.
+bool had_surface(const Tile& tile, const StarSamples& s, std::size_t k) {
+  const std::size_t triangles = s.star.triangles.size();
+  const bool after = k < triangles && !is_void(tile, s, k);
+  const bool has_before = k > 0 || s.star.closed;
+  return after || (has_before && !is_void(tile, s, k == 0 ? triangles - 1 : k - 1));
+}
+
+/// The same after it: w touches the whole fan, any other the fan triangles beside its spoke.
+bool keeps_surface(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::size_t k) {
+  const std::size_t degree = s.star.degree();
+  const auto surface = [&](std::size_t i) {
+    return i < fan.triangles() && !is_void(tile, s, fan.star_triangle[i]);
+  };
+  if (k == fan.j) {
+    for (std::size_t i = 0; i < fan.triangles(); ++i) {
+      if (surface(i)) {
+        return true;
+      }
+    }
+    return false;
+  }
+  const std::size_t spoke = (k + degree - fan.j - 1) % degree;
+  return surface(spoke) || (spoke > 0 && surface(spoke - 1));
+}
+
+}  // namespace
+
+VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, FanFrame& fan,
+                               double stop_above) {
+  VoidMeasure measure;
+  if (tile.tin.has_height[s.star.link[fan.j]] == 0) {
+    for (const std::uint32_t t : fan.star_triangle) {
+      if (!is_void(tile, s, t)) {
+        return measure;
+      }
+    }
+  }
+  measure.allowed = true;
+  if (!s.surface_triangles) {  // else the whole fan is surface, and keeps everybody
+    for (std::size_t k = 0; k < s.star.degree(); ++k) {
+      const VertexId v = s.star.link[k];
+      if (tile.tin.has_height[v] != 0 && had_surface(tile, s, k) &&
+          !keeps_surface(tile, s, fan, k)) {
+        charge(measure, tile.units.charge(tile.vertex_state[v].depth));
+      }
+    }
+  }
+  measure_samples(tile, s, fan, stop_above, measure);
+  if (measure.error <= stop_above) {
+    measure_blocks(tile, s, fan, measure);
+  }
+  return measure;
+}
+
+std::size_t triangle_of_sample(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                               double x, double y, bool has_height) {
+  const Place place = locate(tile, s, fan, x, y, 0.0);
+  return has_height && place.surface != kNone ? place.surface : place.any;
+}
+
+}  // namespace ptin

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/points/point_buckets.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/grid_precision.h"
+#include "engine/construct/grid/height_finder.h"
+#include "engine/construct/grid/point_grid.h"
+#include "engine/construct/grid/point_merge.h"
+#include "engine/construct/grid/point_order.h"
+#include "engine/construct/points/packed_bucket.h"
+#include "engine/construct/points/point_reading.h"
+#include "engine/construct/points/point_spool.h"
+#include "engine/error.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::uint64_t kMostBuckets = std::uint64_t{1} << 20;
+
+void check_area(const ConvexHull& hull, std::uint64_t points, const std::string& context) {
+  if (points < 3) {
+    refuse("there are " + std::to_string(points) + " distinct points; a terrain needs at least 3",
+           context);
+  }
+  if (hull.corners().size() < 3) {
+    refuse("all points lie on one line; a terrain needs an area", context);
+  }
+}
+
+}  // namespace
+
+/// Merges points that come in the order of the curve, and writes them in buckets.
+class PointBuckets::Writer {
+ public:
+  Writer(PointBuckets& to, const PointGrid& grid, const PointOrder& order, PointMerge rule)
+      : to_(to),
+        grid_(grid),
+        order_(order),
+        rule_(rule),
+        heights_(grid.whole, grid.heights.unit()) {}
+
+  void add(const KeyedHeight& p) {
+    if (merged_ && p.key == key_) {
+      merged_->add(p.height);
+      return;
+    }
+    put();
+    key_ = p.key;
+    merged_.emplace(p.height);
+  }
+
+  void finish() {
+    put();
+    write();
+    to_.boxes_ = PackedBoxes(std::move(boxes_));
+    const HeightFit fit = heights_.fit();
+    set_heights(to_.frame_, fit);
+    to_.codes_are_whole_ = grid_.whole;
+    to_.counts_.largest_shift_height *= grid_.whole ? fit.encoding.step : 1.0;
+    to_.counts_.merged_points = to_.counts_.source_points - to_.size_;
+    to_.hull_ = hull_.hull();
+  }
+
+ private:
+  void put() {
+    if (!merged_) {
+      return;
+    }
+    const double height = merged_->height(rule_, grid_.whole);
+    double& largest = to_.counts_.largest_shift_height;
+    largest = std::max(largest, merged_->shift(height));
+    heights_.add(height);
+    const GridPoint position = order_.point(key_);
+    hull_.add(position);
+    bucket_.push_back({position, height});
+    ++to_.size_;
+    if (bucket_.size() == to_.bucket_points_) {
+      write();
+    }
+  }
+
+  void write() {
+    if (bucket_.empty()) {
+      return;
+    }
+    GridBox box;
+    for (const PlacedHeight& p : bucket_) {
+      box = united(box, p.position);
+    }
+    pack_bucket(bucket_, box, packed_);
+    to_.add_to_checksum(packed_);
+    const std::uint64_t begin = to_.begin_of(boxes_.size());
+    to_.file_->write_at(packed_, begin);
+    to_.ends_.push_back(begin + packed_.size());
+    boxes_.push_back(box);
+    bucket_.clear();
+  }
+
+  PointBuckets& to_;
+  const PointGrid& grid_;
+  const PointOrder& order_;
+  PointMerge rule_;
+  HeightFinder heights_;
+  HullCollector hull_;
+  std::vector<GridBox> boxes_;
+  std::vector<PlacedHeight> bucket_;
+  std::vector<std::byte> packed_;
+  std::uint64_t key_ = 0;
+  std::optional<MergedHeight> merged_;
+};
+
+void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rule,
+                        const ExternalMemory& memory, const std::stop_token& stop,
+                        const Progress& progress, const std::string& keep_as) {
+  const std::uint64_t total = spool.size();
+  std::uint64_t done = 0;
+  const auto report = [&](std::size_t points) {
+    if (stop.stop_requested()) {
+      throw Error(ErrorCode::cancelled, "sorting the points was cancelled");
+    }
+    done += points;
+    if (progress) {
+      progress("sorting", done, 2 * total);
+    }
+  };
+  const PointOrder order(grid.largest());
+  PointSorter sorter(memory, "points", stop);
+  std::vector<SourcePoint> batch;
+  while (spool.take(batch)) {
+    for (const SourcePoint& p : batch) {
+      sorter.add({order.key(grid.position(p)), grid.height(p.z)});
+      counts_.largest_shift_plan = std::max(counts_.largest_shift_plan, grid.shift(p));
+    }
+    report(batch.size());
+  }
+  while ((total + bucket_points_ - 1) / bucket_points_ > kMostBuckets) {
+    bucket_points_ *= 2;
+  }
+  file_ = keep_as.empty()
+              ? std::make_unique<ScratchFile>(memory.files, memory.folder, "buckets", true)
+              : std::make_unique<ScratchFile>(memory.files, keep_as, ScratchFile::Kept::kNew);
+  Writer writer(*this, grid, order, rule);
+  sorter.merge(
+      [&](std::span<const KeyedHeight> points) {
+        for (const KeyedHeight& p : points) {
+          writer.add(p);
+        }
+        report(points.size());
+      },
+      stop);
+  writer.finish();
+}
+
+PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const SourceOptions& options,
+                                const ExternalMemory& memory, const std::stop_token& stop,
+                                const Progress& progress, const std::string& keep_as) {
+  const std::string context = paths.empty() ? "" : paths[0];
+  PointBuckets buckets;
+  PointSpool spool(memory);
+  const PointReading reading = read_sources(
+      paths, options, [&](const SourcePoint& p) { spool.add(p); }, stop,
+      [&](std::uint64_t done, std::uint64_t total) {
+        if (progress) {
+          progress("reading", done, total);
+        }
+      },
+      &memory);
+  set_crs(buckets.frame_,
+          resolve_crs(reading.crs, options.a_srs,
+                      options.vertical_crs.empty() ? reading.vertical_crs : options.vertical_crs));
+  buckets.frame_.map = reading.grid.map();
+  require_resolvable(buckets.frame_.map, reading.grid.east - reading.grid.west,
+                     reading.grid.north - reading.grid.south, "give a coarser --resolution",
+                     context);
+  require_latitudes(buckets.frame_, reading.grid.north - reading.grid.south, context);
+  buckets.counts_.source_points = reading.points;
+  buckets.counts_.left_out_points = reading.left_out;
+  buckets.sort(spool, reading.grid, options.merge, memory, stop, progress, keep_as);
+  buckets.counts_.largest_shift_plan += reading.largest_shift;
+  check_area(buckets.hull_, buckets.size_, context);
+  return buckets;
+}
+
+void PointBuckets::take(std::uint64_t first, std::uint64_t count,
+                        std::vector<BucketPoint>& points) const {
+  points.clear();
+  points.reserve(count);
+  std::vector<std::byte> packed;
+  std::vector<PlacedHeight> bucket;
+  for (std::uint64_t at = first; at < first + count;) {
+    const std::uint64_t number = at / bucket_points_;
+    const std::uint64_t begin = number * bucket_points_;
+    const std::uint64_t end = std::min(begin + bucket_points_, first + count);
+    const std::uint64_t bytes = ends_[number] - begin_of(number);
+    packed.resize(bytes + kUnpackSlack);
+    file_->read_at(std::span(packed).first(bytes), begin_of(number));
+    bucket.resize(end - begin);
+    unpack_bucket(std::span(packed).first(bytes), box(number), bucket);
+    for (; at < end; ++at) {
+      const PlacedHeight& p = bucket[at - begin];
+      points.push_back({p.position, codes_are_whole_ ? frame_.heights.bits(p.height)
+                                                     : encode_height(frame_.heights, p.height)});
+    }
+  }
+}
+
+}  // namespace ptin

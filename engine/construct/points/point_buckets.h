@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Any number of points on the grid, on disk: merged, in the order of the Hilbert curve, cut into
+// buckets of equal size whose boxes are kept in memory.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "engine/construct/grid/point_sorter.h"
+#include "engine/construct/grid/source_disk.h"
+#include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/scratch/array_file.h"
+#include "engine/geometry/box.h"
+#include "engine/geometry/convex_hull.h"
+#include "engine/geometry/packed_boxes.h"
+#include "engine/geometry/point.h"
+#include "storage/file/file_layer.h"
+
+namespace ptin {
+
+/// A point on the grid.
+struct BucketPoint {
+  GridPoint position;
+  HeightBits height = 0;
+};
+
+/// What happened on the way from the source to the buckets.
+struct PointCounts {
+  std::uint64_t source_points = 0;    ///< Read and not left out.
+  std::uint64_t left_out_points = 0;  ///< By class or place, withheld, or without a height.
+  std::uint64_t merged_points = 0;    ///< Of the source's, less the positions that they fell on.
+  /// How far a point moved at most: in plan when it was snapped to the grid (CRS units; 0 where the
+  /// grid keeps every digit), and in height when it was merged (height's unit).
+  double largest_shift_plan = 0.0;
+  double largest_shift_height = 0.0;
+};
+
+/// Points in buckets. Skewed sources are no worse than even ones: buckets hold equally many points,
+/// however far apart. Threads: const members from any number at once.
+class PointBuckets {
+ public:
+  using Progress = std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)>;
+
+  /// Reads the sources once, puts what they hold on one grid, and sorts it.
+  ///
+  /// The grid unit is the power of ten of the CRS unit that keeps every digit of every x and y, and
+  /// the origin the smallest x and y; or it is `options.resolution`, and the origin a multiple of
+  /// that. LAS declares its digits with its scale factor; where that is no power of ten, the
+  /// smallest scale factor is the unit, and the origin is aligned with that file's offset. Points
+  /// that fall together are merged: their height is the mean, rounded as heights are, or the lowest
+  /// or highest one. Heights are int32 with the power of ten that keeps every digit, where that
+  /// fits; else as for a Float64 raster. The CRS is the one that all files declare, or
+  /// `options.a_srs`.
+  ///
+  /// The result depends on the set of points alone, not on their order or the files that they come
+  /// from.
+  ///
+  /// Disk: 27 bytes a point while it is read, 43 while it is sorted, then
+  /// at most 16, mostly half of that (packed_bucket.h); in memory.folder. Memory: memory.bytes, and
+  /// 24 bytes for each of at most 2^20 buckets.
+  /// @param keep_as  A file that must not exist: the buckets stay in it, so that load() can take
+  ///                 them up; "" keeps them in a file without a name.
+  /// @throws Error  not_found, io_error, unsupported_version  as open_point_stream()
+  ///                invalid_argument    as the streams; CRSs that differ; no points; fewer than 3
+  ///                                    distinct ones; all collinear; an extent of more than 2^30
+  ///                                    grid units (the message names a resolution)
+  ///                resource_exhausted  the disk is full
+  ///                cancelled           `stop` fired
+  static PointBuckets read(const std::vector<std::string>& paths, const SourceOptions& options,
+                           const ExternalMemory& memory, const std::stop_token& stop = {},
+                           const Progress& progress = {}, const std::string& keep_as = "");
+  /// What read() takes of the disk for so many points.
+  [[nodiscard]] static SourceDisk disk_of(std::uint64_t points) noexcept;
+
+  /// Writes all but the points to `index`, and makes both files durable.
+  /// @throws Error io_error, resource_exhausted
+  [[nodiscard]] ArrayFileFacts save(FileLayer& files, const std::string& index) const;
+  /// Takes up what read() kept and save() wrote.
+  /// @throws Error corruption  a file is not what was written; not_found, io_error, cancelled
+  /// Cost: one reading of the points, to check them.
+  static PointBuckets load(FileLayer& files, const std::string& buckets, const std::string& index,
+                           const ArrayFileFacts& facts, const std::stop_token& stop = {},
+                           const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
+
+  [[nodiscard]] const TerrainFrame& frame() const noexcept { return frame_; }
+  [[nodiscard]] const PointCounts& counts() const noexcept { return counts_; }
+  [[nodiscard]] const ConvexHull& hull() const noexcept { return hull_; }
+  /// Distinct positions.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  [[nodiscard]] std::uint64_t bucket_points() const noexcept { return bucket_points_; }
+  [[nodiscard]] std::uint64_t buckets() const noexcept { return boxes_.boxes().size(); }
+  [[nodiscard]] const GridBox& box(std::uint64_t bucket) const noexcept {
+    return boxes_.boxes()[bucket];
+  }
+  /// Points first .. first + count - 1 in the order of the curve.  @throws Error io_error
+  void take(std::uint64_t first, std::uint64_t count, std::vector<BucketPoint>& points) const;
+
+  /// Calls visit(bucket) for each bucket whose box pleases `meets`, the nearest to `from` first,
+  /// until it returns false. `meets` must hold for every box around one for which it holds.
+  template <class Meets, class Visit>
+  void visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const {
+    boxes_.visit_nearest(from, meets, visit);
+  }
+
+ private:
+  class Writer;
+  struct Kept;
+  PointBuckets() = default;
+  void sort(class PointSpool& spool, const struct PointGrid& grid, PointMerge rule,
+            const ExternalMemory& memory, const std::stop_token& stop, const Progress& progress,
+            const std::string& keep_as);
+  void add_to_checksum(std::span<const std::byte> bucket);
+  void check_points(const std::string& path, std::uint64_t expected, const std::stop_token& stop,
+                    const std::function<void(std::uint64_t, std::uint64_t)>& progress);
+  /// Where a bucket begins in the file.
+  [[nodiscard]] std::uint64_t begin_of(std::uint64_t bucket) const noexcept {
+    return bucket == 0 ? 0 : ends_[bucket - 1];
+  }
+
+  TerrainFrame frame_;
+  PointCounts counts_;
+  ConvexHull hull_;
+  std::uint64_t size_ = 0;
+  std::uint64_t bucket_points_ = 1024;
+  bool codes_are_whole_ = false;  ///< Heights on disk are codes.
+  std::unique_ptr<ScratchFile> file_;
+  std::vector<std::uint64_t> ends_;  ///< Of each bucket, in the file.
+  std::uint64_t checksum_ = 0;       ///< Of the buckets, each with what came before it.
+  PackedBoxes boxes_;                ///< Of buckets.
+};
+
+}  // namespace ptin

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/points/point_count.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "engine/construct/read/point_stream.h"
+#include "engine/construct/read/tin_count.h"
+#include "engine/construct/read/tin_soup.h"
+
+namespace ptin {
+
+namespace {
+
+/// Points of text are looked at until so many are known, to learn the length of a line.
+constexpr std::size_t kLookedAt = 10000;
+/// Of a line of text, where nothing better is known.
+constexpr double kBytesOfPoint = 24.0;
+/// How much smaller packed text may be than 4 GiB of it, at most: its size is known modulo that.
+constexpr std::uint64_t kSurelySmall = std::uint64_t{256} << 20;
+constexpr double kPackedTimes = 4.0;
+
+/// Bytes of text in a .gz file: its last four bytes, where it cannot be longer than they count.
+double unpacked_bytes(const std::string& path, std::uint64_t packed) {
+  if (packed >= kSurelySmall || packed < 4) {
+    return static_cast<double>(packed) * kPackedTimes;
+  }
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(-4, std::ios::end);
+  std::array<unsigned char, 4> b{};
+  file.read(reinterpret_cast<char*>(b.data()), 4);
+  const double last = b[0] + 256.0 * (b[1] + 256.0 * (b[2] + 256.0 * b[3]));
+  return std::max(last, static_cast<double>(packed));
+}
+
+/// True for what must not be looked into before it is read.
+bool can_be_read_once_only(const std::string& path) {
+  std::error_code ignored;
+  const auto type = std::filesystem::status(path, ignored).type();
+  return type == std::filesystem::file_type::fifo ||
+         type == std::filesystem::file_type::character ||
+         type == std::filesystem::file_type::socket;
+}
+
+/// Text of as many bytes a point as its first ones have.
+std::uint64_t points_of_text(const std::string& path, PointStream& stream) {
+  std::error_code ignored;
+  const auto size = std::filesystem::file_size(path, ignored);
+  const std::uint64_t bytes = ignored ? stream.total() : size;
+  std::vector<SourcePoint> batch;
+  double looked_at = 0.0;
+  while (looked_at < kLookedAt && stream.next(batch)) {
+    looked_at += static_cast<double>(batch.size());
+  }
+  if (looked_at < kLookedAt) {
+    return static_cast<std::uint64_t>(looked_at);  // that was all
+  }
+  const auto read = static_cast<double>(stream.done());
+  const double of_point = read > 0.0 ? read / looked_at : kBytesOfPoint;
+  const double all =
+      stream.total() > 0 ? static_cast<double>(stream.total()) : unpacked_bytes(path, bytes);
+  return static_cast<std::uint64_t>(std::ceil(all / of_point));
+}
+
+}  // namespace
+
+PointCount count_points(const std::vector<std::string>& inputs, const SourceOptions& options) {
+  PointCount count;
+  const bool by_ogr = !options.points.layer.empty() || !options.points.z_field.empty();
+  for (const std::string& input : inputs) {
+    if (can_be_read_once_only(input)) {
+      count.is_known = false;
+      return count;
+    }
+    if (is_tin_file(input)) {
+      const std::uint64_t vertices = count_tin_vertices(input, options.points.layer);
+      count.points += vertices;
+      count.of_largest_tin = std::max(count.of_largest_tin, vertices);
+      continue;
+    }
+    const auto stream = open_point_stream(input, options.points, options.nodata);
+    count.points +=
+        is_point_text(input) && !by_ogr ? points_of_text(input, *stream) : stream->total();
+  }
+  count.points = std::max<std::uint64_t>(count.points, 3);
+  count.may_be_less = !options.points.classes.empty() || options.bbox || options.nodata;
+  return count;
+}
+
+}  // namespace ptin

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/points/point_reading.h"
+
+#include "engine/construct/grid/crs.h"
+#include "engine/construct/read/point_stream.h"
+#include "engine/error.h"
+
+namespace ptin {
+namespace {
+
+/// The CRS that all files share.
+class CommonCrs {
+ public:
+  void add(const std::string& crs, const std::string& path) {
+    if (first_ && !is_same_crs(crs_, crs)) {
+      refuse("this file has another CRS than '" + path_ + "', or one of them has none; transform " +
+                 "it first, or say with --a-srs what all of them are in",
+             path);
+    }
+    if (!first_) {
+      first_ = true;
+      crs_ = crs;
+      path_ = path;
+    }
+  }
+  [[nodiscard]] const std::string& text() const { return crs_; }
+
+ private:
+  bool first_ = false;
+  std::string crs_, path_;
+};
+
+}  // namespace
+
+PointReading read_sources(const std::vector<std::string>& paths, const SourceOptions& options,
+                          const std::function<void(const SourcePoint&)>& take,
+                          const std::stop_token& stop,
+                          const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                          const ExternalMemory* memory) {
+  PointReading reading;
+  PointGridScan scan(options.resolution, paths.empty() ? "" : paths[0]);
+  CommonCrs crs, vertical_crs;
+  std::vector<SourcePoint> batch;
+  std::uint64_t count = 0;
+  for (const std::string& path : paths) {
+    const auto stream =
+        open_point_stream(path, options.points, options.nodata, {memory, stop, progress});
+    if (options.a_srs.empty()) {
+      crs.add(stream->facts().crs, path);
+      vertical_crs.add(stream->facts().vertical_crs, path);
+    }
+    scan.add_source(stream->facts());
+    while (stream->next(batch)) {
+      if (stop.stop_requested()) {
+        throw Error(ErrorCode::cancelled, "reading was cancelled", path);
+      }
+      if (progress) {
+        progress(stream->done(), stream->total());
+      }
+      count += batch.size();
+      for (const SourcePoint& p : batch) {
+        if (is_wanted(p, options)) {
+          scan.add(p);
+          take(p);
+        }
+      }
+    }
+    reading.left_out += stream->left_out();
+    reading.largest_shift = std::max(reading.largest_shift, stream->largest_shift());
+  }
+  if (scan.points() == 0) {
+    refuse(count + reading.left_out == 0
+               ? "there is no point in this file"
+               : "every point is left out: none lies in the bounds, with a height and of a chosen "
+                 "class",
+           paths.empty() ? "" : paths[0]);
+  }
+  reading.left_out += count - scan.points();
+  reading.points = scan.points();
+  reading.grid = scan.grid();
+  reading.crs = crs.text();
+  reading.vertical_crs = options.vertical_crs.empty() ? vertical_crs.text() : "";
+  return reading;
+}
+
+}  // namespace ptin

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Points of a source on their way to the grid, which is not known before the last one is read.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/construct/read/point_stream.h"
+#include "engine/construct/scratch/external_memory.h"
+#include "storage/file/file_layer.h"
+
+namespace ptin {
+
+/// A queue on disk: all points in, then all points out, and the disk is free again piece by piece.
+class PointSpool {
+ public:
+  /// On disk, of a point: three mantissas and the decimals of each.
+  static constexpr std::size_t kRecordBytes = 3 * 8 + 3;
+
+  explicit PointSpool(const ExternalMemory& memory) : memory_(memory) {}
+
+  /// @throws Error io_error, resource_exhausted
+  void add(const SourcePoint& p);
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+  /// The next points; false when there is none left. No add() after the first take().
+  [[nodiscard]] bool take(std::vector<SourcePoint>& batch);
+
+ private:
+  static constexpr std::size_t kBlockRecords = 1 << 15;
+  /// Files are small, so that they are given back early, and few, since each has a descriptor: of
+  /// kFileBlocks blocks, then of twice as many after kFilesOfSize of a size. 2 TB are 256 files.
+  static constexpr std::uint64_t kFileBlocks = 256;
+  static constexpr std::size_t kFilesOfSize = 32;
+  struct File {
+    std::unique_ptr<ScratchFile> file;
+    std::uint64_t first_block = 0, blocks = 0;
+  };
+  void flush();
+
+  ExternalMemory memory_;
+  std::vector<std::byte> block_;
+  std::vector<File> files_;
+  std::size_t taking_ = 0;  ///< The file that is being taken from.
+  std::uint64_t blocks_ = 0;
+  std::uint64_t size_ = 0, taken_ = 0;
+};
+
+}  // namespace ptin

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One opened raster file: its place in the world, and its raw values turned to the grid's
+// orientation.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/tile/tile_tree.h"
+
+namespace ptin {
+
+/// How the raw values of a raster are read: integers of up to 32 bits, Float32, and all others.
+enum class RawType : std::uint8_t { kInt32, kFloat32, kFloat64 };
+
+/// What a raster file says of itself, in the grid's orientation: x to the east, y to the north,
+/// sample (0, 0) the centre of its south-western pixel.
+struct RasterShape {
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+  AffineMap map;                   ///< Of sample (0, 0).
+  bool georeferenced = false;      ///< false: the map is the identity, in pixels.
+  bool rows_from_south = false;    ///< The file's first row is the southernmost.
+  bool columns_from_east = false;  ///< The file's first column is the easternmost.
+  std::string crs;                 ///< WKT2:2019 as declared; empty when unknown.
+  std::string unit;                ///< Of heights; empty when unknown.
+  RawType raw = RawType::kInt32;
+  std::string type_name;      ///< GDAL's: "Int16", "Float32" ...
+  bool signed_bytes = false;  ///< Of the type Byte, but from -128 to 127.
+  double scale = 1.0;         ///< height = offset + scale * raw value
+  double offset = 0.0;
+  std::array<int, 2> block = {1, 1};  ///< Width and height of the file's own blocks.
+};
+
+/// A raster file, opened when needed. Not thread-safe: one call at a time.
+class RasterPart {
+ public:
+  /// @throws Error  not_found         no such file
+  ///                invalid_argument  not a raster, no band or several, complex, rotated, too
+  ///                large, ...
+  RasterPart(std::string path, std::optional<double> nodata_override);
+  /// The same part, closed: it reads with a descriptor of its own.
+  [[nodiscard]] RasterPart closed_copy() const { return RasterPart(*this); }
+  ~RasterPart();
+  RasterPart(RasterPart&&) noexcept;
+  RasterPart& operator=(RasterPart&&) noexcept;
+
+  [[nodiscard]] const RasterShape& shape() const noexcept { return shape_; }
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+  /// Gives the file's descriptor back; the next read() opens it again. A mosaic may have more files
+  /// than a process may have descriptors.
+  void close() noexcept;
+  [[nodiscard]] bool is_open() const noexcept { return bands_ != nullptr; }
+
+  /// Reads raw values and whether each is a height, row-major from the south. T is int32_t, float
+  /// or double, as shape().raw says. A value is none where it is the nodata value, NaN, or masked
+  /// out. REQUIRES: the window lies inside the file; the spans hold width * height.
+  /// @throws Error  io_error          a block cannot be read
+  ///                invalid_argument  a height that is not finite: the message names its pixel
+  template <class T>
+  void read(const SampleRange& window, std::span<T> values, std::span<std::uint8_t> valid);
+
+ private:
+  struct Bands;
+  RasterPart(const RasterPart& other);
+  void open();
+
+  std::string path_;
+  std::optional<double> nodata_override_;
+  std::optional<double> nodata_;  ///< A raw value.
+  RasterShape shape_;
+  std::unique_ptr<Bands> bands_;
+};
+
+}  // namespace ptin

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Rasters as a terrain: one file that GDAL reads (a VRT too), or several of one grid.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "engine/construct/grid/terrain_frame.h"
+
+namespace ptin {
+
+/// An opened raster terrain. Samples stand at pixel centres, whether the file calls its pixels
+/// areas or points; grid x counts columns from the west, grid y rows from the south, whatever the
+/// file's own order; without a geotransform a grid unit is a pixel and the CRS unknown.
+///
+/// A sample is void where it is the nodata value, NaN, masked out (mask band, alpha 0), or in no
+/// file. Where files overlap the last one given with a height wins. Scale and offset are applied;
+/// of integer rasters they become the height encoding, exactly.
+///
+/// Threads: const members may be called from several threads, and take turns at the files. For
+/// readers that do not wait for each other, give each a duplicate().
+class RasterSource {
+ public:
+  using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+
+  /// Opens the files and reads all samples once, block by block, to count them and to choose the
+  /// encoding.
+  /// @param paths     One raster, or several with the same steps, type, scale, offset and CRS,
+  /// whose
+  ///                  samples lie on one grid to a hundredth of a pixel.
+  /// @param options   `resolution` and `points` do not concern rasters.
+  /// @param progress  Called after each block with samples done and in all; may be empty.
+  /// @throws Error  not_found         a file does not exist
+  ///                invalid_argument  not a raster; no band or several; rotated; more than 2^30
+  ///                steps; a
+  ///                                  single row or column; no sample in `bbox`; an infinite height
+  ///                                  (the message names its pixel); files that are not of one
+  ///                                  grid; no height at all is not an error
+  ///                io_error          a block cannot be read
+  ///                cancelled         `stop` fired
+  /// Cost: one reading of all files. Memory: a few MiB, and GDAL's block cache, which is the
+  /// caller's to set.
+  [[nodiscard]] static RasterSource open(const std::vector<std::string>& paths,
+                                         const SourceOptions& options,
+                                         const std::stop_token& stop = {},
+                                         const Progress& progress = {});
+
+  RasterSource(RasterSource&&) noexcept;
+  RasterSource& operator=(RasterSource&&) noexcept;
+  ~RasterSource();
+
+  /// The same terrain with files of its own. Cost: opens no file before the first read().
+  [[nodiscard]] RasterSource duplicate() const;
+
+  [[nodiscard]] const TerrainFrame& frame() const noexcept;
+  [[nodiscard]] std::int64_t width() const noexcept;   ///< Samples in x, at least 2.
+  [[nodiscard]] std::int64_t height() const noexcept;  ///< Samples in y, at least 2.
+  [[nodiscard]] std::uint64_t valid_samples() const noexcept;
+  [[nodiscard]] std::uint64_t void_samples() const noexcept;
+
+  /// Reads the window of `w` x `h` samples whose south-western one is (x0, y0): row-major, row 0 in
+  /// the south. `heights` is 0 where `valid` is 0. REQUIRES: the window lies inside the terrain;
+  /// the spans hold w * h.
+  /// @throws Error  invalid_argument  the window or a span is not as required
+  ///                io_error          a block cannot be read, or the file changed since open()
+  /// Cost: linear in the window, plus decoding of the blocks that it touches and GDAL's cache has
+  /// not. Memory besides: nothing for integers, one value a sample for Float32 and others, and for
+  /// mosaics.
+  void read(std::int64_t x0, std::int64_t y0, std::int64_t w, std::int64_t h,
+            std::span<HeightBits> heights, std::span<std::uint8_t> valid) const;
+
+ private:
+  struct Impl;
+  explicit RasterSource(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ptin

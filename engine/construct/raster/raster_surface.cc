@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/raster/raster_surface.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+namespace ptin {
+
+namespace {
+
+/// floor(i * numerator / denominator) and its remainder for i = first, first + 1, ..., without
+/// divisions in the loop. Products stay below 2^62: numerator and i are lengths on the grid.
+class Stepper {
+ public:
+  /// REQUIRES: denominator > 0. step() comes before the first value.
+  Stepper(std::int64_t numerator, std::int64_t denominator, std::int64_t first) noexcept
+      : denominator_(denominator) {
+    divide(numerator, quotient_step_, remainder_step_);
+    if (first != 1) {
+      divide(numerator * (first - 1), quotient_, remainder_);
+    }
+  }
+  void step() noexcept {
+    quotient_ += quotient_step_;
+    remainder_ += remainder_step_;
+    if (remainder_ >= denominator_) {
+      remainder_ -= denominator_;
+      ++quotient_;
+    }
+  }
+  [[nodiscard]] std::int64_t floor() const noexcept { return quotient_; }
+  [[nodiscard]] std::int64_t remainder() const noexcept { return remainder_; }
+
+ private:
+  void divide(std::int64_t n, std::int64_t& quotient, std::int64_t& remainder) const noexcept {
+    quotient = n / denominator_;
+    remainder = n % denominator_;
+    if (remainder < 0) {
+      remainder += denominator_;
+      --quotient;
+    }
+  }
+  std::int64_t denominator_;
+  std::int64_t quotient_step_ = 0;
+  std::int64_t remainder_step_ = 0;
+  std::int64_t quotient_ = 0;
+  std::int64_t remainder_ = 0;
+};
+
+std::int64_t sign(std::int64_t v) noexcept { return v < 0 ? -1 : 1; }
+
+}  // namespace
+
+/// An edge in window coordinates, with the rise of its height relative to its first end, and the
+/// part of it, as fractions, that may lie in the window.
+struct RasterSurface::Line {
+  std::int64_t x, y, dx, dy;
+  double rise;
+  double enter = 0.0, leave = 1.0;
+
+  /// The crossings to look at, of `n` - 1 equally spaced ones: those near the window.
+  [[nodiscard]] std::int64_t first(std::int64_t n) const noexcept {
+    return enter <= 0.0 ? 1
+                        : std::max<std::int64_t>(
+                              static_cast<std::int64_t>(enter * static_cast<double>(n)) - 1, 1);
+  }
+  [[nodiscard]] std::int64_t end(std::int64_t n) const noexcept {
+    return leave >= 1.0 ? n
+                        : std::min<std::int64_t>(
+                              static_cast<std::int64_t>(leave * static_cast<double>(n)) + 2, n);
+  }
+  void clip(std::int64_t from, std::int64_t length, std::int64_t size) noexcept {
+    if (length == 0) {
+      leave = from < 0 || from >= size ? -1.0 : leave;
+      return;
+    }
+    const double a = static_cast<double>(-from) / static_cast<double>(length);
+    const double b = static_cast<double>(size - 1 - from) / static_cast<double>(length);
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+};
+
+RasterSurface::RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid,
+                             std::int32_t width, std::int32_t height,
+                             const HeightEncoding& encoding, GridPoint origin)
+    : heights_(std::move(heights)),
+      flags_(std::move(valid)),
+      width_(width),
+      height_(height),
+      encoding_(encoding),
+      origin_(origin) {
+  for (std::uint8_t& flags : flags_) {
+    flags = flags != 0 ? kValid : 0;
+  }
+  mark_rising();
+}
+
+/// Diagonals are asked for many times each.
+void RasterSurface::mark_rising() {
+  const auto valid = [this](std::size_t i) {
+    return static_cast<std::uint8_t>(flags_[i] & kValid);
+  };
+  for (std::int32_t y = 0; y + 1 < height_; ++y) {
+    for (std::int32_t x = 0; x + 1 < width_; ++x) {
+      const std::size_t a = at(x, y);
+      const std::size_t d = at(x, y + 1);
+      const RasterCell cell{{code(a), code(a + 1), code(d + 1), code(d)},
+                            {valid(a), valid(a + 1), valid(d + 1), valid(d)}};
+      if (cell_diagonal(cell, {origin_.x + x, origin_.y + y}) == Diagonal::kRising) {
+        flags_[a] |= kRises;
+      }
+    }
+  }
+}
+
+/// Crossings with the lines x = constant: between two samples of a column, or at a sample.
+void RasterSurface::cross_columns(const Line& l, GapMaximum& gap) const {
+  const std::int64_t n = std::abs(l.dx);
+  if (n < 2) {
+    return;
+  }
+  const double inverse = 1.0 / static_cast<double>(n);
+  Stepper y(l.dy, n, l.first(n));
+  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
+    y.step();
+    const std::int64_t column = l.x + sign(l.dx) * i;
+    const std::int64_t row = l.y + y.floor();
+    if (!holds(column, row) || (y.remainder() != 0 && row + 1 == height_)) {
+      continue;
+    }
+    const std::size_t p = at(column, row);
+    const std::size_t q = y.remainder() == 0 ? p : p + static_cast<std::size_t>(width_);
+    add(p, q, static_cast<double>(y.remainder()) * inverse,
+        l.rise * (static_cast<double>(i) * inverse), gap);
+  }
+}
+
+/// Crossings with the lines y = constant.
+void RasterSurface::cross_rows(const Line& l, GapMaximum& gap) const {
+  const std::int64_t n = std::abs(l.dy);
+  if (n < 2) {
+    return;
+  }
+  const double inverse = 1.0 / static_cast<double>(n);
+  Stepper x(l.dx, n, l.first(n));
+  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
+    x.step();
+    const std::int64_t column = l.x + x.floor();
+    const std::int64_t row = l.y + sign(l.dy) * i;
+    if (!holds(column, row) || (x.remainder() != 0 && column + 1 == width_)) {
+      continue;
+    }
+    const std::size_t p = at(column, row);
+    const std::size_t q = x.remainder() == 0 ? p : p + 1;
+    add(p, q, static_cast<double>(x.remainder()) * inverse,
+        l.rise * (static_cast<double>(i) * inverse), gap);
+  }
+}
+
+/// Crossings with the lines y - x = constant, where the cell is cut along its rising diagonal.
+void RasterSurface::cross_rising(const Line& l, GapMaximum& gap) const {
+  const std::int64_t d = l.dy - l.dx;
+  const std::int64_t n = std::abs(d);
+  if (n < 2) {
+    return;
+  }
+  const double inverse = 1.0 / static_cast<double>(n);
+  Stepper x(l.dx, n, l.first(n));
+  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
+    x.step();
+    if (x.remainder() == 0) {
+      continue;  // at a sample: a crossing with a row or a column too
+    }
+    const std::int64_t column = l.x + x.floor();
+    const std::int64_t row = column + (l.y - l.x) + sign(d) * i;
+    if (holds(column, row) && holds(column + 1, row + 1) && rises(column, row)) {
+      const std::size_t p = at(column, row);
+      add(p, p + static_cast<std::size_t>(width_) + 1, static_cast<double>(x.remainder()) * inverse,
+          l.rise * (static_cast<double>(i) * inverse), gap);
+    }
+  }
+}
+
+/// Crossings with the lines y + x = constant, where the cell is cut along its falling diagonal.
+void RasterSurface::cross_falling(const Line& l, GapMaximum& gap) const {
+  const std::int64_t d = l.dy + l.dx;
+  const std::int64_t n = std::abs(d);
+  if (n < 2) {
+    return;
+  }
+  const double inverse = 1.0 / static_cast<double>(n);
+  Stepper x(l.dx, n, l.first(n));
+  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
+    x.step();
+    if (x.remainder() == 0) {
+      continue;
+    }
+    const std::int64_t column = l.x + x.floor();
+    const std::int64_t row = (l.y + l.x) + sign(d) * i - column -
+                             1;  // the diagonal's lower right end is (column + 1, row)
+    if (holds(column, row) && holds(column + 1, row + 1) && !rises(column, row)) {
+      const std::size_t upper_left = at(column, row + 1);
+      add(upper_left, upper_left + 1 - static_cast<std::size_t>(width_),
+          static_cast<double>(x.remainder()) * inverse, l.rise * (static_cast<double>(i) * inverse),
+          gap);
+    }
+  }
+}
+
+RasterSurface::Line RasterSurface::line_of(const EdgeEnd& a, const EdgeEnd& b) const noexcept {
+  Line line{std::int64_t{a.position.x} - origin_.x, std::int64_t{a.position.y} - origin_.y,
+            std::int64_t{b.position.x} - a.position.x, std::int64_t{b.position.y} - a.position.y,
+            b.code - a.code};
+  if (!holds(line.x, line.y) || !holds(line.x + line.dx, line.y + line.dy)) {
+    line.clip(line.x, line.dx, width_);
+    line.clip(line.y, line.dy, height_);
+  }
+  return line;
+}
+
+double RasterSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
+  const Line line = line_of(a, b);
+  GapMaximum gap(a.code);
+  if (line.enter > line.leave) {
+    return 0.0;
+  }
+  cross_columns(line, gap);
+  cross_rows(line, gap);
+  cross_rising(line, gap);
+  cross_falling(line, gap);
+  return gap.bound();
+}
+
+}  // namespace ptin

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The full surface of a raster window, from its samples alone.
+#pragma once
+
+#include <vector>
+
+#include "engine/construct/raster/raster_tin.h"
+#include "engine/construct/tile/full_surface.h"
+
+namespace ptin {
+
+/// Edges may lead out of the window: only what lies inside of it is looked at.
+class RasterSurface final : public FullSurface {
+ public:
+  /// Takes the samples over. Layout as make_raster_tin().
+  RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid,
+                std::int32_t width, std::int32_t height, const HeightEncoding& encoding,
+                GridPoint origin);
+
+  [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
+
+ private:
+  struct Line;
+  [[nodiscard]] std::size_t at(std::int64_t x, std::int64_t y) const noexcept {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
+  }
+  [[nodiscard]] double code(std::size_t i) const noexcept { return encoding_.code(heights_[i]); }
+  [[nodiscard]] bool holds(std::int64_t x, std::int64_t y) const noexcept {
+    return x >= 0 && y >= 0 && x < width_ && y < height_;
+  }
+  void mark_rising();
+  [[nodiscard]] bool rises(std::int64_t x, std::int64_t y) const noexcept {
+    return (flags_[at(x, y)] & kRises) != 0;
+  }
+  [[nodiscard]] Line line_of(const EdgeEnd& a, const EdgeEnd& b) const noexcept;
+  void cross_columns(const Line& line, GapMaximum& gap) const;
+  void cross_rows(const Line& line, GapMaximum& gap) const;
+  void cross_rising(const Line& line, GapMaximum& gap) const;
+  void cross_falling(const Line& line, GapMaximum& gap) const;
+  void add(std::size_t p, std::size_t q, double fraction, double edge, GapMaximum& gap) const {
+    if ((flags_[p] & flags_[q] & kValid) != 0) {
+      gap.add(code(p), code(q), fraction, edge);
+    }
+  }
+
+  std::vector<HeightBits> heights_;
+  static constexpr std::uint8_t kValid = 1;  ///< The sample has a height.
+  /// The cell whose lower left sample it is, is cut along its rising diagonal.
+  static constexpr std::uint8_t kRises = 2;
+  std::vector<std::uint8_t> flags_;
+  std::int32_t width_;
+  std::int32_t height_;
+  HeightEncoding encoding_;
+  GridPoint origin_;
+};
+
+}  // namespace ptin

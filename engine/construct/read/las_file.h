@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The bytes of a LAS file before its points: header, variable length records, CRS.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include <cpl_vsi.h>
+
+#include "engine/construct/read/las_reader.h"
+
+namespace ptin {
+
+/// Reads a little-endian value. REQUIRES: it lies inside of `bytes`.
+template <class T>
+[[nodiscard]] T las_value(std::span<const unsigned char> bytes, std::size_t at) noexcept {
+  static_assert(std::endian::native == std::endian::little && std::is_trivially_copyable_v<T>);
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+/// An open file with positioned reads that know how long it is.
+class LasFile {
+ public:
+  /// @throws Error not_found, io_error
+  explicit LasFile(std::string path);
+  ~LasFile();
+  LasFile(const LasFile&) = delete;
+  LasFile& operator=(const LasFile&) = delete;
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+  /// Fills `into` from byte `offset`.  @throws Error io_error
+  void read(std::uint64_t offset, std::span<unsigned char> into) const;
+
+ private:
+  std::string path_;
+  VSILFILE* handle_ = nullptr;
+  std::uint64_t bytes_ = 0;
+};
+
+/// @throws Error as LasReader
+[[nodiscard]] LasHeader read_las_header(const LasFile& file);
+
+/// The CRS that the variable length records name: WKT text, or the WKT of GeoTIFF keys; "" for
+/// none.
+/// @throws Error invalid_argument  records that reach beyond the file, keys that mean nothing
+[[nodiscard]] std::string read_las_crs(const LasFile& file);
+
+}  // namespace ptin

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/read/las_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/construct/read/las_file.h"
+#include "engine/error.h"
+
+namespace ptin {
+namespace {
+
+constexpr std::uint64_t kBatchBytes = std::uint64_t{1} << 18;
+constexpr std::int64_t kMostMantissa = 1'000'000'000'000'000'000;
+/// Scales with more decimals are binary fractions of something, not decimals.
+constexpr int kMostScaleDecimals = 9;
+
+}  // namespace
+
+struct LasReader::File : LasFile {
+  using LasFile::LasFile;
+};
+
+/// Steps become decimals exactly where the scale is a short decimal and the offset has no more
+/// digits than it.
+LasReader::Axis LasReader::make_axis(std::size_t i, bool powers_of_ten_only) const {
+  Axis axis;
+  axis.real_scale = header_.scale[i];
+  axis.real_offset = header_.offset[i];
+  // Digits so that no mantissa exceeds 18 of them, for steps that are no decimals.
+  const double reach = std::abs(header_.offset[i]) + header_.scale[i] * 2147483648.0;
+  axis.decimals = std::clamp(17 - static_cast<int>(std::ceil(std::log10(reach))), 0, 17);
+  const Decimal scale = decimal_of(header_.scale[i]);
+  const Decimal offset = decimal_of(header_.offset[i]);
+  if (scale.decimals > kMostScaleDecimals || offset.decimals > scale.decimals ||
+      (powers_of_ten_only && scale.mantissa != 1)) {
+    return axis;
+  }
+  const double shifted =
+      static_cast<double>(offset.mantissa) * std::pow(10.0, scale.decimals - offset.decimals);
+  if (std::abs(shifted) + static_cast<double>(scale.mantissa) * 2147483648.0 >
+      static_cast<double>(kMostMantissa)) {
+    return axis;
+  }
+  axis.exact = true;
+  axis.scale = scale.mantissa;
+  axis.decimals = scale.decimals;
+  axis.offset = offset.mantissa * power_of_ten(scale.decimals - offset.decimals);
+  return axis;
+}
+
+Decimal LasReader::Axis::decimal(std::int32_t steps) const noexcept {
+  if (exact) {
+    return {std::int64_t{steps} * scale + offset, decimals};
+  }
+  const double value = static_cast<double>(steps) * real_scale + real_offset;
+  return {std::llround(value * static_cast<double>(power_of_ten(decimals))), decimals};
+}
+
+void LasReader::set_lattice() {
+  axes_ = {make_axis(0, true), make_axis(1, true), make_axis(2, false)};
+  if (axes_[0].exact && axes_[1].exact) {
+    facts_.plan_decimals = std::max(axes_[0].decimals, axes_[1].decimals);
+  } else {
+    facts_.lattice = SourceLattice{std::min(header_.scale[0], header_.scale[1]), header_.offset[0],
+                                   header_.offset[1]};
+  }
+  facts_.height_decimals = axes_[2].decimals;
+}
+
+LasReader::LasReader(std::string path, const PointChoice& choice) : path_(std::move(path)) {
+  file_ = std::make_unique<File>(path_);
+  header_ = read_las_header(*file_);
+  facts_.crs = read_las_crs(*file_);
+  for (const int c : choice.classes) {
+    if (c < 0 || c > 255) {
+      throw Error(ErrorCode::invalid_argument,
+                  "there is no class " + std::to_string(c) + "; LAS has classes 0 to 255", path_);
+    }
+    classes_.set(static_cast<std::size_t>(c));
+  }
+  if (choice.classes.empty()) {
+    classes_.set();
+  }
+  set_lattice();
+}
+
+LasReader::~LasReader() = default;
+
+/// Formats 0 to 5 keep flags and class in one byte, 6 to 10 in two.
+bool LasReader::wanted(const unsigned char* record) const {
+  if (header_.point_format < 6) {
+    return (record[15] & 0x80) == 0 && classes_.test(record[15] & 0x1f);
+  }
+  return (record[15] & 0x04) == 0 && classes_.test(record[16]);
+}
+
+bool LasReader::next(std::vector<SourcePoint>& batch) {
+  batch.clear();
+  while (batch.empty() && read_ < header_.points) {
+    const std::uint64_t count = std::min(
+        std::max<std::uint64_t>(kBatchBytes / header_.record_bytes, 1), header_.points - read_);
+    buffer_.resize(count * header_.record_bytes);
+    file_->read(header_.first_point + read_ * header_.record_bytes, buffer_);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const unsigned char* record = buffer_.data() + i * header_.record_bytes;
+      if (!wanted(record)) {
+        ++left_out_;
+        continue;
+      }
+      const std::span<const unsigned char> bytes(record, 12);
+      batch.push_back({axes_[0].decimal(las_value<std::int32_t>(bytes, 0)),
+                       axes_[1].decimal(las_value<std::int32_t>(bytes, 4)),
+                       axes_[2].decimal(las_value<std::int32_t>(bytes, 8))});
+    }
+    read_ += count;
+  }
+  return !batch.empty();
+}
+
+}  // namespace ptin

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/read/ogr_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <cpl_vsi.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include "engine/construct/grid/gdal_session.h"
+#include "engine/error.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::size_t kBatchPoints = 4096;
+
+std::string layer_names(GDALDataset& data) {
+  std::string names;
+  const int count = data.GetLayerCount();
+  for (int i = 0; i < count && i < 10; ++i) {
+    names += (i == 0 ? "'" : ", '") + std::string(data.GetLayer(i)->GetName()) + "'";
+  }
+  return names + (count > 10 ? ", ..." : "");
+}
+
+bool is_numeric(OGRFieldType type) {
+  return type == OFTReal || type == OFTInteger || type == OFTInteger64;
+}
+
+}  // namespace
+
+struct OgrPoints::Layer {
+  GDALDatasetUniquePtr data;
+  OGRLayer* layer = nullptr;
+  int z_field = -1;
+
+  void open(const std::string& path, const PointChoice& choice);
+  void choose_layer(const std::string& path, const std::string& name);
+  void choose_height(const std::string& path, const std::string& field);
+};
+
+void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice) {
+  const GdalSession session;
+  data.reset(
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  if (data == nullptr) {
+    VSIStatBufL status;
+    if (VSIStatL(path.c_str(), &status) != 0) {
+      throw Error(ErrorCode::not_found, "there is no such file of points", path);
+    }
+    throw Error(ErrorCode::invalid_argument,
+                session.explain("this is no vector data that OGR reads"), path);
+  }
+  choose_layer(path, choice.layer);
+  choose_height(path, choice.z_field);
+}
+
+void OgrPoints::Layer::choose_layer(const std::string& path, const std::string& name) {
+  const auto refuse = [&](const std::string& sentence) {
+    throw Error(ErrorCode::invalid_argument, sentence, path);
+  };
+  if (data->GetLayerCount() == 0) {
+    refuse("there is no layer in this file");
+  }
+  if (!name.empty()) {
+    layer = data->GetLayerByName(name.c_str());
+    if (layer == nullptr) {
+      refuse("there is no layer '" + name + "'; there is " + layer_names(*data));
+    }
+  } else if (data->GetLayerCount() > 1) {
+    refuse("there are several layers, " + layer_names(*data) + "; name one with --layer");
+  } else {
+    layer = data->GetLayer(0);
+  }
+  const OGRwkbGeometryType type = wkbFlatten(layer->GetGeomType());
+  if (type != wkbPoint && type != wkbMultiPoint && type != wkbUnknown &&
+      type != wkbGeometryCollection) {
+    refuse("the layer '" + std::string(layer->GetName()) + "' holds " +
+           (type == wkbNone ? "no geometry" : OGRGeometryTypeToName(layer->GetGeomType())) +
+           ", not points");
+  }
+}
+
+void OgrPoints::Layer::choose_height(const std::string& path, const std::string& field) {
+  const auto refuse = [&](const std::string& sentence) {
+    throw Error(ErrorCode::invalid_argument, sentence, path);
+  };
+  if (field.empty()) {
+    const OGRwkbGeometryType type = layer->GetGeomType();
+    if (wkbFlatten(type) != wkbUnknown && !wkbHasZ(type)) {
+      refuse("the points of layer '" + std::string(layer->GetName()) +
+             "' have no z; name the attribute that holds their height with --z-field");
+    }
+    return;
+  }
+  OGRFeatureDefn* definition = layer->GetLayerDefn();
+  z_field = definition->GetFieldIndex(field.c_str());
+  if (z_field < 0) {
+    std::string names;
+    for (int i = 0; i < definition->GetFieldCount(); ++i) {
+      if (is_numeric(definition->GetFieldDefn(i)->GetType())) {
+        names += (names.empty() ? "'" : ", '") +
+                 std::string(definition->GetFieldDefn(i)->GetNameRef()) + "'";
+      }
+    }
+    refuse("there is no attribute '" + field + "'; " +
+           (names.empty() ? "none holds numbers" : "numbers are in " + names));
+  }
+  if (!is_numeric(definition->GetFieldDefn(z_field)->GetType())) {
+    refuse("the attribute '" + field + "' holds no numbers");
+  }
+}
+
+OgrPoints::OgrPoints(std::string path, const PointChoice& choice)
+    : path_(std::move(path)), layer_(std::make_unique<Layer>()) {
+  layer_->open(path_, choice);
+  const GdalSession session;
+  if (const OGRSpatialReference* srs = layer_->layer->GetSpatialRef()) {
+    char* wkt = nullptr;
+    static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", nullptr};
+    if (srs->exportToWkt(&wkt, kOptions) == OGRERR_NONE && wkt != nullptr) {
+      facts_.crs = wkt;
+    }
+    CPLFree(wkt);
+  }
+  if (layer_->layer->TestCapability(OLCFastFeatureCount) != 0) {
+    total_ = static_cast<std::uint64_t>(std::max<GIntBig>(layer_->layer->GetFeatureCount(), 0));
+  }
+  layer_->layer->ResetReading();
+}
+
+OgrPoints::~OgrPoints() {
+  const GdalSession session;
+  layer_.reset();
+}
+
+bool OgrPoints::reads(const std::string& path) {
+  const GdalSession session;
+  const auto opens = [&](unsigned kind) {
+    const GDALDatasetUniquePtr data(GDALDataset::Open(path.c_str(), kind | GDAL_OF_READONLY));
+    return data != nullptr &&
+           (kind == GDAL_OF_VECTOR ? data->GetLayerCount() : data->GetRasterCount()) > 0;
+  };
+  return opens(GDAL_OF_VECTOR) && !opens(GDAL_OF_RASTER);
+}
+
+Decimal OgrPoints::number(double value, const char* role) const {
+  if (std::abs(value) < 1e15) {
+    return decimal_of(value);
+  }
+  throw Error(ErrorCode::invalid_argument,
+              std::string("the ") + role + " of this point is " +
+                  (std::isnan(value) ? "NaN" : "infinite or 10^15 and more"),
+              path_ + ": feature " + std::to_string(feature_));
+}
+
+void OgrPoints::add_point(const void* any, double field_height, std::vector<SourcePoint>& batch) {
+  const auto& point = *static_cast<const OGRPoint*>(any);
+  if (point.IsEmpty() != 0) {
+    ++left_out_;
+    return;
+  }
+  if (layer_->z_field < 0 && point.Is3D() == 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "this point has no z; name the attribute that holds heights with --z-field",
+                path_ + ": feature " + std::to_string(feature_));
+  }
+  batch.push_back({number(point.getX(), "x"), number(point.getY(), "y"),
+                   number(layer_->z_field < 0 ? point.getZ() : field_height, "height")});
+}
+
+void OgrPoints::add_feature(void* any, std::vector<SourcePoint>& batch) {
+  auto& feature = *static_cast<OGRFeature*>(any);
+  const OGRGeometry* geometry = feature.GetGeometryRef();
+  if (geometry == nullptr || geometry->IsEmpty() != 0 ||
+      (layer_->z_field >= 0 && feature.IsFieldSetAndNotNull(layer_->z_field) == 0)) {
+    ++left_out_;
+    return;
+  }
+  const double height = layer_->z_field < 0 ? 0.0 : feature.GetFieldAsDouble(layer_->z_field);
+  switch (wkbFlatten(geometry->getGeometryType())) {
+    case wkbPoint:
+      add_point(geometry->toPoint(), height, batch);
+      return;
+    case wkbMultiPoint:
+      for (const OGRPoint* point : *geometry->toMultiPoint()) {
+        add_point(point, height, batch);
+      }
+      return;
+    default:
+      throw Error(ErrorCode::invalid_argument,
+                  std::string("this is a ") + geometry->getGeometryName() + ", not a point",
+                  path_ + ": feature " + std::to_string(feature_));
+  }
+}
+
+bool OgrPoints::next(std::vector<SourcePoint>& batch) {
+  batch.clear();
+  const GdalSession session;
+  while (batch.size() < kBatchPoints) {
+    const OGRFeatureUniquePtr feature(layer_->layer->GetNextFeature());
+    if (feature == nullptr) {
+      if (session.failed()) {
+        throw Error(ErrorCode::io_error, session.explain("cannot be read on"), path_);
+      }
+      break;
+    }
+    feature_ = feature->GetFID();
+    ++read_;
+    add_feature(feature.get(), batch);
+  }
+  return !batch.empty();
+}
+
+}  // namespace ptin

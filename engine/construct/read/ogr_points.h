@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Points of a vector layer: anything that OGR reads.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/construct/read/point_stream.h"
+
+namespace ptin {
+
+/// The points (and multipoints) of one layer as a stream. The height is the geometry's z, or the
+/// number in the attribute `z_field`. Features without a geometry, and with a `z_field` that is not
+/// set, are left out. Coordinates are taken as the shortest decimals that read back as the same
+/// doubles, so that a layer gives the same terrain as the text that it was made of.
+class OgrPoints final : public PointStream {
+ public:
+  /// @throws Error  not_found         there is no such file
+  ///                invalid_argument  OGR does not read it; no or several layers and none chosen;
+  ///                                  no such layer or attribute; a layer without heights; a layer
+  ///                                  of lines or areas
+  OgrPoints(std::string path, const PointChoice& choice);
+  ~OgrPoints() override;
+
+  [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
+  [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
+  [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
+  [[nodiscard]] std::uint64_t done() const noexcept override { return read_; }
+  [[nodiscard]] std::uint64_t total() const noexcept override { return total_; }
+
+  /// True when OGR reads the file, and it is no raster. Cost: opens it.
+  [[nodiscard]] static bool reads(const std::string& path);
+
+ private:
+  struct Layer;
+  void add_feature(void* feature, std::vector<SourcePoint>& batch);
+  void add_point(const void* point, double field_height, std::vector<SourcePoint>& batch);
+  [[nodiscard]] Decimal number(double value, const char* role) const;
+
+  std::string path_;
+  std::unique_ptr<Layer> layer_;
+  PointStreamFacts facts_;
+  std::int64_t feature_ = 0;  ///< The current one, for messages.
+  std::uint64_t read_ = 0, total_ = 0, left_out_ = 0;
+};
+
+}  // namespace ptin

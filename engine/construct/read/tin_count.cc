@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/read/tin_count.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stop_token>
+#include <utility>
+
+#include "engine/construct/read/tin_soup.h"
+#include "engine/error.h"
+
+namespace ptin {
+
+namespace {
+
+// Of text, where nothing better is known.
+constexpr double kBytesOfVertex = 32.0;
+/// Of a triangle beside the three numbers.
+constexpr double kBytesOfTriangle = 5.0;
+
+/// Counts, and knows where in the file it is.
+class CountingSink final : public SoupSink {
+ public:
+  explicit CountingSink(const ByteReader& in) : in_(in) {}
+
+  void expect_vertices(std::uint64_t count) override { said_ = count; }
+  void add_vertex(std::int64_t /*id*/, const SourcePoint& /*p*/) override {
+    vertices_.add(passed());
+  }
+  void add_triangle(const std::array<std::int64_t, 3>& /*ids*/) override {
+    triangles_.add(passed());
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> said() const { return said_; }
+  [[nodiscard]] std::uint64_t seen() const { return vertices_.count; }
+  /// @param bytes  Of the whole file.
+  [[nodiscard]] double estimate(double bytes) const {
+    const double of_vertex = vertices_.mean(kBytesOfVertex);
+    const double digits = std::max(1.0, std::floor(std::log10(bytes / (3.0 * of_vertex))));
+    const double of_triangle = triangles_.mean(kBytesOfTriangle + 3.0 * (digits + 1.0));
+    return bytes / (of_vertex + 2.0 * of_triangle);
+  }
+
+ private:
+  struct Kind {
+    std::uint64_t count = 0, bytes = 0;
+    void add(std::uint64_t passed) {
+      ++count;
+      bytes += passed;
+    }
+    [[nodiscard]] double mean(double otherwise) const {
+      return bytes > 0 ? static_cast<double>(bytes) / static_cast<double>(count) : otherwise;
+    }
+  };
+  /// Bytes since the last call.
+  std::uint64_t passed() { return in_.position() - std::exchange(at_, in_.position()); }
+
+  const ByteReader& in_;
+  std::uint64_t at_ = 0;
+  Kind vertices_, triangles_;
+  std::optional<std::uint64_t> said_;
+};
+
+}  // namespace
+
+std::uint64_t count_tin_vertices(const std::string& path, const std::string& surface) {
+  TinReader& read = tin_reader_of(path);
+  ByteReader in(path);
+  CountingSink sink(in);
+  std::stop_source enough;  // seen when a reader first looks: after 65536 vertices and triangles
+  enough.request_stop();
+  try {
+    static_cast<void>(read(in, {surface, enough.get_token(), {}}, sink));
+    return sink.seen();
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::cancelled) {
+      throw;
+    }
+  }
+  return sink.said().value_or(std::max(
+      sink.seen(), static_cast<std::uint64_t>(sink.estimate(static_cast<double>(in.size())))));
+}
+
+}  // namespace ptin

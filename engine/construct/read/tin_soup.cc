@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/read/tin_soup.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <unordered_map>
+#include <utility>
+
+#include "engine/construct/read/tin_reader.h"
+#include "engine/error.h"
+
+namespace ptin {
+
+namespace {
+
+struct TinFormat {
+  std::string_view extension;
+  TinReader* read;
+};
+constexpr std::array<TinFormat, 5> kFormats = {{{".ply", read_ply},
+                                                {".obj", read_obj},
+                                                {".2dm", read_two_dm},
+                                                {".xml", read_land_xml},
+                                                {".landxml", read_land_xml}}};
+
+const TinFormat* format_of(std::string_view path) {
+  std::string name(path);
+  std::transform(name.begin(), name.end(), name.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  for (const TinFormat& format : kFormats) {
+    if (name.ends_with(format.extension)) {
+      return &format;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool is_tin_file(std::string_view path) { return format_of(path) != nullptr; }
+
+bool may_have_surfaces(std::string_view path) {
+  const TinFormat* format = format_of(path);
+  return format != nullptr && format->read == read_land_xml;
+}
+
+TinReader& tin_reader_of(const std::string& path) {
+  const TinFormat* format = format_of(path);
+  if (format == nullptr) {
+    refuse("this is no TIN by its name; known are .ply, .obj, .2dm, .xml, .landxml", path);
+  }
+  return *format->read;
+}
+
+TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink) {
+  TinReader& read = tin_reader_of(path);
+  ByteReader in(path);
+  return read(in, reading, sink);
+}
+
+void split_words(std::string_view line, std::vector<std::string_view>& words) {
+  words.clear();
+  std::size_t at = 0;
+  while ((at = line.find_first_not_of(" \t", at)) != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+}
+
+Decimal coordinate_of(std::string_view word, const std::string& place) {
+  Decimal value;
+  switch (parse_number(word, value)) {
+    case NumberKind::kNumber:
+      return value;
+    case NumberKind::kNotANumber:
+    case NumberKind::kInfinite:
+      refuse("a coordinate is not a finite number", place);
+    case NumberKind::kTooLarge:
+      refuse("a coordinate is 10^18 or more", place);
+    case NumberKind::kNoNumber:
+      break;
+  }
+  refuse("'" + std::string(word.substr(0, 40)) + "' stands where a number belongs", place);
+}
+
+Decimal coordinate_of(double value, const std::string& place) {
+  if (!(std::abs(value) < 1e18)) {
+    refuse("a coordinate is not a finite number below 10^18", place);
+  }
+  return decimal_of(value);
+}
+
+Decimal coordinate_of(float value, const std::string& place) {
+  char text[64];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return coordinate_of({text, static_cast<std::size_t>(end - text)}, place);
+}
+
+std::int64_t whole_of(std::string_view word, const std::string& place) {
+  std::int64_t value = 0;
+  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (status != std::errc() || end != word.data() + word.size()) {
+    refuse("'" + std::string(word.substr(0, 40)) + "' stands where a whole number belongs", place);
+  }
+  return value;
+}
+
+void TinReceiver::look_around() {
+  constexpr std::uint64_t kInterval = 1 << 16;
+  if (++added_ % kInterval != 0) {
+    return;
+  }
+  if (reading_.stop.stop_requested()) {
+    throw Error(ErrorCode::cancelled, "reading was cancelled", in_.path());
+  }
+  if (reading_.progress) {
+    reading_.progress(in_.position(), in_.size());
+  }
+}
+
+TinFileFacts TinReceiver::finish() {
+  if (facts_.vertices == 0 || facts_.triangles == 0) {
+    refuse(facts_.vertices == 0 ? "there is no vertex in this file"
+           : facts_.hidden_triangles > 0
+               ? "every triangle in this file is hidden"
+               : "there is no triangle in this file; points alone are built from CSV, XYZ or LAS",
+           in_.path());
+  }
+  return std::move(facts_);
+}
+
+namespace {
+
+/// Everything in memory, ids still to be found.
+class SoupCollector final : public SoupSink {
+ public:
+  explicit SoupCollector(std::string path) : path_(std::move(path)) {}
+
+  void add_vertex(std::int64_t id, const SourcePoint& p) override {
+    const auto index = static_cast<std::uint32_t>(soup_.vertices.size());
+    if (index >= UINT32_MAX / 2) {
+      throw Error(ErrorCode::resource_exhausted, "more vertices than one mesh in memory counts",
+                  path_);
+    }
+    if (!index_of_.try_emplace(id, index).second) {
+      refuse("two vertices have the id " + std::to_string(id), path_);
+    }
+    soup_.vertices.push_back(p);
+  }
+  void add_triangle(const std::array<std::int64_t, 3>& ids) override { triangles_.push_back(ids); }
+
+  TinSoup finish(TinFileFacts facts) {
+    soup_.facts = std::move(facts);
+    soup_.triangles.reserve(triangles_.size());
+    for (const auto& ids : triangles_) {
+      std::array<std::uint32_t, 3> corners{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto found = index_of_.find(ids[i]);
+        if (found == index_of_.end()) {
+          refuse("triangle " + std::to_string(soup_.triangles.size()) + " names vertex " +
+                     std::to_string(ids[i]) + ", which is not there",
+                 path_);
+        }
+        corners[i] = found->second;
+      }
+      soup_.triangles.push_back(corners);
+    }
+    return std::move(soup_);
+  }
+
+ private:
+  std::string path_;
+  TinSoup soup_;
+  std::vector<std::array<std::int64_t, 3>> triangles_;
+  std::unordered_map<std::int64_t, std::uint32_t> index_of_;
+};
+
+}  // namespace
+
+TinSoup read_soup(TinReader& reader, ByteReader& in, const TinReading& reading) {
+  SoupCollector soup(in.path());
+  TinFileFacts facts = reader(in, reading, soup);
+  return soup.finish(std::move(facts));
+}
+
+}  // namespace ptin

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A TIN as a file holds it: vertices and triangles, unchecked. Readers for PLY, OBJ, 2DM, LandXML,
+// which hand it out piece by piece.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/construct/read/byte_reader.h"
+#include "engine/construct/read/point_stream.h"
+
+namespace ptin {
+
+/// Takes what a reader finds, in the order of the file.
+class SoupSink {
+ public:
+  SoupSink() = default;
+  SoupSink(const SoupSink&) = delete;
+  SoupSink& operator=(const SoupSink&) = delete;
+  virtual ~SoupSink() = default;
+
+  /// How many vertices a header says that there will be; not every format does.
+  virtual void expect_vertices(std::uint64_t /*count*/) {}
+  /// `id` is the file's own, or the vertex's number from 0 where the format has none. May be there
+  /// twice.
+  virtual void add_vertex(std::int64_t id, const SourcePoint& p) = 0;
+  /// Ids of vertices, which may come later, or not at all.
+  virtual void add_triangle(const std::array<std::int64_t, 3>& ids) = 0;
+};
+
+/// What else a file holds.
+struct TinFileFacts {
+  std::string crs;           ///< Anything GDAL understands; "" when the file is silent.
+  std::string vertical_crs;  ///< Likewise.
+  std::uint64_t vertices = 0, triangles = 0;
+  std::uint64_t hidden_triangles = 0;  ///< Marked invisible (LandXML): left out.
+};
+
+/// A whole TIN in memory. Indices are in range; nothing else is known of them.
+struct TinSoup {
+  std::vector<SourcePoint> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  TinFileFacts facts;
+};
+
+/// What a reader is told, and asked now and then.
+struct TinReading {
+  std::string surface;  ///< LandXML: the surface's name; "" where there is only one.
+  std::stop_token stop;
+  std::function<void(std::uint64_t done, std::uint64_t total)> progress;  ///< Bytes; may be empty.
+};
+
+/// True when a name is that of a TIN: .ply, .obj, .2dm, .xml or .landxml, in any case.
+[[nodiscard]] bool is_tin_file(std::string_view path);
+/// True when it is that of a format whose files hold several surfaces, by name: LandXML.
+[[nodiscard]] bool may_have_surfaces(std::string_view path);
+
+/// Reads a TIN by its name's extension. At least one vertex and one triangle are handed out.
+/// @throws Error  not_found, io_error
+///                invalid_argument    not what the format says, or cut short: the context names the
+///                                    place; a face that is no triangle; coordinates that are no
+///                                    finite numbers; no vertex, or no triangle
+///                cancelled           and what the sink throws
+/// Memory: some hundred KiB, whatever the file's size.
+TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink);
+
+// The readers. Each documents its own conventions.
+using TinReader = TinFileFacts(ByteReader& in, const TinReading& reading, SoupSink& sink);
+TinReader read_ply, read_obj, read_two_dm, read_land_xml;
+/// The one for a name's extension.  @throws Error invalid_argument  there is none
+[[nodiscard]] TinReader& tin_reader_of(const std::string& path);
+
+/// What one of them reads, in memory.
+/// @throws Error  as read_tin_file(); invalid_argument  an id that no vertex has, or that two have
+/// Cost: 48 bytes a vertex, 12 a triangle; memory grows with what is read, never with what a
+/// header claims.
+[[nodiscard]] TinSoup read_soup(TinReader& reader, ByteReader& in, const TinReading& reading);
+
+}  // namespace ptin

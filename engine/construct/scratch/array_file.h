@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Arrays of plain values in a temporary file, each with a checksum: what the stages of a build hand
+// to one another on disk. Read back by the same program on the same machine only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "storage/file/file_layer.h"
+#include "storage/file/mapped_file.h"
+#include "storage/file/read_only_file.h"
+
+namespace ptin {
+
+/// What a manifest knows of a finished file.
+struct ArrayFileFacts {
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;  ///< Of the headers of all arrays, which hold the arrays' own.
+  friend bool operator==(const ArrayFileFacts&, const ArrayFileFacts&) = default;
+};
+
+/// Writes arrays one after the other. A file of that name that is there already is replaced: it is
+/// what an interrupted build left.
+class ArrayFileWriter {
+ public:
+  /// @throws Error io_error, resource_exhausted
+  ArrayFileWriter(FileLayer& files, const std::string& path);
+
+  template <class T>
+  void put(std::span<const T> array) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    put_bytes(std::as_bytes(array), sizeof(T));
+  }
+  template <class T>
+  void put(const std::vector<T>& array) {
+    put(std::span<const T>(array));
+  }
+
+  [[nodiscard]] const ArrayFileFacts& facts() const noexcept { return facts_; }
+  /// @throws Error io_error, resource_exhausted
+  void sync() { file_.sync(); }
+
+ private:
+  void put_bytes(std::span<const std::byte> bytes, std::size_t element);
+
+  ScratchFile file_;
+  ArrayFileFacts facts_;
+};
+
+/// Reads them back in the order of writing, in place: spans live as long as the reader, and take no
+/// memory of the process's own.
+class ArrayFileReader {
+ public:
+  /// @throws Error corruption  the file is not the one of `facts`; io_error, not_found
+  ArrayFileReader(const std::string& path, const ArrayFileFacts& facts);
+
+  [[nodiscard]] bool at_end() const noexcept { return offset_ == file_.bytes(); }
+  /// @throws Error corruption  the next array is not of this type or damaged
+  template <class T>
+  [[nodiscard]] std::span<const T> take() {
+    const std::span<const std::byte> bytes = take_bytes(sizeof(T));
+    return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+  }
+  /// @throws Error corruption  when a span met a hole since: the file was cut short, or its disk
+  ///                           failed; to be called when the work with spans is done
+  void require_undamaged() const { mapped_.require_undamaged(); }
+  /// As take(), copied; nothing needs to be asked about the copy later on.
+  template <class T>
+  [[nodiscard]] std::vector<T> take_copy() {
+    const std::span<const T> array = take<T>();
+    std::vector<T> copy(array.begin(), array.end());
+    require_undamaged();
+    return copy;
+  }
+
+ private:
+  std::span<const std::byte> take_bytes(std::size_t element);
+  [[noreturn]] void refuse() const;
+
+  ReadOnlyFile file_;
+  MappedFile mapped_;
+  std::uint64_t offset_ = 0;
+};
+
+}  // namespace ptin

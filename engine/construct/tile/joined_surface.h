@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The full surface under a tile of several leaves: that of each leaf, asked one by one.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "engine/construct/tile/full_surface.h"
+#include "engine/geometry/box.h"
+
+namespace ptin {
+
+/// Every edge of the full TIN is in the surface of some leaf, so the largest gap over leaves is the
+/// largest of all. REQUIRES: leaves that know ends by position, as those of more than one leaf do.
+class JoinedSurface final : public FullSurface {
+ public:
+  /// @param box  Of all samples of the leaf and its full surface.
+  void add(std::unique_ptr<const FullSurface> leaf, const GridBox& box) {
+    leaves_.push_back({std::move(leaf), box});
+  }
+
+  /// Cost: the crossings, in the leaves whose boxes the edge's box meets.
+  [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override {
+    const GridBox edge = united(box_of(a.position), b.position);
+    double worst = 0.0;
+    for (const Leaf& leaf : leaves_) {
+      if (meets(edge, leaf.box)) {
+        worst = std::max(worst, leaf.full->largest_gap(a, b));
+      }
+    }
+    return worst;
+  }
+
+ private:
+  struct Leaf {
+    std::unique_ptr<const FullSurface> full;
+    GridBox box;
+  };
+  std::vector<Leaf> leaves_;
+};
+
+}  // namespace ptin

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The full surface of a part of a TIN: any set of its triangles, with holes, of several pieces.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/construct/tile/full_surface.h"
+#include "engine/geometry/packed_boxes.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin {
+
+/// A leaf of points: its own triangles of the full TIN. An edge may begin and end outside, and
+/// enter and leave more than once.
+class PartSurface final : public FullSurface {
+ public:
+  /// Keeps a copy of `part`, whose vertices are in the order of their keys. Neighbours are kNone at
+  /// its border.
+  PartSurface(const Tin& part, const HeightEncoding& encoding);
+
+  /// Cost: the crossings, and the logarithm of the length of the border.
+  [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
+
+ private:
+  /// A side of a triangle without a neighbour; the walk around its first corner begins there.
+  struct BorderSide {
+    VertexId first, second;  ///< With the part on the left of first -> second.
+    TriangleId triangle;
+    int side;
+  };
+  struct Step;
+  class Walk;
+
+  void index_border();
+  [[nodiscard]] VertexId vertex_at(GridPoint p) const noexcept;
+  template <class Visit>
+  void visit_border(GridPoint a, GridPoint b, const Visit& visit) const;
+
+  Tin part_;
+  HeightEncoding encoding_;
+  std::vector<BorderSide> border_;       ///< By first corner.
+  std::vector<std::uint32_t> by_place_;  ///< Indices into border_, along the Hilbert curve.
+  PackedBoxes boxes_;                    ///< Of by_place_.
+  std::vector<std::uint8_t> on_border_;  ///< Beside the vertices.
+};
+
+}  // namespace ptin

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/tin/tin_on_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "engine/construct/grid/height_finder.h"
+#include "engine/construct/grid/point_order.h"
+#include "engine/construct/grid/point_sorter.h"
+#include "engine/construct/tin/tin_digits.h"
+#include "engine/construct/tin/tin_names.h"
+#include "engine/geometry/orient.h"
+
+namespace ptin {
+
+namespace {
+
+/// Slivers that are mended at once; more are refused.
+constexpr std::size_t kMostSlivers = 1 << 16;
+
+/// A corner of a triangle with its vertex, and how far that is from its place in the file, grid
+/// units.
+struct JoinedCorner {
+  std::uint64_t place = 0;
+  GridVertex vertex;
+  float off_x = 0.0F, off_y = 0.0F;
+};
+struct ByCorner {
+  bool operator()(const JoinedCorner& a, const JoinedCorner& b) const noexcept {
+    return a.place < b.place;
+  }
+};
+
+using CornerSorter = ExternalSorter<JoinedCorner, ByCorner>;
+
+/// Twice the area of a triangle of the file; its sign is right but for the flattest of all.
+long double source_area(const std::array<JoinedCorner, 3>& c) {
+  const auto whole = [&](auto axis, std::size_t i) {
+    return static_cast<long double>(c[i].vertex.position.*axis) - c[0].vertex.position.*axis;
+  };
+  const long double bx = whole(&GridPoint::x, 1), by = whole(&GridPoint::y, 1);
+  const long double cx = whole(&GridPoint::x, 2), cy = whole(&GridPoint::y, 2);
+  const long double obx = c[1].off_x - c[0].off_x, oby = c[1].off_y - c[0].off_y;
+  const long double ocx = c[2].off_x - c[0].off_x, ocy = c[2].off_y - c[0].off_y;
+  const auto on_grid = static_cast<long double>(
+      orient(c[0].vertex.position, c[1].vertex.position, c[2].vertex.position));
+  return on_grid + (bx * ocy + obx * cy + obx * ocy - by * ocx - oby * cx - oby * ocx);
+}
+
+int sign_of(long double v) { return v > 0 ? 1 : (v < 0 ? -1 : 0); }
+
+/// What is wrong with triangles, while it is not known which way round is right.
+class Orientations {
+ public:
+  void add(const GridTriangle& t, int in_file) {
+    const int on_grid = sign_of(static_cast<long double>(t.area()));
+    excess_ += on_grid;
+    for (const int upright : {1, -1}) {
+      OrientationFaults& faults = faults_[upright > 0 ? 0 : 1];
+      if (on_grid == upright) {
+        continue;
+      }
+      if (in_file == upright) {
+        if (faults.slivers.size() < kMostSlivers) {
+          faults.slivers.push_back(t);
+        } else {
+          ++faults.more_slivers;
+        }
+      } else {
+        (on_grid == 0 ? faults.no_area : faults.turned_over).add(t.corners[0].position);
+      }
+    }
+  }
+  [[nodiscard]] bool is_clockwise() const noexcept { return excess_ < 0; }
+  [[nodiscard]] OrientationFaults take() { return std::move(faults_[excess_ < 0 ? 1 : 0]); }
+
+ private:
+  std::int64_t excess_ = 0;
+  std::array<OrientationFaults, 2> faults_;
+};
+
+/// One file on its way.
+class GridReader {
+ public:
+  GridReader(const std::string& path, const TinGridReading& reading)
+      : path_(path), reading_(reading), memory_(reading.memory) {
+    memory_.bytes /= kSorters;
+  }
+
+  TinOnGrid read();
+
+ private:
+  static constexpr std::uint64_t kSorters = 5;  ///< That hold memory at the same time.
+
+  void choose_grid();
+  void join();
+  [[nodiscard]] JoinedCorner snapped(const NamedVertex& v);
+  void assemble();
+  void number_vertices();
+  void report(std::uint64_t done) const {
+    if (reading_.progress) {
+      reading_.progress("sorting", done, kSteps);
+    }
+  }
+  static constexpr std::uint64_t kSteps = 4;
+
+  const std::string& path_;
+  const TinGridReading& reading_;
+  ExternalMemory memory_;
+  TinOnGrid tin_;
+  int decimals_ = 0;
+  std::optional<PointOrder> order_;
+  std::optional<NamedTin> named_;
+  std::unique_ptr<CornerSorter> corners_;
+  std::unique_ptr<PointSorter> points_;  ///< Vertices.
+};
+
+void GridReader::choose_grid() {
+  TinDigits digits;
+  named_->vertices.visit([&](const NamedVertex& v) { digits.add(v.point()); }, reading_.stop);
+  decimals_ = digits.kept();
+  PointGridScan scan(reading_.options.resolution, path_);
+  scan.add_source({});
+  named_->vertices.visit(
+      [&](const NamedVertex& v) {
+        SourcePoint p = v.point();
+        static_cast<void>(drop_digits(p, decimals_));
+        scan.add(p);
+      },
+      reading_.stop);
+  tin_.grid = scan.grid();
+  order_.emplace(tin_.grid.largest());
+}
+
+JoinedCorner GridReader::snapped(const NamedVertex& v) {
+  const PointGrid& grid = tin_.grid;
+  const AffineMap map = grid.map();
+  SourcePoint p = v.point();
+  const DroppedDigits dropped = drop_digits(p, decimals_);
+  JoinedCorner corner;
+  corner.vertex = {grid.position(p), grid.height(p.z)};
+  double x = dropped.x, y = dropped.y;
+  if (!grid.x.is_exact()) {
+    x += to_double(p.x) - grid.x.coordinate(grid.west + corner.vertex.position.x);
+    y += to_double(p.y) - grid.y.coordinate(grid.south + corner.vertex.position.y);
+  }
+  corner.off_x = static_cast<float>(x / map.step_x);
+  corner.off_y = static_cast<float>(y / map.step_y);
+  tin_.largest_shift_plan = std::max(tin_.largest_shift_plan, std::sqrt(x * x + y * y));
+  return corner;
+}
+
+/// Gives every corner its vertex.
+void GridReader::join() {
+  corners_ = std::make_unique<CornerSorter>(memory_, "corners", reading_.stop);
+  points_ = std::make_unique<PointSorter>(memory_, "points", reading_.stop);
+  InOrder names = in_order(named_->corners, reading_.stop);
+  named_->vertices.visit(
+      [&](const NamedVertex& v) {
+        JoinedCorner corner = snapped(v);
+        points_->add({order_->key(corner.vertex.position), corner.vertex.height});
+        for (; names.now() != nullptr && names.now()->id == v.id; names.next()) {
+          corner.place = names.now()->place;
+          corners_->add(corner);
+        }
+      },
+      reading_.stop);
+  named_.reset();
+}
+
+/// Puts corners together to triangles.
+void GridReader::assemble() {
+  tin_.triangles = std::make_unique<TriangleSorter>(memory_, "triangles", reading_.stop);
+  Orientations orientations;
+  std::array<JoinedCorner, 3> corners;
+  corners_->merge(
+      [&](std::span<const JoinedCorner> batch) {
+        for (const JoinedCorner& corner : batch) {
+          corners[corner.place % 4] = corner;
+          if (corner.place % 4 != 2) {
+            continue;
+          }
+          const std::array<GridVertex, 3> v{corners[0].vertex, corners[1].vertex,
+                                            corners[2].vertex};
+          const GridTriangle t = grid_triangle(v, *order_);
+          orientations.add(t, sign_of(source_area(corners)));
+          tin_.triangles->add(t);
+        }
+      },
+      reading_.stop);
+  corners_.reset();
+  tin_.is_clockwise = orientations.is_clockwise();
+  tin_.faults = orientations.take();
+}
+
+/// Distinct positions along the curve, and what their heights are.
+void GridReader::number_vertices() {
+  tin_.places = std::make_unique<RecordFile<std::uint64_t>>(memory_, "places");
+  HeightFinder heights(tin_.grid.whole, tin_.grid.heights.unit());
+  std::optional<KeyedHeight> last;
+  bool has_conflict = false;
+  const std::uint64_t named = points_->size();
+  points_->merge(
+      [&](std::span<const KeyedHeight> batch) {
+        for (const KeyedHeight& p : batch) {
+          if (last && last->key == p.key) {
+            if (last->height != p.height && !has_conflict) {
+              tin_.heights_differ.add(order_->point(p.key));
+              has_conflict = true;
+            }
+            continue;
+          }
+          last = p;
+          has_conflict = false;
+          tin_.places->add(p.key);
+          heights.add(p.height);
+        }
+      },
+      reading_.stop);
+  tin_.places->finish();
+  tin_.merged_vertices = named - tin_.places->size();
+  tin_.heights = heights.fit();
+}
+
+TinOnGrid GridReader::read() {
+  named_.emplace(read_named_tin(path_, reading_, memory_));
+  tin_.crs = named_->facts.crs;
+  tin_.vertical_crs = named_->facts.vertical_crs;
+  tin_.left_out_triangles = named_->facts.hidden_triangles + named_->left_out_triangles;
+  tin_.unused_vertices = named_->unused_vertices;
+  report(1);
+  choose_grid();
+  join();
+  report(2);
+  assemble();
+  report(3);
+  number_vertices();
+  report(4);
+  return std::move(tin_);
+}
+
+}  // namespace
+
+VertexId vertex_number(std::span<const GridVertex> vertices, VertexKey key) noexcept {
+  const auto at =
+      std::lower_bound(vertices.begin(), vertices.end(), key,
+                       [](const GridVertex& v, VertexKey k) { return key_of(v.position) < k; });
+  return static_cast<VertexId>(at - vertices.begin());
+}
+
+std::int64_t GridTriangle::area() const noexcept {
+  return orient(corners[0].position, corners[1].position, corners[2].position);
+}
+
+GridTriangle grid_triangle(const std::array<GridVertex, 3>& corners,
+                           const PointOrder& order) noexcept {
+  GridTriangle t{0, corners};
+  const auto first = std::min_element(t.corners.begin(), t.corners.end(),
+                                      [](const GridVertex& a, const GridVertex& b) {
+                                        return key_of(a.position) < key_of(b.position);
+                                      });
+  std::rotate(t.corners.begin(), first, t.corners.end());
+  t.place = order.key(t.corners[0].position);
+  return t;
+}
+
+bool ByPlace::operator()(const GridTriangle& a, const GridTriangle& b) const noexcept {
+  const auto key = [](const GridTriangle& t, std::size_t i) {
+    return key_of(t.corners[i].position);
+  };
+  return a.place != b.place       ? a.place < b.place
+         : key(a, 1) != key(b, 1) ? key(a, 1) < key(b, 1)
+                                  : key(a, 2) < key(b, 2);
+}
+
+TinOnGrid read_on_grid(const std::string& path, const TinGridReading& reading) {
+  return GridReader(path, reading).read();
+}
+
+}  // namespace ptin

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/tin/tin_tile.h"
+
+#include <cmath>
+#include <memory>
+
+#include "engine/construct/tile/part_surface.h"
+
+namespace ptin {
+
+StartedTile start_tin_tile(const TinTriangles& triangles, const TileTree& tree,
+                           const SampleRange& window, const MeasureUnits& units) {
+  StartedTile started;
+  started.tile.units = units;
+  started.tile.tin = triangles.part(tree.leaf_number(window), tree.leaves());
+  start_tile(started.tile, {});
+  for (const Vertex& v : started.tile.tin.vertices) {
+    started.box = united(started.box, v.position);
+  }
+  started.full = std::make_unique<PartSurface>(started.tile.tin, units.heights);
+  return started;
+}
+
+TileTree tin_tree(const TinTriangles& triangles, std::optional<std::int64_t> side) {
+  const std::uint64_t vertices = triangles.counts().vertices;
+  const auto across =
+      static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(vertices))));
+  return TileTree::over_points(vertices, side.value_or(TileTree::default_side(across, across)),
+                               std::make_shared<const ConvexHull>(triangles.hull()));
+}
+
+}  // namespace ptin

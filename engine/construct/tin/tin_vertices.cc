@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/tin/tin_vertices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/construct/scratch/record_file.h"
+#include "engine/construct/tin/tin_digits.h"
+#include "engine/construct/tin/tin_names.h"
+#include "storage/file/file_questions.h"
+
+namespace ptin {
+
+namespace {
+
+/// That NameReader holds memory at the same time.
+constexpr std::uint64_t kSorters = 3;
+
+ExternalMemory memory_of(const StreamResources& resources) {
+  ExternalMemory memory = resources.memory != nullptr
+                              ? *resources.memory
+                              : ExternalMemory{FileLayer::system(), system_temporary_folder()};
+  memory.bytes /= kSorters;
+  return memory;
+}
+
+}  // namespace
+
+class TinVertices::Vertices {
+ public:
+  explicit Vertices(RecordFile<NamedVertex> named) : records(std::move(named)) {}
+  RecordFile<NamedVertex> records;
+};
+
+TinVertices::TinVertices(const std::string& path, const PointChoice& choice,
+                         std::optional<double> nodata, const StreamResources& resources) {
+  SourceOptions options;
+  options.points = choice;
+  options.nodata = nodata;
+  const ExternalMemory memory = memory_of(resources);
+  const auto progress = [&](const char*, std::uint64_t done, std::uint64_t total) {
+    if (resources.progress) {
+      resources.progress(done, total);
+    }
+  };
+  NamedTin tin = read_named_tin(path, {options, memory, resources.stop, progress}, memory);
+  facts_.crs = tin.facts.crs;
+  facts_.vertical_crs = tin.facts.vertical_crs;
+  left_out_ = tin.unused_vertices;
+  vertices_ = std::make_unique<const Vertices>(std::move(tin.vertices));
+  TinDigits digits;
+  vertices_->records.visit([&](const NamedVertex& v) { digits.add(v.point()); }, resources.stop);
+  decimals_ = digits.kept();
+}
+
+TinVertices::~TinVertices() = default;
+
+std::uint64_t TinVertices::total() const noexcept { return vertices_->records.size(); }
+
+bool TinVertices::next(std::vector<SourcePoint>& batch) {
+  constexpr std::uint64_t kBatchPoints = 4096;
+  std::vector<NamedVertex> vertices;
+  vertices_->records.take(next_, std::min(kBatchPoints, total() - next_), vertices);
+  next_ += vertices.size();
+  batch.clear();
+  for (const NamedVertex& v : vertices) {
+    batch.push_back(v.point());
+    const DroppedDigits moved = drop_digits(batch.back(), decimals_);
+    largest_shift_ = std::max(largest_shift_, std::sqrt(moved.x * moved.x + moved.y * moved.y));
+  }
+  return !batch.empty();
+}
+
+}  // namespace ptin

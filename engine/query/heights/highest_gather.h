@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The best-first search of highest(): the highest vertices, and the records that reach above them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/geometry/infinity.h"
+#include "engine/geometry/key_table.h"
+#include "engine/query/select/accounting.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/region.h"
+#include "engine/query/select/retrieval.h"
+#include "storage/packed_rtree.h"
+
+namespace ptin {
+
+/// A vertex that may be among the highest.
+struct HighCandidate {
+  double value;         ///< Its height's code, negated when the lowest are wanted.
+  std::uint64_t found;  ///< How many were found before: of equal values the first one counts.
+  VertexKey key;
+};
+
+/// Gathers, in one search, the best vertices, and the records that reach above the very best one.
+/// Threads: one owner.
+class HighGatherer final : public BestFirstVisitor {
+ public:
+  /// All borrowed.
+  /// @param predicate  Region and tolerance of `detail`.  @param window  None: everywhere.
+  HighGatherer(const StoreFile& store, const AttributePredicate& predicate, const Detail& detail,
+               const GridRegion* window, bool lowest, QueryContext& context)
+      : store_(store),
+        predicate_(predicate),
+        detail_(detail),
+        window_(window),
+        lowest_(lowest),
+        context_(context) {}
+
+  /// Begins a search for `wanted` vertices; those that were told to be off the surface do not
+  /// count. REQUIRES: wanted > 0.
+  void start(std::size_t wanted);
+
+  /// Makes room to be told of `more` vertices. Cost: linear in all of them when it grows.
+  void reserve_told(std::size_t more);
+  /// Tells of a vertex whether it is the surface's. REQUIRES: not told before; room for it.
+  void tell(VertexKey key, bool on_surface) noexcept { told_.insert(key, on_surface ? 1 : 0); }
+  [[nodiscard]] bool is_told(VertexKey key) const noexcept {
+    return told_.find(key) != KeyTable::kAbsent;
+  }
+  [[nodiscard]] bool is_rejected(VertexKey key) const noexcept { return told_.find(key) == 0; }
+
+  [[nodiscard]] double bound(const Attributes& a) const override;
+  double visit(PageId page) override;
+
+  /// The best vertices, falling; fewer than wanted when there are fewer. Ends the search.
+  /// Cost: n log n.
+  [[nodiscard]] std::vector<HighCandidate> take_best();
+
+  [[nodiscard]] const Detail& detail() const noexcept { return detail_; }
+  /// What is kept between searches: the records so far, and what was told.
+  [[nodiscard]] std::uint64_t held_bytes() const noexcept;
+
+  /// The records that reach above the best vertex, a set closed under dependency.
+  [[nodiscard]] std::vector<PendingSplit> take_splits();
+
+ private:
+  struct Reaching {
+    PendingSplit split;
+    double bound;
+  };
+  /// The order of the best, and of the heap whose top is the last of them.
+  static bool is_better(const HighCandidate& a, const HighCandidate& b) noexcept {
+    return a.value != b.value ? a.value > b.value : a.found < b.found;
+  }
+  void offer(GridPoint p, HeightBits height);
+  void drop_what_ends_below();
+  /// Nothing at or below this is wanted: the value of the last of the best.
+  [[nodiscard]] double cut_off() const noexcept {
+    return heap_.size() == wanted_ ? heap_.front().value : -kInfinity;
+  }
+
+  const StoreFile& store_;
+  const AttributePredicate& predicate_;
+  const Detail& detail_;
+  const GridRegion* window_;
+  bool lowest_;
+  QueryContext& context_;
+  std::size_t wanted_ = 1;
+  std::uint64_t found_ = 0;
+  double most_ = -kInfinity;  ///< The best value.
+  std::vector<HighCandidate> heap_;
+  std::vector<Reaching> splits_;
+  std::size_t looked_through_ = 0;  ///< Splits when they were last looked through.
+  std::vector<VertexSplit> records_;
+  KeyTable told_;  ///< 1: on the surface, 0: rejected.
+  std::size_t told_capacity_ = 0;
+};
+
+}  // namespace ptin

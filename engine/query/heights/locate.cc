@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/heights/locate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/geometry/hilbert.h"
+#include "engine/geometry/infinity.h"
+#include "engine/query/heights/locate_at.h"
+#include "engine/query/refine/bounded_mesh.h"
+#include "engine/query/refine/refinement.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/retrieval.h"
+#include "engine/query/walk/spot_set.h"
+#include "engine/query/walk/walk.h"
+
+namespace ptin {
+
+namespace {
+
+/// Points refined together: enough that coarse records are shared, few enough that their mesh stays
+/// near the processor.
+constexpr std::size_t kGroupPoints = 8192;
+constexpr std::uint64_t kGroupRecords = std::uint64_t{1} << 18;
+
+/// A point of the request on its way along the curve.
+struct Ordered {
+  std::uint64_t along;  ///< Position along the Hilbert curve.
+  std::uint64_t index;  ///< In the request.
+  Spot spot;
+};
+
+class Locating {
+ public:
+  /// @param detail  Of the request, where it was found before; else none.
+  Locating(const ProgressiveTin& terrain, const LocateRequest& request, const Detail* detail)
+      : terrain_(terrain),
+        facts_(terrain.store().facts()),
+        request_(request),
+        context_(request.stop, request.memory_limit_bytes, terrain.store().path()),
+        detail_(detail != nullptr ? *detail
+                                  : Detail({request.tolerance, request.vertices},
+                                           {terrain.store(), terrain.index()}, context_)) {}
+
+  LocateResult run(std::span<const MapPoint> points) {
+    result_.points.resize(points.size());
+    const std::vector<Ordered> ordered = order(points);
+    for (std::size_t begin = 0; begin < ordered.size(); begin += kGroupPoints) {
+      const std::size_t count = std::min(kGroupPoints, ordered.size() - begin);
+      locate_group(std::span(ordered).subspan(begin, count));
+    }
+    terrain_.store().pages().check_unchanged();
+    result_.certified_error = detail_.certificate().error;
+    result_.certified_deviation = detail_.certificate().deviation;
+    result_.exact = detail_.is_exact(facts_);
+    result_.cost = context_.cost;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<Ordered> order(std::span<const MapPoint> points) const;
+  void locate_group(std::span<const Ordered> group);
+  void locate_exactly(std::span<const Ordered> group, std::span<const PageId> pages,
+                      const SpotSet& wanted);
+  void locate_bounded(std::span<const Ordered> group, std::span<const PageId> pages,
+                      const SpotSet& wanted);
+  /// `bounds_of(t)`: what is known of the full surface below a triangle.
+  template <typename BoundsOf>
+  void walk_group(const Tin& tin, std::span<const Ordered> group, const BoundsOf& bounds_of);
+  [[nodiscard]] LocatedPoint answer(const Tin& tin, Spot spot, const Place& place) const;
+  void set_interval(const SurfaceBounds& bounds, LocatedPoint& point) const;
+
+  const ProgressiveTin& terrain_;
+  const StoreFacts& facts_;
+  const LocateRequest& request_;
+  QueryContext context_;
+  Detail detail_;
+  // Of the group at hand: the next one uses the same memory.
+  std::vector<PendingSplit> splits_;
+  std::optional<Refinement> refinement_;
+  LocateResult result_;
+};
+
+std::vector<Ordered> Locating::order(std::span<const MapPoint> points) const {
+  const SpotMap map(facts_.map, facts_.bounds);
+  std::vector<Ordered> ordered;
+  ordered.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % kStopInterval == 0) {
+      context_.check_stop();
+    }
+    if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y)) {
+      throw Error(ErrorCode::invalid_argument,
+                  "point " + std::to_string(i) +
+                      " has a coordinate that is not a finite number: give map units of the "
+                      "terrain's CRS",
+                  terrain_.store().path());
+    }
+    const std::optional<Spot> spot = map.spot(points[i]);
+    if (spot && contains(facts_.bounds, *spot)) {  // others keep their answer: outside
+      const auto x = static_cast<std::uint32_t>(spot->x >> kSpotBits);
+      const auto y = static_cast<std::uint32_t>(spot->y >> kSpotBits);
+      ordered.push_back({points.size() > 1 ? hilbert_position(x, y) : 0, i, *spot});
+    }
+  }
+  std::sort(ordered.begin(), ordered.end(), [](const Ordered& a, const Ordered& b) {
+    return a.along != b.along ? a.along < b.along : a.index < b.index;
+  });
+  return ordered;
+}
+
+/// A group whose records might not fit, or are very many, is halved.
+void Locating::locate_group(std::span<const Ordered> group) {
+  std::vector<Spot> spots;
+  spots.reserve(group.size());
+  std::transform(group.begin(), group.end(), std::back_inserter(spots),
+                 [](const Ordered& o) { return o.spot; });
+  const SpotSet wanted(spots, detail_.tolerance());
+  std::vector<PageId> pages;
+  terrain_.index().search(wanted, pages, context_.cost.io);
+  context_.check_stop();
+  const std::uint64_t records = most_records(terrain_.store(), pages);
+  const std::uint64_t held = result_.points.size() * (sizeof(LocatedPoint) + sizeof(Ordered));
+  const std::uint64_t bytes = held + bytes_of(terrain_.t0()) + refinement_bytes(records);
+  if (group.size() > 1 && (records > kGroupRecords || bytes > request_.memory_limit_bytes)) {
+    locate_group(group.first(group.size() / 2));
+    locate_group(group.subspan(group.size() / 2));
+    return;
+  }
+  context_.admit(bytes);
+  if (detail_.is_asked()) {
+    locate_bounded(group, pages, wanted);
+  } else {
+    locate_exactly(group, pages, wanted);
+  }
+}
+
+void Locating::locate_exactly(std::span<const Ordered> group, std::span<const PageId> pages,
+                              const SpotSet& wanted) {
+  splits_.clear();
+  read_pages(terrain_.store(), pages, wanted, context_, splits_);
+  if (refinement_) {
+    refinement_->restart(terrain_.t0());
+  } else {
+    refinement_.emplace(terrain_.t0());
+  }
+  refinement_->apply(splits_, context_);
+  walk_group(refinement_->tin(), group, [](TriangleId) {
+    return SurfaceBounds{0.0, {-kInfinity, kInfinity}};
+  });
+}
+
+void Locating::locate_bounded(std::span<const Ordered> group, std::span<const PageId> pages,
+                              const SpotSet& wanted) {
+  BoundedMesh mesh(terrain_, detail_);
+  mesh.refine(pages, wanted, context_);
+  walk_group(mesh.tin(), group, [&](TriangleId t) {
+    SurfaceBounds bounds = mesh.bounds(t);
+    bounds.deviation = std::min(bounds.deviation, detail_.certificate().deviation);
+    return bounds;
+  });
+}
+
+template <typename BoundsOf>
+void Locating::walk_group(const Tin& tin, std::span<const Ordered> group,
+                          const BoundsOf& bounds_of) {
+  TriangleId near = 0;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (i % kStopInterval == 0) {
+      context_.check_stop();
+    }
+    const Place place = find_spot(tin, group[i].spot, near);
+    near = place.triangle;
+    LocatedPoint& point = result_.points[group[i].index];
+    point = answer(tin, group[i].spot, place);
+    if (point.state == PointState::kSurface) {
+      set_interval(bounds_of(answering_triangle(tin, place)), point);
+    }
+  }
+}
+
+LocatedPoint Locating::answer(const Tin& tin, Spot spot, const Place& place) const {
+  LocatedPoint point;
+  if (place.lies == Lies::kOutside) {
+    return point;
+  }
+  const TriangleId t = answering_triangle(tin, place);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const VertexId v = tin.triangles[t].v[i];
+    point.triangle[i].position = tin.position(v);
+    if (tin.has_height[v] != 0) {
+      point.triangle[i].height = facts_.heights.height(tin.vertices[v].height);
+    }
+  }
+  point.state =
+      tin.classes[t] == TriangleClass::kSurface ? PointState::kSurface : PointState::kVoid;
+  if (point.state == PointState::kSurface) {
+    const double code = code_at(tin, facts_.heights, footing_of(tin, spot, place));
+    point.height = facts_.heights.height_of_code(code);
+  }
+  return point;
+}
+
+/// What the full surface can be here: the file's base and the triangle's deviation around the
+/// height, widened by the height's own rounding, and within the heights below the triangle.
+void Locating::set_interval(const SurfaceBounds& bounds, LocatedPoint& point) const {
+  const double deviation = std::max(bounds.deviation, facts_.base_deviation);
+  if (deviation == 0) {
+    point.height_min = point.height_max = point.height;
+    return;
+  }
+  const double rounding = 16 * std::numeric_limits<double>::epsilon() *
+                          (std::abs(point.height) + std::abs(facts_.heights.offset) + deviation);
+  // Heights below are those stored; the source's may be off by the base (rounding, --max-error).
+  const double lowest =
+      std::max(facts_.heights.height_of_code(bounds.heights.lo), facts_.min_height);
+  const double highest =
+      std::min(facts_.heights.height_of_code(bounds.heights.hi), facts_.max_height);
+  point.height_min = std::max(point.height - deviation - rounding, lowest - facts_.base_deviation);
+  point.height_max = std::min(point.height + deviation + rounding, highest + facts_.base_deviation);
+}
+
+}  // namespace
+
+LocateResult locate(const ProgressiveTin& terrain, std::span<const MapPoint> points,
+                    const LocateRequest& request) {
+  const auto start = std::chrono::steady_clock::now();
+  LocateResult result = Locating(terrain, request, nullptr).run(points);
+  result.cost.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+LocateResult locate_at(const ProgressiveTin& terrain, std::span<const MapPoint> points,
+                       const LocateRequest& request, const Detail& detail) {
+  return Locating(terrain, request, &detail).run(points);
+}
+
+}  // namespace ptin

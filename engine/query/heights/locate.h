@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Point location (paper, section 5.1): heights at points, one or millions, exact or at an error
+// with the interval that the certificate guarantees.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "engine/query/progressive_tin.h"
+#include "engine/query/walk/point_state.h"
+
+namespace ptin {
+
+struct LocateRequest {
+  /// Certified error asked for, in the height's unit, >= 0. None: exact.
+  std::optional<double> tolerance;
+  /// Heights of the TIN of the first so many vertices of the terrain (detail.h). Excludes
+  /// `tolerance`.
+  std::optional<std::uint64_t> vertices;
+  /// For records, mesh and results together.
+  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
+  std::stop_token stop;
+};
+
+/// The answer for one point. The point's grid position is rounded as SpotMap says (2^-22 of a grid
+/// unit); everything after that is exact but for the last rounding of `height`.
+struct LocatedPoint {
+  struct Corner {
+    GridPoint position;
+    double height = std::numeric_limits<double>::quiet_NaN();  ///< NaN: the vertex has none.
+  };
+  PointState state = PointState::kOutside;
+  /// Of the TIN that was asked, height's unit; NaN unless `state` is surface. On an edge it is that
+  /// between the edge's ends, on a vertex the vertex's.
+  double height = std::numeric_limits<double>::quiet_NaN();
+  /// The full surface lies in here at this point, if it is surface there; NaN where `height` is.
+  /// Equal to `height` where nothing was left out.
+  double height_min = std::numeric_limits<double>::quiet_NaN();
+  double height_max = std::numeric_limits<double>::quiet_NaN();
+  /// The closed triangle that holds the point; of several, a surface one before a void one, then
+  /// the one whose vertex keys, ascending, come first. Corners counter-clockwise. Unset outside.
+  std::array<Corner, 3> triangle{};
+};
+
+struct LocateResult {
+  std::vector<LocatedPoint> points;  ///< In the order of the request.
+  double certified_error = 0.0;      ///< Bound at every sample near a point.
+  /// Bound at every point, both of whose TINs are surface there.
+  double certified_deviation = 0.0;
+  bool exact = false;  ///< Nothing was left out, and the file's base error is 0.
+  QueryCost cost;
+};
+
+/// Locates points given in map units. Points are taken along the Hilbert curve in groups that share
+/// one refinement each.
+/// @throws Error invalid_argument    a coordinate is not finite (names the point); tolerance
+///                                   negative or NaN; as Detail
+///               resource_exhausted  one group of points, however small, exceeds the memory limit
+///               corruption, io_error, cancelled
+/// Cost: one point: the records whose region of influence holds it, O(log n) of them in practice. A
+/// batch: the records that any of its points needs, each read and applied once per group. With
+/// `vertices` that of finding the last one is added, once a call (detail.h).
+[[nodiscard]] LocateResult locate(const ProgressiveTin& terrain, std::span<const MapPoint> points,
+                                  const LocateRequest& request = {});
+
+}  // namespace ptin

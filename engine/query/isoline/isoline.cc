@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/isoline/isoline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/query/isoline/isoline_clip.h"
+#include "engine/query/isoline/isoline_tiles.h"
+#include "engine/query/select/above_error.h"
+#include "engine/query/select/detail.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::uint64_t kSmallestLimit = 1 << 20;
+/// A point of a line that is handed out and written: as it is, in a geometry, as bytes of a format.
+constexpr std::uint64_t kBytesAPointOut = 80;
+
+}  // namespace
+
+/// One extraction: tiles, then joining, then cutting at the window.
+class IsolineExtraction {
+ public:
+  IsolineExtraction(const ProgressiveTin& terrain, const IsolineRequest& request)
+      : terrain_(terrain),
+        store_(terrain.store()),
+        request_(request),
+        levels_(request.levels, store_.facts().heights),
+        context_(request.stop, request.memory_limit_bytes, store_.path()),
+        detail_({request.tolerance, request.vertices}, {store_, terrain.index()}, context_),
+        result_(PointStore(request.memory_limit_bytes / 8, request.temporary_folder)) {
+    std::vector<PredicatePtr> parts{levels_.crossing()};
+    if (request.window) {
+      region_.emplace(*request.window, store_.facts().map);
+      parts.push_back(meets_region(*request.window, store_.facts().map));
+    }
+    if (detail_.is_asked()) {
+      parts.push_back(std::make_shared<AboveError>(detail_.tolerance()));
+    }
+    predicate_ = all_of(std::move(parts));
+  }
+
+  Isolines run() {
+    context_.admit(kSmallestLimit);
+    trace();
+    result_.lines_ = join_pieces(result_.pieces_, context_);
+    admit_lines();
+    if (request_.window) {
+      cut_at_window();
+    }
+    drop_single_points(result_.lines_, result_.pieces_, result_.points_);
+    if (result_.size() > request_.most_lines) {
+      throw Error(ErrorCode::resource_exhausted,
+                  "there are " + std::to_string(result_.size()) +
+                      " isolines, more than the limit of " + std::to_string(request_.most_lines) +
+                      " lines: ask for fewer levels or a larger error, or raise the limit",
+                  store_.path());
+    }
+    store_.pages().check_unchanged();
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  /// Tiles take half of the memory; pieces three eighths, since they cannot be put aside; points
+  /// the rest.
+  void trace() {
+    const TileTraceRequest request{levels_,
+                                   predicate_,
+                                   detail_,
+                                   region_ ? &*region_ : nullptr,
+                                   request_.memory_limit_bytes / 2,
+                                   request_.memory_limit_bytes / 8 * 3,
+                                   request_.threads,
+                                   request_.stop};
+    TileTraces traces = trace_tiles(terrain_, request, result_.points_, context_.cost);
+    result_.pieces_ = std::move(traces.pieces);
+    result_.crossed = traces.counts;
+    result_.tiles = traces.tiles;
+  }
+
+  /// The tiles' memory is free again: lines are joined and written in it.
+  void admit_lines() const {
+    std::uint64_t longest = 0;
+    for (const JoinedLine& line : result_.lines_.lines) {
+      std::uint64_t points = 0;
+      for (std::uint32_t k = 0; k < line.pieces; ++k) {
+        points += result_.pieces_[result_.lines_.order[line.first_piece + k]].count;
+      }
+      longest = std::max(longest, points);
+    }
+    const std::uint64_t bytes = longest * kBytesAPointOut;
+    if (bytes > request_.memory_limit_bytes / (request_.window ? 8 : 2)) {
+      throw Error(
+          ErrorCode::resource_exhausted,
+          "the longest isoline has " + std::to_string(longest) + " points, which take " +
+              std::to_string((bytes + 0xFFFFF) >> 20) +
+              " MiB to write, more than there is beside the others: give more memory, or ask for a "
+              "window or a larger error",
+          store_.path());
+    }
+  }
+
+  void cut_at_window() {
+    PointStore points(request_.memory_limit_bytes / 8, request_.temporary_folder);
+    std::vector<IsolinePiece> pieces;
+    JoinedLines lines;
+    std::vector<MapPoint> line;
+    for (const JoinedLine& joined : result_.lines_.lines) {
+      context_.check_stop();
+      points_of(joined, result_.lines_, result_.pieces_, result_.points_, line);
+      const ClippedParts clipped = clip_line(line, *request_.window);
+      for (const std::vector<MapPoint>& part : clipped.parts) {
+        IsolinePiece piece;
+        piece.level = joined.level;
+        piece.ring = joined.ring && clipped.whole;
+        piece.first = points.size();
+        piece.count = static_cast<std::uint32_t>(part.size());
+        if ((pieces.size() + 1) * kBytesAPiece > request_.memory_limit_bytes / 4) {
+          throw Error(ErrorCode::resource_exhausted,
+                      "the window cuts the isolines into more than " +
+                          std::to_string(pieces.size()) +
+                          " parts, more than the memory holds: give more memory, or "
+                          "ask for fewer levels",
+                      store_.path());
+        }
+        lines.lines.push_back({joined.level, piece.ring, joined.smallest, lines.order.size(), 1});
+        lines.order.push_back(static_cast<std::uint32_t>(pieces.size()));
+        pieces.push_back(piece);
+        points.add(part);
+      }
+    }
+    result_.points_ = std::move(points);
+    result_.pieces_ = std::move(pieces);
+    result_.lines_ = std::move(lines);
+  }
+
+  void finish() {
+    result_.levels_ = levels_.heights();
+    result_.certified_error = detail_.certificate().error;
+    result_.certified_deviation = detail_.certificate().deviation;
+    result_.exact = detail_.is_exact(store_.facts());
+    result_.cost = context_.cost;
+  }
+
+  const ProgressiveTin& terrain_;
+  const StoreFile& store_;
+  const IsolineRequest& request_;
+  LevelSet levels_;
+  std::optional<GridRegion> region_;
+  PredicatePtr predicate_;
+  QueryContext context_;
+  Detail detail_;
+  Isolines result_;
+};
+
+Isoline Isolines::line(std::size_t i, std::vector<MapPoint>& points) const {
+  points_of(lines_.lines[i], lines_, pieces_, points_, points);
+  return {lines_.lines[i].level, lines_.lines[i].ring, points};
+}
+
+Isolines isolines(const ProgressiveTin& terrain, const IsolineRequest& request) {
+  const auto start = std::chrono::steady_clock::now();
+  Isolines result = IsolineExtraction(terrain, request).run();
+  result.cost.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace ptin

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Points of lines while these are made: in memory as far as they fit, then on disk.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/geometry/affine.h"
+#include "storage/file/file_layer.h"
+
+namespace ptin {
+
+/// Points in the order in which they were added: in memory up to a budget, then in a file without a
+/// name. One that was moved from can only be assigned to or destroyed. Threads: none; one owner.
+class PointStore {
+ public:
+  /// @param budget_bytes      Of points kept in memory, in blocks of at most a megabyte.
+  /// @param temporary_folder  Where the file is made when they do not fit; empty: nowhere.
+  /// @param files             Borrowed.
+  PointStore(std::uint64_t budget_bytes, std::string temporary_folder,
+             FileLayer& files = FileLayer::system());
+
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  /// @throws Error resource_exhausted  over the budget and no folder, or the disk is full
+  ///               not_found           there is no such folder
+  ///               io_error
+  void add(std::span<const MapPoint> points);
+  /// Appends points [first, first + count) to `out`.  @throws Error io_error
+  void read(std::uint64_t first, std::size_t count, std::vector<MapPoint>& out) const;
+
+ private:
+  void add_block();
+  void spill();
+
+  std::uint64_t block_points_;  ///< In a block.
+  std::uint64_t most_blocks_;   ///< In memory.
+  std::string folder_;
+  FileLayer* files_;
+  std::vector<std::unique_ptr<MapPoint[]>> blocks_;  ///< The last points; all but the last full.
+  std::uint64_t size_ = 0;
+  std::uint64_t spilled_ = 0;          ///< Points in the file, before those in memory.
+  std::unique_ptr<ScratchFile> file_;  ///< Made when it is needed.
+};
+
+}  // namespace ptin

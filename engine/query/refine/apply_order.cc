@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/refine/apply_order.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <utility>
+
+#include "engine/geometry/morton.h"
+#include "engine/query/refine/split_site.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::size_t kSplitsInCell = 4096;
+constexpr std::uint32_t kMostDepth = 8;
+
+/// A quadtree over where most splits are. What lies outside is moved to its border: that keeps a
+/// box within a larger one.
+class Cells {
+ public:
+  explicit Cells(std::span<const PendingSplit> splits) {
+    while (depth_ < kMostDepth && (splits.size() >> (2 * depth_)) > kSplitsInCell) {
+      ++depth_;
+    }
+    if (depth_ != 0) {
+      ++depth_;  // the middle half of the splits takes about half of each side
+      set_frame(splits);
+    }
+  }
+
+  /// Few splits are one cell.
+  [[nodiscard]] bool is_one() const noexcept { return depth_ == 0; }
+  /// Numbers below this.
+  [[nodiscard]] std::size_t numbers() const noexcept { return std::size_t{16} << (2 * depth_); }
+  /// The number of the smallest cell that holds a box; above those of the cells that hold it.
+  [[nodiscard]] std::uint32_t number_of(const GridBox& box) const noexcept {
+    const std::uint32_t low_x = column(box.min_x, origin_x_);
+    const std::uint32_t low_y = column(box.min_y, origin_y_);
+    const std::uint32_t differ =
+        (low_x ^ column(box.max_x, origin_x_)) | (low_y ^ column(box.max_y, origin_y_));
+    const auto above = static_cast<std::uint32_t>(std::bit_width(differ));
+    const auto first = static_cast<std::uint32_t>(morton_position(low_x >> above, low_y >> above))
+                       << (2 * above);
+    return (first << 4) | (depth_ - above);
+  }
+
+ private:
+  /// From the quartiles of a sample: the middle half in x and y holds about a quarter of the
+  /// splits, however far the others are spread.
+  void set_frame(std::span<const PendingSplit> splits) {
+    constexpr std::size_t kSample = 256;
+    std::array<std::int32_t, kSample> x{};
+    std::array<std::int32_t, kSample> y{};
+    for (std::size_t i = 0; i < kSample; ++i) {
+      const GridPoint p = point_of(splits[i * (splits.size() / kSample)].u);
+      x[i] = p.x;
+      y[i] = p.y;
+    }
+    std::sort(x.begin(), x.end());
+    std::sort(y.begin(), y.end());
+    const std::int64_t middle = std::max(std::int64_t{x[3 * kSample / 4]} - x[kSample / 4],
+                                         std::int64_t{y[3 * kSample / 4]} - y[kSample / 4]);
+    const auto side = static_cast<std::uint64_t>(std::max<std::int64_t>(4 * middle, 1));
+    while ((side >> shift_) >> depth_ != 0) {
+      ++shift_;
+    }
+    const std::int64_t half = (std::int64_t{1} << (shift_ + depth_)) / 2;
+    origin_x_ = x[kSample / 2] - half;
+    origin_y_ = y[kSample / 2] - half;
+  }
+
+  [[nodiscard]] std::uint32_t column(std::int32_t v, std::int64_t origin) const noexcept {
+    const std::int64_t last = (std::int64_t{1} << depth_) - 1;
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>((v - origin) >> shift_, 0, last));
+  }
+
+  std::uint32_t depth_ = 0;
+  std::uint32_t shift_ = 0;
+  std::int64_t origin_x_ = 0, origin_y_ = 0;
+};
+
+/// A split on its way through the two sorts.
+struct Sorted {
+  std::uint32_t split, cell;
+};
+
+/// Counts become the places where each one's splits begin.
+void begin_each(std::vector<std::uint32_t>& next) {
+  std::uint32_t before = 0;
+  for (std::uint32_t& n : next) {
+    before += std::exchange(n, before);
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> order_of(std::span<const PendingSplit> splits) {
+  const Cells cells(splits);
+  RankOrder ranks(splits);
+  std::vector<std::uint32_t> order(splits.size());
+  if (cells.is_one()) {
+    for (std::uint32_t i = 0; i < splits.size(); ++i) {
+      order[ranks.take(splits[i].rank)] = i;
+    }
+    return order;
+  }
+  std::vector<Sorted> by_rank(splits.size());
+  std::vector<std::uint32_t> next(cells.numbers(), 0);
+  for (std::uint32_t i = 0; i < splits.size(); ++i) {
+    const std::uint32_t cell = cells.number_of(splits[i].roi);
+    ++next[cell];
+    by_rank[ranks.take(splits[i].rank)] = {i, cell};
+  }
+  begin_each(next);
+  for (const Sorted& s : by_rank) {
+    order[next[s.cell]++] = s.split;
+  }
+  return order;
+}
+
+}  // namespace ptin

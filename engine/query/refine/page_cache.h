@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Record pages that a question keeps between two moves: decoded, within a limit of memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "engine/query/select/accounting.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+/// Decoded pages, at most `limit_bytes` of them (but one at least); the page that was used longest
+/// ago goes first. Threads: one owner.
+class PageCache {
+ public:
+  /// @param store  Borrowed for the life of the cache.
+  PageCache(const StoreFile& store, std::uint64_t limit_bytes)
+      : store_(store), limit_bytes_(limit_bytes) {}
+
+  /// Tells the store which of `pages` (ascending) will be read, since they are not here.
+  void announce(std::span<const PageId> pages, QueryContext& context) const;
+
+  /// All records of a page, in the order of the file; valid until the next call. A page that is
+  /// here costs a look-up, another one is read.
+  /// @throws Error corruption, io_error
+  [[nodiscard]] std::span<const VertexSplit> records(PageId page, QueryContext& context);
+
+  [[nodiscard]] std::uint64_t limit_bytes() const noexcept { return limit_bytes_; }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+  /// Pages that were asked for and were here, since the cache was made.
+  [[nodiscard]] std::uint64_t hits() const noexcept { return hits_; }
+
+ private:
+  struct Entry {
+    PageId page;
+    std::vector<VertexSplit> records;
+    [[nodiscard]] std::uint64_t bytes() const noexcept;
+  };
+  void make_room(std::uint64_t bytes);
+
+  const StoreFile& store_;
+  std::uint64_t limit_bytes_;
+  std::uint64_t bytes_ = 0;
+  std::uint64_t hits_ = 0;
+  std::list<Entry> entries_;  ///< The one used last comes first.
+  std::unordered_map<std::uint64_t, std::list<Entry>::iterator> places_;
+};
+
+}  // namespace ptin

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A terrain of any size refined part by part: boxes of the grid at one tolerance, each within a
+// memory limit. Promise P5 joins them: parts agree on every triangle that meets both.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+
+#include "engine/geometry/box.h"
+#include "engine/query/progressive_tin.h"
+#include "engine/query/select/detail.h"
+
+namespace ptin {
+
+/// What is asked of every part.
+struct PartRequest {
+  std::optional<Region> region;     ///< Where to refine at all; none means everywhere.
+  std::optional<double> tolerance;  ///< As RefineRequest::tolerance.
+  /// The TIN of the first so many vertices of the whole terrain (detail.h), whatever the region.
+  std::optional<std::uint64_t> vertices;
+  PredicatePtr also;  ///< Any further monotone predicate; none: nothing further.
+  std::uint64_t memory_limit_bytes = std::uint64_t{1} << 30;  ///< For one part, as a query's.
+  std::stop_token stop;
+};
+
+/// Refines parts of a terrain, and knows before it reads what one takes.
+/// Threads: const functions may run at once, each within its own limit.
+class PartRefiner {
+ public:
+  /// @param terrain  Borrowed.
+  /// @throws Error invalid_argument as meets_region() and Detail; as Detail
+  /// Cost: that of Detail.
+  PartRefiner(const ProgressiveTin& terrain, PartRequest request);
+
+  /// Most bytes that refine(box) may take, from the index alone. Cost: its pages.
+  /// @throws Error corruption
+  [[nodiscard]] std::uint64_t bytes_for(const GridBox& box) const;
+  [[nodiscard]] bool fits(const GridBox& box) const {
+    return bytes_for(box) <= request_.memory_limit_bytes;
+  }
+
+  /// The whole domain, where every triangle that meets both `box` and the region is one of the TIN
+  /// of the request (P5); coarser elsewhere. Certificates are those of `box`.
+  /// @throws Error as ProgressiveTin::refine
+  [[nodiscard]] RefinedTin refine(const GridBox& box) const;
+
+  /// Records of the whole file that the level of detail asks for; at most one bin of errors too
+  /// many.
+  [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
+  [[nodiscard]] const ProgressiveTin& terrain() const noexcept { return terrain_; }
+  [[nodiscard]] const Detail& detail() const noexcept { return detail_; }
+  [[nodiscard]] const PartRequest& request() const noexcept { return request_; }
+
+ private:
+  const ProgressiveTin& terrain_;
+  PartRequest request_;
+  Detail detail_;
+  PredicatePtr wanted_;  ///< Region and tolerance.
+  std::uint64_t t0_bytes_;
+  std::uint64_t records_ = 0;
+};
+
+/// A square of the grid whose sides are 2^level, aligned to that: its positions follow one another
+/// along the Hilbert curve.
+struct GridCell {
+  std::uint32_t x = 0, y = 0;  ///< Lower left corner, a multiple of 2^level.
+  int level = 0;
+
+  /// Its positions, clipped to the grid.
+  [[nodiscard]] GridBox box() const noexcept;
+  [[nodiscard]] bool holds(GridPoint p) const noexcept {
+    return (static_cast<std::uint32_t>(p.x) >> level) == (x >> level) &&
+           (static_cast<std::uint32_t>(p.y) >> level) == (y >> level);
+  }
+};
+
+/// Cuts the domain into cells that fit the memory limit and hands each, refined, to `visit` in the
+/// order of the Hilbert curve (hilbert_position()). Every vertex lies in exactly one cell. So what
+/// is written a cell at a time in the order of the curve does not depend on where the cuts are.
+/// @param visit  (cell, its refinement, share of the domain's area that is done after it).
+/// @throws Error resource_exhausted  what a single position needs does not fit
+///               as PartRefiner::refine, and what `visit` throws
+/// Cost: the refinements; a triangle that meets several cells is made in each of them.
+void walk_cells(
+    const PartRefiner& refiner,
+    const std::function<void(const GridCell& cell, RefinedTin& refined, double done)>& visit);
+
+}  // namespace ptin

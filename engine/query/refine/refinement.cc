@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/refine/refinement.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/large_array.h"
+#include "engine/mesh/split.h"
+#include "engine/mesh/star.h"
+#include "engine/prefetch.h"
+#include "engine/query/refine/apply_order.h"
+#include "engine/query/refine/split_site.h"
+
+namespace ptin {
+
+namespace {
+
+bool has_heights(const Tin& tin, VertexId a, VertexId b, VertexId c) noexcept {
+  return (tin.has_height[a] & tin.has_height[b] & tin.has_height[c]) != 0;
+}
+
+/// Invariant I5 around a new vertex: only a vertex with a height stands in surface triangles.
+bool classes_fit(const Tin& tin, const SplitSite& s) {
+  if (tin.has_height[s.u] == 0) {
+    Star star;
+    walk_star(tin, s.u, star);
+    return std::all_of(star.triangles.begin(), star.triangles.end(),
+                       [&](TriangleId t) { return tin.classes[t] == TriangleClass::kVoid; });
+  }
+  const bool left =
+      !s.has_left || s.left_class == TriangleClass::kVoid || has_heights(tin, s.u, s.w, s.vl);
+  const bool right =
+      !s.has_right || s.right_class == TriangleClass::kVoid || has_heights(tin, s.u, s.w, s.vr);
+  return left && right;
+}
+
+[[noreturn]] void throw_too_many(const QueryContext& context) {
+  throw Error(ErrorCode::resource_exhausted,
+              "the answer has more triangles than one mesh can number (2^32 - 1): ask for less, "
+              "or use export",
+              context.file());
+}
+
+/// Before they are numbered in 32 bits.
+void refuse_too_many(std::span<const PendingSplit> splits, const QueryContext& context) {
+  if (splits.size() >= kNone) {
+    throw_too_many(context);
+  }
+}
+
+/// Fetches ahead of the splits what they will touch: the record, its slots in the table of keys,
+/// and one step along the star of w at a time, so that no step waits for memory. Looks at the mesh
+/// as it is now; what changes until the split comes costs a miss and nothing else.
+class StarFetcher {
+ public:
+  explicit StarFetcher(const Tin& tin) : tin_(tin) {}
+
+  /// How many splits after the record is fetched the other steps are taken; in the end it is
+  /// applied.
+  static constexpr std::size_t kSlots = 8, kEnter = 16, kTriangle = 24, kNeighbours = 30,
+                               kBeyond = 35, kApply = 40;
+
+  static void fetch_record(const PendingSplit& s) noexcept {
+    const auto* const bytes = reinterpret_cast<const char*>(&s);  // may lie across two lines
+    prefetch(bytes);
+    prefetch(bytes + sizeof s - 1);
+  }
+  static void fetch_slots(const PendingSplit& s, const KeyTable& ids) noexcept {
+    ids.prefetch(s.u);
+    ids.prefetch(s.w);
+    ids.prefetch(s.vl);
+    ids.prefetch(s.vr);
+  }
+  void fetch_vertices(VertexId w, VertexId vl, VertexId vr) const noexcept {
+    prefetch(&tin_.vertices[w]);
+    prefetch(&tin_.vertices[vl]);
+    prefetch(&tin_.vertices[vr]);
+  }
+  void fetch_triangle(VertexId w) const noexcept { fetch(tin_.vertices[w].triangle); }
+  void fetch_neighbours(VertexId w) const noexcept {
+    const TriangleId t = tin_.vertices[w].triangle;
+    if (t != kNone) {
+      fetch_around(tin_.triangles[t]);
+    }
+  }
+  void fetch_beyond(VertexId w) const noexcept {
+    const TriangleId t = tin_.vertices[w].triangle;
+    if (t == kNone) {
+      return;
+    }
+    const Triangle& triangle = tin_.triangles[t];
+    const int c = static_cast<int>(triangle.v[1] == w) + 2 * static_cast<int>(triangle.v[2] == w);
+    for (int side = 0; side < 3; ++side) {
+      const TriangleId n = triangle.n[side];
+      if (side != c && n != kNone) {
+        fetch_around(tin_.triangles[n]);
+      }
+    }
+  }
+
+ private:
+  // Fetches what w has no part in too: finding out would cost more.
+  void fetch_around(const Triangle& triangle) const noexcept {
+    for (const TriangleId n : triangle.n) {
+      fetch(n);
+    }
+    for (const VertexId v : triangle.v) {
+      prefetch(&tin_.vertices[v]);
+    }
+  }
+  void fetch(TriangleId t) const noexcept {
+    // kNone is fetched from triangle 0's line.
+    prefetch(&tin_.triangles[t == kNone ? 0 : t]);
+  }
+
+  const Tin& tin_;
+};
+
+}  // namespace
+
+std::uint64_t bytes_of(const Tin& tin) noexcept {
+  return tin.vertices.size() * (sizeof(Vertex) + 1) +
+         tin.triangles.size() * (sizeof(Triangle) + 1) + KeyTable::bytes_for(tin.vertices.size());
+}
+
+std::uint64_t refinement_bytes(std::uint64_t records) noexcept {
+  constexpr std::uint64_t kVertexBytes = sizeof(Vertex) + sizeof(std::uint8_t);
+  constexpr std::uint64_t kTriangleBytes = sizeof(Triangle) + sizeof(TriangleClass);
+  constexpr std::uint64_t kRecordBytes =
+      sizeof(PendingSplit) + 4 * sizeof(std::uint32_t) + kVertexBytes + 2 * kTriangleBytes;
+  return records * kRecordBytes + KeyTable::bytes_for(records);
+}
+
+Refinement::Refinement(const Tin& t0, bool track_pages) : track_pages_(track_pages) { restart(t0); }
+
+void Refinement::restart(const Tin& t0) {
+  tin_ = t0;
+  free_vertices_.clear();
+  free_triangles_.clear();
+  ids_.reset(tin_.vertices.capacity());
+  for (VertexId v = 0; v < tin_.vertices.size(); ++v) {
+    ids_.insert(key_of(tin_.position(v)), v);
+  }
+  if (track_pages_) {
+    vertex_pages_.assign(tin_.vertices.size(), kNone);
+    triangle_pages_.assign(tin_.triangles.size(), kNone);
+  }
+}
+
+void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& context) {
+  static constexpr std::size_t kFew = 4096;  // a mesh that stays in the caches by itself
+  refuse_too_many(splits, context);
+  order_ = order_of(splits);
+  const Batch batch = reserve(splits, context);
+  if (splits.size() < kFew) {
+    apply_one_by_one(splits, batch, context);
+  } else {
+    apply_in_pipeline(splits, batch, context);
+  }
+  forget_places(batch);
+  context.cost.records_applied += splits.size();
+}
+
+void Refinement::apply_one_by_one(std::span<const PendingSplit> splits, const Batch& batch,
+                                  const QueryContext& context) {
+  context.check_stop();
+  std::uint32_t triangles = 0;
+  for (std::size_t i = 0; i < splits.size(); ++i) {
+    Resolved r = enter(splits[order_[i]], vertex_place(batch, i), context);
+    r.triangle = triangles;
+    triangles += triangles_of(r.flags);
+    apply_one(r, batch, splits, context);
+  }
+}
+
+/// While one split is applied, others behind it are looked up and fetched. A split's w, vl and vr
+/// are looked up after those before it were entered, so they are there.
+void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const Batch& batch,
+                                   const QueryContext& context) {
+  const StarFetcher fetcher(tin_);
+  using F = StarFetcher;
+  constexpr std::size_t kRing = 32;
+  static_assert(F::kApply - F::kEnter < kRing);
+  std::array<Resolved, kRing> ring;
+  std::uint32_t triangles = 0;
+  const std::size_t count = splits.size();
+  for (std::size_t step = 0; step < count + F::kApply; ++step) {
+    if (step % kStopInterval == 0) {
+      context.check_stop();
+    }
+    // The number of the split that has come so far; none (beyond count) before the first, too.
+    const auto at = [step](std::size_t distance) { return step - distance; };
+    if (step < count) {
+      F::fetch_record(splits[order_[step]]);
+    }
+    if (const std::size_t i = at(F::kSlots); i < count) {
+      F::fetch_slots(splits[order_[i]], ids_);
+    }
+    if (const std::size_t i = at(F::kEnter); i < count) {
+      Resolved& r = ring[i % kRing];
+      r = enter(splits[order_[i]], vertex_place(batch, i), context);
+      r.triangle = triangles;
+      triangles += triangles_of(r.flags);
+      fetcher.fetch_vertices(r.w, r.vl, r.vr);
+    }
+    if (const std::size_t i = at(F::kTriangle); i < count) {
+      fetcher.fetch_triangle(ring[i % kRing].w);
+    }
+    if (const std::size_t i = at(F::kNeighbours); i < count) {
+      fetcher.fetch_neighbours(ring[i % kRing].w);
+    }
+    if (const std::size_t i = at(F::kBeyond); i < count) {
+      fetcher.fetch_beyond(ring[i % kRing].w);
+    }
+    if (const std::size_t i = at(F::kApply); i < count) {
+      apply_one(ring[i % kRing], batch, splits, context);
+    }
+  }
+}
+
+/// Makes room for the vertices and triangles to come; triangles stay removed until their split is
+/// made. A mesh that grows a second time grows by half at least, so that many small batches do not
+/// copy it each time.
+Refinement::Batch Refinement::reserve(std::span<const PendingSplit> splits,
+                                      const QueryContext& context) {
+  Batch batch{splits.size(), 0, static_cast<VertexId>(tin_.vertices.size()),
+              static_cast<TriangleId>(tin_.triangles.size())};
+  for (const PendingSplit& s : splits) {
+    batch.triangles += triangles_of(s.flags);
+  }
+  const std::size_t vertices =
+      tin_.vertices.size() + batch.vertices - std::min(batch.vertices, free_vertices_.size());
+  const std::size_t triangles =
+      tin_.triangles.size() + batch.triangles - std::min(batch.triangles, free_triangles_.size());
+  if (triangles >= kNone || vertices >= kNone) {
+    throw_too_many(context);
+  }
+  const auto grown = [](std::size_t wanted, std::size_t capacity) {
+    return wanted > capacity ? std::max(wanted, capacity + capacity / 2) : capacity;
+  };
+  reserve_large(tin_.vertices, grown(vertices, tin_.vertices.capacity()));
+  reserve_large(tin_.triangles, grown(triangles, tin_.triangles.capacity()));
+  ids_.reserve(tin_.vertices.capacity());
+  tin_.vertices.resize(vertices);
+  tin_.has_height.resize(vertices);
+  tin_.triangles.resize(triangles, {{kNone, kNone, kNone}, {kNone, kNone, kNone}});
+  tin_.classes.resize(triangles);
+  if (track_pages_) {
+    vertex_pages_.resize(vertices, kNone);
+    triangle_pages_.resize(triangles, kNone);
+  }
+  return batch;
+}
+
+/// The places that the batch took are free no more.
+void Refinement::forget_places(const Batch& batch) {
+  const auto drop = [](auto& free, std::size_t taken) {
+    free.erase(free.begin(),
+               free.begin() + static_cast<std::ptrdiff_t>(std::min(taken, free.size())));
+  };
+  drop(free_vertices_, batch.vertices);
+  drop(free_triangles_, batch.triangles);
+}
+
+/// Puts the new vertex in its place, in no triangle yet, and looks up those that the split names.
+Refinement::Resolved Refinement::enter(const PendingSplit& s, VertexId u,
+                                       const QueryContext& context) {
+  if (!ids_.insert(s.u, u)) [[unlikely]] {
+    throw_refused(s, "its vertex is in the mesh already", context);
+  }
+  tin_.vertices[u] = {point_of(s.u), s.height, kNone};
+  tin_.has_height[u] = (s.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0;
+  if (track_pages_) {
+    vertex_pages_[u] = s.page;
+  }
+  const Resolved r{u, ids_.find(s.w), ids_.find(s.vl), ids_.find(s.vr), 0, s.flags};
+  if (r.w == KeyTable::kAbsent || r.vl == KeyTable::kAbsent || r.vr == KeyTable::kAbsent)
+      [[unlikely]] {
+    throw_refused(s, "it names a vertex that no retrieved record makes before it", context);
+  }
+  return r;
+}
+
+void Refinement::apply_one(const Resolved& s, const Batch& batch,
+                           std::span<const PendingSplit> splits, const QueryContext& context) {
+  const SplitSite site = site_of(s.u, s.w, s.vl, s.vr, s.flags);
+  const bool w_is_there = tin_.vertices[s.w].triangle != kNone;
+  // Of a record with one side only (or, damaged, none) the other place is not used, and may be
+  // none.
+  const TriangleId left = triangle_place(batch, s.triangle);
+  const TriangleId right = triangle_place(batch, s.triangle + (site.has_left ? 1 : 0));
+  const bool is_applied = w_is_there && split_into(tin_, site, left, right);
+  if (!is_applied || !classes_fit(tin_, site)) [[unlikely]] {
+    const VertexKey key = key_of(tin_.position(s.u));
+    throw_refused(*std::find_if(splits.begin(), splits.end(),
+                                [key](const PendingSplit& p) { return p.u == key; }),
+                  is_applied ? "its classes do not fit its heights" : "it does not fit the mesh",
+                  context);
+  }
+  if (track_pages_) {
+    Star star;
+    walk_star(tin_, s.u, star);
+    for (const TriangleId t : star.triangles) {
+      triangle_pages_[t] = vertex_pages_[s.u];
+    }
+  }
+}
+
+}  // namespace ptin

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/select/accounting.h"
+
+#include "engine/error.h"
+
+namespace ptin {
+
+void QueryCost::add_counts(const QueryCost& part) noexcept {
+  records_retrieved += part.records_retrieved;
+  records_examined += part.records_examined;
+  records_applied += part.records_applied;
+  io.index_nodes += part.io.index_nodes;
+  io.pages += part.io.pages;
+  io.bytes_read += part.io.bytes_read;
+  io.pages_verified += part.io.pages_verified;
+  io.ranges_announced += part.io.ranges_announced;
+}
+
+void QueryContext::throw_cancelled() const {
+  throw Error(ErrorCode::cancelled, "the query was cancelled by its caller", file_);
+}
+
+void QueryContext::throw_exhausted(std::uint64_t bytes) const {
+  const auto size = [](std::uint64_t b) {
+    return b < (16 << 20) ? std::to_string((b + 0x3FF) >> 10) + " KiB"
+                          : std::to_string((b + 0xFFFFF) >> 20) + " MiB";
+  };
+  throw Error(ErrorCode::resource_exhausted,
+              "the answer may take " + size(bytes) + ", more than the limit of " +
+                  size(memory_limit_bytes_) +
+                  ": ask for a smaller region, a larger tolerance or fewer vertices, raise the "
+                  "limit, or use export",
+              file_);
+}
+
+}  // namespace ptin

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/select/retrieval.h"
+
+#include "engine/large_array.h"
+#include "engine/query/refine/refinement.h"
+
+namespace ptin {
+
+std::uint64_t most_records(const StoreFile& store, std::span<const PageId> pages) {
+  std::uint64_t records = 0;
+  for (const PageId page : pages) {
+    records += store.page_info(page).records;
+  }
+  return records;
+}
+
+void read_pages(const StoreFile& store, std::span<const PageId> pages,
+                const AttributePredicate& predicate, QueryContext& context,
+                std::vector<PendingSplit>& out) {
+  store.pages().announce(pages, context.cost.io);
+  const std::size_t before = out.size();
+  std::vector<VertexSplit> records;
+  for (const PageId page : pages) {
+    context.check_stop();
+    records.clear();
+    context.cost.records_examined += store.read_matching(page, predicate, records, context.cost.io);
+    for (const VertexSplit& r : records) {
+      out.push_back(pending_of(r, page));
+    }
+  }
+  context.cost.records_retrieved += out.size() - before;
+}
+
+std::vector<PendingSplit> retrieve(const RecordSource& source, const AttributePredicate& predicate,
+                                   std::uint64_t fixed_bytes, QueryContext& context) {
+  std::vector<PageId> pages;
+  source.index.search(predicate, pages, context.cost.io);
+  context.check_stop();
+  const std::uint64_t records = most_records(source.store, pages);
+  context.admit(fixed_bytes + refinement_bytes(records));
+  std::vector<PendingSplit> splits;
+  reserve_large(splits, records);
+  read_pages(source.store, pages, predicate, context, splits);
+  return splits;
+}
+
+}  // namespace ptin

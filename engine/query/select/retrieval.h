@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Retrieval: from a monotone predicate to the records for which it is true, through index and
+// pages.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/query/select/accounting.h"
+#include "storage/index.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+/// What is kept of a record between reading and applying: 64 bytes.
+struct PendingSplit {
+  VertexKey u, w, vl, vr;
+  HeightBits height;
+  std::uint16_t rank;
+  std::uint16_t flags;  ///< VertexSplit::Flag.
+  float error;
+  GridBox roi;         ///< What it needs has a larger one: an order of applying follows from it.
+  std::uint32_t page;  ///< Index of its page, for errors and pictures; modulo 2^32.
+};
+static_assert(sizeof(PendingSplit) == 64);
+
+/// What applying keeps of a record.
+[[nodiscard]] inline PendingSplit pending_of(const VertexSplit& r, PageId page) noexcept {
+  return {key_of(r.u),  key_of(r.w),
+          key_of(r.vl), key_of(r.vr),
+          r.height,     r.rank,
+          r.flags,      r.error,
+          r.roi,        static_cast<std::uint32_t>(index_of(page))};
+}
+
+/// Where records come from. Borrowed: store and index outlive the query.
+struct RecordSource {
+  const StoreFile& store;
+  const RecordIndex& index;
+};
+
+/// Most records that `pages` can hold, from their descriptors: known before anything is read.
+/// @throws Error corruption
+[[nodiscard]] std::uint64_t most_records(const StoreFile& store, std::span<const PageId> pages);
+
+/// Reads `pages` (ascending) and appends their records for which `predicate` is true, in the order
+/// of the file.
+/// @throws Error corruption, io_error, cancelled
+/// Cost: announces all pages, then reads each once.
+void read_pages(const StoreFile& store, std::span<const PageId> pages,
+                const AttributePredicate& predicate, QueryContext& context,
+                std::vector<PendingSplit>& out);
+
+/// Searches the index, asks for the memory that the answer may take, reads.
+/// @param fixed_bytes  What the query holds besides its records (T0).
+/// @throws Error resource_exhausted (before anything is read), corruption, io_error, cancelled
+[[nodiscard]] std::vector<PendingSplit> retrieve(const RecordSource& source,
+                                                 const AttributePredicate& predicate,
+                                                 std::uint64_t fixed_bytes, QueryContext& context);
+
+}  // namespace ptin

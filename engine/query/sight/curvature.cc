@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight/curvature.h"
+
+#include <cmath>
+
+#include "engine/error.h"
+
+namespace ptin {
+
+void check(const Curvature& curvature) {
+  constexpr double kMost = 1000;  // a ball of 13 km
+  if (!(curvature.coefficient >= 0) || !(curvature.coefficient <= kMost)) {
+    throw Error(ErrorCode::invalid_argument,
+                "the curvature coefficient is negative or too large: expected 0 (a flat Earth) "
+                "to 1 (no refraction)");
+  }
+  if (!(curvature.earth_diameter > 0)) {
+    throw Error(ErrorCode::invalid_argument, "the Earth's diameter is not positive");
+  }
+}
+
+}  // namespace ptin

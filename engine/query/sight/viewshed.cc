@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight/viewshed.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "engine/error.h"
+#include "engine/query/refine/bounded_mesh.h"
+#include "engine/query/select/above_error.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/sight/viewshed_sweep.h"
+#include "engine/query/walk/spot.h"
+
+namespace ptin {
+
+namespace {
+
+void check(const ViewshedRequest& r) {
+  if (!std::isfinite(r.eye.x) || !std::isfinite(r.eye.y) || !std::isfinite(r.eye_height)) {
+    refuse("the observer's position or height is not a finite number");
+  }
+  if (!(r.radius > 0) || !std::isfinite(r.radius)) {
+    refuse("the radius must be a number > 0");
+  }
+  if (!(r.target_height >= 0) || !std::isfinite(r.target_height)) {
+    refuse("the target's height must be a number >= 0");
+  }
+  if (r.pixel_size && !(*r.pixel_size > 0 && std::isfinite(*r.pixel_size))) {
+    refuse("the pixel size must be a number > 0");
+  }
+  check(r.curvature);
+  if (!(r.ground_per_map_x > 0) || !(r.ground_per_map_y > 0)) {
+    refuse("the ground units of a map unit are not numbers > 0");
+  }
+}
+
+/// True for records that may deviate by more than `slope` times their distance from the eye, and
+/// for all that hold it. Monotone: a larger box is no farther.
+class DeviationTowards final : public AttributePredicate {
+ public:
+  /// @param eye  Grid units.  @param ground_x, ground_y  Ground units of a grid unit.
+  DeviationTowards(MapPoint eye, double ground_x, double ground_y, double slope)
+      : eye_(eye), ground_x_(ground_x), ground_y_(ground_y), slope_(slope) {}
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
+    const double x = ground_x_ * std::max({a.roi.min_x - eye_.x, eye_.x - a.roi.max_x, 0.0});
+    const double y = ground_y_ * std::max({a.roi.min_y - eye_.y, eye_.y - a.roi.max_y, 0.0});
+    const double distance = std::sqrt(x * x + y * y);
+    return distance == 0 || a.deviation > slope_ * distance;
+  }
+
+ private:
+  MapPoint eye_;
+  double ground_x_, ground_y_, slope_;
+};
+
+/// Puts what two biased sweeps are certain of into the plain one.
+class Certainty {
+ public:
+  explicit Certainty(Viewshed& seen) : seen_(seen) {
+    for (Sight& s : seen_.pixels) {
+      s = s == Sight::kVisible  ? Sight::kPerhapsVisible
+          : s == Sight::kHidden ? Sight::kPerhapsHidden
+                                : s;
+    }
+    for (Viewshed::Target& t : seen_.vertices) {
+      t.certain = false;
+    }
+  }
+
+  /// What a sweep answers that was biased against `certain`.
+  void add(const Viewshed& biased, Sight certain) {
+    for (std::size_t i = 0; i < seen_.pixels.size(); ++i) {
+      if (biased.pixels[i] == certain) {
+        seen_.pixels[i] = certain;
+      }
+    }
+    for (std::size_t i = 0; i < seen_.vertices.size(); ++i) {
+      if (biased.vertices[i].visible == is_visible(certain)) {
+        seen_.vertices[i].visible = biased.vertices[i].visible;
+        seen_.vertices[i].certain = true;
+      }
+    }
+  }
+
+  void count() {
+    seen_.visible_pixels = seen_.hidden_pixels = seen_.undecided_pixels = 0;
+    seen_.visible_vertices = seen_.hidden_vertices = seen_.undecided_vertices = 0;
+    for (const Sight s : seen_.pixels) {
+      seen_.visible_pixels += s == Sight::kVisible ? 1 : 0;
+      seen_.hidden_pixels += s == Sight::kHidden ? 1 : 0;
+      seen_.undecided_pixels += s == Sight::kPerhapsVisible || s == Sight::kPerhapsHidden ? 1 : 0;
+    }
+    for (const Viewshed::Target& t : seen_.vertices) {
+      ++(!t.certain  ? seen_.undecided_vertices
+         : t.visible ? seen_.visible_vertices
+                     : seen_.hidden_vertices);
+    }
+  }
+
+ private:
+  Viewshed& seen_;
+};
+
+/// How far the file's full TIN is from the source's; 0 where heights alone were rounded, which
+/// decides what the heights are.
+double deviation_of_left_out(const StoreFacts& facts) {
+  const double largest = std::max(std::abs(facts.min_height), std::abs(facts.max_height));
+  const double rounding =
+      facts.heights.type == HeightType::int32 ? facts.heights.step / 2 : largest * 0x1p-24;
+  constexpr double kSlack = 1.001;  // the bound itself is rounded up
+  return facts.base_deviation <= kSlack * rounding ? 0.0 : facts.base_deviation;
+}
+
+/// The mesh of a request, and what it leaves open.
+class ViewshedSearch {
+ public:
+  ViewshedSearch(const ProgressiveTin& terrain, const ViewshedRequest& request)
+      : store_(terrain.store()),
+        request_(request),
+        context_(request.stop, request.memory_limit_bytes, store_.path()),
+        detail_({request.tolerance, request.vertices}, {store_, terrain.index()}, context_),
+        mesh_(terrain, detail_),
+        left_out_(deviation_of_left_out(store_.facts())) {}
+
+  Viewshed run() {
+    const bool is_coarse = detail_.is_asked() && !detail_.certificate().complete;
+    refine(is_coarse);
+    mesh_.release_records();
+    const bool leaves_open = is_coarse || left_out_ > 0;
+    results_held_ = leaves_open && std::isfinite(left_out_) ? 2 : 1;
+    Viewshed result = sweep({});
+    if (leaves_open) {
+      Certainty certainty(result);
+      tell_apart(certainty);
+      certainty.count();
+    }
+    store_.pages().check_unchanged();
+    result.certified_error = detail_.certificate().error;
+    result.certified_deviation = is_coarse ? std::max(allowed(), store_.facts().base_deviation)
+                                           : detail_.certificate().deviation;
+    result.exact = detail_.is_exact(store_.facts());
+    result.cost = context_.cost;
+    return result;
+  }
+
+ private:
+  void tell_apart(Certainty& certainty) {
+    if (!std::isfinite(left_out_)) {
+      return;
+    }
+    // The eye stands on ground that is not known either.
+    const double base = request_.absolute ? left_out_ : 2 * left_out_;
+    const bool voids = !store_.facts().free_of_voids;
+    certainty.add(sweep({1, slope_, voids, base}), Sight::kVisible);
+    if (!voids) {
+      certainty.add(sweep({-1, slope_, false, base}), Sight::kHidden);
+    }
+  }
+
+  void refine(bool is_coarse) {
+    const AffineMap& map = store_.facts().map;
+    const double reach_x = request_.radius / request_.ground_per_map_x;
+    const double reach_y = request_.radius / request_.ground_per_map_y;
+    const MapPoint eye = request_.eye;
+    const PredicatePtr near = meets_region(
+        Window{eye.x - reach_x, eye.y - reach_y, eye.x + reach_x, eye.y + reach_y}, map);
+    if (!is_coarse) {
+      mesh_.refine(*all_of({near, std::make_shared<AboveError>(detail_.tolerance())}), context_);
+      return;
+    }
+    slope_ = allowed() / request_.radius;
+    const auto spot = SpotMap(map, store_.facts().bounds).spot(eye);
+    const MapPoint at = spot ? grid_of(*spot) : map.to_grid(eye);  // outside is found out later
+    const auto towards = std::make_shared<DeviationTowards>(
+        at, map.step_x * request_.ground_per_map_x, map.step_y * request_.ground_per_map_y, slope_);
+    const auto level = std::make_shared<AboveError>(detail_.tolerance());
+    mesh_.refine(*all_of({near, any_of({level, towards})}), context_, towards.get());
+  }
+
+  /// The deviation at the radius: what is asked for, at any point.
+  [[nodiscard]] double allowed() const noexcept {
+    return request_.tolerance.value_or(detail_.certificate().error);
+  }
+
+  Viewshed sweep(const SightBias& bias) {
+    return sweep_viewshed(mesh_.tin(), store_.facts(), request_, context_, bias,
+                          {mesh_.bytes(), results_held_});
+  }
+
+  const StoreFile& store_;
+  const ViewshedRequest& request_;
+  QueryContext context_;
+  Detail detail_;
+  BoundedMesh mesh_;
+  double left_out_;  ///< Deviation of the file's full TIN from the source's.
+  double slope_ = 0;
+  std::uint64_t results_held_ = 1;  ///< The plain sweep's, and beside it one that is biased.
+};
+
+}  // namespace
+
+Viewshed viewshed(const ProgressiveTin& terrain, const ViewshedRequest& request) {
+  const auto start = std::chrono::steady_clock::now();
+  check(request);
+  Viewshed result = ViewshedSearch(terrain, request).run();
+  result.cost.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace ptin

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where the observer of a viewshed stands.
+#pragma once
+
+#include "engine/mesh/tin.h"
+#include "engine/query/sight/viewshed.h"
+#include "engine/query/walk/spot.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+struct ViewshedEye {
+  Spot spot;
+  TriangleId triangle = kNone;  ///< A closed one that holds it.
+  double height = 0;            ///< Of itself.
+  double above_ground = 0;      ///< Infinite over a void.
+};
+
+/// @throws Error invalid_argument  outside; on a void without an absolute height; below the surface
+[[nodiscard]] ViewshedEye find_eye(const Tin& tin, const StoreFacts& facts,
+                                   const ViewshedRequest& request);
+
+}  // namespace ptin

@@ -1,0 +1,482 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight/viewshed_sweep.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/query/sight/horizon.h"
+#include "engine/query/sight/viewshed_eye.h"
+#include "engine/query/sight/viewshed_rim.h"
+#include "engine/query/sight/viewshed_walk.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1;
+constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
+constexpr double kMostBuckets = 65536;
+constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few pieces in each
+
+/// Whether a corner of a triangle, or a point of it, is looked at from within the triangle.
+struct Approach {
+  bool from_within = false;
+  Horizon::Side side = Horizon::Side::kBoth;
+};
+
+class Viewer {
+ public:
+  Viewer(const Tin& tin, const StoreFacts& facts, const ViewshedRequest& request,
+         const QueryContext& context, const SightBias& bias, const HeldBySweeps& held)
+      : tin_(tin), facts_(facts), request_(request), context_(context), bias_(bias), held_(held) {
+    eye_ = find_eye(tin, facts, request);
+    eye_at_ = grid_of(eye_.spot);
+    ground_x_ = facts.map.step_x * request.ground_per_map_x;
+    ground_y_ = facts.map.step_y * request.ground_per_map_y;
+  }
+
+  Viewshed run() {
+    result_.eye_height = eye_.height;
+    if (request_.pixels) {
+      place_pixels();
+    }
+    admit();
+    result_.pixels.assign(std::size_t{result_.width} * result_.height, Sight::kNothing);
+    place_vertices();
+    sweep();
+    collect();
+    return std::move(result_);
+  }
+
+ private:
+  void admit() const;
+  void place_vertices();
+  void place_pixels();
+  void sweep();
+  void walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon);
+  void collect();
+  [[nodiscard]] bool sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon& horizon);
+  [[nodiscard]] std::size_t buckets() const noexcept {
+    const double across = std::max(request_.radius / ground_x_, request_.radius / ground_y_);
+    return static_cast<std::size_t>(std::clamp(4 * across, 64.0, kMostBuckets));
+  }
+  [[nodiscard]] Spot spot_at(const Offset& p) const noexcept {
+    return {eye_.spot.x + std::llround(std::ldexp(p.x, kSpotBits)),
+            eye_.spot.y + std::llround(std::ldexp(p.y, kSpotBits))};
+  }
+  void look_at(TriangleId t, Horizon& horizon);
+  void raise(TriangleId t, TriangleId n, Offset a, Offset b, Horizon& horizon) const;
+  [[nodiscard]] double longest_side(TriangleId t) const noexcept;
+  /// How far the full surface may be from this one. Rounded up.
+  [[nodiscard]] double unknown_at(double x, double y) const noexcept {
+    const double gx = x * ground_x_;
+    const double gy = y * ground_y_;
+    return bias_.slope * std::sqrt(gx * gx + gy * gy) * (1 + 1e-12) + bias_.base;
+  }
+  void look_at_pixels(TriangleId t, const Horizon& horizon);
+  void look_at_pixels_behind(TriangleId t, const Horizon& horizon);
+  void look_at_box(TriangleId t, const Horizon& horizon, std::initializer_list<Offset> points);
+  void look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column, std::int64_t row);
+  [[nodiscard]] Approach approach_corner(const std::array<Offset, 3>& o, int corner) const noexcept;
+  [[nodiscard]] double drop(double x, double y) const noexcept {
+    const double gx = x * ground_x_;
+    const double gy = y * ground_y_;
+    return request_.curvature.drop_at_square(gx * gx + gy * gy);
+  }
+  [[nodiscard]] bool within(double x, double y) const noexcept {
+    const double gx = x * ground_x_;
+    const double gy = y * ground_y_;
+    return gx * gx + gy * gy <= request_.radius * request_.radius;
+  }
+  [[nodiscard]] std::array<Offset, 3> offsets(TriangleId t) const noexcept {
+    const auto& v = tin_.triangles[t].v;
+    return {offsets_[v[0]], offsets_[v[1]], offsets_[v[2]]};
+  }
+  [[nodiscard]] bool is_surface(TriangleId t) const noexcept {
+    return t != kNone && tin_.classes[t] == TriangleClass::kSurface;
+  }
+  /// A target in line with an edge is looked at along it from both sides, each when its triangle
+  /// comes: only then is what was raised on that side in front of the target.
+  static void see(Sight& target, bool visible) noexcept {
+    target = visible && target != Sight::kHidden ? Sight::kVisible : Sight::kHidden;
+  }
+
+  const Tin& tin_;
+  const StoreFacts& facts_;
+  const ViewshedRequest& request_;
+  const QueryContext& context_;
+  SightBias bias_;
+  HeldBySweeps held_;
+  ViewshedEye eye_;
+  MapPoint eye_at_;  ///< Grid units.
+  double ground_x_ = 1, ground_y_ = 1;
+  std::vector<Offset> offsets_;       ///< Beside the vertices: grid units, and height's unit.
+  std::vector<Sight> seen_;           ///< Beside the vertices; kNothing: not looked at yet.
+  double pixel_x_ = 1, pixel_y_ = 1;  ///< Grid units.
+  double first_x_ = 0, first_y_ = 0;  ///< Offset of pixel 0.
+  bool pixels_on_grid_ = false;
+  std::optional<WalkedView> walked_;  ///< Once no order is left.
+  Viewshed result_;
+};
+
+/// Mesh, rasters and horizon together, before any of them is taken.
+void Viewer::admit() const {
+  const std::uint64_t a_vertex =
+      kVertexBytes + (request_.list_vertices ? held_.results * sizeof(Viewshed::Target) : 0);
+  context_.admit(held_.mesh_bytes + held_.results * result_.width * result_.height +
+                 tin_.vertices.size() * a_vertex + tin_.triangles.size() * kTriangleBytes +
+                 buckets() * kBucketBytes);
+}
+
+void Viewer::place_vertices() {
+  offsets_.reserve(tin_.vertices.size());
+  for (const Vertex& v : tin_.vertices) {
+    if (offsets_.size() % kStopInterval == 0) {
+      context_.check_stop();
+    }
+    const double x = v.position.x - eye_at_.x;
+    const double y = v.position.y - eye_at_.y;
+    offsets_.push_back({x, y, facts_.heights.height(v.height) - result_.eye_height - drop(x, y)});
+  }
+  seen_.assign(tin_.vertices.size(), Sight::kNothing);
+}
+
+void Viewer::place_pixels() {
+  pixel_x_ = request_.pixel_size ? *request_.pixel_size / facts_.map.step_x : 1.0;
+  pixel_y_ = request_.pixel_size ? *request_.pixel_size / facts_.map.step_y : 1.0;
+  pixels_on_grid_ = !request_.pixel_size;
+  const double reach_x = std::floor(request_.radius / (ground_x_ * pixel_x_));
+  const double reach_y = std::floor(request_.radius / (ground_y_ * pixel_y_));
+  constexpr double kMostPixels = 1e5;
+  if (reach_x > kMostPixels || reach_y > kMostPixels) {
+    refuse("the raster has more than 200 000 pixels a side: give a larger pixel size");
+  }
+  // On the grid: centres are the grid points, whatever the eye.
+  const double centre_x = pixels_on_grid_ ? std::floor(eye_at_.x + 0.5) - eye_at_.x : 0.0;
+  const double centre_y = pixels_on_grid_ ? std::floor(eye_at_.y + 0.5) - eye_at_.y : 0.0;
+  result_.width = static_cast<std::uint32_t>(2 * reach_x) + 1;
+  result_.height = static_cast<std::uint32_t>(2 * reach_y) + 1;
+  first_x_ = centre_x - reach_x * pixel_x_;
+  first_y_ = centre_y + reach_y * pixel_y_;
+  result_.first = facts_.map.to_map(eye_at_.x + first_x_, eye_at_.y + first_y_);
+  result_.step_x = pixel_x_ * facts_.map.step_x;
+  result_.step_y = pixel_y_ * facts_.map.step_y;
+}
+
+/// Front to back: a triangle comes when all neighbours across the sides that face the eye have
+/// come. A side that turns its back to the eye is raised when its triangle has been looked at.
+void Viewer::sweep() {
+  std::vector<std::uint8_t> waits(tin_.triangles.size());
+  std::vector<TriangleId> ready;
+  std::size_t left = 0;
+  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    if (t % kStopInterval == 0) {
+      context_.check_stop();
+    }
+    if (!tin_.is_alive(t)) {
+      continue;
+    }
+    ++left;
+    const auto o = offsets(t);
+    for (int i = 0; i < 3; ++i) {
+      const bool faces = turn(o[static_cast<std::size_t>(next_corner(i))],
+                              o[static_cast<std::size_t>(previous_corner(i))]) < 0;
+      if (faces && tin_.triangles[t].n[i] != kNone) {
+        ++waits[t];
+      }
+    }
+    if (waits[t] == 0) {
+      ready.push_back(t);
+    }
+  }
+  Horizon horizon(buckets());
+  // The last that became ready comes first: any order that keeps front before back does, and this
+  // one stays where the mesh and the horizon are in the cache.
+  while (!ready.empty()) {
+    if (left % kStopInterval == 0) {
+      context_.check_stop();
+    }
+    const TriangleId t = ready.back();
+    ready.pop_back();
+    --left;
+    look_at(t, horizon);
+    const auto o = offsets(t);
+    for (int i = 0; i < 3; ++i) {
+      const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
+      const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
+      if (!(turn(a, b) > 0)) {
+        continue;
+      }
+      const TriangleId n = tin_.triangles[t].n[i];
+      raise(t, n, a, b, horizon);
+      if (n != kNone && --waits[n] == 0) {
+        ready.push_back(n);
+      }
+    }
+  }
+  if (left != 0) {
+    walk_to_others(waits, horizon);
+  }
+}
+
+/// Along the ray, what is not known grows with the distance, in a straight line: so between two
+/// sides it changes no slope by more than at them. Curvature does, by a quarter of the drop over a
+/// side, within the triangle and again along its side.
+void Viewer::raise(TriangleId t, TriangleId n, Offset a, Offset b, Horizon& horizon) const {
+  const bool surface = is_surface(t) || is_surface(n);
+  if (bias_.sign == 0) {
+    if (surface) {
+      horizon.raise(a, b);
+    }
+    return;
+  }
+  const bool voids = bias_.voids && bias_.sign > 0;
+  if (!surface && !voids) {
+    return;
+  }
+  const double longest = std::max(longest_side(t), n == kNone ? 0.0 : longest_side(n));
+  const double bent = request_.curvature.drop_at(longest) / 2;
+  for (Offset* p : {&a, &b}) {
+    p->z += bias_.sign * (unknown_at(p->x, p->y) + bent);
+    if (voids && !(is_surface(t) && (n == kNone || is_surface(n)))) {
+      p->z = std::max(p->z, facts_.max_height - result_.eye_height);
+    }
+  }
+  horizon.raise(a, b);
+}
+
+double Viewer::longest_side(TriangleId t) const noexcept {
+  const auto o = offsets(t);
+  double square = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double x = (o[(i + 1) % 3].x - o[i].x) * ground_x_;
+    const double y = (o[(i + 1) % 3].y - o[i].y) * ground_y_;
+    square = std::max(square, x * x + y * y);
+  }
+  return std::sqrt(square);
+}
+
+/// Triangles that hide one another in a ring, and all behind: only where the mesh is far from
+/// Delaunay.
+void Viewer::walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon) {
+  walked_.emplace(tin_, offsets_, eye_.spot);
+  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    if (tin_.is_alive(t) && waits[t] != 0) {
+      context_.check_stop();
+      look_at(t, horizon);
+    }
+  }
+}
+
+bool Viewer::sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon& horizon) {
+  if (bias_.sign != 0 && walked_) {
+    return bias_.sign < 0;  // undecided: the walk knows no bias
+  }
+  Offset p = at;
+  p.z -= bias_.sign * unknown_at(p.x, p.y);
+  if (!walked_) {
+    // The ground just before a target that is lower than this may hide it.
+    // Ground beside the observer that is higher than the observer may hide everything.
+    const bool stands_out =
+        bias_.sign <= 0 ||
+        (request_.target_height >= 2 * unknown_at(p.x, p.y) && eye_.above_ground >= bias_.base);
+    return stands_out && horizon.sees(p, side);
+  }
+  ++result_.walked_targets;
+  return walked_->sees(spot, p.z, eye_.triangle);
+}
+
+/// The ray to a corner comes through the triangle when the eye is on the inner side of both sides
+/// at that corner; along a side when it is in line with it.
+Approach Viewer::approach_corner(const std::array<Offset, 3>& o, int corner) const noexcept {
+  const Offset& at = o[static_cast<std::size_t>(corner)];
+  const Offset& next = o[static_cast<std::size_t>(next_corner(corner))];
+  const Offset& previous = o[static_cast<std::size_t>(previous_corner(corner))];
+  const double leaving = turn(at, next);
+  const double coming = turn(previous, at);
+  if (leaving < 0 || coming < 0) {
+    return {};
+  }
+  if (leaving == 0) {
+    return {true, turn(at, previous) > 0 ? Horizon::Side::kLeft : Horizon::Side::kRight};
+  }
+  if (coming == 0) {
+    return {true, turn(at, next) > 0 ? Horizon::Side::kLeft : Horizon::Side::kRight};
+  }
+  return {true, Horizon::Side::kBoth};
+}
+
+void Viewer::look_at(TriangleId t, Horizon& horizon) {
+  const auto o = offsets(t);
+  for (int i = 0; i < 3; ++i) {
+    const VertexId v = tin_.triangles[t].v[i];
+    if (tin_.has_height[v] == 0) {
+      continue;
+    }
+    Offset p = o[static_cast<std::size_t>(i)];
+    if (!within(p.x, p.y)) {
+      continue;
+    }
+    if (p.x == 0 && p.y == 0) {
+      seen_[v] = Sight::kVisible;
+      continue;
+    }
+    const Approach approach = approach_corner(o, i);
+    if (approach.from_within) {
+      p.z += request_.target_height;
+      see(seen_[v], sees(p, spot_of(tin_.position(v)), approach.side, horizon));
+    }
+  }
+  if (request_.pixels) {
+    look_at_pixels(t, horizon);
+  }
+}
+
+/// Pixel centres in the box of the triangle, but for those on its corners, which are vertices.
+void Viewer::look_at_pixels(TriangleId t, const Horizon& horizon) {
+  if (!is_surface(t)) {
+    look_at_pixels_behind(t, horizon);
+    return;
+  }
+  const auto& v = tin_.triangles[t].v;
+  const GridPoint a = tin_.position(v[0]);
+  const GridPoint b = tin_.position(v[1]);
+  const GridPoint c = tin_.position(v[2]);
+  if (pixels_on_grid_ && (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
+                                 (std::int64_t{c.x} - a.x) * (std::int64_t{b.y} - a.y) ==
+                             1) {
+    return;  // the smallest triangle of a grid has no grid point but its corners
+  }
+  const auto o = offsets(t);
+  look_at_box(t, horizon, {o[0], o[1], o[2]});
+}
+
+/// The ray to a target on the rim of a void, seen across it, comes through a void triangle: no
+/// surface triangle takes such a target, so the void one does.
+void Viewer::look_at_pixels_behind(TriangleId t, const Horizon& horizon) {
+  const auto o = offsets(t);
+  for (int i = 0; i < 3; ++i) {
+    const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
+    const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
+    if (is_surface(tin_.triangles[t].n[i]) && !(turn(a, b) < 0)) {
+      look_at_box(t, horizon, {a, b});
+    }
+    if (!pixels_on_grid_ && approach_corner(o, i).from_within) {
+      look_at_box(t, horizon, {o[static_cast<std::size_t>(i)]});
+    }
+  }
+}
+
+void Viewer::look_at_box(TriangleId t, const Horizon& horizon,
+                         std::initializer_list<Offset> points) {
+  double left = points.begin()->x, right = left;
+  double low = points.begin()->y, high = low;
+  for (const Offset& p : points) {
+    left = std::min(left, p.x), right = std::max(right, p.x);
+    low = std::min(low, p.y), high = std::max(high, p.y);
+  }
+  const auto clamp = [](double value, std::uint32_t size) {
+    return static_cast<std::int64_t>(std::clamp(value, -1.0, static_cast<double>(size)));
+  };
+  const std::int64_t from_column = clamp(std::ceil((left - first_x_) / pixel_x_), result_.width);
+  const std::int64_t to_column = clamp(std::floor((right - first_x_) / pixel_x_), result_.width);
+  const std::int64_t from_row = clamp(std::ceil((first_y_ - high) / pixel_y_), result_.height);
+  const std::int64_t to_row = clamp(std::floor((first_y_ - low) / pixel_y_), result_.height);
+  for (std::int64_t row = std::max<std::int64_t>(from_row, 0);
+       row <= std::min<std::int64_t>(to_row, result_.height - 1); ++row) {
+    context_.check_stop();
+    for (std::int64_t column = std::max<std::int64_t>(from_column, 0);
+         column <= std::min<std::int64_t>(to_column, result_.width - 1); ++column) {
+      look_at_pixel(t, horizon, column, row);
+    }
+  }
+}
+
+void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column,
+                           std::int64_t row) {
+  Sight& pixel =
+      result_
+          .pixels[static_cast<std::size_t>(row) * result_.width + static_cast<std::size_t>(column)];
+  Offset p{first_x_ + static_cast<double>(column) * pixel_x_,
+           first_y_ - static_cast<double>(row) * pixel_y_, 0};
+  if (!within(p.x, p.y)) {
+    return;
+  }
+  const auto o = offsets(t);
+  double weights[3];
+  double sum = 0;
+  Horizon::Side side = Horizon::Side::kBoth;
+  for (int i = 0; i < 3; ++i) {
+    const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
+    const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
+    const double w = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+    const double faces = turn(a, b);
+    if (w < 0 || (w == 0 && faces < 0)) {
+      return;  // outside, or on a side that the ray reaches from beyond
+    }
+    if (w == 0 && faces == 0) {
+      side = turn(p, o[static_cast<std::size_t>(i)]) > 0 ? Horizon::Side::kLeft
+                                                         : Horizon::Side::kRight;
+    }
+    weights[i] = w;
+    sum += w;
+  }
+  if (!is_surface(t) && !holds_surface(tin_, t, weights)) {
+    return;
+  }
+  if (p.x == 0 && p.y == 0) {
+    pixel = Sight::kVisible;
+    return;
+  }
+  // On the plane of the triangle, and lowered as a point of its own: the corners' were lowered too.
+  for (std::size_t i = 0; i < 3; ++i) {
+    p.z += weights[i] / sum * (o[i].z + drop(o[i].x, o[i].y));
+  }
+  p.z += request_.target_height - drop(p.x, p.y);
+  see(pixel, sees(p, walked_ ? spot_at(p) : eye_.spot, side, horizon));
+}
+
+void Viewer::collect() {
+  for (VertexId v = 0; v < seen_.size(); ++v) {
+    if (v % kStopInterval == 0) {
+      context_.check_stop();
+    }
+    if (seen_[v] == Sight::kNothing || !touches_surface(tin_, v)) {
+      continue;
+    }
+    const Offset& o = offsets_[v];
+    const bool visible = seen_[v] == Sight::kVisible;
+    ++(visible ? result_.visible_vertices : result_.hidden_vertices);
+    if (request_.pixels && pixels_on_grid_) {
+      const auto column = static_cast<std::int64_t>(std::llround(o.x - first_x_));
+      const auto row = static_cast<std::int64_t>(std::llround(first_y_ - o.y));
+      if (column >= 0 && row >= 0 && column < result_.width && row < result_.height) {
+        result_.pixels[static_cast<std::size_t>(row) * result_.width +
+                       static_cast<std::size_t>(column)] = seen_[v];
+      }
+    }
+    if (request_.list_vertices) {
+      const GridPoint p = tin_.position(v);
+      result_.vertices.push_back(
+          {facts_.map.to_map(p.x, p.y), facts_.heights.height(tin_.vertices[v].height), visible});
+    }
+  }
+  for (const Sight s : result_.pixels) {
+    result_.visible_pixels += s == Sight::kVisible ? 1 : 0;
+    result_.hidden_pixels += s == Sight::kHidden ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+Viewshed sweep_viewshed(const Tin& tin, const StoreFacts& facts, const ViewshedRequest& request,
+                        const QueryContext& context, const SightBias& bias,
+                        const HeldBySweeps& held) {
+  return Viewer(tin, facts, request, context, bias, held).run();
+}
+
+}  // namespace ptin

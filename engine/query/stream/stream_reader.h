@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Progressive transmission, the receiver: bytes in as they come, a valid TIN at any time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/tin.h"
+#include "engine/query/select/certificate.h"
+#include "engine/query/stream/split_code.h"
+#include "engine/query/stream/stream_format.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+struct StreamReaderOptions {
+  /// For frames that wait and the mesh; asked for before either grows.
+  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
+  std::stop_token stop;  ///< Looked at while splits are applied.
+};
+
+/// Follows a stream, and after it streams that go on from it. Threads: one owner.
+class StreamReader {
+ public:
+  /// @param name  Of the stream, in errors.
+  explicit StreamReader(std::string name, StreamReaderOptions options = {})
+      : name_(std::move(name)), options_(std::move(options)) {}
+
+  /// Takes the next bytes, however they were cut, and applies every frame that is whole by now.
+  /// @return How many were taken: all, unless the stream ended before. What is fed behind the end
+  ///         of a stream is another one, which goes on from there.
+  /// @throws Error corruption           bytes that no program wrote (FORMAT.md, "A reader of
+  ///                                    streams must reject"), a stream that does not go on from
+  ///                                    this mesh; names frame and byte. The mesh stays valid, its
+  ///                                    certificate that of the last whole frame; nothing more can
+  ///                                    be fed.
+  ///               unsupported_version
+  ///               resource_exhausted   what comes would exceed the memory limit
+  ///               cancelled
+  /// Cost: linear in the bytes and, where stars are of bounded degree, in the splits; a stream that
+  /// goes on from another costs O(n log n) on a mesh of n vertices, however few splits it brings
+  /// (so a caller who does not trust the sender limits how many there are). A frame that is not
+  /// whole waits in memory, nothing is reserved before it came.
+  std::size_t feed(std::span<const std::byte> bytes) { return feed(bytes, false); }
+
+  /// As feed(), but takes nothing behind the head, or the frame, that `bytes` make whole: for who
+  /// wants to see the mesh after each frame.
+  std::size_t feed_frame(std::span<const std::byte> bytes) { return feed(bytes, true); }
+
+  /// Gives up the rest of a stream that was cut: what is fed next is the head of another one.
+  void begin_next();
+
+  /// False until T0 arrived; then the rest can be asked.
+  [[nodiscard]] bool has_mesh() const noexcept { return !tin_.triangles.empty(); }
+  /// The mesh: every vertex and triangle is alive, and those that are there keep their ids until
+  /// another stream begins.
+  [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
+  /// Changes when vertices and triangles that are there get other ids: with T0 and with each stream
+  /// that goes on from another.
+  [[nodiscard]] std::uint64_t numbering() const noexcept { return numbering_; }
+  /// What the mesh is certified for, where the stream was asked for; at least base_error.
+  [[nodiscard]] const Certificate& certificate() const noexcept { return certificate_; }
+  /// Of the file that the stream came from.
+  [[nodiscard]] const StoreFacts& facts() const noexcept { return facts_; }
+  [[nodiscard]] const std::string& metadata() const noexcept { return metadata_; }
+  [[nodiscard]] std::uint64_t t0_vertices() const noexcept { return t0_vertices_; }
+
+  /// Splits of the current stream: those applied, those that it has in all.
+  [[nodiscard]] std::uint64_t splits() const noexcept { return splits_; }
+  [[nodiscard]] std::uint64_t splits_in_all() const noexcept { return splits_in_all_; }
+  /// True once the end of the current stream arrived.
+  [[nodiscard]] bool is_complete() const noexcept { return complete_; }
+  /// Bytes fed that belong to whole frames.
+  [[nodiscard]] std::uint64_t bytes_used() const noexcept { return offset_; }
+
+ private:
+  enum class Expects { kHead, kStart, kT0, kSplits, kNothing };
+
+  /// Bytes of what comes next, as far as is known.
+  [[nodiscard]] std::size_t wanted() const;
+  std::size_t feed(std::span<const std::byte> bytes, bool one_frame);
+  void take(std::span<const std::byte> bytes);
+  void check_magic() const;
+  void take_head(std::span<const std::byte> bytes);
+  void take_frame(const stream::FrameHead& head, std::span<const std::byte> payload);
+  void take_start(std::span<const std::byte> payload);
+  void take_t0(std::span<const std::byte> payload);
+  void take_splits(std::span<const std::byte> payload);
+  void take_end(std::span<const std::byte> payload);
+  void apply(const LocalSplit& split);
+  [[nodiscard]] std::string place() const;
+  void check_stop() const;
+  /// @throws Error resource_exhausted when `bytes` exceed the limit
+  void admit(std::uint64_t bytes) const;
+  [[noreturn]] void reject(const std::string& why) const;
+
+  std::string name_;
+  StreamReaderOptions options_;
+  std::vector<std::byte> waiting_;  ///< Of a frame that is not whole.
+  std::uint64_t offset_ = 0;
+  std::uint32_t sequence_ = 0;
+  Expects expects_ = Expects::kHead;
+  bool complete_ = false;
+
+  std::uint64_t fingerprint_ = 0;
+  StoreFacts facts_;
+  std::string metadata_;
+  std::uint64_t base_vertices_ = 0, base_digest_ = 0;
+  std::uint64_t t0_vertices_ = 0;
+  std::uint64_t numbering_ = 0;
+  std::uint64_t splits_ = 0, splits_in_all_ = 0;
+  std::uint64_t digest_ = 0;  ///< Of the mesh.
+  Certificate certificate_;
+  Tin tin_;
+  std::optional<SplitCode> code_;
+};
+
+}  // namespace ptin

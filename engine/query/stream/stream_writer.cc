@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/stream/stream_writer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/geometry/hilbert.h"
+#include "engine/mesh/split.h"
+#include "engine/query/refine/refinement.h"
+#include "engine/query/refine/split_site.h"
+#include "engine/query/select/coarsest.h"
+#include "engine/query/select/total_order.h"
+#include "engine/query/stream/split_code.h"
+#include "engine/query/stream/stream_format.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::uint64_t kLeastSplits = 256;
+constexpr std::uint64_t kMostSplits = std::uint64_t{1} << 20;
+constexpr std::uint64_t kShare = 8;
+static_assert(kShare <= stream::kLeastShare && kMostSplits >= stream::kMostLeastSplits);
+constexpr std::size_t kMostMetadata = std::size_t{1} << 20;
+
+/// A mesh that grows split by split, and the place of each vertex.
+class GrowingMesh {
+ public:
+  GrowingMesh(const Tin& base, std::uint64_t splits) : tin_(base) {
+    ids_.reserve(base.vertices.size() + splits);
+    for (VertexId v = 0; v < base.vertices.size(); ++v) {
+      ids_.insert(key_of(base.position(v)), v);
+    }
+  }
+  [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
+  [[nodiscard]] VertexId find(VertexKey key) const noexcept { return ids_.find(key); }
+
+  SplitResult apply(const PendingSplit& s, const QueryContext& context) {
+    const auto u = static_cast<VertexId>(tin_.vertices.size());
+    const VertexId w = find(s.w);
+    const VertexId vl = find(s.vl);
+    const VertexId vr = find(s.vr);
+    if (w == KeyTable::kAbsent || vl == KeyTable::kAbsent || vr == KeyTable::kAbsent) {
+      throw_refused(s, "it names a vertex that no record before it makes", context);
+    }
+    if (!ids_.insert(s.u, u)) {
+      throw_refused(s, "its vertex is in the mesh already", context);
+    }
+    tin_.vertices.push_back({point_of(s.u), s.height, kNone});
+    tin_.has_height.push_back((s.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0);
+    const SplitResult made = split(tin_, site_of(u, w, vl, vr, s.flags));
+    if (!made.applied) {
+      throw_refused(s, "it does not fit the mesh", context);
+    }
+    return made;
+  }
+
+ private:
+  Tin tin_;
+  KeyTable ids_;
+};
+
+/// How many splits of the same frame each split comes after, one needing the other: level 0 needs
+/// none. Splits of one level can come in any order.
+class Levels {
+ public:
+  Levels(const Tin& base, std::uint64_t splits) : mesh_(base, splits) {}
+
+  /// @param frame  In order of falling rank.
+  std::vector<std::uint32_t> of(std::span<const PendingSplit> frame, const QueryContext& context) {
+    std::vector<std::uint32_t> levels;
+    levels.reserve(frame.size());
+    marks_.assign(mesh_.tin().triangles.size(), 0);
+    for (const PendingSplit& s : frame) {
+      const SplitResult made = mesh_.apply(s, context);
+      marks_.resize(mesh_.tin().triangles.size(), 0);
+      walk_star(mesh_.tin(), find_u(), star_);
+      std::uint32_t level = 0;
+      for (const TriangleId t : star_.triangles) {
+        level = t == made.left || t == made.right ? level : std::max(level, marks_[t]);
+      }
+      for (const TriangleId t : star_.triangles) {
+        marks_[t] = level + 1;
+      }
+      levels.push_back(level);
+    }
+    return levels;
+  }
+
+ private:
+  [[nodiscard]] VertexId find_u() const noexcept {
+    return static_cast<VertexId>(mesh_.tin().vertices.size() - 1);
+  }
+  GrowingMesh mesh_;
+  std::vector<std::uint32_t>
+      marks_;  ///< By triangle: 1 + level of the split of this frame that made it.
+  Star star_;
+};
+
+/// A split of a level, in its place.
+struct Ordered {
+  std::uint32_t rank;
+  VertexId w;
+  const PendingSplit* split;
+};
+
+class Writer {
+ public:
+  Writer(const StoreFile& store, const StreamRequest& request, const ByteSink& sink)
+      : store_(store),
+        request_(request),
+        sink_(sink),
+        source_{store, request.index ? *request.index : store.index()},
+        context_(request.stop, request.memory_limit_bytes, store.path()),
+        code_(store.facts().heights.type) {}
+
+  StreamSummary run() {
+    const auto start = std::chrono::steady_clock::now();
+    const Tin base = base_mesh();
+    std::vector<PendingSplit> splits = missing_splits(base);
+    store_.pages().check_unchanged();
+    summary_.splits = splits.size();
+    summary_.base_vertices = base.vertices.size();
+    send_head();
+    send_start(base, splits);
+    if (request_.held.empty()) {
+      send_t0(base);
+    }
+    GrowingMesh mesh(base, splits.size());
+    Levels levels(base, splits.size());
+    for (std::size_t at = 0; at < splits.size();) {
+      context_.check_stop();
+      const std::uint64_t share = mesh.tin().vertices.size() / kShare;
+      const std::size_t count =
+          std::min<std::uint64_t>(splits.size() - at, std::clamp(share, kLeastSplits, kMostSplits));
+      const Certificate left = certificate_from(splits, at + count);
+      send_splits(std::span(splits).subspan(at, count), left, mesh, levels);
+      at += count;
+    }
+    summary_.certificate = certificate_from(splits, splits.size());
+    send_end(mesh.tin());
+    context_.cost.records_applied = splits.size();
+    summary_.cost = context_.cost;
+    summary_.cost.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return summary_;
+  }
+
+ private:
+  [[nodiscard]] Tin base_mesh();
+  [[nodiscard]] std::vector<PendingSplit> missing_splits(const Tin& base);
+  [[nodiscard]] Certificate certificate_from(std::span<const PendingSplit> splits,
+                                             std::size_t next) const;
+  void send(std::span<const std::byte> bytes) {
+    sink_(bytes);
+    summary_.bytes += bytes.size();
+  }
+  void send_frame(stream::FrameKind kind, std::span<const std::byte> payload);
+  void send_head();
+  void send_start(const Tin& base, std::span<const PendingSplit> splits);
+  void send_t0(const Tin& base);
+  void send_splits(std::span<PendingSplit> splits, const Certificate& left, GrowingMesh& mesh,
+                   Levels& levels);
+  void code_level(std::span<const PendingSplit> splits, RangeEncoder& coder, GrowingMesh& mesh);
+  void send_end(const Tin& tin);
+
+  const StoreFile& store_;
+  const StreamRequest& request_;
+  const ByteSink& sink_;
+  RecordSource source_;
+  QueryContext context_;
+  SplitCode code_;
+  StreamSummary summary_;
+  std::uint32_t sequence_ = 0;
+  double left_out_ = -1.0;  ///< Largest error of a record that is wanted and beyond `most_splits`.
+};
+
+void append_bytes(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
+  const std::size_t before = out.size();
+  out.resize(before + bytes.size());
+  std::copy(bytes.begin(), bytes.end(), out.begin() + static_cast<std::ptrdiff_t>(before));
+}
+
+template <class T>
+void append(std::vector<std::byte>& out, const T& object) {
+  append_bytes(out, std::as_bytes(std::span(&object, 1)));
+}
+
+/// By falling rank; within a rank along the Hilbert curve, where the mesh is in the caches.
+void sort_by_rank(std::span<PendingSplit> splits) {
+  struct Place {
+    std::uint64_t curve;
+    std::uint32_t index;
+    std::uint16_t rank;
+  };
+  std::vector<Place> places;
+  places.reserve(splits.size());
+  for (std::uint32_t i = 0; i < splits.size(); ++i) {
+    const GridPoint p = point_of(splits[i].u);
+    places.push_back(
+        {hilbert_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y)), i,
+         splits[i].rank});
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return a.rank != b.rank ? a.rank > b.rank : a.curve < b.curve;
+  });
+  std::vector<PendingSplit> sorted;
+  sorted.reserve(splits.size());
+  for (const Place& p : places) {
+    sorted.push_back(splits[p.index]);
+  }
+  std::copy(sorted.begin(), sorted.end(), splits.begin());
+}
+
+/// What the receiver has, numbered as it numbers it: T0, and the records it was served. Each
+/// serving is closed under dependency, and so are they together.
+Tin Writer::base_mesh() {
+  Refinement refinement(mesh_of(store_.t0(), store_.path()));
+  for (const StreamHeld& held : request_.held) {
+    const PredicatePtr predicate = held.predicate ? held.predicate : everything();
+    std::vector<PendingSplit> splits =
+        retrieve(source_, *predicate, refinement_bytes(refinement.tin().vertices.size()), context_);
+    // Before cutting: the receiver counts what it was sent, without what it had by then.
+    std::erase_if(splits,
+                  [&](const PendingSplit& s) { return refinement.find(s.u) != KeyTable::kAbsent; });
+    if (held.splits < splits.size()) {
+      const auto last = splits.begin() + static_cast<std::ptrdiff_t>(held.splits);
+      std::nth_element(splits.begin(), last, splits.end(), is_before);
+      splits.erase(last, splits.end());
+    }
+    refinement.apply(splits, context_);
+  }
+  return stream::numbered_by_key(refinement.tin());
+}
+
+/// What is wanted and not held, in the total order. Closed together with what is held: so is any
+/// first part of it.
+std::vector<PendingSplit> Writer::missing_splits(const Tin& base) {
+  const PredicatePtr wanted = request_.wanted ? request_.wanted : everything();
+  const std::uint64_t base_bytes = 2 * refinement_bytes(base.vertices.size());
+  std::vector<PageId> pages;
+  source_.index.search(*wanted, pages, context_.cost.io);
+  context_.check_stop();
+  context_.admit(base_bytes + 2 * refinement_bytes(most_records(store_, pages)));
+  std::vector<PendingSplit> splits;
+  read_pages(store_, pages, *wanted, context_, splits);
+  if (!request_.held.empty()) {
+    KeyTable held(base.vertices.size());
+    for (VertexId v = 0; v < base.vertices.size(); ++v) {
+      held.insert(key_of(base.position(v)), v);
+    }
+    std::erase_if(splits,
+                  [&](const PendingSplit& s) { return held.find(s.u) != KeyTable::kAbsent; });
+  }
+  std::sort(splits.begin(), splits.end(), is_before);
+  if (request_.most_splits < splits.size()) {
+    left_out_ = splits[request_.most_splits].error;
+    splits.resize(request_.most_splits);
+  }
+  return splits;
+}
+
+/// When everything before `next` is applied.
+Certificate Writer::certificate_from(std::span<const PendingSplit> splits, std::size_t next) const {
+  const double left = next < splits.size() ? splits[next].error : left_out_;
+  return certify_below(store_, std::max(left, request_.tolerance.value_or(-1.0)));
+}
+
+void Writer::send_frame(stream::FrameKind kind, std::span<const std::byte> payload) {
+  if (payload.size() > stream::kMaxFrameBytes) {
+    throw Error(ErrorCode::resource_exhausted,
+                "a frame of the stream would take more than 256 MiB: T0 is too large for a stream",
+                store_.path());
+  }
+  stream::FrameHead head{static_cast<std::uint32_t>(kind), sequence_++,
+                         static_cast<std::uint32_t>(payload.size()), 0, 0};
+  head.checksum = stream::checksum_of_frame(head, payload);
+  send(std::as_bytes(std::span(&head, 1)));
+  send(payload);
+  ++summary_.frames;
+}
+
+void Writer::send_head() {
+  const stream::Head head{stream::kMagic, stream::kMajorVersion, stream::kMinorVersion, 0};
+  send(std::as_bytes(std::span(&head, 1)));
+}
+
+void Writer::send_start(const Tin& base, std::span<const PendingSplit> splits) {
+  if (request_.metadata.size() > kMostMetadata) {
+    throw Error(ErrorCode::invalid_argument, "the stream's metadata is longer than 1 MiB");
+  }
+  const StoreFacts& f = store_.facts();
+  const Certificate now = certificate_from(splits, 0);
+  const auto bits = [](double v) { return layout::to_bits(v); };
+  const stream::Start start{store_.fingerprint(),
+                            static_cast<std::uint32_t>(f.heights.type),
+                            !request_.held.empty() ? stream::kIsDelta : 0,
+                            bits(f.heights.step),
+                            bits(f.heights.offset),
+                            bits(f.map.origin_x),
+                            bits(f.map.origin_y),
+                            bits(f.map.step_x),
+                            bits(f.map.step_y),
+                            {f.bounds.min_x, f.bounds.min_y, f.bounds.max_x, f.bounds.max_y},
+                            bits(f.min_height),
+                            bits(f.max_height),
+                            bits(f.base_error),
+                            bits(f.base_deviation),
+                            bits(now.error),
+                            bits(now.deviation),
+                            base.vertices.size(),
+                            stream::digest_of(base),
+                            splits.size(),
+                            request_.metadata.size()};
+  std::vector<std::byte> payload;
+  append(payload, start);
+  append_bytes(payload, std::as_bytes(std::span(request_.metadata)));
+  send_frame(stream::FrameKind::kStart, payload);
+}
+
+void Writer::send_t0(const Tin& base) {
+  std::vector<std::byte> payload;
+  append(payload, stream::T0Counts{static_cast<std::uint32_t>(base.vertices.size()),
+                                   static_cast<std::uint32_t>(base.triangles.size())});
+  for (VertexId v = 0; v < base.vertices.size(); ++v) {
+    const GridPoint p = base.position(v);
+    append(payload,
+           layout::T0Vertex{p.x, p.y, base.vertices[v].height, base.has_height[v] != 0 ? 1U : 0U});
+  }
+  for (TriangleId t = 0; t < base.triangles.size(); ++t) {
+    const Triangle& c = base.triangles[t];
+    append(payload, layout::T0Triangle{{c.v[0], c.v[1], c.v[2]},
+                                       base.classes[t] == TriangleClass::kVoid ? 1U : 0U});
+  }
+  send_frame(stream::FrameKind::kT0, payload);
+}
+
+/// Within a frame splits come level by level, and in a level by the number of w: an order costs
+/// bits only where it says something.
+void Writer::send_splits(std::span<PendingSplit> splits, const Certificate& left, GrowingMesh& mesh,
+                         Levels& levels) {
+  sort_by_rank(splits);
+  const std::vector<std::uint32_t> level = levels.of(splits, context_);
+  std::vector<std::vector<PendingSplit>> by_level;
+  for (std::size_t i = 0; i < splits.size(); ++i) {
+    by_level.resize(std::max<std::size_t>(by_level.size(), level[i] + std::size_t{1}));
+    by_level[level[i]].push_back(splits[i]);
+  }
+  std::vector<std::byte> payload;
+  append(payload, stream::Splits{static_cast<std::uint32_t>(splits.size()), 0,
+                                 layout::to_bits(left.error), layout::to_bits(left.deviation)});
+  const std::size_t before = payload.size();
+  RangeEncoder coder(payload);
+  code_.begin_block(mesh.tin());
+  for (const std::vector<PendingSplit>& one : by_level) {
+    code_level(one, coder, mesh);
+  }
+  coder.finish();
+  const std::size_t least =
+      (splits.size() + stream::kMostSplitsPerByte - 1) / stream::kMostSplitsPerByte;
+  payload.resize(std::max(payload.size(), before + least), std::byte{0});
+  const std::uint64_t bytes = summary_.bytes;
+  send_frame(stream::FrameKind::kSplits, payload);
+  summary_.split_bytes += summary_.bytes - bytes;
+}
+
+void Writer::code_level(std::span<const PendingSplit> splits, RangeEncoder& coder,
+                        GrowingMesh& mesh) {
+  std::vector<Ordered> order;
+  order.reserve(splits.size());
+  for (const PendingSplit& s : splits) {
+    const VertexId w = mesh.find(s.w);
+    if (w == KeyTable::kAbsent) {
+      throw_refused(s, "it names a vertex that no record before it makes", context_);
+    }
+    order.push_back({code_.rank_of(w), w, &s});
+  }
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+    return a.rank != b.rank ? a.rank < b.rank : a.split->u < b.split->u;
+  });
+  bool begins = true;
+  for (const auto& [rank, w, s] : order) {
+    const LocalSplit local{begins,         w,         mesh.find(s->vl), mesh.find(s->vr),
+                           point_of(s->u), s->height, s->flags};
+    begins = false;
+    if (const char* fault = code_.encode(coder, mesh.tin(), local); fault != nullptr) {
+      throw_refused(*s, std::string("it ") + fault, context_);
+    }
+    mesh.apply(*s, context_);
+  }
+}
+
+void Writer::send_end(const Tin& tin) {
+  const stream::End end{summary_.splits, tin.vertices.size(), stream::digest_of(tin)};
+  send_frame(stream::FrameKind::kEnd, std::as_bytes(std::span(&end, 1)));
+}
+
+}  // namespace
+
+StreamSummary write_stream(const StoreFile& store, const StreamRequest& request,
+                           const ByteSink& sink) {
+  return Writer(store, request, sink).run();
+}
+
+}  // namespace ptin

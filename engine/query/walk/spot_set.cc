@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/walk/spot_set.h"
+
+#include <algorithm>
+
+namespace ptin {
+
+namespace {
+
+std::int64_t floor_grid(std::int64_t s) noexcept { return s >> kSpotBits; }
+std::int64_t ceil_grid(std::int64_t s) noexcept { return -((-s) >> kSpotBits); }
+
+constexpr std::uint64_t kMostCells = std::uint64_t{1} << 18;
+
+}  // namespace
+
+SpotSet::SpotSet(std::span<const Spot> spots, double tolerance)
+    : tolerance_(tolerance), single_(spots.size() == 1) {
+  std::int64_t min_x = INT64_MAX, min_y = INT64_MAX, max_x = INT64_MIN, max_y = INT64_MIN;
+  for (const Spot& s : spots) {
+    min_x = std::min(min_x, s.x), max_x = std::max(max_x, s.x);
+    min_y = std::min(min_y, s.y), max_y = std::max(max_y, s.y);
+  }
+  low_x_ = floor_grid(min_x), low_y_ = floor_grid(min_y);
+  high_x_ = ceil_grid(max_x), high_y_ = ceil_grid(max_y);
+  if (single_) {
+    return;
+  }
+  const auto cells = [&](int shift) {
+    return static_cast<std::uint64_t>(((high_x_ - low_x_) >> shift) + 1) *
+           static_cast<std::uint64_t>(((high_y_ - low_y_) >> shift) + 1);
+  };
+  const std::uint64_t most = std::min<std::uint64_t>(kMostCells, 4 * spots.size() + 4);
+  while (cells(cell_shift_) > most) {
+    ++cell_shift_;
+  }
+  columns_ = static_cast<std::uint32_t>(((high_x_ - low_x_) >> cell_shift_) + 1);
+  rows_ = static_cast<std::uint32_t>(((high_y_ - low_y_) >> cell_shift_) + 1);
+  begin_.assign(std::size_t{columns_} * rows_ + 1, 0);
+  const auto cell = [&](const Spot& s) {
+    return std::size_t{cell_of(floor_grid(s.y), low_y_)} * columns_ +
+           cell_of(floor_grid(s.x), low_x_);
+  };
+  for (const Spot& s : spots) {
+    ++begin_[cell(s) + 1];
+  }
+  for (std::size_t i = 1; i < begin_.size(); ++i) {
+    begin_[i] += begin_[i - 1];
+  }
+  spots_.resize(spots.size());
+  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+  for (const Spot& s : spots) {
+    spots_[next[cell(s)]++] = s;
+  }
+  sums_.assign(std::size_t{columns_ + 1} * (rows_ + 1), 0);
+  for (std::uint32_t row = 0; row < rows_; ++row) {
+    const std::size_t first = std::size_t{row} * columns_;
+    for (std::uint32_t column = 0; column < columns_; ++column) {
+      sums_[std::size_t{row + 1} * (columns_ + 1) + column + 1] =
+          spots_below(column + 1, row) + begin_[first + column + 1] - begin_[first];
+    }
+  }
+}
+
+std::uint32_t SpotSet::cell_of(std::int64_t grid, std::int64_t low) const noexcept {
+  return static_cast<std::uint32_t>((grid - low) >> cell_shift_);
+}
+
+/// Cells strictly between those of the box's sides lie inside of the box; spots of the others are
+/// looked at one by one, row by row.
+bool SpotSet::holds_one(const GridBox& b) const noexcept {
+  const std::uint32_t left = cell_of(std::max<std::int64_t>(b.min_x, low_x_), low_x_);
+  const std::uint32_t right = cell_of(std::min<std::int64_t>(b.max_x, high_x_), low_x_);
+  const std::uint32_t bottom = cell_of(std::max<std::int64_t>(b.min_y, low_y_), low_y_);
+  const std::uint32_t top = cell_of(std::min<std::int64_t>(b.max_y, high_y_), low_y_);
+  if (spots_below(right + 1, top + 1) - spots_below(left, top + 1) ==
+      spots_below(right + 1, bottom) - spots_below(left, bottom)) {
+    return false;
+  }
+  if (right > left + 1 && top > bottom + 1 &&
+      spots_below(right, top) - spots_below(left + 1, top) !=
+          spots_below(right, bottom + 1) - spots_below(left + 1, bottom + 1)) {
+    return true;
+  }
+  for (std::uint32_t row = bottom; row <= top; ++row) {
+    const std::size_t first = std::size_t{row} * columns_;
+    for (std::uint32_t i = begin_[first + left]; i < begin_[first + right + 1]; ++i) {
+      if (contains(b, spots_[i])) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace ptin

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The predicate of a batch of points: the region of influence holds one of them.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/query/walk/spot.h"
+#include "storage/attributes.h"
+
+namespace ptin {
+
+/// True for boxes that hold at least one of some spots, and errors above a tolerance. Exact, so
+/// monotone. Threads: immutable.
+class SpotSet final : public AttributePredicate {
+ public:
+  /// @param tolerance  Errors at or below it are left out; negative: none are.
+  /// Cost: O(spots).
+  SpotSet(std::span<const Spot> spots, double tolerance);
+
+  /// Cost: constant for boxes much larger than the distance between spots; otherwise the spots
+  /// near the box.
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
+    return a.error > tolerance_ && meets(a.roi) && (single_ || holds_one(a.roi));
+  }
+  [[nodiscard]] GridBox reach() const noexcept override {  // spots lie on the grid
+    return {static_cast<std::int32_t>(low_x_), static_cast<std::int32_t>(low_y_),
+            static_cast<std::int32_t>(high_x_), static_cast<std::int32_t>(high_y_)};
+  }
+
+ private:
+  [[nodiscard]] bool meets(const GridBox& b) const noexcept {
+    // All spots lie in [low_, high_]: grid cells, and for one spot exactly it.
+    return b.min_x <= low_x_ && high_x_ <= b.max_x && b.min_y <= low_y_ && high_y_ <= b.max_y
+               ? true
+               : !single_ && b.min_x <= high_x_ && low_x_ <= b.max_x && b.min_y <= high_y_ &&
+                     low_y_ <= b.max_y;
+  }
+  [[nodiscard]] bool holds_one(const GridBox& b) const noexcept;
+  [[nodiscard]] std::uint32_t cell_of(std::int64_t grid, std::int64_t low) const noexcept;
+  [[nodiscard]] std::uint32_t spots_below(std::uint32_t column, std::uint32_t row) const noexcept {
+    return sums_[std::size_t{row} * (columns_ + 1) + column];
+  }
+
+  double tolerance_;
+  bool single_;
+  std::int64_t low_x_, low_y_, high_x_, high_y_;  ///< Grid units around all spots, outward.
+  int cell_shift_ = 0;                            ///< Cells of 2^shift grid units.
+  std::uint32_t columns_ = 1, rows_ = 1;
+  std::vector<std::uint32_t> sums_;   ///< Spots in the cells below and to the left: (columns + 1) x
+                                      ///< (rows + 1).
+  std::vector<std::uint32_t> begin_;  ///< First spot of each cell, by rows; one more at the end.
+  std::vector<Spot> spots_;           ///< By cells.
+};
+
+}  // namespace ptin

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Walks over a mesh: to a spot, and along a straight line. Every decision is exact (spot.h), so
+// lines through vertices, along edges and along the border are no special luck.
+//
+// The mesh must be valid and whole (mesh/validate.h): a disk over a convex domain. Parts cut out by
+// keep_meeting() are not.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/geometry/height.h"
+#include "engine/mesh/tin.h"
+#include "engine/query/walk/spot.h"
+
+namespace ptin {
+
+/// Where a spot lies: on a vertex, in an edge, in a triangle (all without their borders), or
+/// outside of the domain.
+enum class Lies : std::uint8_t { kOutside, kInTriangle, kOnEdge, kOnVertex };
+
+struct Place {
+  Lies lies = Lies::kOutside;
+  /// A closed triangle that holds the spot; outside: one whose border edge has the spot beyond it.
+  TriangleId triangle = kNone;
+  int index = 0;  ///< kOnEdge, kOutside: the side (opposite to that corner); kOnVertex: the corner.
+};
+
+/// Finds a spot by a visibility walk whose choices are pseudo-random but the same in every run
+/// (Devillers, Pion, Teillaud 2002: it ends with probability 1; after as many steps as there are
+/// triangles all are looked at instead).
+/// @param start  Any triangle; near is fast.
+/// Cost: about the square root of the triangles between.
+[[nodiscard]] Place find_spot(const Tin& tin, Spot q, TriangleId start);
+
+/// The triangle that answers for a place that several closed triangles share, the same however the
+/// mesh is numbered: a surface triangle before a void one; then the one whose corners' keys, in
+/// ascending order, come first. kNone outside. Cost: the degree of the vertex.
+[[nodiscard]] TriangleId answering_triangle(const Tin& tin, const Place& place);
+
+/// True when a surface triangle holds the vertex. Cost: its degree.
+[[nodiscard]] bool touches_surface(const Tin& tin, VertexId v);
+
+/// A point of the mesh as a weighted mean of one, two or three vertices: the vertex it is on, the
+/// ends of its edge, the corners of its triangle. Vertices ascend by key, so that the same point
+/// is the same mean from both sides of an edge and in every numbering. Weights are positive and
+/// exact.
+struct Footing {
+  int count = 0;
+  std::array<VertexId, 3> vertex{kNone, kNone, kNone};
+  std::array<Int128, 3> weight{};
+
+  [[nodiscard]] Lies lies() const noexcept {
+    return count == 1 ? Lies::kOnVertex : (count == 2 ? Lies::kOnEdge : Lies::kInTriangle);
+  }
+};
+
+/// The footing of a spot. REQUIRES: place = find_spot(tin, q, ...), not outside.
+[[nodiscard]] Footing footing_of(const Tin& tin, Spot q, const Place& place);
+
+/// The height code there, from the vertices' codes: exact on a vertex and where all are equal, else
+/// off by at most 8 units of rounding (2^-53) of the largest code's magnitude, and never outside of
+/// their range. REQUIRES: all have heights.
+[[nodiscard]] double code_at(const Tin& tin, const HeightEncoding& heights, const Footing& f);
+
+/// Where a line crosses the mesh.
+struct Crossing {
+  Footing footing;
+  /// Share of the way from p to q, exactly: numerator / denominator, in [0, 1].
+  Int128 numerator = 0;
+  Int128 denominator = 1;
+
+  [[nodiscard]] double share() const noexcept {
+    return static_cast<double>(numerator) / static_cast<double>(denominator);
+  }
+};
+
+/// A stretch of a line between two crossings: inside of one triangle, or along one edge.
+struct LinePiece {
+  Crossing from, to;
+  TriangleId triangle = kNone;  ///< Holds the piece; along an edge one of the two.
+  TriangleId other = kNone;     ///< The other one along an edge; kNone inside, and at the border.
+
+  /// On a closed surface triangle.
+  [[nodiscard]] bool is_surface(const Tin& tin) const noexcept {
+    return tin.classes[triangle] == TriangleClass::kSurface ||
+           (other != kNone && tin.classes[other] == TriangleClass::kSurface);
+  }
+};
+
+/// Walks from p to q piece by piece, in order. A line that begins outside is entered where it meets
+/// the domain; one that leaves the domain, which is convex, ends there.
+class LineWalk {
+ public:
+  /// REQUIRES: p != q.  @param start  Any triangle; near p is fast.
+  LineWalk(const Tin& tin, Spot p, Spot q, TriangleId start);
+
+  /// False when the line and the domain share no point.
+  [[nodiscard]] bool meets_domain() const noexcept { return meets_; }
+  /// The first shared point; kept by next().
+  [[nodiscard]] const Crossing& entry() const noexcept { return entry_; }
+  /// p itself lies in the domain.
+  [[nodiscard]] bool begins_inside() const noexcept { return begins_inside_; }
+  /// After next() was false: q itself lies in the domain.
+  [[nodiscard]] bool ends_inside() const noexcept { return ends_inside_; }
+
+  /// Steps on; false when there is no further piece. Cost: constant, at a vertex its degree.
+  bool next();
+  [[nodiscard]] const LinePiece& piece() const noexcept { return piece_; }
+
+ private:
+  enum class State : std::uint8_t { kInTriangle, kIntoEdge, kAtVertex, kAlongEdge, kDone };
+
+  [[nodiscard]] Int128 turn(VertexId v) const { return side(p_, q_, tin_->position(v)); }
+  void begin_at(const Place& place);
+  void begin_on_edge(TriangleId t, int edge_side);
+  void begin_outside(const Place& place);
+  void enter_through(TriangleId t, int edge_side);
+  void leave_triangle(TriangleId t);
+  void cross_triangle();
+  bool step_from_vertex();
+  void step_along_edge();
+  void exit_by_edge(TriangleId t, int edge_side, Int128 right, Int128 left);
+  void exit_by_vertex(TriangleId t, VertexId v);
+  void end_at(const Footing& footing);
+  [[nodiscard]] bool lies_ahead(GridPoint v) const noexcept;
+  [[nodiscard]] int compare_with_end(GridPoint v) const noexcept;
+  [[nodiscard]] Crossing at_vertex(VertexId v) const;
+  [[nodiscard]] Crossing at_edge(VertexId right, VertexId left, Int128 right_turn,
+                                 Int128 left_turn) const;
+
+  const Tin* tin_;
+  Spot p_, q_;
+  State state_ = State::kDone;
+  TriangleId triangle_ = kNone;            ///< To be crossed next.
+  int side_ = 0;                           ///< kIntoEdge: entered through this side of triangle_.
+  Int128 right_turn_ = 0, left_turn_ = 0;  ///< Turns of the ends of the edge entered through.
+  VertexId vertex_ = kNone;                ///< kAtVertex: where; kAlongEdge: the end ahead.
+  TriangleId beside_ = kNone;              ///< kAlongEdge: the other triangle of the edge.
+  bool meets_ = false, begins_inside_ = false, ends_inside_ = false;
+  Crossing entry_;
+  LinePiece piece_;
+};
+
+}  // namespace ptin

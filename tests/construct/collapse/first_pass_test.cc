@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/collapse/first_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/construct/build.h"
+#include "engine/mesh/triangle_holds.h"
+#include "engine/mesh/validate.h"
+#include "engine/query/progressive_tin.h"
+#include "tests/construct/made_raster.h"
+#include "tests/construct/surface_oracle.h"
+
+namespace ptin {
+namespace {
+
+using oracle::RasterSpec;
+using oracle::TestTerrain;
+
+double slopes(int x, int y) {
+  return 40.0 * std::sin(0.11 * x) * std::cos(0.07 * y) + 0.5 * x + (x * 7 + y * 13) % 5;
+}
+
+/// Larger than a square of right triangles, and no multiple of it.
+RasterSpec mountains() {
+  RasterSpec spec;
+  spec.name = "mountains";
+  spec.width = 107;
+  spec.height = 83;
+  spec.code = [](int x, int y) { return std::floor(slopes(x, y)); };
+  return spec;
+}
+
+std::vector<RasterSpec> specs() {
+  std::vector<RasterSpec> all(8, mountains());
+  all[1].name = "mountains in fractions";
+  all[1].heights = oracle::kFloat;
+  all[1].code = [](int x, int y) { return static_cast<double>(static_cast<float>(slopes(x, y))); };
+  all[2].name = "holes";
+  all[2].valid = [](int x, int y) {
+    return std::hypot(x - 40, y - 30) > 9 && (x * 31 + y * 17) % 211 != 0;
+  };
+  all[3].name = "a sea";
+  all[3].code = [](int x, int y) { return std::max(12.0, std::floor(slopes(x, y))); };
+  all[4].name = "far from the origin";
+  all[4].origin = {kGridMax - 200, kGridMax - 129};
+  all[5].name = "too small for a square";
+  all[5].width = 33;
+  all[5].height = 32;
+  all[6].name = "a coast of voids";
+  all[6].valid = [](int x, int y) { return x + y / 3 < 60; };
+  all[7].name = "all void";
+  all[7].valid = [](int, int) { return false; };
+  return all;
+}
+
+GridBox box_of_samples(const TestTerrain& terrain) {
+  return {terrain.samples.front().position.x, terrain.samples.front().position.y,
+          terrain.samples.back().position.x, terrain.samples.back().position.y};
+}
+
+/// The first sample that is not either a vertex or in one list, of a triangle that holds it.
+std::string check_lists(const TestTerrain& terrain, const Tile& tile) {
+  std::vector<int> found(terrain.samples.size(), 0);
+  const GridBox box = box_of_samples(terrain);
+  const std::int32_t width = box.max_x - box.min_x + 1;
+  const auto count = [&](GridPoint p) {
+    ++found[static_cast<std::size_t>(p.y - box.min_y) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(p.x - box.min_x)];
+  };
+  for (const Vertex& v : tile.tin.vertices) {
+    count(v.position);
+  }
+  for (TriangleId t = 0; t < tile.tin.triangles.size(); ++t) {
+    for (const Sample& s : tile.samples.samples(tile.carried[t].samples)) {
+      for (std::int32_t y = 0; y < 1 << s.side_log; ++y) {
+        for (std::int32_t x = 0; x < 1 << s.side_log; ++x) {
+          const GridPoint p{s.position.x + x, s.position.y + y};
+          count(p);
+          if (!triangle_holds(tile.tin, tile.tin.triangles[t], p)) {
+            return "a sample is outside of its triangle";
+          }
+        }
+      }
+    }
+  }
+  const bool each_once = std::all_of(found.begin(), found.end(), [](int n) { return n == 1; });
+  return each_once ? "" : "a sample is nowhere, or twice";
+}
+
+TEST(FirstPass, LeavesAMeshWithinTheToleranceAndEverySampleInIt) {
+  for (const RasterSpec& spec : specs()) {
+    for (const double tolerance : {0.5, 2.0, 7.0, 100.0}) {
+      SCOPED_TRACE(spec.name + " within " + std::to_string(tolerance));
+      TestTerrain terrain = oracle::make_raster(spec);
+      run_first_pass(terrain.tile, *terrain.surface, box_of_samples(terrain), tolerance);
+      const Tile& tile = terrain.tile;
+      ASSERT_EQ(validate(tile.tin), "");
+      EXPECT_EQ(check_lists(terrain, tile), "");
+      double error = 0.0;
+      double deviation = 0.0;
+      for (const VertexSplit& r : tile.records) {
+        error = std::max(error, static_cast<double>(r.error));
+        deviation = std::max(deviation, static_cast<double>(r.deviation));
+      }
+      EXPECT_LE(error, tolerance * (1 + 0x1p-20));
+      EXPECT_EQ(oracle::check_samples(terrain, tile.tin, error), "");
+      EXPECT_EQ(oracle::check_deviation(terrain, tile.tin, deviation), "");
+    }
+  }
+}
+
+TEST(FirstPass, TakesMostOfSmoothGroundAndNothingOfSteps) {
+  RasterSpec smooth = mountains();
+  smooth.code = [](int x, int y) { return static_cast<double>(3 * x + 2 * y); };
+  RasterSpec steps = mountains();
+  steps.code = [](int x, int y) {
+    return static_cast<double>((x * x * 31 + y * y * 17 + x * y * 7) % 997);
+  };
+  const auto left = [](const RasterSpec& spec) {
+    TestTerrain terrain = oracle::make_raster(spec);
+    run_first_pass(terrain.tile, *terrain.surface, box_of_samples(terrain), 1.0);
+    return terrain.tile.tin.vertices.size();
+  };
+  EXPECT_GT(left(steps), 107U * 83U * 49 / 50);
+  EXPECT_LT(left(smooth), 107U * 83U / 2);  // beside the border triangles grow by the row
+}
+
+TEST(FirstPass, KeepsTheWindowsBorder) {
+  TestTerrain terrain = oracle::make_raster(mountains());
+  run_first_pass(terrain.tile, *terrain.surface, box_of_samples(terrain), 1000.0);
+  std::size_t border = 0;
+  for (const Vertex& v : terrain.tile.tin.vertices) {
+    const GridPoint p = v.position;
+    border += p.x == 0 || p.y == 0 || p.x == 106 || p.y == 82 ? 1 : 0;
+  }
+  EXPECT_EQ(border, 2U * (107 + 83) - 4);
+}
+
+/// Each height that the tile holds lies between those of its triangle's record.
+TEST(FirstPass, RecordsCoverTheHeightsOfTheirTriangles) {
+  TestTerrain terrain = oracle::make_raster(mountains());
+  run_first_pass(terrain.tile, *terrain.surface, box_of_samples(terrain), 7.0);
+  const Tile& tile = terrain.tile;
+  std::size_t held = 0;
+  for (const CarriedState& carried : tile.carried) {
+    for (const Sample& s : tile.samples.samples(carried.samples)) {
+      ASSERT_NE(carried.record, kNone);
+      const VertexSplit& r = tile.records[carried.record];
+      const double code = tile.units.heights.code(s.height);
+      EXPECT_LE(tile.units.heights.code(r.height_lo), code);
+      EXPECT_GE(tile.units.heights.code(r.height_hi), code);
+      ++held;
+    }
+  }
+  EXPECT_GT(held, 1000U);
+}
+
+oracle::RasterFile file_of(const RasterSpec& spec) {
+  oracle::RasterFile file;
+  file.columns = spec.width;
+  file.rows = spec.height;
+  file.step = 1.0;
+  file.nodata = -9999;
+  file.type = spec.heights.type == HeightType::int32 ? GDT_Int32 : GDT_Float32;
+  file.value = [spec](int column, int row) {
+    const int y = spec.height - 1 - row;
+    return spec.valid && !spec.valid(column, y) ? -9999.0 : spec.code(column, y);
+  };
+  return file;
+}
+
+TEST(FirstPass, ABuildKeepsItsPromisesAndNeedsHardlyMoreVertices) {
+  for (RasterSpec spec : specs()) {
+    spec.origin = {};
+    SCOPED_TRACE(spec.name);
+    const TestTerrain terrain = oracle::make_raster(spec);
+    const oracle::WrittenRaster raster(file_of(spec));
+    const oracle::ScratchFolder folder;
+    BuildOptions options;
+    options.tile = 48;
+    const BuildReport whole = build({raster.path()}, folder.file("whole.ptin"), options, {});
+    options.max_error = 4.0;
+    const BuildReport some = build({raster.path()}, folder.file("some.ptin"), options, {});
+    const ProgressiveTin tin = ProgressiveTin::open(folder.file("some.ptin"));
+    const ProgressiveTin all = ProgressiveTin::open(folder.file("whole.ptin"));
+    EXPECT_EQ(tin.store().facts().base_error > 0.0, spec.name != "all void");
+    EXPECT_LE(tin.store().facts().base_error, 4.0);
+    for (const double tolerance : {4.0, 9.0, 30.0}) {
+      RefineRequest request;
+      request.tolerance = tolerance;
+      const RefinedTin refined = tin.refine(request);
+      EXPECT_EQ(validate(refined.tin), "");
+      EXPECT_EQ(oracle::check_samples(terrain, refined.tin, tolerance), "");
+      EXPECT_EQ(oracle::check_deviation(terrain, refined.tin, refined.certified_deviation), "");
+      EXPECT_LE(refined.tin.vertices.size(), all.refine(request).tin.vertices.size() * 6 / 5 + 20);
+    }
+    EXPECT_LT(some.records, whole.records);
+  }
+}
+
+}  // namespace
+}  // namespace ptin

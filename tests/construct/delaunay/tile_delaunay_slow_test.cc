@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The Delaunay stage on millions of points and on real scans.
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/construct/delaunay/tiled_delaunay.h"
+#include "tests/construct/point_sets.h"
+
+namespace ptin {
+namespace {
+
+TEST(TileDelaunayOfMany, TwoMillionPointsAreOneTriangulation) {
+  expect_one_triangulation(buckets_of(PointKind::kEven, 2'000'000, 1), 16);
+}
+
+TEST(TileDelaunayOfMany, EveryKindIsOneTriangulation) {
+  for (const PointKind kind : kPointKinds) {
+    SCOPED_TRACE(name_of(kind));
+    expect_one_triangulation(buckets_of(kind, 200'000, 2), 64);
+  }
+}
+
+TEST(TileDelaunayOfMany, RealScansAreOneTriangulation) {
+  const std::string data = PTIN_SHARED_DATA;
+  for (const char* name :
+       {"autzen_trim.las", "ign_lidarhd_0382_6565_crop.las", "isprs_fsite8.xyz.gz"}) {
+    if (!std::filesystem::exists(data + "/" + name)) {
+      GTEST_SKIP() << "needs " << name;
+    }
+    SCOPED_TRACE(name);
+    expect_one_triangulation(
+        PointBuckets::read({data + "/" + name}, {}, {FileLayer::system(), "/tmp"}), 64);
+  }
+}
+
+}  // namespace
+}  // namespace ptin

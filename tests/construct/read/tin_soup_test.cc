@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The readers of PLY, OBJ, 2DM and LandXML: what they take and what they refuse.
+#include "engine/construct/read/tin_soup.h"
+
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "engine/error.h"
+
+namespace ptin {
+namespace {
+
+using Reader = TinReader*;
+
+TinSoup parse(Reader reader, const std::string& content, const TinReading& reading = {}) {
+  ByteReader in("file", content);
+  return read_soup(*reader, in, reading);
+}
+
+std::string refusal_of(Reader reader, const std::string& content, const TinReading& reading = {}) {
+  try {
+    static_cast<void>(parse(reader, content, reading));
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument) << e.what();
+    EXPECT_TRUE(e.context().starts_with("file")) << e.context();
+    return e.what();
+  }
+  return "accepted";
+}
+
+::testing::AssertionResult says(const std::string& what, const std::string& words) {
+  return what.find(words) != std::string::npos ? ::testing::AssertionSuccess()
+                                               : ::testing::AssertionFailure() << what;
+}
+
+template <typename T>
+std::string raw(T value, bool big) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return big ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
+}
+
+std::string binary_ply(bool big) {
+  std::string s = "ply\nformat binary_" + std::string(big ? "big" : "little") +
+                  "_endian 1.0\ncomment crs: EPSG:32611\ncomment vertical_crs: EPSG:5773\n"
+                  "element vertex 4\nproperty uchar red\nproperty float x\nproperty double y\n"
+                  "property short z\nproperty list uchar int extra\n"
+                  "element face 2\nproperty list uchar uint vertex_indices\nend_header\n";
+  const float x[4] = {0.1F, 10, 10, 0};
+  const double y[4] = {0, 0.5, 10, 10};
+  for (int i = 0; i < 4; ++i) {
+    s += raw<unsigned char>(7, big) + raw(x[i], big) + raw(y[i], big) +
+         raw(static_cast<std::int16_t>(i - 1), big) + raw<unsigned char>(2, big) + raw(1, big) +
+         raw(2, big);
+  }
+  for (const auto& t : {std::array<std::uint32_t, 3>{0, 1, 2}, {0, 2, 3}}) {
+    s += raw<unsigned char>(3, big);
+    for (const std::uint32_t v : t) s += raw(v, big);
+  }
+  return s;
+}
+
+const std::string kAsciiPly =
+    "ply\r\nformat ascii 1.0\r\ncomment crs: EPSG:32611\nelement face 2\n"
+    "property list uchar int vertex_index\nelement vertex 4\nproperty double z\n"
+    "property double x\nproperty double y\nend_header\n"
+    "3 0 1 2\n3 0 2 3\n-1 0.1 0\n0 10 0.5\n1 10 10\n\n2 0 10\n";
+
+void expect_square(const TinSoup& soup) {
+  ASSERT_EQ(soup.vertices.size(), 4U);
+  EXPECT_EQ(soup.vertices[0].x, (Decimal{1, 1}));
+  EXPECT_EQ(soup.vertices[0].z, (Decimal{-1, 0}));
+  EXPECT_EQ(soup.vertices[1].y, (Decimal{5, 1}));
+  EXPECT_EQ(soup.vertices[3].y, (Decimal{10, 0}));
+  ASSERT_EQ(soup.triangles.size(), 2U);
+  EXPECT_EQ(soup.triangles[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
+}
+
+const std::string kObj =
+    "v 0.1 0 -1 0.5 0.5 0.5\nv 10 0.5 0\nvn 0 0 1\nv 10 10 1\nf 1/1 2/2 3/3\n"
+    "v 0 10 2 # the last\n#f 1 2\nf -4 -2//1 -1 # 4 3 4\n";
+const std::string kTwoDm =
+    "MESH2D\nMESHNAME \"m\"\nE3T 1 11 22 33 1\nND 11 0.1 0 -1\nND 22 10 0.5 0\n"
+    "ND 33 10 10 1\nND 5 0 10 2\nE3T 2 11 33 5 1\nNS 11 22 -33\n";
+std::string land_xml(const std::string& inside) {
+  return "<?xml version=\"1.0\"?>\n<LandXML xmlns=\"http://www.landxml.org/schema/LandXML-1.2\">"
+         "<CoordinateSystem epsgCode=\"3007\"/><Surfaces>" +
+         inside + "</Surfaces></LandXML>";
+}
+const std::string kSurface =
+    "<Surface name=\"top\"><Definition surfType=\"TIN\"><Pnts><P id=\"7\">0 0.1 -1</P>"
+    "<P id=\"8\">0.5 10\n 0</P><P id=\"9\">10 10 1</P><P id=\"1\">10 0 2</P></Pnts>"
+    "<Faces><F>7 8 9</F><F n=\"1 0 0\">7 9 1</F><F i=\"1\">7 8 "
+    "1</F></Faces></Definition></Surface>";
+
+TEST(TinSoup, EveryFormatGivesTheSame) {
+  expect_square(parse(read_ply, kAsciiPly));
+  expect_square(parse(read_ply, binary_ply(false)));
+  expect_square(parse(read_ply, binary_ply(true)));
+  expect_square(parse(read_obj, kObj));
+  expect_square(parse(read_two_dm, kTwoDm));
+  const TinSoup xml = parse(read_land_xml, land_xml(kSurface));
+  expect_square(xml);
+  EXPECT_EQ(xml.facts.hidden_triangles, 1U);
+  EXPECT_EQ(xml.facts.crs, "EPSG:3007");
+  EXPECT_EQ(parse(read_ply, kAsciiPly).facts.crs, "EPSG:32611");
+  EXPECT_EQ(parse(read_ply, binary_ply(true)).facts.vertical_crs, "EPSG:5773");
+}
+
+TEST(TinSoup, KnowsTinsByTheirNames) {
+  for (const char* name : {"a.ply", "b.OBJ", "c.2dm", "d.xml", "e.LandXML"})
+    EXPECT_TRUE(is_tin_file(name));
+  for (const char* name : {"a.tif", "ply", "a.ply.gz", "a.csv"}) EXPECT_FALSE(is_tin_file(name));
+}
+
+/// A file cut anywhere is refused, or lacks nothing that matters.
+TEST(TinSoup, RefusesFilesThatAreCutShort) {
+  for (const std::string& whole : {binary_ply(false), binary_ply(true)}) {
+    for (std::size_t n = 0; n < whole.size(); ++n) {
+      EXPECT_NE(refusal_of(read_ply, whole.substr(0, n)), "accepted") << n;
+    }
+  }
+  for (std::size_t n = 0; n + 8 < kAsciiPly.size(); ++n) {
+    EXPECT_NE(refusal_of(read_ply, kAsciiPly.substr(0, n)), "accepted") << n;
+  }
+  const std::string xml = land_xml(kSurface);
+  for (std::size_t n = 0; n < xml.size(); ++n) {
+    EXPECT_NE(refusal_of(read_land_xml, xml.substr(0, n)), "accepted") << n;
+  }
+}
+
+TEST(TinSoup, DoesNotBelieveCounts) {
+  const auto with_counts = [](const std::string& vertices, const std::string& faces,
+                              const std::string& format) {
+    return "ply\nformat " + format + " 1.0\nelement vertex " + vertices +
+           "\nproperty double x\nproperty double y\nproperty double z\nelement face " + faces +
+           "\nproperty list uchar int vertex_indices\nend_header\n";
+  };
+  for (const char* format : {"ascii", "binary_little_endian"}) {
+    for (const char* count : {"9223372036854775807", "4294967296", "1000000000"}) {
+      EXPECT_TRUE(says(refusal_of(read_ply, with_counts(count, "1", format)), "claims"));
+      EXPECT_TRUE(says(refusal_of(read_ply, with_counts("0", count, format)), "claims"));
+    }
+    EXPECT_TRUE(says(refusal_of(read_ply, with_counts("-1", "1", format)), "negative"));
+    EXPECT_TRUE(says(refusal_of(read_ply, with_counts("18446744073709551616", "1", format)),
+                     "whole number"));
+  }
+}
+
+TEST(TinSoup, RefusesWhatIsNoTriangleMesh) {
+  EXPECT_TRUE(says(refusal_of(read_ply, "plx\n"), "begins with"));
+  EXPECT_TRUE(says(refusal_of(read_ply,
+                              "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty "
+                              "float y\nend_header\n1 2\n"),
+                   "no property z"));
+  EXPECT_TRUE(
+      says(refusal_of(read_obj, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"), "4 corners"));
+  EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\nf 1 2 3\n"), "vertex 1, which is not there"));
+  EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\nf -1 -2 1\n"), "which is not there"));
+  EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\nf 0 1 1\n"), "numbered from 1"));
+  EXPECT_TRUE(says(refusal_of(read_obj, "v 0 nan 0\n"), "not a finite number"));
+  EXPECT_TRUE(says(refusal_of(read_obj, "v 0 1e30 0\n"), "10^18"));
+  EXPECT_TRUE(says(refusal_of(read_obj, "v 0 x 0\n"), "where a number belongs"));
+  EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\n"), "no triangle"));
+  EXPECT_TRUE(says(refusal_of(read_obj, ""), "no vertex"));
+  EXPECT_TRUE(says(refusal_of(read_obj, std::string(70'000, 'v')), "64 KiB"));
+  EXPECT_TRUE(says(refusal_of(read_two_dm, "MESH2D\nE4Q 1 1 2 3 4 1\n"), "only triangles"));
+  EXPECT_TRUE(says(refusal_of(read_two_dm, "MESH2D\nND 1 0 0 0\nND 1 1 0 0\n"),
+                   "two vertices have the id 1"));
+  EXPECT_TRUE(says(refusal_of(read_two_dm, "ND 1 0 0 0\n"), "MESH2D"));
+}
+
+TEST(TinSoup, ChoosesAmongSurfaces) {
+  std::string second = kSurface;
+  second.replace(second.find("top"), 3, "low");
+  const std::string both = land_xml(kSurface + second);
+  EXPECT_TRUE(says(refusal_of(read_land_xml, both), "--layer"));
+  expect_square(parse(read_land_xml, both, {"low", {}, {}}));
+  EXPECT_TRUE(says(refusal_of(read_land_xml, both, {"mid", {}, {}}), "'top', 'low'"));
+  EXPECT_TRUE(says(refusal_of(read_land_xml, land_xml("")), "no surface"));
+  EXPECT_TRUE(
+      says(refusal_of(read_land_xml,
+                      land_xml("<Surface name='g'><Definition surfType='grid'/></Surface>")),
+           "grid"));
+}
+
+TEST(TinSoup, HasNoEntitiesAndNoDepths) {
+  const std::string bomb =
+      "<?xml version=\"1.0\"?><!DOCTYPE l [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;\">]>"
+      "<LandXML>&b;</LandXML>";
+  EXPECT_TRUE(says(refusal_of(read_land_xml, bomb), "document type"));
+  EXPECT_TRUE(
+      says(refusal_of(read_land_xml, "<!DOCTYPE l SYSTEM \"file:///etc/passwd\"><LandXML/>"),
+           "document type"));
+  std::string deep = "<LandXML>";
+  for (int i = 0; i < 100'000; ++i) deep += "<a>";
+  EXPECT_TRUE(says(refusal_of(read_land_xml, deep), "64 deep"));
+  EXPECT_TRUE(says(
+      refusal_of(read_land_xml, land_xml("<Surface><Pnts><P id=\"1\">" + std::string(5000, '1'))),
+      "more text"));
+  EXPECT_TRUE(
+      says(refusal_of(read_land_xml, "<LandXML a=\"" + std::string(3 << 20, 'x')), "mebibyte"));
+  EXPECT_TRUE(says(refusal_of(read_land_xml, "<html/>"), "not LandXML"));
+}
+
+}  // namespace
+}  // namespace ptin

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Highest and lowest points of random windows against all triangles of the full TIN.
+#include "engine/query/heights/highest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <span>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/error.h"
+#include "engine/query/heights/locate.h"
+#include "storage/spatialindex_rtree.h"
+#include "tests/query/built_terrain.h"
+#include "tests/query/least_memory.h"
+#include "tests/query/reference_hierarchy.h"
+
+namespace ptin {
+namespace {
+
+using reference::Hierarchy;
+using reference::TemporaryStore;
+
+struct Brute {
+  double most = -INFINITY;       ///< Of the surface in the window.
+  std::vector<double> vertices;  ///< Falling.
+  bool domain = false;           ///< Some triangle, void or not, meets the window.
+};
+
+/// The largest value of a linear function on a triangle within a rectangle lies at a corner, at a
+/// corner of the rectangle, or where their sides cross: all are tried.
+Brute brute_force(const Tin& tin, const StoreFacts& facts, const Window& w, double sign) {
+  Brute b;
+  std::vector<std::uint8_t> seen(tin.vertices.size());
+  const auto inside = [&](MapPoint p) {
+    return w.min_x <= p.x && p.x <= w.max_x && w.min_y <= p.y && p.y <= w.max_y;
+  };
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    const bool surface = tin.classes[t] == TriangleClass::kSurface;
+    const auto reach = [&](double value) {
+      b.domain = true;
+      if (surface) b.most = std::max(b.most, value);
+    };
+    MapPoint p[3];
+    double z[3];
+    for (int i = 0; i < 3; ++i) {
+      const VertexId v = tin.triangles[t].v[i];
+      p[i] = facts.map.to_map(tin.position(v).x, tin.position(v).y);
+      z[i] = sign * facts.heights.height(tin.vertices[v].height);
+      if (inside(p[i])) {
+        reach(z[i]);
+        if (surface && seen[v] == 0) b.vertices.push_back(z[i]);
+        seen[v] = surface ? 1 : seen[v];
+      }
+    }
+    for (int i = 0; i < 3; ++i) {
+      const MapPoint a = p[i], c = p[(i + 1) % 3];
+      const auto cross = [&](double at, double u0, double u1, bool x) {
+        if ((u0 < at) == (u1 < at) || u0 == u1) return;
+        const double s = (at - u0) / (u1 - u0);
+        const MapPoint q{x ? at : a.x + s * (c.x - a.x), x ? a.y + s * (c.y - a.y) : at};
+        if (inside(q)) reach(z[i] + s * (z[(i + 1) % 3] - z[i]));
+      };
+      cross(w.min_x, a.x, c.x, true), cross(w.max_x, a.x, c.x, true);
+      cross(w.min_y, a.y, c.y, false), cross(w.max_y, a.y, c.y, false);
+    }
+    const double area =
+        (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
+    for (const MapPoint q : {MapPoint{w.min_x, w.min_y}, MapPoint{w.max_x, w.min_y},
+                             MapPoint{w.max_x, w.max_y}, MapPoint{w.min_x, w.max_y}}) {
+      double weight[3];
+      for (int i = 0; i < 3; ++i) {
+        const MapPoint a = p[(i + 1) % 3], c = p[(i + 2) % 3];
+        weight[i] = ((a.x - q.x) * (c.y - q.y) - (c.x - q.x) * (a.y - q.y)) / area;
+      }
+      if (std::min({weight[0], weight[1], weight[2]}) >= 0) {
+        reach(weight[0] * z[0] + weight[1] * z[1] + weight[2] * z[2]);
+      }
+    }
+  }
+  std::sort(b.vertices.begin(), b.vertices.end(), std::greater<>());
+  return b;
+}
+
+Window window_in(std::mt19937_64& random, const StoreFacts& facts) {
+  const GridBox& b = facts.bounds;
+  // On the grid, or off it so that no corner falls on a diagonal: there the last bit decides
+  // whether the window touches a triangle.
+  const auto coordinate = [&](std::int32_t low, std::int32_t high) {
+    const double on_grid = low - 1 + double(random() % (std::uint64_t(high - low) + 3));
+    return random() % 2 == 0 ? on_grid : on_grid + 0.1 + 0.8 * double(random() % 1000003) / 1e6;
+  };
+  const MapPoint p = facts.map.to_map(coordinate(b.min_x, b.max_x), coordinate(b.min_y, b.max_y));
+  const MapPoint q = facts.map.to_map(coordinate(b.min_x, b.max_x), coordinate(b.min_y, b.max_y));
+  return {std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x), std::max(p.y, q.y)};
+}
+
+/// Against all triangles of `tin`, which is what the request asks for.
+void check(const HighestResult& got, const HighestRequest& request, const Tin& tin,
+           const StoreFacts& facts) {
+  const double sign = request.lowest ? -1.0 : 1.0;
+  const Window& w = *request.window;
+  const Brute wanted = brute_force(tin, facts, w, sign);
+  RC_ASSERT(got.vertices.size() == std::min<std::size_t>(request.listed, wanted.vertices.size()));
+  for (std::size_t k = 0; k < got.vertices.size(); ++k) {
+    RC_ASSERT(sign * got.vertices[k].height == wanted.vertices[k]);
+  }
+  if (std::isinf(wanted.most)) {
+    RC_ASSERT(got.state == (wanted.domain ? PointState::kVoid : PointState::kOutside));
+    return;
+  }
+  RC_ASSERT(got.height_min <= got.point.height);
+  RC_ASSERT(got.point.height <= got.height_max);
+  RC_ASSERT(got.state == PointState::kSurface);
+  RC_ASSERT(std::abs(sign * got.point.height - wanted.most) <= 1e-9);
+  const MapPoint p = got.point.position;
+  RC_ASSERT((w.min_x - 1e-9 <= p.x && p.x <= w.max_x + 1e-9));
+  RC_ASSERT((w.min_y - 1e-9 <= p.y && p.y <= w.max_y + 1e-9));
+  if (got.at_vertex) RC_ASSERT(got.point.height == got.vertices.front().height);
+}
+
+RC_GTEST_PROP(Highest, IsThatOfAllTriangles, (std::uint64_t seed)) {
+  const Hierarchy h = reference::random_hierarchy(seed);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 8; ++i) {
+    HighestRequest request;
+    request.window = window_in(random, h.facts);
+    request.lowest = random() % 2 == 0;
+    request.listed = 1 + static_cast<std::uint32_t>(random() % 5);
+    check(highest(terrain, request), request, h.full, h.facts);
+  }
+}
+
+RC_GTEST_PROP(Highest, AtALevelOfDetailIsThatOfItsTriangles, (std::uint64_t seed)) {
+  const Hierarchy h = reference::random_hierarchy(seed);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 6; ++i) {
+    RefineRequest level;
+    HighestRequest request;
+    if (random() % 2 == 0) {
+      request.tolerance = level.tolerance = double(random() % 1000) / 100;
+    } else {
+      request.vertices = level.vertices = h.t0.vertices.size() + random() % (h.records.size() + 3);
+    }
+    request.window = window_in(random, h.facts);
+    request.lowest = random() % 2 == 0;
+    request.listed = 1 + static_cast<std::uint32_t>(random() % 20);
+    const RefinedTin refined = terrain.refine(level);
+    const HighestResult got = highest(terrain, request);
+    check(got, request, refined.tin, h.facts);
+    // Of a number of vertices up to the end of a bin of errors.
+    RC_ASSERT(got.certified_error >= refined.certified_error);
+    RC_ASSERT(got.certified_deviation >= refined.certified_deviation);
+    RC_ASSERT(got.exact == refined.exact);
+  }
+}
+
+TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& facts = terrain.store().facts();
+  const Tin full = terrain.refine({}).tin;
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 40; ++i) {
+    HighestRequest request;
+    request.window = window_in(random, facts);
+    request.lowest = i % 2 == 0;
+    if (i % 3 == 0) {
+      request.vertices = 100 + random() % 20000;
+    } else {
+      request.tolerance = double(random() % 4000) / 100;
+    }
+    const HighestResult got = highest(terrain, request);
+    if (got.state != PointState::kSurface) continue;
+    const double sign = request.lowest ? -1.0 : 1.0;
+    const double truth = sign * brute_force(full, facts, *request.window, sign).most;
+    EXPECT_LE(got.height_min, truth);
+    EXPECT_GE(got.height_max, truth);
+    EXPECT_EQ(got.height_max - got.height_min > 0, got.certified_deviation > 0);
+  }
+}
+
+/// A grid in which single samples, cut off from all others by voids, are the highest.
+Hierarchy hierarchy_with_lone_samples(std::mt19937_64& random, int side) {
+  Tin full = reference::random_grid(random, side, side, 4, 0.15);
+  std::vector<std::uint8_t> on_surface(full.vertices.size());
+  std::vector<std::uint8_t> lone(full.vertices.size());
+  const auto corners = [&](TriangleId t) { return std::span(full.triangles[t].v, 3); };
+  for (VertexId v = 0; v < lone.size(); ++v)
+    lone[v] = random() % 12 == 0 && full.has_height[v] != 0;
+  for (TriangleId t = 0; t < full.triangles.size(); ++t) {
+    for (const VertexId v : corners(t)) {
+      if (lone[v] != 0) full.classes[t] = TriangleClass::kVoid;
+    }
+  }
+  for (TriangleId t = 0; t < full.triangles.size(); ++t) {
+    for (const VertexId v : corners(t)) {
+      if (full.classes[t] == TriangleClass::kSurface) on_surface[v] = 1;
+    }
+  }
+  for (VertexId v = 0; v < lone.size(); ++v) {
+    if (full.has_height[v] != 0 && on_surface[v] == 0) {
+      full.vertices[v].height += 1000000;  // of codes: above all others
+    }
+  }
+  return reference::simplify_unmeasured(std::move(full), random);
+}
+
+TEST(Highest, ListsAnyNumberOfVerticesOverVoids) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    std::mt19937_64 random(seed);
+    const Hierarchy h = hierarchy_with_lone_samples(random, 40);
+    const TemporaryStore file(h);
+    const ProgressiveTin terrain(file.open());
+    HighestRequest request;
+    request.window = Window{-1e9, -1e9, 1e9, 1e9};
+    for (const std::uint32_t listed : {1, 2, 3, 7, 30, 31, 100, 500, 1000, 1400, 1600, 100000}) {
+      for (const bool lowest : {false, true}) {
+        request.listed = listed;
+        request.lowest = lowest;
+        check(highest(terrain, request), request, h.full, h.facts);
+      }
+    }
+  }
+}
+
+TEST(Highest, TakesStepsInProportionToTheVerticesListedOverVoids) {
+  std::mt19937_64 random(9);
+  const Hierarchy h =
+      reference::simplify_unmeasured(reference::random_grid(random, 90, 90, 4, 0.05), random);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  HighestRequest request;
+  request.listed = 8000;
+  const QueryCost cost = highest(terrain, request).cost;
+  // Each record is looked at by the search, and once by a batch of points.
+  EXPECT_LE(cost.records_examined, 3 * h.records.size());
+  EXPECT_LE(cost.records_applied, 2 * h.records.size());
+}
+
+/// That locating one point at the same level of detail reads.
+std::uint64_t pages_of_one_point(const ProgressiveTin& terrain, const HighestRequest& request,
+                                 MapPoint point) {
+  LocateRequest where;
+  where.vertices = request.vertices;
+  return locate(terrain, {&point, 1}, where).cost.io.pages;
+}
+
+// Finding the last of the first so many vertices reads most of their pages: more than all else.
+TEST(Highest, FindsTheLastVertexOfALevelOfDetailOnce) {
+  std::mt19937_64 random(3);
+  const Hierarchy h =
+      reference::simplify_unmeasured(reference::random_grid(random, 90, 90, 4, 0.05), random);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  for (const std::size_t share : {2U, 4U, 8U}) {
+    HighestRequest request;
+    request.vertices = h.t0.vertices.size() + h.records.size() / share;
+    const HighestResult found = highest(terrain, request);
+    ASSERT_EQ(found.state, PointState::kSurface);
+    const std::uint64_t one = pages_of_one_point(terrain, request, found.point.position);
+    EXPECT_GT(one, 20U);
+    EXPECT_LT(2 * found.cost.io.pages, 3 * one) << "1/" << share;
+  }
+}
+
+TEST(Highest, CountsItsOwnMemoryBesideThatOfLocatingItsVertices) {
+  std::mt19937_64 random(9);
+  const Hierarchy h =
+      reference::simplify_unmeasured(reference::random_grid(random, 60, 60, 4, 0.0), random);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  HighestRequest request;
+  request.listed = 10000;   // all of them are candidates at once,
+  request.tolerance = 0.0;  // each of which may be of no triangle yet
+  const HighestResult all = highest(terrain, request);
+  std::vector<MapPoint> points;
+  for (const HeightAt& v : all.vertices) points.push_back(v.position);
+  LocateRequest where;
+  where.tolerance = request.tolerance;
+  const std::uint64_t located = reference::least_memory([&](std::uint64_t limit) {
+    where.memory_limit_bytes = limit;
+    static_cast<void>(locate(terrain, points, where));
+  });
+  const std::uint64_t listed = reference::least_memory([&](std::uint64_t limit) {
+    request.memory_limit_bytes = limit;
+    static_cast<void>(highest(terrain, request));
+  });
+  // A candidate's value, number and key, and its point and key on the way to locate().
+  EXPECT_GE(listed, located + all.vertices.size() * 48);
+  EXPECT_LE(listed, located + all.vertices.size() * 200);
+}
+
+TEST(Highest, OfALargeTerrainReadsFewPagesOfIt) {
+  std::mt19937_64 random(5);
+  const Hierarchy h =
+      reference::simplify_unmeasured(reference::random_grid(random, 120, 120, 4, 0.0), random);
+  const TemporaryStore file(h);
+  const auto store = file.open();
+  ProgressiveTin terrain(store);
+  HighestRequest request;
+  const HighestResult packed = highest(terrain, request);
+  EXPECT_EQ(packed.point.height, h.facts.max_height);
+  EXPECT_LT(packed.cost.io.pages, 120U * 120U / 64U / 2U);
+  SpatialIndexOptions index;
+  terrain.use_index(SpatialIndexRTree::open(store, index));
+  const HighestResult other = highest(terrain, request);
+  EXPECT_EQ(other.point.height, packed.point.height);
+}
+
+TEST(Highest, RefusesWhatMeansNothing) {
+  const Hierarchy h = reference::random_hierarchy(1);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  HighestRequest request;
+  request.listed = 0;
+  EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
+  request.listed = 1;
+  request.tolerance = -1;
+  EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
+  request.tolerance = 1;
+  request.vertices = 100;
+  EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
+  request.vertices.reset();
+  request.window = Window{1, 0, 0, 1};
+  EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
+}
+
+}  // namespace
+}  // namespace ptin

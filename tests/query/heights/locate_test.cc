@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Point location against the full TIN in memory, and its certificates on real terrains.
+#include "engine/query/heights/locate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/error.h"
+#include "engine/query/walk/spot_set.h"
+#include "engine/query/walk/walk.h"
+#include "tests/query/built_terrain.h"
+#include "tests/query/line_oracle.h"
+#include "tests/query/reference_hierarchy.h"
+
+namespace ptin {
+namespace {
+
+using reference::Hierarchy;
+using reference::nasty_spot;
+using reference::Rational;
+using reference::rational_of;
+using reference::TemporaryStore;
+
+void check_exact(const Hierarchy& h, Spot q, const LocatedPoint& point) {
+  const std::vector<TriangleId> at = reference::triangles_at(h.full, rational_of(q));
+  if (at.empty()) {
+    RC_ASSERT(point.state == PointState::kOutside);
+    return;
+  }
+  const TriangleId t = reference::answering_among(h.full, at);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const VertexId v = h.full.triangles[t].v[i];
+    RC_ASSERT(std::any_of(point.triangle.begin(), point.triangle.end(), [&](const auto& c) {
+      return c.position == h.full.position(v) &&
+             (h.full.has_height[v] == 0
+                  ? std::isnan(c.height)
+                  : c.height == h.facts.heights.height(h.full.vertices[v].height));
+    }));
+  }
+  const bool surface = h.full.classes[t] == TriangleClass::kSurface;
+  RC_ASSERT(point.state == (surface ? PointState::kSurface : PointState::kVoid));
+  RC_ASSERT(std::isnan(point.height) == !surface);
+  if (surface) {
+    const Rational exact = Rational(h.facts.heights.offset) +
+                           Rational(h.facts.heights.step) *
+                               reference::code_on(h.full, h.facts.heights, t, rational_of(q));
+    RC_ASSERT(abs(Rational(point.height) - exact) <= Rational(1e-12));
+    RC_ASSERT(point.height_min == point.height);
+    RC_ASSERT(point.height_max == point.height);
+  }
+}
+
+RC_GTEST_PROP(Locate, GivesTheFullTinsAnswerAtAnyPoint, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const Hierarchy h = reference::random_hierarchy(seed);
+  const TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  const SpotMap map(h.facts.map, h.facts.bounds);
+  std::vector<Spot> spots(16);
+  std::vector<MapPoint> points;
+  for (Spot& s : spots) {
+    s = nasty_spot(random, h.full);
+    points.push_back(map.map(s));
+    RC_ASSERT(map.spot(points.back()) == s);  // this map loses nothing
+  }
+  const LocateResult all = locate(terrain, points);
+  RC_ASSERT(all.exact);
+  RC_ASSERT(all.certified_error == 0);
+  for (std::size_t i = 0; i < spots.size(); ++i) {
+    check_exact(h, spots[i], all.points[i]);
+    const LocateResult one = locate(terrain, {&points[i], 1});
+    check_exact(h, spots[i], one.points[0]);
+  }
+}
+
+RC_GTEST_PROP(SpotSet, HoldsWhereABoxHoldsASpot, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const int reach = 1 + static_cast<int>(random() % 60);
+  const auto coordinate = [&] {
+    const auto grid = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(reach));
+    return (grid << kSpotBits) +
+           (random() % 2 == 0 ? 0 : static_cast<std::int64_t>(random() % (1 << kSpotBits)));
+  };
+  std::vector<Spot> spots(1 + random() % 200);
+  for (Spot& s : spots) s = {coordinate(), coordinate()};
+  const SpotSet set(spots, 2.0);
+  for (int i = 0; i < 200; ++i) {
+    const auto at = [&] {
+      return static_cast<int>(random() % static_cast<std::uint64_t>(reach + 4)) - 2;
+    };
+    GridBox box = box_of(GridPoint{at(), at()});
+    box = united(
+        box, random() % 2 == 0 ? GridPoint{at(), at()} : GridPoint{box.min_x + 1, box.min_y + 2});
+    const bool wanted =
+        std::any_of(spots.begin(), spots.end(), [&](Spot s) { return contains(box, s); });
+    RC_ASSERT(set.holds({box, {}, 3.0, 0.0}) == wanted);
+    RC_ASSERT(!set.holds({box, {}, 2.0, 0.0}));
+  }
+}
+
+std::vector<MapPoint> random_points(const StoreFacts& f, std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> x(f.bounds.min_x - 3, f.bounds.max_x + 3);
+  std::uniform_real_distribution<double> y(f.bounds.min_y - 3, f.bounds.max_y + 3);
+  std::vector<MapPoint> points(count);
+  for (MapPoint& p : points) {
+    const bool at_sample = random() % 4 == 0;
+    const double gx = x(random);
+    const double gy = y(random);
+    p = at_sample ? f.map.to_map(std::round(gx), std::round(gy)) : f.map.to_map(gx, gy);
+  }
+  return points;
+}
+
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+TEST(Locate, BatchesAnswerAsSinglePointsDoInTheOrderOfTheRequest) {
+  const ProgressiveTin& terrain = reference::built_terrain("coast_257.tif");
+  const std::vector<MapPoint> points = random_points(terrain.store().facts(), 20000, 3);
+  const LocateResult all = locate(terrain, points);
+  ASSERT_EQ(all.points.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); i += 97) {
+    const LocateResult one = locate(terrain, {&points[i], 1});
+    EXPECT_EQ(one.points[0].state, all.points[i].state);
+    EXPECT_TRUE(same(one.points[0].height, all.points[i].height));
+  }
+}
+
+TEST(Locate, GroupsAreHalvedUntilTheyFitTheMemory) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const std::vector<MapPoint> points = random_points(terrain.store().facts(), 3000, 4);
+  const LocateResult free = locate(terrain, points);
+  LocateRequest request;
+  request.memory_limit_bytes = 3000 * 200 + (std::uint64_t{3} << 20);
+  const LocateResult tight = locate(terrain, points, request);
+  EXPECT_GT(tight.cost.records_applied, free.cost.records_applied);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ASSERT_TRUE(same(free.points[i].height, tight.points[i].height));
+  }
+  request.memory_limit_bytes = 1000;
+  EXPECT_THROW(static_cast<void>(locate(terrain, points, request)), Error);
+}
+
+/// The exact height lies in every interval that an approximation reports.
+void check_intervals(const ProgressiveTin& exact, const ProgressiveTin& asked,
+                     const LocateRequest& request, std::uint64_t seed) {
+  const std::vector<MapPoint> points = random_points(exact.store().facts(), 20000, seed);
+  const LocateResult truth = locate(exact, points);
+  const LocateResult found = locate(asked, points, request);
+  std::size_t both = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const LocatedPoint& f = found.points[i];
+    EXPECT_EQ(f.state == PointState::kOutside, truth.points[i].state == PointState::kOutside);
+    if (f.state == PointState::kSurface) {
+      ASSERT_LE(f.height_min, f.height);
+      ASSERT_GE(f.height_max, f.height);
+    }
+    if (f.state == PointState::kSurface && truth.points[i].state == PointState::kSurface) {
+      ++both;
+      ASSERT_LE(f.height_min, truth.points[i].height) << i;
+      ASSERT_GE(f.height_max, truth.points[i].height) << i;
+    }
+  }
+  EXPECT_GT(both, points.size() / 4);
+  EXPECT_EQ(found.exact, found.certified_error == 0 && !request.tolerance && !request.vertices);
+}
+
+LocateRequest at(double tolerance) {
+  LocateRequest request;
+  request.tolerance = tolerance;
+  return request;
+}
+
+TEST(Locate, IntervalsHoldTheExactHeight) {
+  for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
+    const ProgressiveTin& terrain = reference::built_terrain(name);
+    for (const double tolerance : {0.0, 1.0, 8.0, 60.0, 1000.0}) {
+      check_intervals(terrain, terrain, at(tolerance), 5);
+    }
+    for (const std::uint64_t records : {2000U, 20000U}) {
+      LocateRequest request;
+      request.vertices = terrain.store().t0().vertices.size() + records;
+      check_intervals(terrain, terrain, request, 8);
+    }
+  }
+}
+
+TEST(Locate, FilesThatLeftRecordsOutAnswerWithIntervals) {
+  const ProgressiveTin& exact = reference::built_terrain("mountains_257.tif");
+  const ProgressiveTin& coarse = reference::built_terrain("mountains_257.tif", 10.0);
+  check_intervals(exact, coarse, {}, 6);
+  check_intervals(exact, coarse, at(20.0), 7);
+  const LocateResult r = locate(coarse, random_points(coarse.store().facts(), 10, 1));
+  EXPECT_FALSE(r.exact);
+  EXPECT_GT(r.certified_error, 0.0);
+  EXPECT_LE(r.certified_error, 10.0);
+}
+
+TEST(Locate, RejectsWhatIsNoPositionOrTolerance) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const std::vector<MapPoint> bad = {{0, 0}, {std::nan(""), 0}};
+  try {
+    static_cast<void>(locate(terrain, bad));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
+    EXPECT_NE(e.message().find("point 1"), std::string::npos);
+  }
+  LocateRequest request;
+  request.tolerance = -1.0;
+  EXPECT_THROW(static_cast<void>(locate(terrain, {bad.data(), 1}, request)), Error);
+  const std::vector<MapPoint> far = {{1e300, -1e300}};
+  EXPECT_EQ(locate(terrain, far).points[0].state, PointState::kOutside);
+  EXPECT_TRUE(locate(terrain, {}).points.empty());
+}
+
+}  // namespace
+}  // namespace ptin

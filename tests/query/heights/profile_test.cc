@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Profiles against every triangle of the full TIN, and against point location.
+#include "engine/query/heights/profile.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/error.h"
+#include "engine/query/walk/spot_path.h"
+#include "tests/query/built_terrain.h"
+#include "tests/query/line_oracle.h"
+#include "tests/query/reference_hierarchy.h"
+
+namespace ptin {
+namespace {
+
+using reference::Hierarchy;
+using reference::nasty_spot;
+using reference::rational_of;
+
+RC_GTEST_PROP(Profile, BreaksWhereTheFullTinDoesAtItsHeights, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const Hierarchy h = reference::random_hierarchy(seed);
+  const reference::TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  const SpotMap map(h.facts.map, h.facts.bounds);
+  for (int i = 0; i < 3; ++i) {
+    const Spot p = nasty_spot(random, h.full);
+    const Spot q = nasty_spot(random, h.full);
+    if (p == q) {
+      continue;
+    }
+    const MapPoint line[] = {map.map(p), map.map(q)};
+    const ProfileResult found = profile(terrain, line);
+    RC_ASSERT(found.exact);
+    auto wanted = reference::stops(h.full, rational_of(p), rational_of(q));
+    wanted.insert(0);  // the ends of the line, wherever they are
+    wanted.insert(1);
+    RC_ASSERT(found.points.size() == wanted.size());
+    const double length = found.points.back().distance;
+    std::size_t k = 0;
+    for (const reference::Rational& share : wanted) {
+      const ProfilePoint& point = found.points[k++];
+      RC_ASSERT(std::abs(point.distance - length * share.convert_to<double>()) < 1e-9 * length);
+      const auto at = reference::along(rational_of(p), rational_of(q), share);
+      for (const TriangleId t : reference::triangles_at(h.full, at)) {
+        if (!std::isnan(point.height) && h.full.classes[t] == TriangleClass::kSurface) {
+          const double exact = h.facts.heights.height_of_code(
+              reference::code_on(h.full, h.facts.heights, t, at).convert_to<double>());
+          RC_ASSERT(std::abs(point.height - exact) < 1e-9);
+        }
+      }
+    }
+  }
+}
+
+TEST(Profile, FollowsALineOfSeveralSegments) {
+  const Hierarchy h = reference::random_hierarchy(11);
+  const reference::TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  const GridBox& b = h.facts.bounds;
+  const MapPoint line[] = {
+      h.facts.map.to_map(b.min_x, b.min_y), h.facts.map.to_map(b.max_x, b.min_y),
+      h.facts.map.to_map(b.max_x, b.min_y), h.facts.map.to_map(b.max_x, b.max_y)};
+  const ProfileResult found = profile(terrain, line);
+  EXPECT_DOUBLE_EQ(found.points.back().distance,
+                   0.5 * (b.max_x - b.min_x) + 0.5 * (b.max_y - b.min_y));
+  for (std::size_t i = 1; i < found.points.size(); ++i) {
+    EXPECT_LT(found.points[i - 1].distance, found.points[i].distance);
+  }
+  EXPECT_EQ(found.points.back().part, 1u);
+}
+
+/// The box meets a segment, in rationals: it holds an end, or the segment crosses one of its sides.
+bool meets_segment(const GridBox& box, Spot p, Spot q) {
+  reference::Rational from = 0;
+  reference::Rational to = 1;
+  const auto a = rational_of(p);
+  const auto b = rational_of(q);
+  const auto clip = [&](const reference::Rational& start, const reference::Rational& step,
+                        std::int32_t low, std::int32_t high) {
+    if (step == 0) return low <= start && start <= high;
+    reference::Rational first = (low - start) / step;
+    reference::Rational last = (high - start) / step;
+    if (last < first) std::swap(first, last);
+    from = std::max(from, first);
+    to = std::min(to, last);
+    return from <= to;
+  };
+  return clip(a.x, b.x - a.x, box.min_x, box.max_x) && clip(a.y, b.y - a.y, box.min_y, box.max_y);
+}
+
+RC_GTEST_PROP(SpotPath, HoldsWhereABoxMeetsASegment, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const auto coordinate = [&] {
+    const auto grid = static_cast<std::int64_t>(random() % 40);
+    return (grid << kSpotBits) +
+           (random() % 2 == 0 ? 0 : static_cast<std::int64_t>(random() % (1 << kSpotBits)));
+  };
+  std::vector<Spot> spots(2 + random() % 30);
+  for (Spot& s : spots) {
+    s = {coordinate(), coordinate()};
+    if (random() % 4 == 0) s = {s.x, spots.front().y};
+  }
+  const SpotPath path(spots, 2.0);
+  for (int i = 0; i < 100; ++i) {
+    const auto at = [&] { return static_cast<int>(random() % 44) - 2; };
+    GridBox box = box_of(GridPoint{at(), at()});
+    box = united(box, random() % 4 == 0 ? GridPoint{at(), at()}
+                                        : GridPoint{box.min_x + static_cast<int>(random() % 3),
+                                                    box.min_y + static_cast<int>(random() % 3)});
+    bool wanted = false;
+    for (std::size_t k = 0; k + 1 < spots.size(); ++k) {
+      wanted = wanted || meets_segment(box, spots[k], spots[k + 1]);
+    }
+    RC_ASSERT(path.holds({box, {}, 3.0, 0.0}) == wanted);
+    RC_ASSERT(!path.holds({box, {}, 2.0, 0.0}));
+  }
+}
+
+TEST(Profile, AnswersThePiecesOfALineThatDoesNotFitTheMemory) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  std::mt19937_64 random(5);
+  std::vector<MapPoint> track;
+  for (int i = 0; i < 400; ++i) {
+    track.push_back(f.map.to_map(f.bounds.min_x + static_cast<double>(random() % 1000) * 1e-3 *
+                                                      (f.bounds.max_x - f.bounds.min_x),
+                                 f.bounds.min_y + i * (f.bounds.max_y - f.bounds.min_y) / 400.0));
+  }
+  const ProfileResult free = profile(terrain, track);
+  ProfileRequest request;
+  request.memory_limit_bytes = std::uint64_t{7} << 20;
+  const ProfileResult tight = profile(terrain, track, request);
+  EXPECT_GT(tight.cost.records_applied, free.cost.records_applied) << "it was not cut";
+  ASSERT_EQ(tight.points.size(), free.points.size());
+  for (std::size_t i = 0; i < free.points.size(); ++i) {
+    ASSERT_EQ(tight.points[i].distance, free.points[i].distance);
+    ASSERT_EQ(tight.points[i].height, free.points[i].height);
+  }
+  request.memory_limit_bytes = 1000;
+  EXPECT_THROW(static_cast<void>(profile(terrain, track, request)), Error);
+}
+
+TEST(Profile, KeepsLinesApart) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  const auto at = [&](int x, int y) {
+    return f.map.to_map(f.bounds.min_x + x, f.bounds.min_y + y);
+  };
+  const std::vector<std::vector<MapPoint>> lines = {{at(3, 3), at(40, 9)}, {at(80, 3), at(90, 70)}};
+  const ProfileResult both = profile(terrain, lines);
+  std::size_t i = 0;
+  for (std::uint32_t line = 0; line < 2; ++line) {
+    for (const ProfilePoint& p : profile(terrain, lines[line]).points) {
+      ASSERT_LT(i, both.points.size());
+      EXPECT_EQ(both.points[i].line, line);
+      EXPECT_EQ(both.points[i].distance, p.distance);
+      EXPECT_EQ(both.points[i].height, p.height);
+      ++i;
+    }
+  }
+  EXPECT_EQ(i, both.points.size());
+}
+
+TEST(Profile, SharesRefinementsAndKeepsTheOrderOfManyLines) {
+  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  std::mt19937_64 random(8);
+  const auto at = [&](double x, double y) {
+    return f.map.to_map(f.bounds.min_x + x, f.bounds.min_y + y);
+  };
+  std::vector<std::vector<MapPoint>> lines;
+  for (int i = 0; i < 300; ++i) {
+    const double x = double(random() % 2700) / 10 - 5;
+    const double y = double(random() % 2700) / 10 - 5;
+    lines.push_back({at(x, y), at(x + double(random() % 200) / 10, y + 7.5), at(x, y + 9)});
+    if (i % 50 == 0) lines.push_back({at(x, y), at(x, y)});  // without length
+  }
+  ProfileRequest request;
+  for (const std::uint64_t memory : {std::uint64_t{1} << 32, std::uint64_t{5} << 20}) {
+    request.memory_limit_bytes = memory;
+    const ProfileResult all = profile(terrain, lines, request);
+    EXPECT_EQ(all.skipped_lines, 6U);
+    std::size_t i = 0;
+    std::uint64_t alone = 0;
+    for (std::uint32_t line = 0; line < lines.size(); ++line) {
+      if (lines[line][0] == lines[line][1]) continue;
+      const ProfileResult one = profile(terrain, lines[line]);
+      alone += one.cost.records_applied;
+      for (const ProfilePoint& p : one.points) {
+        ASSERT_LT(i, all.points.size());
+        ASSERT_EQ(all.points[i].line, line);
+        ASSERT_EQ(all.points[i].distance, p.distance);
+        ASSERT_EQ(all.points[i].position, p.position);
+        ASSERT_EQ(all.points[i].state, p.state);
+        if (!std::isnan(p.height)) {
+          ASSERT_EQ(all.points[i].height, p.height);
+        }
+        ++i;
+      }
+    }
+    EXPECT_EQ(i, all.points.size());
+    EXPECT_LT(all.cost.records_applied, alone / 3);
+  }
+}
+
+TEST(Profile, RejectsWhatIsNoLine) {
+  const Hierarchy h = reference::random_hierarchy(12);
+  const reference::TemporaryStore file(h);
+  const ProgressiveTin terrain(file.open());
+  const MapPoint one[] = {{1000, -500}, {1000, -500}};
+  const MapPoint bad[] = {{1000, -500}, {std::nan(""), 0}};
+  EXPECT_THROW(static_cast<void>(profile(terrain, one)), Error);
+  EXPECT_THROW(static_cast<void>(profile(terrain, bad)), Error);
+}
+
+}  // namespace
+}  // namespace ptin

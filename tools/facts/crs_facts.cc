@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/facts/crs_facts.h"
+
+#include <memory>
+
+#include <cpl_conv.h>
+#include <ogr_spatialref.h>
+
+#include "engine/error.h"
+
+namespace ptin::tools {
+
+namespace {
+
+std::string text_or_empty(const char* text) {
+  return text == nullptr ? std::string() : std::string(text);
+}
+
+/// "AUTHORITY:CODE" of a node of the CRS; empty when it has none.
+std::string code_of(const OGRSpatialReference& srs, const char* node) {
+  const char* authority = srs.GetAuthorityName(node);
+  const char* code = srs.GetAuthorityCode(node);
+  if (authority == nullptr || code == nullptr) return {};
+  return std::string(authority).append(":").append(code);
+}
+
+void add_vertical(const OGRSpatialReference& srs, CrsFacts& facts) {
+  const bool compound = srs.IsCompound() != 0;
+  if (!compound && srs.GetAxesCount() < 3) return;
+  facts.vertical_name = compound ? text_or_empty(srs.GetAttrValue("VERT_CS")) : facts.name;
+  facts.vertical_code = compound ? code_of(srs, "VERT_CS") : facts.code;
+  const char* unit = nullptr;
+  srs.GetTargetLinearUnits(compound ? "VERT_CS" : nullptr, &unit);
+  facts.vertical_unit = unit == nullptr ? "unknown" : unit;
+}
+
+}  // namespace
+
+nlohmann::json units_json(const CrsFacts& crs) {
+  return {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}};
+}
+
+CrsFacts crs_facts(const std::string& wkt) {
+  CrsFacts facts;
+  facts.wkt = wkt;
+  if (wkt.empty()) return facts;
+  OGRSpatialReference srs;
+  if (srs.importFromWkt(wkt.c_str()) != OGRERR_NONE) return facts;
+  facts.geographic = srs.IsGeographic() != 0;
+  const char* node = srs.IsProjected() != 0 ? "PROJCS" : (facts.geographic ? "GEOGCS" : "LOCAL_CS");
+  facts.name = text_or_empty(srs.GetAttrValue(node));
+  facts.code = code_of(srs, srs.IsCompound() != 0 ? node : nullptr);
+  const char* unit = nullptr;
+  facts.geographic ? srs.GetAngularUnits(&unit) : srs.GetLinearUnits(&unit);
+  if (unit != nullptr) facts.horizontal_unit = unit;
+  add_vertical(srs, facts);
+  return facts;
+}
+
+nlohmann::json metadata_of(const StoreFile& store) {
+  nlohmann::json json = nlohmann::json::parse(store.metadata_json(), nullptr, false);
+  if (!json.is_object()) {
+    throw Error(ErrorCode::corruption,
+                "the metadata is not a JSON object; the file was not written by ptin build",
+                store.path());
+  }
+  return json;
+}
+
+namespace {
+
+/// The text under `key` of an object; empty when there is none.
+std::string text_at(const nlohmann::json& object, const char* key) {
+  const auto it = object.find(key);
+  return it != object.end() && it->is_string() ? it->get<std::string>() : std::string();
+}
+
+}  // namespace
+
+CrsFacts crs_facts_of(const nlohmann::json& metadata) {
+  const auto it = metadata.find("crs");
+  const nlohmann::json crs = it != metadata.end() ? *it : nlohmann::json::object();
+  std::string wkt = crs.is_string() ? crs.get<std::string>() : std::string();
+  if (crs.is_object()) wkt = text_at(crs, "wkt");
+  if (wkt.empty()) wkt = text_at(metadata, "crs_wkt");
+  CrsFacts facts = crs_facts(wkt);
+  for (const nlohmann::json& place : {crs, metadata.value("units", nlohmann::json::object())}) {
+    if (!place.is_object()) continue;
+    const std::string horizontal =
+        text_at(place, &place == &crs ? "horizontal_unit" : "horizontal");
+    const std::string vertical = text_at(place, &place == &crs ? "vertical_unit" : "height");
+    if (facts.horizontal_unit == "unknown" && !horizontal.empty())
+      facts.horizontal_unit = horizontal;
+    if (facts.vertical_unit == "unknown" && !vertical.empty()) facts.vertical_unit = vertical;
+  }
+  return facts;
+}
+
+CrsFacts crs_facts(const StoreFile& store) { return crs_facts_of(metadata_of(store)); }
+
+}  // namespace ptin::tools

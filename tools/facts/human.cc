@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/facts/human.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/error.h"
+
+namespace ptin::tools {
+
+std::string grouped(std::uint64_t n) {
+  std::string text = std::to_string(n);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, 1, ',');
+  return text;
+}
+
+std::string counted(std::uint64_t n, const std::string& one, const std::string& plural) {
+  return grouped(n) + " " + (n == 1 ? one : plural.empty() ? one + "s" : plural);
+}
+
+std::string human_bytes(std::uint64_t bytes) {
+  if (bytes < 1024) return std::to_string(bytes).append(" bytes");
+  const char* const units[] = {"KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+  double value = static_cast<double>(bytes) / 1024.0;
+  std::size_t unit = 0;
+  for (; value >= 1024.0 && unit < 5; ++unit) value /= 1024.0;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f %s", value < 10 ? 2 : 1, value, units[unit]);
+  return text;
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text,
+                std::abs(value) >= 1e5 && std::abs(value) < 1e15 ? "%.2f" : "%.6g", value);
+  std::string shown = text;
+  if (shown.find('.') != std::string::npos && shown.find('e') == std::string::npos) {
+    while (shown.back() == '0') shown.pop_back();
+    if (shown.back() == '.') shown.pop_back();
+  }
+  return shown;
+}
+
+std::string human_duration(double seconds) {
+  std::array<char, 32> text{};
+  if (seconds < 120.0) {
+    std::snprintf(text.data(), text.size(), "%.0f s", std::max(1.0, seconds));
+  } else if (seconds < 7200.0) {
+    std::snprintf(text.data(), text.size(), "%.0f min", seconds / 60.0);
+  } else {
+    std::snprintf(text.data(), text.size(), "%.1f h", seconds / 3600.0);
+  }
+  return text.data();
+}
+
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return (c >= '\0' && c < ' ') || c == '\x7f'; }, '?');
+  return text;
+}
+
+std::string exact_number(double value) {
+  std::array<char, 32> text{};
+  const auto [end, fault] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
+}
+
+std::uint64_t parse_bytes(const std::string& text) {
+  std::size_t used = 0;
+  double value = -1.0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = std::string::npos;
+  }
+  double factor = 1.0;
+  if (used != std::string::npos && used < text.size()) {
+    const std::string suffixes = "KMGT";
+    const std::size_t place = suffixes.find(static_cast<char>(std::toupper(text[used])));
+    const std::string rest = text.substr(used + 1);
+    factor = place == std::string::npos || !(rest.empty() || rest == "B" || rest == "iB")
+                 ? -1.0
+                 : std::pow(1024.0, static_cast<double>(place + 1));
+  }
+  if (used == std::string::npos || !(value > 0) || factor < 0 || value * factor > 1e18) {
+    throw Error(ErrorCode::invalid_argument,
+                std::string("not a size: ").append(text).append("; write it as 512M or 2G"));
+  }
+  return static_cast<std::uint64_t>(value * factor);
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/output/standard_output.h"
+
+#include <cerrno>
+#include <cstdio>
+
+#include <unistd.h>
+
+#include "engine/error.h"
+
+namespace ptin::tools {
+
+namespace {
+
+[[noreturn]] void throw_lost(int reason) {
+  std::clearerr(stdout);
+  throw system_error(reason != 0 ? reason : EIO, "cannot write the answer", "standard output");
+}
+
+}  // namespace
+
+void write_to_stdout(std::string_view text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) throw_lost(errno);
+}
+
+void finish_stdout() {
+  errno = 0;
+  if (std::fflush(stdout) != 0) throw_lost(errno);
+  if (std::ferror(stdout) == 0) return;
+  // Somebody's write failed before, and its reason is gone with errno: what is there is a part
+  // already, and one byte more tells whether the disk is full.
+  errno = 0;
+  static_cast<void>(::write(STDOUT_FILENO, "\n", 1) == 1);
+  throw_lost(errno);
+}
+
+}  // namespace ptin::tools

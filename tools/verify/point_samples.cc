@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Points for `verify --against`.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/error.h"
+#include "engine/geometry/point.h"
+#include "tools/stop.h"
+#include "tools/verify/sorted_samples.h"
+#include "tools/verify/source_samples.h"
+#include "tools/verify/text_samples.h"
+
+namespace ptin::tools {
+
+namespace {
+
+/// What the reader of text takes: anything that is not known as LAS, a TIN or a layer.
+bool is_text(const std::string& path) { return is_point_text(path) || !is_point_input(path, {}); }
+
+class PointSamples final : public SourceSamples {
+ public:
+  PointSamples(const std::vector<std::string>& paths, const StoreFile& store,
+               const SampleResources& resources)
+      : facts_(store.facts()), choices_(choices_of(store)), samples_(facts_, resources.memory) {
+    for (const std::string& path : paths) {
+      if (is_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
+        read_text(path, resources.stop);
+      } else {
+        read_stream(path, resources);
+      }
+    }
+    samples_.sort(resources.stop);
+  }
+
+  [[nodiscard]] std::uint64_t count(const GridBox& box) override { return samples_.count(box); }
+  [[nodiscard]] SampleWindow read(const GridBox& box) override {
+    SampleWindow window;
+    window.box = box;
+    window.samples = samples_.read(box);
+    std::sort(window.samples.begin(), window.samples.end(),
+              [](const Sample& a, const Sample& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
+    return window;
+  }
+
+ private:
+  void read_text(const std::string& path, const std::stop_token& stop);
+  void read_stream(const std::string& path, const SampleResources& resources);
+  [[nodiscard]] MapPoint grid_point_of(MapPoint p) const;
+  void add(const std::array<double, 3>& p, const std::string& path, const char* what,
+           std::uint64_t number);
+
+  const StoreFacts& facts_;
+  SampleChoices choices_;
+  SortedSamples samples_;
+};
+
+void PointSamples::read_text(const std::string& path, const std::stop_token& stop) {
+  constexpr std::uint64_t kLinesBetweenLooks = 4096;
+  TextSamples text(path);
+  TextSamples::Line line;
+  std::uint64_t lines = 0;
+  while (text.next(line)) {
+    if (lines++ % kLinesBetweenLooks == 0) stop_if_asked(stop, "verification");
+    if (line.misfit.empty()) {
+      add(line.point, path, ":", line.number);
+    } else {
+      misfits_.add(path + ":" + std::to_string(line.number) + ": " + line.misfit);
+    }
+  }
+  if (lines == 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "neither a raster that GDAL reads nor points as lines of x y z", path);
+  }
+}
+
+void PointSamples::read_stream(const std::string& path, const SampleResources& resources) {
+  const auto stream = open_point_stream(path, choices_.points, choices_.nodata,
+                                        {&resources.memory, resources.stop, {}});
+  std::vector<SourcePoint> batch;
+  std::uint64_t number = 0;
+  while (stream->next(batch)) {
+    stop_if_asked(resources.stop, "verification");
+    for (const SourcePoint& p : batch)
+      add({to_double(p.x), to_double(p.y), to_double(p.z)}, path, ": point ", ++number);
+  }
+}
+
+/// A chosen step counts from 0, not from the grid's origin: that decides where the points in the
+/// middle between two steps go.
+MapPoint PointSamples::grid_point_of(MapPoint p) const {
+  const AffineMap& map = facts_.map;
+  if (choices_.resolution) {
+    const double step = *choices_.resolution;
+    return {std::round(p.x / step) - std::round(map.origin_x / step),
+            std::round(p.y / step) - std::round(map.origin_y / step)};
+  }
+  const MapPoint grid = map.to_grid(p);
+  return {std::round(grid.x), std::round(grid.y)};
+}
+
+void PointSamples::add(const std::array<double, 3>& p, const std::string& path, const char* what,
+                       std::uint64_t number) {
+  if (choices_.nodata && p[2] == *choices_.nodata) return;
+  const MapPoint grid = grid_point_of({p[0], p[1]});
+  const double x = grid.x;
+  const double y = grid.y;
+  const GridBox& b = facts_.bounds;
+  if (x >= b.min_x && x <= b.max_x && y >= b.min_y && y <= b.max_y) {
+    samples_.add({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)}, p[2]);
+  } else if (!choices_.bbox) {
+    misfits_.add(path + what + std::to_string(number) + ": this point lies outside of the terrain");
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<SourceSamples> open_point_samples(const std::vector<std::string>& paths,
+                                                  const StoreFile& store,
+                                                  const SampleResources& resources) {
+  return std::make_unique<PointSamples>(paths, store, resources);
+}
+
+}  // namespace ptin::tools

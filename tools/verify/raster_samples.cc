@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Rasters for `verify --against`.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <gdal_priv.h>
+
+#include "engine/error.h"
+#include "tools/facts/human.h"
+#include "tools/verify/source_samples.h"
+
+namespace ptin::tools {
+
+namespace {
+
+/// One file, and where its pixels are on the grid: x = first_x + x_step * column, y = first_y +
+/// y_step * row.
+struct RasterFile {
+  std::string path;
+  std::unique_ptr<GDALDataset> data;
+  std::int64_t first_x = 0;
+  std::int64_t first_y = 0;
+  int x_step = 1;  ///< 1 or -1.
+  int y_step = -1;
+  int columns = 0;
+  int rows = 0;
+  double scale = 1.0;
+  double offset = 0.0;
+
+  [[nodiscard]] std::int64_t low_x() const { return x_step < 0 ? first_x - columns + 1 : first_x; }
+  [[nodiscard]] std::int64_t high_x() const { return low_x() + columns - 1; }
+  [[nodiscard]] std::int64_t low_y() const { return y_step < 0 ? first_y - rows + 1 : first_y; }
+  [[nodiscard]] std::int64_t high_y() const { return low_y() + rows - 1; }
+};
+
+class RasterSamples final : public SourceSamples {
+ public:
+  RasterSamples(std::vector<RasterFile> files, const StoreFile& store)
+      : files_(std::move(files)), choices_(choices_of(store)) {
+    for (RasterFile& file : files_) place(file, store.facts());
+    compare_extent(store.facts().bounds);
+  }
+
+  [[nodiscard]] SampleWindow read(const GridBox& box) override;
+  [[nodiscard]] std::uint64_t count(const GridBox& box) override {
+    return static_cast<std::uint64_t>(std::int64_t{box.max_x} - box.min_x + 1) *
+           static_cast<std::uint64_t>(std::int64_t{box.max_y} - box.min_y + 1);
+  }
+
+ private:
+  void place(RasterFile& file, const StoreFacts& facts);
+  void compare_extent(const GridBox& bounds);
+  void read_file(RasterFile& file, SampleWindow& window) const;
+
+  std::vector<RasterFile> files_;
+  SampleChoices choices_;
+};
+
+double last_place(double v) { return std::nextafter(std::abs(v), HUGE_VAL) - std::abs(v); }
+
+/// Where the middle of the first pixel, and the next, lie on the grid.
+void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
+  std::array<double, 6> t{0, 1, 0, 0, 0, -1};
+  // One that says nothing, which is what no geotransform reads as, is none.
+  if (file.data->GetGeoTransform(t.data()) != CE_None ||
+      t == std::array<double, 6>{0, 1, 0, 0, 0, 1})
+    t = {-0.5, 1, 0, file.rows - 0.5, 0, -1};
+  file.x_step = t[1] < 0 ? -1 : 1;
+  file.y_step = t[5] < 0 ? -1 : 1;
+  const auto grid = [&](int column, int row) {
+    return facts.map.to_grid({t[0] + (column + 0.5) * t[1] + (row + 0.5) * t[2],
+                              t[3] + (column + 0.5) * t[4] + (row + 0.5) * t[5]});
+  };
+  const MapPoint first = grid(0, 0);
+  const MapPoint last = grid(file.columns - 1, file.rows - 1);
+  file.first_x = std::llround(first.x);
+  file.first_y = std::llround(first.y);
+  const auto expected_x =
+      static_cast<double>(file.first_x + std::int64_t{file.x_step} * (file.columns - 1));
+  const auto expected_y =
+      static_cast<double>(file.first_y + std::int64_t{file.y_step} * (file.rows - 1));
+  // The other two corners, which a skew moves apart.
+  const MapPoint across = grid(file.columns - 1, 0);
+  const MapPoint along = grid(0, file.rows - 1);
+  const double skew = std::max({std::abs(across.y - first.y), std::abs(across.x - last.x),
+                                std::abs(along.x - first.x), std::abs(along.y - last.y)});
+  const double off = std::max({skew, std::abs(first.x - static_cast<double>(file.first_x)),
+                               std::abs(first.y - static_cast<double>(file.first_y)),
+                               std::abs(last.x - expected_x), std::abs(last.y - expected_y)});
+  constexpr double kPlaces = 4;  // that rounding may cost where steps are near to them
+  const double coarse =
+      std::max(last_place(t[0]) / std::abs(t[1]), last_place(t[3]) / std::abs(t[5]));
+  if (off > 0.02 + kPlaces * coarse) {
+    misfits_.add(file.path +
+                 ": its samples do not stand on the grid of the terrain; they are off by up to " +
+                 short_number(off) + " grid units");
+  }
+}
+
+void RasterSamples::compare_extent(const GridBox& bounds) {
+  std::int64_t low_x = INT64_MAX;
+  std::int64_t low_y = INT64_MAX;
+  std::int64_t high_x = INT64_MIN;
+  std::int64_t high_y = INT64_MIN;
+  for (const RasterFile& file : files_) {
+    low_x = std::min(low_x, file.low_x());
+    low_y = std::min(low_y, file.low_y());
+    high_x = std::max(high_x, file.high_x());
+    high_y = std::max(high_y, file.high_y());
+  }
+  const bool same = low_x == bounds.min_x && low_y == bounds.min_y && high_x == bounds.max_x &&
+                    high_y == bounds.max_y;
+  const bool covers = low_x <= bounds.min_x && low_y <= bounds.min_y && high_x >= bounds.max_x &&
+                      high_y >= bounds.max_y;
+  if (same || (choices_.bbox && covers)) return;
+  const auto box = [](std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t d) {
+    return std::to_string(a) + " " + std::to_string(b) + " to " + std::to_string(c) + " " +
+           std::to_string(d);
+  };
+  misfits_.add("the source covers grid points " + box(low_x, low_y, high_x, high_y) +
+               ", the terrain " + box(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y));
+}
+
+/// Signed bytes come from GDAL before 3.7 as 0 to 255, and its mask does not know a nodata value
+/// below 0.
+bool is_signed_byte(GDALRasterBand& band) {
+  const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return type != nullptr && EQUAL(type, "SIGNEDBYTE");
+}
+
+/// @param with_nodata  The band's own value masks samples out.
+void take_signs(GDALRasterBand& band, bool with_nodata, std::vector<double>& values,
+                std::vector<std::uint8_t>& mask) {
+  int has_nodata = 0;
+  const double nodata = band.GetNoDataValue(&has_nodata);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] > 127) values[i] -= 256;
+    if (with_nodata && has_nodata != 0 && values[i] == nodata) mask[i] = 0;
+  }
+}
+
+SampleWindow RasterSamples::read(const GridBox& box) {
+  SampleWindow window;
+  window.box = box;
+  window.is_grid = true;
+  for (std::int32_t y = box.min_y; y <= box.max_y; ++y) {
+    for (std::int32_t x = box.min_x; x <= box.max_x; ++x)
+      window.samples.push_back({x, y, 0.0, true});
+  }
+  for (RasterFile& file : files_) read_file(file, window);
+  return window;
+}
+
+void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
+  const GridBox& box = window.box;
+  const std::int64_t low_x = std::max<std::int64_t>(box.min_x, file.low_x());
+  const std::int64_t high_x = std::min<std::int64_t>(box.max_x, file.high_x());
+  const std::int64_t low_y = std::max<std::int64_t>(box.min_y, file.low_y());
+  const std::int64_t high_y = std::min<std::int64_t>(box.max_y, file.high_y());
+  if (low_x > high_x || low_y > high_y) return;
+  const int width = static_cast<int>(high_x - low_x + 1);
+  const int height = static_cast<int>(high_y - low_y + 1);
+  const int column =
+      static_cast<int>(file.x_step < 0 ? file.first_x - high_x : low_x - file.first_x);
+  const int row = static_cast<int>(file.y_step < 0 ? file.first_y - high_y : low_y - file.first_y);
+  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  std::vector<double> values(count);
+  std::vector<std::uint8_t> mask(count, 255);
+  GDALRasterBand& band = *file.data->GetRasterBand(1);
+  CPLErr status = band.RasterIO(GF_Read, column, row, width, height, values.data(), width, height,
+                                GDT_Float64, 0, 0, nullptr);
+  // A nodata value given at the build takes the place of the band's own; a mask band stays.
+  if (status == CE_None && !(choices_.nodata && (band.GetMaskFlags() & GMF_NODATA) != 0)) {
+    status = band.GetMaskBand()->RasterIO(GF_Read, column, row, width, height, mask.data(), width,
+                                          height, GDT_Byte, 0, 0, nullptr);
+  }
+  if (status != CE_None)
+    throw Error(ErrorCode::io_error, "GDAL cannot read its samples", file.path);
+  const bool is_float = band.GetRasterDataType() == GDT_Float32;
+  if (is_signed_byte(band)) take_signs(band, !choices_.nodata, values, mask);
+  const std::size_t stride = static_cast<std::size_t>(box.max_x - box.min_x) + 1;
+  for (int j = 0; j < height; ++j) {
+    const std::int64_t y = file.y_step < 0 ? high_y - j : low_y + j;
+    for (int i = 0; i < width; ++i) {
+      const std::int64_t x = file.x_step < 0 ? high_x - i : low_x + i;
+      const std::size_t from = static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
+                               static_cast<std::size_t>(i);
+      const double value = values[from];
+      const bool is_nodata =
+          choices_.nodata &&
+          (value == *choices_.nodata ||
+           (is_float && static_cast<float>(value) == static_cast<float>(*choices_.nodata)));
+      if (mask[from] == 0 || std::isnan(value) || is_nodata) continue;
+      Sample& sample = window.samples[static_cast<std::size_t>(y - box.min_y) * stride +
+                                      static_cast<std::size_t>(x - box.min_x)];
+      sample.height = file.offset + file.scale * value;
+      sample.is_void = false;
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<SourceSamples> open_raster_samples(const std::vector<std::string>& paths,
+                                                   const StoreFile& store) {
+  std::vector<RasterFile> files;
+  for (const std::string& path : paths) {
+    RasterFile file;
+    file.path = path;
+    file.data.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr,
+                                      nullptr, nullptr));
+    // GDAL's XYZ driver reads some point files as rasters; text is left to the reader of points.
+    if (!file.data || file.data->GetRasterCount() < 1 || EQUAL(file.data->GetDriverName(), "XYZ"))
+      return nullptr;
+    GDALRasterBand& band = *file.data->GetRasterBand(1);
+    file.columns = band.GetXSize();
+    file.rows = band.GetYSize();
+    file.scale = band.GetScale(nullptr);
+    file.offset = band.GetOffset(nullptr);
+    files.push_back(std::move(file));
+  }
+  return std::make_unique<RasterSamples>(std::move(files), store);
+}
+
+}  // namespace ptin::tools

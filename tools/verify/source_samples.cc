@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/verify/source_samples.h"
+
+#include <limits>
+
+#include "engine/error.h"
+#include "storage/file/file_questions.h"
+#include "tools/facts/crs_facts.h"
+
+namespace ptin::tools {
+
+namespace {
+
+/// A number; "nan", "inf" and "-inf" are words, since JSON has no numbers for them.
+std::optional<double> nodata_of(const nlohmann::json& value) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (value.is_number()) return value.get<double>();
+  if (value == "nan") return std::numeric_limits<double>::quiet_NaN();
+  if (value == "inf") return kInfinity;
+  if (value == "-inf") return -kInfinity;
+  return std::nullopt;
+}
+
+}  // namespace
+
+SampleChoices choices_of(const StoreFile& store) {
+  const nlohmann::json metadata = metadata_of(store);
+  const auto it = metadata.find("options");
+  const nlohmann::json options =
+      it != metadata.end() && it->is_object() ? *it : nlohmann::json::object();
+  SampleChoices choices;
+  if (const auto nodata = options.find("nodata"); nodata != options.end()) {
+    choices.nodata = nodata_of(*nodata);
+  }
+  if (const auto slope = options.find("void_slope"); slope != options.end() && slope->is_number()) {
+    choices.void_slope = slope->get<double>();
+  }
+  if (const auto step = options.find("resolution"); step != options.end() && step->is_number()) {
+    choices.resolution = step->get<double>();
+  }
+  if (const auto edge = options.find("max_edge"); edge != options.end() && edge->is_number()) {
+    choices.max_edge = edge->get<double>();
+  }
+  if (const auto classes = options.find("classes");
+      classes != options.end() && classes->is_array()) {
+    for (const auto& c : *classes) {
+      if (c.is_number_integer()) choices.points.classes.push_back(c.get<int>());
+    }
+  }
+  const auto text = [&](const char* name) {
+    const auto found = options.find(name);
+    return found != options.end() && found->is_string() ? found->get<std::string>() : "";
+  };
+  choices.points.layer = text("layer");
+  choices.points.z_field = text("z_field");
+  if (const auto bbox = options.find("bbox");
+      bbox != options.end() && bbox->is_array() && bbox->size() == 4) {
+    choices.bbox = store.facts().bounds;
+  }
+  return choices;
+}
+
+std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
+                                            const StoreFile& store,
+                                            const SampleResources& resources) {
+  for (const std::string& path : paths) {
+    if (path.rfind("/vsi", 0) != 0 && !is_there(path)) {
+      throw Error(ErrorCode::not_found, "no such file", path);
+    }
+  }
+  std::unique_ptr<SourceSamples> samples = open_raster_samples(paths, store);
+  return samples ? std::move(samples) : open_point_samples(paths, store, resources);
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The samples of a source on a terrain's grid, for `verify --against`: read with GDAL and a text
+// reader of its own, so that nothing is shared with the builder that is being verified; only LAS,
+// TINs and layers come through the builder's readers.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/construct/read/point_stream.h"
+#include "engine/construct/scratch/external_memory.h"
+#include "engine/geometry/box.h"
+#include "storage/store_file.h"
+
+namespace ptin::tools {
+
+/// Choices of the build that decide which samples there are; from the metadata of the store.
+struct SampleChoices {
+  PointChoice points;
+  std::optional<double> nodata;
+  std::optional<double> resolution;  ///< Points: the grid's step, CRS units, where it was chosen.
+  std::optional<GridBox> bbox;       ///< Samples outside were left out.
+  double void_slope = 0.1;
+  std::optional<double> max_edge;  ///< Points: longer triangles are void; on the ground.
+};
+[[nodiscard]] SampleChoices choices_of(const StoreFile& store);
+
+struct Sample {
+  std::int32_t x = 0;  ///< Grid.
+  std::int32_t y = 0;
+  double height = 0.0;  ///< Height's unit.
+  bool is_void = false;
+  bool is_lone = false;  ///< Void because it touches no surface triangle, though it has a height.
+};
+
+/// The samples of a box, row-major where they form a full grid.
+struct SampleWindow {
+  GridBox box;
+  std::vector<Sample> samples;
+  bool is_grid = false;  ///< One sample at each grid point of `box`, row 0 in the south.
+};
+
+/// What is wrong with a source as a whole.
+struct Misfits {
+  static constexpr std::size_t kKept = 1000;
+  std::vector<std::string> first;  ///< In words, at most kKept.
+  std::uint64_t count = 0;
+
+  void add(std::string what) {
+    if (count++ < kKept) first.push_back(std::move(what));
+  }
+};
+
+class SourceSamples {
+ public:
+  SourceSamples() = default;
+  SourceSamples(const SourceSamples&) = delete;
+  SourceSamples& operator=(const SourceSamples&) = delete;
+  virtual ~SourceSamples() = default;
+
+  /// Samples in the closed box; grid points outside of every file are void.  @throws Error io_error
+  /// Memory: what it returns.
+  [[nodiscard]] virtual SampleWindow read(const GridBox& box) = 0;
+  /// How many read() would return.  @throws Error io_error
+  [[nodiscard]] virtual std::uint64_t count(const GridBox& box) = 0;
+  /// Other grid, other extent, lines that are no points. None when the source fits the store.
+  [[nodiscard]] const Misfits& misfits() const noexcept { return misfits_; }
+
+ protected:
+  Misfits misfits_;
+};
+
+/// What reading a source may take. Rasters are read by the window and need none of it.
+struct SampleResources {
+  ExternalMemory memory;  ///< Points are sorted in it, and in its folder where they do not fit.
+  std::stop_token stop;
+};
+
+/// Opens rasters, or points of any kind; points are read here, once.
+/// @throws Error not_found, invalid_argument, io_error, resource_exhausted (disk full), cancelled
+[[nodiscard]] std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
+                                                          const StoreFile& store,
+                                                          const SampleResources& resources);
+
+/// The two kinds; open_samples() chooses. A raster is null when GDAL does not know the file as one.
+[[nodiscard]] std::unique_ptr<SourceSamples> open_raster_samples(
+    const std::vector<std::string>& paths, const StoreFile& store);
+[[nodiscard]] std::unique_ptr<SourceSamples> open_point_samples(
+    const std::vector<std::string>& paths, const StoreFile& store,
+    const SampleResources& resources);
+
+}  // namespace ptin::tools

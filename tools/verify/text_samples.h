@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Points as text for `verify --against`: the rules that engine/construct/read/xyz_reader.h states, in
+// code of its own on purpose: what both got wrong together would be found by nobody.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ptin::tools {
+
+/// The points of one file of text. The first line that is neither empty nor a comment ('#') decides
+/// the separator (semicolon, else comma, else blanks and tabs), the number of fields, and whether
+/// it is a header. Empty fields between semicolons or commas count. A byte order mark is passed
+/// over; a name that ends in .gz, in any case, is unpacked on the way.
+class TextSamples {
+ public:
+  /// @throws Error not_found, io_error
+  explicit TextSamples(std::string path);
+  TextSamples(const TextSamples&) = delete;
+  TextSamples& operator=(const TextSamples&) = delete;
+  ~TextSamples();
+
+  /// A line that stands for a point: its numbers, or why they cannot be read.
+  struct Line {
+    std::uint64_t number = 0;  ///< From 1.
+    std::array<double, 3> point{};
+    std::string misfit;  ///< Empty where `point` holds.
+  };
+  /// The next one; false at the end.
+  /// @throws Error invalid_argument  the first line names no column for x, y or z, or has too few
+  ///                                 fields; a line is longer than 64 KiB
+  ///               io_error          the file cannot be read on
+  [[nodiscard]] bool next(Line& line);
+
+ private:
+  struct File;
+  [[nodiscard]] bool next_text(std::string_view& text);
+  void fill();
+  void split(std::string_view text);
+  /// Looks at the first line; true when it is a header.
+  [[nodiscard]] bool begin(std::string_view text);
+  void choose_columns();
+  void read_numbers(Line& line) const;
+  [[noreturn]] void refuse(const std::string& sentence) const;
+
+  std::string path_;
+  std::unique_ptr<File> file_;
+  std::string buffer_;
+  std::size_t begin_ = 0;  ///< Of what is left in the buffer.
+  bool at_end_ = false;
+  std::uint64_t number_ = 0;  ///< Of lines so far.
+  char separator_ = '\0';     ///< '\0' before the first line, ' ' for blanks and tabs.
+  std::array<std::size_t, 3> columns_{0, 1, 2};
+  std::size_t field_count_ = 0;
+  std::vector<std::string_view> fields_;
+};
+
+}  // namespace ptin::tools

@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/verify/verify_against.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "engine/error.h"
+#include "tools/facts/crs_facts.h"
+#include "tools/facts/human.h"
+#include "tools/stop.h"
+#include "tools/verify/scan_triangle.h"
+#include "tools/verify/sorted_samples.h"
+#include "tools/verify/void_depth.h"
+
+namespace ptin::tools {
+
+namespace {
+
+/// What the triangles of one answer say about one sample.
+struct Finding {
+  double residual = std::numeric_limits<double>::infinity();  ///< Least over the closed surface
+                                                              ///< triangles that hold it.
+  bool in_closed_surface = false;
+  bool in_open_surface = false;
+  bool in_closed_void = false;
+  bool covered = false;
+  std::uint8_t open_triangles = 0;
+};
+
+/// A point between samples, and its height in the full TIN and in a coarser one.
+struct Probe {
+  double x = 0.0, y = 0.0;  ///< Grid.
+  double full = std::numeric_limits<double>::quiet_NaN();
+  double coarse = std::numeric_limits<double>::quiet_NaN();
+};
+
+class Verifier {
+ public:
+  Verifier(const ProgressiveTin& terrain, SourceSamples& source, const AgainstOptions& options)
+      : terrain_(terrain),
+        source_(source),
+        options_(options),
+        facts_(terrain.store().facts()),
+        choices_(choices_of(terrain.store())),
+        ground_(ground_of(crs_facts(terrain.store()))) {
+    for (const auto& tolerance : options.tolerances)
+      report_.checks.push_back({.tolerance = tolerance});
+    const double height = std::max(std::abs(facts_.min_height), std::abs(facts_.max_height));
+    slack_ = std::isfinite(height) ? 1e-12 * height : 0.0;  // of interpolating in double
+  }
+
+  AgainstReport run();
+
+ private:
+  void check_window(const GridBox& box);
+  [[nodiscard]] SampleWindow read_with_margin(const GridBox& box) const;
+  [[nodiscard]] RefinedTin refined_in(const GridBox& box,
+                                      const std::optional<double>& tolerance) const;
+  [[nodiscard]] std::vector<Finding> findings(const Tin& tin, const SampleWindow& window) const;
+  [[nodiscard]] bool is_too_long(GridPoint a, GridPoint b) const;
+  void drop_lone_points(SampleWindow& window) const;
+  void judge(const SampleWindow& window, const GridBox& box, const std::vector<Finding>& found,
+             double allowed, ToleranceCheck& check);
+  void judge_class(const SampleWindow& window, const Sample& sample, double allowed,
+                   ToleranceCheck& check);
+  void place_probes(const GridBox& box, std::vector<Probe>& probes);
+  void measure_probes(const Tin& tin, std::vector<Probe>& probes, double Probe::*height) const;
+  void judge_probes(const std::vector<Probe>& probes, const RefinedTin& refined,
+                    ToleranceCheck& check);
+  void fault(ToleranceCheck* check, std::string what);
+  [[nodiscard]] std::string place_text(double x, double y) const;
+  [[nodiscard]] double height_in(const Tin& tin, TriangleId t,
+                                 const std::array<double, 3>& weights) const;
+  [[nodiscard]] std::vector<GridBox> windows();
+
+  const ProgressiveTin& terrain_;
+  SourceSamples& source_;
+  const AgainstOptions& options_;
+  const StoreFacts& facts_;
+  SampleChoices choices_;
+  Ground ground_;
+  double slack_ = 0.0;
+  AgainstReport report_;
+  std::mt19937_64 random_{20260101};
+};
+
+void Verifier::fault(ToleranceCheck* check, std::string what) {
+  ++report_.fault_count;
+  if (check != nullptr) {
+    ++check->faults;
+    what.insert(
+        0, check->tolerance
+               ? std::string("at tolerance ").append(short_number(*check->tolerance)).append(": ")
+               : std::string("in the full TIN: "));
+  }
+  if (report_.faults.size() < options_.listed_faults) report_.faults.push_back(std::move(what));
+}
+
+std::string Verifier::place_text(double x, double y) const {
+  const MapPoint p = facts_.map.to_map(x, y);
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.10g, %.10g)", p.x, p.y);
+  return text;
+}
+
+std::vector<GridBox> Verifier::windows() {
+  // A raster: squares of samples. Points: halves until few enough samples are in each.
+  std::vector<GridBox> boxes;
+  std::vector<GridBox> open{facts_.bounds};
+  const bool is_grid = source_.read(box_of({facts_.bounds.min_x, facts_.bounds.min_y})).is_grid;
+  while (!open.empty()) {
+    stop_if_asked(options_.stop, "verification");
+    const GridBox box = open.back();
+    open.pop_back();
+    const std::int64_t width = std::int64_t{box.max_x} - box.min_x;
+    const std::int64_t height = std::int64_t{box.max_y} - box.min_y;
+    const bool small =
+        is_grid ? std::max(width, height) < options_.window_side
+                : std::max(width, height) < 2 || source_.count(box) <= options_.samples_per_window;
+    if (small) {
+      boxes.push_back(box);
+      continue;
+    }
+    const auto [low, high] = halves_of(box);
+    open.push_back(high);
+    open.push_back(low);
+  }
+  return boxes;
+}
+
+AgainstReport Verifier::run() {
+  const Misfits& misfits = source_.misfits();
+  for (const std::string& misfit : misfits.first) fault(nullptr, misfit);
+  report_.fault_count += misfits.count - misfits.first.size();
+  const std::vector<GridBox> boxes = windows();
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    stop_if_asked(options_.stop, "verification");
+    if (options_.progress) options_.progress(i, boxes.size());
+    check_window(boxes[i]);
+  }
+  if (options_.progress) options_.progress(boxes.size(), boxes.size());
+  for (const ToleranceCheck& check : report_.checks) {
+    const std::uint64_t samples = check.samples + check.lone_samples;
+    if (report_.fault_count == 0 && samples != facts_.source_samples) {
+      fault(nullptr, "the source has " + grouped(check.samples) +
+                         " samples with a height, the file says " + grouped(facts_.source_samples));
+    }
+  }
+  return std::move(report_);
+}
+
+RefinedTin Verifier::refined_in(const GridBox& box, const std::optional<double>& tolerance) const {
+  const MapPoint low = facts_.map.to_map(box.min_x, box.min_y);
+  const MapPoint high = facts_.map.to_map(box.max_x, box.max_y);
+  RefineRequest request;
+  request.region = Window{low.x, low.y, high.x, high.y};
+  request.tolerance = tolerance;
+  request.form = ResultForm::kMeetingRegion;
+  request.stop = options_.stop;
+  return terrain_.refine(request);
+}
+
+SampleWindow Verifier::read_with_margin(const GridBox& box) const {
+  double largest = 0.0;
+  for (const auto& tolerance : options_.tolerances)
+    largest = std::max(largest, tolerance.value_or(0.0));
+  const GroundSteps steps = ground_steps(facts_.map, ground_, (box.min_y + box.max_y) / 2.0);
+  constexpr double kMargin = 1024.0;
+  const double depth =
+      choices_.void_slope > 0 ? largest / choices_.void_slope / std::min(steps.x, steps.y) : 0.0;
+  const auto margin = static_cast<std::int64_t>(std::min(kMargin, std::ceil(depth))) + 2;
+  const GridBox& all = facts_.bounds;
+  const auto within = [](std::int64_t v, std::int32_t low, std::int32_t high) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, low, high));
+  };
+  SampleWindow inner = source_.read(box);
+  const bool has_void = std::any_of(inner.samples.begin(), inner.samples.end(),
+                                    [](const Sample& s) { return s.is_void; });
+  const std::int64_t wide = inner.is_grid && (has_void || largest > 0) ? margin : 2;
+  if (!inner.is_grid) return inner;
+  SampleWindow window = source_.read({within(box.min_x - wide, all.min_x, all.max_x),
+                                      within(box.min_y - wide, all.min_y, all.max_y),
+                                      within(box.max_x + wide, all.min_x, all.max_x),
+                                      within(box.max_y + wide, all.min_y, all.max_y)});
+  drop_lone_samples(window);
+  return window;
+}
+
+bool Verifier::is_too_long(GridPoint a, GridPoint b) const {
+  const GroundSteps steps =
+      ground_steps(facts_.map, ground_, (static_cast<double>(a.y) + b.y) / 2.0);
+  constexpr double kFormulas = 0.999;  // lengths of a degree, between two formulas
+  return std::hypot((static_cast<double>(a.x) - b.x) * steps.x,
+                    (static_cast<double>(a.y) - b.y) * steps.y) >
+         *choices_.max_edge * (ground_.geographic ? kFormulas : 1.0 - 1e-9);
+}
+
+/// Points all of whose triangles in the full TIN are void, each for its long edge, have no surface
+/// to be measured against. The triangles are the file's own; that each is long enough is seen here.
+void Verifier::drop_lone_points(SampleWindow& window) const {
+  if (window.is_grid || !choices_.max_edge) return;
+  const Tin tin = refined_in(window.box, std::nullopt).tin;
+  enum : std::uint8_t { kUnseen, kLone, kSurface };
+  std::vector<std::uint8_t> seen(tin.vertices.size(), kUnseen);
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    const auto& v = tin.triangles[t].v;
+    const std::array<GridPoint, 3> p{tin.position(v[0]), tin.position(v[1]), tin.position(v[2])};
+    const bool is_void =
+        tin.classes[t] == TriangleClass::kVoid &&
+        (is_too_long(p[0], p[1]) || is_too_long(p[1], p[2]) || is_too_long(p[2], p[0]));
+    for (const VertexId corner : v) {
+      seen[corner] = is_void && seen[corner] != kSurface ? kLone : kSurface;
+    }
+  }
+  const auto before = [](const Sample& s, GridPoint p) {
+    return s.y != p.y ? s.y < p.y : s.x < p.x;
+  };
+  for (VertexId v = 0; v < tin.vertices.size(); ++v) {
+    const GridPoint p = tin.position(v);
+    const auto it = std::lower_bound(window.samples.begin(), window.samples.end(), p, before);
+    if (seen[v] == kLone && it != window.samples.end() && it->x == p.x && it->y == p.y) {
+      it->is_void = it->is_lone = true;
+    }
+  }
+}
+
+void Verifier::check_window(const GridBox& box) {
+  SampleWindow window = read_with_margin(box);
+  drop_lone_points(window);
+  std::vector<Probe> probes;
+  place_probes(box, probes);
+  if (!probes.empty()) measure_probes(refined_in(box, std::nullopt).tin, probes, &Probe::full);
+  for (ToleranceCheck& check : report_.checks) {
+    const RefinedTin refined = refined_in(box, check.tolerance);
+    check.certified_error = std::max(check.certified_error, refined.certified_error);
+    check.certified_deviation = std::max(check.certified_deviation, refined.certified_deviation);
+    const double asked = std::max(check.tolerance.value_or(0.0), facts_.base_error);
+    if (refined.certified_error > asked) {
+      fault(&check, "the answer certifies only " + short_number(refined.certified_error) +
+                        " near " + place_text(box.min_x, box.min_y));
+    }
+    judge(window, box, findings(refined.tin, window), std::min(asked, refined.certified_error),
+          check);
+    if (check.tolerance) {
+      measure_probes(refined.tin, probes, &Probe::coarse);
+      judge_probes(probes, refined, check);
+    }
+  }
+}
+
+double Verifier::height_in(const Tin& tin, TriangleId t,
+                           const std::array<double, 3>& weights) const {
+  double sum = 0.0;
+  double total = 0.0;
+  // Around the first corner's height, so that a vertex and a flat triangle come out exact.
+  const double base = facts_.heights.height(tin.vertices[tin.triangles[t].v[0]].height);
+  for (std::size_t i = 0; i < 3; ++i) {
+    sum += weights[i] * (facts_.heights.height(tin.vertices[tin.triangles[t].v[i]].height) - base);
+    total += weights[i];
+  }
+  return base + sum / total;
+}
+
+std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& window) const {
+  std::vector<Finding> found(window.samples.size());
+  const std::int64_t width = std::int64_t{window.box.max_x} - window.box.min_x + 1;
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    const auto& v = tin.triangles[t].v;
+    const std::array<GridPoint, 3> corners{tin.position(v[0]), tin.position(v[1]),
+                                           tin.position(v[2])};
+    const auto lines = edge_lines(corners);
+    const bool is_surface = tin.classes[t] == TriangleClass::kSurface;
+    const auto visit = [&](std::size_t i, const Weights& weights) {
+      Finding& f = found[i];
+      f.covered = true;
+      f.open_triangles = static_cast<std::uint8_t>(f.open_triangles + (weights.in_open() ? 1 : 0));
+      f.in_closed_void = f.in_closed_void || !is_surface;
+      if (!is_surface) return;
+      f.in_closed_surface = true;
+      f.in_open_surface = f.in_open_surface || weights.in_open();
+      const double height =
+          height_in(tin, t,
+                    {static_cast<double>(weights.w[0]), static_cast<double>(weights.w[1]),
+                     static_cast<double>(weights.w[2])});
+      const double distance = std::abs(height - window.samples[i].height);
+      f.residual = std::min(f.residual, std::max(0.0, distance - slack_));
+    };
+    if (window.is_grid) {
+      scan_triangle(corners, window.box, [&](std::int32_t x, std::int32_t y) {
+        visit(static_cast<std::size_t>((y - window.box.min_y) * width + (x - window.box.min_x)),
+              weights_at(lines, {x, y}));
+      });
+      continue;
+    }
+    // Points stand by y, then x: the rows of the triangle are one run.
+    const std::int32_t low = std::min({corners[0].y, corners[1].y, corners[2].y});
+    const std::int32_t high = std::max({corners[0].y, corners[1].y, corners[2].y});
+    auto it = std::lower_bound(window.samples.begin(), window.samples.end(), low,
+                               [](const Sample& s, std::int32_t y) { return s.y < y; });
+    for (; it != window.samples.end() && it->y <= high; ++it) {
+      const Weights weights = weights_at(lines, {it->x, it->y});
+      if (weights.in_closed())
+        visit(static_cast<std::size_t>(it - window.samples.begin()), weights);
+    }
+  }
+  return found;
+}
+
+void Verifier::judge(const SampleWindow& window, const GridBox& box,
+                     const std::vector<Finding>& found, double allowed, ToleranceCheck& check) {
+  for (std::size_t i = 0; i < window.samples.size(); ++i) {
+    const Sample& sample = window.samples[i];
+    if (!contains(box, GridPoint{sample.x, sample.y})) continue;  // of the margin
+    const Finding& f = found[i];
+    ++(sample.is_void ? check.void_samples : check.samples);
+    check.lone_samples += sample.is_lone ? 1 : 0;
+    if (!f.covered || f.open_triangles > 1) {
+      fault(&check, std::string(f.covered ? "two triangles overlap at " : "no triangle covers ") +
+                        place_text(sample.x, sample.y));
+    } else if (sample.is_void ? f.in_open_surface : !f.in_closed_surface) {
+      judge_class(window, sample, allowed, check);
+    } else if (!sample.is_void) {
+      check.worst_error = std::max(check.worst_error, f.residual);
+      if (f.residual > allowed) {
+        fault(&check, "the sample at " + place_text(sample.x, sample.y) + " is off by " +
+                          short_number(f.residual) + ", more than the certified " +
+                          short_number(allowed) +
+                          (f.in_closed_void ? " (on an edge beside a void)" : ""));
+      }
+    }
+  }
+}
+
+void Verifier::judge_class(const SampleWindow& window, const Sample& sample, double allowed,
+                           ToleranceCheck& check) {
+  const char* what = sample.is_void ? "void" : "a height";
+  if (!window.is_grid) {
+    fault(&check, "the point at " + place_text(sample.x, sample.y) +
+                      (sample.is_void ? " is lone in the full TIN and lies in a surface triangle"
+                                      : " lies in no surface triangle"));
+    return;
+  }
+  const GroundSteps steps = ground_steps(facts_.map, ground_, sample.y);
+  constexpr double kFormulas = 1.001;  // lengths of a degree, between two formulas
+  const double limit = choices_.void_slope > 0 ? allowed / choices_.void_slope * kFormulas
+                                               : std::numeric_limits<double>::infinity();
+  if (std::isfinite(depth_at(window, sample.x, sample.y, steps, limit))) {
+    ++check.reclassified;
+    return;
+  }
+  fault(&check, std::string("the sample at ") + place_text(sample.x, sample.y) + " has " + what +
+                    " and the TIN says otherwise, though it lies deeper than the tolerance allows");
+}
+
+void Verifier::place_probes(const GridBox& box, std::vector<Probe>& probes) {
+  if (box.max_x <= box.min_x || box.max_y <= box.min_y) return;
+  std::uniform_real_distribution<double> x(box.min_x, box.max_x);
+  std::uniform_real_distribution<double> y(box.min_y, box.max_y);
+  for (unsigned i = 0; i < options_.random_points; ++i) {
+    Probe probe;
+    probe.x = x(random_);
+    probe.y = y(random_);
+    probes.push_back(probe);
+  }
+  std::sort(probes.begin(), probes.end(), [](const Probe& a, const Probe& b) { return a.y < b.y; });
+}
+
+void Verifier::measure_probes(const Tin& tin, std::vector<Probe>& probes,
+                              double Probe::*height) const {
+  for (Probe& probe : probes) probe.*height = std::numeric_limits<double>::quiet_NaN();
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (tin.classes[t] == TriangleClass::kVoid) continue;
+    const auto& v = tin.triangles[t].v;
+    const std::array<GridPoint, 3> c{tin.position(v[0]), tin.position(v[1]), tin.position(v[2])};
+    const double low = std::min({c[0].y, c[1].y, c[2].y});
+    const double high = std::max({c[0].y, c[1].y, c[2].y});
+    auto it = std::lower_bound(probes.begin(), probes.end(), low,
+                               [](const Probe& p, double y) { return p.y < y; });
+    for (; it != probes.end() && it->y <= high; ++it) {
+      std::array<double, 3> weights{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const GridPoint p = c[(i + 1) % 3];
+        const GridPoint q = c[(i + 2) % 3];
+        weights[i] = (q.x - p.x) * (it->y - p.y) - (q.y - p.y) * (it->x - p.x);
+      }
+      // In the open triangle; a random point on an edge is left out.
+      if (weights[0] > 0 && weights[1] > 0 && weights[2] > 0)
+        (*it).*height = height_in(tin, t, weights);
+    }
+  }
+}
+
+void Verifier::judge_probes(const std::vector<Probe>& probes, const RefinedTin& refined,
+                            ToleranceCheck& check) {
+  for (const Probe& probe : probes) {
+    const double deviation = std::abs(probe.full - probe.coarse);
+    if (std::isnan(deviation)) continue;  // void in one of them
+    check.worst_deviation = std::max(check.worst_deviation, deviation);
+    if (deviation > refined.certified_deviation + slack_) {
+      fault(&check, "at " + place_text(probe.x, probe.y) + " it deviates by " +
+                        short_number(deviation) + " from the full TIN, more than the certified " +
+                        short_number(refined.certified_deviation));
+    }
+  }
+}
+
+}  // namespace
+
+AgainstReport verify_against(const ProgressiveTin& terrain, SourceSamples& source,
+                             const AgainstOptions& options) {
+  return Verifier(terrain, source, options).run();
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `verify --against`: the promises of a file, checked at every sample of its source.
+//
+// Independent of the builder: samples are read here, triangles are scanned over them in integers
+// here, depths of voids are searched by brute force here. Of the library only refine() is used,
+// since it is what is being verified.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "engine/query/progressive_tin.h"
+#include "tools/verify/source_samples.h"
+
+namespace ptin::tools {
+
+/// What one tolerance came to, over all windows.
+struct ToleranceCheck {
+  std::optional<double> tolerance;  ///< None: the full TIN.
+  double certified_error = 0.0;     ///< Largest that an answer promised.
+  double certified_deviation = 0.0;
+  /// Largest vertical distance at a sample of the right class, less the rounding of the arithmetic
+  /// that measures it (10^-12 of the largest height).
+  double worst_error = 0.0;
+  double worst_deviation = 0.0;  ///< Largest vertical distance to the full TIN at a random point.
+  std::uint64_t samples = 0;     ///< With a height.
+  std::uint64_t void_samples = 0;
+  std::uint64_t lone_samples = 0;  ///< Of the void ones: with a height, but in no surface triangle.
+  std::uint64_t reclassified = 0;  ///< Of the wrong class, and shallow enough for the tolerance.
+  std::uint64_t faults = 0;
+};
+
+struct AgainstReport {
+  std::vector<ToleranceCheck> checks;
+  std::vector<std::string> faults;  ///< The first ones, in words.
+  std::uint64_t fault_count = 0;
+};
+
+struct AgainstOptions {
+  std::vector<std::optional<double>> tolerances;
+  std::size_t listed_faults = 20;
+  std::int32_t window_side =
+      512;  ///< Grid units of a raster; windows join because regions refined apart do (P5).
+  std::size_t samples_per_window = 50'000;  ///< Points: windows are halved until they hold no more.
+  unsigned random_points = 64;              ///< In each window, for the deviation.
+  std::stop_token stop;
+  std::function<void(std::uint64_t done, std::uint64_t total)> progress;
+};
+
+/// Checks every window of the terrain. Memory: one window and a box for each; `source` has its own
+/// (SampleResources).
+/// @throws Error  as refine() and SourceSamples::read
+[[nodiscard]] AgainstReport verify_against(const ProgressiveTin& terrain, SourceSamples& source,
+                                           const AgainstOptions& options);
+
+}  // namespace ptin::tools
