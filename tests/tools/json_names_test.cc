@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The table of JSON names in tools/API.md against what every subcommand prints: no name that the
-// table does not have, none of the table that never comes, and the same words for the same things.
+// The lists of JSON names in tools/API.md against what every subcommand prints: no name that the
+// lists do not have, none of theirs that never comes, no value of another type, and the same words
+// for the same things.
 #include <map>
 #include <set>
 #include <sstream>
@@ -18,45 +19,92 @@ using nlohmann::json;
 using testing::Outcome;
 using testing::run_ptin;
 using testing::TestFolder;
-using Names = std::set<std::string>;
+using Words = std::set<std::string>;
+/// The types of each name. `a.b` is `b` of the object `a`, `a[].b` is `b` of the objects of `a`.
+using Names = std::map<std::string, Words>;
 
-/// The names in the table's second column, by what is in its first.
+/// What stands between the first two backticks.
+std::string first_code(const std::string& line) {
+  const std::size_t begin = line.find('`') + 1;
+  return begin == 0 ? std::string() : line.substr(begin, line.find('`', begin) - begin);
+}
+
+/// "number or null" as two words; of "array of numbers" the first word alone.
+Words types_in(const std::string& text) {
+  std::istringstream words(text);
+  Words types;
+  bool is_type = true;
+  for (std::string word; words >> word; is_type = word == "or") {
+    if (is_type) types.insert(word);
+  }
+  return types;
+}
+
+/// Adds the names that a line "As above: `a`, `b`." tells, and what is in them.
+void add_shared(const std::string& line, const Names& shared, Names& names) {
+  std::istringstream parts(line.substr(0, line.find('.')));
+  std::string part;
+  for (bool is_code = false; std::getline(parts, part, '`'); is_code = !is_code) {
+    for (const auto& [name, types] : shared) {
+      if (is_code && (name == part || name.starts_with(part + "."))) names[name] = types;
+    }
+  }
+}
+
+/// The lists of the section "JSON", by subcommand; what several answers hold under "". A heading
+/// "`sight --pairs`" goes on with the list of sight. Lines of a list are "- `name`: type, unit.
+/// Meaning.".
 std::map<std::string, Names> documented_names() {
   std::istringstream text(testing::read_file(PTIN_TEST_DATA "/../../tools/API.md"));
-  std::map<std::string, Names> rows;
+  std::map<std::string, Names> lists;
+  std::string subcommand;
   bool within = false;
   for (std::string line; std::getline(text, line);) {
     if (line.starts_with("## ")) within = line == "## JSON";
-    const std::size_t middle = line.find(" | ");
-    if (!within || !line.starts_with("| ") || middle == std::string::npos) continue;
-    const auto words_in = [](const std::string& cell) {
-      Names words;
-      std::istringstream parts(cell);
-      std::string part;
-      for (bool is_code = false; std::getline(parts, part, '`'); is_code = !is_code) {
-        if (is_code &&
-            part.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == part.npos) {
-          words.insert(part);
-        }
-      }
-      return words;
-    };
-    const Names first = words_in(line.substr(0, middle));
-    rows[first.empty() ? "every question" : *first.begin()] = words_in(line.substr(middle));
+    if (!within) continue;
+    if (line.starts_with("### ")) {
+      const std::string code = first_code(line);
+      subcommand = code.substr(0, code.find(' '));
+    } else if (line.starts_with("As above: ")) {
+      add_shared(line, lists[""], lists[subcommand]);
+    } else if (const std::size_t type = line.find("`: "); line.starts_with("- `")) {
+      EXPECT_NE(type, line.npos) << line;
+      const std::size_t end = line.find_first_of(",.", type);
+      lists[subcommand][first_code(line)] = types_in(line.substr(type + 3, end - type - 3));
+    }
   }
-  return rows;
+  return lists;
 }
 
-/// Every name of an object within `value`, but those of the source's metadata.
-void add_names(const json& value, Names& names) {
+std::string type_of(const json& value) {
+  if (value.is_number_integer()) return "integer";
+  return value.type_name();  // null, boolean, number, string, array, object
+}
+
+/// Every name of an object within `value`, but those of the source's metadata. Pairs of `sight`
+/// hold what a single answer does, and the cost of their mesh what any cost does.
+void add_names(const json& value, const std::string& path, Names& names) {
   if (value.is_array()) {
-    for (const json& v : value) add_names(v, names);
+    for (const json& v : value) add_names(v, path + "[]", names);
   }
   if (!value.is_object()) return;
+  const std::string prefix = path.empty() || path == "pairs[]" ? ""
+                             : path == "base_cost"             ? "cost."
+                                                               : path + ".";
   for (const auto& [name, v] : value.items()) {
-    names.insert(name);
-    if (name != "metadata") add_names(v, names);
+    names[prefix + name].insert(type_of(v));
+    if (name != "metadata") add_names(v, prefix + name, names);
   }
+}
+
+/// The types of `printed` that are none of `documented`; a whole number is a number, too.
+Words other_types(const Words& printed, const Words& documented) {
+  Words others;
+  for (const std::string& type : printed) {
+    const bool is_number = type == "integer" && documented.contains("number");
+    if (!is_number && !documented.contains(type)) others.insert(type);
+  }
+  return others;
 }
 
 class JsonNames : public ::testing::Test {
@@ -78,7 +126,7 @@ class JsonNames : public ::testing::Test {
     EXPECT_EQ(outcome.status, status) << subcommand << ": " << outcome.err;
     json answer = json::parse(outcome.out, nullptr, false);
     EXPECT_TRUE(answer.is_object()) << subcommand << ": " << outcome.out;
-    add_names(answer, printed[subcommand]);
+    add_names(answer, "", printed[subcommand]);
     return answer;
   }
 
@@ -88,7 +136,7 @@ class JsonNames : public ::testing::Test {
   std::map<std::string, Names> printed;
 };
 
-TEST_F(JsonNames, AreThoseOfTheTable) {
+TEST_F(JsonNames, AreThoseOfTheLists) {
   const std::string store = file("dem.ptin");
   ask({"build", file("dem.tif"), "-o", store, "-q"});
   ask({"build", file("dem.tif"), "-o", file("none.ptin"), "-q", "--dry-run"});
@@ -123,20 +171,18 @@ TEST_F(JsonNames, AreThoseOfTheTable) {
   tools::testing::write_file(file("pairs.txt"), "500100 3999900 2 500700 3999300 2\n");
   ask({"sight", store, "--pairs", file("pairs.txt")});
 
-  const std::map<std::string, Names> rows = documented_names();
-  ASSERT_GT(rows.size(), 12u);
+  std::map<std::string, Names> lists = documented_names();
+  ASSERT_GT(lists.size(), 12u);
   for (const auto& [subcommand, names] : printed) {
-    ASSERT_TRUE(rows.contains(subcommand)) << subcommand << " has no row";
-    Names wanted = rows.at(subcommand);
-    if (wanted.contains("cost") || wanted.contains("base_cost")) {
-      wanted.merge(Names(rows.at("every question")));
-      wanted.insert("cost");
+    ASSERT_TRUE(lists.contains(subcommand)) << subcommand << " has no list";
+    Names& documented = lists.at(subcommand);
+    for (const auto& [name, types] : names) {
+      EXPECT_TRUE(documented.contains(name)) << subcommand << " prints " << name;
+      for (const std::string& type : other_types(types, documented[name])) {
+        ADD_FAILURE() << subcommand << " prints " << name << " as " << type;
+      }
     }
-    if (wanted.contains("units")) wanted.insert({"horizontal", "height"});
-    for (const std::string& name : names) {
-      EXPECT_TRUE(wanted.contains(name)) << subcommand << " prints " << name;
-    }
-    for (const std::string& name : rows.at(subcommand)) {
+    for (const auto& [name, types] : documented) {
       EXPECT_TRUE(names.contains(name)) << subcommand << " never prints " << name;
     }
   }
