@@ -47,28 +47,28 @@ constexpr RealTile kRealTiles[] = {
     {"half_void", "srtm1_n48w125_olympic_3601.tif", 600, 1608},
 };
 
-std::unique_ptr<Terrain> make(const std::string& name) {
-  if (name == "hills") return std::make_unique<Terrain>(made_raster(kSide, Relief::kHills));
-  if (name == "noise") return std::make_unique<Terrain>(made_raster(kSide, Relief::kNoise));
-  if (name == "flat") return std::make_unique<Terrain>(made_raster(kSide, Relief::kFlat));
-  if (name == "random") return std::make_unique<Terrain>(random_terrain(100000, 1));
+std::unique_ptr<MadeTerrain> make(const std::string& name) {
+  if (name == "hills") return std::make_unique<MadeTerrain>(made_raster(kSide, Relief::kHills));
+  if (name == "noise") return std::make_unique<MadeTerrain>(made_raster(kSide, Relief::kNoise));
+  if (name == "flat") return std::make_unique<MadeTerrain>(made_raster(kSide, Relief::kFlat));
+  if (name == "random") return std::make_unique<MadeTerrain>(random_terrain(100000, 1));
   for (const RealTile& t : kRealTiles) {
     if (const std::string path = shared_terrain(t.file); name == t.name && !path.empty()) {
-      return std::make_unique<Terrain>(raster_terrain(path, t.x0, t.y0, kSide));
+      return std::make_unique<MadeTerrain>(raster_terrain(path, t.x0, t.y0, kSide));
     }
   }
   return nullptr;
 }
 
 /// Made on first use and kept.
-const Terrain* terrain(const std::string& name) {
-  static std::map<std::string, std::unique_ptr<Terrain>> made;
+const MadeTerrain* terrain(const std::string& name) {
+  static std::map<std::string, std::unique_ptr<MadeTerrain>> made;
   const auto at = made.find(name);
   return (at != made.end() ? at->second : made[name] = make(name)).get();
 }
 
 void BM_Simplify(benchmark::State& state, const std::string& name, CostModel cost) {
-  const Terrain* t = terrain(name);
+  const MadeTerrain* t = terrain(name);
   if (t == nullptr) return state.SkipWithError("needs the larger terrains of PTIN_SHARED_DATA");
   SimplifyOptions options;
   options.cost = cost;
@@ -111,7 +111,7 @@ std::vector<SplitSite> collapse_half(Tin& tin) {
 }
 
 void BM_CollapseAndSplit(benchmark::State& state, const std::string& name) {
-  const Terrain* t = terrain(name);
+  const MadeTerrain* t = terrain(name);
   if (t == nullptr) return state.SkipWithError("needs the larger terrains of PTIN_SHARED_DATA");
   std::size_t steps = 0;
   for (auto _ : state) {

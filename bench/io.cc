@@ -121,7 +121,7 @@ class OpenStore {
   }
 
   Figures run(const AttributePredicate& predicate) const {
-    QueryContext context({}, UINT64_MAX, "");
+    QueryContext context({.memory_bytes = UINT64_MAX}, "");
     const SystemReads before = SystemReads::now();
     const auto begin = Clock::now();
     if (reader_ == Reader::kUring) {

@@ -19,15 +19,16 @@
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/retrieval.h"
 #include "engine/query/select/total_order.h"
+#include "engine/query/terrain.h"
 
 namespace {
 
 using namespace ptin;
 
-const ProgressiveTin* terrain() {
+const Terrain* terrain() {
   static const std::string path = bench::bench_store();
   if (path.empty()) return nullptr;
-  static const ProgressiveTin opened = ProgressiveTin::open(path);
+  static const Terrain opened = Terrain::open(path);
   return &opened;
 }
 
@@ -82,7 +83,8 @@ void IsolineOneMesh(benchmark::State& state) {
     request.also = crossing.get();
     const RefinedTin refined = terrain()->refine(request);
     const ProgressiveIsolines lines(refined.tin, levels, facts.heights, facts.map);
-    benchmark::DoNotOptimize(lines.lines(refined.tin, QueryContext({}, ~0ULL, "")).size());
+    benchmark::DoNotOptimize(
+        lines.lines(refined.tin, QueryContext({.memory_bytes = ~0ULL}, "")).size());
   }
 }
 BENCHMARK(IsolineOneMesh)->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -91,7 +93,7 @@ void ProgressiveSplit(benchmark::State& state) {
   if (skipped(state)) return;
   const StoreFacts& facts = terrain()->store().facts();
   const LevelSet levels(levels_between(1), facts.heights);
-  QueryContext context({}, ~0ULL, terrain()->store().path());
+  QueryContext context({.memory_bytes = ~0ULL}, terrain()->store().path());
   std::vector<PendingSplit> splits =
       retrieve({terrain()->store(), terrain()->index()}, *levels.crossing(), 0, context);
   std::sort(splits.begin(), splits.end(), is_before);

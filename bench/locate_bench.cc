@@ -62,7 +62,7 @@ BENCHMARK(LocateOne)->Unit(benchmark::kMicrosecond);
 
 void LocateOneAtError(benchmark::State& state) {
   LocateRequest request;
-  request.tolerance = 10.0;
+  request.detail.tolerance = 10.0;
   locate_one(state, request);
 }
 BENCHMARK(LocateOneAtError)->Unit(benchmark::kMicrosecond);

@@ -14,8 +14,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/refine/moving_window.h"
+#include "engine/query/terrain.h"
 
 namespace {
 
@@ -38,7 +38,7 @@ Region window_at(std::int64_t area_ppm, double shift) {
 
 void BM_Fresh(benchmark::State& state) {
   if (skipped(state)) return;
-  const ProgressiveTin tin(store());
+  const Terrain tin(store());
   RefineRequest request;
   request.region = window_at(state.range(0), 0.0);
   std::uint64_t splits = 0;
@@ -53,14 +53,14 @@ void BM_FirstMove(benchmark::State& state) {
   const PredicatePtr p = meets_region(window_at(state.range(0), 0.0), store()->facts().map);
   std::uint64_t splits = 0;
   for (auto _ : state) {
-    MovingWindow window(store());
+    MovingWindow window{OpenedTerrain(store())};
     splits = window.move_to(p).entered;
   }
   state.counters["splits"] = static_cast<double>(splits);
 }
 
 void move_among(benchmark::State& state, const std::vector<PredicatePtr>& places) {
-  MovingWindow window(store());
+  MovingWindow window{OpenedTerrain(store())};
   for (const PredicatePtr& p : places) {
     window.move_to(p);
   }

@@ -16,7 +16,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/scratch.h"
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 
 namespace {
 
@@ -37,7 +37,7 @@ struct Sums {
   double calls = 0, records = 0, pages = 0, worst_us = 0;
 };
 
-void ask(const ProgressiveTin& tin, int i, Sums& sums) {
+void ask(const Terrain& tin, int i, Sums& sums) {
   RefineRequest request;
   request.region = place(tin.store().facts(), i);
   const RefinedTin answer = tin.refine(request);
@@ -56,7 +56,7 @@ void BM_Open(benchmark::State& state, PageAccess access) {
   if (bench_store().empty())
     return state.SkipWithError("needs PTIN_BENCH_STORE or the terrains of PTIN_SHARED_DATA");
   for (auto _ : state) {
-    const ProgressiveTin tin = ProgressiveTin::open(bench_store(), {access});
+    const Terrain tin = Terrain::open(bench_store(), access);
     benchmark::DoNotOptimize(tin.store().record_count());
   }
 }
@@ -65,7 +65,7 @@ void BM_Open(benchmark::State& state, PageAccess access) {
 void BM_Points(benchmark::State& state, PageAccess access, bool stays_open) {
   if (bench_store().empty())
     return state.SkipWithError("needs PTIN_BENCH_STORE or the terrains of PTIN_SHARED_DATA");
-  const ProgressiveTin kept = ProgressiveTin::open(bench_store(), {access});
+  const Terrain kept = Terrain::open(bench_store(), access);
   Sums sums;
   int next = 0;
   for (auto _ : state) {
@@ -74,7 +74,7 @@ void BM_Points(benchmark::State& state, PageAccess access, bool stays_open) {
     if (stays_open) {
       ask(kept, next, sums);
     } else {
-      ask(ProgressiveTin::open(bench_store(), {access}), next, sums);
+      ask(Terrain::open(bench_store(), access), next, sums);
     }
     const std::chrono::duration<double, std::micro> spent =
         std::chrono::steady_clock::now() - begin;

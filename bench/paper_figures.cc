@@ -36,7 +36,7 @@
 #include "engine/geometry/orient.h"
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 
 namespace {
 
@@ -107,7 +107,7 @@ GridPoint point_at(const GridBox& bounds, int i, int j) {
 /// A simplified terrain, and what is counted over it.
 class Counted {
  public:
-  Counted(Terrain& terrain, CostModel cost) : bounds_(bounds_of(terrain.started.tile.tin)) {
+  Counted(MadeTerrain& terrain, CostModel cost) : bounds_(bounds_of(terrain.started.tile.tin)) {
     for (const Vertex& v : terrain.started.tile.tin.vertices) vertices_.add(box_of(v.position));
     SimplifyOptions options;
     options.cost = cost;
@@ -200,7 +200,7 @@ class OwnPolygons {
 };
 
 /// Writes the records as a store and asks it for every 50th window and point.
-void check_against_store(const Terrain& terrain, const Counted& counted) {
+void check_against_store(const MadeTerrain& terrain, const Counted& counted) {
   const ScratchFolder folder;
   const std::string path = folder.file("check.ptin");
   std::vector<VertexSplit> records = terrain.started.tile.records;
@@ -208,7 +208,7 @@ void check_against_store(const Terrain& terrain, const Counted& counted) {
   StoreOutput output(path, {}, false, terrain.frame);
   output.add_segment(records);
   output.publish(terrain.started.tile.tin, {"random"}, report);
-  const ProgressiveTin tin = ProgressiveTin::open(path);
+  const Terrain tin = Terrain::open(path);
   int differences = 0;
   for (int i = 0; i < kPlaces * kPlaces; i += 49) {
     for (const int denominator : {25, 4, 0}) {
@@ -229,10 +229,10 @@ void check_against_store(const Terrain& terrain, const Counted& counted) {
 }
 
 /// The `count` most important vertices of a real terrain, triangulated as points.
-Terrain real_terrain(const std::string& store, std::uint64_t count) {
-  const ProgressiveTin tin = ProgressiveTin::open(store);
+MadeTerrain real_terrain(const std::string& store, std::uint64_t count) {
+  const Terrain tin = Terrain::open(store);
   RefineRequest request;
-  request.vertices = count;
+  request.detail.vertices = count;
   const RefinedTin refined = tin.refine(request);
   std::vector<std::pair<VertexKey, HeightBits>> vertices;
   for (const Vertex& v : refined.tin.vertices) vertices.emplace_back(key_of(v.position), v.height);
@@ -252,7 +252,7 @@ Terrain real_terrain(const std::string& store, std::uint64_t count) {
 struct Line {
   MeanAndWorst t0, rank, small, large, point, own;
 
-  void add(Terrain terrain, CostModel cost, bool check) {
+  void add(MadeTerrain terrain, CostModel cost, bool check) {
     const std::size_t vertices = terrain.started.tile.tin.vertices.size();
     const Counted counted(terrain, cost);
     Tile& tile = terrain.started.tile;

@@ -22,10 +22,10 @@
 
 #include "engine/mesh/collapse.h"
 #include "engine/mesh/star.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/coarsest.h"
 #include "engine/query/select/retrieval.h"
+#include "engine/query/terrain.h"
 #include "storage/store_writer.h"
 
 namespace {
@@ -210,13 +210,13 @@ class SyntheticFile {
 };
 
 /// The file of PTIN_BENCH_STORE when given (made by `ptin build`), the synthetic one otherwise.
-const ProgressiveTin& store() {
-  static const ProgressiveTin tin = [] {
+const Terrain& store() {
+  static const Terrain tin = [] {
     if (const char* path = std::getenv("PTIN_BENCH_STORE")) {
-      return ProgressiveTin::open(path);
+      return Terrain::open(path);
     }
     static const SyntheticFile file;
-    return ProgressiveTin::open(file.path());
+    return Terrain::open(file.path());
   }();
   return tin;
 }
@@ -256,7 +256,7 @@ void BM_Retrieve(benchmark::State& state) {
   const PredicatePtr window = meets_region(window_of(state), file.facts().map);
   std::uint64_t splits = 0;
   for (auto _ : state) {
-    QueryContext context({}, UINT64_MAX, "");
+    QueryContext context({.memory_bytes = UINT64_MAX}, "");
     splits = retrieve({file, file.index()}, *window, 0, context).size();
   }
   report(state, splits);
@@ -265,7 +265,7 @@ void BM_Retrieve(benchmark::State& state) {
 void BM_Apply(benchmark::State& state) {
   const StoreFile& file = store().store();
   const PredicatePtr window = meets_region(window_of(state), file.facts().map);
-  QueryContext context({}, UINT64_MAX, "");
+  QueryContext context({.memory_bytes = UINT64_MAX}, "");
   const std::vector<PendingSplit> splits = retrieve({file, file.index()}, *window, 0, context);
   const Tin t0 = mesh_of(file.t0(), "");
   for (auto _ : state) {

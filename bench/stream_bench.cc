@@ -29,7 +29,7 @@ StreamSummary send(std::int64_t error, std::vector<std::byte>& bytes) {
     request.wanted = error_above(*request.tolerance);
   }
   bytes.clear();
-  return write_stream(*store(), request, [&](std::span<const std::byte> piece) {
+  return write_stream(OpenedTerrain(store()), request, [&](std::span<const std::byte> piece) {
     bytes.insert(bytes.end(), piece.begin(), piece.end());
   });
 }

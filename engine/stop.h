@@ -1,23 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How triangulations are stopped. For *delaunay*.cc alone.
+// The one way in which long loops ask whether they are to stop.
 #pragma once
 
 #include <cstddef>
 #include <stop_token>
+#include <string>
 
 #include "engine/error.h"
 
-namespace ptin::delaunay_internal {
+namespace ptin {
 
-/// Insertions between two looks at the stop token.
-inline constexpr std::size_t kBetweenStops = 4096;
+/// Steps of a long loop between two looks at the stop token.
+inline constexpr std::size_t kStopInterval = 4096;
 
-/// @throws Error cancelled  `stop` fired
-inline void check_stop(const std::stop_token& stop) {
-  if (stop.stop_requested()) {
-    throw Error(ErrorCode::cancelled, "the triangulation was cancelled");
+/// Asks a stop token. Long loops call this every few thousand steps, so that a caller who asks for
+/// a stop waits for milliseconds.
+/// @param what     What is stopped, as the subject of a sentence: "the build", "sorting".
+/// @param context  The file that the error names; none by default.
+/// @throws Error cancelled  a stop was requested
+/// Cost: one atomic load.
+inline void stop_if_asked(const std::stop_token& stop, const char* what,
+                          const std::string& context = {}) {
+  if (stop.stop_requested()) [[unlikely]] {
+    throw Error(ErrorCode::cancelled, std::string(what) + " was cancelled", context);
   }
 }
 
-}  // namespace ptin::delaunay_internal
+}  // namespace ptin

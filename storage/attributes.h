@@ -21,7 +21,7 @@ struct Attributes {
   friend bool operator==(const Attributes&, const Attributes&) = default;
 };
 
-/// A monotone test: once true, it stays true when the arguments grow (DESIGN.md, section 2). The
+/// A monotone test: once true, it stays true when the arguments grow (engine/DESIGN.md, section 2.3). The
 /// index asks it of nodes and pages, the refinement of records. Implementations are in
 /// engine/query/select/predicate.h. Threads: const, callable from several threads at once.
 class AttributePredicate {

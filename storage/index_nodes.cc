@@ -11,7 +11,7 @@ namespace ptin {
 
 namespace {
 
-std::string name_of(const std::string& path, std::uint32_t level, std::uint64_t number) {
+std::string node_name(const std::string& path, std::uint32_t level, std::uint64_t number) {
   return path + ", index level " + std::to_string(level) + ", node " + std::to_string(number);
 }
 
@@ -32,13 +32,13 @@ void IndexNodes::verify(const layout::IndexNode& node, std::uint32_t level, std:
   if (checksum_of_object(node) != expected) {
     throw Error(ErrorCode::corruption,
                 "the node does not match the checksum that its parent holds; the file is damaged",
-                name_of(path(), level, number));
+                node_name(path(), level, number));
   }
   if (node.level != level || node.number != number ||
       node.entries != place_.shape.entries(level, number)) {
     throw Error(ErrorCode::corruption,
                 "the node says another place or number of entries than follows from its position",
-                name_of(path(), level, number));
+                node_name(path(), level, number));
   }
 }
 

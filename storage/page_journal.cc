@@ -21,7 +21,7 @@ std::uint64_t next_in_chain(std::uint64_t chain, const layout::NodeEntry& page) 
   return checksum_of_object(link);
 }
 
-std::uint64_t checksum_of(const PublishMark& mark) {
+std::uint64_t mark_checksum(const PublishMark& mark) {
   return ptin::checksum_of(
       std::as_bytes(std::span(&mark, 1)).first(offsetof(PublishMark, checksum)));
 }
@@ -54,7 +54,7 @@ void PageJournal::sync() {
 void PageJournal::mark(std::uint64_t moved_bytes, std::uint64_t moved_to) {
   write_pending();
   PublishMark mark{kMarkMagic, written_, moved_bytes, moved_to, 0};
-  mark.checksum = checksum_of(mark);
+  mark.checksum = mark_checksum(mark);
   file_.write_at(std::as_bytes(std::span(&mark, 1)), written_ * sizeof(layout::NodeEntry));
   file_.sync();
 }
@@ -66,7 +66,7 @@ std::optional<PublishMark> PageJournal::find_mark() const {
   }
   PublishMark mark;
   file_.read_at(std::as_writable_bytes(std::span(&mark, 1)), bytes - sizeof mark);
-  const bool is_sound = mark.magic == kMarkMagic && mark.checksum == checksum_of(mark) &&
+  const bool is_sound = mark.magic == kMarkMagic && mark.checksum == mark_checksum(mark) &&
                         mark.pages == (bytes - sizeof mark) / sizeof(layout::NodeEntry);
   return is_sound ? std::optional(mark) : std::nullopt;
 }

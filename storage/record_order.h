@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The order of records inside a segment of the file (engine/DESIGN.md, section 3).
+// The order of records inside a segment of the file (engine/DECISIONS.md, section 6.1).
 #pragma once
 
 #include <cstddef>

@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/geometry/interval.h"
+#include "engine/stop.h"
 #include "storage/descriptor.h"
 #include "storage/error_table.h"
 #include "storage/file/checksum.h"
@@ -35,7 +36,7 @@ class Verifier {
  private:
   void report(std::string what, std::string where);
   void look_at_sections();
-  void stop_if_asked() const;
+  void check_stop() const;
   void read_in_parts(std::uint64_t begin, std::uint64_t end,
                      const std::function<void(std::span<const std::byte>)>& take);
   void look_for_zeros(std::uint64_t begin, std::uint64_t end, const std::string& where);
@@ -148,7 +149,7 @@ void Verifier::read_in_parts(std::uint64_t begin, std::uint64_t end,
                              const std::function<void(std::span<const std::byte>)>& take) {
   std::vector<std::byte> bytes(std::size_t{1} << 16);
   while (begin < end) {
-    stop_if_asked();
+    check_stop();
     const std::span<std::byte> part(
         bytes.data(), static_cast<std::size_t>(std::min<std::uint64_t>(end - begin, bytes.size())));
     file_.read_at(part, begin);
@@ -166,11 +167,7 @@ void Verifier::look_for_zeros(std::uint64_t begin, std::uint64_t end, const std:
   }
 }
 
-void Verifier::stop_if_asked() const {
-  if (stop_.stop_requested()) {
-    throw Error(ErrorCode::cancelled, "verification was cancelled", file_.path());
-  }
-}
+void Verifier::check_stop() const { stop_if_asked(stop_, "verification", file_.path()); }
 
 void Verifier::look_at_tree() {
   if (front_.index.levels() > 0) {
@@ -235,7 +232,7 @@ void Verifier::look_at_entry(std::uint32_t level, const layout::NodeEntry& entry
 
 std::optional<layout::NodeEntry> Verifier::look_at_page(PageId id,
                                                         const layout::NodeEntry& descriptor) {
-  stop_if_asked();
+  check_stop();
   const bool is_read = read_page(id, descriptor);
   ++pages_done_;
   if (progress_ && pages_done_ % 4096 == 0) {

@@ -8,7 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/scratch.h"
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 
 namespace ptin::bench {
 
@@ -20,9 +20,9 @@ inline const std::shared_ptr<const StoreFile>& store() {
 }
 
 /// The same, to be asked; null when there is none.
-inline const ProgressiveTin* terrain() {
+inline const Terrain* terrain() {
   if (store() == nullptr) return nullptr;
-  static const ProgressiveTin opened(store());
+  static const Terrain opened(store());
   return &opened;
 }
 

@@ -77,8 +77,8 @@ TerrainFrame millimetre_frame() {
 
 }  // namespace
 
-Terrain terrain_of(const GridPoints& points, const TerrainFrame& frame) {
-  Terrain terrain;
+MadeTerrain terrain_of(const GridPoints& points, const TerrainFrame& frame) {
+  MadeTerrain terrain;
   terrain.frame = frame;
   Tile& tile = terrain.started.tile;
   tile.units = measure_units(frame, kVoidSlope);
@@ -88,7 +88,7 @@ Terrain terrain_of(const GridPoints& points, const TerrainFrame& frame) {
   return terrain;
 }
 
-Terrain random_terrain(std::size_t count, std::uint64_t seed, Relief relief) {
+MadeTerrain random_terrain(std::size_t count, std::uint64_t seed, Relief relief) {
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<std::int32_t> coordinate(0, kUnitSquare);
   std::vector<VertexKey> keys;
@@ -112,10 +112,10 @@ Terrain random_terrain(std::size_t count, std::uint64_t seed, Relief relief) {
   return terrain_of(points, frame);
 }
 
-Terrain raster_terrain(const std::string& path, std::int64_t x0, std::int64_t y0,
-                       std::int64_t side) {
+MadeTerrain raster_terrain(const std::string& path, std::int64_t x0, std::int64_t y0,
+                           std::int64_t side) {
   const RasterSource source = RasterSource::open({path}, {});
-  Terrain terrain;
+  MadeTerrain terrain;
   terrain.frame = source.frame();
   const SampleRange range = {x0, y0, std::min(side, source.width() - x0),
                              std::min(side, source.height() - y0)};
@@ -123,8 +123,8 @@ Terrain raster_terrain(const std::string& path, std::int64_t x0, std::int64_t y0
   return terrain;
 }
 
-Terrain made_raster(std::int32_t side, Relief relief) {
-  Terrain terrain;
+MadeTerrain made_raster(std::int32_t side, Relief relief) {
+  MadeTerrain terrain;
   terrain.frame = millimetre_frame();
   const HeightEncoding& encoding = terrain.frame.heights;
   MadeHeights made(relief, 1);

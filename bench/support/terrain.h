@@ -15,7 +15,7 @@
 namespace ptin::bench {
 
 /// A tile with its full surface and its frame.
-struct Terrain {
+struct MadeTerrain {
   TerrainFrame frame;
   StartedTile started;
 };
@@ -27,7 +27,7 @@ struct GridPoints {
 };
 
 /// The Delaunay triangulation of `points` as one tile.
-[[nodiscard]] Terrain terrain_of(const GridPoints& points, const TerrainFrame& frame);
+[[nodiscard]] MadeTerrain terrain_of(const GridPoints& points, const TerrainFrame& frame);
 
 /// The heights that random points are given.
 enum class Relief {
@@ -38,14 +38,14 @@ enum class Relief {
 };
 
 /// `count` uniform points in the unit square (2^24 grid units a side), heights in millimetres.
-[[nodiscard]] Terrain random_terrain(std::size_t count, std::uint64_t seed,
-                                     Relief relief = Relief::kHills);
+[[nodiscard]] MadeTerrain random_terrain(std::size_t count, std::uint64_t seed,
+                                         Relief relief = Relief::kHills);
 
 /// A square of `side` x `side` samples with the south-western one at (x0, y0) of a raster.
-[[nodiscard]] Terrain raster_terrain(const std::string& path, std::int64_t x0, std::int64_t y0,
-                                     std::int64_t side);
+[[nodiscard]] MadeTerrain raster_terrain(const std::string& path, std::int64_t x0, std::int64_t y0,
+                                         std::int64_t side);
 
 /// A made raster of `side` x `side` samples with the heights of `relief`.
-[[nodiscard]] Terrain made_raster(std::int32_t side, Relief relief);
+[[nodiscard]] MadeTerrain made_raster(std::int32_t side, Relief relief);
 
 }  // namespace ptin::bench

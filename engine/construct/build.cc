@@ -8,10 +8,11 @@
 #include <memory>
 
 #include "engine/construct/build_job.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/raster/raster_source.h"
 #include "engine/construct/raster/raster_tile.h"
-#include "engine/construct/read/tin_soup.h"
+#include "engine/construct/source_kind.h"
 #include "engine/construct/store_output.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
@@ -24,7 +25,7 @@ namespace {
 
 void build_raster(Job& job) {
   nlohmann::json began_with = fingerprint(job);  // before the first look into the inputs
-  const GdalCacheLimit cache(share_memory(job.memory(), 0, 1).gdal_cache);
+  const GdalCacheLimit cache(job.memory.gdal_cache);
   const RasterSource source = RasterSource::open(job.inputs, job.source_options(),
                                                  job.resources.stop, job.stage("reading"));
   job.report.source_samples = source.valid_samples();
@@ -40,13 +41,10 @@ void build_raster(Job& job) {
   };
   const std::int64_t side =
       job.options.tile.value_or(TileTree::default_side(source.width(), source.height()));
-  const Terrain terrain{source.frame(), units, TileTree(source.width(), source.height(), side),
-                        make_starter};
-  const BuildPlan plan =
-      plan_build(terrain.tree, job.output, job.options, job.resources, TileBytes{}, {});
-  if (job.resources.plan) {
-    job.resources.plan(plan);
-  }
+  const TiledSource terrain{source.frame(), units, TileTree(source.width(), source.height(), side),
+                            make_starter};
+  const BuildPlan plan = plan_build(terrain.tree, job.plan_request({}));
+  job.tell(plan);
   if (job.resources.dry_run) {
     return;
   }
@@ -57,58 +55,25 @@ void build_raster(Job& job) {
                [&](Workspace& workspace) { build_tiles(workspace, job, terrain, plan); });
 }
 
-/// @throws Error invalid_argument for options that mean nothing
-void check_options(const BuildOptions& o) {
-  const auto require = [](bool holds, const char* message) {
-    if (!holds) {
-      throw Error(ErrorCode::invalid_argument, message);
-    }
-  };
-  const auto is_length = [](double v) { return std::isfinite(v) && v >= 0.0; };
-  require(is_length(o.max_error), "the largest error to leave out must be a finite number >= 0");
-  require(is_length(o.void_slope), "the void slope must be a finite number >= 0");
-  require(!o.resolution || (is_length(*o.resolution) && *o.resolution > 0.0),
-          "the resolution must be a finite number > 0");
-  require(!o.max_edge || (is_length(*o.max_edge) && *o.max_edge > 0.0),
-          "the longest edge must be a finite number > 0");
-  require(!o.bbox || ((*o.bbox)[0] < (*o.bbox)[2] && (*o.bbox)[1] < (*o.bbox)[3]),
-          "the bbox is inverted or empty; its order is xmin ymin xmax ymax");
-  require(!o.tile || (*o.tile >= 2 && *o.tile <= (std::int64_t{1} << 20)),
-          "a tile must be 2 to 1,048,576 grid units along a side");
-}
-
-/// True for points, false for rasters.
-bool are_points(const std::vector<std::string>& inputs, const PointChoice& choice) {
-  if (inputs.empty()) {
-    throw Error(
-        ErrorCode::invalid_argument,
-        "no input; name a raster that GDAL reads, or points as LAS, text or a layer that OGR "
-        "reads, or a TIN");
-  }
-  const auto points = std::count_if(inputs.begin(), inputs.end(), [&](const std::string& input) {
-    return is_point_input(input, choice);
-  });
-  if (points != 0 && static_cast<std::size_t>(points) != inputs.size()) {
-    throw Error(ErrorCode::invalid_argument,
-                "rasters and points together; build from one kind at a time");
-  }
-  return points != 0;
-}
-
 BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::string& output,
                           const BuildOptions& options, const BuildResources& resources) {
   const auto begin = std::chrono::steady_clock::now();
   check_options(options);
-  Job job{inputs, output, options, resources, {}};
+  const InputKind kind = source_kind(inputs, options);
+  Job job{inputs, output, options, resources, plan_memory(resources.memory_bytes, kind), {}};
   if (resources.unfinished == Unfinished::kRefuse && !resources.dry_run) {
     Workspace::refuse_unfinished(output);  // rasters are read before their plan is known
   }
-  if (!options.repair && std::any_of(inputs.begin(), inputs.end(), is_tin_file)) {
-    build_tin(job);
-  } else if (are_points(inputs, job.source_options().points)) {
-    build_points(job);
-  } else {
-    build_raster(job);
+  switch (kind) {
+    case InputKind::kRaster:
+      build_raster(job);
+      break;
+    case InputKind::kPoints:
+      build_points(job);
+      break;
+    case InputKind::kTin:
+      build_tin(job);
+      break;
   }
   job.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -127,7 +92,7 @@ BuildReport build(const std::vector<std::string>& inputs, const std::string& out
     const Error e = error_in_flight();
     const Error named(e.code(), e.message(), e.context().empty() ? output : e.context());
     const std::string folder = Workspace::folder_of(output);
-    throw is_there(folder) ? told_as_kept(named, folder) : named;
+    throw is_there(folder) ? with_resume_hint(named, folder) : named;
   }
 }
 

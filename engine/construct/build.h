@@ -3,44 +3,18 @@
 // From a source to a published .ptin file.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "engine/construct/build_observer.h"
+#include "engine/construct/build_options.h"
 #include "engine/construct/build_plan.h"
 #include "engine/construct/scratch/workspace.h"
-#include "engine/construct/tile/cost.h"
 
 namespace ptin {
-
-/// Everything that decides the bytes of the file, and nothing else does.
-struct BuildOptions {
-  CostModel cost = CostModel::kError;
-  double max_error = 0.0;  ///< Leave out records with error <= this (height's unit); 0 keeps all.
-  std::optional<double> nodata;      ///< Overrides the source's.
-  std::optional<double> resolution;  ///< Points: grid unit in CRS units.
-  std::vector<int> classes;          ///< LAS: keep these classes; empty keeps all.
-  std::string layer;                 ///< OGR: the layer of points; "" where there is only one.
-  /// Points, repaired TINs: triangles with a longer edge are void; CRS units, or metres where those
-  /// are degrees.
-  std::optional<double> max_edge;
-  std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
-  bool repair = false;  ///< TINs: triangulate the vertices anew instead of taking the triangles.
-  std::optional<std::array<double, 4>>
-      bbox;           ///< xmin ymin xmax ymax in CRS units; samples outside are left out.
-  std::string a_srs;  ///< Overrides the source's CRS (anything GDAL understands); "" keeps it.
-  std::string vertical_crs;  ///< "" keeps what the source declares, if anything.
-  double void_slope =
-      0.1;  ///< Height error charged per ground unit of depth of a sample in the wrong class.
-  /// Rasters: grid units along a leaf of the tile hierarchy; none means TileTree::default_side().
-  std::optional<std::int64_t> tile;
-  std::uint32_t page_bytes = 4096;
-};
 
 /// How the work is done; never changes a byte of the file.
 struct BuildResources {
@@ -49,21 +23,12 @@ struct BuildResources {
   std::uint64_t memory_bytes = 0;
   int threads = 0;  ///< 0 means one a core. Fewer are used where memory is short.
   std::string tmp;  ///< Folder for temporary files; "" means beside the output.
-  Unfinished unfinished = Unfinished::kRefuse;  ///< What to do with an interrupted build.
-  bool dry_run = false;                         ///< Stop when the plan is made.
-  /// Called before the work starts with what it expects to need; over points once more when they
-  /// have been counted.
-  std::function<void(const BuildPlan&)> plan;
+  Unfinished unfinished = Unfinished::kRefuse;          ///< What to do with an interrupted build.
+  bool dry_run = false;                                 ///< Stop when the plan is made.
   std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
   FileLayer* files = nullptr;  ///< Through which to write; null means the system. For tests.
   std::stop_token stop;
-  /// Stage name, done and total in its units; called from any thread, but never twice at once.
-  std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
-  /// Gives freed memory back to the system (malloc_trim); called by any thread between tiles where
-  /// what was freed and what is wanted next exceed the limit together. May be empty.
-  std::function<void()> give_back;
-  /// Leaves done and in all, of the stages that go through the tiles; called before `progress`.
-  std::function<void(std::uint64_t done, std::uint64_t total)> tiles;
+  BuildObserver* observer = nullptr;  ///< Who is told of the work; null: nobody. Borrowed.
 };
 
 struct BuildReport {

@@ -9,6 +9,7 @@
 
 #include "engine/construct/collapse/first_pass.h"
 #include "engine/construct/delaunay/point_tile.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/hierarchy/hierarchy.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/source_files.h"
@@ -101,7 +102,7 @@ Error error_in_flight() {
   }
 }
 
-Error told_as_kept(const Error& error, const std::string& folder) {
+Error with_resume_hint(const Error& error, const std::string& folder) {
   return {error.code(),
           error.message() + "; what is done is kept in " + folder +
               ": go on by --resume, or remove it by --discard",
@@ -112,30 +113,37 @@ FileLayer& Job::files() const {
   return resources.files != nullptr ? *resources.files : FileLayer::system();
 }
 
-std::uint64_t Job::memory() const {
-  return resources.memory_bytes != 0 ? resources.memory_bytes : default_memory();
+TileBytes tile_bytes_of(InputKind kind) noexcept {
+  return kind == InputKind::kRaster ? TileBytes{} : TileBytes{.replay_of_sample = 560};
+}
+
+PlanRequest Job::plan_request(const SourceDisk& disk) const {
+  return {output, options, resources, memory, tile_bytes_of(memory.kind), disk};
+}
+
+void Job::tell(const BuildPlan& plan) const {
+  if (resources.observer != nullptr) {
+    resources.observer->plan(plan);
+  }
+}
+
+void Job::tell(const StageProgress& progress) const {
+  if (resources.observer != nullptr) {
+    resources.observer->progress(progress);
+  }
 }
 
 std::function<void(std::uint64_t, std::uint64_t)> Job::stage(const char* name) const {
-  return [this, name](std::uint64_t done, std::uint64_t total) {
-    if (resources.progress) {
-      resources.progress(name, done, total);
-    }
+  return [this, name](std::uint64_t done, std::uint64_t total) { tell({name, done, total, 0, 0}); };
+}
+
+std::function<void(const char*, std::uint64_t, std::uint64_t)> Job::stages() const {
+  return [this](const char* name, std::uint64_t done, std::uint64_t total) {
+    tell({name, done, total, 0, 0});
   };
 }
 
-SourceOptions Job::source_options() const {
-  SourceOptions source;
-  source.nodata = options.nodata;
-  source.resolution = options.resolution;
-  if (options.bbox) {
-    source.bbox = {(*options.bbox)[0], (*options.bbox)[1], (*options.bbox)[2], (*options.bbox)[3]};
-  }
-  source.a_srs = options.a_srs;
-  source.points = {options.classes, options.layer, options.z_field};
-  source.vertical_crs = options.vertical_crs;
-  return source;
-}
+SourceOptions Job::source_options() const { return source_options_of(options); }
 
 nlohmann::json fingerprint(const Job& job) {
   return {{"options", options_json(job.options)},
@@ -144,7 +152,8 @@ nlohmann::json fingerprint(const Job& job) {
           {"program", {PTIN_VERSION, kTemporaryFormat}}};
 }
 
-void announce(const Job& job, const std::function<SourceDisk(const PointCount&)>& disk_of) {
+void plan_before_reading(const Job& job,
+                         const std::function<SourceDisk(const PointCount&)>& disk_of) {
   const PointCount count = count_points(job.inputs, job.source_options());
   if (!count.is_known) {
     if (job.resources.dry_run) {
@@ -156,11 +165,7 @@ void announce(const Job& job, const std::function<SourceDisk(const PointCount&)>
   SourceDisk disk = disk_of(count);
   disk.is_estimate = true;
   disk.may_be_less = count.may_be_less;
-  const BuildPlan plan = plan_build(expected_point_tree(count.points, job.options.tile), job.output,
-                                    job.options, job.resources, kPointTileBytes, disk);
-  if (job.resources.plan) {
-    job.resources.plan(plan);
-  }
+  job.tell(plan_build(expected_point_tree(count.points, job.options.tile), job.plan_request(disk)));
 }
 
 void in_workspace(Job& job, const nlohmann::json& fingerprint,
@@ -173,7 +178,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   } catch (...) {
     const Error e = error_in_flight();
     if (is_kept(workspace, job, e.code())) {
-      throw told_as_kept(e, workspace.folder());
+      throw with_resume_hint(e, workspace.folder());
     }
     give_up(workspace, e);
   }
@@ -184,13 +189,8 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   }
 }
 
-void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const BuildPlan& plan) {
-  if (is_published(job, workspace)) {
-    report_published(job);
-    return;
-  }
-  StoreOutput store(job.output, job.options, job.resources.overwrite, terrain.frame,
-                    job.resources.files, workspace.folder());
+HierarchyOptions hierarchy_options(const Job& job, const TiledSource& terrain,
+                                   const BuildPlan& plan) {
   HierarchyOptions options;
   options.collapse.cost = job.options.cost;
   options.collapse.units = terrain.units;
@@ -198,20 +198,31 @@ void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const B
       (kFirstPassShare * job.options.max_error - terrain.frame.height_rounding) /
       terrain.frame.heights.step;
   options.threads = plan.threads;
-  options.bytes = plan.tile_bytes;
-  options.give_back = [&job, limit = job.memory()](std::uint64_t bytes) {
+  options.memory_for_tiles = plan.memory_for_tiles;
+  options.tile_bytes = plan.tile_bytes;
+  options.give_back = [&job](std::uint64_t bytes) {
     // Memory that is given back is taken again a page at a time: a fifth of the time, where it
     // happens before every larger piece.
-    if (job.resources.give_back && anonymous_bytes_now() + bytes > limit) {
-      job.resources.give_back();
+    if (job.resources.observer != nullptr && anonymous_bytes_now() + bytes > job.memory.limit) {
+      job.resources.observer->give_back_memory();
     }
   };
   options.checkpoint_interval = job.resources.checkpoint_interval;
   options.stop = job.resources.stop;
-  options.progress = job.resources.progress;
-  options.tiles = job.resources.tiles;
-  const BuiltHierarchy built =
-      build_hierarchy(terrain.make_starter, terrain.tree, options, workspace, store);
+  options.progress = [&job](const StageProgress& progress) { job.tell(progress); };
+  return options;
+}
+
+void build_tiles(Workspace& workspace, Job& job, const TiledSource& terrain,
+                 const BuildPlan& plan) {
+  if (is_published(job, workspace)) {
+    report_published(job);
+    return;
+  }
+  StoreOutput store(job.output, job.options, job.resources.overwrite, terrain.frame,
+                    job.resources.files, workspace.folder());
+  const BuiltHierarchy built = build_hierarchy(
+      terrain.make_starter, terrain.tree, hierarchy_options(job, terrain, plan), workspace, store);
   job.report.lone_samples = built.lone_samples;
   job.stage("writing")(0, 1);
   workspace.append({{{"publishing", inode_of(pages_in(workspace)).value_or(0)}}});
@@ -237,11 +248,9 @@ void note_index(Workspace& workspace, const std::string& key, const ArrayFileFac
 BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk) {
   disk.is_there = true;
   disk.may_be_less = job.report.resumed;
-  BuildPlan plan = plan_build(tree, job.output, job.options, job.resources, kPointTileBytes, disk);
+  BuildPlan plan = plan_build(tree, job.plan_request(disk));
   plan.is_estimate = true;  // as if all tiles were full
-  if (job.resources.plan) {
-    job.resources.plan(plan);
-  }
+  job.tell(plan);
   return plan;
 }
 

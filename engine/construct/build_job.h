@@ -13,7 +13,9 @@
 
 #include "engine/construct/build.h"
 #include "engine/construct/build_plan.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/hierarchy/hierarchy.h"
 #include "engine/construct/hierarchy/tile_bytes.h"
 #include "engine/construct/hierarchy/tile_collapse.h"
 #include "engine/construct/points/point_count.h"
@@ -23,9 +25,10 @@
 
 namespace ptin::build_internal {
 
-/// What a leaf of points or triangles takes: its triangulation by CGAL goes before its collapses
-/// begin, its copy of the full surface stays.
-inline constexpr TileBytes kPointTileBytes{.replay_of_sample = 560};
+/// What the tiles of a source take. A leaf of points or triangles takes more in its replay than one
+/// of a raster: its triangulation by CGAL goes before its collapses begin, but its copy of the full
+/// surface stays.
+[[nodiscard]] TileBytes tile_bytes_of(InputKind kind) noexcept;
 
 /// One call of build(): what it was asked, and what it reports.
 struct Job {
@@ -33,20 +36,27 @@ struct Job {
   const std::string& output;
   const BuildOptions& options;
   const BuildResources& resources;
+  const MemoryPlan memory;  ///< Made once, with the kind of source that it is for.
   BuildReport report;
   /// While nothing is done that a resumed build would not do again: an error then leaves no folder.
   bool begins_anew = false;
 
   [[nodiscard]] FileLayer& files() const;
-  [[nodiscard]] std::uint64_t memory() const;
-  /// A stage of the caller's progress.
+  /// What a plan is made for.
+  [[nodiscard]] PlanRequest plan_request(const SourceDisk& disk) const;
+  void tell(const BuildPlan& plan) const;
+  void tell(const StageProgress& progress) const;
+  /// A stage of the observer's progress.
   [[nodiscard]] std::function<void(std::uint64_t done, std::uint64_t total)> stage(
       const char* name) const;
+  /// All stages of it, by name.
+  [[nodiscard]] std::function<void(const char* name, std::uint64_t done, std::uint64_t total)>
+  stages() const;
   [[nodiscard]] SourceOptions source_options() const;
 };
 
 /// What a build works on, of whatever kind its source is.
-struct Terrain {
+struct TiledSource {
   TerrainFrame frame;
   MeasureUnits units;
   TileTree tree;
@@ -58,7 +68,7 @@ struct Terrain {
 [[nodiscard]] Error error_in_flight();
 
 /// The same error, and that the work in `folder` can be gone on with.
-[[nodiscard]] Error told_as_kept(const Error& error, const std::string& folder);
+[[nodiscard]] Error with_resume_hint(const Error& error, const std::string& folder);
 
 /// What decides the bytes of the output, that its inputs are still the ones it began with, and the
 /// program, whose temporary files another version may not understand. To be taken before anything
@@ -70,14 +80,19 @@ struct Terrain {
 void in_workspace(Job& job, const nlohmann::json& fingerprint,
                   const std::function<void(Workspace&)>& work);
 
+/// What the tiles are built with.
+[[nodiscard]] HierarchyOptions hierarchy_options(const Job& job, const TiledSource& terrain,
+                                                 const BuildPlan& plan);
+
 /// Collapses, tightens and publishes; or sees that an interrupted build had done all of that.
-void build_tiles(Workspace& workspace, Job& job, const Terrain& terrain, const BuildPlan& plan);
+void build_tiles(Workspace& workspace, Job& job, const TiledSource& terrain, const BuildPlan& plan);
 
 /// Says what is expected before anything but headers and first lines is read, and refuses what
 /// cannot do. With points that may be left out it is no reason to refuse.
 /// @param disk_of  What the source takes.
 /// @throws Error as count_points() and plan_build()
-void announce(const Job& job, const std::function<SourceDisk(const PointCount&)>& disk_of);
+void plan_before_reading(const Job& job,
+                         const std::function<SourceDisk(const PointCount&)>& disk_of);
 
 /// Of a source that is sorted on disk: the index that an interrupted build noted under `key`; none
 /// where it had not got so far.

@@ -16,7 +16,7 @@ namespace ptin {
 
 namespace {
 
-// Measured on terrains of 4097 to 16385 samples a side (bench/README.md), with some room.
+// Measured on terrains of 4097 to 16385 samples a side (engine/DECISIONS.md, section 4.8), with some room.
 constexpr double kOutputBytesOfVertex = 66.0;
 constexpr double kVerticesPerSecond = 150000.0;  ///< A thread's, both halves of the build.
 
@@ -62,42 +62,44 @@ std::int64_t side_that_fits(std::uint64_t bytes, const TileTree& tree,
   return side >= 32 ? side : 0;
 }
 
-void plan_memory(BuildPlan& plan, const TileTree& tree, const BuildResources& resources,
-                 const TileBytes& tile_bytes, bool may_refuse) {
+/// Threads and the share of the tiles: as many threads as were asked for, or as fit.
+void plan_threads(BuildPlan& plan, const TileTree& tree, const PlanRequest& request,
+                  bool may_refuse) {
+  const TileBytes& tile_bytes = request.tile_bytes;
+  const MemoryPlan& memory = request.memory;
   const std::uint64_t present = anonymous_bytes_now();
   const std::uint64_t samples = samples_of_leaf(tree);
   const std::uint64_t one = bytes_of_largest(samples, tree, tile_bytes);
-  plan.memory_limit = resources.memory_bytes != 0 ? resources.memory_bytes : default_memory();
-  plan.memory_allowed = allowed_memory();
-  plan.threads_wanted = resources.threads > 0
-                            ? resources.threads
+  plan.memory = memory;
+  plan.tile_bytes = tile_bytes;
+  plan.threads_wanted = request.resources.threads > 0
+                            ? request.resources.threads
                             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   plan.threads = plan.threads_wanted;
-  MemoryShares shares = share_memory(plan.memory_limit, present, plan.threads);
+  std::uint64_t share = memory.for_tiles(present, plan.threads);
   const std::uint64_t batch = std::max(tile_bytes.of_batch(samples), tile_bytes.of_replay(samples));
   const auto fit = [&] {
-    return shares.tiles >= one && shares.tiles >= batch * static_cast<std::uint64_t>(plan.threads);
+    return share >= one && share >= batch * static_cast<std::uint64_t>(plan.threads);
   };
   while (plan.threads > 1 && !fit()) {
-    shares = share_memory(plan.memory_limit, present, --plan.threads);
+    share = memory.for_tiles(present, --plan.threads);
   }
-  if (shares.tiles < one && may_refuse) {
-    std::uint64_t enough = plan.memory_limit;
-    while (share_memory(enough, present, 1).tiles < one) {
-      enough += kMiB;
+  if (share < one && may_refuse) {
+    MemoryPlan enough = memory;
+    while (enough.for_tiles(present, 1) < one) {
+      enough = plan_memory(enough.limit + kMiB, memory.kind);
     }
-    const std::int64_t side = side_that_fits(shares.tiles, tree, tile_bytes);
+    const std::int64_t side = side_that_fits(share, tree, tile_bytes);
     throw Error(ErrorCode::resource_exhausted,
                 "a tile of " + std::to_string(plan.tile_side) + " samples a side needs " +
-                    in_mib(enough) + " of memory in all and the limit is " +
-                    in_mib(plan.memory_limit) + "; give --memory " + in_mib(enough) +
+                    in_mib(enough.limit) + " of memory in all and the limit is " +
+                    in_mib(memory.limit) + "; give --memory " + in_mib(enough.limit) +
                     (side == 0 ? "" : ", or --tile " + std::to_string(side)));
   }
-  plan.gdal_cache = shares.gdal_cache;
-  plan.tile_bytes = shares.tiles;
+  plan.memory_for_tiles = share;
   plan.memory_expected =
-      plan.memory_limit - shares.tiles +
-      std::min(shares.tiles, std::max(one, batch * static_cast<std::uint64_t>(plan.threads)));
+      memory.limit - share +
+      std::min(share, std::max(one, batch * static_cast<std::uint64_t>(plan.threads)));
 }
 
 std::uint64_t free_in(const std::string& folder) {
@@ -134,8 +136,10 @@ void require_disk(const BuildPlan& plan, const std::string& output, const std::s
   }
 }
 
-void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& options,
-               const BuildResources& resources, const SourceDisk& source) {
+void plan_disk(BuildPlan& plan, const PlanRequest& request) {
+  const std::string& output = request.output;
+  const BuildResources& resources = request.resources;
+  const SourceDisk& source = request.disk;
   const auto vertices = static_cast<double>(plan.vertices);
   plan.output_bytes = static_cast<std::uint64_t>(vertices * kOutputBytesOfVertex) + kMiB;
   const std::uint64_t tiles =
@@ -152,15 +156,13 @@ void plan_disk(BuildPlan& plan, const std::string& output, const BuildOptions& o
     return;  // of what is needed much may be on the disk already, or never come
   }
   // With --max-error how much is left out is not known before.
-  const std::uint64_t least_output = options.max_error > 0.0 ? 0 : plan.output_bytes;
+  const std::uint64_t least_output = request.options.max_error > 0.0 ? 0 : plan.output_bytes;
   require_disk(plan, output, tmp, least_output, source.is_there ? tiles : plan.temporary_bytes);
 }
 
 }  // namespace
 
-BuildPlan plan_build(const TileTree& tree, const std::string& output, const BuildOptions& options,
-                     const BuildResources& resources, const TileBytes& tile_bytes,
-                     const SourceDisk& source) {
+BuildPlan plan_build(const TileTree& tree, const PlanRequest& request) {
   const SampleRange whole = tree.window(tree.root());
   BuildPlan plan;
   plan.tile_side = tree.side();
@@ -168,9 +170,9 @@ BuildPlan plan_build(const TileTree& tree, const std::string& output, const Buil
   plan.levels = tree.levels();
   plan.vertices =
       static_cast<std::uint64_t>(whole.width) * static_cast<std::uint64_t>(whole.height);
-  plan_memory(plan, tree, resources, tile_bytes, !(source.is_estimate && source.may_be_less));
-  plan.is_estimate = source.is_estimate;
-  plan_disk(plan, output, options, resources, source);
+  plan_threads(plan, tree, request, !(request.disk.is_estimate && request.disk.may_be_less));
+  plan.is_estimate = request.disk.is_estimate;
+  plan_disk(plan, request);
   plan.seconds = static_cast<double>(plan.vertices) / kVerticesPerSecond / plan.threads;
   return plan;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/construct/grid/source_disk.h"
 #include "engine/construct/hierarchy/tile_bytes.h"
+#include "engine/construct/memory_plan.h"
 #include "engine/construct/tile/tile_tree.h"
 
 namespace ptin {
@@ -20,11 +21,10 @@ struct BuildPlan {
   std::uint64_t leaves = 0;
   int levels = 0;
   std::uint64_t vertices = 0;
-  std::uint64_t memory_limit = 0;     ///< Bytes of anonymous memory.
-  std::uint64_t memory_allowed = 0;   ///< By cgroups and resource limits; may be less.
-  std::uint64_t memory_expected = 0;  ///< At most, by estimate.
-  std::uint64_t gdal_cache = 0;
-  std::uint64_t tile_bytes = 0;  ///< Share of all tiles in work.
+  MemoryPlan memory;
+  std::uint64_t memory_expected = 0;   ///< Bytes of anonymous memory, at most, by estimate.
+  std::uint64_t memory_for_tiles = 0;  ///< Of these, for all tiles in work.
+  TileBytes tile_bytes;                ///< What each kind of work takes of that.
   int threads_wanted = 1;
   int threads = 1;                    ///< As many as fit.
   std::uint64_t temporary_bytes = 0;  ///< Disk, at most, beside the output.
@@ -37,11 +37,19 @@ struct BuildPlan {
   bool is_estimate = false;
 };
 
+/// What a plan is made for. Borrows what it names for the call.
+struct PlanRequest {
+  const std::string& output;
+  const BuildOptions& options;
+  const BuildResources& resources;
+  const MemoryPlan& memory;
+  TileBytes tile_bytes;
+  SourceDisk disk;
+};
+
 /// @param tree  Of the terrain's tiles.
 /// @throws Error resource_exhausted  one tile does not fit into the memory (names the --memory and
 ///                                   the --tile that would), or the disk has less free than needed
-[[nodiscard]] BuildPlan plan_build(const TileTree& tree, const std::string& output,
-                                   const BuildOptions& options, const BuildResources& resources,
-                                   const TileBytes& tile_bytes, const SourceDisk& source = {});
+[[nodiscard]] BuildPlan plan_build(const TileTree& tree, const PlanRequest& request);
 
 }  // namespace ptin

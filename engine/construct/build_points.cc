@@ -20,8 +20,7 @@ constexpr const char* kBucketFile = "points";
 constexpr const char* kPointsIndex = "points.index";
 
 ExternalMemory memory_for_sorting(const Job& job, const Workspace& workspace) {
-  return {job.files(), workspace.temporary_folder(),
-          std::clamp(job.memory() / 8, kMiB, 256 * kMiB)};
+  return {job.files(), workspace.temporary_folder(), job.memory.sorting};
 }
 
 /// Vertices of TINs are sorted before they are points.
@@ -45,7 +44,7 @@ PointBuckets sorted_points(Job& job, Workspace& workspace) {
   workspace.remove(kBucketFile);
   PointBuckets points =
       PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
-                         job.resources.stop, job.resources.progress, buckets);
+                         job.resources.stop, job.stages(), buckets);
   note_index(workspace, "points", points.save(job.files(), index));
   return points;
 }
@@ -62,10 +61,10 @@ void report_counts(BuildReport& report, const PointBuckets& points) {
 void build_points_in(Workspace& workspace, Job& job) {
   const PointBuckets points = sorted_points(job, workspace);
   report_counts(job.report, points);
-  Terrain terrain{points.frame(),
-                  measure_units(points.frame(), job.options.void_slope),
-                  point_tree(points, job.options.tile),
-                  {}};
+  TiledSource terrain{points.frame(),
+                      measure_units(points.frame(), job.options.void_slope),
+                      point_tree(points, job.options.tile),
+                      {}};
   const BuildPlan plan = plan_sorted(job, terrain.tree, PointBuckets::disk_of(points.size()));
   terrain.make_starter = [&]() -> LeafStarter {
     const auto starter = std::make_shared<PointTileStarter>(
@@ -78,8 +77,8 @@ void build_points_in(Workspace& workspace, Job& job) {
 }  // namespace
 
 void build_points(Job& job) {
-  const GdalCacheLimit cache(share_memory(job.memory(), 0, 1).gdal_cache);
-  announce(job, [&](const PointCount& count) { return disk_of(job, count); });
+  const GdalCacheLimit cache(job.memory.gdal_cache);
+  plan_before_reading(job, [&](const PointCount& count) { return disk_of(job, count); });
   if (job.resources.dry_run) {
     return;
   }

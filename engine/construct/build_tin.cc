@@ -28,10 +28,10 @@ TinTriangles sorted_triangles(Job& job, Workspace& workspace) {
   for (const std::string& name : TinTriangles::kept_files(kTinFile)) {
     workspace.remove(name);
   }
-  TinTriangles triangles = TinTriangles::read(job.inputs[0], job.source_options(),
-                                              {job.files(), workspace.temporary_folder(),
-                                               std::max<std::uint64_t>(job.memory() / 2, 1U << 20)},
-                                              job.resources.stop, job.resources.progress, kept_as);
+  TinTriangles triangles =
+      TinTriangles::read(job.inputs[0], job.source_options(),
+                         {job.files(), workspace.temporary_folder(), job.memory.sorting},
+                         job.resources.stop, job.stages(), kept_as);
   note_index(workspace, "tin", triangles.save(job.files(), index));
   return triangles;
 }
@@ -52,10 +52,10 @@ void build_tin_in(Workspace& workspace, Job& job) {
   const TinTriangles triangles = sorted_triangles(job, workspace);
   job.begins_anew = false;
   report_counts(job.report, triangles);
-  Terrain terrain{triangles.frame(),
-                  measure_units(triangles.frame(), job.options.void_slope),
-                  tin_tree(triangles, job.options.tile),
-                  {}};
+  TiledSource terrain{triangles.frame(),
+                      measure_units(triangles.frame(), job.options.void_slope),
+                      tin_tree(triangles, job.options.tile),
+                      {}};
   const BuildPlan plan =
       plan_sorted(job, terrain.tree, TinTriangles::disk_of(triangles.counts().vertices));
   terrain.make_starter = [&]() -> LeafStarter {
@@ -69,10 +69,8 @@ void build_tin_in(Workspace& workspace, Job& job) {
 }  // namespace
 
 void build_tin(Job& job) {
-  if (job.inputs.size() != 1) {
-    throw Error(ErrorCode::invalid_argument, "several inputs, a TIN among them; build a TIN alone");
-  }
-  announce(job, [](const PointCount& count) { return TinTriangles::disk_of(count.points); });
+  plan_before_reading(job,
+                      [](const PointCount& count) { return TinTriangles::disk_of(count.points); });
   if (job.resources.dry_run) {
     return;
   }

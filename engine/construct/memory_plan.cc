@@ -79,14 +79,25 @@ std::uint64_t anonymous_bytes_now() {
   return 0;
 }
 
-MemoryShares share_memory(std::uint64_t memory, std::uint64_t present, int threads) {
-  MemoryShares shares;
-  shares.gdal_cache = std::clamp(memory / 16, 8 * kMiB, 64 * kMiB);
+std::uint64_t MemoryPlan::for_tiles(std::uint64_t present, int threads) const noexcept {
   // The writer's buffers, the manifest's lists, and what the heap keeps between tiles.
   const std::uint64_t other =
-      present + shares.gdal_cache + 24 * kMiB + static_cast<std::uint64_t>(threads) * 4 * kMiB;
-  shares.tiles = memory > other ? memory - other : 0;
-  return shares;
+      present + gdal_cache + 24 * kMiB + static_cast<std::uint64_t>(threads) * 4 * kMiB;
+  return limit > other ? limit - other : 0;
+}
+
+MemoryPlan plan_memory(std::uint64_t asked, InputKind kind) {
+  MemoryPlan plan;
+  plan.kind = kind;
+  plan.limit = asked != 0 ? asked : default_memory();
+  plan.allowed = allowed_memory();
+  plan.gdal_cache = std::clamp(plan.limit / 16, 8 * kMiB, 64 * kMiB);
+  if (kind == InputKind::kPoints) {
+    plan.sorting = std::clamp(plan.limit / 8, kMiB, 256 * kMiB);
+  } else if (kind == InputKind::kTin) {
+    plan.sorting = std::max(plan.limit / 2, kMiB);
+  }
+  return plan;
 }
 
 GdalCacheLimit::GdalCacheLimit(std::uint64_t bytes) : before_(GDALGetCacheMax64()) {

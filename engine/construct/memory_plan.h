@@ -5,9 +5,10 @@
 
 #include <cstdint>
 
-namespace ptin {
+#include "engine/construct/read/input_kind.h"
+#include "engine/memory_units.h"
 
-inline constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+namespace ptin {
 
 /// What the smallest of this process's cgroups and resource limits allows, all of it; the largest
 /// number when none limits it.
@@ -20,16 +21,23 @@ inline constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 /// Anonymous memory of this process now, bytes; 0 where the system does not tell.
 [[nodiscard]] std::uint64_t anonymous_bytes_now();
 
-/// The shares of a limit on anonymous memory.
-struct MemoryShares {
-  std::uint64_t gdal_cache = 0;  ///< Decoded blocks of rasters.
-  std::uint64_t tiles = 0;       ///< Tiles in work; 0 when nothing is left for them.
+/// How the memory of one build is shared out. Made once, before anything is read, and handed down.
+struct MemoryPlan {
+  InputKind kind = InputKind::kRaster;  ///< Of the source that it is made for.
+  std::uint64_t limit = 0;              ///< Of the process's anonymous memory, bytes.
+  std::uint64_t allowed = 0;            ///< By cgroups and resource limits; may be less.
+  std::uint64_t gdal_cache = 0;         ///< Decoded blocks of rasters.
+  std::uint64_t sorting = 0;            ///< Points, or a TIN, on their way into temporary files.
+
+  /// What is left for tiles in work; 0 when nothing is.
+  /// @param present  What the process holds already, bytes.
+  /// @param threads  Each needs a little of its own.
+  [[nodiscard]] std::uint64_t for_tiles(std::uint64_t present, int threads) const noexcept;
 };
 
-/// @param memory   The limit.
-/// @param present  What the process holds already.
-/// @param threads  Each needs a little of its own.
-[[nodiscard]] MemoryShares share_memory(std::uint64_t memory, std::uint64_t present, int threads);
+/// @param asked  The limit that the caller sets; 0: default_memory().
+/// @param kind   Of the source: points and TINs are sorted before tiles are begun.
+[[nodiscard]] MemoryPlan plan_memory(std::uint64_t asked, InputKind kind);
 
 /// Sets the size of GDAL's block cache, which all of the process shares, for as long as this lives.
 class GdalCacheLimit {

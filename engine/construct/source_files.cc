@@ -9,8 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/construct/grid/gdal_session.h"
-#include "engine/construct/read/point_stream.h"
-#include "engine/construct/read/tin_soup.h"
+#include "engine/construct/read/input_kind.h"
 #include "storage/file/file_questions.h"
 
 namespace ptin {
@@ -28,7 +27,7 @@ std::string full_name(const std::string& file) {
 }
 
 void collect(const std::string& input, std::set<std::string>& files) {
-  if (!files.insert(full_name(input)).second || is_point_file(input) || is_tin_file(input)) {
+  if (!files.insert(full_name(input)).second || kind_by_name(input)) {
     return;
   }
   const GDALDatasetUniquePtr data(

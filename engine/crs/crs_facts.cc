@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/facts/crs_facts.h"
+#include "engine/crs/crs_facts.h"
 
 #include <memory>
 
@@ -8,7 +8,7 @@
 
 #include "engine/error.h"
 
-namespace ptin::tools {
+namespace ptin {
 
 namespace {
 
@@ -98,4 +98,4 @@ CrsFacts crs_facts_of(const nlohmann::json& metadata) {
 
 CrsFacts crs_facts(const StoreFile& store) { return crs_facts_of(metadata_of(store)); }
 
-}  // namespace ptin::tools
+}  // namespace ptin

@@ -9,7 +9,7 @@
 
 #include "storage/store_file.h"
 
-namespace ptin::tools {
+namespace ptin {
 
 struct CrsFacts {
   std::string wkt;            ///< WKT2 on one line; empty when unknown.
@@ -44,4 +44,4 @@ struct CrsFacts {
 /// The facts of a store's CRS; units from the metadata where the WKT says nothing.
 [[nodiscard]] CrsFacts crs_facts(const StoreFile& store);
 
-}  // namespace ptin::tools
+}  // namespace ptin

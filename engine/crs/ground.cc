@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/facts/ground.h"
+#include "engine/crs/ground.h"
 
 #include <cmath>
 #include <optional>
@@ -7,9 +7,9 @@
 #include <geodesic.h>
 #include <ogr_spatialref.h>
 
-#include "engine/construct/grid/height_unit.h"
+#include "engine/crs/height_unit.h"
 
-namespace ptin::tools {
+namespace ptin {
 
 namespace {
 
@@ -76,4 +76,4 @@ Ground ground_of(const CrsFacts& crs) {
   return ground;
 }
 
-}  // namespace ptin::tools
+}  // namespace ptin

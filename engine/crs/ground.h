@@ -6,10 +6,10 @@
 #include <functional>
 #include <string>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/geometry/affine.h"
-#include "tools/facts/crs_facts.h"
 
-namespace ptin::tools {
+namespace ptin {
 
 struct Ground {
   /// Between two positions in map units: along the ellipsoid in a geographic CRS, else in the
@@ -30,4 +30,4 @@ struct Ground {
 ///             Heights of no known unit are in that of the plane, over degrees in metres.
 [[nodiscard]] Ground ground_of(const CrsFacts& crs);
 
-}  // namespace ptin::tools
+}  // namespace ptin

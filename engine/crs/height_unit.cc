@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/grid/height_unit.h"
+#include "engine/crs/height_unit.h"
 
 #include <algorithm>
 #include <array>

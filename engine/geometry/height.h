@@ -13,6 +13,9 @@ using HeightBits = std::uint32_t;
 
 enum class HeightType : std::uint32_t { int32 = 0, float32 = 1 };
 
+/// The largest code of an int32; the smallest one used is its negative.
+inline constexpr double kLargestCode = 2147483647.0;
+
 /// How stored heights become heights. `step` and `offset` are in the height's unit.
 ///   int32:   height = offset + step * value
 ///   float32: height = value (step 1, offset 0)

@@ -11,7 +11,7 @@
 namespace ptin {
 
 /// The most neighbours that a vertex should have after a collapse while there is another choice
-/// (DESIGN.md, section 4).
+/// (engine/DESIGN.md, section 2.1).
 inline constexpr std::size_t kComfortableDegree = 64;
 
 /// True when collapsing the centre of `star` into link vertex `j` leaves a valid mesh: every fan

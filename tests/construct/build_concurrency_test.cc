@@ -10,6 +10,7 @@
 
 #include "engine/construct/build.h"
 #include "tests/construct/made_raster.h"
+#include "tests/construct/told_build.h"
 
 namespace ptin {
 namespace {
@@ -46,7 +47,9 @@ void expect_same_bytes_with_more_threads(const std::string& input, const BuildOp
     resources.memory_bytes = std::uint64_t{1} << 30;
     resources.checkpoint_interval = std::chrono::milliseconds(threads == 2 ? 0 : 50);
     std::uint64_t reports = 0;
-    resources.progress = [&](const char*, std::uint64_t, std::uint64_t) { ++reports; };
+    oracle::ToldBuild told;
+    resources.observer = &told;
+    told.on_stage = [&](const char*, std::uint64_t, std::uint64_t) { ++reports; };
     build({input}, output, options, resources);
     EXPECT_GT(reports, 10U);
     const std::string bytes = oracle::bytes_of(output);

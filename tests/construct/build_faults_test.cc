@@ -15,6 +15,7 @@
 
 #include "engine/construct/scratch/workspace.h"
 #include "tests/construct/resume_fixture.h"
+#include "tests/construct/told_build.h"
 
 namespace ptin {
 namespace {
@@ -28,7 +29,9 @@ std::optional<Error> error_of_throwing_in(const std::string& stage, const Interr
                                           const Exception& exception) {
   BuildResources resources = InterruptibleBuild::resources();
   int calls = 0;
-  resources.progress = [&](const char* name, std::uint64_t, std::uint64_t) {
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  told.on_stage = [&](const char* name, std::uint64_t, std::uint64_t) {
     if (name == stage && ++calls == 2) {
       throw exception;
     }
@@ -103,7 +106,9 @@ TEST(Build, OfATinReportsSortingToItsEnd) {
   const InterruptibleBuild of(SourceKind::kTin);
   BuildResources resources = InterruptibleBuild::resources();
   std::pair<std::uint64_t, std::uint64_t> last{0, 1};
-  resources.progress = [&](const std::string& stage, std::uint64_t done, std::uint64_t total) {
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  told.on_stage = [&](const std::string& stage, std::uint64_t done, std::uint64_t total) {
     last = stage == "sorting" ? std::pair(done, total) : last;
   };
   EXPECT_EQ(of.run(resources), std::nullopt);

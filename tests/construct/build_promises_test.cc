@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Rasters built through a tree of tiles into a store, and the promises of DESIGN.md, section 2,
+// Rasters built through a tree of tiles into a store, and the promises of engine/DESIGN.md, section 2.8,
 // held against their samples.
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include "engine/construct/build.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
 
@@ -44,14 +44,14 @@ bool can_be_a_file(const TestTerrain& terrain) {
 }
 
 /// The first promise that a store breaks, in words.
-std::string check_store(const TestTerrain& terrain, const ProgressiveTin& tin) {
+std::string check_store(const TestTerrain& terrain, const Terrain& tin) {
   const RefinedTin full = tin.refine({});
   if (!(oracle::named_triangles(full.tin) == oracle::named_triangles(terrain.full))) {
     return "P1: the full TIN is another one";
   }
   for (const double tolerance : {0.0, 0.3, 1.0, 4.0, 25.0, 1e9}) {
     RefineRequest request;
-    request.tolerance = tolerance;
+    request.detail.tolerance = tolerance;
     const RefinedTin refined = tin.refine(request);
     std::string fault = validate(refined.tin);
     fault = fault.empty() ? oracle::check_samples(terrain, refined.tin, tolerance) : fault;
@@ -73,7 +73,7 @@ void expect_promises(const TestTerrain& terrain, std::int64_t tile, CostModel co
   options.tile = tile;
   options.cost = cost;
   build({raster.path()}, folder.file("out.ptin"), options, {});
-  EXPECT_EQ(check_store(terrain, ProgressiveTin::open(folder.file("out.ptin"))), "");
+  EXPECT_EQ(check_store(terrain, Terrain::open(folder.file("out.ptin"))), "");
 }
 
 TEST(BuildOverTiles, KeepsItsPromisesOnNastyRasters) {

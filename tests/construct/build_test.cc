@@ -19,11 +19,12 @@
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "storage/verify.h"
 #include "tests/construct/exact_oracle.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
+#include "tests/construct/told_build.h"
 
 namespace ptin {
 namespace {
@@ -46,7 +47,7 @@ Error error_of(const std::function<void()>& call) {
 
 /// Every sample of `file` against the TIN of a query: within `bound`, with the heights as GDAL
 /// would give them; `is_void` samples are not looked at.
-void expect_within(const RasterFile& file, const ProgressiveTin& tin, const RefinedTin& refined,
+void expect_within(const RasterFile& file, const Terrain& tin, const RefinedTin& refined,
                    double bound) {
   const HeightEncoding& heights = tin.store().facts().heights;
   ASSERT_EQ(validate(refined.tin), "");
@@ -90,7 +91,7 @@ void expect_built(const RasterFile& file, const BuildOptions& options = {}) {
   const BuildReport report = build({raster.path()}, path, options, {});
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out.ptin"});
   EXPECT_EQ(report.file_bytes, std::filesystem::file_size(path));
-  const ProgressiveTin tin = ProgressiveTin::open(path);
+  const Terrain tin = Terrain::open(path);
   EXPECT_EQ(report.records, tin.store().record_count());
   EXPECT_EQ(report.t0_vertices, tin.store().t0().vertices.size());
   const double base = tin.store().facts().base_error;
@@ -100,7 +101,7 @@ void expect_built(const RasterFile& file, const BuildOptions& options = {}) {
   EXPECT_EQ(full.vertices, report.records + report.t0_vertices);
   for (const double tolerance : {0.0, 0.5, 3.0, 20.0}) {
     RefineRequest request;
-    request.tolerance = tolerance;
+    request.detail.tolerance = tolerance;
     const RefinedTin refined = tin.refine(request);
     EXPECT_LE(refined.certified_error, std::max(tolerance, base));
     expect_within(file, tin, refined, refined.certified_error);
@@ -148,7 +149,7 @@ TEST(Build, AddsTheRoundingOfHeightsThatNoEncodingHolds) {
   const ScratchFolder folder;
   const BuildReport report = build({raster.path()}, folder.file("out.ptin"), {}, {});
   EXPECT_GT(report.height_rounding, 0.0);
-  const ProgressiveTin tin = ProgressiveTin::open(folder.file("out.ptin"));
+  const Terrain tin = Terrain::open(folder.file("out.ptin"));
   EXPECT_EQ(tin.store().facts().base_error, report.height_rounding);
   EXPECT_FALSE(tin.refine({}).exact);
 }
@@ -171,7 +172,7 @@ TEST(Build, LeavesOutWhatIsBelowTheLargestError) {
     const BuildReport report = build({raster.path()}, folder.file("some.ptin"), options, {});
     const BuildReport all = build({raster.path()}, folder.file("all.ptin"), {}, {});
     EXPECT_LT(report.records, all.records);
-    const ProgressiveTin tin = ProgressiveTin::open(folder.file("some.ptin"));
+    const Terrain tin = Terrain::open(folder.file("some.ptin"));
     const double base = tin.store().facts().base_error;
     EXPECT_GT(base, 0.0);
     EXPECT_LE(base, max_error);
@@ -179,8 +180,8 @@ TEST(Build, LeavesOutWhatIsBelowTheLargestError) {
     expect_within(file, tin, tin.refine({}), base);
     // The same as the whole store refined to that error.
     RefineRequest request;
-    request.tolerance = max_error;
-    const ProgressiveTin whole = ProgressiveTin::open(folder.file("all.ptin"));
+    request.detail.tolerance = max_error;
+    const Terrain whole = Terrain::open(folder.file("all.ptin"));
     EXPECT_TRUE(oracle::named_triangles(tin.refine({}).tin) ==
                 oracle::named_triangles(whole.refine(request).tin));
   }
@@ -235,7 +236,7 @@ TEST(Build, BuildsFromPoints) {
   }
   oracle::write_text(folder.file("points.csv"), text);
   const BuildReport report = build({folder.file("points.csv")}, folder.file("out.ptin"), {}, {});
-  const ProgressiveTin tin = ProgressiveTin::open(folder.file("out.ptin"));
+  const Terrain tin = Terrain::open(folder.file("out.ptin"));
   const RefinedTin full = tin.refine({});
   EXPECT_EQ(full.vertices, report.source_samples);
   EXPECT_EQ(validate(full.tin), "");
@@ -338,7 +339,7 @@ TEST(Build, KeepsAnExistingFileUnlessToldOtherwise) {
   BuildResources resources;
   resources.overwrite = true;
   build({raster.path()}, folder.file("out.ptin"), {}, resources);
-  EXPECT_EQ(ProgressiveTin::open(folder.file("out.ptin")).refine({}).vertices, 400U);
+  EXPECT_EQ(Terrain::open(folder.file("out.ptin")).refine({}).vertices, 400U);
 }
 
 TEST(Build, SaysThatItMayNotWrite) {
@@ -373,7 +374,9 @@ TEST(Build, IsCancelledAtEveryStageAndKeepsWhatIsDone) {
     BuildResources resources;
     resources.overwrite = true;
     resources.stop = source.get_token();
-    resources.progress = [&](const char* name, std::uint64_t, std::uint64_t) {
+    oracle::ToldBuild told;
+    resources.observer = &told;
+    told.on_stage = [&](const char* name, std::uint64_t, std::uint64_t) {
       if (name == stage) {
         source.request_stop();
       }

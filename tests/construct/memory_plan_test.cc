@@ -17,11 +17,13 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/construct/build.h"
+#include "engine/construct/build_job.h"
 #include "engine/construct/build_plan.h"
 #include "engine/construct/scratch/workspace.h"
 #include "engine/construct/tile/tile_tree.h"
 #include "engine/error.h"
 #include "tests/construct/made_raster.h"
+#include "tests/construct/told_build.h"
 #include "tests/support/resource_limit.h"
 
 namespace ptin {
@@ -64,7 +66,8 @@ TEST_F(DefaultMemory, IsWhatAPlanTakesUnlessItIsToldOtherwise) {
   BuildResources resources;
   const ResourceLimit limit(RLIMIT_DATA, 800 * kMiB);
   const auto memory_of = [&] {
-    return plan_build(tree, folder.file("a.ptin"), {}, resources, {}).memory_limit;
+    const MemoryPlan memory = plan_memory(resources.memory_bytes, InputKind::kRaster);
+    return plan_build(tree, {folder.file("a.ptin"), {}, resources, memory, {}, {}}).memory.limit;
   };
   EXPECT_EQ(memory_of(), default_memory());
   resources.memory_bytes = 5 * kGiB;
@@ -72,24 +75,31 @@ TEST_F(DefaultMemory, IsWhatAPlanTakesUnlessItIsToldOtherwise) {
 }
 
 RC_GTEST_PROP(ShareMemory, NeverGivesMoreThanThereIs, ()) {
-  const std::uint64_t memory = *rc::gen::inRange<std::uint64_t>(0, 16 * kGiB);
+  const std::uint64_t memory = *rc::gen::inRange<std::uint64_t>(1, 16 * kGiB);
   const std::uint64_t present = *rc::gen::inRange<std::uint64_t>(0, kGiB);
   const int threads = *rc::gen::inRange(1, 64);
-  const MemoryShares shares = share_memory(memory, present, threads);
-  RC_ASSERT(shares.gdal_cache >= 8 * kMiB);
-  RC_ASSERT(shares.gdal_cache <= 64 * kMiB);
-  RC_ASSERT(shares.gdal_cache <= std::max(memory / 16, 8 * kMiB));
-  if (shares.tiles > 0) {
+  const InputKind kind = *rc::gen::element(InputKind::kRaster, InputKind::kPoints, InputKind::kTin);
+  const MemoryPlan plan = plan_memory(memory, kind);
+  const std::uint64_t tiles = plan.for_tiles(present, threads);
+  RC_ASSERT(plan.limit == memory);
+  RC_ASSERT(plan.gdal_cache >= 8 * kMiB);
+  RC_ASSERT(plan.gdal_cache <= 64 * kMiB);
+  RC_ASSERT(plan.gdal_cache <= std::max(memory / 16, 8 * kMiB));
+  RC_ASSERT(plan.sorting <= std::max(memory / 2, kMiB));
+  RC_ASSERT((plan.sorting == 0) == (kind == InputKind::kRaster));
+  if (tiles > 0) {
     const std::uint64_t buffers = static_cast<std::uint64_t>(threads) * 4 * kMiB;
-    RC_ASSERT(shares.tiles + shares.gdal_cache + present + buffers <= memory);
+    RC_ASSERT(tiles + plan.gdal_cache + present + buffers <= memory);
   }
-  RC_ASSERT(share_memory(memory, present, threads + 1).tiles <= shares.tiles);
-  RC_ASSERT(share_memory(memory, present + kMiB, threads).tiles <= shares.tiles);
-  RC_ASSERT(share_memory(memory + kMiB, present, threads).tiles >= shares.tiles);
+  RC_ASSERT(plan.for_tiles(present, threads + 1) <= tiles);
+  RC_ASSERT(plan.for_tiles(present + kMiB, threads) <= tiles);
+  RC_ASSERT(plan_memory(memory + kMiB, kind).for_tiles(present, threads) >= tiles);
 }
 
 TEST(ShareMemory, GivesGdalASixteenthWithinBounds) {
-  const auto cache = [](std::uint64_t memory) { return share_memory(memory, 0, 1).gdal_cache; };
+  const auto cache = [](std::uint64_t memory) {
+    return plan_memory(memory, InputKind::kRaster).gdal_cache;
+  };
   EXPECT_EQ(cache(64 * kMiB), 8 * kMiB);
   EXPECT_EQ(cache(512 * kMiB), 32 * kMiB);
   EXPECT_EQ(cache(64 * kGiB), 64 * kMiB);
@@ -115,14 +125,42 @@ TEST(GdalCacheLimit, IsThatOfABuildForAsLongAsItRuns) {
   resources.memory_bytes = 800 * kMiB;  // a sanitizer holds half of that
   std::uint64_t planned = 0;
   std::int64_t seen = 0;
-  resources.plan = [&](const BuildPlan& plan) {
-    planned = plan.gdal_cache;
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  told.on_plan = [&](const BuildPlan& plan) {
+    planned = plan.memory.gdal_cache;
     seen = GDALGetCacheMax64();
   };
   build({raster.path()}, folder.file("a.ptin"), {}, resources);
   EXPECT_EQ(planned, 50 * kMiB);
   EXPECT_EQ(seen, static_cast<std::int64_t>(planned));
   EXPECT_EQ(GDALGetCacheMax64(), before);
+}
+
+/// Leaves of points and TINs take more in their replay than those of rasters, and the workers must
+/// be admitted by what the plan says of them.
+TEST(HierarchyOptions, AdmitWorkersByWhatThePlanSaysOfTheSource) {
+  const ScratchFolder folder;
+  const std::vector<std::string> inputs;
+  const std::string output = folder.file("a.ptin");
+  const BuildOptions options;
+  const BuildResources resources;
+  const TileTree tree(1000, 1000, 256);
+  std::uint64_t of_raster = 0;
+  for (const InputKind kind : {InputKind::kRaster, InputKind::kPoints, InputKind::kTin}) {
+    const build_internal::Job job{inputs, output, options, resources, plan_memory(kGiB, kind), {}};
+    const BuildPlan plan = plan_build(tree, job.plan_request({}));
+    const build_internal::TiledSource terrain{{}, {}, tree, {}};
+    const HierarchyOptions built = hierarchy_options(job, terrain, plan);
+    const std::uint64_t of_leaf = built.tile_bytes.of_replay(tree.side() * tree.side());
+    EXPECT_EQ(of_leaf, plan.tile_bytes.of_replay(tree.side() * tree.side()));
+    EXPECT_EQ(built.memory_for_tiles, plan.memory_for_tiles);
+    if (kind == InputKind::kRaster) {
+      of_raster = of_leaf;
+    } else {
+      EXPECT_GT(of_leaf, of_raster);
+    }
+  }
 }
 
 /// Plans for a terrain that is not there.
@@ -133,8 +171,9 @@ class PlanBuild : public ::testing::Test {
     resources_.memory_bytes = 64 * kGiB;
   }
   BuildPlan plan(std::int64_t side, std::int64_t tile, const SourceDisk& source = {}) {
-    return plan_build(TileTree(side, side, tile), output_, options_, resources_, tile_bytes_,
-                      source);
+    const MemoryPlan memory = plan_memory(resources_.memory_bytes, InputKind::kRaster);
+    return plan_build(TileTree(side, side, tile),
+                      {output_, options_, resources_, memory, tile_bytes_, source});
   }
   std::optional<Error> refusal(std::int64_t side, std::int64_t tile,
                                const SourceDisk& source = {}) {
@@ -171,11 +210,12 @@ TEST_F(PlanBuild, UsesFewerThreadsWhereMemoryIsShort) {
     EXPECT_GE(p.threads, 1) << mib;
     was_between = was_between || (p.threads > 1 && p.threads < 8);
     before = p.threads;
-    EXPECT_LE(p.memory_expected, p.memory_limit) << mib;
-    EXPECT_EQ(p.memory_limit, mib * kMiB);
+    EXPECT_LE(p.memory_expected, p.memory.limit) << mib;
+    EXPECT_EQ(p.memory.limit, mib * kMiB);
     // Each thread has room for the largest leaf: one of half as much again along a side.
     const std::uint64_t leaf = kTile * kTile;
-    EXPECT_GE(p.tile_bytes, tile_bytes_.of_batch(leaf) * static_cast<std::uint64_t>(p.threads))
+    EXPECT_GE(p.memory_for_tiles,
+              tile_bytes_.of_batch(leaf) * static_cast<std::uint64_t>(p.threads))
         << mib;
   }
   EXPECT_EQ(before, 1);

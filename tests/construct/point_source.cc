@@ -7,6 +7,8 @@
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/grid/point_merge.h"
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/points/point_reading.h"
 #include "engine/error.h"
 #include "engine/geometry/orient.h"

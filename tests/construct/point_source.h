@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/geometry/point.h"
 

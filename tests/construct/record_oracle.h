@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The records of a simplified tile, held against DESIGN.md, section 2, one by one: the collapses
+// The records of a simplified tile, held against engine/DESIGN.md, section 2.2, one by one: the collapses
 // are done again on the full TIN, and everything is measured anew, at all samples and against all
 // edges.
 #pragma once

@@ -21,6 +21,7 @@
 #include "storage/file/sigbus_guard.h"
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/resume_fixture.h"
+#include "tests/construct/told_build.h"
 
 namespace ptin {
 namespace {
@@ -41,7 +42,9 @@ TEST_P(Resumed, GivesTheSameBytesWhereverTheBuildWasStopped) {
     resources.stop = source.get_token();
     resources.threads = 1 + stop_at % 3;
     int calls = 0;
-    resources.progress = [&](const char* stage, std::uint64_t, std::uint64_t) {
+    oracle::ToldBuild told;
+    resources.observer = &told;
+    told.on_stage = [&](const char* stage, std::uint64_t, std::uint64_t) {
       const bool counts = GetParam() == SourceKind::kPoints || std::string(stage) != "reading";
       if (counts && ++calls == stop_at) {
         source.request_stop();
@@ -79,7 +82,9 @@ void stop_in(const InterruptibleBuild& interrupted, const std::string& stage) {
   BuildResources resources = InterruptibleBuild::resources();
   resources.stop = source.get_token();
   int calls = 0;
-  resources.progress = [&](const char* name, std::uint64_t, std::uint64_t) {
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  told.on_stage = [&](const char* name, std::uint64_t, std::uint64_t) {
     if (name == stage && ++calls == 2) {
       source.request_stop();
     }
@@ -100,7 +105,9 @@ TEST(Resume, ReadsPointsAndTrianglesNoMoreOnceTheyAreSorted) {
     stop_in(interrupted, "collapsing");
     BuildResources resources = resuming();
     std::map<std::string, int> stages;
-    resources.progress = [&](const char* name, std::uint64_t, std::uint64_t) { ++stages[name]; };
+    oracle::ToldBuild told;
+    resources.observer = &told;
+    told.on_stage = [&](const char* name, std::uint64_t, std::uint64_t) { ++stages[name]; };
     EXPECT_EQ(interrupted.run(resources), std::nullopt);
     EXPECT_EQ(stages["reading"], 0);
     EXPECT_EQ(stages["sorting"], 0);
@@ -140,7 +147,9 @@ void change_while_reading(const std::string& input, const std::string& output,
   resources.stop = source.get_token();
   bool has_changed = false;
   int calls = 0;
-  resources.progress = [&](const char* name, std::uint64_t, std::uint64_t) {
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  told.on_stage = [&](const char* name, std::uint64_t, std::uint64_t) {
     if (!has_changed) {
       has_changed = true;
       std::filesystem::last_write_time(
@@ -218,7 +227,9 @@ TEST(Build, OfATinSaysBeforeItReadsThatAnUnfinishedOneIsThere) {
   change_while_reading(input, output, options);
   BuildResources resources;
   int calls = 0;
-  resources.progress = [&](const char*, std::uint64_t, std::uint64_t) { ++calls; };
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  told.on_stage = [&](const char*, std::uint64_t, std::uint64_t) { ++calls; };
   EXPECT_THROW(build({input}, output, options, resources), Error);
   EXPECT_EQ(calls, 0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/facts/ground.h"
+#include "engine/crs/ground.h"
 
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Names of units of height, and their lengths.
-#include "engine/construct/grid/height_unit.h"
+#include "engine/crs/height_unit.h"
 
 #include <array>
 #include <string>

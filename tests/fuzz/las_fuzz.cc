@@ -8,6 +8,7 @@
 
 #include <cpl_vsi.h>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/las_reader.h"
 #include "engine/error.h"
 

@@ -9,8 +9,7 @@
 #include <engine/construct/build.h>
 #include <engine/error.h>
 #include <engine/geometry/orient.h>
-#include <engine/query/progressive_tin.h>
-#include <engine/query/refine/part_refiner.h>
+#include <engine/query/terrain.h>
 
 namespace {
 
@@ -40,10 +39,10 @@ void build_and_ask() {
   const ptin::BuildReport report = ptin::build({"hill.xyz"}, "hill.ptin", {}, resources);
   expect(report.vertices == 41 * 41, "every point is a vertex");
 
-  const ptin::ProgressiveTin terrain = ptin::ProgressiveTin::open("hill.ptin");
+  const ptin::Terrain terrain = ptin::Terrain::open("hill.ptin");
   expect(terrain.refine({}).vertices == report.vertices, "without a tolerance all come back");
   ptin::RefineRequest coarse;
-  coarse.tolerance = 5.0;
+  coarse.detail.tolerance = 5.0;
   const ptin::RefinedTin refined = terrain.refine(coarse);
   expect(refined.vertices < report.vertices / 4, "a tolerance needs few vertices");
   expect(refined.certified_error <= 5.0, "and keeps its promise");
@@ -53,7 +52,7 @@ void build_and_ask() {
   ptin::walk_cells(parts, [&](const ptin::GridCell&, ptin::RefinedTin&, double) { ++cells; });
   expect(cells == 1, "a small terrain is one cell");
   try {
-    static_cast<void>(ptin::ProgressiveTin::open("hill.xyz"));
+    static_cast<void>(ptin::Terrain::open("hill.xyz"));
     expect(false, "points are no store");
   } catch (const ptin::Error& e) {
     expect(e.code() == ptin::ErrorCode::corruption, "points are a damaged store");

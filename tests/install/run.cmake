@@ -25,6 +25,7 @@ endfunction()
 build(${SOURCE} ${SCRATCH}/build)
 run(${CMAKE_COMMAND} -E chdir ${SCRATCH} ${SCRATCH}/build/ptin_user)
 run(${SCRATCH}/build/ptin_geometry_user)
+run(${SCRATCH}/build/readme_program ${SCRATCH}/hill.ptin)
 
 set(without "")
 foreach(package IN ITEMS CGAL EXPAT GDAL TBB)

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "engine/construct/build.h"
+#include "engine/query/terrain.h"
 
 namespace ptin::reference {
 
@@ -22,7 +23,7 @@ struct BuiltTerrain {
     BuildResources resources;
     resources.overwrite = true;
     build({PTIN_TEST_DATA "/" + name}, path, options, resources);
-    terrain = std::make_unique<ProgressiveTin>(ProgressiveTin::open(path));
+    terrain = std::make_unique<Terrain>(Terrain::open(path));
   }
   ~BuiltTerrain() {
     terrain.reset();
@@ -33,12 +34,12 @@ struct BuiltTerrain {
   BuiltTerrain& operator=(const BuiltTerrain&) = delete;
 
   std::string path;
-  std::unique_ptr<ProgressiveTin> terrain;
+  std::unique_ptr<Terrain> terrain;
 };
 
 }  // namespace
 
-const ProgressiveTin& built_terrain(const std::string& name, double max_error) {
+const Terrain& built_terrain(const std::string& name, double max_error) {
   static std::map<std::pair<std::string, double>, std::unique_ptr<BuiltTerrain>> all;
   std::unique_ptr<BuiltTerrain>& built = all[{name, max_error}];
   if (!built) {

@@ -5,12 +5,12 @@
 
 #include <string>
 
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 
 namespace ptin::reference {
 
 /// @param name       A file of tests/data.
 /// @param max_error  As BuildOptions: what the file leaves out.
-[[nodiscard]] const ProgressiveTin& built_terrain(const std::string& name, double max_error = 0.0);
+[[nodiscard]] const Terrain& built_terrain(const std::string& name, double max_error = 0.0);
 
 }  // namespace ptin::reference

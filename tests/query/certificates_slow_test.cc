@@ -26,7 +26,7 @@ constexpr double kRounding = 1e-9;  ///< Of heights of some thousand metres.
 
 class Places {
  public:
-  Places(const ProgressiveTin& terrain, std::uint64_t seed)
+  Places(const Terrain& terrain, std::uint64_t seed)
       : random_(seed), map_(terrain.store().facts().map), box_(terrain.store().facts().bounds) {}
   MapPoint next() {
     std::uniform_real_distribution<double> x(box_.min_x, box_.max_x), y(box_.min_y, box_.max_y);
@@ -61,14 +61,14 @@ const std::vector<Question> kQuestions = {{"mountains_257.tif", 0.0, 3.0},
 TEST(Certificates, HoldAtAHundredThousandPoints) {
   for (const Question& q : kQuestions) {
     SCOPED_TRACE(q.terrain + " at " + std::to_string(q.tolerance));
-    const ProgressiveTin& exact = reference::built_terrain(q.terrain);
+    const Terrain& exact = reference::built_terrain(q.terrain);
     Places places(exact, 11);
     std::vector<MapPoint> points;
     for (int i = 0; i < kCases / static_cast<int>(kQuestions.size()); ++i) {
       points.push_back(places.next());
     }
     LocateRequest request;
-    request.tolerance = q.tolerance;
+    request.detail.tolerance = q.tolerance;
     const LocateResult truth = locate(exact, points);
     const LocateResult told =
         locate(reference::built_terrain(q.terrain, q.max_error), points, request);
@@ -94,12 +94,12 @@ TEST(Certificates, HoldOverAHundredThousandLinesOfSight) {
   int decided = 0;
   for (const Question& q : kQuestions) {
     SCOPED_TRACE(q.terrain + " at " + std::to_string(q.tolerance));
-    const ProgressiveTin& exact = reference::built_terrain(q.terrain);
+    const Terrain& exact = reference::built_terrain(q.terrain);
     Places places(exact, 12);
     SightRequest request;
     request.absolute = true;  // above ground of a file that left detail out is another question
     SightSolver truth(exact, request);
-    request.tolerance = q.tolerance;
+    request.detail.tolerance = q.tolerance;
     SightSolver coarse(reference::built_terrain(q.terrain, q.max_error), request);
     const double base = exact.store().facts().min_height;
     for (int i = 0; i < kCases / static_cast<int>(kQuestions.size()); ++i) {

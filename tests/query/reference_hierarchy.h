@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A reference simplifier: small, slow and obviously right. It collapses vertices in a random order
-// into random valid neighbours, and saturates the attributes as DESIGN.md, section 2, says; so
+// into random valid neighbours, and saturates the attributes as engine/DESIGN.md, section 2.2, says; so
 // tests of queries need no builder.
 #pragma once
 

@@ -24,12 +24,12 @@
 #include "engine/query/heights/locate.h"
 #include "engine/query/heights/profile.h"
 #include "engine/query/isoline/isoline.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/refine/moving_window.h"
 #include "engine/query/refine/part_refiner.h"
 #include "engine/query/sight/sight.h"
 #include "engine/query/sight/viewshed.h"
 #include "engine/query/stream/stream_writer.h"
+#include "engine/query/terrain.h"
 #include "storage/file/sigbus_guard.h"
 #include "tests/query/reference_hierarchy.h"
 
@@ -88,8 +88,7 @@ std::vector<FileChange> changes() {
 using Asking = std::function<void()>;
 struct KindOfQuestion {
   const char* name;
-  std::function<Asking(const ProgressiveTin& terrain, std::shared_ptr<const StoreFile> store)>
-      prepare;
+  std::function<Asking(const Terrain& terrain, std::shared_ptr<const StoreFile> store)> prepare;
 };
 void PrintTo(const KindOfQuestion& question, std::ostream* out) { *out << question.name; }
 
@@ -98,7 +97,7 @@ MapPoint spot_at(const StoreFacts& facts, double share_x, double share_y) {
 }
 
 Asking moves_of(std::shared_ptr<const StoreFile> store) {
-  const auto window = std::make_shared<MovingWindow>(store);
+  const auto window = std::make_shared<MovingWindow>(OpenedTerrain(store));
   return [window, store, n = 0]() mutable {
     const double share = 0.1 * (n++ % 8);
     const MapPoint lower = spot_at(store->facts(), share, share);
@@ -117,87 +116,85 @@ std::vector<KindOfQuestion> questions() {
   using Store = std::shared_ptr<const StoreFile>;
   return {
       {"Refine",
-       [](const ProgressiveTin& t, const Store&) -> Asking { return [&] { (void)t.refine({}); }; }},
+       [](const Terrain& t, const Store&) -> Asking { return [&] { (void)t.refine({}); }; }},
       {"RefineToACount",
-       [](const ProgressiveTin& t, const Store&) -> Asking {
+       [](const Terrain& t, const Store&) -> Asking {
          return [&] {
            RefineRequest request;
-           request.vertices = t.t0().vertices.size() + 40;
+           request.detail.vertices = t.t0().vertices.size() + 40;
            (void)t.refine(request);
          };
        }},
       {"PartRefiner",
-       [](const ProgressiveTin& t, const Store&) -> Asking {
+       [](const Terrain& t, const Store&) -> Asking {
          const auto parts = std::make_shared<PartRefiner>(t, PartRequest{});
          return [parts] { (void)parts->refine({0, 0, 40, 40}); };
        }},
       {"Locate",
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          return [&t, p = spot_at(s->facts(), 0.4, 0.6)] { (void)locate(t, std::span(&p, 1)); };
        }},
       {"LocateAtACount",
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          return [&t, p = spot_at(s->facts(), 0.4, 0.6)] {
            LocateRequest request;
-           request.vertices = t.t0().vertices.size() + 40;
+           request.detail.vertices = t.t0().vertices.size() + 40;
            (void)locate(t, std::span(&p, 1), request);
          };
        }},
       {"Profile",
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          return [&t, line = std::vector{spot_at(s->facts(), 0.1, 0.1),
                                         spot_at(s->facts(), 0.9, 0.8)}] { (void)profile(t, line); };
        }},
       {"Sight",
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 2, spot_at(s->facts(), 0.9, 0.8), 2};
          return [&t, pair] { (void)sight(t, pair); };
        }},
       {"SightSolver",
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 2, spot_at(s->facts(), 0.9, 0.8), 2};
          const auto solver = std::make_shared<SightSolver>(t, SightRequest{});
          return [solver, pair] { (void)solver->solve(pair); };
        }},
       {"UprightSight",  // decided without a record
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 1, spot_at(s->facts(), 0.1, 0.1), 2};
          return [&t, pair] { (void)sight(t, pair); };
        }},
       {"Highest",
-       [](const ProgressiveTin& t, const Store&) -> Asking {
-         return [&] { (void)highest(t, {}); };
-       }},
+       [](const Terrain& t, const Store&) -> Asking { return [&] { (void)highest(t, {}); }; }},
       {"HighestOutside",  // decided by the bounds alone
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          const MapPoint low = spot_at(s->facts(), 7, 7), high = spot_at(s->facts(), 8, 8);
          HighestRequest request;
          request.window = Window{low.x, low.y, high.x, high.y};
          return [&t, request] { (void)highest(t, request); };
        }},
       {"IsolinesAboveAll",
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          IsolineRequest request;
          request.levels = {s->facts().max_height + 1};
          return [&t, request] { (void)isolines(t, request); };
        }},
       {"ViewshedAtAnError",
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          ViewshedRequest request;
          request.eye = spot_at(s->facts(), 0.5, 0.5);
          request.eye_height = 5;
          request.radius = s->facts().map.to_map(30, 0).x - s->facts().map.to_map(0, 0).x;
-         request.tolerance = (s->facts().max_height - s->facts().min_height) / 10;
+         request.detail.tolerance = (s->facts().max_height - s->facts().min_height) / 10;
          return [&t, request] { (void)viewshed(t, request); };
        }},
       {"Isolines",
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          IsolineRequest request;
          request.levels = {(s->facts().min_height + s->facts().max_height) / 2};
          return [&t, request] { (void)isolines(t, request); };
        }},
       {"Viewshed",
-       [](const ProgressiveTin& t, const Store& s) -> Asking {
+       [](const Terrain& t, const Store& s) -> Asking {
          ViewshedRequest request;
          request.eye = spot_at(s->facts(), 0.5, 0.5);
          request.eye_height = 5;
@@ -205,18 +202,19 @@ std::vector<KindOfQuestion> questions() {
          return [&t, request] { (void)viewshed(t, request); };
        }},
       {"Stream",
-       [](const ProgressiveTin&, const Store& s) -> Asking {
+       [](const Terrain&, const Store& s) -> Asking {
          return [s] {
            std::size_t sent = 0;
            try {
-             write_stream(*s, {}, [&](std::span<const std::byte> bytes) { sent += bytes.size(); });
+             write_stream(OpenedTerrain(s), {},
+                          [&](std::span<const std::byte> bytes) { sent += bytes.size(); });
            } catch (const Error&) {
              EXPECT_EQ(sent, 0U) << "a receiver would have begun";
              throw;
            }
          };
        }},
-      {"MovingWindow", [](const ProgressiveTin&, const Store& s) -> Asking { return moves_of(s); }},
+      {"MovingWindow", [](const Terrain&, const Store& s) -> Asking { return moves_of(s); }},
   };
 }
 
@@ -237,7 +235,7 @@ class ReplacedStore : public ::testing::TestWithParam<KindOfQuestion> {
     const TemporaryStore file(terrain_of(1));
     const TemporaryStore other(terrain_of(2));
     const auto store = file.open(access);
-    const ProgressiveTin terrain(store);
+    const Terrain terrain(store);
     const Asking ask = GetParam().prepare(terrain, store);
     if (is_warm) {
       ASSERT_NO_THROW(ask());

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int32_t kSide = 8;
 
-struct Terrain {
+struct CutTerrain {
   StoreFacts facts;
   RefinedTin refined;
 };
@@ -25,8 +25,8 @@ double plane(double x, double y) { return 2 * x + 3 * y + 1; }
 
 /// A grid of 9 x 9 vertices on a plane, map = 100 + 10 * grid; diagonals at random, cell (2, 3)
 /// void.
-Terrain grid_terrain(unsigned seed) {
-  Terrain made;
+CutTerrain grid_terrain(unsigned seed) {
+  CutTerrain made;
   made.facts.map = {100.0, 100.0, 10.0, 10.0};
   made.facts.heights = {HeightType::float32, 1.0, 0.0};
   made.facts.bounds = {0, 0, kSide, kSide};
@@ -140,7 +140,7 @@ TEST(CutToRegion, GivesExactlyTheWindow) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> anywhere(80, 200);
   for (unsigned i = 0; i < 300; ++i) {
-    const Terrain terrain = grid_terrain(i);
+    const CutTerrain terrain = grid_terrain(i);
     Window w{anywhere(random), anywhere(random), anywhere(random), anywhere(random)};
     if (w.min_x > w.max_x) std::swap(w.min_x, w.max_x);
     if (w.min_y > w.max_y) std::swap(w.min_y, w.max_y);
@@ -157,7 +157,7 @@ TEST(CutToRegion, GivesExactlyTheWindow) {
 
 TEST(CutToRegion, GoesThroughVerticesAndAlongEdges) {
   for (unsigned i = 0; i < 100; ++i) {
-    const Terrain terrain = grid_terrain(i);
+    const CutTerrain terrain = grid_terrain(i);
     for (const Window& w :
          {Window{100, 100, 180, 180}, Window{120, 110, 150, 170}, Window{90, 130, 140, 130 + 1e-9},
           Window{105, 105, 175, 175}, Window{110, 115, 110 + 20, 195}, Window{0, 0, 1000, 1000}}) {
@@ -169,7 +169,7 @@ TEST(CutToRegion, GoesThroughVerticesAndAlongEdges) {
 }
 
 TEST(CutToRegion, GivesNothingOutsideOfTheTerrainOrInAVoid) {
-  const Terrain terrain = grid_terrain(1);
+  const CutTerrain terrain = grid_terrain(1);
   EXPECT_TRUE(
       cut_to_region(terrain.refined, terrain.facts, Window{300, 300, 400, 400}).triangles.empty());
   EXPECT_TRUE(
@@ -177,7 +177,7 @@ TEST(CutToRegion, GivesNothingOutsideOfTheTerrainOrInAVoid) {
 }
 
 TEST(CutToRegion, JoinsWindowsThatShareASide) {
-  const Terrain terrain = grid_terrain(5);
+  const CutTerrain terrain = grid_terrain(5);
   const Mesh left = cut_to_region(terrain.refined, terrain.facts, Window{103, 104, 141.3, 177});
   const Mesh right = cut_to_region(terrain.refined, terrain.facts, Window{141.3, 102, 178, 179});
   const auto on_side = [](const Mesh& mesh) {
@@ -196,7 +196,7 @@ TEST(CutToRegion, CutsPolygonsWithHolesAndDents) {
   std::uniform_real_distribution<double> radius(8, 33);
   std::uniform_real_distribution<double> middle(133, 147);
   for (unsigned i = 0; i < 200; ++i) {
-    const Terrain terrain = grid_terrain(i);
+    const CutTerrain terrain = grid_terrain(i);
     Polygon star;
     const MapPoint centre{middle(random), middle(random)};
     std::vector<MapPoint> shell;
@@ -217,7 +217,7 @@ TEST(CutToRegion, CutsPolygonsWithHolesAndDents) {
         area += (a.x * b.y - b.x * a.y) / 2;
       }
     }
-    Terrain whole = terrain;
+    CutTerrain whole = terrain;
     for (TriangleClass& c : whole.refined.tin.classes) c = TriangleClass::kSurface;
     const Mesh mesh = cut_to_region(whole.refined, whole.facts, star);
     EXPECT_NEAR(area_of(mesh), area, 1e-3) << "polygon " << i;
@@ -227,7 +227,7 @@ TEST(CutToRegion, CutsPolygonsWithHolesAndDents) {
 }
 
 TEST(CutToRegion, CutsAPolygonThatReachesOutside) {
-  const Terrain terrain = grid_terrain(2);
+  const CutTerrain terrain = grid_terrain(2);
   Polygon triangle;
   triangle.rings = {
       {{0, 0}, {300, 0}, {0, 300}}};  // x + y <= 300 holds three quarters of the terrain and more
@@ -237,13 +237,13 @@ TEST(CutToRegion, CutsAPolygonThatReachesOutside) {
 }
 
 TEST(CutToRegion, RefusesRegionsWithoutAnInside) {
-  const Terrain terrain = grid_terrain(2);
+  const CutTerrain terrain = grid_terrain(2);
   EXPECT_THROW(static_cast<void>(cut_to_region(terrain.refined, terrain.facts, MapPoint{110, 110})),
                Error);
 }
 
 TEST(SurfaceMesh, LeavesVoidsOut) {
-  const Terrain terrain = grid_terrain(2);
+  const CutTerrain terrain = grid_terrain(2);
   const Mesh mesh = surface_mesh(terrain.refined, terrain.facts);
   EXPECT_EQ(mesh.triangles.size(), 2U * kSide * kSide - 2U);
   EXPECT_NEAR(area_of(mesh), 6300, 1e-9);

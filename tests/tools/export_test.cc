@@ -15,6 +15,7 @@
 
 #include "engine/error.h"
 #include "engine/query/refine/part_refiner.h"
+#include "engine/query/terrain.h"
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
 #include "tools/export/raster_export.h"
@@ -189,8 +190,8 @@ struct Joined {
   std::uint64_t cells = 0;
 };
 
-Joined joined_under(const ProgressiveTin& terrain, PartRequest request, std::uint64_t limit) {
-  request.memory_limit_bytes = limit;
+Joined joined_under(const Terrain& terrain, PartRequest request, std::uint64_t limit) {
+  request.limits.memory_bytes = limit;
   const PartRefiner refiner(terrain, request);
   PatchMaker maker(terrain.store(), request.region);
   Joined all;
@@ -211,7 +212,7 @@ Joined joined_under(const ProgressiveTin& terrain, PartRequest request, std::uin
 }
 
 /// A little more than the records take that concern the most crowded vertex: no cell can need less.
-std::uint64_t tightest_limit(const ProgressiveTin& terrain, const PartRequest& request) {
+std::uint64_t tightest_limit(const Terrain& terrain, const PartRequest& request) {
   const PartRefiner refiner(terrain, request);
   std::uint64_t most = 0;
   for (const Vertex& v : terrain.refine({}).tin.vertices) {
@@ -223,10 +224,10 @@ std::uint64_t tightest_limit(const ProgressiveTin& terrain, const PartRequest& r
 TEST(Export, DoesNotDependOnTheCells) {
   const TestFolder folder;
   for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
-    const ProgressiveTin terrain = ProgressiveTin::open(built(folder, name));
+    const Terrain terrain = Terrain::open(built(folder, name));
     std::array<PartRequest, 3> levels;
-    levels[1].tolerance = 1.0;
-    levels[2].vertices = terrain.store().t0().vertices.size() + 200;
+    levels[1].detail.tolerance = 1.0;
+    levels[2].detail.vertices = terrain.store().t0().vertices.size() + 200;
     for (const PartRequest& request : levels) {
       const Joined whole = joined_under(terrain, request, std::uint64_t{1} << 30);
       EXPECT_EQ(whole.cells, 1U);
@@ -234,7 +235,7 @@ TEST(Export, DoesNotDependOnTheCells) {
       for (const std::uint64_t limit :
            {std::uint64_t{is_raster ? 4'000'000U : 700'000U}, tightest_limit(terrain, request)}) {
         const Joined parts = joined_under(terrain, request, limit);
-        const bool is_full = !request.tolerance && !request.vertices;
+        const bool is_full = !request.detail.tolerance && !request.detail.vertices;
         EXPECT_GT(parts.cells, is_full ? 3U : 0U) << name;
         EXPECT_EQ(parts.vertices, whole.vertices);
         EXPECT_EQ(parts.triangles, whole.triangles);
@@ -247,9 +248,9 @@ TEST(Export, NoticesAStoreThatIsReplacedOnTheWay) {
   const TestFolder folder;
   const std::string file = built(folder, "coast_257.tif");
   std::filesystem::copy_file(file, folder.file("other"));
-  const ProgressiveTin terrain = ProgressiveTin::open(file);
+  const Terrain terrain = Terrain::open(file);
   PartRequest request;
-  request.memory_limit_bytes = 4'000'000;
+  request.limits.memory_bytes = 4'000'000;
   int cells = 0;
   try {
     walk_cells(PartRefiner(terrain, request), [&](const GridCell&, const RefinedTin&, double) {
@@ -264,7 +265,7 @@ TEST(Export, NoticesAStoreThatIsReplacedOnTheWay) {
 
 TEST(Export, RefusesMemoryThatASinglePositionDoesNotFit) {
   const TestFolder folder;
-  const ProgressiveTin terrain = ProgressiveTin::open(built(folder, "coast_257.tif"));
+  const Terrain terrain = Terrain::open(built(folder, "coast_257.tif"));
   EXPECT_THROW(static_cast<void>(joined_under(terrain, {}, 20'000)), Error);
 }
 
@@ -338,13 +339,13 @@ TEST(Export, TakesSeveralCreationOptions) {
 
 TEST(Export, RasterDoesNotDependOnMemory) {
   const TestFolder folder;
-  const ProgressiveTin terrain = ProgressiveTin::open(built(folder, "mountains_257.tif"));
+  const Terrain terrain = Terrain::open(built(folder, "mountains_257.tif"));
   const StoreFacts& facts = terrain.store().facts();
   const PixelGrid grid(facts, {facts.map.step_x * 0.37, facts.map.step_y * 0.41}, std::nullopt);
   std::string first;
   for (const std::uint64_t limit : {std::uint64_t{1} << 30, std::uint64_t{1'000'000}}) {
     PartRequest request;
-    request.memory_limit_bytes = limit;
+    request.limits.memory_bytes = limit;
     const PartRefiner refiner(terrain, request);
     const RasterTarget target{folder.file("a.tif"), true, false, -9999.0, {}, {}, limit / 8};
     GDALAllRegister();
@@ -380,9 +381,9 @@ TEST(Export, RasterInterpolatesTheTriangles) {
   const TestFolder folder;
   std::mt19937 random(7);
   for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
-    const ProgressiveTin terrain = ProgressiveTin::open(built(folder, name));
+    const Terrain terrain = Terrain::open(built(folder, name));
     RefineRequest request;
-    request.tolerance = 5.0;
+    request.detail.tolerance = 5.0;
     const RefinedTin refined = terrain.refine(request);
     const StoreFacts& facts = terrain.store().facts();
     const GridBox& b = facts.bounds;

@@ -32,17 +32,17 @@ void expect_kept(const TestFolder& folder, std::vector<std::string> arguments,
   write_file(input, before);
 }
 
-struct Terrain {
+struct NamedTerrain {
   TestFolder folder;
   std::string raster = folder.file("hills.tif"), store = folder.file("hills.ptin");
-  Terrain() {
+  NamedTerrain() {
     make_raster(raster, {});
     testing::expect_done({"build", raster, "-o", store, "-q"});
   }
 };
 
 TEST(KeptInputs, ByTheirOwnNameAndThroughLinks) {
-  const Terrain t;
+  const NamedTerrain t;
   expect_kept(t.folder, {"build", t.raster, "-o", t.raster}, t.raster);
   const std::string hard = t.folder.file("hard.tif");
   const std::string soft = t.folder.file("soft.tif");
@@ -54,7 +54,7 @@ TEST(KeptInputs, ByTheirOwnNameAndThroughLinks) {
 }
 
 TEST(KeptInputs, OfEveryCommandThatWrites) {
-  const Terrain t;
+  const NamedTerrain t;
   const auto linked = [&](const std::string& name) {
     std::filesystem::create_hard_link(t.store, t.folder.file(name));
     return t.folder.file(name);
@@ -75,7 +75,7 @@ TEST(KeptInputs, OfEveryCommandThatWrites) {
 }
 
 TEST(KeptInputs, LinesPolygonsAndTheSourcesOfAVrt) {
-  const Terrain t;
+  const NamedTerrain t;
   const std::string road = t.folder.file("road.geojson");
   write_file(road, R"({"type":"LineString","coordinates":[[500100,3999900],[500700,3999300]]})");
   expect_kept(t.folder, {"profile", t.store, "--line", road, "-o", road}, road);
@@ -97,7 +97,7 @@ TEST(KeptInputs, LinesPolygonsAndTheSourcesOfAVrt) {
 }
 
 TEST(KeptInputs, OtherFilesAreReplacedAsBefore) {
-  const Terrain t;
+  const NamedTerrain t;
   testing::expect_done({"build", t.raster, "-o", t.store, "-q", "--overwrite"});
   const std::string copy = t.folder.file("copy.tif");
   std::filesystem::copy_file(t.raster, copy);

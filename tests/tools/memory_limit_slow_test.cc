@@ -19,7 +19,7 @@ using testing::run_ptin;
 using testing::TestFolder;
 
 constexpr rlim_t kMiB = rlim_t{1} << 20;
-/// What was measured on 4097 x 4097 samples, and a third more; bench/README.md.
+/// What was measured on 4097 x 4097 samples, and a third more; engine/DECISIONS.md, section 4.8.
 constexpr rlim_t kMargin = 64 * kMiB;
 
 /// On private memory.

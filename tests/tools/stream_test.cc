@@ -161,7 +161,7 @@ TEST_F(StreamCli, RejectsARequestThatNobodyCanHaveMade) {
     request.wanted = error_above(20.0);
     request.metadata = metadata;
     std::string bytes;
-    write_stream(*StoreFile::open(file("t.ptin")), request, [&](std::span<const std::byte> piece) {
+    write_stream(OpenedTerrain(file("t.ptin")), request, [&](std::span<const std::byte> piece) {
       bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
     });
     for (const std::size_t size : {bytes.size(), bytes.size() - 1}) {

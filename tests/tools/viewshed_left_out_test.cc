@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/query/sight/viewshed.h"
+#include "engine/query/terrain.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -40,8 +41,8 @@ Counts compare(const Viewshed& coarse, const Viewshed& whole) {
 
 TEST(ViewshedOfLeftOutDetail, IsCertainOnlyOfWhatTheWholeTerrainAnswers) {
   const TestFolder folder;
-  const ProgressiveTin whole(StoreFile::open(built_to(folder, "whole.ptin", "0")));
-  const ProgressiveTin coarse(StoreFile::open(built_to(folder, "coarse.ptin", "2")));
+  const Terrain whole(StoreFile::open(built_to(folder, "whole.ptin", "0")));
+  const Terrain coarse(StoreFile::open(built_to(folder, "coarse.ptin", "2")));
   ASSERT_GT(coarse.store().facts().base_deviation, 2.0);
   const double far_below = 6 * coarse.store().facts().base_deviation;
   Counts all;
@@ -57,7 +58,7 @@ TEST(ViewshedOfLeftOutDetail, IsCertainOnlyOfWhatTheWholeTerrainAnswers) {
         const Viewshed expected = viewshed(whole, request);
         EXPECT_TRUE(expected.exact);
         EXPECT_EQ(expected.undecided_pixels, 0U);
-        request.tolerance = tolerance;
+        request.detail.tolerance = tolerance;
         const Viewshed seen = viewshed(coarse, request);
         EXPECT_FALSE(seen.exact);
         const Counts counts = compare(seen, expected);

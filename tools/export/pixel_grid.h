@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "storage/store_file.h"
 
 namespace ptin::tools {

@@ -13,6 +13,7 @@
 
 #include "engine/construct/memory_plan.h"
 #include "engine/error.h"
+#include "engine/stop.h"
 #include "tools/output/gdal_output.h"
 #include "tools/output/pending_file.h"
 
@@ -281,8 +282,7 @@ void copy_as_cog(const PendingFile& raw, const PendingFile& file, const RasterTa
   GDALDatasetUniquePtr copy(driver.CreateCopy(file.temporary().c_str(), source.get(), FALSE,
                                               const_cast<char**>(options.List()),
                                               &CopyProgress::tell, &progress));
-  if (progress.stop.stop_requested())
-    throw Error(ErrorCode::cancelled, "the export was cancelled", target.path);
+  stop_if_asked(progress.stop, "the export", target.path);
   if (!copy || CPLGetLastErrorType() >= CE_Failure)
     throw gdal_failure("cannot write the COG", target.path);
   close_checked(copy, target.path);
@@ -319,7 +319,7 @@ double export_raster(const PartRefiner& refiner, const PixelGrid& grid, const Ra
     writer.run();
     rounding = writer.largest_rounding();
     close_checked(dataset, target.path);
-    CopyProgress copying{progress, refiner.request().stop};
+    CopyProgress copying{progress, refiner.request().limits.stop};
     copy_as_cog(raw, file, target, copying);
   }
   file.publish();

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/refine/part_refiner.h"
+#include "engine/crs/crs_facts.h"
+#include "engine/query/terrain.h"
 #include "tools/export/pixel_grid.h"
-#include "tools/facts/crs_facts.h"
 
 namespace ptin::tools {
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "engine/crs/crs_facts.h"
 #include "tools/export/tin_patch.h"
-#include "tools/facts/crs_facts.h"
 
 namespace ptin::tools {
 

@@ -7,8 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/query/heights/locate.h"
-#include "engine/query/sight/sight.h"
+#include "engine/query/terrain.h"
 
 namespace ptin::tools {
 

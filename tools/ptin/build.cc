@@ -13,9 +13,8 @@
 
 #include <malloc.h>
 
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
-#include "engine/construct/read/point_stream.h"
-#include "engine/construct/read/tin_soup.h"
 #include "storage/file/file_questions.h"
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
@@ -49,47 +48,6 @@ CostModel cost_of(const std::string& name) {
   return name == "elevation" ? CostModel::kElevation : CostModel::kError;
 }
 
-enum class InputKind : std::uint8_t { kRaster, kPoints, kTin };
-
-/// Why an option that was given means nothing to inputs of this kind; null when all do.
-const char* misfit_of(const BuildOptions& o, InputKind kind, const std::string& input) {
-  if (kind == InputKind::kRaster) {
-    if (o.resolution) return "--resolution is for points and TINs, and this is a raster";
-    if (!o.classes.empty()) return "--class is for LAS, and this is a raster";
-    if (o.repair) return "--repair is for TINs, and this is a raster";
-    if (o.max_edge) return "--max-edge is for points, and this is a raster";
-  } else if (kind == InputKind::kPoints) {
-    if (o.repair) return "--repair is for TINs, and these are points";
-  } else {
-    if (!o.classes.empty()) return "--class is for LAS, and this is a TIN";
-    if (!o.z_field.empty()) return "--z-field is for points, and this is a TIN";
-    if (!o.layer.empty() && !may_have_surfaces(input))
-      return "--layer is for points and for the surfaces of LandXML, and this is another TIN";
-    if (o.max_edge && !o.repair)
-      return "--max-edge is for points, and for TINs with --repair, and this is a TIN";
-  }
-  return nullptr;
-}
-
-/// What would be ignored without a word is refused.
-void check_kind_of_input(const BuildCommand& command) {
-  const BuildOptions& options = command.options;
-  const bool may_misfit = options.resolution || options.max_edge || options.repair ||
-                          !options.classes.empty() || !options.layer.empty() ||
-                          !options.z_field.empty();
-  if (!may_misfit) return;
-  const PointChoice choice{options.classes, options.layer, options.z_field};
-  for (const std::string& input : command.inputs) {
-    if (!is_there(input)) continue;
-    const InputKind kind = is_tin_file(input)              ? InputKind::kTin
-                           : is_point_input(input, choice) ? InputKind::kPoints
-                                                           : InputKind::kRaster;
-    if (const char* misfit = misfit_of(options, kind, input)) {
-      throw Error(ErrorCode::invalid_argument, std::string(misfit).append("; leave it out"), input);
-    }
-  }
-}
-
 /// Puts the options together and looks at the output; what their values may be is build()'s matter.
 void check_command(BuildCommand& command) {
   BuildOptions& options = command.options;
@@ -100,7 +58,6 @@ void check_command(BuildCommand& command) {
   const bool is_resumed =
       command.resume && is_there(Workspace::folder_of(output_target(command.output)));
   check_output(command.output, command.overwrite || is_resumed);
-  check_kind_of_input(command);
 }
 
 nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
@@ -171,7 +128,7 @@ nlohmann::json plan_json(const BuildPlan& p) {
           {"levels", p.levels},
           {"vertices", p.vertices},
           {"threads", p.threads},
-          {"memory_limit", p.memory_limit},
+          {"memory_limit", p.memory.limit},
           {"memory_expected", p.memory_expected},
           {"temporary_bytes", p.temporary_bytes},
           {"output_bytes", p.output_bytes},
@@ -191,43 +148,69 @@ void print_plan(const BuildPlan& p) {
                counted(static_cast<std::uint64_t>(p.threads), "thread").c_str(),
                human_bytes(p.memory_expected).c_str(), human_bytes(p.temporary_bytes).c_str(),
                human_bytes(p.output_bytes).c_str(), human_duration(p.seconds).c_str());
-  if (p.memory_limit > p.memory_allowed) {
+  if (p.memory.limit > p.memory.allowed) {
     std::fprintf(stderr,
                  "plan: warning: --memory %s is more than the system lets this process have, %s\n",
-                 human_bytes(p.memory_limit).c_str(), human_bytes(p.memory_allowed).c_str());
+                 human_bytes(p.memory.limit).c_str(), human_bytes(p.memory.allowed).c_str());
   }
   if (p.threads < p.threads_wanted) {
     std::fprintf(stderr, "plan: %s instead of %d, since no more tiles fit into %s\n",
                  counted(static_cast<std::uint64_t>(p.threads), "thread").c_str(), p.threads_wanted,
-                 human_bytes(p.memory_limit).c_str());
+                 human_bytes(p.memory.limit).c_str());
+  }
+}
+
+/// Big blocks go back to the system as soon as they are freed, so that the limit holds between
+/// tiles too.
+void return_freed_memory(int threads) {
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  mallopt(M_TRIM_THRESHOLD, 4 << 20);
+  mallopt(M_ARENA_MAX, threads + 1);
+}
+
+/// Where the limit leaves room for it, freed blocks are kept for the next tile: giving them back
+/// and taking fresh ones, page by page, is a sixth of the time of a build.
+void keep_freed_memory(const BuildPlan& plan) {
+  constexpr std::uint64_t kKeptByThread = std::uint64_t{64} << 20;  // measured
+  const std::uint64_t kept = kKeptByThread * static_cast<std::uint64_t>(plan.threads + 1);
+  if (plan.memory_expected + kept <= plan.memory.limit) {
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that malloc takes
+    mallopt(M_TRIM_THRESHOLD, 32 << 20);
   }
 }
 
 /// What a run shows while it works.
-class BuildShow {
+class BuildShow final : public BuildObserver {
  public:
   BuildShow(const BuildCommand& command, const Context& context)
-      : style_(Progress::style_for(context.quiet, stderr)), progress_(style_) {
+      : command_(command),
+        context_(context),
+        style_(Progress::style_for(context.quiet, stderr)),
+        progress_(style_) {
     if (command.progress_fd >= 0) {
       std::signal(SIGPIPE, SIG_IGN);  // a reader may go away
       fd_.emplace(command.progress_fd);
     }
   }
-  /// Of the stage that is reported next.
-  void tiles(std::uint64_t done, std::uint64_t all) { next_tiles_ = {done, all}; }
-  void report(const char* stage, std::uint64_t done, std::uint64_t total) {
+  void plan(const BuildPlan& plan) override {
+    finish();
+    keep_freed_memory(plan);
+    if (command_.dry_run && context_.json) {
+      print_json(plan_json(plan));
+    } else if (!context_.quiet) {
+      print_plan(plan);
+    }
+  }
+  void progress(const StageProgress& p) override {
     const auto now = std::chrono::steady_clock::now();
-    if (stage_ != stage) {
+    if (stage_ != p.stage) {
       end_stage();
-      stage_ = stage;
+      stage_ = p.stage;
       begin_ = now;
-      first_ = done;
+      first_ = p.done;
     }
-    if (next_tiles_) {
-      facts_.tiles_done = next_tiles_->first;
-      facts_.tiles = next_tiles_->second;
-      next_tiles_.reset();
-    }
+    facts_.tiles_done = p.tiles_done;
+    facts_.tiles = p.tiles;
     if (now - looked_ > std::chrono::milliseconds(500)) {
       looked_ = now;
       facts_.memory = anonymous_bytes_now();
@@ -235,14 +218,15 @@ class BuildShow {
     }
     seconds_ = std::chrono::duration<double>(now - begin_).count();
     facts_.per_second =
-        static_cast<std::uint64_t>(ratio(static_cast<double>(done - first_), seconds_));
+        static_cast<std::uint64_t>(ratio(static_cast<double>(p.done - first_), seconds_));
     facts_.remaining_seconds =
-        facts_.per_second > 0 && total >= done
-            ? ratio(static_cast<double>(total - done), static_cast<double>(facts_.per_second))
+        facts_.per_second > 0 && p.total >= p.done
+            ? ratio(static_cast<double>(p.total - p.done), static_cast<double>(facts_.per_second))
             : -1.0;
-    if (fd_) fd_->report(stage, done, total, facts_);
-    progress_.report(stage, done, total, seconds_ > 1.0 && total > 1 ? detail() : "");
+    if (fd_) fd_->report(p.stage, p.done, p.total, facts_);
+    progress_.report(p.stage, p.done, p.total, seconds_ > 1.0 && p.total > 1 ? detail() : "");
   }
+  void give_back_memory() override { malloc_trim(0); }
   void finish() {
     end_stage();
     progress_.finish();
@@ -271,6 +255,8 @@ class BuildShow {
     facts_.tiles = facts_.tiles_done = 0;
   }
 
+  const BuildCommand& command_;
+  const Context& context_;
   Progress::Style style_;
   Progress progress_;
   std::optional<ProgressFd> fd_;
@@ -279,29 +265,10 @@ class BuildShow {
   std::uint64_t first_ = 0, most_memory_ = 0;
   double seconds_ = 0.0;
   ProgressFacts facts_;
-  std::optional<std::pair<std::uint64_t, std::uint64_t>> next_tiles_;
 };
 
-/// Big blocks go back to the system as soon as they are freed, so that the limit holds between
-/// tiles too.
-void return_freed_memory(int threads) {
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  mallopt(M_TRIM_THRESHOLD, 4 << 20);
-  mallopt(M_ARENA_MAX, threads + 1);
-}
-
-/// Where the limit leaves room for it, freed blocks are kept for the next tile: giving them back
-/// and taking fresh ones, page by page, is a sixth of the time of a build.
-void keep_freed_memory(const BuildPlan& plan) {
-  constexpr std::uint64_t kKeptByThread = std::uint64_t{64} << 20;  // measured
-  const std::uint64_t kept = kKeptByThread * static_cast<std::uint64_t>(plan.threads + 1);
-  if (plan.memory_expected + kept <= plan.memory_limit) {
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that malloc takes
-    mallopt(M_TRIM_THRESHOLD, 32 << 20);
-  }
-}
-
-BuildResources resources_of(const BuildCommand& command, const Context& context, BuildShow& show) {
+BuildResources resources_of(const BuildCommand& command, const Context& context,
+                            BuildObserver& show) {
   BuildResources resources;
   resources.overwrite = command.overwrite;
   resources.stop = context.stop;
@@ -312,20 +279,7 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
                          : command.discard ? Unfinished::kDiscard
                                            : Unfinished::kRefuse;
   resources.dry_run = command.dry_run;
-  resources.give_back = [] { malloc_trim(0); };
-  resources.plan = [&command, &context, &show](const BuildPlan& plan) {
-    show.finish();
-    keep_freed_memory(plan);
-    if (command.dry_run && context.json) {
-      print_json(plan_json(plan));
-    } else if (!context.quiet) {
-      print_plan(plan);
-    }
-  };
-  resources.tiles = [&show](std::uint64_t done, std::uint64_t all) { show.tiles(done, all); };
-  resources.progress = [&show](const char* stage, std::uint64_t done, std::uint64_t total) {
-    show.report(stage, done, total);
-  };
+  resources.observer = &show;
   return resources;
 }
 

@@ -7,12 +7,12 @@
 #include <cstdio>
 #include <memory>
 
-#include "engine/query/refine/part_refiner.h"
+#include "engine/crs/crs_facts.h"
+#include "engine/query/terrain.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/export/raster_export.h"
 #include "tools/export/tin_sink.h"
-#include "tools/facts/crs_facts.h"
 #include "tools/facts/human.h"
 #include "tools/output/file_name.h"
 #include "tools/output/output_file.h"
@@ -174,17 +174,17 @@ void warn_without_index(const ExportFormat& format, const SinkTarget& target,
                target.path.c_str());
 }
 
-Exported export_as(const ExportFormat& format, const ExportOptions& options,
-                   const ProgressiveTin& terrain, const Context& context) {
+Exported export_as(const ExportFormat& format, const ExportOptions& options, const Terrain& terrain,
+                   const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   const ExportMemory memory = memory_of(options);
   PartRequest request;
   if (format.make_sink != nullptr) request.region = region_of(options.region, crs.wkt);
-  request.tolerance = options.detail.error;
-  request.vertices = options.detail.vertices;
-  request.memory_limit_bytes = memory.part;
-  request.stop = context.stop;
-  const PartRefiner refiner(terrain, request);
+  request.detail.tolerance = options.detail.error;
+  request.detail.vertices = options.detail.vertices;
+  request.limits.memory_bytes = memory.part;
+  request.limits.stop = context.stop;
+  const PartRefiner refiner = terrain.parts(request);
 
   Progress progress(Progress::style_for(context.quiet, stderr));
   const Report report = [&](double done) {
@@ -225,7 +225,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   const ExportFormat& format = format_of(options);
   check_options(options, format);
   const auto start = std::chrono::steady_clock::now();
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const Exported made = export_as(format, options, terrain, context);
   const double seconds =

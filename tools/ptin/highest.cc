@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin highest: the highest or lowest point of a window.
-#include "engine/query/heights/highest.h"
-
 #include <cstdio>
 #include <memory>
 
+#include "engine/crs/crs_facts.h"
+#include "engine/query/terrain.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/crs_facts.h"
 #include "tools/facts/human.h"
 #include "tools/ptin/query_options.h"
 
@@ -50,7 +49,7 @@ void print_text(const HighestResult& result, const HighestOptions& options, bool
 
 int run_highest(const HighestOptions& options, const Context& context) {
   check_detail(options.detail);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   HighestRequest request;
@@ -59,11 +58,11 @@ int run_highest(const HighestOptions& options, const Context& context) {
   }
   request.lowest = options.lowest;
   request.listed = options.listed;
-  request.tolerance = options.detail.error;
-  request.vertices = options.detail.vertices;
-  request.memory_limit_bytes = memory_limit_of(options.memory);
-  request.stop = context.stop;
-  const HighestResult result = highest(terrain, request);
+  request.detail.tolerance = options.detail.error;
+  request.detail.vertices = options.detail.vertices;
+  request.limits.memory_bytes = memory_limit_of(options.memory);
+  request.limits.stop = context.stop;
+  const HighestResult result = terrain.highest(request);
   if (!context.json) {
     print_text(result, options, !terrain.store().facts().free_of_voids);
     return kExitDone;

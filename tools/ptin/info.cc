@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <memory>
 
+#include "engine/crs/crs_facts.h"
 #include "storage/index_shape.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/crs_facts.h"
 #include "tools/facts/human.h"
 #include "tools/ptin/error_stats.h"
 #include "tools/ptin/query_options.h"

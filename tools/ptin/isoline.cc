@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin isoline: isolines as a vector layer, by gdal_contour's conventions.
-#include "engine/query/isoline/isoline.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,12 +8,11 @@
 
 #include <ogr_geometry.h>
 
-#include "engine/query/isoline/isoline_bands.h"
-#include "engine/query/refine/part_refiner.h"
+#include "engine/crs/crs_facts.h"
+#include "engine/query/terrain.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/counts.h"
-#include "tools/facts/crs_facts.h"
 #include "tools/facts/human.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/output_file.h"
@@ -90,9 +87,9 @@ void report(const IsolineOptions& options, const Isolines& lines,
   }
 }
 
-int run_lines(const IsolineOptions& options, const IsolineRequest& request,
-              const ProgressiveTin& terrain, const CrsFacts& crs, const Context& context) {
-  const Isolines lines = isolines(terrain, request);
+int run_lines(const IsolineOptions& options, const IsolineRequest& request, const Terrain& terrain,
+              const CrsFacts& crs, const Context& context) {
+  const Isolines lines = terrain.isolines(request);
   IsolineLayer layer({options.output, options.overwrite, options.z, false, crs.wkt, context.stop});
   const IsolineLayer::Written written = layer.add(lines);
   layer.publish();
@@ -114,15 +111,15 @@ bool has_straight_border(const StoreFile& store) {
 }
 
 RefinedTin refine_for_bands(const IsolineRequest& request, const LevelSet& levels,
-                            const ProgressiveTin& terrain) {
+                            const Terrain& terrain) {
   PartRequest part;
   if (request.window) part.region = *request.window;
-  part.tolerance = request.tolerance;
-  part.vertices = request.vertices;
-  part.memory_limit_bytes = request.memory_limit_bytes / 2;
-  part.stop = request.stop;
+  part.detail.tolerance = request.detail.tolerance;
+  part.detail.vertices = request.detail.vertices;
+  part.limits.memory_bytes = request.limits.memory_bytes / 2;
+  part.limits.stop = request.limits.stop;
   if (has_straight_border(terrain.store())) part.also = levels.crossing();
-  return PartRefiner(terrain, part).refine(terrain.store().facts().bounds);
+  return terrain.parts(part).refine(terrain.store().facts().bounds);
 }
 
 std::unique_ptr<OGRGeometry> polygon_geometry(const BandPolygon& polygon) {
@@ -168,7 +165,7 @@ std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelS
 }
 
 int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
-                 const ProgressiveTin& terrain, const CrsFacts& crs, const Context& context) {
+                 const Terrain& terrain, const CrsFacts& crs, const Context& context) {
   const StoreFacts& facts = terrain.store().facts();
   const LevelSet levels(request.levels, facts.heights);
   RefinedTin refined = refine_for_bands(request, levels, terrain);
@@ -180,7 +177,7 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
     heights.push_back(facts.heights.height_of_code(levels.code(i)));
   }
   // The refined mesh is gone by now, its cut copy and the polygons are counted together.
-  const QueryContext query(request.stop, request.memory_limit_bytes, terrain.store().path());
+  const QueryContext query(request.limits, terrain.store().path());
   const std::vector<BandPolygon> polygons =
       band_polygons({mesh.vertices, mesh.triangles}, heights, query);
   if (polygons.size() > request.most_lines) {
@@ -210,7 +207,7 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
 
 int run_isoline(const IsolineOptions& options, const Context& context) {
   check_options(options, context);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   IsolineRequest request;
@@ -218,13 +215,13 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   if (const auto region = region_of(options.region, crs.wkt)) {
     request.window = std::get<Window>(*region);
   }
-  request.tolerance = options.detail.error;
-  request.vertices = options.detail.vertices;
+  request.detail.tolerance = options.detail.error;
+  request.detail.vertices = options.detail.vertices;
   request.most_lines = options.max_lines;
-  request.memory_limit_bytes = memory_limit_of(options.memory, request.memory_limit_bytes);
+  request.limits.memory_bytes = memory_limit_of(options.memory, request.limits.memory_bytes);
   request.temporary_folder = folder_for_temporaries(options);
   request.threads = thread_count(options.threads);
-  request.stop = context.stop;
+  request.limits.stop = context.stop;
   return options.polygons ? run_polygons(options, request, terrain, crs, context)
                           : run_lines(options, request, terrain, crs, context);
 }

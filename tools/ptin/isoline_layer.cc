@@ -2,7 +2,8 @@
 #include "tools/ptin/isoline_layer.h"
 
 #include "engine/error.h"
-#include "engine/query/isoline/isoline_clip.h"
+#include "engine/query/terrain.h"
+#include "engine/stop.h"
 
 namespace ptin::tools {
 
@@ -32,8 +33,8 @@ IsolineLayer::Written IsolineLayer::add(const Isolines& lines, const IsolineStep
   Written written;
   std::vector<MapPoint> points;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (i % 1024 == 0 && options_.stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "cancelled while writing", options_.path);
+    if (i % 1024 == 0) {
+      stop_if_asked(options_.stop, "writing", options_.path);
     }
     const Isoline line = lines.line(i, points);
     const double elevation = lines.levels()[line.level];

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/isoline/isoline.h"
+#include "engine/query/terrain.h"
 #include "tools/formats/vector_file.h"
 
 namespace ptin::tools {

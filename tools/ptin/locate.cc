@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin locate: triangle and height at points.
-#include "engine/query/heights/locate.h"
-
 #include <cmath>
 #include <memory>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/error.h"
+#include "engine/query/terrain.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/crs_facts.h"
 #include "tools/formats/number_text.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/number_rows.h"
@@ -72,18 +71,18 @@ int run_locate(const LocateOptions& options, const Context& context) {
     throw Error(ErrorCode::invalid_argument, "give either X Y or --points FILE");
   }
   check_detail(options.detail);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const std::vector<MapPoint> points =
       options.points.empty() ? std::vector<MapPoint>{{options.point[0], options.point[1]}}
                              : read_points(options.points, crs.wkt);
   LocateRequest request;
-  request.tolerance = options.detail.error;
-  request.vertices = options.detail.vertices;
-  request.memory_limit_bytes = memory_limit_of(options.memory);
-  request.stop = context.stop;
-  const LocateResult result = locate(terrain, points, request);
+  request.detail.tolerance = options.detail.error;
+  request.detail.vertices = options.detail.vertices;
+  request.limits.memory_bytes = memory_limit_of(options.memory);
+  request.limits.stop = context.stop;
+  const LocateResult result = terrain.locate(points, request);
   if (!context.json) {
     print_rows(points, result);
     return kExitDone;

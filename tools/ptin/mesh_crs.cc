@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/mesh_crs.h"
 
-#include "tools/facts/ground.h"
+#include "engine/crs/ground.h"
 
 namespace ptin::tools {
 

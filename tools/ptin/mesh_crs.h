@@ -3,7 +3,7 @@
 // What a mesh on its way out says of its CRS.
 #pragma once
 
-#include "tools/facts/crs_facts.h"
+#include "engine/crs/crs_facts.h"
 #include "tools/formats/mesh.h"
 
 namespace ptin::tools {

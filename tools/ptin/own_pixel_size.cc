@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/error.h"
-#include "tools/facts/crs_facts.h"
 
 namespace ptin::tools {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin profile: heights along a line, as CSV, GeoJSON or a picture.
-#include "engine/query/heights/profile.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,11 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "engine/crs/crs_facts.h"
+#include "engine/crs/ground.h"
 #include "engine/error.h"
+#include "engine/query/terrain.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/crs_facts.h"
-#include "tools/facts/ground.h"
 #include "tools/facts/human.h"
 #include "tools/formats/number_text.h"
 #include "tools/output/file_name.h"
@@ -246,21 +245,21 @@ nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& res
 int run_profile(const ProfileOptions& options, const Context& context) {
   check_output_name(options, context.json);
   check_detail(options.detail);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const std::vector<std::vector<MapPoint>> lines = read_lines(options.line, crs.wkt);
   ProfileRequest request;
-  request.tolerance = options.detail.error;
-  request.vertices = options.detail.vertices;
-  request.memory_limit_bytes = memory_limit_of(options.memory);
-  request.stop = context.stop;
+  request.detail.tolerance = options.detail.error;
+  request.detail.vertices = options.detail.vertices;
+  request.limits.memory_bytes = memory_limit_of(options.memory);
+  request.limits.stop = context.stop;
   if (const Ground ground = ground_of(crs); ground.geographic) {  // degrees are no lengths
     request.ground_distance = [ground](MapPoint a, MapPoint b) {
       return ground.distance(a, b) * ground.metres_per_height;
     };
   }
-  const ProfileResult result = profile(terrain, lines, request);
+  const ProfileResult result = terrain.profile(lines, request);
   if (result.skipped_lines > 0 && !context.json) {
     std::fprintf(stderr, "%s of %s: no length, skipped\n", grouped(result.skipped_lines).c_str(),
                  counted(lines.size(), "line").c_str());

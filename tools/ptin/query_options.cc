@@ -7,7 +7,7 @@
 
 #include "engine/construct/memory_plan.h"
 #include "engine/error.h"
-#include "engine/query/isoline/levels.h"
+#include "engine/query/terrain.h"
 #include "storage/file/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"
 #include "tools/facts/counts.h"
@@ -30,11 +30,11 @@ void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index)
       ->type_name("DIR");
 }
 
-ProgressiveTin open_terrain(const TerrainOptions& options) {
+Terrain open_terrain(const TerrainOptions& options) {
   if (!options.no_mmap) install_sigbus_guard();
   const auto store =
       StoreFile::open(options.file, options.no_mmap ? PageAccess::kPread : PageAccess::kMapped);
-  ProgressiveTin terrain(store);
+  Terrain terrain(store);
   if (options.index == "spatialindex") {
     SpatialIndexOptions index;
     index.temporary_folder = options.temporary_folder;

@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "tools/ptin/command.h"
 
 namespace ptin::tools {
@@ -25,8 +25,8 @@ struct TerrainOptions {
   bool no_mmap = false;
 };
 void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index);
-/// @throws Error as ProgressiveTin::open
-[[nodiscard]] ProgressiveTin open_terrain(const TerrainOptions& options);
+/// @throws Error as Terrain::open
+[[nodiscard]] Terrain open_terrain(const TerrainOptions& options);
 
 /// --window, --polygon, --point: at most one.
 struct RegionOptions {
@@ -84,7 +84,7 @@ void add_memory_option(CLI::App& app, std::string& memory);
 [[nodiscard]] std::uint64_t memory_limit_of(const std::string& memory,
                                             std::uint64_t otherwise = std::uint64_t{4} << 30);
 
-/// The cost of an answer under the names of DESIGN.md, section 8.
+/// The cost of an answer under the names of tools/API.md, "JSON".
 [[nodiscard]] nlohmann::json cost_json(const QueryCost& cost);
 
 /// Prints JSON, indented, and a newline to stdout. Infinite numbers become null.

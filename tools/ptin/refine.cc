@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "engine/crs/crs_facts.h"
 #include "tools/error_status.h"
-#include "tools/facts/crs_facts.h"
 #include "tools/facts/human.h"
 #include "tools/formats/mesh_writer.h"
 #include "tools/ptin/mesh_crs.h"
@@ -84,16 +84,16 @@ void print_stats(const RefineOptions& options, const RefinedTin& refined, const 
 
 int run_refine(const RefineOptions& options, const Context& context) {
   check_options(options);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request;
   request.region = region_of(options.region, crs.wkt);
-  request.tolerance = options.detail.error;
-  request.vertices = options.detail.vertices;
+  request.detail.tolerance = options.detail.error;
+  request.detail.vertices = options.detail.vertices;
   request.form = options.clip ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
-  request.stop = context.stop;
-  request.memory_limit_bytes = memory_limit_of(options.memory);
+  request.limits.stop = context.stop;
+  request.limits.memory_bytes = memory_limit_of(options.memory);
   const RefinedTin refined = terrain.refine(request);
 
   const StoreFacts& facts = terrain.store().facts();

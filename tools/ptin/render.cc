@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <memory>
 
+#include "engine/crs/crs_facts.h"
+#include "engine/crs/ground.h"
 #include "tools/error_status.h"
-#include "tools/facts/crs_facts.h"
-#include "tools/facts/ground.h"
 #include "tools/facts/human.h"
 #include "tools/output/output_file.h"
 #include "tools/ptin/error_stats.h"
@@ -131,7 +131,7 @@ Image draw(const RenderOptions& options, const RefinedTin& refined, const StoreF
 
 int run_render(const RenderOptions& options, const Context& context) {
   check_options(options);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.error, context);
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
@@ -141,14 +141,14 @@ int run_render(const RenderOptions& options, const Context& context) {
   const View view = view_of(options, window, crs);
 
   RefineRequest request;
-  request.memory_limit_bytes = memory_beside_picture(options, view);
+  request.limits.memory_bytes = memory_beside_picture(options, view);
   if (region) request.region = visible_window(view);
-  request.tolerance = options.error
-                          ? options.error
-                          : tolerance_for(store, share_of(visible_window(view), whole), view);
+  request.detail.tolerance =
+      options.error ? options.error
+                    : tolerance_for(store, share_of(visible_window(view), whole), view);
   request.form = ResultForm::kMeetingRegion;
   request.page_of_triangle = options.pages;
-  request.stop = context.stop;
+  request.limits.stop = context.stop;
   const RefinedTin refined = terrain.refine(request);
   ReliefStyle style;
   Image image = draw(options, refined, store.facts(), view, context.stop, style);
@@ -164,7 +164,8 @@ int run_render(const RenderOptions& options, const Context& context) {
       {"output", options.output},
       {"width", view.width},
       {"height", view.height},
-      {"tolerance", request.tolerance ? nlohmann::json(*request.tolerance) : nlohmann::json()},
+      {"tolerance",
+       request.detail.tolerance ? nlohmann::json(*request.detail.tolerance) : nlohmann::json()},
       {"vertices", refined.vertices},
       {"triangles", refined.triangles},
       {"certified_error", refined.certified_error},
@@ -176,8 +177,9 @@ int run_render(const RenderOptions& options, const Context& context) {
   if (context.json) {
     print_json(answer);
   } else if (!context.quiet) {
-    const std::string level =
-        request.tolerance ? "within " + short_number(refined.certified_error) : "the full TIN";
+    const std::string level = request.detail.tolerance
+                                  ? "within " + short_number(refined.certified_error)
+                                  : "the full TIN";
     const std::string steepness = style.exaggeration == 1.0
                                       ? "as they are"
                                       : short_number(style.exaggeration) + " times as steep";

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin sight: is one point seen from another.
-#include "engine/query/sight/sight.h"
-
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
+#include "engine/crs/crs_facts.h"
+#include "engine/crs/ground.h"
 #include "engine/error.h"
+#include "engine/query/terrain.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/counts.h"
-#include "tools/facts/crs_facts.h"
-#include "tools/facts/ground.h"
 #include "tools/formats/number_text.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/number_rows.h"
@@ -62,12 +61,12 @@ SightRequest request_of(const SightOptions& options, const Ground& ground, const
   if (options.frequency) {
     request.wavelength = kSpeedOfLight / *options.frequency / ground.metres_per_height;
   }
-  request.tolerance = options.detail.error;
-  request.vertices = options.detail.vertices;
-  request.memory_limit_bytes = memory_limit_of(options.memory);
+  request.detail.tolerance = options.detail.error;
+  request.detail.vertices = options.detail.vertices;
+  request.limits.memory_bytes = memory_limit_of(options.memory);
   request.budget = options.budget;
   request.verdict_only = options.verdict_only;
-  request.stop = context.stop;
+  request.limits.stop = context.stop;
   return request;
 }
 
@@ -122,11 +121,12 @@ void append_row(std::string& text, const SightResult& r) {
 int run_sight(const SightOptions& options, const Context& context) {
   check_detail(options.detail);
   const std::vector<SightPair> pairs = pairs_of(options);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const SightRequest request = request_of(options, ground_of(crs), context);
-  SightSolver solver(terrain, request, pairs.size() < kFewPairs ? 0 : std::uint64_t{1} << 15);
+  SightSolver solver =
+      terrain.sight_lines(request, pairs.size() < kFewPairs ? 0 : std::uint64_t{1} << 15);
   nlohmann::json answers = nlohmann::json::array();
   std::string text =
       "verdict,length,obstruction_x,obstruction_y,obstruction_distance,clearance_min,"

@@ -6,10 +6,10 @@
 
 #include <unistd.h>
 
-#include "engine/query/stream/stream_writer.h"
+#include "engine/crs/crs_facts.h"
+#include "engine/query/terrain.h"
 #include "tools/error_status.h"
 #include "tools/facts/counts.h"
-#include "tools/facts/crs_facts.h"
 #include "tools/facts/human.h"
 #include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
@@ -65,20 +65,18 @@ std::vector<StreamHeld> held_of(const StreamOptions& options, const StoreFacts& 
   return held;
 }
 
-StreamSummary send(const StreamOptions& options, const StoreFile& store,
+StreamSummary send(const StreamOptions& options, const Terrain& terrain,
                    const StreamRequest& request) {
   if (options.output == "-") {
-    const StreamSummary summary =
-        write_stream(store, request, [](std::span<const std::byte> bytes) {
-          write_to_stdout({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-        });
+    const StreamSummary summary = terrain.stream(request, [](std::span<const std::byte> bytes) {
+      write_to_stdout({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    });
     finish_stdout();
     return summary;
   }
   OutputFile out(options.output, options.overwrite);
-  const StreamSummary summary = write_stream(store, request, [&](std::span<const std::byte> bytes) {
-    out.write(bytes.data(), bytes.size());
-  });
+  const StreamSummary summary = terrain.stream(
+      request, [&](std::span<const std::byte> bytes) { out.write(bytes.data(), bytes.size()); });
   out.publish();
   return summary;
 }
@@ -102,7 +100,7 @@ void print_stats(const StreamOptions& options, const StreamSummary& s) {
 
 int run_stream(const StreamOptions& options, const Context& context) {
   check_options(options, context);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   const StoreFile& store = terrain.store();
   warn_of_base_error(store, options.wanted.error, context);
   StreamRequest request;
@@ -111,9 +109,9 @@ int run_stream(const StreamOptions& options, const Context& context) {
   request.held = held_of(options, store.facts());
   if (options.wanted.splits) request.most_splits = *options.wanted.splits;
   request.metadata = metadata_for(store, options.wanted);
-  request.stop = context.stop;
-  request.memory_limit_bytes = memory_limit_of(options.memory);
-  const StreamSummary summary = send(options, store, request);
+  request.limits.stop = context.stop;
+  request.limits.memory_bytes = memory_limit_of(options.memory);
+  const StreamSummary summary = send(options, terrain, request);
   if (context.json) {
     print_json({{"output", options.output},
                 {"base_vertices", summary.base_vertices},

@@ -3,8 +3,8 @@
 
 #include <utility>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/error.h"
-#include "tools/facts/crs_facts.h"
 
 namespace ptin::tools {
 
@@ -21,13 +21,12 @@ void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options) {
 }
 
 StreamIsolines::StreamIsolines(const StreamIsolineOptions& options, std::string output,
-                               bool overwrite, std::uint64_t memory_limit_bytes,
-                               std::stop_token stop)
+                               bool overwrite, QueryLimits limits)
     : options_(options),
       output_(std::move(output)),
       overwrite_(overwrite),
-      stop_(stop),
-      context_(std::move(stop), memory_limit_bytes, output_) {
+      stop_(limits.stop),
+      context_(std::move(limits), output_) {
   RegionOptions region;
   region.window = options.window;
   if (const auto window = region_of(region, "")) {

@@ -11,8 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/query/isoline/isoline_progressive.h"
-#include "engine/query/stream/stream_reader.h"
+#include "engine/query/terrain.h"
 #include "tools/ptin/command.h"
 #include "tools/ptin/isoline_layer.h"
 #include "tools/ptin/query_options.h"
@@ -34,9 +33,9 @@ void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options);
 /// and after every frame of splits.
 class StreamIsolines {
  public:
-  /// @param memory_limit_bytes  For what is kept of the isolines and for writing them.
+  /// @param limits  The memory is for what is kept of the isolines and for writing them.
   StreamIsolines(const StreamIsolineOptions& options, std::string output, bool overwrite,
-                 std::uint64_t memory_limit_bytes, std::stop_token stop);
+                 QueryLimits limits);
 
   /// To be called after every StreamReader::feed_frame(). Cost: what changed
   /// (isoline_progressive.h), and with --steps the lines.

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/error.h"
-#include "engine/query/isoline/levels.h"
+#include "engine/query/terrain.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {

@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/query/stream/stream_writer.h"
+#include "engine/query/terrain.h"
 #include "storage/store_file.h"
 
 namespace ptin::tools {

@@ -10,9 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/query/stream/stream_reader.h"
+#include "engine/crs/crs_facts.h"
+#include "engine/query/terrain.h"
+#include "engine/stop.h"
 #include "tools/error_status.h"
-#include "tools/facts/crs_facts.h"
 #include "tools/facts/human.h"
 #include "tools/formats/mesh_writer.h"
 #include "tools/ptin/mesh_crs.h"
@@ -78,7 +79,7 @@ class Receiver {
     bool begun = false;
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
       begun = true;
-      if (context.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+      stop_if_asked(context.stop, "receiving");
       for (std::span<const std::byte> rest(buffer.data(), n); !rest.empty();) {
         rest = rest.subspan(isolines_ != nullptr ? reader_.feed_frame(rest) : reader_.feed(rest));
         if (isolines_ != nullptr) isolines_->follow(reader_);
@@ -254,11 +255,13 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   const std::uint64_t memory = memory_limit_of(options.memory);
   std::optional<StreamIsolines> isolines;
   if (options.isolines.given()) {
-    isolines.emplace(options.isolines, options.output, options.overwrite, memory / 2, context.stop);
+    isolines.emplace(options.isolines, options.output, options.overwrite,
+                     QueryLimits{memory / 2, context.stop});
   }
   std::string name = options.inputs.size() == 1 ? options.inputs.front() : "streams";
   // Half for what arrives, half for what is written of it.
-  Receiver receiver(name == "-" ? "stdin" : std::move(name), {memory / 2, context.stop},
+  Receiver receiver(name == "-" ? "stdin" : std::move(name),
+                    StreamReaderOptions{{memory / 2, context.stop}},
                     isolines ? &*isolines : nullptr);
   for (const std::string& input : options.inputs) receiver.read(input, context);
   if (!receiver.reader().has_mesh()) {

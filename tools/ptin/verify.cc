@@ -66,14 +66,14 @@ std::vector<Window> squares_of(const StoreFile& store) {
 }
 
 /// Applies every record, square by square, and validates what comes out.
-void verify_refinement(const ProgressiveTin& terrain, const Context& context, Progress& progress,
+void verify_refinement(const Terrain& terrain, const Context& context, Progress& progress,
                        Findings& findings) {
   const std::vector<Window> squares = squares_of(terrain.store());
   for (const Window& square : squares) {
     progress.report("refinement", findings.windows++, squares.size());
     RefineRequest request;
     if (squares.size() > 1) request.region = square;
-    request.stop = context.stop;
+    request.limits.stop = context.stop;
     try {
       const std::string broken = validate(terrain.refine(request).tin);
       if (broken.empty()) continue;
@@ -108,8 +108,8 @@ std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
   return tolerances;
 }
 
-void verify_source(const VerifyCommand& command, const ProgressiveTin& terrain,
-                   const Context& context, Progress& progress, Findings& findings) {
+void verify_source(const VerifyCommand& command, const Terrain& terrain, const Context& context,
+                   Progress& progress, Findings& findings) {
   constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
   const ExternalMemory memory{FileLayer::system(),
                               command.tmp.empty() ? folder_of(command.terrain.file) : command.tmp,
@@ -139,7 +139,7 @@ Findings verify(const VerifyCommand& command, const Context& context) {
       [&](std::uint64_t done, std::uint64_t total) { progress.report("pages", done, total); });
   findings.faults = findings.store.faults;
   if (findings.store.is_sound()) {  // what is damaged already is not asked further
-    const ProgressiveTin terrain = open_terrain(command.terrain);
+    const Terrain terrain = open_terrain(command.terrain);
     verify_refinement(terrain, context, progress, findings);
     if (!command.against.empty()) verify_source(command, terrain, context, progress, findings);
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin viewshed: what one observer sees, as a raster or as points.
-#include "engine/query/sight/viewshed.h"
-
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -11,9 +9,11 @@
 #include <ogr_geometry.h>
 
 #include "engine/construct/memory_plan.h"
+#include "engine/crs/crs_facts.h"
+#include "engine/crs/ground.h"
+#include "engine/query/terrain.h"
+#include "engine/stop.h"
 #include "tools/error_status.h"
-#include "tools/facts/crs_facts.h"
-#include "tools/facts/ground.h"
 #include "tools/facts/human.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/file_name.h"
@@ -43,7 +43,7 @@ constexpr std::uint64_t kLeastCache = std::uint64_t{1} << 20;
 constexpr std::uint64_t kMostCache = std::uint64_t{64} << 20;
 
 std::uint64_t request_memory(const ViewshedOptions& options) {
-  return memory_limit_of(options.memory, ViewshedRequest{}.memory_limit_bytes);
+  return memory_limit_of(options.memory, QueryLimits{}.memory_bytes);
 }
 
 bool is_raster(const std::string& path) {
@@ -71,9 +71,7 @@ void check_options(const ViewshedOptions& options) {
 }
 
 void check_stop(const Context& context, const ViewshedOptions& options) {
-  if (context.stop.stop_requested()) {
-    throw Error(ErrorCode::cancelled, "cancelled while writing", options.output);
-  }
+  stop_if_asked(context.stop, "writing", options.output);
 }
 
 /// By rows of blocks, between which it may be stopped.
@@ -182,7 +180,7 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts
 
 int run_viewshed(const ViewshedOptions& options, const Context& context) {
   check_options(options);
-  const ProgressiveTin terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   // A grid of points is far finer than what anybody wants to see.
   if (is_raster(options.output) && !options.pixel_size) {
@@ -200,15 +198,15 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   request.ground_per_map_x = per_unit.x;
   request.ground_per_map_y = per_unit.y;
   request.pixel_size = options.pixel_size;
-  request.tolerance = options.detail.error;
-  request.vertices = options.detail.vertices;
-  request.stop = context.stop;
-  request.memory_limit_bytes = request_memory(options);
+  request.detail.tolerance = options.detail.error;
+  request.detail.vertices = options.detail.vertices;
+  request.limits.stop = context.stop;
+  request.limits.memory_bytes = request_memory(options);
   request.radius =
       ground.geographic ? options.radius / ground.metres_per_height : options.radius * per_unit.x;
   request.pixels = is_raster(options.output);
   request.list_vertices = !request.pixels;
-  const Viewshed seen = viewshed(terrain, request);
+  const Viewshed seen = terrain.viewshed(request);
   if (is_raster(options.output)) {
     write_raster(seen, options, crs.wkt, context);
   } else {

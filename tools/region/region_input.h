@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "engine/query/select/predicate.h"
+#include "engine/query/terrain.h"
 
 namespace ptin::tools {
 

@@ -3,7 +3,7 @@
 // From a refined TIN on the grid to a mesh in map coordinates.
 #pragma once
 
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "storage/store_file.h"
 #include "tools/formats/mesh.h"
 

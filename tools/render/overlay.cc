@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <string_view>
 
-#include "engine/query/select/accounting.h"
-#include "tools/stop.h"
+#include "engine/query/terrain.h"
+#include "engine/stop.h"
 
 namespace ptin::tools {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/query/select/accounting.h"
-#include "tools/stop.h"
+#include "engine/query/terrain.h"
+#include "engine/stop.h"
 
 namespace ptin::tools {
 

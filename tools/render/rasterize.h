@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "tools/render/view.h"
 
 namespace ptin::tools {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "engine/mesh/tin.h"
-#include "tools/stop.h"
+#include "engine/stop.h"
 
 namespace ptin::tools {
 

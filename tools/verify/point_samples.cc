@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/construct/grid/source_point.h"
+#include "engine/construct/points/open_points.h"
+#include "engine/construct/read/input_kind.h"
 #include "engine/error.h"
 #include "engine/geometry/point.h"
-#include "tools/stop.h"
+#include "engine/stop.h"
 #include "tools/verify/sorted_samples.h"
 #include "tools/verify/source_samples.h"
 #include "tools/verify/text_samples.h"
@@ -16,7 +19,10 @@ namespace ptin::tools {
 namespace {
 
 /// What the reader of text takes: anything that is not known as LAS, a TIN or a layer.
-bool is_text(const std::string& path) { return is_point_text(path) || !is_point_input(path, {}); }
+bool is_text(const std::string& path) {
+  return point_format_of(path, {}) == PointFormat::kText ||
+         kind_of_input(path, {}) == InputKind::kRaster;
+}
 
 class PointSamples final : public SourceSamples {
  public:

@@ -3,9 +3,9 @@
 
 #include <limits>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
-#include "tools/facts/crs_facts.h"
 
 namespace ptin::tools {
 

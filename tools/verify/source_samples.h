@@ -15,6 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/read/point_stream.h"
 #include "engine/construct/scratch/external_memory.h"
 #include "engine/geometry/box.h"

@@ -10,7 +10,7 @@
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
 
-#include "engine/construct/read/point_stream.h"
+#include "engine/construct/read/input_kind.h"
 #include "engine/error.h"
 #include "tools/output/file_name.h"
 

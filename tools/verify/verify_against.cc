@@ -6,10 +6,10 @@
 #include <limits>
 #include <random>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/error.h"
-#include "tools/facts/crs_facts.h"
+#include "engine/stop.h"
 #include "tools/facts/human.h"
-#include "tools/stop.h"
 #include "tools/verify/scan_triangle.h"
 #include "tools/verify/sorted_samples.h"
 #include "tools/verify/void_depth.h"
@@ -38,7 +38,7 @@ struct Probe {
 
 class Verifier {
  public:
-  Verifier(const ProgressiveTin& terrain, SourceSamples& source, const AgainstOptions& options)
+  Verifier(const Terrain& terrain, SourceSamples& source, const AgainstOptions& options)
       : terrain_(terrain),
         source_(source),
         options_(options),
@@ -75,7 +75,7 @@ class Verifier {
                                  const std::array<double, 3>& weights) const;
   [[nodiscard]] std::vector<GridBox> windows();
 
-  const ProgressiveTin& terrain_;
+  const Terrain& terrain_;
   SourceSamples& source_;
   const AgainstOptions& options_;
   const StoreFacts& facts_;
@@ -156,9 +156,9 @@ RefinedTin Verifier::refined_in(const GridBox& box, const std::optional<double>&
   const MapPoint high = facts_.map.to_map(box.max_x, box.max_y);
   RefineRequest request;
   request.region = Window{low.x, low.y, high.x, high.y};
-  request.tolerance = tolerance;
+  request.detail.tolerance = tolerance;
   request.form = ResultForm::kMeetingRegion;
-  request.stop = options_.stop;
+  request.limits.stop = options_.stop;
   return terrain_.refine(request);
 }
 
@@ -408,7 +408,7 @@ void Verifier::judge_probes(const std::vector<Probe>& probes, const RefinedTin& 
 
 }  // namespace
 
-AgainstReport verify_against(const ProgressiveTin& terrain, SourceSamples& source,
+AgainstReport verify_against(const Terrain& terrain, SourceSamples& source,
                              const AgainstOptions& options) {
   return Verifier(terrain, source, options).run();
 }

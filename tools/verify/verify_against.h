@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "tools/verify/source_samples.h"
 
 namespace ptin::tools {
@@ -54,7 +54,7 @@ struct AgainstOptions {
 /// Checks every window of the terrain. Memory: one window and a box for each; `source` has its own
 /// (SampleResources).
 /// @throws Error  as refine() and SourceSamples::read
-[[nodiscard]] AgainstReport verify_against(const ProgressiveTin& terrain, SourceSamples& source,
+[[nodiscard]] AgainstReport verify_against(const Terrain& terrain, SourceSamples& source,
                                            const AgainstOptions& options);
 
 }  // namespace ptin::tools

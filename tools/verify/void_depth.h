@@ -3,8 +3,8 @@
 // How deep a sample lies in its class, by brute force; for verification.
 #pragma once
 
+#include "engine/crs/ground.h"
 #include "engine/geometry/affine.h"
-#include "tools/facts/ground.h"
 #include "tools/verify/source_samples.h"
 
 namespace ptin::tools {

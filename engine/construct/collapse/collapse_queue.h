@@ -36,7 +36,7 @@ struct CollapseMeasure {
 
 /// Class of an error: 0 below one height quantum, 1 for just that, then one class for each third of
 /// an octave, its upper end included: whole errors, which are many, end a class and do not begin
-/// one (engine/DESIGN.md, section 3). Exact on every machine: exponent and comparisons, no
+/// one (engine/DECISIONS.md, section 2.1). Exact on every machine: exponent and comparisons, no
 /// logarithm.
 [[nodiscard]] std::uint32_t error_class(double error_quanta) noexcept;
 
@@ -48,7 +48,7 @@ struct CollapseMeasure {
 /// Neighbourhoods are squares of the plane, about 16384 vertices of the full TIN large, or 16 boxes
 /// where boxes have grown. Within class and octave one is finished before the next begins: nearly
 /// the order by box alone, but the mesh that is worked on stays in the processor's caches
-/// (bench/README.md has the figures). The octave comes first, because a class can be large (on a
+/// (engine/DECISIONS.md, section 2.2). The octave comes first, because a class can be large (on a
 /// lake everything is of class 0) and a neighbourhood finished to the end would leave huge
 /// triangles beside small ones.
 ///

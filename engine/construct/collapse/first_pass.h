@@ -11,7 +11,7 @@
 namespace ptin {
 
 /// The share of the largest error that the first pass takes. More would save more time and cost
-/// vertices at that error: engine/DESIGN.md, section 3, has the figures.
+/// vertices at that error: engine/DECISIONS.md, section 5.1, has the figures.
 inline constexpr double kFirstPassShare = 0.7;
 
 /// Replaces the full TIN of a started tile by right triangles over some of its samples

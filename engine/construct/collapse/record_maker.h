@@ -25,7 +25,7 @@ class RecordMaker {
   ///              in the tile; tightening does the rest (tighten.h).
   RecordMaker(Tile& tile, const FullSurface* full) : tile_(tile), full_(full) {}
 
-  /// Collapses the centre of `s` into link[j]: appends the record (DESIGN.md, section 2: own part,
+  /// Collapses the centre of `s` into link[j]: appends the record (engine/DESIGN.md, section 2.2: own part,
   /// and the union and maximum of what the star carries), hands the samples of the star to the fan,
   /// and changes the mesh.
   /// @throws Error resource_exhausted when the rank would exceed 65 535

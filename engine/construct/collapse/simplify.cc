@@ -15,6 +15,7 @@
 #include "engine/construct/measure/saturation.h"
 #include "engine/large_array.h"
 #include "engine/prefetch.h"
+#include "engine/stop.h"
 
 namespace ptin {
 
@@ -94,9 +95,7 @@ void Simplifier::check_in() {
   if ((++steps_ & 0xfff) != 0) {
     return;
   }
-  if (options_.stop.stop_requested()) {
-    throw Error(ErrorCode::cancelled, "the build was cancelled");
-  }
+  stop_if_asked(options_.stop, "the build");
   if (options_.progress) {
     options_.progress(collapsed_);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Witnesses: the few samples of a triangle that a parent tile takes along (DESIGN.md, section 5).
+// Witnesses: the few samples of a triangle that a parent tile takes along (engine/DESIGN.md, section 5.6).
 #pragma once
 
 #include <cstddef>

@@ -57,8 +57,8 @@ Delaunay triangulate(std::span<const GridPoint> positions, const std::stop_token
   Delaunay delaunay;
   Delaunay::Face_handle hint;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i % kBetweenStops == 0) {
-      check_stop(stop);
+    if (i % kStopInterval == 0) {
+      stop_if_asked(stop, "the triangulation");
     }
     const Delaunay::Vertex_handle v = delaunay.insert(points[order[i]], hint);
     v->info() = static_cast<VertexId>(order[i]);

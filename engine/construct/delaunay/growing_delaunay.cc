@@ -29,8 +29,8 @@ int rounds_before_last(GridPoint p) noexcept {
 }  // namespace
 
 void GrowingDelaunay::insert(const BucketPoint& p, bool own) {
-  if (handles_.size() % kBetweenStops == 0) {
-    check_stop(stop_);
+  if (handles_.size() % kStopInterval == 0) {
+    stop_if_asked(stop_, "the triangulation");
   }
   const Vertex_handle v = delaunay_.insert(GridKernel::Point_2(p.position.x, p.position.y), hint_);
   v->info() = static_cast<VertexId>(handles_.size());
@@ -252,7 +252,7 @@ void GrowingDelaunay::settle(std::vector<VertexId> vertices) {
   const std::vector<std::uint8_t> of_interest = wanted;
   while (!vertices.empty()) {
     const VertexId v = vertices.back();
-    check_stop(stop_);
+    stop_if_asked(stop_, "the triangulation");
     inserted_.clear();
     if (settle_star(v)) {
       vertices.pop_back();

@@ -10,8 +10,6 @@
 namespace ptin {
 namespace {
 
-constexpr double kInt32Max = 2147483647.0;
-
 /// A height whose last bit is 2^-23 of itself (float32) or 2^-52 (float64) was a decimal before it
 /// was written in binary when it lies this near to one. For float32, where the answer only tells a
 /// quantum, resampling noise of a thousandth of the step passes too.
@@ -43,7 +41,7 @@ void HeightScan::add(double height) {
   min_ = std::min(min_, height);
   max_ = std::max(max_, height);
   if (given_ == Given::kFloat64) {
-    all_int32_ = all_int32_ && std::abs(height) <= kInt32Max && height == std::trunc(height);
+    all_int32_ = all_int32_ && std::abs(height) <= kLargestCode && height == std::trunc(height);
     all_float32_ = all_float32_ && static_cast<double>(static_cast<float>(height)) == height;
   }
   if (decimals_ <= kMaxDecimals) {
@@ -58,7 +56,7 @@ void HeightScan::test_decimals(double height) {
   for (int decimals = decimals_; decimals <= kMaxDecimals; ++decimals) {
     const double step = decimal_step(decimals);
     const double steps = height / step;
-    if (std::abs(steps) > kInt32Max) {
+    if (std::abs(steps) > kLargestCode) {
       break;  // finer steps do not fit either
     }
     const double distance = std::abs(height - nearest_integer(steps) * step);
@@ -82,7 +80,7 @@ HeightFit HeightScan::fit() const {
   }
   const bool whole = given_ == Given::kFloat64 && all_int32_;
   const bool decimal =
-      decimals_ <= kMaxDecimals && std::max(-min_, max_) / decimal_step(decimals_) <= kInt32Max;
+      decimals_ <= kMaxDecimals && std::max(-min_, max_) / decimal_step(decimals_) <= kLargestCode;
   if (whole) {
     fit.encoding = {HeightType::int32, 1.0, 0.0};
     fit.quantum = 1.0;
@@ -140,7 +138,7 @@ HeightBits encode_height(const HeightEncoding& encoding, double height) {
     return encoding.bits(static_cast<double>(static_cast<float>(height)));
   }
   const double code = std::nearbyint((height - encoding.offset) / encoding.step);
-  if (!(std::abs(code) <= kInt32Max)) {
+  if (!(std::abs(code) <= kLargestCode)) {
     throw Error(
         ErrorCode::io_error,
         "a height lies outside of the range found before; was the source changed meanwhile?");

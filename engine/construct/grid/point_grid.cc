@@ -6,14 +6,14 @@
 #include <cstdio>
 
 #include "engine/construct/grid/height_fit.h"
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/error.h"
 
 namespace ptin {
 namespace {
 
 __extension__ using Int128 = __int128;
-
-constexpr double kInt32Max = 2147483647.0;
 
 /// Refuses an extent beyond the grid, and names the power of ten that would do.
 void check_extent(double extent, double unit, const std::string& context) {
@@ -138,8 +138,8 @@ PointGrid PointGridScan::grid() const {
   const double height = static_cast<double>(grid.north) - static_cast<double>(grid.south);
   check_extent(std::max(width, height) * grid.x.unit(), grid.x.unit(), context_);
   grid.heights = StepCounter(std::max(height_decimals_, z_.decimals()));
-  grid.whole = static_cast<double>(z_.lowest(grid.heights)) >= -kInt32Max &&
-               static_cast<double>(z_.highest(grid.heights)) <= kInt32Max;
+  grid.whole = static_cast<double>(z_.lowest(grid.heights)) >= -kLargestCode &&
+               static_cast<double>(z_.highest(grid.heights)) <= kLargestCode;
   return grid;
 }
 

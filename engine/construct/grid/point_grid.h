@@ -8,8 +8,9 @@
 #include <optional>
 #include <string>
 
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/terrain_frame.h"
-#include "engine/construct/read/point_stream.h"
 #include "engine/geometry/affine.h"
 #include "engine/geometry/point.h"
 

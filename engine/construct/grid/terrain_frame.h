@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The frame that every source of a terrain delivers beside its samples (grid, heights, CRS), and
-// the choices by which sources are read. Rasters are in raster_source.h, points in point_buckets.h,
-// TINs in tin_source.h.
+// The frame that every source of a terrain delivers beside its samples: grid, heights and CRS.
+// Rasters are in raster/raster_source.h, points in points/point_buckets.h, TINs in
+// tin/tin_source.h.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 
-#include "engine/construct/read/point_stream.h"
 #include "engine/geometry/affine.h"
 #include "engine/geometry/height.h"
 
@@ -31,24 +28,6 @@ struct TerrainFrame {
   double height_quantum = 0.0;
   /// Of all samples with a height; min > max when there is none.
   double min_height = 0.0, max_height = 0.0;
-};
-
-/// The height of points that fall together on one grid position.
-enum class PointMerge : std::uint8_t { kMean, kLowest, kHighest };
-
-/// Choices that decide what is read from a source.
-struct SourceOptions {
-  /// Overrides the source's own. Points of this height are left out.
-  std::optional<double> nodata;
-  std::optional<double> resolution;  ///< Points: grid unit in CRS units.
-  struct Bounds {
-    double min_x, min_y, max_x, max_y;
-  };
-  std::optional<Bounds> bbox;            ///< CRS units; samples outside are left out.
-  std::string a_srs;                     ///< Overrides the CRS; anything GDAL understands.
-  std::string vertical_crs;              ///< Added as the vertical part, e.g. "EPSG:5773".
-  PointMerge merge = PointMerge::kMean;  ///< Points.
-  PointChoice points;                    ///< Points: which of them.
 };
 
 }  // namespace ptin

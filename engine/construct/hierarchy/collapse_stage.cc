@@ -6,8 +6,8 @@
 
 #include "engine/construct/hierarchy/tile_collapse.h"
 #include "engine/construct/hierarchy/tile_files.h"
-#include "engine/construct/memory_plan.h"
 #include "engine/error.h"
+#include "engine/memory_units.h"
 
 namespace ptin {
 
@@ -58,7 +58,7 @@ std::optional<std::uint64_t> CollapseStage::next_bytes() {
       pushed += log_.collapsed().at(child).pushed.bytes;
     }
     const std::uint64_t bytes = options_.tile_bytes.of_join(pushed);
-    if (bytes > options_.bytes) {  // of a terrain that keeps more than the plan expected
+    if (bytes > options_.memory_for_tiles) {  // of a terrain that keeps more than the plan expected
       refuse_join(bytes);
     }
     return bytes;
@@ -72,7 +72,8 @@ std::optional<std::uint64_t> CollapseStage::next_bytes() {
 
 void CollapseStage::refuse_join(std::uint64_t bytes) const {
   throw Error(ErrorCode::resource_exhausted,
-              "a join of four tiles needs " + std::to_string((bytes - options_.bytes) / kMiB + 1) +
+              "a join of four tiles needs " +
+                  std::to_string((bytes - options_.memory_for_tiles) / kMiB + 1) +
                   " MiB more than --memory leaves for it; go on with that much more");
 }
 
@@ -176,11 +177,9 @@ void CollapseStage::report(std::uint64_t samples) {
   const std::lock_guard lock(report_mutex_);
   samples_done_ += samples;
   ++leaves_done_;
-  if (options_.tiles) {
-    options_.tiles(leaves_done_, tree_.leaves());
-  }
   if (options_.progress) {
-    options_.progress("collapsing", samples_done_, tree_.window(tree_.root()).samples());
+    options_.progress({"collapsing", samples_done_, tree_.window(tree_.root()).samples(),
+                       leaves_done_, tree_.leaves()});
   }
 }
 

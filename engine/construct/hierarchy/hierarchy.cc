@@ -13,7 +13,7 @@ namespace ptin {
 BuiltHierarchy build_hierarchy(const std::function<LeafStarter()>& make_starter,
                                const TileTree& tree, const HierarchyOptions& options,
                                Workspace& workspace, SegmentOutput& output) {
-  const PieceLimits limits{options.threads, options.bytes, options.give_back};
+  const PieceLimits limits{options.threads, options.memory_for_tiles, options.give_back};
   const BatchOrder order(tree);
   BuildLog log(workspace, output, options.checkpoint_interval);
   BuiltHierarchy result;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Builds a terrain tile by tile: collapses from the leaves to the root, then tightens from the root
-// to the leaves (DESIGN.md, section 5).
+// to the leaves (engine/DESIGN.md, sections 5.4 and 5.7).
 #pragma once
 
 #include <chrono>
@@ -10,6 +10,7 @@
 #include <stop_token>
 
 #include "engine/construct/hierarchy/segment_output.h"
+#include "engine/construct/hierarchy/stage_progress.h"
 #include "engine/construct/hierarchy/tile_bytes.h"
 #include "engine/construct/hierarchy/tile_collapse.h"
 #include "engine/construct/scratch/workspace.h"
@@ -21,15 +22,13 @@ namespace ptin {
 struct HierarchyOptions {
   CollapseOptions collapse;
   int threads = 1;
-  std::uint64_t bytes = ~std::uint64_t{0};  ///< Of all tiles in work at once.
-  TileBytes tile_bytes;
+  std::uint64_t memory_for_tiles = ~std::uint64_t{0};  ///< Bytes of all tiles in work at once.
+  TileBytes tile_bytes;                                ///< What each kind of work takes of them.
   std::function<void(std::uint64_t bytes)> give_back;  ///< As PieceLimits says.
   std::chrono::milliseconds checkpoint_interval{2000};
   std::stop_token stop;
-  /// Samples done and in all; called by any thread, but never twice at once.
-  std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
-  /// Leaves done and in all; called before `progress`.
-  std::function<void(std::uint64_t done, std::uint64_t total)> tiles;
+  /// Samples and leaves done and in all; called by any thread, but never twice at once. May be empty.
+  std::function<void(const StageProgress& progress)> progress;
 };
 
 struct BuiltHierarchy {

@@ -11,6 +11,7 @@
 #include <tbb/task_group.h>
 
 #include "engine/error.h"
+#include "engine/stop.h"
 
 namespace ptin {
 
@@ -42,9 +43,7 @@ class Runner {
     if (failure_) {
       std::rethrow_exception(failure_);
     }
-    if (halt_.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "the build was cancelled");
-    }
+    stop_if_asked(halt_.get_token(), "the build");
   }
   [[nodiscard]] std::uint64_t most_bytes() const { return most_bytes_; }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Tightening: true errors and deviations for records that were ordered by witnesses (DESIGN.md,
-// section 5).
+// Tightening: true errors and deviations for records that were ordered by witnesses (engine/DESIGN.md, section 5.7).
 #pragma once
 
 #include <span>

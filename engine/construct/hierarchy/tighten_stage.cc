@@ -6,6 +6,7 @@
 
 #include "engine/construct/hierarchy/tighten.h"
 #include "engine/error.h"
+#include "engine/stop.h"
 
 namespace ptin {
 
@@ -108,9 +109,7 @@ TightenStage::Replayed TightenStage::replay(const Batch& batch, const LeafStarte
     chain.push_back({files[i]->view().records, &raises[i]});
   }
   for (const TileId& leaf : batch.leaves) {
-    if (stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "the build was cancelled");
-    }
+    stop_if_asked(stop, "the build");
     const SampleRange window = tree_.window(leaf);
     replay_over_leaf(chain, t0_, start(window));
     report(window.samples());
@@ -209,11 +208,9 @@ void TightenStage::report(std::uint64_t samples) {
   const std::lock_guard lock(mutex_);
   samples_done_ += samples;
   ++leaves_done_;
-  if (options_.tiles) {
-    options_.tiles(leaves_done_, tree_.leaves());
-  }
   if (options_.progress) {
-    options_.progress("tightening", samples_done_, tree_.window(tree_.root()).samples());
+    options_.progress({"tightening", samples_done_, tree_.window(tree_.root()).samples(),
+                       leaves_done_, tree_.leaves()});
   }
 }
 

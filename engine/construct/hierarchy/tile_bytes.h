@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What tiles in work take in memory, by measurement (bench/README.md): workers are admitted by it.
+// What tiles in work take in memory, by measurement (engine/DECISIONS.md, section 4.8): workers are admitted by it.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Saturation: what a collapse takes over from the triangles of its star (DESIGN.md, section 2).
+// Saturation: what a collapse takes over from the triangles of its star (engine/DESIGN.md, section 2.2).
 #pragma once
 
 #include <utility>

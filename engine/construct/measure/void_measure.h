@@ -25,7 +25,7 @@ struct VoidMeasure {
 /// triangle of this star.
 ///
 /// A sample with a height is right in a closed surface triangle, one without is right outside of
-/// every open one; a wrong one is charged depth * slope (DESIGN.md, section 3). A sample on a spoke
+/// every open one; a wrong one is charged depth * slope (engine/DESIGN.md, section 3.3). A sample on a spoke
 /// goes to the side of its own class. One on the link stays with the fan, even when the triangle
 /// beyond is of its class: so a sample is always in a triangle that replaced its former one, and
 /// whichever records a refinement applies, the charge is in a record that it can see. (Handing

@@ -10,6 +10,7 @@
 #include "engine/construct/points/point_buckets.h"
 #include "engine/construct/points/point_spool.h"
 #include "engine/error.h"
+#include "engine/stop.h"
 #include "storage/file/checksum.h"
 
 namespace ptin {
@@ -56,9 +57,7 @@ void PointBuckets::check_points(const std::string& path, std::uint64_t expected,
   bool is_sound = std::filesystem::file_size(path, ignored) == (ends_.empty() ? 0 : ends_.back());
   std::vector<std::byte> bucket;
   for (std::uint64_t i = 0; is_sound && i < ends_.size(); ++i) {
-    if (stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "the build was cancelled");
-    }
+    stop_if_asked(stop, "the build");
     bucket.resize(ends_[i] - begin_of(i));
     file_->read_at(bucket, begin_of(i));
     add_to_checksum(bucket);

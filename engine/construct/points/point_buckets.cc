@@ -10,10 +10,13 @@
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/point_merge.h"
 #include "engine/construct/grid/point_order.h"
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/points/packed_bucket.h"
 #include "engine/construct/points/point_reading.h"
 #include "engine/construct/points/point_spool.h"
 #include "engine/error.h"
+#include "engine/stop.h"
 
 namespace ptin {
 
@@ -119,9 +122,7 @@ void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rul
   const std::uint64_t total = spool.size();
   std::uint64_t done = 0;
   const auto report = [&](std::size_t points) {
-    if (stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "sorting the points was cancelled");
-    }
+    stop_if_asked(stop, "sorting the points");
     done += points;
     if (progress) {
       progress("sorting", done, 2 * total);

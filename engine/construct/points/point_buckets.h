@@ -14,6 +14,7 @@
 
 #include "engine/construct/grid/point_sorter.h"
 #include "engine/construct/grid/source_disk.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/geometry/box.h"

@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "engine/construct/read/point_stream.h"
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
+#include "engine/construct/points/open_points.h"
+#include "engine/construct/read/input_kind.h"
 #include "engine/construct/read/tin_count.h"
-#include "engine/construct/read/tin_soup.h"
 
 namespace ptin {
 
@@ -69,21 +71,20 @@ std::uint64_t points_of_text(const std::string& path, PointStream& stream) {
 
 PointCount count_points(const std::vector<std::string>& inputs, const SourceOptions& options) {
   PointCount count;
-  const bool by_ogr = !options.points.layer.empty() || !options.points.z_field.empty();
   for (const std::string& input : inputs) {
     if (can_be_read_once_only(input)) {
       count.is_known = false;
       return count;
     }
-    if (is_tin_file(input)) {
+    const PointFormat format = point_format_of(input, options.points);
+    if (format == PointFormat::kTin) {
       const std::uint64_t vertices = count_tin_vertices(input, options.points.layer);
       count.points += vertices;
       count.of_largest_tin = std::max(count.of_largest_tin, vertices);
       continue;
     }
     const auto stream = open_point_stream(input, options.points, options.nodata);
-    count.points +=
-        is_point_text(input) && !by_ogr ? points_of_text(input, *stream) : stream->total();
+    count.points += format == PointFormat::kText ? points_of_text(input, *stream) : stream->total();
   }
   count.points = std::max<std::uint64_t>(count.points, 3);
   count.may_be_less = !options.points.classes.empty() || options.bbox || options.nodata;

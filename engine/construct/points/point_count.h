@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
 
 namespace ptin {

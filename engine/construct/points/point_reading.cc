@@ -2,8 +2,12 @@
 #include "engine/construct/points/point_reading.h"
 
 #include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
+#include "engine/construct/points/open_points.h"
 #include "engine/construct/read/point_stream.h"
 #include "engine/error.h"
+#include "engine/stop.h"
 
 namespace ptin {
 namespace {
@@ -51,9 +55,7 @@ PointReading read_sources(const std::vector<std::string>& paths, const SourceOpt
     }
     scan.add_source(stream->facts());
     while (stream->next(batch)) {
-      if (stop.stop_requested()) {
-        throw Error(ErrorCode::cancelled, "reading was cancelled", path);
-      }
+      stop_if_asked(stop, "reading", path);
       if (progress) {
         progress(stream->done(), stream->total());
       }

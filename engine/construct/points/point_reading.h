@@ -10,9 +10,13 @@
 #include <vector>
 
 #include "engine/construct/grid/point_grid.h"
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/terrain_frame.h"
 
 namespace ptin {
+
+struct ExternalMemory;
 
 /// What is known when the last point has been read.
 struct PointReading {

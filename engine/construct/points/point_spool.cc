@@ -5,6 +5,8 @@
 #include <cstring>
 #include <span>
 
+#include "engine/construct/grid/source_point.h"
+
 namespace ptin {
 
 void PointSpool::add(const SourcePoint& p) {

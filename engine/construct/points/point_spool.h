@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/point_stream.h"
 #include "engine/construct/scratch/external_memory.h"
 #include "storage/file/file_layer.h"

@@ -14,10 +14,12 @@
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/grid_precision.h"
 #include "engine/construct/grid/height_fit.h"
-#include "engine/construct/grid/height_unit.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/raster/raster_part.h"
+#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 #include "engine/geometry/point.h"
+#include "engine/stop.h"
 
 namespace ptin {
 namespace {
@@ -299,9 +301,7 @@ void RasterSource::Impl::scan_as(const std::stop_token& stop, const Progress& pr
   std::vector<std::uint8_t> valid(values.size());
   for (std::int64_t y = height; y > 0; y -= step.height) {  // from the north, as most files lie
     for (std::int64_t x = 0; x < width; x += step.width) {
-      if (stop.stop_requested()) {
-        throw Error(ErrorCode::cancelled, "reading was cancelled", context());
-      }
+      stop_if_asked(stop, "reading", context());
       const std::int64_t south = std::max<std::int64_t>(y - step.height, 0);
       const SampleRange w{x, south, std::min(step.width, width - x), y - south};
       const auto n = static_cast<std::size_t>(w.width * w.height);

@@ -12,7 +12,7 @@
 namespace ptin {
 
 namespace {
-constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
+constexpr std::size_t kBlockBytes = std::size_t{256} << 10;
 }
 
 ByteReader::ByteReader(std::string path)
@@ -28,7 +28,7 @@ ByteReader::ByteReader(std::string path)
     throw Error(ErrorCode::invalid_argument, "this is a folder; give a file", path_);
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
-  buffer_.resize(kBufferBytes);
+  buffer_.resize(kBlockBytes);
 }
 
 ByteReader::ByteReader(std::string name, std::string content)

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/las_file.h"
 #include "engine/error.h"
 

@@ -10,6 +10,8 @@
 #include <ogrsf_frmts.h>
 
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/error.h"
 
 namespace ptin {

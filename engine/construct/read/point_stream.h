@@ -6,45 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
-#include "engine/construct/grid/decimal.h"
+#include "engine/construct/grid/source_point.h"
 
 namespace ptin {
-
-/// A point of a source, before it is put on the grid; CRS units and the height's unit.
-struct SourcePoint {
-  Decimal x, y, z;
-};
-
-/// Which points of a source are wanted.
-struct PointChoice {
-  std::vector<int> classes;  ///< LAS: keep these classes (0 .. 255); empty keeps all.
-  std::string layer;         ///< OGR: the layer; "" where there is only one.
-  std::string z_field;       ///< OGR: the attribute that holds the height; "" for the geometry's z.
-};
-
-/// A grid that a source brings along: LAS coordinates are whole steps from an offset.
-struct SourceLattice {
-  double unit = 0.0;                      ///< CRS units, > 0.
-  double origin_x = 0.0, origin_y = 0.0;  ///< CRS units.
-};
-
-/// What a source declares before its first point is read.
-struct PointStreamFacts {
-  std::string crs;           ///< Anything GDAL understands; "" when the source does not say.
-  std::string vertical_crs;  ///< Likewise, where it is told apart from `crs`.
-  /// Digits after the point that coordinates and heights are declared to have: at least so many are
-  /// kept.
-  int plan_decimals = 0;
-  int height_decimals = 0;
-  /// Set where steps are no power of ten or the offset is not a whole number of them:
-  /// `plan_decimals` says nothing then, and the grid is this one.
-  std::optional<SourceLattice> lattice;
-};
 
 struct ExternalMemory;
 
@@ -78,31 +46,5 @@ class PointStream {
   [[nodiscard]] virtual std::uint64_t done() const noexcept = 0;
   [[nodiscard]] virtual std::uint64_t total() const noexcept = 0;
 };
-
-/// True when a name is that of points: as text (.csv, .xyz, .txt, .tsv, in any case, also followed
-/// by .gz) or LAS (.las, .laz).
-[[nodiscard]] bool is_point_file(const std::string& path);
-/// Those of them that are text.
-[[nodiscard]] bool is_point_text(const std::string& path);
-/// True when a name says that text is packed, to be unpacked on the way: .gz, in any case.
-[[nodiscard]] bool is_packed(const std::string& path);
-
-/// True when an input is points rather than a raster: by its name, or because a layer or attribute
-/// is chosen, or as a TIN that has vertices, or since OGR reads it and GDAL finds no raster in it.
-/// Cost: opens other files than those known by name.
-[[nodiscard]] bool is_point_input(const std::string& path, const PointChoice& choice);
-
-/// Opens a file of points by its name: LAS (las_reader.h), a TIN for its vertices (tin_vertices.h),
-/// text (xyz_reader.h), anything else as a layer of OGR's (ogr_points.h); with a layer or z-field
-/// chosen, OGR always.
-/// @param nodata  This height means none: such points are handed out all the same, but that
-///                vertices of a TIN stay only where a triangle has three heights, as when it is
-///                built.
-/// @throws Error  not_found, io_error, invalid_argument, unsupported_version  as those; a choice
-///                that means nothing for the kind of file
-[[nodiscard]] std::unique_ptr<PointStream> open_point_stream(const std::string& path,
-                                                             const PointChoice& choice,
-                                                             std::optional<double> nodata = {},
-                                                             const StreamResources& resources = {});
 
 }  // namespace ptin

@@ -7,6 +7,7 @@
 #include <stop_token>
 #include <utility>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/tin_soup.h"
 #include "engine/error.h"
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/tin_soup.h"
 
 namespace ptin {

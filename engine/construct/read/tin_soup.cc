@@ -7,8 +7,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/tin_reader.h"
 #include "engine/error.h"
+#include "engine/stop.h"
 
 namespace ptin {
 
@@ -113,9 +115,7 @@ void TinReceiver::look_around() {
   if (++added_ % kInterval != 0) {
     return;
   }
-  if (reading_.stop.stop_requested()) {
-    throw Error(ErrorCode::cancelled, "reading was cancelled", in_.path());
-  }
+  stop_if_asked(reading_.stop, "reading", in_.path());
   if (reading_.progress) {
     reading_.progress(in_.position(), in_.size());
   }

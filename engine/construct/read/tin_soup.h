@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/byte_reader.h"
 #include "engine/construct/read/point_stream.h"
 

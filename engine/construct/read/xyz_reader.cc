@@ -11,6 +11,7 @@
 
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/read/column_names.h"
+#include "engine/construct/read/input_kind.h"
 #include "engine/error.h"
 
 namespace ptin {

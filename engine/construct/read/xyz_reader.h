@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/construct/read/point_stream.h"
+#include "engine/construct/grid/source_point.h"
 
 namespace ptin {
 

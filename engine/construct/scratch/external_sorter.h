@@ -19,6 +19,7 @@
 #include "engine/construct/scratch/external_memory.h"
 #include "engine/construct/scratch/run_merger.h"
 #include "engine/error.h"
+#include "engine/stop.h"
 #include "storage/file/file_layer.h"
 
 namespace ptin {
@@ -121,11 +122,7 @@ class ExternalSorter {
     std::vector<SortedRun> runs;
   };
 
-  static void check(const std::stop_token& stop) {
-    if (stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "sorting was cancelled");
-    }
-  }
+  static void check(const std::stop_token& stop) { stop_if_asked(stop, "sorting"); }
   [[nodiscard]] std::size_t most_runs() const noexcept { return capacity_ / kLeastOfRun; }
   void note_held(std::size_t records) { counts_.held = std::max(counts_.held, records); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The manifest of a build in the making: which work is done, durably (DESIGN.md, section 5).
+// The manifest of a build in the making: which work is done, durably (engine/DESIGN.md, section 5.9).
 #pragma once
 
 #include <cstdint>

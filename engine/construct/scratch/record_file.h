@@ -17,6 +17,7 @@
 
 #include "engine/construct/scratch/external_memory.h"
 #include "engine/error.h"
+#include "engine/stop.h"
 #include "storage/file/checksum.h"
 #include "storage/file/file_layer.h"
 
@@ -66,9 +67,7 @@ class RecordFile {
     written_ = records;
     std::vector<Record> block;
     for (std::uint64_t i = 0; i < records; i += block.size()) {
-      if (stop.stop_requested()) {
-        throw Error(ErrorCode::cancelled, "reading temporary files was cancelled");
-      }
+      stop_if_asked(stop, "reading temporary files");
       take(i, std::min<std::uint64_t>(kBlock, records - i), block);
       add_to_checksum(block);
     }
@@ -92,9 +91,7 @@ class RecordFile {
   void visit(const Visit& visit, const std::stop_token& stop) const {
     std::vector<Record> records;
     for (std::uint64_t i = 0; i < size(); i += records.size()) {
-      if (stop.stop_requested()) {
-        throw Error(ErrorCode::cancelled, "reading temporary files was cancelled");
-      }
+      stop_if_asked(stop, "reading temporary files");
       take(i, std::min<std::uint64_t>(kBlock, size() - i), records);
       for (const Record& record : records) {
         visit(record);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The full surface, asked along the edges of fans: the deviation of a piecewise planar surface from
-// another is largest at a vertex of their overlay (DESIGN.md, section 5).
+// another is largest at a vertex of their overlay (engine/DESIGN.md, section 5.3).
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ namespace ptin {
 /// a million samples lists about as many elements as its border is long (sample_blocks.h).
 ///
 /// `depth` is the distance to the nearest sample of the other class in ground units, +infinity
-/// beyond the cut-off; negative for samples without a height (DESIGN.md, section 3); of a block,
+/// beyond the cut-off; negative for samples without a height (engine/DESIGN.md, section 3.2); of a block,
 /// the farthest from 0.
 struct Sample {
   GridPoint position;

@@ -17,7 +17,7 @@
 
 namespace ptin {
 
-/// What a triangle carries upwards (saturation, DESIGN.md section 2): the attributes of the record
+/// What a triangle carries upwards (saturation, engine/DESIGN.md, section 2.2): the attributes of the record
 /// that created it. The box is kept here because every evaluation of a collapse asks for it; the
 /// rest is read from the record.
 struct CarriedState {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The tree of tiles: over a raster squares of samples that share their border rows, over points
-// equal pieces of a space-filling curve; four siblings to a parent (DESIGN.md, section 5).
+// equal pieces of a space-filling curve; four siblings to a parent (engine/DESIGN.md, section 5.4).
 #pragma once
 
 #include <compare>
@@ -55,7 +55,8 @@ class TileTree {
   /// processor's caches: a third faster than 512, for half a percent of vertices), or, beyond 16385
   /// samples, the root of four times the raster's longer side, so that seams weigh little
   /// (side / S^2 in tiles of S); the whole raster when it is no longer than one and a half of
-  /// that. Ten times, as the plan has it, would need 416 at 16385 samples and more than 256 MiB.
+  /// that. Ten times the longer side would need 416 at 16385 samples, and more than
+  /// 256 MiB (engine/DECISIONS.md, section 4.1).
   [[nodiscard]] static std::int64_t default_side(std::int64_t width, std::int64_t height) noexcept;
 
   [[nodiscard]] TileId root() const noexcept { return {levels_ - 1, 0, 0}; }

@@ -20,8 +20,6 @@ namespace ptin {
 
 namespace {
 
-using delaunay_internal::check_stop;
-using delaunay_internal::kBetweenStops;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 /// How often the surface covers a face; kUnknown before it is reached.
 using Winding = int;
@@ -64,8 +62,8 @@ Cdt triangulate(std::span<const GridPoint> positions, std::span<const BorderEdge
                                             ids.begin())];
   };
   for (std::size_t i = 0; i < border.size(); ++i) {
-    if (i % kBetweenStops == 0) {
-      check_stop(stop);
+    if (i % kStopInterval == 0) {
+      stop_if_asked(stop, "the triangulation");
     }
     cdt.insert_constraint(handle(border[i].from), handle(border[i].to));
   }

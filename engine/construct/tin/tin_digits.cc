@@ -5,6 +5,7 @@
 
 #include "engine/construct/grid/grid_precision.h"
 #include "engine/construct/grid/height_fit.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/geometry/point.h"
 
 namespace ptin {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/point_stream.h"
 
 namespace ptin {

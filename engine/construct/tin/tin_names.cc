@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/tin/tin_names.h"
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/error.h"
 
 namespace ptin {

@@ -13,11 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/point_stream.h"
 #include "engine/construct/read/tin_soup.h"
 #include "engine/construct/scratch/external_sorter.h"
 #include "engine/construct/scratch/record_file.h"
 #include "engine/construct/tin/tin_on_grid.h"
+#include "engine/stop.h"
 
 namespace ptin {
 
@@ -58,9 +60,7 @@ template <class Record>
                                        const std::stop_token& stop) {
   return InOrder<Record>(
       [&file, stop, next = std::uint64_t{0}](std::vector<Record>& batch) mutable {
-        if (stop.stop_requested()) {
-          throw Error(ErrorCode::cancelled, "reading temporary files was cancelled");
-        }
+        stop_if_asked(stop, "reading temporary files");
         const auto count = std::min<std::uint64_t>(1 << 13, file.size() - next);
         file.take(next, count, batch);
         next += count;

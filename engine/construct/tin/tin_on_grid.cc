@@ -9,6 +9,7 @@
 #include "engine/construct/grid/height_finder.h"
 #include "engine/construct/grid/point_order.h"
 #include "engine/construct/grid/point_sorter.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/tin/tin_digits.h"
 #include "engine/construct/tin/tin_names.h"
 #include "engine/geometry/orient.h"

@@ -15,6 +15,7 @@
 
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/grid/point_grid.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/external_sorter.h"
 #include "engine/construct/scratch/record_file.h"

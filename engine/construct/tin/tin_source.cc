@@ -8,6 +8,7 @@
 #include "engine/construct/grid/grid_precision.h"
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/grid/point_order.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/tin/hull_delaunay.h"
 #include "engine/construct/tin/tin_border.h"
 #include "engine/construct/tin/tin_mend.h"

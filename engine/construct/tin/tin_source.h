@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/construct/grid/source_disk.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/scratch/external_sorter.h"

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/scratch/record_file.h"
 #include "engine/construct/tin/tin_digits.h"
 #include "engine/construct/tin/tin_names.h"

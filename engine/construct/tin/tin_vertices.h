@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/point_stream.h"
 
 namespace ptin {

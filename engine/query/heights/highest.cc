@@ -11,10 +11,10 @@
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/query/heights/highest_gather.h"
-#include "engine/query/heights/locate_at.h"
+#include "engine/query/heights/locate.h"
 #include "engine/query/refine/refinement.h"
-#include "engine/query/select/above_error.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/select/predicate.h"
 #include "engine/query/walk/spot.h"
 
 namespace ptin {
@@ -71,12 +71,12 @@ Spot spot_of_clamped(double x, double y, const GridBox& b) {
 
 class Search {
  public:
-  Search(const ProgressiveTin& terrain, const HighestRequest& request)
+  Search(const OpenedTerrain& terrain, const HighestRequest& request)
       : terrain_(terrain),
         store_(terrain.store()),
         facts_(store_.facts()),
         request_(request),
-        context_(request.stop, request.memory_limit_bytes, store_.path()) {
+        context_(request.limits, store_.path()) {
     if (request.listed == 0) {
       throw Error(ErrorCode::invalid_argument, "no vertex is asked for: expected at least one");
     }
@@ -86,8 +86,7 @@ class Search {
   }
 
   HighestResult run() {
-    const Detail detail({request_.tolerance, request_.vertices}, {store_, terrain_.index()},
-                        context_);
+    const Detail detail(request_.detail, terrain_.records(), context_);
     HighestResult result;
     result.certified_error = detail.certificate().error;
     result.certified_deviation = detail.certificate().deviation;
@@ -205,12 +204,12 @@ class Search {
     }
     gatherer.reserve_told(keys.size());
     LocateRequest request;
-    request.tolerance = request_.tolerance;
-    request.vertices = request_.vertices;
-    request.memory_limit_bytes = context_.left_beside(
+    request.detail.tolerance = request_.detail.tolerance;
+    request.detail.vertices = request_.detail.vertices;
+    request.limits.memory_bytes = context_.left_beside(
         gatherer.held_bytes() + best.capacity() * sizeof(HighCandidate) +
         keys.capacity() * sizeof(VertexKey) + points.capacity() * sizeof(MapPoint));
-    request.stop = request_.stop;
+    request.limits.stop = request_.limits.stop;
     const LocateResult located = locate_at(terrain_, points, request, gatherer.detail());
     context_.cost.add_counts(located.cost);
     for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -307,7 +306,7 @@ class Search {
     });
   }
 
-  const ProgressiveTin& terrain_;
+  const OpenedTerrain& terrain_;
   const StoreFile& store_;
   const StoreFacts& facts_;
   const HighestRequest& request_;
@@ -317,7 +316,7 @@ class Search {
 
 }  // namespace
 
-HighestResult highest(const ProgressiveTin& terrain, const HighestRequest& request) {
+HighestResult highest(const OpenedTerrain& terrain, const HighestRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   HighestResult result = Search(terrain, request).run();
   result.cost.seconds =

@@ -5,11 +5,13 @@
 
 #include <cstdint>
 #include <optional>
-#include <stop_token>
 #include <vector>
 
-#include "engine/query/progressive_tin.h"
 #include "engine/query/select/accounting.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
+#include "engine/query/select/query_limits.h"
+#include "engine/query/select/region.h"
 #include "engine/query/walk/point_state.h"
 
 namespace ptin {
@@ -18,13 +20,8 @@ struct HighestRequest {
   std::optional<Window> window;  ///< Map units, closed. None: the whole terrain.
   bool lowest = false;           ///< The lowest instead; "highest" below then means that.
   std::uint32_t listed = 1;      ///< How many of the highest vertices to list, >= 1.
-  /// Certified error asked for, in the height's unit, >= 0. None: exact.
-  std::optional<double> tolerance;
-  /// The highest of the TIN of the first so many vertices of the terrain (detail.h). Excludes
-  /// `tolerance`.
-  std::optional<std::uint64_t> vertices;
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
-  std::stop_token stop;
+  DetailRequest detail;          ///< Of which TIN the highest point is wanted.
+  QueryLimits limits;
 };
 
 struct HeightAt {
@@ -62,6 +59,6 @@ struct HighestResult {
 /// besides, in batches; of V vertices that touch no surface and are higher, in O(log V) searches.
 /// An index other than the packed R-tree reads the same pages after a search of all that meet the
 /// window. With `vertices` that of finding the last one is added (detail.h).
-[[nodiscard]] HighestResult highest(const ProgressiveTin& terrain, const HighestRequest& request);
+[[nodiscard]] HighestResult highest(const OpenedTerrain& terrain, const HighestRequest& request);
 
 }  // namespace ptin

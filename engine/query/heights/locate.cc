@@ -12,7 +12,6 @@
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/infinity.h"
-#include "engine/query/heights/locate_at.h"
 #include "engine/query/refine/bounded_mesh.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/detail.h"
@@ -39,14 +38,13 @@ struct Ordered {
 class Locating {
  public:
   /// @param detail  Of the request, where it was found before; else none.
-  Locating(const ProgressiveTin& terrain, const LocateRequest& request, const Detail* detail)
+  Locating(const OpenedTerrain& terrain, const LocateRequest& request, const Detail* detail)
       : terrain_(terrain),
         facts_(terrain.store().facts()),
         request_(request),
-        context_(request.stop, request.memory_limit_bytes, terrain.store().path()),
-        detail_(detail != nullptr ? *detail
-                                  : Detail({request.tolerance, request.vertices},
-                                           {terrain.store(), terrain.index()}, context_)) {}
+        context_(request.limits, terrain.store().path()),
+        detail_(detail != nullptr ? *detail : Detail(request.detail, terrain.records(), context_)) {
+  }
 
   LocateResult run(std::span<const MapPoint> points) {
     result_.points.resize(points.size());
@@ -76,7 +74,7 @@ class Locating {
   [[nodiscard]] LocatedPoint answer(const Tin& tin, Spot spot, const Place& place) const;
   void set_interval(const SurfaceBounds& bounds, LocatedPoint& point) const;
 
-  const ProgressiveTin& terrain_;
+  const OpenedTerrain& terrain_;
   const StoreFacts& facts_;
   const LocateRequest& request_;
   QueryContext context_;
@@ -128,7 +126,7 @@ void Locating::locate_group(std::span<const Ordered> group) {
   const std::uint64_t records = most_records(terrain_.store(), pages);
   const std::uint64_t held = result_.points.size() * (sizeof(LocatedPoint) + sizeof(Ordered));
   const std::uint64_t bytes = held + bytes_of(terrain_.t0()) + refinement_bytes(records);
-  if (group.size() > 1 && (records > kGroupRecords || bytes > request_.memory_limit_bytes)) {
+  if (group.size() > 1 && (records > kGroupRecords || bytes > request_.limits.memory_bytes)) {
     locate_group(group.first(group.size() / 2));
     locate_group(group.subspan(group.size() / 2));
     return;
@@ -228,7 +226,7 @@ void Locating::set_interval(const SurfaceBounds& bounds, LocatedPoint& point) co
 
 }  // namespace
 
-LocateResult locate(const ProgressiveTin& terrain, std::span<const MapPoint> points,
+LocateResult locate(const OpenedTerrain& terrain, std::span<const MapPoint> points,
                     const LocateRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   LocateResult result = Locating(terrain, request, nullptr).run(points);
@@ -237,7 +235,7 @@ LocateResult locate(const ProgressiveTin& terrain, std::span<const MapPoint> poi
   return result;
 }
 
-LocateResult locate_at(const ProgressiveTin& terrain, std::span<const MapPoint> points,
+LocateResult locate_at(const OpenedTerrain& terrain, std::span<const MapPoint> points,
                        const LocateRequest& request, const Detail& detail) {
   return Locating(terrain, request, &detail).run(points);
 }

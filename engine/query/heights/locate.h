@@ -12,20 +12,17 @@
 #include <stop_token>
 #include <vector>
 
-#include "engine/query/progressive_tin.h"
+#include "engine/query/select/accounting.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
+#include "engine/query/select/query_limits.h"
 #include "engine/query/walk/point_state.h"
 
 namespace ptin {
 
 struct LocateRequest {
-  /// Certified error asked for, in the height's unit, >= 0. None: exact.
-  std::optional<double> tolerance;
-  /// Heights of the TIN of the first so many vertices of the terrain (detail.h). Excludes
-  /// `tolerance`.
-  std::optional<std::uint64_t> vertices;
-  /// For records, mesh and results together.
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
-  std::stop_token stop;
+  DetailRequest detail;  ///< Of which TIN the heights are.
+  QueryLimits limits;
 };
 
 /// The answer for one point. The point's grid position is rounded as SpotMap says (2^-22 of a grid
@@ -66,7 +63,12 @@ struct LocateResult {
 /// Cost: one point: the records whose region of influence holds it, O(log n) of them in practice. A
 /// batch: the records that any of its points needs, each read and applied once per group. With
 /// `vertices` that of finding the last one is added, once a call (detail.h).
-[[nodiscard]] LocateResult locate(const ProgressiveTin& terrain, std::span<const MapPoint> points,
+[[nodiscard]] LocateResult locate(const OpenedTerrain& terrain, std::span<const MapPoint> points,
                                   const LocateRequest& request = {});
+
+/// As locate(), at a level of detail that was found before: for questions that locate several times.
+/// @param detail  That of the request's tolerance and vertices.
+[[nodiscard]] LocateResult locate_at(const OpenedTerrain& terrain, std::span<const MapPoint> points,
+                                     const LocateRequest& request, const Detail& detail);
 
 }  // namespace ptin

@@ -176,12 +176,11 @@ struct LinePart {
 /// Walks along lines, in groups whose records fit the memory.
 class Profiling {
  public:
-  Profiling(const ProgressiveTin& terrain, const ProfileRequest& request)
+  Profiling(const OpenedTerrain& terrain, const ProfileRequest& request)
       : terrain_(terrain),
         request_(request),
-        context_(request.stop, request.memory_limit_bytes, terrain.store().path()),
-        detail_({request.tolerance, request.vertices}, {terrain.store(), terrain.index()},
-                context_),
+        context_(request.limits, terrain.store().path()),
+        detail_(request.detail, terrain.records(), context_),
         refinement_(terrain.t0()) {}
 
   ProfileResult run(std::span<const std::span<const MapPoint>> lines) {
@@ -268,7 +267,7 @@ class Profiling {
     context_.check_stop();
     const std::uint64_t records = most_records(terrain_.store(), pages);
     const std::uint64_t bytes = bytes_of(terrain_.t0()) + refinement_bytes(records) + held();
-    const bool fits = bytes <= request_.memory_limit_bytes && records <= kGroupRecords;
+    const bool fits = bytes <= request_.limits.memory_bytes && records <= kGroupRecords;
     if (!fits && may_halve(parts, bytes)) {
       walk_halves(parts);
       return;
@@ -283,7 +282,7 @@ class Profiling {
   /// A single line is halved for its memory alone, and a segment never.
   [[nodiscard]] bool may_halve(std::span<const LinePart> parts, std::uint64_t bytes) const {
     return parts.size() > 1 ||
-           (parts.front().end - parts.front().first > 1 && bytes > request_.memory_limit_bytes);
+           (parts.front().end - parts.front().first > 1 && bytes > request_.limits.memory_bytes);
   }
 
   void walk_halves(std::span<const LinePart> parts) {
@@ -321,7 +320,7 @@ class Profiling {
         make_room();
         near = writer.write(static_cast<std::uint32_t>(i), near);
         const std::uint64_t bytes = bytes_of(refinement_.tin()) + held();
-        if (bytes > request_.memory_limit_bytes && may_halve(parts, bytes)) {
+        if (bytes > request_.limits.memory_bytes && may_halve(parts, bytes)) {
           result_.points.resize(before);
           return false;
         }
@@ -367,7 +366,7 @@ class Profiling {
     return result_.points.capacity() * sizeof(ProfilePoint);
   }
 
-  const ProgressiveTin& terrain_;
+  const OpenedTerrain& terrain_;
   const ProfileRequest& request_;
   QueryContext context_;
   Detail detail_;
@@ -377,7 +376,7 @@ class Profiling {
   ProfileResult result_;
 };
 
-ProfileResult profile_of(const ProgressiveTin& terrain,
+ProfileResult profile_of(const OpenedTerrain& terrain,
                          std::span<const std::span<const MapPoint>> lines,
                          const ProfileRequest& request) {
   const auto start = std::chrono::steady_clock::now();
@@ -389,12 +388,12 @@ ProfileResult profile_of(const ProgressiveTin& terrain,
 
 }  // namespace
 
-ProfileResult profile(const ProgressiveTin& terrain, std::span<const MapPoint> line,
+ProfileResult profile(const OpenedTerrain& terrain, std::span<const MapPoint> line,
                       const ProfileRequest& request) {
   return profile_of(terrain, std::span(&line, 1), request);
 }
 
-ProfileResult profile(const ProgressiveTin& terrain, std::span<const std::vector<MapPoint>> lines,
+ProfileResult profile(const OpenedTerrain& terrain, std::span<const std::vector<MapPoint>> lines,
                       const ProfileRequest& request) {
   const std::vector<std::span<const MapPoint>> all(lines.begin(), lines.end());
   return profile_of(terrain, all, request);

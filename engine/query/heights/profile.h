@@ -8,10 +8,11 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include "engine/query/heights/locate.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/query_limits.h"
 
 namespace ptin {
 
@@ -19,15 +20,9 @@ struct ProfileRequest {
   /// Distance over ground between two map positions; none: in the plane of the map. For the
   /// ellipsoid below geographic coordinates.
   std::function<double(MapPoint, MapPoint)> ground_distance;
-  /// Certified error asked for, in the height's unit, >= 0. None: exact.
-  std::optional<double> tolerance;
-  /// The profile of the TIN of the first so many vertices of the terrain (detail.h). Excludes
-  /// `tolerance`.
-  std::optional<std::uint64_t> vertices;
-  /// For records, mesh and points together. Lines whose records do not fit are walked one by one,
-  /// or in pieces.
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
-  std::stop_token stop;
+  DetailRequest detail;  ///< Of which TIN the profile is.
+  /// Lines whose records do not fit the memory are walked one by one, or in pieces.
+  QueryLimits limits;
 };
 
 /// A point where the profile bends: a vertex of the line, or where it crosses an edge or a vertex
@@ -62,9 +57,9 @@ struct ProfileResult {
 /// segments, and the triangles on the way. Lines are taken along the Hilbert curve, in groups that
 /// share one refinement each, so what several need is read and applied once a group. With
 /// `vertices` that of Detail is added.
-[[nodiscard]] ProfileResult profile(const ProgressiveTin& terrain, std::span<const MapPoint> line,
+[[nodiscard]] ProfileResult profile(const OpenedTerrain& terrain, std::span<const MapPoint> line,
                                     const ProfileRequest& request = {});
-[[nodiscard]] ProfileResult profile(const ProgressiveTin& terrain,
+[[nodiscard]] ProfileResult profile(const OpenedTerrain& terrain,
                                     std::span<const std::vector<MapPoint>> lines,
                                     const ProfileRequest& request = {});
 

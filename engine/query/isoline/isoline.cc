@@ -8,8 +8,8 @@
 #include "engine/error.h"
 #include "engine/query/isoline/isoline_clip.h"
 #include "engine/query/isoline/isoline_tiles.h"
-#include "engine/query/select/above_error.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/select/predicate.h"
 
 namespace ptin {
 
@@ -24,14 +24,14 @@ constexpr std::uint64_t kBytesAPointOut = 80;
 /// One extraction: tiles, then joining, then cutting at the window.
 class IsolineExtraction {
  public:
-  IsolineExtraction(const ProgressiveTin& terrain, const IsolineRequest& request)
+  IsolineExtraction(const OpenedTerrain& terrain, const IsolineRequest& request)
       : terrain_(terrain),
         store_(terrain.store()),
         request_(request),
         levels_(request.levels, store_.facts().heights),
-        context_(request.stop, request.memory_limit_bytes, store_.path()),
-        detail_({request.tolerance, request.vertices}, {store_, terrain.index()}, context_),
-        result_(PointStore(request.memory_limit_bytes / 8, request.temporary_folder)) {
+        context_(request.limits, store_.path()),
+        detail_(request.detail, terrain.records(), context_),
+        result_(PointStore(request.limits.memory_bytes / 8, request.temporary_folder)) {
     std::vector<PredicatePtr> parts{levels_.crossing()};
     if (request.window) {
       region_.emplace(*request.window, store_.facts().map);
@@ -72,10 +72,10 @@ class IsolineExtraction {
                                    predicate_,
                                    detail_,
                                    region_ ? &*region_ : nullptr,
-                                   request_.memory_limit_bytes / 2,
-                                   request_.memory_limit_bytes / 8 * 3,
+                                   request_.limits.memory_bytes / 2,
+                                   request_.limits.memory_bytes / 8 * 3,
                                    request_.threads,
-                                   request_.stop};
+                                   request_.limits.stop};
     TileTraces traces = trace_tiles(terrain_, request, result_.points_, context_.cost);
     result_.pieces_ = std::move(traces.pieces);
     result_.crossed = traces.counts;
@@ -93,7 +93,7 @@ class IsolineExtraction {
       longest = std::max(longest, points);
     }
     const std::uint64_t bytes = longest * kBytesAPointOut;
-    if (bytes > request_.memory_limit_bytes / (request_.window ? 8 : 2)) {
+    if (bytes > request_.limits.memory_bytes / (request_.window ? 8 : 2)) {
       throw Error(
           ErrorCode::resource_exhausted,
           "the longest isoline has " + std::to_string(longest) + " points, which take " +
@@ -105,7 +105,7 @@ class IsolineExtraction {
   }
 
   void cut_at_window() {
-    PointStore points(request_.memory_limit_bytes / 8, request_.temporary_folder);
+    PointStore points(request_.limits.memory_bytes / 8, request_.temporary_folder);
     std::vector<IsolinePiece> pieces;
     JoinedLines lines;
     std::vector<MapPoint> line;
@@ -119,7 +119,7 @@ class IsolineExtraction {
         piece.ring = joined.ring && clipped.whole;
         piece.first = points.size();
         piece.count = static_cast<std::uint32_t>(part.size());
-        if ((pieces.size() + 1) * kBytesAPiece > request_.memory_limit_bytes / 4) {
+        if ((pieces.size() + 1) * kBytesAPiece > request_.limits.memory_bytes / 4) {
           throw Error(ErrorCode::resource_exhausted,
                       "the window cuts the isolines into more than " +
                           std::to_string(pieces.size()) +
@@ -146,7 +146,7 @@ class IsolineExtraction {
     result_.cost = context_.cost;
   }
 
-  const ProgressiveTin& terrain_;
+  const OpenedTerrain& terrain_;
   const StoreFile& store_;
   const IsolineRequest& request_;
   LevelSet levels_;
@@ -162,7 +162,7 @@ Isoline Isolines::line(std::size_t i, std::vector<MapPoint>& points) const {
   return {lines_.lines[i].level, lines_.lines[i].ring, points};
 }
 
-Isolines isolines(const ProgressiveTin& terrain, const IsolineRequest& request) {
+Isolines isolines(const OpenedTerrain& terrain, const IsolineRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   Isolines result = IsolineExtraction(terrain, request).run();
   result.cost.seconds =

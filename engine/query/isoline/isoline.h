@@ -7,31 +7,29 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "engine/query/isoline/isoline_pieces.h"
 #include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/isoline/levels.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/select/accounting.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
+#include "engine/query/select/query_limits.h"
+#include "engine/query/select/region.h"
 
 namespace ptin {
 
 struct IsolineRequest {
-  std::vector<double> levels;       ///< Height's unit; sorted, and repetitions dropped (levels.h).
-  std::optional<Window> window;     ///< Map units; lines are cut at its border. None: everywhere.
-  std::optional<double> tolerance;  ///< Certified error; none: the isolines of the full TIN.
-  /// The isolines of the TIN of the first so many vertices of the terrain (detail.h). Excludes
-  /// `tolerance`.
-  std::optional<std::uint64_t> vertices;
+  std::vector<double> levels;    ///< Height's unit; sorted, and repetitions dropped (levels.h).
+  std::optional<Window> window;  ///< Map units; lines are cut at its border. None: everywhere.
+  DetailRequest detail;          ///< Of which TIN the isolines are.
   std::uint64_t most_lines = 10'000'000;
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
+  QueryLimits limits;
   /// Where points go that do not fit the memory. Empty: nowhere, and the extraction fails then.
   std::string temporary_folder;
   int threads = 1;  ///< At most; fewer where the memory is small. The lines are the same.
-  std::stop_token stop;
 };
 
 /// A line to be read: `points` are in map units, without repetitions in a row.
@@ -85,6 +83,6 @@ class Isolines {
 ///               corruption, io_error, cancelled
 /// Cost: records whose height interval holds a level; O(n log n) in the lines. With `vertices` that
 /// of finding the last one is added (detail.h).
-[[nodiscard]] Isolines isolines(const ProgressiveTin& terrain, const IsolineRequest& request);
+[[nodiscard]] Isolines isolines(const OpenedTerrain& terrain, const IsolineRequest& request);
 
 }  // namespace ptin

@@ -39,7 +39,9 @@ struct IsolineChange {
 class ProgressiveIsolines {
  public:
   /// What is kept may take 4 GiB.
-  [[nodiscard]] static QueryContext any_context() { return {{}, std::uint64_t{4} << 30, ""}; }
+  [[nodiscard]] static QueryContext any_context() {
+    return {{.memory_bytes = std::uint64_t{4} << 30}, ""};
+  }
 
   /// The isolines of `tin` as it is: T0, say.
   /// @param context  Its limit is for bytes(), asked for before it is taken; its stop token is

@@ -12,7 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/query/refine/refinement.h"
-#include "engine/query/select/meets_box.h"
+#include "engine/query/select/predicate.h"
 #include "engine/query/select/retrieval.h"
 
 namespace ptin {
@@ -129,14 +129,14 @@ class Collected {
 /// Refines and traces tiles, one after the other, in the same memory.
 class Worker {
  public:
-  Worker(const ProgressiveTin& terrain, const TileTraceRequest& request, std::uint64_t limit,
+  Worker(const OpenedTerrain& terrain, const TileTraceRequest& request, std::uint64_t limit,
          TileQueue& queue, Collected& collected)
       : terrain_(terrain),
         request_(request),
         limit_(limit),
         queue_(queue),
         collected_(collected),
-        context_(request.stop, limit, terrain.store().path()),
+        context_({limit, request.stop}, terrain.store().path()),
         refinement_(terrain.t0()) {}
 
   void run() noexcept {
@@ -215,7 +215,7 @@ class Worker {
     collected_.add(std::move(traced), result.counts);
   }
 
-  const ProgressiveTin& terrain_;
+  const OpenedTerrain& terrain_;
   const TileTraceRequest& request_;
   std::uint64_t limit_;
   TileQueue& queue_;
@@ -235,7 +235,7 @@ int threads_within(const TileTraceRequest& request, std::size_t t0_vertices) {
 
 }  // namespace
 
-TileTraces trace_tiles(const ProgressiveTin& terrain, const TileTraceRequest& request,
+TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& request,
                        PointStore& points, QueryCost& cost) {
   TileQueue queue(terrain.store().facts().bounds);
   Collected collected(points, request.piece_bytes, terrain.store().path());

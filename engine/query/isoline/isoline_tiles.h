@@ -10,9 +10,9 @@
 #include "engine/query/isoline/isoline_pieces.h"
 #include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/isoline/levels.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/region.h"
 
 namespace ptin {
@@ -46,7 +46,7 @@ struct TileTraces {
 /// @throws Error resource_exhausted  a tile that cannot be made small enough, too many pieces; says
 ///                                   what would do
 ///               corruption, io_error, cancelled; as PointStore::add
-[[nodiscard]] TileTraces trace_tiles(const ProgressiveTin& terrain, const TileTraceRequest& request,
+[[nodiscard]] TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& request,
                                      PointStore& points, QueryCost& cost);
 
 }  // namespace ptin

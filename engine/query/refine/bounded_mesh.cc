@@ -14,7 +14,7 @@ constexpr std::uint32_t kRankOfT0 = std::uint32_t{1} << 16;  // above every reco
 
 }  // namespace
 
-BoundedMesh::BoundedMesh(const ProgressiveTin& terrain, const Detail& detail)
+BoundedMesh::BoundedMesh(const OpenedTerrain& terrain, const Detail& detail)
     : terrain_(terrain), detail_(detail), refinement_(terrain.t0()) {
   const Made t0{-kInfinity, kInfinity, std::numeric_limits<float>::infinity(), kRankOfT0};
   made_.assign(tin().vertices.size(), t0);

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/query/progressive_tin.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
 
 namespace ptin {
 
@@ -29,10 +29,10 @@ struct SurfaceBounds {
 /// fan stands on has a larger rank.) Threads: one owner.
 class BoundedMesh {
  public:
-  explicit BoundedMesh(const ProgressiveTin& terrain)
+  explicit BoundedMesh(const OpenedTerrain& terrain)
       : BoundedMesh(terrain, Detail(terrain.store())) {}
   /// @param detail  Records that it leaves out are not added, unless a question goes beyond it.
-  BoundedMesh(const ProgressiveTin& terrain, const Detail& detail);
+  BoundedMesh(const OpenedTerrain& terrain, const Detail& detail);
 
   [[nodiscard]] const Tin& tin() const noexcept { return refinement_.tin(); }
 
@@ -68,7 +68,7 @@ class BoundedMesh {
     std::uint32_t rank;
   };
 
-  const ProgressiveTin& terrain_;
+  const OpenedTerrain& terrain_;
   Detail detail_;
   Refinement refinement_;
   std::vector<Made> made_;      ///< Beside the vertices.

@@ -7,7 +7,6 @@
 
 #include "engine/error.h"
 #include "engine/mesh/compact.h"
-#include "engine/query/select/coarsest.h"
 #include "engine/query/select/retrieval.h"
 
 namespace ptin {
@@ -49,14 +48,13 @@ class MayDiffer final : public AttributePredicate {
 
 }  // namespace
 
-MovingWindow::MovingWindow(std::shared_ptr<const StoreFile> store, MovingWindowOptions options)
-    : store_(std::move(store)),
-      options_(std::move(options)),
-      t0_(mesh_of(store_->t0(), store_->path())),
-      refinement_(t0_),
-      errors_(*store_),
-      cache_(*store_, options_.page_cache_bytes) {
-  if (options_.page_cache_bytes > options_.memory_limit_bytes) {
+MovingWindow::MovingWindow(OpenedTerrain terrain, MovingWindowOptions options)
+    : terrain_(std::move(terrain)),
+      options_(options),
+      refinement_(terrain_.t0()),
+      errors_(terrain_.store()),
+      cache_(terrain_.store(), options_.page_cache_bytes) {
+  if (options_.page_cache_bytes > options_.memory_bytes) {
     throw Error(ErrorCode::invalid_argument,
                 "the cache of pages is larger than the whole memory limit: expected at most that");
   }
@@ -70,10 +68,10 @@ MoveResult MovingWindow::move_to(PredicatePtr predicate, const std::stop_token& 
   if (is_spoilt_) {
     reset();
   }
-  QueryContext context(stop, options_.memory_limit_bytes, store_->path());
+  QueryContext context({options_.memory_bytes, stop}, terrain_.store().path());
   const std::vector<Candidate> pages = candidates(*predicate, context);
   Change change = compare(pages, *predicate, context);
-  store_->pages().check_unchanged();
+  terrain_.store().pages().check_unchanged();
   carry_out(change, context);
   predicate_ = std::move(predicate);
 
@@ -93,7 +91,7 @@ MoveResult MovingWindow::move_to(PredicatePtr predicate, const std::stop_token& 
 /// Pages that may hold a record that enters or leaves, ascending.
 std::vector<PageId> MovingWindow::search(const AttributePredicate& predicate,
                                          QueryContext& context) const {
-  const RecordIndex& index = options_.index ? *options_.index : store_->index();
+  const RecordIndex& index = terrain_.index();
   std::vector<PageId> pages;
   if (predicate_ != nullptr) {
     index.search(MayDiffer(*predicate_, predicate), pages, context.cost.io);
@@ -112,7 +110,7 @@ std::vector<MovingWindow::Candidate> MovingWindow::candidates(const AttributePre
   std::vector<Candidate> result;
   std::uint64_t most = refinement_.alive_vertices();
   for (const PageId page : search(predicate, context)) {
-    const StoreFile::PageInfo info = store_->page_info(page);
+    const StoreFile::PageInfo info = terrain_.store().page_info(page);
     const auto held = held_.find(index_of(page));
     const std::uint32_t count = held == held_.end() ? 0 : held->second.count;
     const bool any = asked.any(info.attributes);
@@ -157,8 +155,8 @@ void MovingWindow::compare_page(const Candidate& page, const AttributePredicate&
   const std::size_t left = change.leaving.size();
   for (std::size_t i = 0; i < records.size(); ++i) {
     const bool wanted =
-        page.all ||
-        (!page.none && predicate.holds(attributes_of(records[i], store_->facts().heights)));
+        page.all || (!page.none &&
+                     predicate.holds(attributes_of(records[i], terrain_.store().facts().heights)));
     const std::uint64_t bit = std::uint64_t{1} << (i % 64);
     if (wanted == ((now.bits[i / 64] & bit) != 0)) {
       continue;
@@ -206,10 +204,10 @@ void MovingWindow::note(Change& change) {
 }
 
 void MovingWindow::reset() {
-  refinement_ = Refinement(t0_);
+  refinement_ = Refinement(terrain_.t0());
   predicate_ = nullptr;
   held_.clear();
-  errors_ = AppliedErrors(*store_);
+  errors_ = AppliedErrors(terrain_.store());
   is_spoilt_ = false;
 }
 

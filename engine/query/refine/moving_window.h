@@ -15,6 +15,7 @@
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/certificate.h"
+#include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/predicate.h"
 #include "storage/store_file.h"
 
@@ -22,11 +23,10 @@ namespace ptin {
 
 struct MovingWindowOptions {
   /// For the mesh, what a move retrieves and the cache; known before a page is read.
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   /// Of these, for pages that are kept between moves: 72 bytes a record. Pages that were looked at
   /// longest ago are given up, and read again when a move needs them.
   std::uint64_t page_cache_bytes = std::uint64_t{256} << 20;
-  std::shared_ptr<const RecordIndex> index;  ///< Null: the store's own.
 };
 
 /// What a move did, and what the mesh is now.
@@ -53,9 +53,9 @@ struct MoveResult {
 class MovingWindow {
  public:
   /// The mesh is T0.
-  /// @throws Error corruption when the stored T0 is not a valid TIN; invalid_argument when the
-  /// cache is larger than the whole limit
-  explicit MovingWindow(std::shared_ptr<const StoreFile> store, MovingWindowOptions options = {});
+  /// @param terrain  A copy, which shares the file.
+  /// @throws Error invalid_argument when the cache is larger than the whole limit
+  explicit MovingWindow(OpenedTerrain terrain, MovingWindowOptions options = {});
   MovingWindow(const MovingWindow&) = delete;
   MovingWindow& operator=(const MovingWindow&) = delete;
 
@@ -107,9 +107,8 @@ class MovingWindow {
   void note(Change& change);
   void reset();
 
-  std::shared_ptr<const StoreFile> store_;
+  OpenedTerrain terrain_;
   MovingWindowOptions options_;
-  Tin t0_;
   Refinement refinement_;
   PredicatePtr predicate_;                        ///< Of the mesh; null: nothing is applied.
   std::unordered_map<std::uint64_t, Held> held_;  ///< By page; those of which a record is applied.

@@ -11,17 +11,17 @@
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/query/refine/refinement.h"
-#include "engine/query/select/above_error.h"
-#include "engine/query/select/meets_box.h"
+#include "engine/query/select/predicate.h"
 #include "engine/query/select/retrieval.h"
+#include "engine/stop.h"
 
 namespace ptin {
 
 namespace {
 
-Detail detail_of(const PartRequest& request, const ProgressiveTin& terrain) {
-  QueryContext context(request.stop, request.memory_limit_bytes, terrain.store().path());
-  return Detail({request.tolerance, request.vertices}, {terrain.store(), terrain.index()}, context);
+Detail detail_of(const PartRequest& request, const OpenedTerrain& terrain) {
+  QueryContext context(request.limits, terrain.store().path());
+  return Detail(request.detail, terrain.records(), context);
 }
 
 PredicatePtr wanted_by(const PartRequest& request, const Detail& detail, const StoreFacts& facts) {
@@ -64,13 +64,11 @@ class Walk {
   void visit(const GridCell& cell, std::uint64_t expected) {
     const GridBox box = cell.box();
     if (!meets(box, domain_)) return;
-    if (refiner_.request().stop.stop_requested()) {
-      throw Error(ErrorCode::cancelled, "the walk over the terrain was cancelled",
+    stop_if_asked(refiner_.request().limits.stop, "the walk over the terrain",
                   refiner_.terrain().store().path());
-    }
     // Asking the index lists the pages: not for cells that are far too large anyway.
     const bool is_hopeless =
-        refinement_bytes(expected) / 16 > refiner_.request().memory_limit_bytes;
+        refinement_bytes(expected) / 16 > refiner_.request().limits.memory_bytes;
     if (cell.level > 0 && (is_hopeless || !refiner_.fits(box))) {
       for (const GridCell& child : children(cell)) visit(child, expected / 4);
       return;
@@ -108,7 +106,7 @@ class Walk {
 
 }  // namespace
 
-PartRefiner::PartRefiner(const ProgressiveTin& terrain, PartRequest request)
+PartRefiner::PartRefiner(const OpenedTerrain& terrain, PartRequest request)
     : terrain_(terrain),
       request_(std::move(request)),
       detail_(detail_of(request_, terrain)),
@@ -127,27 +125,16 @@ std::uint64_t PartRefiner::bytes_for(const GridBox& box) const {
 RefinedTin PartRefiner::refine(const GridBox& box) const {
   const auto start = std::chrono::steady_clock::now();
   const StoreFile& store = terrain_.store();
-  QueryContext context(request_.stop, request_.memory_limit_bytes, store.path());
+  QueryContext context(request_.limits, store.path());
   const PredicatePtr in_box = all_of({wanted_, std::make_shared<MeetsBox>(box)});
-  std::vector<PendingSplit> splits =
-      retrieve({store, terrain_.index()}, *in_box, t0_bytes_, context);
+  std::vector<PendingSplit> splits = retrieve(terrain_.records(), *in_box, t0_bytes_, context);
   detail_.keep(splits);
   Refinement refinement(terrain_.t0());
   refinement.apply(splits, context);
   store.pages().check_unchanged();
   RefinedTin result;
   result.tin = refinement.release_tin();
-  result.vertices = result.tin.vertices.size();
-  result.triangles = result.tin.triangles.size();
-  result.void_vertices = static_cast<std::uint64_t>(
-      std::count(result.tin.has_height.begin(), result.tin.has_height.end(), 0));
-  result.t0_vertices = terrain_.t0().vertices.size();
-  result.certified_error = detail_.certificate().error;
-  result.certified_deviation = detail_.certificate().deviation;
-  result.exact = detail_.is_exact(store.facts());
-  result.cost = context.cost;
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  complete(result, terrain_, detail_.certificate(), context, start);
   return result;
 }
 

@@ -7,23 +7,22 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stop_token>
 
 #include "engine/geometry/box.h"
-#include "engine/query/progressive_tin.h"
+#include "engine/query/refine/refine.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
+#include "engine/query/select/predicate.h"
+#include "engine/query/select/query_limits.h"
 
 namespace ptin {
 
 /// What is asked of every part.
 struct PartRequest {
-  std::optional<Region> region;     ///< Where to refine at all; none means everywhere.
-  std::optional<double> tolerance;  ///< As RefineRequest::tolerance.
-  /// The TIN of the first so many vertices of the whole terrain (detail.h), whatever the region.
-  std::optional<std::uint64_t> vertices;
-  PredicatePtr also;  ///< Any further monotone predicate; none: nothing further.
-  std::uint64_t memory_limit_bytes = std::uint64_t{1} << 30;  ///< For one part, as a query's.
-  std::stop_token stop;
+  std::optional<Region> region;  ///< Where to refine at all; none means everywhere.
+  DetailRequest detail;          ///< Of which TIN the parts are, whatever the region.
+  PredicatePtr also;             ///< Any further monotone predicate; none: nothing further.
+  QueryLimits limits{.memory_bytes = std::uint64_t{1} << 30};  ///< Of one part.
 };
 
 /// Refines parts of a terrain, and knows before it reads what one takes.
@@ -33,29 +32,29 @@ class PartRefiner {
   /// @param terrain  Borrowed.
   /// @throws Error invalid_argument as meets_region() and Detail; as Detail
   /// Cost: that of Detail.
-  PartRefiner(const ProgressiveTin& terrain, PartRequest request);
+  PartRefiner(const OpenedTerrain& terrain, PartRequest request);
 
   /// Most bytes that refine(box) may take, from the index alone. Cost: its pages.
   /// @throws Error corruption
   [[nodiscard]] std::uint64_t bytes_for(const GridBox& box) const;
   [[nodiscard]] bool fits(const GridBox& box) const {
-    return bytes_for(box) <= request_.memory_limit_bytes;
+    return bytes_for(box) <= request_.limits.memory_bytes;
   }
 
   /// The whole domain, where every triangle that meets both `box` and the region is one of the TIN
   /// of the request (P5); coarser elsewhere. Certificates are those of `box`.
-  /// @throws Error as ProgressiveTin::refine
+  /// @throws Error as OpenedTerrain::refine
   [[nodiscard]] RefinedTin refine(const GridBox& box) const;
 
   /// Records of the whole file that the level of detail asks for; at most one bin of errors too
   /// many.
   [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
-  [[nodiscard]] const ProgressiveTin& terrain() const noexcept { return terrain_; }
+  [[nodiscard]] const OpenedTerrain& terrain() const noexcept { return terrain_; }
   [[nodiscard]] const Detail& detail() const noexcept { return detail_; }
   [[nodiscard]] const PartRequest& request() const noexcept { return request_; }
 
  private:
-  const ProgressiveTin& terrain_;
+  const OpenedTerrain& terrain_;
   PartRequest request_;
   Detail detail_;
   PredicatePtr wanted_;  ///< Region and tolerance.

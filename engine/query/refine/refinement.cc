@@ -125,14 +125,6 @@ std::uint64_t bytes_of(const Tin& tin) noexcept {
          tin.triangles.size() * (sizeof(Triangle) + 1) + KeyTable::bytes_for(tin.vertices.size());
 }
 
-std::uint64_t refinement_bytes(std::uint64_t records) noexcept {
-  constexpr std::uint64_t kVertexBytes = sizeof(Vertex) + sizeof(std::uint8_t);
-  constexpr std::uint64_t kTriangleBytes = sizeof(Triangle) + sizeof(TriangleClass);
-  constexpr std::uint64_t kRecordBytes =
-      sizeof(PendingSplit) + 4 * sizeof(std::uint32_t) + kVertexBytes + 2 * kTriangleBytes;
-  return records * kRecordBytes + KeyTable::bytes_for(records);
-}
-
 Refinement::Refinement(const Tin& t0, bool track_pages) : track_pages_(track_pages) { restart(t0); }
 
 void Refinement::restart(const Tin& t0) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Refinement: records sorted by rank and applied to a mesh, which starts as T0 (paper, section 4;
-// DESIGN.md, section 7).
+// engine/DESIGN.md, sections 6.2 and 6.3).
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,6 @@
 
 namespace ptin {
 
-/// Bytes that reading and applying `records` records may take: records, mesh and key table.
-[[nodiscard]] std::uint64_t refinement_bytes(std::uint64_t records) noexcept;
 /// Bytes of a mesh and its key table: what a refinement begins with, of T0.
 [[nodiscard]] std::uint64_t bytes_of(const Tin& tin) noexcept;
 
@@ -36,7 +34,7 @@ class Refinement {
   /// Applies `splits` in the order of apply_order.h, and numbers vertices and triangles along it:
   /// so what lies near in the terrain mostly lies near in memory. Together with what was applied
   /// before they must be closed under dependency, as the records of a monotone predicate are.
-  /// Result: the TIN does not depend on the order of `splits` (the theorem), but its numbering
+  /// Result: the TIN does not depend on the order of `splits` (the theorem: engine/DESIGN.md, section 2.4), but its numbering
   /// does.
   /// @throws Error corruption  a vertex comes twice, or a record does not find its w, vl, vr and
   ///                           fan; names page and vertex. Throw the refinement away then.

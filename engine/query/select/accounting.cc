@@ -27,7 +27,7 @@ void QueryContext::throw_exhausted(std::uint64_t bytes) const {
   };
   throw Error(ErrorCode::resource_exhausted,
               "the answer may take " + size(bytes) + ", more than the limit of " +
-                  size(memory_limit_bytes_) +
+                  size(limits_.memory_bytes) +
                   ": ask for a smaller region, a larger tolerance or fewer vertices, raise the "
                   "limit, or use export",
               file_);

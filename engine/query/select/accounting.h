@@ -5,10 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <stop_token>
 #include <string>
 #include <utility>
 
+#include "engine/query/select/query_limits.h"
+#include "engine/stop.h"
 #include "storage/file/io_counters.h"
 
 namespace ptin {
@@ -26,22 +27,17 @@ struct QueryCost {
   void add_counts(const QueryCost& part) noexcept;
 };
 
-/// Steps of a long loop between two looks at the stop token.
-inline constexpr std::size_t kStopInterval = 4096;
-
 /// The context of one query. Every step of it is handed the same one; nothing of it is shared
 /// between queries. Threads: none; one query, one thread.
 class QueryContext {
  public:
-  /// @param stop                Looked at in every long loop.
-  /// @param memory_limit_bytes  For records and mesh together.
-  /// @param file                Named in errors.
-  QueryContext(std::stop_token stop, std::uint64_t memory_limit_bytes, std::string file)
-      : stop_(std::move(stop)), memory_limit_bytes_(memory_limit_bytes), file_(std::move(file)) {}
+  /// @param file  Named in errors.
+  QueryContext(QueryLimits limits, std::string file)
+      : limits_(std::move(limits)), file_(std::move(file)) {}
 
   /// @throws Error cancelled when the stop token fired.
   void check_stop() const {
-    if (stop_.stop_requested()) [[unlikely]] {
+    if (limits_.stop.stop_requested()) [[unlikely]] {
       throw_cancelled();
     }
   }
@@ -49,7 +45,7 @@ class QueryContext {
   /// @param bytes  What the query would hold at its largest, as far as the index can tell.
   /// @throws Error resource_exhausted when that exceeds the limit; names both figures and `export`.
   void admit(std::uint64_t bytes) const {
-    if (bytes > memory_limit_bytes_) [[unlikely]] {
+    if (bytes > limits_.memory_bytes) [[unlikely]] {
       throw_exhausted(bytes);
     }
   }
@@ -58,7 +54,7 @@ class QueryContext {
   /// @throws Error as admit()
   [[nodiscard]] std::uint64_t left_beside(std::uint64_t bytes) const {
     admit(bytes);
-    return memory_limit_bytes_ - bytes;
+    return limits_.memory_bytes - bytes;
   }
 
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
@@ -69,8 +65,7 @@ class QueryContext {
   [[noreturn]] void throw_cancelled() const;
   [[noreturn]] void throw_exhausted(std::uint64_t bytes) const;
 
-  std::stop_token stop_;
-  std::uint64_t memory_limit_bytes_;
+  QueryLimits limits_;
   std::string file_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Certificates: what the records that were left out can be off by, from the file's table of errors
-// (DESIGN.md, section 2).
+// (engine/DESIGN.md, section 2.7).
 #pragma once
 
 #include <cstddef>

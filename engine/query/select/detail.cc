@@ -7,7 +7,7 @@
 
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
-#include "engine/query/select/above_error.h"
+#include "engine/query/select/predicate.h"
 
 namespace ptin {
 

@@ -8,7 +8,6 @@
 
 #include "engine/error.h"
 #include "engine/geometry/affine_rounding.h"
-#include "engine/query/select/above_error.h"
 
 namespace ptin {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The monotone predicates (DESIGN.md, section 2): once true, true for everything larger. Built from
+// The monotone predicates (engine/DESIGN.md, section 2.3): once true, true for everything larger. Built from
 // comparisons, +, x and square roots of sums of squares, each of which keeps its order under
 // rounding, so they are monotone in floating point too.
 //
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/geometry/affine.h"
+#include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
 #include "engine/query/select/region.h"
 #include "storage/attributes.h"
@@ -29,6 +30,34 @@ class BoundedPredicate : public AttributePredicate {
   /// as `all` grows or `least_error` falls; false where it is not certain.
   [[nodiscard]] virtual bool holds_for_all(const Attributes& all,
                                            double least_error) const noexcept = 0;
+};
+
+/// True above a bound, which, unlike error_above()'s tolerance, may be negative (always true) or
+/// infinite (never). Monotone, exact. Threads: immutable.
+class AboveError final : public BoundedPredicate {
+ public:
+  explicit AboveError(double bound) : bound_(bound) {}
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override { return a.error > bound_; }
+  [[nodiscard]] bool holds_for_all(const Attributes&, double least_error) const noexcept override {
+    return least_error > bound_;
+  }
+
+ private:
+  double bound_;
+};
+
+/// True when `roi` meets a closed box in grid units: monotone, and exact, since both are integers.
+/// Threads: const functions may be called at once. Cost: four comparisons; throws nothing.
+class MeetsBox final : public AttributePredicate {
+ public:
+  explicit MeetsBox(const GridBox& box) : box_(box) {}
+  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
+    return meets(a.roi, box_);
+  }
+  [[nodiscard]] GridBox reach() const noexcept override { return box_; }
+
+ private:
+  GridBox box_;
 };
 
 using PredicatePtr = std::shared_ptr<const AttributePredicate>;

@@ -35,6 +35,9 @@ static_assert(sizeof(PendingSplit) == 64);
           r.roi,        static_cast<std::uint32_t>(index_of(page))};
 }
 
+/// Bytes that reading and applying `records` records may take: records, mesh and key table.
+[[nodiscard]] std::uint64_t refinement_bytes(std::uint64_t records) noexcept;
+
 /// Where records come from. Borrowed: store and index outlive the query.
 struct RecordSource {
   const StoreFile& store;

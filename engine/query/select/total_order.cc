@@ -6,8 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "engine/query/refine/refinement.h"
-#include "engine/query/select/above_error.h"
+#include "engine/query/select/predicate.h"
 
 namespace ptin {
 

@@ -84,7 +84,7 @@ bool is_true_everywhere(const SightView& view) {
 
 class SightSolver::Impl {
  public:
-  Impl(const ProgressiveTin& terrain, SightRequest request, std::uint64_t base_records);
+  Impl(const OpenedTerrain& terrain, SightRequest request, std::uint64_t base_records);
   SightResult solve(const SightPair& pair);
 
   QueryCost base_cost;
@@ -106,7 +106,7 @@ class SightSolver::Impl {
   [[nodiscard]] SightPoint point_at(const SightPair& pair, const SightView& view, double share,
                                     double length) const;
 
-  const ProgressiveTin& terrain_;
+  const OpenedTerrain& terrain_;
   SightRequest request_;
   StoreFacts store_facts_;
   SightFacts facts_;
@@ -119,7 +119,7 @@ class SightSolver::Impl {
   bool is_spoilt_ = false;  ///< An error came while the mesh was changed.
 };
 
-SightSolver::Impl::Impl(const ProgressiveTin& terrain, SightRequest request,
+SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
                         std::uint64_t base_records)
     : terrain_(terrain),
       request_(std::move(request)),
@@ -128,8 +128,8 @@ SightSolver::Impl::Impl(const ProgressiveTin& terrain, SightRequest request,
       detail_(terrain.store()) {
   check(request_);
   const StoreFile& store = terrain.store();
-  QueryContext context(request_.stop, request_.memory_limit_bytes, store.path());
-  detail_ = Detail({request_.tolerance, request_.vertices}, {store, terrain.index()}, context);
+  QueryContext context(request_.limits, store.path());
+  detail_ = Detail(request_.detail, terrain.records(), context);
   facts_.tolerance = detail_.tolerance();
   facts_.is_level_asked = detail_.is_asked();
   facts_.heights = store_facts_.heights;
@@ -191,7 +191,7 @@ double SightSolver::Impl::ground_length(const SightPair& pair) const {
 
 SightResult SightSolver::Impl::solve(const SightPair& pair) {
   const auto start = std::chrono::steady_clock::now();
-  QueryContext context(request_.stop, request_.memory_limit_bytes, terrain_.store().path());
+  QueryContext context(request_.limits, terrain_.store().path());
   context.check_stop();
   const Spot p = spot_of_end(pair.a, pair.height_a);
   const Spot q = spot_of_end(pair.b, pair.height_b);
@@ -263,8 +263,8 @@ void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& resul
     return;
   }
   LocateRequest request;  // exact: ends are, whatever the tolerance
-  request.memory_limit_bytes = request_.memory_limit_bytes;
-  request.stop = request_.stop;
+  request.limits.memory_bytes = request_.limits.memory_bytes;
+  request.limits.stop = request_.limits.stop;
   const LocateResult located = locate(terrain_, {&pair.a, 1}, request);
   const LocatedPoint& ground = located.points[0];
   result.cost = located.cost;
@@ -385,7 +385,7 @@ void SightSolver::Impl::measure_line(const SightView& view, const SightPair& pai
   }
 }
 
-SightSolver::SightSolver(const ProgressiveTin& terrain, SightRequest request,
+SightSolver::SightSolver(const OpenedTerrain& terrain, SightRequest request,
                          std::uint64_t base_records)
     : impl_(std::make_unique<Impl>(terrain, std::move(request), base_records)) {}
 SightSolver::~SightSolver() = default;
@@ -396,7 +396,7 @@ const QueryCost& SightSolver::base_cost() const noexcept { return impl_->base_co
 
 SightResult SightSolver::solve(const SightPair& pair) { return impl_->solve(pair); }
 
-SightResult sight(const ProgressiveTin& terrain, const SightPair& pair,
+SightResult sight(const OpenedTerrain& terrain, const SightPair& pair,
                   const SightRequest& request) {
   SightSolver solver(terrain, request, 0);
   SightResult result = solver.solve(pair);

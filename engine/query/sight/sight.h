@@ -8,9 +8,10 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <stop_token>
 
 #include "engine/query/heights/locate.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/query_limits.h"
 #include "engine/query/sight/curvature.h"
 
 namespace ptin {
@@ -30,20 +31,16 @@ struct SightRequest {
   /// ellipsoid). None: the plane distance in map units.
   std::function<double(MapPoint, MapPoint)> ground_distance;
   double wavelength = 0.0;  ///< Height's unit; above 0 the first Fresnel zone is measured.
-  /// Leave out records of error at or below this (height's unit), but not below the ends, nor at a
-  /// point that hides the line unless it is a void; none: exact.
-  std::optional<double> tolerance;
-  /// Leave out, with the same exceptions, what is not among the first so many vertices of the
-  /// terrain (detail.h). Excludes `tolerance`.
-  std::optional<std::uint64_t> vertices;
+  /// What this level leaves out is left out of the search, but not below the ends, nor at a point
+  /// that hides the line unless that point is a void.
+  DetailRequest detail;
   /// Stop once this many records were retrieved for one pair: looked at before each step, so that
   /// the last one may overrun it.
   std::optional<std::uint64_t> budget;
   /// Nothing but the verdict is wanted: obstruction and clearance are what deciding it happened to
   /// show.
   bool verdict_only = false;
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
-  std::stop_token stop;
+  QueryLimits limits;
 };
 
 /// Hidden: some inner point of the straight line (bent by curvature) lies strictly below the closed
@@ -99,7 +96,7 @@ class SightSolver {
   ///                      each walks farther. 0: none, best for one pair.
   /// @throws Error invalid_argument (as Detail too), resource_exhausted, corruption, io_error,
   /// cancelled
-  SightSolver(const ProgressiveTin& terrain, SightRequest request,
+  SightSolver(const OpenedTerrain& terrain, SightRequest request,
               std::uint64_t base_records = std::uint64_t{1} << 15);
   ~SightSolver();
   SightSolver(SightSolver&&) noexcept;
@@ -118,7 +115,7 @@ class SightSolver {
 };
 
 /// One pair; its cost is all of it.  @throws Error as SightSolver
-[[nodiscard]] SightResult sight(const ProgressiveTin& terrain, const SightPair& pair,
+[[nodiscard]] SightResult sight(const OpenedTerrain& terrain, const SightPair& pair,
                                 const SightRequest& request = {});
 
 }  // namespace ptin

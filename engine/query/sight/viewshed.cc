@@ -9,8 +9,8 @@
 
 #include "engine/error.h"
 #include "engine/query/refine/bounded_mesh.h"
-#include "engine/query/select/above_error.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/select/predicate.h"
 #include "engine/query/sight/viewshed_sweep.h"
 #include "engine/query/walk/spot.h"
 
@@ -117,11 +117,11 @@ double deviation_of_left_out(const StoreFacts& facts) {
 /// The mesh of a request, and what it leaves open.
 class ViewshedSearch {
  public:
-  ViewshedSearch(const ProgressiveTin& terrain, const ViewshedRequest& request)
+  ViewshedSearch(const OpenedTerrain& terrain, const ViewshedRequest& request)
       : store_(terrain.store()),
         request_(request),
-        context_(request.stop, request.memory_limit_bytes, store_.path()),
-        detail_({request.tolerance, request.vertices}, {store_, terrain.index()}, context_),
+        context_(request.limits, store_.path()),
+        detail_(request.detail, terrain.records(), context_),
         mesh_(terrain, detail_),
         left_out_(deviation_of_left_out(store_.facts())) {}
 
@@ -182,7 +182,7 @@ class ViewshedSearch {
 
   /// The deviation at the radius: what is asked for, at any point.
   [[nodiscard]] double allowed() const noexcept {
-    return request_.tolerance.value_or(detail_.certificate().error);
+    return request_.detail.tolerance.value_or(detail_.certificate().error);
   }
 
   Viewshed sweep(const SightBias& bias) {
@@ -202,7 +202,7 @@ class ViewshedSearch {
 
 }  // namespace
 
-Viewshed viewshed(const ProgressiveTin& terrain, const ViewshedRequest& request) {
+Viewshed viewshed(const OpenedTerrain& terrain, const ViewshedRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   check(request);
   Viewshed result = ViewshedSearch(terrain, request).run();

@@ -5,11 +5,12 @@
 
 #include <cstdint>
 #include <optional>
-#include <stop_token>
 #include <vector>
 
-#include "engine/query/progressive_tin.h"
 #include "engine/query/select/accounting.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
+#include "engine/query/select/query_limits.h"
 #include "engine/query/sight/curvature.h"
 
 namespace ptin {
@@ -29,15 +30,12 @@ struct ViewshedRequest {
   /// Side of a pixel, map units; none: the grid's steps. Pixels are centred on the grid then, else
   /// on the eye.
   std::optional<double> pixel_size;
-  bool pixels = true;               ///< Fill the raster.
-  bool list_vertices = true;        ///< List the vertices.
-  std::optional<double> tolerance;  ///< Certified error; none: the full TIN.
-  /// The TIN of the first so many vertices of the terrain (detail.h). Excludes `tolerance`. With
-  /// either the TIN is finer towards the eye: records of a deviation above certified_deviation *
-  /// distance / radius are kept too.
-  std::optional<std::uint64_t> vertices;
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
-  std::stop_token stop;
+  bool pixels = true;         ///< Fill the raster.
+  bool list_vertices = true;  ///< List the vertices.
+  /// At a level of detail the TIN that is swept is finer towards the eye: records of a deviation
+  /// above certified_deviation * distance / radius are kept too.
+  DetailRequest detail;
+  QueryLimits limits;
 };
 
 /// The two in the middle: at a level of detail, what is seen of its TIN, where the full TIN may
@@ -105,6 +103,6 @@ struct Viewshed {
 ///               resource_exhausted, corruption, io_error, cancelled
 /// Cost: linear in the triangles within the radius, and in practice a few pieces of horizon each;
 /// at a level of detail three times that.
-[[nodiscard]] Viewshed viewshed(const ProgressiveTin& terrain, const ViewshedRequest& request);
+[[nodiscard]] Viewshed viewshed(const OpenedTerrain& terrain, const ViewshedRequest& request);
 
 }  // namespace ptin

@@ -10,7 +10,6 @@
 #include "engine/error.h"
 #include "engine/query/sight/horizon.h"
 #include "engine/query/sight/viewshed_eye.h"
-#include "engine/query/sight/viewshed_rim.h"
 #include "engine/query/sight/viewshed_walk.h"
 
 namespace ptin {

@@ -10,6 +10,7 @@
 #include "engine/mesh/split.h"
 #include "engine/query/refine/split_site.h"
 #include "engine/query/select/coarsest.h"
+#include "engine/stop.h"
 #include "storage/facts.h"
 #include "storage/metadata_text.h"
 #include "storage/store_front.h"
@@ -69,15 +70,13 @@ void StreamReader::reject(const std::string& why) const {
               place());
 }
 
-void StreamReader::check_stop() const {
-  if (options_.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled", name_);
-}
+void StreamReader::check_stop() const { stop_if_asked(options_.limits.stop, "receiving", name_); }
 
 void StreamReader::admit(std::uint64_t bytes) const {
-  if (bytes <= options_.memory_limit_bytes) return;
+  if (bytes <= options_.limits.memory_bytes) return;
   throw Error(ErrorCode::resource_exhausted,
               "what the stream brings may take " + std::to_string(bytes) +
-                  " bytes, and the limit is " + std::to_string(options_.memory_limit_bytes) +
+                  " bytes, and the limit is " + std::to_string(options_.limits.memory_bytes) +
                   "; raise it, or ask the sender for less (a larger error, a window)",
               place());
 }

@@ -8,12 +8,12 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "engine/mesh/tin.h"
 #include "engine/query/select/certificate.h"
+#include "engine/query/select/query_limits.h"
 #include "engine/query/stream/split_code.h"
 #include "engine/query/stream/stream_format.h"
 #include "storage/store_file.h"
@@ -21,9 +21,8 @@
 namespace ptin {
 
 struct StreamReaderOptions {
-  /// For frames that wait and the mesh; asked for before either grows.
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
-  std::stop_token stop;  ///< Looked at while splits are applied.
+  /// The memory is for frames that wait and for the mesh; it is asked for before either grows.
+  QueryLimits limits;
 };
 
 /// Follows a stream, and after it streams that go on from it. Threads: one owner.

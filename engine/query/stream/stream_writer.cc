@@ -12,7 +12,6 @@
 #include "engine/mesh/split.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/split_site.h"
-#include "engine/query/select/coarsest.h"
 #include "engine/query/select/total_order.h"
 #include "engine/query/stream/split_code.h"
 #include "engine/query/stream/stream_format.h"
@@ -110,13 +109,14 @@ struct Ordered {
 
 class Writer {
  public:
-  Writer(const StoreFile& store, const StreamRequest& request, const ByteSink& sink)
-      : store_(store),
+  Writer(const OpenedTerrain& terrain, const StreamRequest& request, const ByteSink& sink)
+      : terrain_(terrain),
+        store_(terrain.store()),
         request_(request),
         sink_(sink),
-        source_{store, request.index ? *request.index : store.index()},
-        context_(request.stop, request.memory_limit_bytes, store.path()),
-        code_(store.facts().heights.type) {}
+        source_(terrain.records()),
+        context_(request.limits, store_.path()),
+        code_(store_.facts().heights.type) {}
 
   StreamSummary run() {
     const auto start = std::chrono::steady_clock::now();
@@ -168,6 +168,7 @@ class Writer {
   void code_level(std::span<const PendingSplit> splits, RangeEncoder& coder, GrowingMesh& mesh);
   void send_end(const Tin& tin);
 
+  const OpenedTerrain& terrain_;
   const StoreFile& store_;
   const StreamRequest& request_;
   const ByteSink& sink_;
@@ -219,7 +220,7 @@ void sort_by_rank(std::span<PendingSplit> splits) {
 /// What the receiver has, numbered as it numbers it: T0, and the records it was served. Each
 /// serving is closed under dependency, and so are they together.
 Tin Writer::base_mesh() {
-  Refinement refinement(mesh_of(store_.t0(), store_.path()));
+  Refinement refinement(terrain_.t0());
   for (const StreamHeld& held : request_.held) {
     const PredicatePtr predicate = held.predicate ? held.predicate : everything();
     std::vector<PendingSplit> splits =
@@ -401,9 +402,9 @@ void Writer::send_end(const Tin& tin) {
 
 }  // namespace
 
-StreamSummary write_stream(const StoreFile& store, const StreamRequest& request,
+StreamSummary write_stream(const OpenedTerrain& terrain, const StreamRequest& request,
                            const ByteSink& sink) {
-  return Writer(store, request, sink).run();
+  return Writer(terrain, request, sink).run();
 }
 
 }  // namespace ptin

@@ -11,13 +11,14 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/certificate.h"
+#include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/predicate.h"
+#include "engine/query/select/query_limits.h"
 #include "storage/store_file.h"
 
 namespace ptin {
@@ -41,9 +42,7 @@ struct StreamRequest {
   std::uint64_t most_splits = std::numeric_limits<std::uint64_t>::max();
   /// Text for the receiver (JSON: CRS, units, what was asked); at most 1 MiB.
   std::string metadata;
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
-  std::shared_ptr<const RecordIndex> index;  ///< Null: the store's own.
-  std::stop_token stop;
+  QueryLimits limits;
 };
 
 struct StreamSummary {
@@ -67,7 +66,7 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 ///               io_error, cancelled; what `sink` throws
 /// Cost: k splits sent, h held: O(|T0| + h + k log k) time;
 /// memory for two meshes of h + k vertices, known beforehand.
-StreamSummary write_stream(const StoreFile& store, const StreamRequest& request,
+StreamSummary write_stream(const OpenedTerrain& terrain, const StreamRequest& request,
                            const ByteSink& sink);
 
 }  // namespace ptin

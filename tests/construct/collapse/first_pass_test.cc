@@ -12,7 +12,7 @@
 #include "engine/construct/build.h"
 #include "engine/mesh/triangle_holds.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
 
@@ -187,13 +187,13 @@ TEST(FirstPass, ABuildKeepsItsPromisesAndNeedsHardlyMoreVertices) {
     const BuildReport whole = build({raster.path()}, folder.file("whole.ptin"), options, {});
     options.max_error = 4.0;
     const BuildReport some = build({raster.path()}, folder.file("some.ptin"), options, {});
-    const ProgressiveTin tin = ProgressiveTin::open(folder.file("some.ptin"));
-    const ProgressiveTin all = ProgressiveTin::open(folder.file("whole.ptin"));
+    const Terrain tin = Terrain::open(folder.file("some.ptin"));
+    const Terrain all = Terrain::open(folder.file("whole.ptin"));
     EXPECT_EQ(tin.store().facts().base_error > 0.0, spec.name != "all void");
     EXPECT_LE(tin.store().facts().base_error, 4.0);
     for (const double tolerance : {4.0, 9.0, 30.0}) {
       RefineRequest request;
-      request.tolerance = tolerance;
+      request.detail.tolerance = tolerance;
       const RefinedTin refined = tin.refine(request);
       EXPECT_EQ(validate(refined.tin), "");
       EXPECT_EQ(oracle::check_samples(terrain, refined.tin, tolerance), "");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points built through a tree of tiles into a store, and the promises of DESIGN.md, section 2, held
+// Points built through a tree of tiles into a store, and the promises of engine/DESIGN.md, section 2.8, held
 // against the points and their one Delaunay triangulation.
 #include <algorithm>
 #include <cmath>
@@ -16,6 +16,7 @@
 #include "engine/construct/hierarchy/tile_push.h"
 #include "engine/construct/tile/part_surface.h"
 #include "engine/mesh/validate.h"
+#include "engine/query/terrain.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/point_sets.h"
 #include "tests/construct/store_promises.h"
@@ -84,7 +85,7 @@ void expect_promises(const Case& c) {
   const BuildReport report = build({folder.file("in.xyz")}, folder.file("out.ptin"), options, {});
   EXPECT_EQ(report.vertices, terrain.samples.size());
   EXPECT_EQ(folder.names().size(), 2U) << "nothing else is left behind";
-  EXPECT_EQ(oracle::check_store(terrain, ProgressiveTin::open(folder.file("out.ptin"))), "");
+  EXPECT_EQ(oracle::check_store(terrain, Terrain::open(folder.file("out.ptin"))), "");
 }
 
 TEST(PointsOverTiles, KeepTheirPromises) {

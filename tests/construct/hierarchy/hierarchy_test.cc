@@ -336,7 +336,7 @@ TEST(Hierarchy, RefusesAJoinThatTheMemoryDoesNotHold) {
   options.tile_bytes.fixed = 0;
   const TileTree tree(raster.width(), raster.height(), 8);
   const LeafStarter start = [&](const SampleRange& w) { return raster.start(w); };
-  options.bytes = options.tile_bytes.of_batch(100);
+  options.memory_for_tiles = options.tile_bytes.of_batch(100);
   try {
     static_cast<void>(build_hierarchy([&] { return start; }, tree, options, workspace, output));
     FAIL() << "the root joins far more than fits";

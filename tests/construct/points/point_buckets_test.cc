@@ -9,6 +9,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/construct/grid/point_order.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 #include "tests/construct/point_sets.h"

@@ -8,9 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "engine/construct/build.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/points/point_buckets.h"
 #include "engine/error.h"
 #include "tests/construct/made_raster.h"
+#include "tests/construct/told_build.h"
 #include "tests/support/las_file.h"
 
 namespace ptin {
@@ -53,7 +55,9 @@ BuildPlan planned(const oracle::ScratchFolder& folder, const BuildOptions& optio
   BuildPlan plan;
   BuildResources resources;
   resources.dry_run = true;
-  resources.plan = [&](const BuildPlan& p) { plan = p; };
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  told.on_plan = [&](const BuildPlan& p) { plan = p; };
   build({folder.file("long.xyz")}, folder.file("out.ptin"), options, resources);
   return plan;
 }
@@ -140,8 +144,10 @@ TEST(PointPlan, OfATinIsMadeBeforeItIsRead) {
   BuildResources resources;
   resources.dry_run = true;
   int stages = 0;
-  resources.plan = [&](const BuildPlan& p) { plan = p; };
-  resources.progress = [&](const char* name, std::uint64_t, std::uint64_t) {
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  told.on_plan = [&](const BuildPlan& p) { plan = p; };
+  told.on_stage = [&](const char* name, std::uint64_t, std::uint64_t) {
     stages += std::string(name) == "reading" ? 1 : 0;
   };
   build({folder.file("m.ply")}, folder.file("out.ptin"), {}, resources);

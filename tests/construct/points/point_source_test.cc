@@ -11,6 +11,8 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/construct/delaunay/delaunay.h"
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/read/input_kind.h"
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
 #include "tests/construct/memory_file.h"
@@ -159,10 +161,10 @@ TEST(PointSource, JoinsSeveralFiles) {
 TEST(PointSource, KnowsTheNamesOfPointFiles) {
   for (const char* name :
        {"a.csv", "b/A.XYZ", "c.txt", "d.tsv", "e.csv.gz", "f.XYZ.GZ", "c.las", "D.LAZ"}) {
-    EXPECT_TRUE(is_point_file(name)) << name;
+    EXPECT_EQ(kind_by_name(name), InputKind::kPoints) << name;
   }
   for (const char* name : {"a.tif", "xyz", "b.gz", "c.las.gz", ""}) {
-    EXPECT_FALSE(is_point_file(name)) << name;
+    EXPECT_EQ(kind_by_name(name), std::nullopt) << name;
   }
 }
 

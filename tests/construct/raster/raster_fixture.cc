@@ -7,6 +7,8 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include "engine/construct/grid/source_options.h"
+
 namespace ptin::raster_fixture {
 
 std::string write(const Made& made) {

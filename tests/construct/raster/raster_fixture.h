@@ -14,6 +14,7 @@
 #include <gdal.h>
 #include <gtest/gtest.h>
 
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/raster/raster_source.h"
 #include "engine/error.h"
 

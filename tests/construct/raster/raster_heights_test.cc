@@ -9,6 +9,7 @@
 #include <cpl_conv.h>
 #include <gdal_priv.h>
 
+#include "engine/construct/grid/source_options.h"
 #include "tests/construct/raster/raster_fixture.h"
 
 namespace ptin {

@@ -9,6 +9,8 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/error.h"
 #include "tests/construct/memory_file.h"
 #include "tests/construct/point_source.h"

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/points/open_points.h"
+#include "engine/construct/read/input_kind.h"
 #include "engine/error.h"
 #include "tests/construct/memory_file.h"
 #include "tests/construct/point_source.h"
@@ -95,9 +98,9 @@ TEST(OgrPoints, RefusesLayersThatHoldNoPointsWithHeights) {
 TEST(OgrPoints, IsKnownByItsContent) {
   const MemoryFile file("points.geojson", collection({feature(point("0,0,1"))}));
   const MemoryFile other("points.bin", "rubbish");
-  EXPECT_TRUE(is_point_input(file.path(), {}));
-  EXPECT_FALSE(is_point_input(other.path(), {}));
-  EXPECT_FALSE(is_point_input(std::string(PTIN_TEST_DATA) + "/coast_257.tif", {}));
+  EXPECT_EQ(kind_of_input(file.path(), {}), InputKind::kPoints);
+  EXPECT_EQ(kind_of_input(other.path(), {}), InputKind::kRaster);
+  EXPECT_EQ(kind_of_input(std::string(PTIN_TEST_DATA) + "/coast_257.tif", {}), InputKind::kRaster);
   EXPECT_THROW(std::ignore = open_point_stream("/vsimem/none.gpkg", {}), Error);
 }
 

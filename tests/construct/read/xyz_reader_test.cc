@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "engine/construct/read/input_kind.h"
 #include "engine/error.h"
 #include "tests/construct/memory_file.h"
 

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/tin/tin_source.h"
 #include "engine/error.h"
 #include "engine/mesh/validate.h"

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/tin/tin_source.h"
 #include "engine/construct/tin/tin_vertices.h"
 #include "tests/construct/tin/tin_fixture.h"

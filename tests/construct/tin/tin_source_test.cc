@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/construct/delaunay/delaunay.h"
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/tin/void_sweep.h"
 #include "engine/error.h"
 #include "engine/geometry/orient.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // TINs with pockets and holes built through a tree of tiles into a store, and the promises of
-// DESIGN.md, section 2, held against all their vertices and triangles.
+// engine/DESIGN.md, section 2.8, held against all their vertices and triangles.
 #include <algorithm>
 #include <limits>
 #include <string>
@@ -11,9 +11,11 @@
 #include "engine/construct/build.h"
 #include "engine/construct/delaunay/delaunay.h"
 #include "engine/construct/tin/tin_source.h"
+#include "engine/query/terrain.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/point_sets.h"
 #include "tests/construct/store_promises.h"
+#include "tests/construct/told_build.h"
 
 namespace ptin {
 namespace {
@@ -97,7 +99,7 @@ void expect_promises(const Case& c) {
   const BuildReport report = build({input}, folder.file("out.ptin"), options, {});
   EXPECT_EQ(report.vertices, terrain.samples.size());
   EXPECT_EQ(folder.names().size(), 2U) << "nothing else is left behind";
-  EXPECT_EQ(oracle::check_store(terrain, ProgressiveTin::open(folder.file("out.ptin"))), "");
+  EXPECT_EQ(oracle::check_store(terrain, Terrain::open(folder.file("out.ptin"))), "");
 }
 
 TEST(TinsOverTiles, KeepTheirPromises) {
@@ -159,8 +161,10 @@ TEST(TinsOverTiles, GiveTheSameBytesWithAnyThreadsAndMemoryAndAfterAStop) {
     std::stop_source stop;
     resources.stop = stop.get_token();
     resources.checkpoint_interval = std::chrono::milliseconds(0);
-    resources.progress = [&, calls = std::uint64_t{0}](const char*, std::uint64_t,
-                                                       std::uint64_t) mutable {
+    oracle::ToldBuild told;
+    resources.observer = &told;
+    told.on_stage = [&, calls = std::uint64_t{0}](const char*, std::uint64_t,
+                                                  std::uint64_t) mutable {
       if (++calls == moment) {
         stop.request_stop();
       }

@@ -4,15 +4,15 @@
 #include <cstdio>
 
 #include <engine/error.h>
-#include <engine/query/progressive_tin.h>
+#include <engine/query/terrain.h>
 
 int main(int count, char** arguments) {
   if (count != 2) return 2;
   try {
-    const ptin::ProgressiveTin terrain = ptin::ProgressiveTin::open(arguments[1]);
+    const ptin::Terrain terrain = ptin::Terrain::open(arguments[1]);
     const auto all = terrain.refine({}).vertices;
     ptin::RefineRequest coarse;
-    coarse.tolerance = 5.0;
+    coarse.detail.tolerance = 5.0;
     return terrain.refine(coarse).vertices < all ? 0 : 1;
   } catch (const ptin::Error& e) {
     std::fprintf(stderr, "%s\n", e.what());

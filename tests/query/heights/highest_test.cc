@@ -13,6 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/query/heights/locate.h"
+#include "engine/query/terrain.h"
 #include "storage/spatialindex_rtree.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/least_memory.h"
@@ -125,7 +126,7 @@ void check(const HighestResult& got, const HighestRequest& request, const Tin& t
 RC_GTEST_PROP(Highest, IsThatOfAllTriangles, (std::uint64_t seed)) {
   const Hierarchy h = reference::random_hierarchy(seed);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   std::mt19937_64 random(seed);
   for (int i = 0; i < 8; ++i) {
     HighestRequest request;
@@ -139,15 +140,16 @@ RC_GTEST_PROP(Highest, IsThatOfAllTriangles, (std::uint64_t seed)) {
 RC_GTEST_PROP(Highest, AtALevelOfDetailIsThatOfItsTriangles, (std::uint64_t seed)) {
   const Hierarchy h = reference::random_hierarchy(seed);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   std::mt19937_64 random(seed);
   for (int i = 0; i < 6; ++i) {
     RefineRequest level;
     HighestRequest request;
     if (random() % 2 == 0) {
-      request.tolerance = level.tolerance = double(random() % 1000) / 100;
+      request.detail.tolerance = level.detail.tolerance = double(random() % 1000) / 100;
     } else {
-      request.vertices = level.vertices = h.t0.vertices.size() + random() % (h.records.size() + 3);
+      request.detail.vertices = level.detail.vertices =
+          h.t0.vertices.size() + random() % (h.records.size() + 3);
     }
     request.window = window_in(random, h.facts);
     request.lowest = random() % 2 == 0;
@@ -163,7 +165,7 @@ RC_GTEST_PROP(Highest, AtALevelOfDetailIsThatOfItsTriangles, (std::uint64_t seed
 }
 
 TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
-  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   const StoreFacts& facts = terrain.store().facts();
   const Tin full = terrain.refine({}).tin;
   std::mt19937_64 random(11);
@@ -172,9 +174,9 @@ TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
     request.window = window_in(random, facts);
     request.lowest = i % 2 == 0;
     if (i % 3 == 0) {
-      request.vertices = 100 + random() % 20000;
+      request.detail.vertices = 100 + random() % 20000;
     } else {
-      request.tolerance = double(random() % 4000) / 100;
+      request.detail.tolerance = double(random() % 4000) / 100;
     }
     const HighestResult got = highest(terrain, request);
     if (got.state != PointState::kSurface) continue;
@@ -217,7 +219,7 @@ TEST(Highest, ListsAnyNumberOfVerticesOverVoids) {
     std::mt19937_64 random(seed);
     const Hierarchy h = hierarchy_with_lone_samples(random, 40);
     const TemporaryStore file(h);
-    const ProgressiveTin terrain(file.open());
+    const Terrain terrain(file.open());
     HighestRequest request;
     request.window = Window{-1e9, -1e9, 1e9, 1e9};
     for (const std::uint32_t listed : {1, 2, 3, 7, 30, 31, 100, 500, 1000, 1400, 1600, 100000}) {
@@ -235,7 +237,7 @@ TEST(Highest, TakesStepsInProportionToTheVerticesListedOverVoids) {
   const Hierarchy h =
       reference::simplify_unmeasured(reference::random_grid(random, 90, 90, 4, 0.05), random);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   HighestRequest request;
   request.listed = 8000;
   const QueryCost cost = highest(terrain, request).cost;
@@ -245,10 +247,10 @@ TEST(Highest, TakesStepsInProportionToTheVerticesListedOverVoids) {
 }
 
 /// That locating one point at the same level of detail reads.
-std::uint64_t pages_of_one_point(const ProgressiveTin& terrain, const HighestRequest& request,
+std::uint64_t pages_of_one_point(const Terrain& terrain, const HighestRequest& request,
                                  MapPoint point) {
   LocateRequest where;
-  where.vertices = request.vertices;
+  where.detail.vertices = request.detail.vertices;
   return locate(terrain, {&point, 1}, where).cost.io.pages;
 }
 
@@ -258,10 +260,10 @@ TEST(Highest, FindsTheLastVertexOfALevelOfDetailOnce) {
   const Hierarchy h =
       reference::simplify_unmeasured(reference::random_grid(random, 90, 90, 4, 0.05), random);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   for (const std::size_t share : {2U, 4U, 8U}) {
     HighestRequest request;
-    request.vertices = h.t0.vertices.size() + h.records.size() / share;
+    request.detail.vertices = h.t0.vertices.size() + h.records.size() / share;
     const HighestResult found = highest(terrain, request);
     ASSERT_EQ(found.state, PointState::kSurface);
     const std::uint64_t one = pages_of_one_point(terrain, request, found.point.position);
@@ -275,21 +277,21 @@ TEST(Highest, CountsItsOwnMemoryBesideThatOfLocatingItsVertices) {
   const Hierarchy h =
       reference::simplify_unmeasured(reference::random_grid(random, 60, 60, 4, 0.0), random);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   HighestRequest request;
-  request.listed = 10000;   // all of them are candidates at once,
-  request.tolerance = 0.0;  // each of which may be of no triangle yet
+  request.listed = 10000;          // all of them are candidates at once,
+  request.detail.tolerance = 0.0;  // each of which may be of no triangle yet
   const HighestResult all = highest(terrain, request);
   std::vector<MapPoint> points;
   for (const HeightAt& v : all.vertices) points.push_back(v.position);
   LocateRequest where;
-  where.tolerance = request.tolerance;
+  where.detail.tolerance = request.detail.tolerance;
   const std::uint64_t located = reference::least_memory([&](std::uint64_t limit) {
-    where.memory_limit_bytes = limit;
+    where.limits.memory_bytes = limit;
     static_cast<void>(locate(terrain, points, where));
   });
   const std::uint64_t listed = reference::least_memory([&](std::uint64_t limit) {
-    request.memory_limit_bytes = limit;
+    request.limits.memory_bytes = limit;
     static_cast<void>(highest(terrain, request));
   });
   // A candidate's value, number and key, and its point and key on the way to locate().
@@ -303,7 +305,7 @@ TEST(Highest, OfALargeTerrainReadsFewPagesOfIt) {
       reference::simplify_unmeasured(reference::random_grid(random, 120, 120, 4, 0.0), random);
   const TemporaryStore file(h);
   const auto store = file.open();
-  ProgressiveTin terrain(store);
+  Terrain terrain(store);
   HighestRequest request;
   const HighestResult packed = highest(terrain, request);
   EXPECT_EQ(packed.point.height, h.facts.max_height);
@@ -317,17 +319,17 @@ TEST(Highest, OfALargeTerrainReadsFewPagesOfIt) {
 TEST(Highest, RefusesWhatMeansNothing) {
   const Hierarchy h = reference::random_hierarchy(1);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   HighestRequest request;
   request.listed = 0;
   EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
   request.listed = 1;
-  request.tolerance = -1;
+  request.detail.tolerance = -1;
   EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
-  request.tolerance = 1;
-  request.vertices = 100;
+  request.detail.tolerance = 1;
+  request.detail.vertices = 100;
   EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
-  request.vertices.reset();
+  request.detail.vertices.reset();
   request.window = Window{1, 0, 0, 1};
   EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
 }

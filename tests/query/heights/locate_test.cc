@@ -11,6 +11,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/terrain.h"
 #include "engine/query/walk/spot_set.h"
 #include "engine/query/walk/walk.h"
 #include "tests/query/built_terrain.h"
@@ -59,7 +60,7 @@ RC_GTEST_PROP(Locate, GivesTheFullTinsAnswerAtAnyPoint, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const Hierarchy h = reference::random_hierarchy(seed);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   const SpotMap map(h.facts.map, h.facts.bounds);
   std::vector<Spot> spots(16);
   std::vector<MapPoint> points;
@@ -120,7 +121,7 @@ std::vector<MapPoint> random_points(const StoreFacts& f, std::size_t count, std:
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 TEST(Locate, BatchesAnswerAsSinglePointsDoInTheOrderOfTheRequest) {
-  const ProgressiveTin& terrain = reference::built_terrain("coast_257.tif");
+  const Terrain& terrain = reference::built_terrain("coast_257.tif");
   const std::vector<MapPoint> points = random_points(terrain.store().facts(), 20000, 3);
   const LocateResult all = locate(terrain, points);
   ASSERT_EQ(all.points.size(), points.size());
@@ -132,23 +133,23 @@ TEST(Locate, BatchesAnswerAsSinglePointsDoInTheOrderOfTheRequest) {
 }
 
 TEST(Locate, GroupsAreHalvedUntilTheyFitTheMemory) {
-  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   const std::vector<MapPoint> points = random_points(terrain.store().facts(), 3000, 4);
   const LocateResult free = locate(terrain, points);
   LocateRequest request;
-  request.memory_limit_bytes = 3000 * 200 + (std::uint64_t{3} << 20);
+  request.limits.memory_bytes = 3000 * 200 + (std::uint64_t{3} << 20);
   const LocateResult tight = locate(terrain, points, request);
   EXPECT_GT(tight.cost.records_applied, free.cost.records_applied);
   for (std::size_t i = 0; i < points.size(); ++i) {
     ASSERT_TRUE(same(free.points[i].height, tight.points[i].height));
   }
-  request.memory_limit_bytes = 1000;
+  request.limits.memory_bytes = 1000;
   EXPECT_THROW(static_cast<void>(locate(terrain, points, request)), Error);
 }
 
 /// The exact height lies in every interval that an approximation reports.
-void check_intervals(const ProgressiveTin& exact, const ProgressiveTin& asked,
-                     const LocateRequest& request, std::uint64_t seed) {
+void check_intervals(const Terrain& exact, const Terrain& asked, const LocateRequest& request,
+                     std::uint64_t seed) {
   const std::vector<MapPoint> points = random_points(exact.store().facts(), 20000, seed);
   const LocateResult truth = locate(exact, points);
   const LocateResult found = locate(asked, points, request);
@@ -167,32 +168,33 @@ void check_intervals(const ProgressiveTin& exact, const ProgressiveTin& asked,
     }
   }
   EXPECT_GT(both, points.size() / 4);
-  EXPECT_EQ(found.exact, found.certified_error == 0 && !request.tolerance && !request.vertices);
+  EXPECT_EQ(found.exact,
+            found.certified_error == 0 && !request.detail.tolerance && !request.detail.vertices);
 }
 
 LocateRequest at(double tolerance) {
   LocateRequest request;
-  request.tolerance = tolerance;
+  request.detail.tolerance = tolerance;
   return request;
 }
 
 TEST(Locate, IntervalsHoldTheExactHeight) {
   for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
-    const ProgressiveTin& terrain = reference::built_terrain(name);
+    const Terrain& terrain = reference::built_terrain(name);
     for (const double tolerance : {0.0, 1.0, 8.0, 60.0, 1000.0}) {
       check_intervals(terrain, terrain, at(tolerance), 5);
     }
     for (const std::uint64_t records : {2000U, 20000U}) {
       LocateRequest request;
-      request.vertices = terrain.store().t0().vertices.size() + records;
+      request.detail.vertices = terrain.store().t0().vertices.size() + records;
       check_intervals(terrain, terrain, request, 8);
     }
   }
 }
 
 TEST(Locate, FilesThatLeftRecordsOutAnswerWithIntervals) {
-  const ProgressiveTin& exact = reference::built_terrain("mountains_257.tif");
-  const ProgressiveTin& coarse = reference::built_terrain("mountains_257.tif", 10.0);
+  const Terrain& exact = reference::built_terrain("mountains_257.tif");
+  const Terrain& coarse = reference::built_terrain("mountains_257.tif", 10.0);
   check_intervals(exact, coarse, {}, 6);
   check_intervals(exact, coarse, at(20.0), 7);
   const LocateResult r = locate(coarse, random_points(coarse.store().facts(), 10, 1));
@@ -202,7 +204,7 @@ TEST(Locate, FilesThatLeftRecordsOutAnswerWithIntervals) {
 }
 
 TEST(Locate, RejectsWhatIsNoPositionOrTolerance) {
-  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   const std::vector<MapPoint> bad = {{0, 0}, {std::nan(""), 0}};
   try {
     static_cast<void>(locate(terrain, bad));
@@ -212,7 +214,7 @@ TEST(Locate, RejectsWhatIsNoPositionOrTolerance) {
     EXPECT_NE(e.message().find("point 1"), std::string::npos);
   }
   LocateRequest request;
-  request.tolerance = -1.0;
+  request.detail.tolerance = -1.0;
   EXPECT_THROW(static_cast<void>(locate(terrain, {bad.data(), 1}, request)), Error);
   const std::vector<MapPoint> far = {{1e300, -1e300}};
   EXPECT_EQ(locate(terrain, far).points[0].state, PointState::kOutside);

@@ -10,6 +10,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/terrain.h"
 #include "engine/query/walk/spot_path.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/line_oracle.h"
@@ -26,7 +27,7 @@ RC_GTEST_PROP(Profile, BreaksWhereTheFullTinDoesAtItsHeights, (std::uint64_t see
   std::mt19937_64 random(seed);
   const Hierarchy h = reference::random_hierarchy(seed);
   const reference::TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   const SpotMap map(h.facts.map, h.facts.bounds);
   for (int i = 0; i < 3; ++i) {
     const Spot p = nasty_spot(random, h.full);
@@ -61,7 +62,7 @@ RC_GTEST_PROP(Profile, BreaksWhereTheFullTinDoesAtItsHeights, (std::uint64_t see
 TEST(Profile, FollowsALineOfSeveralSegments) {
   const Hierarchy h = reference::random_hierarchy(11);
   const reference::TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   const GridBox& b = h.facts.bounds;
   const MapPoint line[] = {
       h.facts.map.to_map(b.min_x, b.min_y), h.facts.map.to_map(b.max_x, b.min_y),
@@ -123,7 +124,7 @@ RC_GTEST_PROP(SpotPath, HoldsWhereABoxMeetsASegment, (std::uint64_t seed)) {
 }
 
 TEST(Profile, AnswersThePiecesOfALineThatDoesNotFitTheMemory) {
-  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   const StoreFacts& f = terrain.store().facts();
   std::mt19937_64 random(5);
   std::vector<MapPoint> track;
@@ -134,7 +135,7 @@ TEST(Profile, AnswersThePiecesOfALineThatDoesNotFitTheMemory) {
   }
   const ProfileResult free = profile(terrain, track);
   ProfileRequest request;
-  request.memory_limit_bytes = std::uint64_t{7} << 20;
+  request.limits.memory_bytes = std::uint64_t{7} << 20;
   const ProfileResult tight = profile(terrain, track, request);
   EXPECT_GT(tight.cost.records_applied, free.cost.records_applied) << "it was not cut";
   ASSERT_EQ(tight.points.size(), free.points.size());
@@ -142,12 +143,12 @@ TEST(Profile, AnswersThePiecesOfALineThatDoesNotFitTheMemory) {
     ASSERT_EQ(tight.points[i].distance, free.points[i].distance);
     ASSERT_EQ(tight.points[i].height, free.points[i].height);
   }
-  request.memory_limit_bytes = 1000;
+  request.limits.memory_bytes = 1000;
   EXPECT_THROW(static_cast<void>(profile(terrain, track, request)), Error);
 }
 
 TEST(Profile, KeepsLinesApart) {
-  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   const StoreFacts& f = terrain.store().facts();
   const auto at = [&](int x, int y) {
     return f.map.to_map(f.bounds.min_x + x, f.bounds.min_y + y);
@@ -168,7 +169,7 @@ TEST(Profile, KeepsLinesApart) {
 }
 
 TEST(Profile, SharesRefinementsAndKeepsTheOrderOfManyLines) {
-  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   const StoreFacts& f = terrain.store().facts();
   std::mt19937_64 random(8);
   const auto at = [&](double x, double y) {
@@ -183,7 +184,7 @@ TEST(Profile, SharesRefinementsAndKeepsTheOrderOfManyLines) {
   }
   ProfileRequest request;
   for (const std::uint64_t memory : {std::uint64_t{1} << 32, std::uint64_t{5} << 20}) {
-    request.memory_limit_bytes = memory;
+    request.limits.memory_bytes = memory;
     const ProfileResult all = profile(terrain, lines, request);
     EXPECT_EQ(all.skipped_lines, 6U);
     std::size_t i = 0;
@@ -212,7 +213,7 @@ TEST(Profile, SharesRefinementsAndKeepsTheOrderOfManyLines) {
 TEST(Profile, RejectsWhatIsNoLine) {
   const Hierarchy h = reference::random_hierarchy(12);
   const reference::TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   const MapPoint one[] = {{1000, -500}, {1000, -500}};
   const MapPoint bad[] = {{1000, -500}, {std::nan(""), 0}};
   EXPECT_THROW(static_cast<void>(profile(terrain, one)), Error);

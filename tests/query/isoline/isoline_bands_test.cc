@@ -87,7 +87,7 @@ RC_GTEST_PROP(BandPolygons, CoverTheirPartsOfTheSurface, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const Surface surface = surface_of(h.full, h.facts);
   const std::vector<double> levels = random_levels(random, h);
-  const QueryContext context({}, std::uint64_t{1} << 30, "test");
+  const QueryContext context({.memory_bytes = std::uint64_t{1} << 30}, "test");
   const auto polygons = band_polygons({surface.vertices, surface.triangles}, levels, context);
 
   std::vector<double> wanted(levels.size() + 1), got(levels.size() + 1);
@@ -153,7 +153,7 @@ TEST(BandPolygons, OfAPeakAndARidgeExactlyAtALevelHaveNoPartAboveIt) {
       s.triangles.push_back({a, a + 5, a + 4});
     }
   }
-  const QueryContext context({}, std::uint64_t{1} << 30, "test");
+  const QueryContext context({.memory_bytes = std::uint64_t{1} << 30}, "test");
   const std::vector<double> levels{10.0};
   const auto polygons = band_polygons({s.vertices, s.triangles}, levels, context);
   ASSERT_EQ(polygons.size(), 1U);
@@ -168,9 +168,9 @@ TEST(BandPolygons, RefuseWhatDoesNotFit) {
   s.triangles = {{0, 1, 2}};
   std::vector<double> levels(1000);
   for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = static_cast<double>(i) + 0.5;
-  const QueryContext small({}, 1000, "test");
+  const QueryContext small({.memory_bytes = 1000}, "test");
   EXPECT_THROW(static_cast<void>(band_polygons({s.vertices, s.triangles}, levels, small)), Error);
-  const QueryContext enough({}, 250000, "test");
+  const QueryContext enough({.memory_bytes = 250000}, "test");
   EXPECT_EQ(band_polygons({s.vertices, s.triangles}, levels, enough).size(), 1001U);
 }
 

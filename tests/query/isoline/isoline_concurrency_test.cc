@@ -12,13 +12,14 @@
 
 #include "engine/error.h"
 #include "engine/query/isoline/isoline_tiles.h"
+#include "engine/query/terrain.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin {
 namespace {
 
-struct Terrain {
-  Terrain() : hierarchy(make()), file(hierarchy), tin(file.open()) {}
+struct StoredTerrain {
+  StoredTerrain() : hierarchy(make()), file(hierarchy), tin(file.open()) {}
   static reference::Hierarchy make() {
     std::mt19937_64 random(7);
     Tin full = reference::random_grid(random, 70, 60, 8, 0.05);
@@ -34,12 +35,12 @@ struct Terrain {
   }
   reference::Hierarchy hierarchy;
   reference::TemporaryStore file;
-  ProgressiveTin tin;
+  Terrain tin;
 };
 
 /// The lines in their order, and how many tiles they come from.
 std::pair<std::vector<std::vector<MapPoint>>, std::uint64_t> traced(
-    const Terrain& terrain, int threads, std::uint64_t tile_bytes,
+    const StoredTerrain& terrain, int threads, std::uint64_t tile_bytes,
     std::uint64_t piece_bytes = 64 << 20) {
   const LevelSet levels(terrain.levels(), terrain.hierarchy.facts.heights);
   const Detail detail(terrain.tin.store());
@@ -48,7 +49,8 @@ std::pair<std::vector<std::vector<MapPoint>>, std::uint64_t> traced(
   PointStore points(64 << 20, {});
   QueryCost cost;
   const TileTraces traces = trace_tiles(terrain.tin, request, points, cost);
-  const JoinedLines joined = join_pieces(traces.pieces, QueryContext({}, 1 << 30, "test"));
+  const JoinedLines joined =
+      join_pieces(traces.pieces, QueryContext({.memory_bytes = 1 << 30}, "test"));
   std::vector<std::vector<MapPoint>> lines(joined.lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     points_of(joined.lines[i], joined, traces.pieces, points, lines[i]);
@@ -57,7 +59,7 @@ std::pair<std::vector<std::vector<MapPoint>>, std::uint64_t> traced(
 }
 
 TEST(IsolineTiles, GiveTheSameLinesOnAnyNumberOfThreads) {
-  const Terrain terrain;
+  const StoredTerrain terrain;
   const auto [whole, one] = traced(terrain, 1, 1 << 30);
   EXPECT_EQ(one, 1U);
   EXPECT_GT(whole.size(), 100U);
@@ -94,7 +96,7 @@ class NoMoreThreads {
 };
 
 TEST(IsolineTiles, AreTracedByTheThreadsThatCanBeStarted) {
-  const Terrain terrain;
+  const StoredTerrain terrain;
   const auto [whole, one] = traced(terrain, 1, 1 << 30);
   const NoMoreThreads limit;
   EXPECT_THROW(std::jthread([] {}), std::system_error);
@@ -104,7 +106,7 @@ TEST(IsolineTiles, AreTracedByTheThreadsThatCanBeStarted) {
 }
 
 TEST(IsolineTiles, EndWhenOneOfThemFails) {
-  const Terrain terrain;
+  const StoredTerrain terrain;
   for (const int threads : {1, 4}) {
     try {
       static_cast<void>(traced(terrain, threads, 200'000, 50 * kBytesAPiece));

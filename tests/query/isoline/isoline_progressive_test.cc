@@ -21,6 +21,7 @@
 #include "engine/query/select/total_order.h"
 #include "engine/query/stream/stream_reader.h"
 #include "engine/query/stream/stream_writer.h"
+#include "engine/query/terrain.h"
 #include "tests/query/isoline/isoline_listing.h"
 
 namespace ptin {
@@ -61,7 +62,7 @@ struct IsolineCase {
   [[nodiscard]] Listing of_the_terrain(std::optional<double> tolerance = {}) const {
     IsolineRequest request;
     request.levels = levels.heights();
-    request.tolerance = tolerance;
+    request.detail.tolerance = tolerance;
     return listing(isolines(terrain, request));
   }
   /// The records that isolines need, in the total order.
@@ -79,11 +80,11 @@ struct IsolineCase {
   Hierarchy hierarchy;
   TemporaryStore file;
   std::shared_ptr<const StoreFile> store;
-  ProgressiveTin terrain;
+  Terrain terrain;
   LevelSet levels;
 };
 
-QueryContext context() { return {{}, std::uint64_t{1} << 30, "test"}; }
+QueryContext context() { return {{.memory_bytes = std::uint64_t{1} << 30}, "test"}; }
 
 RC_GTEST_PROP(ProgressiveIsolines, FollowEverySplit, (std::uint64_t seed)) {
   const IsolineCase asked(seed);
@@ -121,7 +122,7 @@ RC_GTEST_PROP(ProgressiveIsolines, OfAStreamAreThoseOfTheTerrainInTheEnd, (std::
     request.tolerance = tolerance;
   }
   std::vector<std::byte> bytes;
-  write_stream(*asked.store, request, [&](std::span<const std::byte> piece) {
+  write_stream(OpenedTerrain(asked.store), request, [&](std::span<const std::byte> piece) {
     bytes.insert(bytes.end(), piece.begin(), piece.end());
   });
   StreamReader reader("stream");
@@ -168,7 +169,7 @@ TEST(ProgressiveIsolines, CostWhatChanges) {
   const Hierarchy h =
       reference::simplify_unmeasured(reference::random_grid(random, 90, 80, 8, 0.03), random);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   const LevelSet levels(random_levels(random, h, 20), h.facts.heights);
   QueryContext query = context();
   Refinement mesh(terrain.t0());
@@ -207,7 +208,7 @@ TEST(ProgressiveIsolines, BeginAnewWithAnotherNumbering) {
   const Tin other = stream::numbered_by_key(mesh.tin());
   kept.restart(other);
   EXPECT_EQ(listing(kept.lines(other, query)), asked.of_the_terrain());
-  const QueryContext small({}, 100, "test");
+  const QueryContext small({.memory_bytes = 100}, "test");
   EXPECT_THROW(static_cast<void>(kept.lines(other, small)), Error);
 }
 
@@ -218,7 +219,7 @@ TEST(ProgressiveIsolines, KeepToTheirLimitAndStop) {
     Refinement mesh(asked.terrain.t0());
     try {
       ProgressiveIsolines kept(mesh.tin(), asked.levels, asked.hierarchy.facts.heights,
-                               asked.hierarchy.facts.map, {std::move(stop), limit, "test"});
+                               asked.hierarchy.facts.map, {{limit, std::move(stop)}, "test"});
       mesh.apply(asked.splits(), query);
       kept.advance(mesh.tin());
       EXPECT_LE(kept.bytes(), limit);

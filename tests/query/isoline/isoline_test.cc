@@ -18,6 +18,7 @@
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/query/isoline/isoline_clip.h"
+#include "engine/query/terrain.h"
 #include "tests/query/isoline/isoline_listing.h"
 
 namespace ptin {
@@ -133,7 +134,7 @@ bool lies_on_border(const Hierarchy& h, MapPoint p) {
 RC_GTEST_PROP(Isolines, AreTheBruteForceOnesOfTheFullTin, (std::uint64_t seed)) {
   const Hierarchy h = reference::random_hierarchy(seed);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   std::mt19937_64 random(seed);
   for (int i = 0; i < 3; ++i) {
     IsolineRequest request;
@@ -150,7 +151,7 @@ RC_GTEST_PROP(Isolines, EndOnlyWhereTheSurfaceEnds, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   IsolineRequest request;
   request.levels = random_levels(random, h, 4);
-  const Isolines lines = isolines(ProgressiveTin(file.open()), request);
+  const Isolines lines = isolines(Terrain(file.open()), request);
   std::vector<MapPoint> points;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Isoline line = lines.line(i, points);
@@ -167,19 +168,19 @@ RC_GTEST_PROP(Isolines, AtALevelOfDetailAreThoseOfItsTin, (std::uint64_t seed)) 
   const Hierarchy h = reference::random_hierarchy(seed);
   RC_PRE(!h.records.empty());
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   std::mt19937_64 random(seed);
   RefineRequest whole;
   if (random() % 2 == 0) {
-    whole.tolerance =
+    whole.detail.tolerance =
         h.records[random() % h.records.size()].error * (random() % 2 == 0 ? 1.0 : 0.5);
   } else {
-    whole.vertices = h.t0.vertices.size() + random() % (h.records.size() + 2);
+    whole.detail.vertices = h.t0.vertices.size() + random() % (h.records.size() + 2);
   }
   IsolineRequest request;
   request.levels = random_levels(random, h, 3);
-  request.tolerance = whole.tolerance;
-  request.vertices = whole.vertices;
+  request.detail.tolerance = whole.detail.tolerance;
+  request.detail.vertices = whole.detail.vertices;
   const Isolines lines = isolines(terrain, request);
   const RefinedTin refined = terrain.refine(whole);
   RC_ASSERT(pieces_of(lines) == brute_force(refined.tin, h.facts, request.levels));
@@ -187,13 +188,13 @@ RC_GTEST_PROP(Isolines, AtALevelOfDetailAreThoseOfItsTin, (std::uint64_t seed)) 
   RC_ASSERT(lines.certified_error >= refined.certified_error);
   RC_ASSERT(lines.certified_deviation >= refined.certified_deviation);
   RC_ASSERT(lines.exact == refined.exact);
-  if (whole.tolerance) RC_ASSERT(lines.certified_error <= *whole.tolerance);
+  if (whole.detail.tolerance) RC_ASSERT(lines.certified_error <= *whole.detail.tolerance);
 }
 
 RC_GTEST_PROP(Isolines, OfAWindowAreThoseOfTheTerrainCut, (std::uint64_t seed)) {
   const Hierarchy h = reference::random_hierarchy(seed);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   std::mt19937_64 random(seed);
   for (int i = 0; i < 4; ++i) {
     IsolineRequest request;
@@ -220,7 +221,7 @@ std::multiset<std::array<double, 3>> ends_at(const Isolines& lines, double at) {
 RC_GTEST_PROP(Isolines, OfTwoWindowsMeetInTheSameBits, (std::uint64_t seed)) {
   const Hierarchy h = reference::random_hierarchy(seed);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   std::mt19937_64 random(seed);
   IsolineRequest request;
   request.levels = random_levels(random, h, 4);
@@ -247,7 +248,7 @@ struct LargeTerrain {
   }
   Hierarchy hierarchy;
   TemporaryStore file;
-  ProgressiveTin tin;
+  Terrain tin;
 };
 
 TEST(Isolines, DoNotDependOnTilesOrTemporaryFiles) {
@@ -257,20 +258,20 @@ TEST(Isolines, DoNotDependOnTilesOrTemporaryFiles) {
   request.levels = random_levels(random, terrain.hierarchy, 20);
   const Isolines whole = isolines(terrain.tin, request);
   EXPECT_EQ(whole.tiles, 1U);
-  request.memory_limit_bytes = 2 << 20;
+  request.limits.memory_bytes = 2 << 20;
   request.temporary_folder = std::filesystem::temp_directory_path().string();
   const Isolines tiled = isolines(terrain.tin, request);
   EXPECT_GT(tiled.tiles, 1U);
-  EXPECT_GT(tiled.points() * sizeof(MapPoint), request.memory_limit_bytes / 8);
+  EXPECT_GT(tiled.points() * sizeof(MapPoint), request.limits.memory_bytes / 8);
   EXPECT_EQ(tiled.crossed.segments, whole.crossed.segments);
   EXPECT_EQ(tiled.crossed.vertices, whole.crossed.vertices);
   EXPECT_TRUE(listing(whole) == listing(tiled));
   EXPECT_TRUE(pieces_of(whole) ==
               brute_force(terrain.hierarchy.full, terrain.hierarchy.facts, request.levels));
   request.threads = 3;
-  request.memory_limit_bytes = 64 << 20;  // enough for each
+  request.limits.memory_bytes = 64 << 20;  // enough for each
   EXPECT_TRUE(listing(whole) == listing(isolines(terrain.tin, request)));
-  request.memory_limit_bytes = 2 << 20;
+  request.limits.memory_bytes = 2 << 20;
   request.temporary_folder.clear();
   EXPECT_THROW(static_cast<void>(isolines(terrain.tin, request)), Error);
 }
@@ -285,12 +286,12 @@ TEST(Isolines, FitTheirMemoryWhateverIsCrossedOrAreRefused) {
   for (int i = 0; i < 60; ++i) request.levels.push_back(facts.min_height + (i + 0.5) * step);
   const Isolines whole = isolines(terrain.tin, request);
   request.temporary_folder = std::filesystem::temp_directory_path().string();
-  request.memory_limit_bytes = 8 << 20;
+  request.limits.memory_bytes = 8 << 20;
   const Isolines tiled = isolines(terrain.tin, request);
   EXPECT_GT(tiled.tiles, 1U);
   EXPECT_TRUE(listing(whole) == listing(tiled));
   for (const std::uint64_t limit : {std::uint64_t{1} << 20, std::uint64_t{3} << 19}) {
-    request.memory_limit_bytes = limit;
+    request.limits.memory_bytes = limit;
     try {
       static_cast<void>(isolines(terrain.tin, request));
       FAIL();
@@ -326,12 +327,12 @@ TEST(Isolines, RefuseLevelsThatMeanNothing) {
   request.levels = {std::nan("")};
   EXPECT_THROW(static_cast<void>(isolines(terrain.tin, request)), Error);
   request.levels = {1.0};
-  request.tolerance = -1.0;
+  request.detail.tolerance = -1.0;
   EXPECT_THROW(static_cast<void>(isolines(terrain.tin, request)), Error);
   std::stop_source stop;
   stop.request_stop();
-  request.tolerance.reset();
-  request.stop = stop.get_token();
+  request.detail.tolerance.reset();
+  request.limits.stop = stop.get_token();
   EXPECT_THROW(static_cast<void>(isolines(terrain.tin, request)), Error);
 }
 

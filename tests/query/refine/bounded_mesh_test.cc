@@ -9,8 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/select/above_error.h"
+#include "engine/query/select/predicate.h"
 #include "engine/query/sight/viewshed.h"
+#include "engine/query/terrain.h"
 #include "tests/query/least_memory.h"
 #include "tests/query/reference_hierarchy.h"
 
@@ -31,12 +32,12 @@ struct HeldTerrain {
   Hierarchy hierarchy =
       reference::simplify_unmeasured(reference::random_grid(random, 40, 40, 4, 0.0), random);
   TemporaryStore file{hierarchy};
-  ProgressiveTin terrain{file.open()};
+  Terrain terrain{file.open()};
 };
 
 TEST(BoundedMesh, CountsItsArraysAndTheRecordsAddedLast) {
   const HeldTerrain t;
-  QueryContext context({}, std::uint64_t{1} << 30, "a test");
+  QueryContext context({.memory_bytes = std::uint64_t{1} << 30}, "a test");
   BoundedMesh mesh(t.terrain);
   const std::uint64_t of_t0 = mesh.bytes();
   EXPECT_GE(of_t0, array_bytes(mesh.tin()));
@@ -62,7 +63,7 @@ TEST(BoundedMesh, CountsItsArraysAndTheRecordsAddedLast) {
 
 TEST(BoundedMesh, IsTheSameMeshWithoutItsRecords) {
   const HeldTerrain t;
-  QueryContext context({}, std::uint64_t{1} << 30, "a test");
+  QueryContext context({.memory_bytes = std::uint64_t{1} << 30}, "a test");
   BoundedMesh released(t.terrain), kept(t.terrain);
   for (const double tolerance : {9.0, 3.0, 1.0, -1.0}) {
     EXPECT_EQ(released.refine(AboveError(tolerance), context),
@@ -81,7 +82,7 @@ TEST(BoundedMesh, IsRefusedBelowWhatItsRecordsAndArraysTake) {
   const HeldTerrain t;
   std::uint64_t held = 0;
   const std::uint64_t least = reference::least_memory([&](std::uint64_t limit) {
-    QueryContext context({}, limit, "a test");
+    QueryContext context({.memory_bytes = limit}, "a test");
     BoundedMesh mesh(t.terrain);
     mesh.refine(AboveError(4.0), context);
     const std::size_t more = mesh.refine(*everything(), context);
@@ -99,7 +100,7 @@ TEST(BoundedMesh, IsCountedByAViewshedBesideItsSweep) {
                              0.5 * (f.bounds.min_y + f.bounds.max_y));
   request.eye_height = 20;
   request.radius = (f.bounds.max_x - f.bounds.min_x) * f.map.step_x;  // all of it
-  QueryContext context({}, std::uint64_t{1} << 30, "a test");
+  QueryContext context({.memory_bytes = std::uint64_t{1} << 30}, "a test");
   BoundedMesh mesh(t.terrain);
   mesh.refine(*everything(), context);
   const std::uint64_t with_records = mesh.bytes();
@@ -108,7 +109,7 @@ TEST(BoundedMesh, IsCountedByAViewshedBesideItsSweep) {
     request.list_vertices = listed;
     Viewshed seen;
     const std::uint64_t least = reference::least_memory([&](std::uint64_t limit) {
-      request.memory_limit_bytes = limit;
+      request.limits.memory_bytes = limit;
       seen = viewshed(t.terrain, request);
     });
     EXPECT_EQ(seen.vertices.size(), listed ? t.hierarchy.full.vertices.size() : 0U);

@@ -11,7 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
 
@@ -87,12 +87,12 @@ RC_GTEST_PROP(DamagedRecords, AreNamedOrHarmless, (std::uint64_t seed)) {
   } catch (const Error&) {
     return;  // the writer saw it first
   }
-  const ProgressiveTin tin(file->open());
+  const Terrain tin(file->open());
   for (int i = 0; i < 4; ++i) {
     RefineRequest request;
     PredicatePtr p;
     if (i == 1) {
-      request.vertices = h.t0.vertices.size() + random() % (h.records.size() + 1);
+      request.detail.vertices = h.t0.vertices.size() + random() % (h.records.size() + 1);
     } else if (i > 1) {
       p = reference::random_predicate(random, h.facts, 2);
       request.also = p.get();
@@ -112,7 +112,7 @@ RC_GTEST_PROP(DamagedRecords, AreNamedOrHarmless, (std::uint64_t seed)) {
 std::string message_of(const Hierarchy& h) {
   const TemporaryStore file(h);
   try {
-    (void)ProgressiveTin(file.open()).refine({});
+    (void)Terrain(file.open()).refine({});
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::corruption);
     return e.message();
@@ -154,7 +154,7 @@ TEST(DamagedT0, IsRefusedWhenOpened) {
   const auto refused = [](const Hierarchy& damaged) {
     try {
       const TemporaryStore file(damaged);
-      const ProgressiveTin tin(file.open());
+      const Terrain tin(file.open());
     } catch (const Error& e) {
       return e.code() == ErrorCode::corruption || e.code() == ErrorCode::invalid_argument;
     }

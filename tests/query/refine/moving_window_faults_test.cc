@@ -15,8 +15,8 @@
 
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/refine/moving_window.h"
+#include "engine/query/terrain.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/support/replaced_new.h"
 
@@ -96,7 +96,7 @@ class MovingWindowFaults : public ::testing::Test {
   /// @returns whether the move that was to fail came to its end
   bool fail_and_move_on(std::int64_t nth, std::int64_t how_many) {
     SCOPED_TRACE("allocation " + std::to_string(nth));
-    MovingWindow window(store_);
+    MovingWindow window{OpenedTerrain(store_)};
     window.move_to(from_);
     if (moves(window, towards_, nth, how_many)) {
       EXPECT_TRUE(canonical(window.tin()) == at_towards_);
@@ -135,7 +135,7 @@ class MovingWindowFaults : public ::testing::Test {
       reference::simplify_unmeasured(reference::random_grid(random_, 36, 36, 4, 0.05), random_);
   TemporaryStore file_{hierarchy_};
   std::shared_ptr<const StoreFile> store_ = file_.open();
-  ProgressiveTin terrain_{store_};
+  Terrain terrain_{store_};
   PredicatePtr from_ = at(5, 60), towards_ = at(40, 110), to_ = at(8, 66);
   RefinedTin fresh_ = fresh(*to_);
   std::vector<reference::Corners> at_from_ = canonical(fresh(*from_).tin),

@@ -13,8 +13,8 @@
 
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/refine/refinement.h"
+#include "engine/query/terrain.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
 
@@ -60,7 +60,7 @@ struct MovingWindowCase {
   Hierarchy hierarchy;
   TemporaryStore file;
   std::shared_ptr<const StoreFile> store;
-  ProgressiveTin tin;
+  Terrain tin;
 };
 
 void require_fresh(const MovingWindow& window, const MoveResult& moved, const RefinedTin& fresh) {
@@ -80,7 +80,7 @@ RC_GTEST_PROP(MovingWindow, IsAfterEachMoveAFreshRefinement, (std::uint64_t seed
   MovingWindowCase asked(seed);
   MovingWindowOptions options;
   options.page_cache_bytes = asked.random() % 3 == 0 ? 10'000 : options.page_cache_bytes;
-  MovingWindow window(asked.store, options);
+  MovingWindow window{OpenedTerrain(asked.store), options};
   PredicatePtr before;
   for (int i = 0; i < 8; ++i) {
     const PredicatePtr p = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
@@ -96,7 +96,7 @@ RC_GTEST_PROP(MovingWindow, IsAfterEachMoveAFreshRefinement, (std::uint64_t seed
 
 RC_GTEST_PROP(MovingWindow, FollowsAWindowThatDriftsAndChangesItsTolerance, (std::uint64_t seed)) {
   MovingWindowCase asked(seed);
-  MovingWindow window(asked.store);
+  MovingWindow window{OpenedTerrain(asked.store)};
   double x = 0.3, y = 0.6, tolerance = 2;
   std::uniform_real_distribution<double> step(-0.08, 0.08);
   for (int i = 0; i < 12; ++i) {
@@ -115,7 +115,7 @@ RC_GTEST_PROP(MovingWindow, FollowsAWindowThatDriftsAndChangesItsTolerance, (std
 TEST(MovingWindow, FollowsAnEyeThatFliesOverTheTerrain) {
   const MovingWindowCase asked(11);
   const StoreFacts& f = asked.hierarchy.facts;
-  MovingWindow window(asked.store);
+  MovingWindow window{OpenedTerrain(asked.store)};
   std::uint64_t largest = 0;
   for (int frame = 0; frame <= 40; ++frame) {
     const double along = f.bounds.min_x + (f.bounds.max_x - f.bounds.min_x) * frame / 40.0;
@@ -135,7 +135,7 @@ TEST(MovingWindow, FollowsAnEyeThatFliesOverTheTerrain) {
 TEST(MovingWindow, ReadsNoPageTwiceWhileTheyFitTheCache) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const MovingWindowCase asked(seed);
-    MovingWindow window(asked.store);
+    MovingWindow window{OpenedTerrain(asked.store)};
     std::uint64_t pages = 0;
     for (const double x : {0.1, 0.2, 0.3, 0.2, 0.1, 0.15, 0.3}) {
       pages += window.move_to(asked.window_at(x, x, 0.4)).cost.io.pages;
@@ -153,7 +153,7 @@ TEST(MovingWindow, LeavesPagesInsideOfBothWindowsAlone) {
   const Hierarchy h =
       reference::simplify(reference::random_grid(random, 90, 90, 4, 0.0), random, {0.02, false});
   const TemporaryStore file(h);
-  MovingWindow window(file.open());
+  MovingWindow window{OpenedTerrain(file.open())};
   const auto at = [&](double x) {
     const MapPoint low = h.facts.map.to_map(x, 20);
     const MapPoint high = h.facts.map.to_map(x + 240, 260);
@@ -171,8 +171,8 @@ TEST(MovingWindow, RefusesMoreThanItsMemoryBeforeReadingAndStaysAsItWas) {
   const MovingWindowCase asked(2);
   MovingWindowOptions options;
   options.page_cache_bytes = 4096;
-  options.memory_limit_bytes = 4096 + refinement_bytes(asked.hierarchy.records.size() / 2);
-  MovingWindow window(asked.store, options);
+  options.memory_bytes = 4096 + refinement_bytes(asked.hierarchy.records.size() / 2);
+  MovingWindow window{OpenedTerrain(asked.store), options};
   window.move_to(error_above(1e9));
   const auto before = canonical(window.tin());
   try {
@@ -183,14 +183,14 @@ TEST(MovingWindow, RefusesMoreThanItsMemoryBeforeReadingAndStaysAsItWas) {
   }
   EXPECT_EQ(canonical(window.tin()), before);
   window.move_to(error_above(1e8));
-  options.memory_limit_bytes = options.page_cache_bytes - 1;
-  EXPECT_THROW(MovingWindow(asked.store, options), Error);
+  options.memory_bytes = options.page_cache_bytes - 1;
+  EXPECT_THROW(MovingWindow(OpenedTerrain(asked.store), options), Error);
   EXPECT_THROW(window.move_to(nullptr), Error);
 }
 
 TEST(MovingWindow, StaysAsItWasWhenCancelled) {
   const MovingWindowCase asked(6);
-  MovingWindow window(asked.store);
+  MovingWindow window{OpenedTerrain(asked.store)};
   window.move_to(asked.window_at(0.5, 0.5, 0.5));
   const auto before = canonical(window.tin());
   std::stop_source stop;
@@ -217,7 +217,7 @@ int refusals_over_unsaturated(std::uint64_t seed) {
     }
   }
   const TemporaryStore file(h);
-  MovingWindow window(file.open());
+  MovingWindow window{OpenedTerrain(file.open())};
   int refusals = 0;
   for (int i = 0; i < 6; ++i) {
     const PredicatePtr p = i % 2 == 0 ? everything() : error_above(static_cast<double>(i));

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
 
@@ -31,15 +31,15 @@ RefineRequest random_request(std::mt19937_64& random, const reference::Hierarchy
     request.region = reference::random_region(random, h.facts);
   }
   if (random() % 3 == 0) {
-    request.vertices = h.t0.vertices.size() + random() % h.records.size();
+    request.detail.vertices = h.t0.vertices.size() + random() % h.records.size();
   } else if (random() % 2 == 0) {
-    request.tolerance = static_cast<double>(random() % 100) * 0.1;
+    request.detail.tolerance = static_cast<double>(random() % 100) * 0.1;
   }
   request.form = random() % 2 == 0 ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
   return request;
 }
 
-Outcome ask(const ProgressiveTin& tin, const RefineRequest& request) {
+Outcome ask(const Terrain& tin, const RefineRequest& request) {
   Outcome outcome;
   try {
     outcome.triangles = reference::canonical(tin.refine(request).tin);
@@ -55,16 +55,15 @@ void sixty_four_at_once(PageAccess access) {
   const reference::Hierarchy h =
       reference::simplify(reference::random_grid(random, 70, 70, 1, 0.02), random, {0.0, false});
   const reference::TemporaryStore file(h);
-  const ProgressiveTin alone(file.open(access));
-  const ProgressiveTin tin(
-      file.open(access));  // its pages are all untouched when the queries begin
+  const Terrain alone(file.open(access));
+  const Terrain tin(file.open(access));  // its pages are all untouched when the queries begin
   constexpr int kQueries = 64;
   std::vector<RefineRequest> requests;
   std::vector<std::stop_source> stops(kQueries);
   std::vector<Outcome> outcomes(kQueries);
   for (int i = 0; i < kQueries; ++i) {
     requests.push_back(random_request(random, h));
-    requests.back().stop = stops[static_cast<std::size_t>(i)].get_token();
+    requests.back().limits.stop = stops[static_cast<std::size_t>(i)].get_token();
   }
   {
     std::vector<std::jthread> threads;
@@ -81,7 +80,7 @@ void sixty_four_at_once(PageAccess access) {
     EXPECT_TRUE(i % 3 == 0 || !outcomes[i].cancelled);
     if (!outcomes[i].cancelled) {
       RefineRequest request = requests[i];
-      request.stop = {};
+      request.limits.stop = {};
       EXPECT_EQ(outcomes[i].triangles, ask(alone, request).triangles) << "query " << i;
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The promises of refinement (DESIGN.md, section 2) over random terrains and predicates, against
+// The promises of refinement (engine/DESIGN.md, section 2.8) over random terrains and predicates, against
 // brute force.
 #include <algorithm>
 #include <cmath>
@@ -15,9 +15,9 @@
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/coarsest.h"
+#include "engine/query/terrain.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
 
@@ -49,7 +49,7 @@ struct RefineCase {
   std::mt19937_64 random;
   Hierarchy hierarchy;
   TemporaryStore file;
-  ProgressiveTin tin;
+  Terrain tin;
 };
 
 std::vector<Corners> meeting(const Tin& tin, const GridRegion& region) {
@@ -152,7 +152,7 @@ RC_GTEST_PROP(Refine, TwoRegionsAgreeOnTrianglesThatMeetBoth, (std::uint64_t see
     }
     for (RefineRequest& r : request) {
       r.region = reference::random_region(asked.random, asked.hierarchy.facts);
-      r.tolerance = tolerance;
+      r.detail.tolerance = tolerance;
       r.also = tolerance ? nullptr : level.get();
     }
     for (int side = 0; side < 2; ++side) {
@@ -169,7 +169,7 @@ RC_GTEST_PROP(Refine, AnyOrderOfFallingRankGivesTheSameTin, (std::uint64_t seed)
   RefineCase asked(seed);
   const PredicatePtr p = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
   const StoreFile& store = asked.tin.store();
-  QueryContext context({}, UINT64_MAX, store.path());
+  QueryContext context({.memory_bytes = UINT64_MAX}, store.path());
   std::vector<PendingSplit> splits = retrieve({store, store.index()}, *p, 0, context);
   const Tin t0 = mesh_of(store.t0(), store.path());
   std::shuffle(splits.begin(), splits.end(), asked.random);
@@ -184,7 +184,7 @@ RC_GTEST_PROP(Refine, TwoClosedSetsOneAfterTheOtherGiveTheUnion, (std::uint64_t 
   const PredicatePtr first = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
   const PredicatePtr both =
       any_of({first, reference::random_predicate(asked.random, asked.hierarchy.facts, 2)});
-  QueryContext context({}, UINT64_MAX, store.path());
+  QueryContext context({.memory_bytes = UINT64_MAX}, store.path());
   const RecordSource source{store, store.index()};
   Refinement refinement(mesh_of(store.t0(), store.path()));
   refinement.apply(retrieve(source, *first, 0, context), context);
@@ -251,7 +251,7 @@ RC_GTEST_PROP(Refine, CertifiedErrorHoldsAtEverySample, (std::uint64_t seed)) {
   RefineCase asked(seed);
   for (const double tolerance : {0.0, 0.5, 3.0, 12.0}) {
     RefineRequest request;
-    request.tolerance = tolerance;
+    request.detail.tolerance = tolerance;
     const RefinedTin result = asked.tin.refine(request);
     RC_ASSERT(result.certified_error <= tolerance);
     RC_ASSERT(measured_error(asked.hierarchy.full, result.tin, asked.hierarchy.facts.heights) <=
@@ -265,7 +265,7 @@ TEST(Refine, CertificateIsThatOfTheRecordsLeftOutToAnEighthOfAnOctave) {
     const RefineCase asked(seed);
     for (const double tolerance : {0.0, 1.0, 7.5, 1e9}) {
       RefineRequest request;
-      request.tolerance = tolerance;
+      request.detail.tolerance = tolerance;
       const RefinedTin result = asked.tin.refine(request);
       double largest = -1.0;
       double deviation = 0.0;
@@ -337,7 +337,7 @@ TEST(Refine, PagesFollowTheirTrianglesIntoAClippedMesh) {
   }
 }
 
-ErrorCode code_of(const ProgressiveTin& tin, const RefineRequest& request) {
+ErrorCode code_of(const Terrain& tin, const RefineRequest& request) {
   try {
     (void)tin.refine(request);
   } catch (const Error& e) {
@@ -350,11 +350,11 @@ ErrorCode code_of(const ProgressiveTin& tin, const RefineRequest& request) {
 TEST(RefineRequest, RejectsValuesOutsideOfItsContract) {
   const RefineCase asked(1);
   std::vector<RefineRequest> bad(8);
-  bad[0].tolerance = -1.0;
-  bad[1].tolerance = std::nan("");
-  bad[2].tolerance = 1.0;
-  bad[2].vertices = 1000;
-  bad[3].vertices = asked.hierarchy.t0.vertices.size() - 1;
+  bad[0].detail.tolerance = -1.0;
+  bad[1].detail.tolerance = std::nan("");
+  bad[2].detail.tolerance = 1.0;
+  bad[2].detail.vertices = 1000;
+  bad[3].detail.vertices = asked.hierarchy.t0.vertices.size() - 1;
   bad[4].region = Window{1, 0, 0, 1};
   bad[5].region = MapPoint{std::nan(""), 0};
   bad[6].region = Segment{{0, 0}, {INFINITY, 0}};
@@ -367,7 +367,7 @@ TEST(RefineRequest, RejectsValuesOutsideOfItsContract) {
 TEST(RefineRequest, RefusesBeforeReadingWhenTheAnswerMayExceedTheMemoryLimit) {
   const RefineCase asked(2);
   RefineRequest request;
-  request.memory_limit_bytes = 1000;
+  request.limits.memory_bytes = 1000;
   try {
     (void)asked.tin.refine(request);
     FAIL();
@@ -375,7 +375,7 @@ TEST(RefineRequest, RefusesBeforeReadingWhenTheAnswerMayExceedTheMemoryLimit) {
     EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
     EXPECT_NE(e.message().find("export"), std::string::npos);
   }
-  request.vertices = asked.hierarchy.full.vertices.size();
+  request.detail.vertices = asked.hierarchy.full.vertices.size();
   EXPECT_EQ(code_of(asked.tin, request), ErrorCode::resource_exhausted);
 }
 
@@ -384,16 +384,16 @@ TEST(RefineRequest, StopTokenEndsTheQuery) {
   std::stop_source stop;
   stop.request_stop();
   RefineRequest request;
-  request.stop = stop.get_token();
+  request.limits.stop = stop.get_token();
   EXPECT_EQ(code_of(asked.tin, request), ErrorCode::cancelled);
 }
 
 TEST(Refine, PreadAndMappedGiveTheSameBytes) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const RefineCase asked(seed);
-    const ProgressiveTin other(asked.file.open(PageAccess::kPread));
+    const Terrain other(asked.file.open(PageAccess::kPread));
     RefineRequest request;
-    request.tolerance = 2.0;
+    request.detail.tolerance = 2.0;
     const RefinedTin a = asked.tin.refine(request);
     const RefinedTin b = other.refine(request);
     ASSERT_EQ(a.triangles, b.triangles);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The first t vertices of the total order: exactly N, for every N (DESIGN.md, section 2).
+// The first t vertices of the total order: exactly N, for every N (engine/DESIGN.md, section 2.6).
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -13,8 +13,8 @@
 #include "engine/mesh/validate.h"
 #include "engine/query/heights/locate.h"
 #include "engine/query/heights/profile.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/terrain.h"
 #include "tests/query/line_oracle.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
@@ -48,11 +48,11 @@ TEST(RefineToVertexCount, GivesExactlyThatManyForEveryCount) {
   for (std::uint64_t seed = 10; seed < 22; ++seed) {
     const reference::Hierarchy h = reference::random_hierarchy(seed);
     const reference::TemporaryStore file(h);
-    const ProgressiveTin tin(file.open());
+    const Terrain tin(file.open());
     const std::size_t t0 = h.t0.vertices.size();
     for (std::size_t n = t0; n <= t0 + h.records.size(); ++n) {
       RefineRequest request;
-      request.vertices = n;
+      request.detail.vertices = n;
       const RefinedTin result = tin.refine(request);
       ASSERT_EQ(result.vertices, n) << "seed " << seed;
       ASSERT_EQ(validate(result.tin), "") << "seed " << seed << ", " << n << " vertices";
@@ -74,8 +74,8 @@ TEST(RefineToVertexCount, AboveAllThereAreGivesTheFullTin) {
   const reference::Hierarchy h = reference::random_hierarchy(4);
   const reference::TemporaryStore file(h);
   RefineRequest request;
-  request.vertices = UINT64_MAX;
-  const RefinedTin result = ProgressiveTin(file.open()).refine(request);
+  request.detail.vertices = UINT64_MAX;
+  const RefinedTin result = Terrain(file.open()).refine(request);
   EXPECT_TRUE(result.exact);
   EXPECT_EQ(result.vertices, h.full.vertices.size());
   EXPECT_EQ(result.certified_error, 0.0);
@@ -85,7 +85,7 @@ RC_GTEST_PROP(RefineToVertexCount, WithinARegionTakesItsMostImportantRecords,
               (std::uint64_t seed)) {
   const reference::Hierarchy h = reference::random_hierarchy(seed);
   const reference::TemporaryStore file(h);
-  const ProgressiveTin tin(file.open());
+  const Terrain tin(file.open());
   std::mt19937_64 random(seed);
   RefineRequest request;
   request.region = reference::random_region(random, h.facts);
@@ -94,7 +94,7 @@ RC_GTEST_PROP(RefineToVertexCount, WithinARegionTakesItsMostImportantRecords,
   std::copy_if(h.records.begin(), h.records.end(), std::back_inserter(inside),
                [&](const VertexSplit& r) { return region.meets(r.roi); });
   const std::size_t count = random() % (inside.size() + 3);
-  request.vertices = h.t0.vertices.size() + count;
+  request.detail.vertices = h.t0.vertices.size() + count;
   const RefinedTin result = tin.refine(request);
   RC_ASSERT(validate(result.tin).empty());
   RC_ASSERT(keys_beyond_t0(result) == first_by_sorting(inside, count));
@@ -107,18 +107,18 @@ TEST(RefineToVertexCount, ReadsLittleMoreThanThePagesItNeeds) {
   const reference::Hierarchy h =
       reference::simplify(reference::random_grid(random, 160, 160, 1, 0.0), random, {0.0, false});
   const reference::TemporaryStore file(h, 4096, 1);
-  const ProgressiveTin tin(file.open());
+  const Terrain tin(file.open());
   RefineRequest request;
-  request.vertices = h.t0.vertices.size() + 1000;
+  request.detail.vertices = h.t0.vertices.size() + 1000;
   const RefinedTin some = tin.refine(request);
-  EXPECT_EQ(some.vertices, *request.vertices);
+  EXPECT_EQ(some.vertices, *request.detail.vertices);
   EXPECT_LT(some.cost.io.pages, 3 * 1000 / 56 + 20);
 }
 
 /// The TIN of the first `vertices` vertices of the whole terrain.
-RefinedTin first_vertices(const ProgressiveTin& terrain, std::uint64_t vertices) {
+RefinedTin first_vertices(const Terrain& terrain, std::uint64_t vertices) {
   RefineRequest request;
-  request.vertices = vertices;
+  request.detail.vertices = vertices;
   return terrain.refine(request);
 }
 
@@ -143,7 +143,7 @@ RC_GTEST_PROP(FirstVertices, PointsAndProfilesAreThoseOfTheTinOfThatManyVertices
   std::mt19937_64 random(seed);
   const reference::Hierarchy h = reference::random_hierarchy(seed);
   const reference::TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   const SpotMap map(h.facts.map, h.facts.bounds);
   const std::uint64_t count = h.t0.vertices.size() + random() % (h.records.size() + 3);
   const RefinedTin wanted = first_vertices(terrain, count);
@@ -156,7 +156,7 @@ RC_GTEST_PROP(FirstVertices, PointsAndProfilesAreThoseOfTheTinOfThatManyVertices
     points.push_back(map.map(s));
   }
   LocateRequest locating;
-  locating.vertices = count;
+  locating.detail.vertices = count;
   const LocateResult found = locate(terrain, points, locating);
   RC_ASSERT(found.exact == wanted.exact);
   double left = 0.0;
@@ -170,7 +170,7 @@ RC_GTEST_PROP(FirstVertices, PointsAndProfilesAreThoseOfTheTinOfThatManyVertices
     check_height(found.points[i].height, heights_at(wanted.tin, h.facts, spots[i]));
   }
   ProfileRequest walking;
-  walking.vertices = count;
+  walking.detail.vertices = count;
   const ProfileResult line = profile(terrain, points, walking);
   RC_ASSERT(line.certified_deviation == found.certified_deviation);
   std::size_t stops = 0;
@@ -187,14 +187,14 @@ RC_GTEST_PROP(FirstVertices, PointsAndProfilesAreThoseOfTheTinOfThatManyVertices
 TEST(FirstVertices, SaysWhatMeansNothing) {
   const reference::Hierarchy h = reference::random_hierarchy(3);
   const reference::TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   const std::vector<MapPoint> points = {{0, 0}, {1, 1}};
   LocateRequest request;
-  request.vertices = h.t0.vertices.size() - 1;
+  request.detail.vertices = h.t0.vertices.size() - 1;
   EXPECT_THROW(static_cast<void>(locate(terrain, points, request)), Error);
-  request.vertices = h.t0.vertices.size();
+  request.detail.vertices = h.t0.vertices.size();
   EXPECT_NO_THROW(static_cast<void>(locate(terrain, points, request)));
-  request.tolerance = 1.0;
+  request.detail.tolerance = 1.0;
   EXPECT_THROW(static_cast<void>(locate(terrain, points, request)), Error);
 }
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/query/progressive_tin.h"
+#include "engine/query/terrain.h"
 #include "storage/spatialindex_rtree.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
@@ -19,8 +19,8 @@ TEST(Refine, GivesTheSameAnswersOnThePackedAndOnTheSpatialindexTree) {
     const reference::Hierarchy h = reference::random_hierarchy(seed);
     const reference::TemporaryStore file(h);
     const std::shared_ptr<const StoreFile> store = file.open();
-    const ProgressiveTin packed(store);
-    ProgressiveTin other(store);
+    const Terrain packed(store);
+    Terrain other(store);
     const SpatialIndexOptions options{file.path + ".sidx"};
     other.use_index(SpatialIndexRTree::open(store, options));
     std::mt19937_64 random(seed);
@@ -29,7 +29,7 @@ TEST(Refine, GivesTheSameAnswersOnThePackedAndOnTheSpatialindexTree) {
       const PredicatePtr p = reference::random_predicate(random, h.facts, 2);
       request.also = p.get();
       if (i % 4 == 0) {
-        request.vertices = h.t0.vertices.size() + random() % (h.records.size() + 1);
+        request.detail.vertices = h.t0.vertices.size() + random() % (h.records.size() + 1);
       }
       const RefinedTin a = packed.refine(request);
       const RefinedTin b = other.refine(request);

@@ -13,7 +13,6 @@
 
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
-#include "engine/query/select/above_error.h"
 #include "tests/query/random_predicate.h"
 
 namespace ptin {

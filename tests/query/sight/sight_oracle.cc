@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "engine/construct/build.h"
+#include "engine/query/terrain.h"
 
 namespace ptin::reference {
 
@@ -101,7 +102,7 @@ SmallTerrain::SmallTerrain(std::uint64_t seed, double max_error) : path(fresh_pa
   build({source}, path, options, resources);
   std::error_code ignored;
   std::filesystem::remove(source, ignored);
-  terrain = std::make_unique<ProgressiveTin>(ProgressiveTin::open(path));
+  terrain = std::make_unique<Terrain>(Terrain::open(path));
   full = terrain->refine({}).tin;
 }
 

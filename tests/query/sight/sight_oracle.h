@@ -10,6 +10,7 @@
 #include <string>
 
 #include "engine/query/sight/sight.h"
+#include "engine/query/terrain.h"
 #include "tests/query/line_oracle.h"
 
 namespace ptin::reference {
@@ -17,7 +18,7 @@ namespace ptin::reference {
 /// A terrain that went through the builder, and its full TIN.
 struct SmallTerrain {
   std::string path;
-  std::unique_ptr<ProgressiveTin> terrain;
+  std::unique_ptr<Terrain> terrain;
   Tin full;
 
   /// A raster of whole heights: plateaus, steps, spikes, noise; or points. Sometimes with voids.

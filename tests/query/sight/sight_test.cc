@@ -153,10 +153,11 @@ RC_GTEST_PROP(Sight, IsNeverWrongWhenItStopsEarly, (std::uint64_t seed)) {
     asked.request.wavelength = random() % 3 == 0 ? 1.0 : 0.0;
     const bool is_level = random() % 2 == 0;
     if (is_level && random() % 2 == 0) {
-      asked.request.tolerance = static_cast<double>(random() % 8);
+      asked.request.detail.tolerance = static_cast<double>(random() % 8);
     } else if (is_level) {
       const StoreFile& store = t.terrain->store();
-      asked.request.vertices = store.t0().vertices.size() + random() % (store.record_count() + 2);
+      asked.request.detail.vertices =
+          store.t0().vertices.size() + random() % (store.record_count() + 2);
     }
     if (!is_level || random() % 3 == 0) {
       asked.request.budget = random() % 60;
@@ -178,7 +179,7 @@ RC_GTEST_PROP(Sight, OfAllVerticesIsExact, (std::uint64_t seed)) {
   const SmallTerrain t(seed);
   SightCase asked = random_question(random, t);
   const SightResult exact = sight(*t.terrain, asked.pair, asked.request);
-  asked.request.vertices = std::uint64_t{1} << 40;
+  asked.request.detail.vertices = std::uint64_t{1} << 40;
   const SightResult all = sight(*t.terrain, asked.pair, asked.request);
   RC_ASSERT(all.verdict == exact.verdict);
   RC_ASSERT(all.exact == exact.exact);

@@ -15,6 +15,7 @@
 #include "engine/geometry/orient.h"
 #include "engine/query/select/coarsest.h"
 #include "engine/query/sight/viewshed_walk.h"
+#include "engine/query/terrain.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/least_memory.h"
 #include "tests/query/reference_hierarchy.h"
@@ -80,7 +81,7 @@ RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed))
           ? reference::simplify(reference::random_grid(random, size(), size(), 2, 0.15), random, {})
           : reference::random_hierarchy(seed);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   ViewshedRequest request;
   const GridBox& b = h.facts.bounds;
   double x = double(b.min_x) + double(random() % std::uint64_t(b.max_x - b.min_x + 1));
@@ -200,7 +201,7 @@ TEST(Viewshed, OfAPlainFromItsOwnHeightTouchesAndSeesEverything) {
   request.eye = h.facts.map.to_map(7, 9);
   request.radius = 1000;
   request.curvature.coefficient = 0;
-  const Viewshed seen = viewshed(ProgressiveTin(file.open()), request);
+  const Viewshed seen = viewshed(Terrain(file.open()), request);
   EXPECT_EQ(seen.vertices.size(), 441U);
   EXPECT_TRUE(std::all_of(seen.vertices.begin(), seen.vertices.end(),
                           [](const Viewshed::Target& t) { return t.visible; }));
@@ -221,7 +222,7 @@ TEST(Viewshed, AnswersOnTheRimOfAVoidSeenAcrossIt) {
   }
   const Hierarchy h = reference::simplify_unmeasured(std::move(full), random);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   for (const bool by_size : {false, true}) {
     for (int y = 0; y <= 8; ++y) {
       for (int x = 0; x <= 8; ++x) {
@@ -297,7 +298,7 @@ TEST(Viewshed, WalksWhereTrianglesHideOneAnotherInARing) {
     request.curvature.coefficient = 0;
     request.target_height = 0.25;
     request.radius = h.facts.map.step_x * 1000;
-    const Viewshed seen = viewshed(ProgressiveTin(file.open()), request);
+    const Viewshed seen = viewshed(Terrain(file.open()), request);
     EXPECT_GT(seen.walked_targets, 20U);
     for (const Viewshed::Target& v : seen.vertices) {
       const double c =
@@ -356,10 +357,10 @@ RC_GTEST_PROP(Viewshed, AtALevelOfDetailIsNeverWrongWhereItIsCertain, (std::uint
     try {
       const Viewshed exact = viewshed(*t.terrain, request);
       if (random() % 2 == 0) {
-        request.tolerance = double(random() % 60) / 10;
+        request.detail.tolerance = double(random() % 60) / 10;
       } else {
-        request.vertices = t.terrain->store().t0().vertices.size() +
-                           random() % (t.terrain->store().record_count() + 2);
+        request.detail.vertices = t.terrain->store().t0().vertices.size() +
+                                  random() % (t.terrain->store().record_count() + 2);
       }
       static_cast<void>(check_certainty(exact, viewshed(*t.terrain, request)));
     } catch (const Error& error) {
@@ -370,7 +371,7 @@ RC_GTEST_PROP(Viewshed, AtALevelOfDetailIsNeverWrongWhereItIsCertain, (std::uint
 }
 
 TEST(Viewshed, OfMountainsIsMostlyCertainAtAnError) {
-  const ProgressiveTin& terrain = reference::built_terrain("mountains_257.tif");
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   const StoreFacts& f = terrain.store().facts();
   std::uint64_t hidden = 0, visible = 0, targets = 0;
   for (int i = 0; i < 6; ++i) {
@@ -380,7 +381,7 @@ TEST(Viewshed, OfMountainsIsMostlyCertainAtAnError) {
     request.target_height = i % 2 == 0 ? 0 : 30;
     request.radius = 60 * f.map.step_x;
     const Viewshed exact = viewshed(terrain, request);
-    request.tolerance = 2;
+    request.detail.tolerance = 2;
     const Viewshed level = viewshed(terrain, request);
     static_cast<void>(check_certainty(exact, level));
     EXPECT_FALSE(level.exact);
@@ -404,7 +405,7 @@ TEST(Viewshed, EndsBehindAWall) {
   request.eye_height = 2;
   request.radius = 1000;
   request.curvature.coefficient = 0;
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   for (const Viewshed::Target& t : viewshed(terrain, request).vertices) {
     EXPECT_EQ(t.visible, h.facts.map.to_grid(t.position).x < 14.5)
         << h.facts.map.to_grid(t.position).x << " " << h.facts.map.to_grid(t.position).y;
@@ -425,15 +426,15 @@ TEST(Viewshed, CountsTheRastersThatAFileWithoutItsDetailsNeeds) {
   const TemporaryStore whole(h);
   h.facts.base_deviation = 0.5;  // larger than rounding: details were left out
   const TemporaryStore without(h);
-  const ProgressiveTin exact(whole.open());
-  const ProgressiveTin left_out(without.open());
+  const Terrain exact(whole.open());
+  const Terrain left_out(without.open());
   const std::uint64_t raster = viewshed(exact, request).pixels.size();
   ASSERT_GT(raster, 1U << 18U);
   // One sweep is held while the next tells what is certain.
-  const auto least = [&](const ProgressiveTin& terrain) {
+  const auto least = [&](const Terrain& terrain) {
     return reference::least_memory(
         [&](std::uint64_t limit) {
-          request.memory_limit_bytes = limit;
+          request.limits.memory_bytes = limit;
           static_cast<void>(viewshed(terrain, request));
         },
         1U << 14U);
@@ -444,7 +445,7 @@ TEST(Viewshed, CountsTheRastersThatAFileWithoutItsDetailsNeeds) {
 TEST(Viewshed, RefusesWhatMeansNothing) {
   const Hierarchy h = plain_with_wall(0.0);
   const TemporaryStore file(h);
-  const ProgressiveTin terrain(file.open());
+  const Terrain terrain(file.open());
   ViewshedRequest request;
   request.eye = h.facts.map.to_map(7, 9);
   EXPECT_THROW(static_cast<void>(viewshed(terrain, request)), Error) << "no radius";

@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "engine/query/progressive_tin.h"
 #include "engine/query/stream/stream_writer.h"
+#include "engine/query/terrain.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin::reference {
@@ -32,7 +32,7 @@ struct Asked {
   [[nodiscard]] RefinedTin fresh(PredicatePtr p, std::optional<std::uint64_t> vertices = {}) const {
     RefineRequest request;
     request.also = p.get();
-    request.vertices = vertices;
+    request.detail.vertices = vertices;
     return tin.refine(request);
   }
   [[nodiscard]] std::size_t count(const AttributePredicate& p) const {
@@ -44,16 +44,17 @@ struct Asked {
   Hierarchy hierarchy;
   TemporaryStore file;
   std::shared_ptr<const StoreFile> store;
-  ProgressiveTin tin;
+  Terrain tin;
 };
 
 /// A whole stream, in one piece.
-inline Bytes sent(const StoreFile& store, const StreamRequest& request,
+inline Bytes sent(const std::shared_ptr<const StoreFile>& store, const StreamRequest& request,
                   StreamSummary* summary = nullptr) {
   Bytes bytes;
-  const StreamSummary s = write_stream(store, request, [&](std::span<const std::byte> piece) {
-    bytes.insert(bytes.end(), piece.begin(), piece.end());
-  });
+  const StreamSummary s =
+      write_stream(OpenedTerrain(store), request, [&](std::span<const std::byte> piece) {
+        bytes.insert(bytes.end(), piece.begin(), piece.end());
+      });
   if (s.bytes != bytes.size()) {
     throw std::runtime_error("the summary says another number of bytes than were sent");
   }

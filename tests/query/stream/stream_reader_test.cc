@@ -15,8 +15,8 @@
 
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/stream/stream_writer.h"
+#include "engine/query/terrain.h"
 #include "tests/query/stream/sent_stream.h"
 
 namespace ptin {
@@ -47,7 +47,7 @@ ErrorCode rejected(const Bytes& bytes) {
 
 TEST(StreamReader, RejectsAnyByteThatWasChanged) {
   const Asked asked(7);
-  const Bytes bytes = sent(*asked.store, {});
+  const Bytes bytes = sent(asked.store, {});
   std::mt19937_64 random(1);
   for (std::size_t i = 0; i < bytes.size(); i += 1 + random() % 7) {
     if (i == 10 || i == 11) {
@@ -106,7 +106,7 @@ struct Frames {
 
 class StreamReaderRejects : public testing::Test {
  protected:
-  StreamReaderRejects() : frames(sent(*asked.store, {})) {}
+  StreamReaderRejects() : frames(sent(asked.store, {})) {}
   void expect(ErrorCode code = ErrorCode::corruption) {
     EXPECT_EQ(rejected(frames.sealed()), code);
   }
@@ -187,7 +187,7 @@ TEST(StreamReader, RejectsAFrameTooSmallForItsMesh) {
   std::mt19937_64 random(7);
   const Hierarchy h = reference::simplify(reference::random_grid(random, 40, 40, 1, 0.0), random);
   const TemporaryStore file(h);
-  Frames frames(sent(*file.open(), {}));
+  Frames frames(sent(file.open(), {}));
   ASSERT_GT(frames.frames.size(), 5u) << "start, T0, three of splits, end";
   frames.edit<stream::Splits>(3, [](auto& s) { s.count = 1; });
   StreamReader reader("stream");
@@ -205,7 +205,7 @@ TEST(StreamReader, KeepsToItsMemoryAndTellsBefore) {
   std::mt19937_64 random(8);
   const Hierarchy h = reference::simplify(reference::random_grid(random, 60, 60, 1, 0.0), random);
   const TemporaryStore file(h);
-  const Bytes bytes = sent(*file.open(), {});
+  const Bytes bytes = sent(file.open(), {});
   std::size_t least = 0;
   for (const std::uint64_t limit : {0U, 20'000U, 100'000U, 400'000U}) {
     StreamReader reader("stream", {limit, {}});
@@ -231,7 +231,7 @@ TEST(StreamReader, StopsWhenCancelled) {
   std::stop_source stop;
   StreamReader reader("stream", {std::uint64_t{1} << 30, stop.get_token()});
   const Asked asked(5);
-  const Bytes bytes = sent(*asked.store, {});
+  const Bytes bytes = sent(asked.store, {});
   const std::size_t half = bytes.size() / 2;
   reader.feed(first(bytes, half));
   stop.request_stop();
@@ -274,12 +274,12 @@ TEST_F(StreamReaderRejects, ADeltaOfAnotherFileOrToAnotherMesh) {
   delta.held = {{error_above(5.0)}};
   StreamReader reader("stream");
   reader.feed(frames.sealed());  // everything, which is more than was said
-  EXPECT_THROW(reader.feed(sent(*asked.store, delta)), Error);
+  EXPECT_THROW(reader.feed(sent(asked.store, delta)), Error);
   const Asked other(8);
   delta.held = {{everything()}};
   StreamReader second("stream");
   second.feed(frames.sealed());
-  EXPECT_THROW(second.feed(sent(*other.store, delta)), Error);
+  EXPECT_THROW(second.feed(sent(other.store, delta)), Error);
 }
 TEST_F(StreamReaderRejects, AnyCodeOrIsAValidTin) {
   std::mt19937_64 random(3);

@@ -13,9 +13,9 @@
 
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/progressive_tin.h"
 #include "engine/query/stream/stream_reader.h"
 #include "engine/query/stream/stream_writer.h"
+#include "engine/query/terrain.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/stream/sent_stream.h"
 
@@ -35,7 +35,7 @@ RC_GTEST_PROP(Stream, GivesTheRefinementByWhatWasWanted, (std::uint64_t seed)) {
   StreamRequest request;
   request.wanted = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
   request.metadata = "{\"n\":" + std::to_string(seed) + "}";
-  const Bytes bytes = sent(*asked.store, request);
+  const Bytes bytes = sent(asked.store, request);
   StreamReader reader("stream");
   for (std::size_t at = 0; at < bytes.size();) {  // in pieces of any size
     const std::size_t n = std::min<std::size_t>(1 + asked.random() % 700, bytes.size() - at);
@@ -59,7 +59,7 @@ RC_GTEST_PROP(Stream, GivesTheRefinementByWhatWasWanted, (std::uint64_t seed)) {
 RC_GTEST_PROP(Stream, ComesFrameByFrameWhenWanted, (std::uint64_t seed)) {
   Asked asked(seed);
   StreamSummary summary;
-  const Bytes bytes = sent(*asked.store, {}, &summary);
+  const Bytes bytes = sent(asked.store, {}, &summary);
   const std::size_t most = asked.random() % 2 == 0 ? bytes.size() : 1 + asked.random() % 700;
   StreamReader reader("stream");
   std::size_t grown = 0;
@@ -90,7 +90,7 @@ TEST(Stream, GivesTheFullTinBackExactly) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const Asked asked(seed);
     StreamReader reader("stream");
-    reader.feed(sent(*asked.store, {}));
+    reader.feed(sent(asked.store, {}));
     EXPECT_EQ(canonical(reader.tin()), canonical(asked.hierarchy.full)) << "seed " << seed;
     EXPECT_EQ(vertices_of(reader.tin()), vertices_of(asked.hierarchy.full)) << "seed " << seed;
     EXPECT_EQ(reader.certificate().error, asked.hierarchy.facts.base_error);
@@ -127,7 +127,7 @@ RC_GTEST_PROP(Stream, CutAnywhereIsTheFirstOfTheTotalOrderWithItsCertificate,
   if (asked.random() % 2 == 0) {
     request.wanted = reference::random_predicate(asked.random, asked.hierarchy.facts, 2);
   }
-  const Bytes bytes = sent(*asked.store, request);
+  const Bytes bytes = sent(asked.store, request);
   for (int i = 0; i < 6; ++i) {
     const std::size_t cut = asked.random() % (bytes.size() + 1);
     StreamReader reader("stream");
@@ -142,7 +142,7 @@ RC_GTEST_PROP(Stream, CutAnywhereIsTheFirstOfTheTotalOrderWithItsCertificate,
 
 TEST(Stream, CanBeCutAtEveryByte) {
   const Asked asked(7);
-  const Bytes bytes = sent(*asked.store, {});
+  const Bytes bytes = sent(asked.store, {});
   StreamReader reader("stream");
   std::uint64_t splits = UINT64_MAX;
   double error = INFINITY;
@@ -172,7 +172,7 @@ RC_GTEST_PROP(Stream, ADeltaBringsWhatIsMissingAndNothingElse, (std::uint64_t se
     const std::size_t before = asked.count(*any_of(served));
     served.push_back(request.wanted);
     StreamSummary summary;
-    reader.feed(sent(*asked.store, request, &summary));
+    reader.feed(sent(asked.store, request, &summary));
     RC_ASSERT(reader.is_complete());
     RC_ASSERT(summary.splits == asked.count(*any_of(served)) - before);
     RC_ASSERT(validate(reader.tin()).empty());
@@ -184,7 +184,7 @@ RC_GTEST_PROP(Stream, ACutStreamIsTakenUpWhereItEnded, (std::uint64_t seed)) {
   Asked asked(seed);
   StreamRequest request;
   request.wanted = reference::random_predicate(asked.random, asked.hierarchy.facts, 1);
-  const Bytes bytes = sent(*asked.store, request);
+  const Bytes bytes = sent(asked.store, request);
   StreamReader reader("stream");
   reader.feed(first(bytes, bytes.size() / 4 + asked.random() % (bytes.size() - bytes.size() / 4)));
   if (!reader.has_mesh()) {
@@ -194,7 +194,7 @@ RC_GTEST_PROP(Stream, ACutStreamIsTakenUpWhereItEnded, (std::uint64_t seed)) {
   StreamRequest rest = request;
   rest.held = {{request.wanted, had}};
   reader.begin_next();
-  reader.feed(sent(*asked.store, rest));
+  reader.feed(sent(asked.store, rest));
   RC_ASSERT(reader.splits() == asked.count(*request.wanted) - had);
   RC_ASSERT(canonical(reader.tin()) == canonical(asked.fresh(request.wanted).tin));
 }
@@ -205,11 +205,11 @@ void go_on_from_a_part(Asked& asked, bool cut) {
   one.wanted = reference::random_predicate(asked.random, asked.hierarchy.facts, 1);
   one.most_splits = asked.random() % (asked.count(*one.wanted) + 1);
   StreamReader reader("stream");
-  reader.feed(sent(*asked.store, one));
+  reader.feed(sent(asked.store, one));
   two.held = {{one.wanted, one.most_splits}};
   const std::size_t all = asked.hierarchy.records.size();
   if (!cut) two.most_splits = asked.random() % (all + 1);
-  const Bytes delta = sent(*asked.store, two);
+  const Bytes delta = sent(asked.store, two);
   reader.begin_next();
   reader.feed(first(delta, cut ? 1 + asked.random() % delta.size() : delta.size()));
   StreamRequest rest;
@@ -217,7 +217,7 @@ void go_on_from_a_part(Asked& asked, bool cut) {
   const std::uint64_t had = one.most_splits + reader.splits();
   if (!reader.is_complete()) reader.begin_next();
   StreamSummary summary;
-  reader.feed(sent(*asked.store, rest, &summary));
+  reader.feed(sent(asked.store, rest, &summary));
   RC_ASSERT(reader.is_complete());
   RC_ASSERT(summary.splits == all - had);
   RC_ASSERT(canonical(reader.tin()) == canonical(asked.hierarchy.full));
@@ -240,7 +240,7 @@ TEST(Stream, SendsTheMostImportantSplitsWhenFewAreAskedFor) {
     request.most_splits = asked.hierarchy.records.size() / 3;
     StreamReader reader("stream");
     StreamSummary summary;
-    reader.feed(sent(*asked.store, request, &summary));
+    reader.feed(sent(asked.store, request, &summary));
     EXPECT_TRUE(reader.is_complete());
     require_prefix(reader, asked, nullptr);
     EXPECT_EQ(summary.certificate.error, reader.certificate().error);
@@ -275,7 +275,7 @@ TEST(Stream, OfALevelHasItsIsolineExactly) {
     StreamRequest request;
     request.wanted = contains_height(level, f.heights);
     StreamReader reader("stream");
-    reader.feed(sent(*asked.store, request));
+    reader.feed(sent(asked.store, request));
     const auto wanted = crossing(asked.hierarchy.full, level, f.heights);
     EXPECT_EQ(crossing(reader.tin(), level, f.heights), wanted) << "seed " << seed;
     crossed += wanted.size();
@@ -285,16 +285,17 @@ TEST(Stream, OfALevelHasItsIsolineExactly) {
 
 TEST(Stream, IsTheSameTwice) {
   const Asked asked(12);
-  EXPECT_EQ(sent(*asked.store, {}), sent(*asked.store, {}));
+  EXPECT_EQ(sent(asked.store, {}), sent(asked.store, {}));
 }
 
 TEST(Stream, RefusesMoreThanItsMemoryBeforeSendingAnything) {
   const Asked asked(2);
   StreamRequest request;
-  request.memory_limit_bytes = 10'000;
+  request.limits.memory_bytes = 10'000;
   bool sent_some = false;
   try {
-    write_stream(*asked.store, request, [&](std::span<const std::byte>) { sent_some = true; });
+    write_stream(OpenedTerrain(asked.store), request,
+                 [&](std::span<const std::byte>) { sent_some = true; });
     FAIL() << "more than the limit was taken";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
@@ -307,8 +308,8 @@ TEST(Stream, StopsWhenCancelled) {
   std::stop_source stop;
   stop.request_stop();
   StreamRequest request;
-  request.stop = stop.get_token();
-  EXPECT_THROW(sent(*asked.store, request), Error);
+  request.limits.stop = stop.get_token();
+  EXPECT_THROW(sent(asked.store, request), Error);
 }
 
 }  // namespace

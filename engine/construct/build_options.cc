@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/build_options.h"
+
+#include <cmath>
+
+#include "engine/error.h"
+
+namespace ptin {
+
+SourceOptions source_options_of(const BuildOptions& options) {
+  SourceOptions source;
+  source.nodata = options.nodata;
+  source.resolution = options.resolution;
+  if (options.bbox) {
+    source.bbox = {(*options.bbox)[0], (*options.bbox)[1], (*options.bbox)[2], (*options.bbox)[3]};
+  }
+  source.a_srs = options.a_srs;
+  source.points = {options.classes, options.layer, options.z_field};
+  source.vertical_crs = options.vertical_crs;
+  return source;
+}
+
+void check_options(const BuildOptions& o) {
+  const auto require = [](bool holds, const char* message) {
+    if (!holds) {
+      throw Error(ErrorCode::invalid_argument, message);
+    }
+  };
+  const auto is_length = [](double v) { return std::isfinite(v) && v >= 0.0; };
+  require(is_length(o.max_error), "the largest error to leave out must be a finite number >= 0");
+  require(is_length(o.void_slope), "the void slope must be a finite number >= 0");
+  require(!o.resolution || (is_length(*o.resolution) && *o.resolution > 0.0),
+          "the resolution must be a finite number > 0");
+  require(!o.max_edge || (is_length(*o.max_edge) && *o.max_edge > 0.0),
+          "the longest edge must be a finite number > 0");
+  require(!o.bbox || ((*o.bbox)[0] < (*o.bbox)[2] && (*o.bbox)[1] < (*o.bbox)[3]),
+          "the bbox is inverted or empty; its order is xmin ymin xmax ymax");
+  require(!o.tile || (*o.tile >= 2 && *o.tile <= (std::int64_t{1} << 20)),
+          "a tile must be 2 to 1,048,576 grid units along a side");
+}
+
+}  // namespace ptin

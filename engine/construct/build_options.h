@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a build is asked: the options that decide the bytes of the file.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/tile/cost.h"
+
+namespace ptin {
+
+/// Everything that decides the bytes of the file, and nothing else does.
+struct BuildOptions {
+  CostModel cost = CostModel::kError;
+  double max_error = 0.0;  ///< Leave out records with error <= this (height's unit); 0 keeps all.
+  std::optional<double> nodata;      ///< Overrides the source's.
+  std::optional<double> resolution;  ///< Points: grid unit in CRS units.
+  std::vector<int> classes;          ///< LAS: keep these classes; empty keeps all.
+  std::string layer;                 ///< OGR: the layer of points; "" where there is only one.
+  /// Points, repaired TINs: triangles with a longer edge are void; CRS units, or metres where those
+  /// are degrees.
+  std::optional<double> max_edge;
+  std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
+  bool repair = false;  ///< TINs: triangulate the vertices anew instead of taking the triangles.
+  std::optional<std::array<double, 4>>
+      bbox;           ///< xmin ymin xmax ymax in CRS units; samples outside are left out.
+  std::string a_srs;  ///< Overrides the source's CRS (anything GDAL understands); "" keeps it.
+  std::string vertical_crs;  ///< "" keeps what the source declares, if anything.
+  double void_slope =
+      0.1;  ///< Height error charged per ground unit of depth of a sample in the wrong class.
+  /// Rasters: grid units along a leaf of the tile hierarchy; none means TileTree::default_side().
+  std::optional<std::int64_t> tile;
+  std::uint32_t page_bytes = 4096;
+};
+
+/// The options that say what is read from a source.
+[[nodiscard]] SourceOptions source_options_of(const BuildOptions& options);
+
+/// @throws Error invalid_argument  an option whose value means nothing
+void check_options(const BuildOptions& options);
+
+}  // namespace ptin

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A point as its file gives it, and what a file of points declares about all of its points.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/construct/grid/decimal.h"
+
+namespace ptin {
+
+/// A point of a source, before it is put on the grid; CRS units and the height's unit.
+struct SourcePoint {
+  Decimal x, y, z;
+};
+
+/// A grid that a source brings along: LAS coordinates are whole steps from an offset.
+struct SourceLattice {
+  double unit = 0.0;                      ///< CRS units, > 0.
+  double origin_x = 0.0, origin_y = 0.0;  ///< CRS units.
+};
+
+/// What a source declares before its first point is read.
+struct PointStreamFacts {
+  std::string crs;           ///< Anything GDAL understands; "" when the source does not say.
+  std::string vertical_crs;  ///< Likewise, where it is told apart from `crs`.
+  /// Digits after the point that coordinates and heights are declared to have: at least so many are
+  /// kept.
+  int plan_decimals = 0;
+  int height_decimals = 0;
+  /// Set where steps are no power of ten or the offset is not a whole number of them:
+  /// `plan_decimals` says nothing then, and the grid is this one.
+  std::optional<SourceLattice> lattice;
+};
+
+}  // namespace ptin

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/points/open_points.h"
+
+#include <cpl_vsi.h>
+
+#include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/read/input_kind.h"
+#include "engine/construct/read/las_reader.h"
+#include "engine/construct/read/ogr_points.h"
+#include "engine/construct/read/xyz_reader.h"
+#include "engine/construct/tin/tin_vertices.h"
+#include "engine/error.h"
+
+namespace ptin {
+namespace {
+
+constexpr std::size_t kBatchPoints = 4096;
+
+/// Text, in batches.
+class TextPoints final : public PointStream {
+ public:
+  explicit TextPoints(const std::string& path) : reader_(path) {
+    const GdalSession session;
+    VSIStatBufL status;
+    if (!is_packed(path) && VSIStatL(path.c_str(), &status) == 0) {
+      total_ = static_cast<std::uint64_t>(status.st_size);
+    }
+  }
+  [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
+  [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override {
+    batch.clear();
+    SourcePoint point;
+    while (batch.size() < kBatchPoints && reader_.next(point)) {
+      batch.push_back(point);
+    }
+    return !batch.empty();
+  }
+  [[nodiscard]] std::uint64_t done() const noexcept override { return reader_.bytes_read(); }
+  [[nodiscard]] std::uint64_t total() const noexcept override { return total_; }
+
+ private:
+  XyzReader reader_;
+  PointStreamFacts facts_;
+  std::uint64_t total_ = 0;
+};
+
+/// @throws Error invalid_argument  a choice means nothing for the format of the file
+void check_choice(const std::string& path, const PointChoice& choice, PointFormat format) {
+  const bool wants_layer = !choice.layer.empty() || !choice.z_field.empty();
+  if (!choice.classes.empty() && (wants_layer || format != PointFormat::kLas)) {
+    throw Error(ErrorCode::invalid_argument,
+                "only LAS has classes; leave the choice of classes out, or build LAS files alone",
+                path);
+  }
+  if (format == PointFormat::kLas && wants_layer) {
+    throw Error(ErrorCode::invalid_argument,
+                "LAS has no layers and attributes; leave --layer and --z-field out", path);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<PointStream> open_point_stream(const std::string& path, const PointChoice& choice,
+                                               std::optional<double> nodata,
+                                               const StreamResources& resources) {
+  const PointFormat format = point_format_of(path, choice);
+  check_choice(path, choice, format);
+  switch (format) {
+    case PointFormat::kTin:
+      return std::make_unique<TinVertices>(path, choice, nodata, resources);
+    case PointFormat::kLas:
+      return std::make_unique<LasReader>(path, choice);
+    case PointFormat::kText:
+      return std::make_unique<TextPoints>(path);
+    case PointFormat::kLayer:
+      break;
+  }
+  return std::make_unique<OgrPoints>(path, choice);
+}
+
+}  // namespace ptin

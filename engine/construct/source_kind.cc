@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/source_kind.h"
+
+#include <algorithm>
+
+#include "engine/construct/read/tin_soup.h"
+#include "engine/error.h"
+#include "storage/file/file_questions.h"
+
+namespace ptin {
+
+namespace {
+
+const char* misfit_of_raster(const BuildOptions& o) {
+  if (o.resolution) return "--resolution is for points and TINs, and this is a raster";
+  if (!o.classes.empty()) return "--class is for LAS, and this is a raster";
+  if (o.repair) return "--repair is for TINs, and this is a raster";
+  if (o.max_edge) return "--max-edge is for points, and this is a raster";
+  return nullptr;
+}
+
+const char* misfit_of_points(const BuildOptions& o) {
+  return o.repair ? "--repair is for TINs, and these are points" : nullptr;
+}
+
+const char* misfit_of_tin(const BuildOptions& o, const std::string& input) {
+  if (!o.classes.empty()) return "--class is for LAS, and this is a TIN";
+  if (!o.z_field.empty()) return "--z-field is for points, and this is a TIN";
+  if (!o.layer.empty() && !may_have_surfaces(input))
+    return "--layer is for points and for the surfaces of LandXML, and this is another TIN";
+  if (o.max_edge && !o.repair)
+    return "--max-edge is for points, and for TINs with --repair, and this is a TIN";
+  return nullptr;
+}
+
+/// Why an option that was given means nothing to an input of this kind; null when all do.
+const char* misfit_of(const BuildOptions& options, InputKind kind, const std::string& input) {
+  switch (kind) {
+    case InputKind::kRaster:
+      return misfit_of_raster(options);
+    case InputKind::kPoints:
+      return misfit_of_points(options);
+    case InputKind::kTin:
+      break;
+  }
+  return misfit_of_tin(options, input);
+}
+
+/// An input that is not there is told of when it is opened.
+void check_fit(const BuildOptions& options, InputKind kind, const std::string& input) {
+  const char* misfit = misfit_of(options, kind, input);
+  if (misfit != nullptr && is_there(input)) {
+    throw Error(ErrorCode::invalid_argument, std::string(misfit).append("; leave it out"), input);
+  }
+}
+
+}  // namespace
+
+InputKind source_kind(const std::vector<std::string>& inputs, const BuildOptions& options) {
+  if (inputs.empty()) {
+    throw Error(
+        ErrorCode::invalid_argument,
+        "no input; name a raster that GDAL reads, or points as LAS, text or a layer that OGR "
+        "reads, or a TIN");
+  }
+  const PointChoice choice{options.classes, options.layer, options.z_field};
+  std::vector<InputKind> kinds;
+  for (const std::string& input : inputs) {
+    const InputKind kind = kind_of_input(input, choice);
+    check_fit(options, kind, input);
+    kinds.push_back(options.repair && kind == InputKind::kTin ? InputKind::kPoints : kind);
+  }
+  const bool is_one_kind =
+      std::count(kinds.begin(), kinds.end(), kinds[0]) == static_cast<std::ptrdiff_t>(kinds.size());
+  if (std::find(kinds.begin(), kinds.end(), InputKind::kTin) != kinds.end()) {
+    if (inputs.size() != 1) {
+      throw Error(ErrorCode::invalid_argument,
+                  "several inputs, a TIN among them; build a TIN alone");
+    }
+  } else if (!is_one_kind) {
+    throw Error(ErrorCode::invalid_argument,
+                "rasters and points together; build from one kind at a time");
+  }
+  return kinds[0];
+}
+
+}  // namespace ptin

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/refine/refine.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/query/refine/clip.h"
+#include "engine/query/refine/refinement.h"
+#include "engine/query/select/certificate.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/retrieval.h"
+#include "engine/query/select/total_order.h"
+
+namespace ptin {
+
+namespace {
+
+/// The records to apply, and what leaving out the others means.
+struct Selection {
+  std::vector<PendingSplit> splits;
+  Certificate certificate;
+};
+
+/// The predicate of a request, `vertices` left aside.
+PredicatePtr predicate_of(const RefineRequest& request, const StoreFacts& facts) {
+  std::vector<PredicatePtr> parts;
+  if (request.detail.tolerance) {
+    parts.push_back(error_above(*request.detail.tolerance));
+  }
+  if (request.region) {
+    parts.push_back(meets_region(*request.region, facts.map));
+  }
+  if (request.also != nullptr) {
+    parts.push_back(borrowed(*request.also));
+  }
+  return all_of(std::move(parts));
+}
+
+std::uint64_t records_wanted(const RefineRequest& request, const StoreFile& store) {
+  if (request.detail.tolerance) {
+    throw Error(ErrorCode::invalid_argument,
+                "both a tolerance and a number of vertices are given: give one of them");
+  }
+  return records_of_first(*request.detail.vertices, store);
+}
+
+Selection select(const RefineRequest& request, const RecordSource& source,
+                 std::uint64_t fixed_bytes, QueryContext& context) {
+  const PredicatePtr predicate = predicate_of(request, source.store.facts());
+  Selection selection;
+  double left = request.detail.tolerance.value_or(-1.0);
+  if (request.detail.vertices) {
+    FirstRecords first = first_records(source, *predicate, records_wanted(request, source.store),
+                                       fixed_bytes, context);
+    selection.splits = std::move(first.splits);
+    left = first.largest_error_left;
+  } else {
+    selection.splits = retrieve(source, *predicate, fixed_bytes, context);
+  }
+  // What a caller's own predicate leaves out is known only by counting what it does not.
+  selection.certificate = request.also == nullptr ? certify_below(source.store, left)
+                                                  : certify_applied(source.store, selection.splits);
+  return selection;
+}
+
+}  // namespace
+
+void complete(RefinedTin& result, const OpenedTerrain& terrain, const Certificate& certificate,
+              const QueryContext& context, std::chrono::steady_clock::time_point begin) {
+  result.vertices = result.tin.vertices.size();
+  result.triangles = result.tin.triangles.size();
+  result.void_vertices = static_cast<std::uint64_t>(
+      std::count(result.tin.has_height.begin(), result.tin.has_height.end(), 0));
+  result.t0_vertices = terrain.t0().vertices.size();
+  result.certified_error = certificate.error;
+  result.certified_deviation = certificate.deviation;
+  result.exact = certificate.complete && terrain.store().facts().base_error == 0;
+  result.cost = context.cost;
+  result.cost.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+RefinedTin refine(const OpenedTerrain& terrain, const RefineRequest& request) {
+  const auto start = std::chrono::steady_clock::now();
+  const StoreFile& store = terrain.store();
+  QueryContext context(request.limits, store.path());
+  const Selection selection = select(request, terrain.records(), bytes_of(terrain.t0()), context);
+
+  Refinement refinement(terrain.t0(), request.page_of_triangle);
+  refinement.apply(selection.splits, context);
+  RefinedTin result;
+  result.tin = refinement.release_tin();
+  result.page_of_triangle = refinement.release_pages();
+  if (request.region && request.form == ResultForm::kMeetingRegion) {
+    keep_meeting(result.tin, GridRegion(*request.region, store.facts().map),
+                 result.page_of_triangle, context);
+  }
+  store.pages().check_unchanged();
+
+  complete(result, terrain, selection.certificate, context, start);
+  return result;
+}
+
+}  // namespace ptin

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Selective refinement (paper, section 4): the TIN at a level of detail, in a region.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/mesh/tin.h"
+#include "engine/query/select/accounting.h"
+#include "engine/query/select/certificate.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
+#include "engine/query/select/predicate.h"
+#include "engine/query/select/query_limits.h"
+
+namespace ptin {
+
+/// Whether the result covers the whole domain (coarse outside of the region) or keeps the triangles
+/// that meet the region.
+enum class ResultForm { kWholeDomain, kMeetingRegion };
+
+struct RefineRequest {
+  /// Where to refine; none means everywhere. Window, point, segment or polygon, in map units
+  /// (predicate.h).
+  std::optional<Region> region;
+  /// A tolerance of 0 means every sample exact: flat and coplanar parts stay coarse. A number of
+  /// vertices is here one of the mesh, T0 and void ones counted, and is reached exactly: with a
+  /// region its most important records are taken. More than there are gives all of them, and
+  /// RefinedTin::exact. Vertices are counted before triangles outside of the region are left out
+  /// (kMeetingRegion).
+  DetailRequest detail;
+  /// Any further monotone predicate; intersected with the above. Borrowed for the call.
+  const AttributePredicate* also = nullptr;
+  ResultForm form = ResultForm::kWholeDomain;  ///< Without a region both forms are the same.
+  bool page_of_triangle = false;               ///< Fill RefinedTin::page_of_triangle.
+  QueryLimits limits;
+};
+
+/// A refined TIN. Positions are grid positions; `map` and `heights` of the store turn them into map
+/// units.
+struct RefinedTin {
+  Tin tin;  ///< Compact: every vertex and triangle is alive (kMeetingRegion: renumbered).
+  std::vector<std::uint32_t> page_of_triangle;  ///< Filled on request (render --pages): page of the
+                                                ///< record that made it, or kNone.
+  std::uint64_t vertices = 0;                   ///< Of the mesh, void ones included.
+  std::uint64_t void_vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t t0_vertices = 0;
+  /// Bound at every sample in the region (everywhere when there is none); >= base_error.
+  double certified_error = 0.0;
+  double certified_deviation = 0.0;  ///< Bound at any point, likewise.
+  /// Every triangle that meets the region is one of the full TIN, and base_error is 0.
+  bool exact = false;
+  QueryCost cost;
+};
+
+/// Refines T0: retrieves the records for which the request's predicate is true, sorts them by
+/// rank (counting sort), applies them. Exact (P1), certified (P2), valid (P3), closed and lean
+/// (P4), joined (P5).
+/// @throws Error invalid_argument    tolerance negative or NaN; `vertices` below |T0|; both
+///                                   given; region not finite
+///               resource_exhausted  the index says that the answer exceeds the memory limit;
+///                                   names `export`
+///               corruption, io_error, cancelled
+/// Cost: k records retrieved: O(|T0| + k) time and memory; index pages usually O(k / B + log_B
+/// n).
+[[nodiscard]] RefinedTin refine(const OpenedTerrain& terrain, const RefineRequest& request);
+
+/// Completes a result whose mesh is there: counts its parts, and fills in its certificate and cost.
+/// For those who refine in another way and answer with the same result.
+/// @param begin  When the question was asked.
+void complete(RefinedTin& result, const OpenedTerrain& terrain, const Certificate& certificate,
+              const QueryContext& context, std::chrono::steady_clock::time_point begin);
+
+}  // namespace ptin

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A file of a terrain, opened: what every question starts from.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/mesh/tin.h"
+#include "engine/query/select/retrieval.h"
+#include "storage/index.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+/// A store, its T0 as a mesh, and the index that searches use. T0, the map and the upper levels of
+/// the index that were touched stay in memory; everything else is paged.
+/// Threads: all functions but use_index() are const and may be called at once.
+class OpenedTerrain {
+ public:
+  /// @throws Error as StoreFile::open; corruption when the stored T0 is not a valid TIN
+  explicit OpenedTerrain(const std::string& path, PageAccess access = PageAccess::kMapped);
+  /// @throws Error corruption when the stored T0 is not a valid TIN
+  explicit OpenedTerrain(std::shared_ptr<const StoreFile> store);
+
+  [[nodiscard]] const StoreFile& store() const noexcept { return *store_; }
+  /// T0 with neighbours: what every question starts from a copy of.
+  [[nodiscard]] const Tin& t0() const noexcept { return *t0_; }
+  /// The index in use.
+  [[nodiscard]] const RecordIndex& index() const noexcept {
+    return index_ ? *index_ : store_->index();
+  }
+  /// Where records come from. Borrowed.
+  [[nodiscard]] RecordSource records() const noexcept { return {*store_, index()}; }
+
+  /// Uses `index` instead of the packed R-tree (the same answers; tests and `--index
+  /// spatialindex`). Not thread-safe.
+  void use_index(std::shared_ptr<const RecordIndex> index);
+
+ private:
+  std::shared_ptr<const StoreFile> store_;
+  std::shared_ptr<const Tin> t0_;             ///< T0 with neighbours; a query starts from a copy.
+  std::shared_ptr<const RecordIndex> index_;  ///< Null: the store's own.
+};
+
+}  // namespace ptin

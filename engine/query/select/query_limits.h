@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The limits that every question is asked with.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+
+namespace ptin {
+
+/// How much a question may take, and how it is stopped.
+struct QueryLimits {
+  /// Bytes of memory for what the question holds: records, mesh and results. Known from the index
+  /// before a page is read; a question that needs more is refused.
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  std::stop_token stop{};  ///< Looked at in every long loop.
+};
+
+}  // namespace ptin

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/terrain.h"
+
+#include <utility>
+
+namespace ptin {
+
+RefinedTin Terrain::refine(const RefineRequest& request) const {
+  return ptin::refine(*this, request);
+}
+
+PartRefiner Terrain::parts(PartRequest request) const {
+  return PartRefiner(*this, std::move(request));
+}
+
+MovingWindow Terrain::moving_window(const MovingWindowOptions& options) const {
+  return MovingWindow(*this, options);
+}
+
+LocateResult Terrain::locate(std::span<const MapPoint> points, const LocateRequest& request) const {
+  return ptin::locate(*this, points, request);
+}
+
+ProfileResult Terrain::profile(std::span<const MapPoint> line,
+                               const ProfileRequest& request) const {
+  return ptin::profile(*this, line, request);
+}
+
+ProfileResult Terrain::profile(std::span<const std::vector<MapPoint>> lines,
+                               const ProfileRequest& request) const {
+  return ptin::profile(*this, lines, request);
+}
+
+HighestResult Terrain::highest(const HighestRequest& request) const {
+  return ptin::highest(*this, request);
+}
+
+SightResult Terrain::sight(const SightPair& pair, const SightRequest& request) const {
+  return ptin::sight(*this, pair, request);
+}
+
+SightSolver Terrain::sight_lines(const SightRequest& request, std::uint64_t base_records) const {
+  return SightSolver(*this, request, base_records);
+}
+
+Viewshed Terrain::viewshed(const ViewshedRequest& request) const {
+  return ptin::viewshed(*this, request);
+}
+
+Isolines Terrain::isolines(const IsolineRequest& request) const {
+  return ptin::isolines(*this, request);
+}
+
+StreamSummary Terrain::stream(const StreamRequest& request, const ByteSink& sink) const {
+  return write_stream(*this, request, sink);
+}
+
+}  // namespace ptin

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Terrain: the one face of engine/query. All questions that can be asked of a file, for the
+// program, a service and bindings: plain requests in, plain results out.
+//
+// | question                                  | function         | request         | header           |
+// |-------------------------------------------|------------------|-----------------|------------------|
+// | a mesh at a level of detail, in a region  | refine           | RefineRequest   | refine/refine.h  |
+// | the same, part by part, of any size       | parts            | PartRequest     | refine/part_refiner.h |
+// | a mesh that follows a moving region       | moving_window    | MovingWindowOptions | refine/moving_window.h |
+// | heights at points                         | locate           | LocateRequest   | heights/locate.h |
+// | heights along lines                       | profile          | ProfileRequest  | heights/profile.h |
+// | the highest or lowest point               | highest          | HighestRequest  | heights/highest.h |
+// | whether two points see each other         | sight, sight_lines | SightRequest  | sight/sight.h    |
+// | what an observer sees                     | viewshed         | ViewshedRequest | sight/viewshed.h |
+// | contours                                  | isolines         | IsolineRequest  | isoline/isoline.h |
+// | the file, most important vertices first   | stream           | StreamRequest   | stream/stream_writer.h |
+//
+// Every request holds a DetailRequest (which TIN: the full one, one within an error, or the most
+// important vertices; select/detail.h) and QueryLimits (memory and stop token;
+// select/query_limits.h). A stream says by its predicate what is wanted, and a moving window is
+// asked anew with each move. Every result holds what it is certified for and what it cost.
+//
+// What is done with results comes along: polygons between levels (isoline_bands.h), lines cut at a
+// window (isoline_clip.h), isolines of a mesh that grows (isoline_progressive.h), and the receiver
+// of a stream (stream_reader.h).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/query/heights/highest.h"
+#include "engine/query/heights/locate.h"
+#include "engine/query/heights/profile.h"
+#include "engine/query/isoline/isoline.h"
+#include "engine/query/isoline/isoline_bands.h"
+#include "engine/query/isoline/isoline_clip.h"
+#include "engine/query/isoline/isoline_progressive.h"
+#include "engine/query/refine/moving_window.h"
+#include "engine/query/refine/part_refiner.h"
+#include "engine/query/refine/refine.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
+#include "engine/query/select/predicate.h"
+#include "engine/query/select/query_limits.h"
+#include "engine/query/sight/sight.h"
+#include "engine/query/sight/viewshed.h"
+#include "engine/query/stream/stream_reader.h"
+#include "engine/query/stream/stream_writer.h"
+
+namespace ptin {
+
+/// A terrain on disk that answers questions. A copy shares the file and costs nothing.
+/// Threads: all functions but use_index() are const and may be called at once; no question blocks
+/// another, and each keeps to limits of its own.
+///
+/// Errors, of every question, and besides those that its header names:
+///   invalid_argument    a request that means nothing
+///   resource_exhausted  the answer needs more memory than the limit; told before pages are read
+///   corruption          a page of the file is damaged, or the file changed since it was opened
+///   io_error            the file cannot be read
+///   cancelled           a stop was requested
+class Terrain : public OpenedTerrain {
+ public:
+  using OpenedTerrain::OpenedTerrain;
+
+  /// @throws Error as StoreFile::open; corruption when the stored T0 is not a valid TIN
+  [[nodiscard]] static Terrain open(const std::string& path,
+                                    PageAccess access = PageAccess::kMapped) {
+    return Terrain(path, access);
+  }
+
+  /// The TIN at a level of detail, over the whole domain or in a region.
+  [[nodiscard]] RefinedTin refine(const RefineRequest& request) const;
+  /// The same in parts that fit the memory. The terrain must outlive what is returned.
+  [[nodiscard]] PartRefiner parts(PartRequest request) const;
+  /// A mesh that begins as T0 and follows predicates. Shares the file.
+  [[nodiscard]] MovingWindow moving_window(const MovingWindowOptions& options = {}) const;
+
+  /// Heights at points in map units: surface, void and outside told apart.
+  [[nodiscard]] LocateResult locate(std::span<const MapPoint> points,
+                                    const LocateRequest& request = {}) const;
+  /// Heights along a polyline, with a break at every edge of the TIN.
+  [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line,
+                                      const ProfileRequest& request = {}) const;
+  [[nodiscard]] ProfileResult profile(std::span<const std::vector<MapPoint>> lines,
+                                      const ProfileRequest& request = {}) const;
+  /// The highest or lowest point of the terrain or of a window.
+  [[nodiscard]] HighestResult highest(const HighestRequest& request = {}) const;
+
+  /// Whether the ends of a line see each other.
+  [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request = {}) const;
+  /// For many lines, which share a coarse mesh. The terrain must outlive what is returned.
+  /// @param base_records  As SightSolver.
+  [[nodiscard]] SightSolver sight_lines(const SightRequest& request,
+                                        std::uint64_t base_records = std::uint64_t{1} << 15) const;
+  /// What one observer sees.
+  [[nodiscard]] Viewshed viewshed(const ViewshedRequest& request) const;
+
+  /// Isolines, joined over the whole terrain.
+  [[nodiscard]] Isolines isolines(const IsolineRequest& request) const;
+
+  /// Sends T0 and then splits, the most important ones first; StreamReader (stream_reader.h)
+  /// receives them.
+  StreamSummary stream(const StreamRequest& request, const ByteSink& sink) const;
+};
+
+}  // namespace ptin
