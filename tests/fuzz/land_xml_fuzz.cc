@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/tin_soup_target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PTIN_FUZZ_TARGET(land_xml, data, size) {
   return ptin::fuzz::fuzz_reader(ptin::read_land_xml, data, size);
 }

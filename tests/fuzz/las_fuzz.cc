@@ -11,8 +11,9 @@
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/las_reader.h"
 #include "engine/error.h"
+#include "tests/fuzz/fuzz_target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PTIN_FUZZ_TARGET(las, data, size) {
   std::vector<GByte> bytes(data, data + size);
   VSIFCloseL(VSIFileFromMemBuffer("/vsimem/fuzz.las", bytes.data(), bytes.size(), FALSE));
   try {

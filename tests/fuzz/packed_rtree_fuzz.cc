@@ -18,6 +18,7 @@
 #include "storage/descriptor.h"
 #include "storage/index_nodes.h"
 #include "storage/packed_rtree.h"
+#include "tests/fuzz/fuzz_target.h"
 #include "tests/storage/seal.h"
 
 namespace {
@@ -65,7 +66,7 @@ std::optional<std::vector<PageId>> search(const IndexNodes& nodes) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PTIN_FUZZ_TARGET(packed_rtree, data, size) {
   if (size < 3) {
     return 0;
   }

@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "storage/page_records.h"
 #include "storage/record.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 
@@ -53,7 +54,7 @@ void check(const VertexSplit& r, RecordKind kind, std::span<const std::byte> in)
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PTIN_FUZZ_TARGET(record_page, data, size) {
   if (size < 3) {
     return 0;
   }

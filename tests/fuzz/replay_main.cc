@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Drives a fuzz target without libFuzzer: every file that is given, or lies in a folder that is
+// Drives fuzz targets without libFuzzer: every file that is given, or lies in a folder that is
 // given, then a bounded number of seeded random mutations of them. Same arguments and files, same
 // inputs.
 //
-//   fuzz_NAME [-mutations N] [-seed S] [-max_len BYTES] FILE_OR_FOLDER...
+//   fuzz_replay TARGET [-mutations N] [-seed S] [-max_len BYTES] FILE_OR_FOLDER...
 //
 // A failure is the target's own: a sanitizer's report or an uncaught exception. The input that was
 // running then is in the working folder as crash-input-NAME.
@@ -21,7 +21,7 @@
 #include <string_view>
 #include <vector>
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 
@@ -29,6 +29,8 @@ namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 
 struct Options {
+  std::string name;
+  ptin::fuzz::Target target = nullptr;
   std::uint64_t mutations = 0;
   std::uint64_t seed = 1;
   std::size_t max_len = std::size_t{1} << 20;
@@ -37,7 +39,16 @@ struct Options {
 
 Options parse(int argc, char** argv) {
   Options options;
-  for (int i = 1; i < argc; ++i) {
+  options.name = argc > 1 ? argv[1] : "";
+  const auto found = ptin::fuzz::targets().find(options.name);
+  if (found == ptin::fuzz::targets().end()) {
+    std::cerr << "\"" << options.name << "\" is no target; there are";
+    for (const auto& [name, target] : ptin::fuzz::targets()) std::cerr << " " << name;
+    std::cerr << "\n";
+    std::exit(2);
+  }
+  options.target = found->second;
+  for (int i = 2; i < argc; ++i) {
     const std::string_view argument = argv[i];
     const auto number = [&] {
       if (i + 1 >= argc) {
@@ -170,30 +181,30 @@ class Mutator {
   const std::vector<Bytes>& corpus_;
 };
 
-void run(const Bytes& bytes, const fs::path& running) {
+void run(const Options& options, const Bytes& bytes, const fs::path& running) {
   {
     std::ofstream stream(running, std::ios::binary | std::ios::trunc);
     stream.write(reinterpret_cast<const char*>(bytes.data()),
                  static_cast<std::streamsize>(bytes.size()));
   }
-  LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
+  options.target(bytes.data(), bytes.size());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const Options options = parse(argc, argv);
-  const fs::path running = "crash-input-" + fs::path(argv[0]).filename().string();
+  const fs::path running = "crash-input-" + options.name;
   std::vector<Bytes> corpus = read_corpus(options.inputs);
   if (corpus.empty()) {
     corpus.emplace_back();
   }
   for (const Bytes& bytes : corpus) {
-    run(bytes, running);
+    run(options, bytes, running);
   }
   Mutator mutator(options.seed, options.max_len, corpus);
   for (std::uint64_t i = 0; i < options.mutations; ++i) {
-    run(mutator.next(), running);
+    run(options, mutator.next(), running);
   }
   fs::remove(running);
   std::cout << corpus.size() << " inputs replayed, " << options.mutations << " mutations of seed "

@@ -15,6 +15,7 @@
 #include "engine/error.h"
 #include "storage/store_file.h"
 #include "storage/verify.h"
+#include "tests/fuzz/fuzz_target.h"
 #include "tests/storage/seal.h"
 
 namespace {
@@ -50,7 +51,7 @@ void use(const std::string& path, PageAccess access) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PTIN_FUZZ_TARGET(store_open, data, size) {
   if (size == 0) {
     return 0;
   }

@@ -13,6 +13,7 @@
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
 #include "engine/query/stream/stream_reader.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 
@@ -77,7 +78,7 @@ void seal(std::vector<std::byte>& bytes) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PTIN_FUZZ_TARGET(stream, data, size) {
   if (size < 2) {
     return 0;
   }

@@ -8,8 +8,9 @@
 
 #include "engine/construct/read/xyz_reader.h"
 #include "engine/error.h"
+#include "tests/fuzz/fuzz_target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PTIN_FUZZ_TARGET(xyz, data, size) {
   ptin::XyzReader reader("fuzz.xyz", std::string(reinterpret_cast<const char*>(data), size));
   ptin::XyzPoint point;
   try {

@@ -25,6 +25,7 @@ using testing::Outcome;
 using testing::RasterRecipe;
 using testing::read_file;
 using testing::run_ptin;
+using testing::spawn_ptin;
 using testing::test_data;
 using testing::TestFolder;
 using testing::write_file;
@@ -202,7 +203,7 @@ TEST(CliBadInput, AnswerThatStdoutDoesNotTake) {
         {"completion", "bash"},
         {"--help"},
         {"--version"}}) {
-    const Outcome outcome = testing::run_ptin_into("/dev/full", arguments);
+    const Outcome outcome = testing::spawn_ptin_into("/dev/full", arguments);
     EXPECT_EQ(outcome.status, 7) << arguments[0];
     EXPECT_NE(outcome.err.find("standard output"), std::string::npos)
         << arguments[0] << outcome.err;
@@ -390,11 +391,11 @@ TEST(CliBadInput, FilesLargerThanTheLimitOfTheProcess) {
   const std::string store = small_store(folder);
   const auto before = folder.names();
   const FileSizeLimit limit(2048);
-  expect_refusal(run_ptin({"refine", store, "-o", folder.file("a.ply")}), 7, "too large");
-  expect_refusal(run_ptin({"stream", store, "-o", folder.file("a.pts")}), 7, "too large");
-  EXPECT_EQ(run_ptin({"build", folder.file("hills.tif"), "-q", "-o", folder.file("b.ptin")}).status,
+  expect_refusal(spawn_ptin({"refine", store, "-o", folder.file("a.ply")}), 7, "too large");
+  expect_refusal(spawn_ptin({"stream", store, "-o", folder.file("a.pts")}), 7, "too large");
+  EXPECT_EQ(spawn_ptin({"build", folder.file("hills.tif"), "-q", "-o", folder.file("b.ptin")}).status,
             7);
-  EXPECT_EQ(run_ptin({"build", "--discard", "-q", "-o", folder.file("b.ptin")}).status, 0);
+  EXPECT_EQ(spawn_ptin({"build", "--discard", "-q", "-o", folder.file("b.ptin")}).status, 0);
   EXPECT_EQ(folder.names(), before);
 }
 
@@ -504,14 +505,14 @@ TEST(CliSignals, StopABuildTidily) {
   make_raster(folder.file("large.tif"), large);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const Outcome outcome =
-        run_ptin({"build", folder.file("large.tif"), "-o", folder.file("large.ptin"), "-q"}, signal,
+        spawn_ptin({"build", folder.file("large.tif"), "-o", folder.file("large.ptin"), "-q"}, signal,
                  std::chrono::milliseconds(700));
     expect_refusal(outcome, 8, "");
     // What is done is kept, and goes when it is told to.
     const auto names = folder.names();
     EXPECT_EQ(std::count(names.begin(), names.end(), "large.ptin"), 0);
     const bool is_kept = names.size() == 2;
-    EXPECT_EQ(run_ptin({"build", "--discard", "-q", "-o", folder.file("large.ptin")}).status,
+    EXPECT_EQ(spawn_ptin({"build", "--discard", "-q", "-o", folder.file("large.ptin")}).status,
               is_kept ? 0 : 1);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"large.tif"});
   }

@@ -19,7 +19,7 @@ using test::SmallDisk;
 using testing::make_raster;
 using testing::RasterRecipe;
 using testing::read_file;
-using testing::run_ptin;
+using testing::spawn_ptin;
 using testing::TestFolder;
 
 constexpr int kMoments = 20;
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(OfEachKind, KillSlow, ::testing::Values(Source::kRaster
 
 TEST_P(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
   const auto begin = std::chrono::steady_clock::now();
-  ASSERT_EQ(run_ptin(build(folder_.file("plain.ptin"), {})).status, 0);
+  ASSERT_EQ(spawn_ptin(build(folder_.file("plain.ptin"), {})).status, 0);
   const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(
       std::chrono::steady_clock::now() - begin);
   const std::string expected = read_file(folder_.file("plain.ptin"));
@@ -79,14 +79,14 @@ TEST_P(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
   for (int moment = 0; moment < 4 * kMoments && killed < kMoments; ++moment) {
     const std::chrono::milliseconds after(random() % static_cast<unsigned>(whole.count()));
     const auto outcome =
-        run_ptin(build(killed_one, {"--resume", "--threads", "2"}), SIGKILL, after);
+        spawn_ptin(build(killed_one, {"--resume", "--threads", "2"}), SIGKILL, after);
     killed += outcome.status == 128 + SIGKILL ? 1 : 0;
     if (outcome.status != 0) {
       EXPECT_EQ(outcome.status, 128 + SIGKILL) << outcome.err;
       // Killed after it was complete and had its name: nothing but tidying is left.
       const bool is_complete = std::filesystem::exists(killed_one);
       EXPECT_TRUE(!is_complete || read_file(killed_one) == expected);
-      const auto resumed = run_ptin(build(killed_one, {"--resume", "--threads", "1"}));
+      const auto resumed = spawn_ptin(build(killed_one, {"--resume", "--threads", "1"}));
       EXPECT_TRUE(resumed.status == 0 || (is_complete && resumed.status == 2)) << resumed.err;
     }
     EXPECT_TRUE(read_file(killed_one) == expected) << "after " << after.count() << " ms";
@@ -97,7 +97,7 @@ TEST_P(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
 }
 
 TEST_P(KillSlow, ADiskThatFillsUpLosesNothing) {
-  ASSERT_EQ(run_ptin(build(folder_.file("plain.ptin"), {})).status, 0);
+  ASSERT_EQ(spawn_ptin(build(folder_.file("plain.ptin"), {})).status, 0);
   const SmallDisk disk(folder_.file("disk"), 40);
   if (!disk.is_mounted()) GTEST_SKIP() << SmallDisk::kNeeded;
   const std::string output = disk.path() + "/k.ptin";
@@ -111,14 +111,14 @@ TEST_P(KillSlow, ADiskThatFillsUpLosesNothing) {
     }
     testing::write_file(disk.path() + "/other", std::string(40U << 20, 'x'));
   });
-  auto outcome = run_ptin(build(output, {"--resume"}));
+  auto outcome = spawn_ptin(build(output, {"--resume"}));
   has_ended = true;
   somebody.join();
   EXPECT_EQ(outcome.status, 7) << outcome.err;
   EXPECT_NE(outcome.err.find("--resume"), std::string::npos) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(output));
   std::filesystem::remove(disk.path() + "/other");
-  outcome = run_ptin(build(output, {"--resume"}));
+  outcome = spawn_ptin(build(output, {"--resume"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(read_file(output) == read_file(folder_.file("plain.ptin")));
 }

@@ -15,7 +15,7 @@
 namespace ptin::tools {
 namespace {
 
-using testing::run_ptin;
+using testing::spawn_ptin;
 using testing::TestFolder;
 
 constexpr rlim_t kMiB = rlim_t{1} << 20;
@@ -68,7 +68,7 @@ TEST_F(MemoryLimitSlow, ABuildKeepsWithinItsMemoryAndAMarginThatTheSystemEnforce
     SCOPED_TRACE(memory);
     const DataLimit limit(memory * kMiB + kMargin);
     const auto outcome =
-        run_ptin({"build", folder.file("dem.tif"), "-o", folder.file("out.ptin"), "--overwrite",
+        spawn_ptin({"build", folder.file("dem.tif"), "-o", folder.file("out.ptin"), "--overwrite",
                   "--threads", "2", "--memory", std::to_string(memory) + "M", "-q"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
@@ -111,7 +111,7 @@ TEST_F(MemoryLimitSlow, ATinKeepsWithinItsMemoryToo) {
   const DataLimit limit(kMemory * kMiB + kMargin);
   for (const char* repair : {"--overwrite", "--repair"}) {
     SCOPED_TRACE(repair);
-    const auto outcome = run_ptin({"build", folder.file("mesh.ply"), "-o", folder.file("out.ptin"),
+    const auto outcome = spawn_ptin({"build", folder.file("mesh.ply"), "-o", folder.file("out.ptin"),
                                    "--overwrite", "--threads", "1", "--tile", "128", "--memory",
                                    std::to_string(kMemory) + "M", "-q", repair});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -123,7 +123,7 @@ TEST_F(MemoryLimitSlow, ABuildThatIsGivenMoreThanTheLimitFails) {
   const TestFolder folder;
   make_hills(folder);
   const DataLimit limit(48 * kMiB);
-  const auto outcome = run_ptin({"build", folder.file("dem.tif"), "-o", folder.file("out.ptin"),
+  const auto outcome = spawn_ptin({"build", folder.file("dem.tif"), "-o", folder.file("out.ptin"),
                                  "--threads", "2", "--memory", "512M", "-q"});
   EXPECT_NE(outcome.status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder.file("out.ptin")));

@@ -185,11 +185,11 @@ TEST(LocateCommand, KnowsPointXAndRefusesAHeaderThatNamesNoCoordinate) {
   const std::string terrain = wall(folder);
   const std::string row = "7," + east(15.5) + "," + south(20) + "\n";
   const Outcome known =
-      testing::run_ptin_reading("id,POINT_X,POINT_Y\n" + row, {"locate", terrain, "--points", "-"});
+      testing::spawn_ptin_reading("id,POINT_X,POINT_Y\n" + row, {"locate", terrain, "--points", "-"});
   EXPECT_EQ(known.status, 0) << known.err;
   EXPECT_NE(known.out.find("surface,55,55,55"), std::string::npos) << known.out;
   const Outcome refused =
-      testing::run_ptin_reading("id,foo,bar\n" + row, {"locate", terrain, "--points", "-"});
+      testing::spawn_ptin_reading("id,foo,bar\n" + row, {"locate", terrain, "--points", "-"});
   EXPECT_EQ(refused.status, 2);
   EXPECT_EQ(refused.out, "");
   EXPECT_EQ(lines_in(refused.err), 1u) << refused.err;
@@ -200,7 +200,7 @@ TEST(LocateCommand, SkipsCommentsBeforeAHeaderToo) {
   const std::string terrain = wall(folder);
   const std::string text =
       "# y and x of one point\ny,x\n" + south(20) + "," + east(15.5) + "\n# the end\n";
-  const Outcome outcome = testing::run_ptin_reading(text, {"locate", terrain, "--points", "-"});
+  const Outcome outcome = testing::spawn_ptin_reading(text, {"locate", terrain, "--points", "-"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("surface,55,55,55"), std::string::npos) << outcome.out;
   EXPECT_EQ(lines_in(outcome.out), 2u) << outcome.out;
@@ -212,7 +212,7 @@ TEST(LocateCommand, TakesNumbersInQuotes) {
   const std::string row = "\"" + east(15.5) + "\",\"" + south(20) + "\"\n";
   for (const std::string& text : {"x,y\n" + row, row + row}) {
     const Outcome outcome =
-        testing::run_ptin_reading(text, {"locate", terrain, "--points", "-", "--json"});
+        testing::spawn_ptin_reading(text, {"locate", terrain, "--points", "-", "--json"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const json answer = json::parse(outcome.out, nullptr, false);
     ASSERT_TRUE(answer.is_object()) << outcome.out;

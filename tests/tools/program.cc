@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -12,10 +15,13 @@
 
 #include <fcntl.h>
 #include <gdal_priv.h>
+#include <gtest/gtest.h>
 #include <ogr_spatialref.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "tools/ptin/cli.h"
 
 extern char** environ;
 
@@ -47,10 +53,60 @@ int status_of(pid_t child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// Has the streams of this process go elsewhere while it lives.
+class RedirectedStreams {
+ public:
+  RedirectedStreams(const std::string& out, const std::string& err) {
+    flush();
+    redirect(0, "/dev/null", O_RDONLY);
+    redirect(1, out, O_WRONLY | O_CREAT | O_TRUNC);
+    redirect(2, err, O_WRONLY | O_CREAT | O_TRUNC);
+  }
+  RedirectedStreams(const RedirectedStreams&) = delete;
+  RedirectedStreams& operator=(const RedirectedStreams&) = delete;
+  ~RedirectedStreams() {
+    flush();
+    for (int fd = 0; fd < 3; ++fd) {
+      ::dup2(before_[fd], fd);
+      ::close(before_[fd]);
+    }
+  }
+
+ private:
+  static void flush() {
+    std::cout.flush();
+    std::fflush(stdout);
+    std::fflush(stderr);
+  }
+  void redirect(int fd, const std::string& path, int flags) {
+    before_[fd] = ::fcntl(fd, F_DUPFD_CLOEXEC, 3);
+    const int file = ::open(path.c_str(), flags | O_CLOEXEC, 0600);
+    if (before_[fd] < 0 || file < 0) throw std::runtime_error("cannot redirect to " + path);
+    ::dup2(file, fd);
+    ::close(file);
+  }
+  int before_[3] = {-1, -1, -1};
+};
+
 }  // namespace
 
-Outcome run_ptin(const std::vector<std::string>& arguments, std::optional<int> signal,
-                 std::chrono::milliseconds after) {
+Outcome run_ptin(const std::vector<std::string>& arguments) {
+  const TestFolder folder;
+  std::vector<const char*> argv{"ptin"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  Outcome outcome;
+  {
+    const RedirectedStreams streams(folder.file("out"), folder.file("err"));
+    Context context;
+    outcome.status = run_program(static_cast<int>(argv.size()), argv.data(), context);
+  }
+  outcome.out = read_file(folder.file("out"));
+  outcome.err = read_file(folder.file("err"));
+  return outcome;
+}
+
+Outcome spawn_ptin(const std::vector<std::string>& arguments, std::optional<int> signal,
+                   std::chrono::milliseconds after) {
   const TestFolder folder;
   const pid_t child = start_ptin(arguments, folder.file("out"), folder.file("err"));
   if (signal) {
@@ -64,7 +120,7 @@ Outcome run_ptin(const std::vector<std::string>& arguments, std::optional<int> s
   return outcome;
 }
 
-Outcome run_ptin_into(const std::string& output, const std::vector<std::string>& arguments) {
+Outcome spawn_ptin_into(const std::string& output, const std::vector<std::string>& arguments) {
   const TestFolder folder;
   Outcome outcome;
   outcome.status = status_of(start_ptin(arguments, output, folder.file("err")));
@@ -79,7 +135,7 @@ std::string read_file(const std::string& path) {
   return content.str();
 }
 
-Outcome run_ptin_reading(const std::string& input, const std::vector<std::string>& arguments) {
+Outcome spawn_ptin_reading(const std::string& input, const std::vector<std::string>& arguments) {
   const TestFolder folder;
   write_file(folder.file("in"), input);
   Outcome outcome;
@@ -143,10 +199,15 @@ std::string test_data(const std::string& name) {
 }
 
 std::string built(const TestFolder& folder, const std::string& name) {
+  static const TestFolder stores;
+  const std::string store = stores.file(name + ".ptin");
+  if (!std::filesystem::exists(store)) {
+    const Outcome outcome = run_ptin({"build", test_data(name), "-o", store, "-q"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out + outcome.err, "");
+  }
   const std::string path = folder.file(name + ".ptin");
-  const Outcome outcome = run_ptin({"build", test_data(name), "-o", path, "-q"});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.out + outcome.err, "");
+  std::filesystem::copy_file(store, path);
   return path;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Runs the built program and looks at what it says, returns and leaves behind.
+// Runs the program and looks at what it says, returns and leaves behind: within this process, which
+// saves a start of everything that it links, or, where signals, limits and pipes are the subject, as
+// the program that was built.
 #pragma once
 
 #include <chrono>
@@ -24,17 +26,23 @@ struct Outcome {
   std::string err;
 };
 
-/// Runs `ptin ARGUMENTS` with its output going to a file that is there. Only status and err are
-/// set.
-Outcome run_ptin_into(const std::string& output, const std::vector<std::string>& arguments);
+/// Runs `ptin ARGUMENTS` within this process: all of the program but main(), with standard input
+/// empty and the output streams going to files. What the arguments mean is the same as in a process
+/// of its own; signals, limits on resources and the end of the process are not tested by it.
+/// REQUIRES: nothing else of this process writes to stdout or stderr meanwhile.
+Outcome run_ptin(const std::vector<std::string>& arguments);
 
-/// Runs `ptin ARGUMENTS`. With `signal`, sends it `after` the start.
-Outcome run_ptin(const std::vector<std::string>& arguments,
-                 std::optional<int> signal = std::nullopt,
-                 std::chrono::milliseconds after = std::chrono::milliseconds(0));
+/// Runs the program that was built. With `signal`, sends it `after` the start.
+Outcome spawn_ptin(const std::vector<std::string>& arguments,
+                   std::optional<int> signal = std::nullopt,
+                   std::chrono::milliseconds after = std::chrono::milliseconds(0));
 
-/// Runs `ptin ARGUMENTS` with these bytes on its standard input.
-Outcome run_ptin_reading(const std::string& input, const std::vector<std::string>& arguments);
+/// Runs the program that was built with its output going to a file that is there. Only status and
+/// err are set.
+Outcome spawn_ptin_into(const std::string& output, const std::vector<std::string>& arguments);
+
+/// Runs the program that was built with these bytes on its standard input.
+Outcome spawn_ptin_reading(const std::string& input, const std::vector<std::string>& arguments);
 
 [[nodiscard]] std::string read_file(const std::string& path);
 void write_file(const std::string& path, const std::string& content);
@@ -63,7 +71,7 @@ void make_raster(const std::string& path, const RasterRecipe& recipe);
 
 /// A small real terrain of tests/data.
 [[nodiscard]] std::string test_data(const std::string& name);
-/// The same, built into `folder` without a word; returns the store's path.
+/// The same, built into `folder`; returns the store's path. Built once a process, and copied.
 [[nodiscard]] std::string built(const TestFolder& folder, const std::string& name);
 
 /// Runs ptin and expects success.

@@ -13,7 +13,7 @@
 namespace ptin::tools {
 namespace {
 
-using testing::run_ptin;
+using testing::spawn_ptin;
 using testing::TestFolder;
 
 /// The words of the lines that begin "$ ptin", without comments; quotes are not used in what is
@@ -53,7 +53,7 @@ TEST(Readme, CommandsRun) {
       continue;
     std::string line;
     for (const std::string& word : words) line += word + " ";
-    const auto outcome = run_ptin(words);
+    const auto outcome = spawn_ptin(words);
     EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
     EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << line << outcome.err;
     ++run;

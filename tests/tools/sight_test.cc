@@ -20,7 +20,7 @@ using nlohmann::json;
 using testing::answer_of;
 using testing::Outcome;
 using testing::run_ptin;
-using testing::run_ptin_reading;
+using testing::spawn_ptin_reading;
 using testing::TestFolder;
 using testing::write_file;
 
@@ -112,7 +112,7 @@ TEST_F(SightNumbers, PairsOnStandardInputAreThoseOfAFile) {
   }
   write_file(folder_.file("pairs.csv"), rows.str());
   const Outcome of_file = run_ptin({"sight", file_, "--pairs", folder_.file("pairs.csv")});
-  const Outcome of_input = run_ptin_reading(rows.str(), {"sight", file_, "--pairs", "-"});
+  const Outcome of_input = spawn_ptin_reading(rows.str(), {"sight", file_, "--pairs", "-"});
   EXPECT_EQ(of_input.status, 0) << of_input.err;
   EXPECT_EQ(of_input.out, of_file.out);
   std::istringstream lines(of_input.out);
@@ -122,7 +122,7 @@ TEST_F(SightNumbers, PairsOnStandardInputAreThoseOfAFile) {
     std::getline(lines, line);
     EXPECT_EQ(line.find(verdict), 0U) << line;
   }
-  EXPECT_EQ(run_ptin_reading("1 2 3 4 5\n", {"sight", file_, "--pairs", "-"}).status, 2);
+  EXPECT_EQ(spawn_ptin_reading("1 2 3 4 5\n", {"sight", file_, "--pairs", "-"}).status, 2);
 }
 
 // Their products are infinite, and the difference of two such is no number.

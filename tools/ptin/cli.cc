@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include <nlohmann/json.hpp>
+#include <cpl_error.h>
+#include <gdal.h>
 
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
@@ -233,6 +235,18 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
     return status;
   }
   return status_of(ErrorCode::internal).exit;
+}
+
+int run_program(int argc, const char* const* argv, Context& context) {
+  try {
+    CPLSetErrorHandler(CPLQuietErrorHandler);
+    GDALAllRegister();
+    return run_command_line(argc, argv, context);
+  } catch (...) {
+    const Error error = current_error();
+    report_error(error, context.json);
+    return status_of(error.code()).exit;
+  }
 }
 
 void report_error(const Error& error, bool json) {

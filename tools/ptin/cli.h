@@ -25,6 +25,11 @@ struct CommandLine {
 /// @throws Error  what the subcommand throws
 int run_command_line(int argc, const char* const* argv, Context& context);
 
+/// The whole program but for its signals: registers GDAL's drivers, runs the command line, and
+/// reports what it throws. What GDAL says travels in our own errors, and not to stderr.
+/// @returns the exit status
+int run_program(int argc, const char* const* argv, Context& context);
+
 /// Writes an error to stderr: `ptin: context: message`, or {"error": {"code", "message",
 /// "context"}}.
 void report_error(const Error& error, bool json);
