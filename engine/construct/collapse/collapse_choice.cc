@@ -16,8 +16,9 @@ namespace ptin {
 
 namespace {
 
-/// The link of a closed star, relative to u, padded with zeros to `stride` = a multiple of
-/// kSampleLanes; and room for what screening finds.
+/// What screening reads: the link of a closed star, relative to u, padded with zeros to `stride`, a
+/// multiple of kSampleLanes. And what it writes: the cross product of link i and link w at
+/// [i * stride + w], and two results for each w.
 struct Screening {
   const double *x, *y, *z;
   std::size_t degree, stride;
@@ -35,9 +36,10 @@ PTIN_LANES void fill_crosses(const Screening& in) noexcept {
 
 /// Screens every w by the residual of u, from the cross products of the link alone. With c(i, k)
 /// the cross product of link vertices i and k relative to u, the fan triangle (w, i, i + 1) has
-/// twice the area c(i, i + 1) + c(w, i) - c(w, i + 1), and u lies in it where c(w, i) >= 0 >= c(w,
-/// i + 1). Receives for each w twice the least area of a fan triangle, and |residual| of u.
-/// (c(i, i + 1) > 0 in a closed star: so u is in no triangle of an edge at w.)
+/// twice the area c(i, i + 1) + c(w, i) - c(w, i + 1), and u lies in it where
+/// c(w, i) >= 0 >= c(w, i + 1). (At the two edges of w there is no fan triangle, and none seems to
+/// hold u, since c(i, i + 1) > 0 in a closed star.) For each w, `least` gets twice the area of its
+/// smallest fan triangle, and `screens` gets |residual| of u.
 PTIN_VERSIONS
 void screen_lanes(const Screening& in) noexcept {
   fill_crosses(in);
@@ -55,7 +57,7 @@ void screen_lanes(const Screening& in) noexcept {
       const Lanes c_i = load_lanes(in.crosses + i * in.stride + w);  // -c(w, i)
       const Lanes c_k = load_lanes(in.crosses + k * in.stride + w);
       const Lanes determinant = in.crosses[i * in.stride + k] - c_i + c_k;
-      // 1/4 and less at the two edges of w itself, whose determinant is 0; 1 and more elsewhere.
+      // The smaller is 0 at the two edges of w itself, whose determinant is 0; 1 or more elsewhere.
       const Lanes to_i = magnitude(number - static_cast<double>(i));
       const Lanes to_k = magnitude(number - static_cast<double>(k));
       least = smaller(least, smaller(to_i, to_k) < 0.5 ? least : determinant);
@@ -99,15 +101,15 @@ void CollapseChooser::screen_all(const StarSamples& s) {
   candidates_.resize(count);
 }
 
-/// Whether w would have more than kComfortableDegree neighbours: it takes over the link but for
-/// itself and its two neighbours there (one at a border), and loses u.
+/// Whether w = link[j] would have more than kComfortableDegree neighbours. It takes over the link
+/// but for itself and its two neighbours there (one at a border), and loses u.
 bool CollapseChooser::is_crowded(const Tile& tile, const StarSamples& s, std::size_t j) {
   return tile.vertex_state[s.star.link[j]].degree + s.star.degree() >
          kComfortableDegree + (s.star.closed ? 4 : 3);
 }
 
-/// The w that leave a valid mesh. Their screens are known where u has a height and the whole star
-/// is surface: there u is one of the samples measured.
+/// Makes candidates of the w that leave a valid mesh. Their screens are known where u has a height
+/// and all triangles of the star are surface: there u is one of the samples that are measured.
 void CollapseChooser::collect(const Tile& tile, const StarSamples& s) {
   const std::size_t degree = s.star.degree();
   candidates_.clear();
@@ -125,7 +127,8 @@ void CollapseChooser::collect(const Tile& tile, const StarSamples& s) {
   }
 }
 
-/// Moves the candidate with the least (screen, key) of those from `first` on to place `first`.
+/// Moves the candidate with the least (screen, key) of those from place `first` on to place
+/// `first`.
 void CollapseChooser::select_next(const Tile& tile, const StarSamples& s, std::size_t first) {
   std::size_t least = first;
   bool ties = false;
@@ -189,7 +192,7 @@ CollapseChooser::Best CollapseChooser::best_of(const Tile& tile, const StarSampl
     if (!crowded_too && is_crowded(tile, s, c.j)) {
       continue;
     }
-    // Where u is the only sample the screen is the error, and the first the best.
+    // Where u is the only sample, the screen is the error, and the first candidate is the best.
     if (s.count == 1 && screened_) {
       best = {c.j, c.screen, 0.0, kNoVertexKey};
       break;
@@ -199,7 +202,7 @@ CollapseChooser::Best CollapseChooser::best_of(const Tile& tile, const StarSampl
   return best;
 }
 
-/// The error of the best as a bound; 0 where it is decided exactly that it is.
+/// The error of the best w as a bound: rounded up, and 0 where exact arithmetic shows that it is 0.
 double CollapseChooser::certified(const Tile& tile, StarSamples& s, const Best& best) {
   if (s.flat || s.void_only) {
     return 0.0;

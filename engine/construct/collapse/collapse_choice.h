@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// For a vertex that would go: into which neighbour, and with what error.
+// Into which neighbour a vertex would be collapsed, and with what error.
 #pragma once
 
 #include <cstddef>
@@ -18,19 +18,22 @@ namespace ptin {
 struct CollapseChoice {
   static constexpr std::size_t kNoNeighbour = std::numeric_limits<std::size_t>::max();
   std::size_t j = kNoNeighbour;  ///< w is link[j]; kNoNeighbour when no collapse is allowed.
-  double error =
-      0.0;  ///< Largest error of a sample in the fan, height codes, rounded up; may be +infinity.
+  /// Largest error of a sample in the fan, in height codes, rounded up; may be +infinity.
+  double error = 0.0;
 };
 
-/// Finds the best w of a star: least error, then smallest key; one of more than kComfortableDegree
-/// neighbours only when there is no other. Scratch buffers are kept between calls; one chooser a
-/// thread.
+/// Finds the best w of a star: the one with the least error, then with the smallest key. A w that
+/// would have more than kComfortableDegree neighbours (mesh/collapse.h) is taken only when no other
+/// is allowed. Keeps scratch buffers between calls; one chooser a thread.
 class CollapseChooser {
  public:
-  /// Cost: the square of the degree for the screen (the residual of u alone), which orders the
-  /// candidates and leaves the worse ones unmeasured; then for most stars one pass over the samples
-  /// for the winner, and a few lanes for one or two others, which are given up once they exceed the
-  /// best.
+  /// Chooses for the centre of `s`. Fills `s.source` where it must decide exactly whether an error
+  /// is 0.
+  /// @param s  As gather_star() leaves it.
+  /// Cost: the square of the degree for screening, which computes the residual of u alone for each
+  /// w; then, for most stars, one pass over all samples for the best w, and a few lanes for one or
+  /// two others. Candidates are measured in the order of their screens, and given up once they
+  /// exceed the best.
   [[nodiscard]] CollapseChoice choose(const Tile& tile, StarSamples& s);
 
  private:
@@ -41,8 +44,8 @@ class CollapseChooser {
   /// The best so far.
   struct Best {
     std::size_t j = CollapseChoice::kNoNeighbour;
-    double error = std::numeric_limits<double>::infinity();  ///< Not raised by its rounding yet.
-    double charge = 0.0;
+    double error = std::numeric_limits<double>::infinity();  ///< Height codes, not rounded up yet.
+    double charge = 0.0;  ///< Largest charge within `error` (VoidMeasure).
     VertexKey key = kNoVertexKey;
   };
   void collect(const Tile& tile, const StarSamples& s);
@@ -54,8 +57,8 @@ class CollapseChooser {
   [[nodiscard]] double certified(const Tile& tile, StarSamples& s, const Best& best);
 
   std::vector<Candidate> candidates_;
-  // Scratch of the screen: the link, padded; cross products of link i and link k, relative to u;
-  // and of each w its smallest fan triangle and its screen.
+  // Scratch of screening: the link, padded; the cross products of link i and link k, relative to u;
+  // and for each w twice the area of its smallest fan triangle, and its screen.
   std::vector<double> x_, y_, z_, crosses_, least_, screens_;
   bool screened_ = false;  ///< Whether the candidates' screens are known.
   FanFrame fan_;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint64_t kLastClass = (std::uint64_t{1} << kClassBits) - 1;
 constexpr int kClassShift = 64 - kClassBits;
-// error: class 10, octave 5, neighbourhood 2 x 9, sixteenth of the octave 4, chain 12,
-// half-perimeter 15 bits.
+// Bits of a priority of CostModel::kError, the highest first: class 10, octave 5, neighbourhood
+// 2 x 9, sixteenth of the octave 4, chain 12, half-perimeter 15.
 constexpr int kBoxBits = 15;
 constexpr int kChainBits = 12;
 constexpr int kPartBits = 4;
@@ -34,7 +34,7 @@ std::uint64_t within_octave(std::uint64_t box, int octave) noexcept {
   return octave <= kBits ? below << (kBits - octave) : below >> (octave - kBits);
 }
 
-/// Any heap order with the least entry in front.
+/// The order of heaps whose front is the least entry.
 constexpr auto kLater = [](const QueueEntry& a, const QueueEntry& b) { return b < a; };
 
 }  // namespace

@@ -15,8 +15,8 @@
 
 namespace ptin {
 
-/// A vertex in the queue; smaller goes first. Ties end with the vertex id, whose order is that of
-/// the keys.
+/// A vertex in the queue; the smaller entry goes first. Equal priorities go by vertex id, whose
+/// order is that of the keys.
 struct QueueEntry {
   std::uint64_t priority = 0;
   VertexId vertex = kNone;
@@ -27,37 +27,40 @@ struct QueueEntry {
 /// What a priority is made from.
 struct CollapseMeasure {
   GridPoint vertex;
-  double error_quanta =
-      0.0;  ///< Error of the collapse's own samples, in height quanta; may be +infinity.
+  /// Error of the collapse's own samples, in height quanta; may be +infinity.
+  double error_quanta = 0.0;
   double height_quanta = 0.0;  ///< Length of the saturated height interval, in height quanta.
   GridBox roi;                 ///< Saturated box.
-  std::uint32_t chain = 0;     ///< Collapses that this one would come to depend on, one on another.
+  std::uint32_t chain = 0;     ///< saturated_chain() of the collapse.
 };
 
-/// Class of an error: 0 below one height quantum, 1 for just that, then one class for each third of
-/// an octave, its upper end included: whole errors, which are many, end a class and do not begin
-/// one (engine/DECISIONS.md, section 2.1). Exact on every machine: exponent and comparisons, no
-/// logarithm.
+/// Class of an error: 0 below one height quantum, 1 at exactly one quantum, then one class for each
+/// third of an octave. A class includes its upper end, so that whole errors, which are many, end a
+/// class and do not begin one (engine/DECISIONS.md, section 2.1). The same on every machine:
+/// computed from the exponent and by comparisons, without a logarithm.
 [[nodiscard]] std::uint32_t error_class(double error_quanta) noexcept;
 
-/// Turns measures into priorities of 64 bits, the highest ten of which are a class.
-///   error:     error class, octave of the box's half-perimeter, neighbourhood, sixteenth of that
-///              octave, chain, half-perimeter
+/// Turns measures into priorities of 64 bits, the highest ten of which are a class. Each cost
+/// compares in this order:
+///   error:     error class, octave of the half-perimeter of the box, neighbourhood, sixteenth of
+///              that octave, chain, half-perimeter
 ///   roi:       half-perimeter (its class is its octave)
-///   elevation: height interval, half-perimeter
-/// Neighbourhoods are squares of the plane, about 16384 vertices of the full TIN large, or 16 boxes
-/// where boxes have grown. Within class and octave one is finished before the next begins: nearly
-/// the order by box alone, but the mesh that is worked on stays in the processor's caches
-/// (engine/DECISIONS.md, section 2.2). The octave comes first, because a class can be large (on a
-/// lake everything is of class 0) and a neighbourhood finished to the end would leave huge
-/// triangles beside small ones.
+///   elevation: length of the height interval, half-perimeter
 ///
-/// The chain comes before the last of the box: where boxes are nearly equal, as along a seam of
-/// tiles across a lake, an order by box alone takes one vertex after its neighbour, each depending
-/// on the one before; by chain every other one goes first.
+/// A neighbourhood is a square of the plane that holds about 16384 of the vertices that the tile
+/// begins with, or 16 boxes a side where boxes have grown. Within a class and an octave one
+/// neighbourhood is finished before the next begins. This is nearly the order by box alone, but the
+/// part of the mesh that is worked on stays in the processor's caches (engine/DECISIONS.md, section
+/// 2.2). The octave is compared before the neighbourhood, because a class can be large: a lake is
+/// all of class 0, and a neighbourhood finished to the end would leave huge triangles beside small
+/// ones.
+///
+/// The chain is compared before the last bits of the half-perimeter. Where boxes are nearly equal,
+/// as along a seam of tiles across a lake, an order by box alone takes one vertex after its
+/// neighbour, each depending on the one before. By chain, every other vertex goes first.
 class PriorityScale {
  public:
-  /// @param bounds    Of all vertices.
+  /// @param bounds    Box of all vertices of the tile.
   /// @param vertices  Their number.
   PriorityScale(CostModel cost, const GridBox& bounds, std::uint64_t vertices) noexcept;
   [[nodiscard]] std::uint64_t operator()(const CollapseMeasure& measure) const noexcept;
@@ -69,44 +72,46 @@ class PriorityScale {
   int shift_ = 0;  ///< log2 of the side of the smallest neighbourhoods, grid units.
 };
 
-/// Number of classes, the highest bits of a priority.
+/// Bits of the class, the highest of a priority.
 inline constexpr int kClassBits = 10;
 
-/// Vertices, least entry first. A vertex is in it at most once; the caller sees to that.
+/// A queue of vertices, least entry first. A vertex is in it at most once; the caller sees to that.
 ///
-/// Entries of later classes wait unsorted; a class is sorted when its turn comes, and what arrives
-/// meanwhile for it (or for an earlier one) goes through a heap. So most entries cost one append
-/// and one sort in sequence instead of a walk through a large heap. The next few dozen are drawn
-/// ahead, so that a caller sees what will come and can ask for its memory (upcoming()).
+/// Entries of later classes wait unsorted. A class is sorted when its turn comes; an entry that
+/// arrives later for this class, or for an earlier one, goes through a heap. So most entries cost
+/// one append and a part of one sort, instead of a walk through a large heap. The next few dozen
+/// entries are drawn ahead, so that a caller sees what will come and can ask for its memory
+/// (upcoming()).
 class CollapseQueue {
  public:
   void push(const QueueEntry& entry);
-  /// Draws entries ahead when few are left, and sorts the next class when the present one is used
-  /// up. Amortised cost: logarithmic.
+  /// True when no entry is left. Draws entries ahead when few are drawn, and sorts the next class
+  /// when the present one is used up. Amortised cost: logarithmic.
   [[nodiscard]] bool empty();
-  /// REQUIRES: empty() was just asked and false.
+  /// The least entry. REQUIRES: empty() was called since the last push() or pop(), and was false.
   [[nodiscard]] const QueueEntry& top() const noexcept { return ahead_[first_]; }
-  /// REQUIRES: as top().
+  /// Removes the least entry. REQUIRES: as top().
   void pop() noexcept { ++first_; }
-  /// The entry `n` places behind the least, or null: it will come then, but for entries that arrive
-  /// meanwhile. Known for kLookahead places unless the end is near.
+  /// The entry `n` places behind the least one, or null. It comes to the top after n calls of
+  /// pop(), unless smaller entries arrive meanwhile. Right after empty() it is not null for n <
+  /// kLookahead while so many entries are left.
   [[nodiscard]] const QueueEntry* upcoming(std::size_t n) const noexcept {
     return n < ahead_.size() - first_ ? &ahead_[first_ + n] : nullptr;
   }
   static constexpr std::size_t kLookahead = 24;
-  /// Renames all vertices in it. REQUIRES: the order of the names stays.
+  /// Gives all vertices in the queue new ids. REQUIRES: the order of the ids stays.
   void rename(const std::vector<VertexId>& new_name) noexcept;
 
  private:
   void draw_ahead();
 
-  std::vector<QueueEntry> ahead_;  ///< Ascending, from first_; nothing elsewhere is less.
+  std::vector<QueueEntry> ahead_;  ///< Ascending, from first_; no entry elsewhere is less.
   std::size_t first_ = 0;
   std::vector<QueueEntry> run_;  ///< The present class, ascending, from next_.
   std::size_t next_ = 0;
-  std::vector<QueueEntry> late_;  ///< Heap.
+  std::vector<QueueEntry> late_;  ///< Heap: entries of class present_ and below that came late.
   std::size_t present_ = 0;       ///< Class of run_; classes below are used up.
-  std::array<std::vector<QueueEntry>, std::size_t{1} << kClassBits> waiting_;
+  std::array<std::vector<QueueEntry>, std::size_t{1} << kClassBits> waiting_;  ///< By class.
 };
 
 }  // namespace ptin

@@ -12,11 +12,12 @@
 
 namespace ptin {
 
-/// Finds the two triangles of each edge by its middle: without cracks no two edges have the same,
-/// and counted in half cells it is a whole number.
+/// Pairs the two triangles of each edge by the middle of the edge. In a mesh without cracks no two
+/// edges have the same middle, and in half grid units its coordinates are whole: so the middle is a
+/// place in an array.
 class EdgeMiddles {
  public:
-  /// @param box  Of the mesh. Memory: 16 bytes for each of its grid points.
+  /// @param box  Of the mesh. Memory: 16 bytes for each grid point in it.
   explicit EdgeMiddles(const GridBox& box)
       : box_(box),
         width_(2 * steps(box.min_x, box.max_x) + 1),
@@ -24,9 +25,10 @@ class EdgeMiddles {
 
   struct Side {
     TriangleId triangle = kNone;
-    int side = 0;
+    int side = 0;  ///< Opposite to this corner.
   };
-  /// The side that was added with the same ends, if there was one; else adds this.
+  /// The side with the same ends that was given before. Where there is none, keeps `added` and
+  /// returns a side of triangle kNone.
   Side match(const Tin& tin, const Side& added) {
     const Triangle& triangle = tin.triangles[added.triangle];
     const GridPoint p = tin.position(triangle.v[next_corner(added.side)]);
@@ -47,7 +49,7 @@ class EdgeMiddles {
   }
   GridBox box_;
   std::size_t width_;
-  std::vector<std::uint32_t> first_;  ///< 3 * triangle + side.
+  std::vector<std::uint32_t> first_;  ///< By middle: 3 * triangle + side; kNone.
 };
 
 }  // namespace ptin

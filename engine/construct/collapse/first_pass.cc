@@ -36,7 +36,8 @@ struct Samples {
     std::size_t cell = 0;
     for (std::int32_t y = 0; y + 1 < grid.height; ++y) {
       for (std::int32_t x = 0; x + 1 < grid.width; ++x, ++cell) {
-        // The first half of a cell ends at its upper right corner, or at its upper left one.
+        // The last corner of the first half of a cell is its upper right one where the cut rises,
+        // else its upper left one.
         const std::size_t last = tin.triangles[2 * cell].v[2];
         rising[grid.at(x, y)] = last == grid.at(x + 1, y + 1) ? 1 : 0;
       }
@@ -47,8 +48,8 @@ struct Samples {
   }
 };
 
-/// The plane of a triangle, relative to its first corner. Twice its area is a power of two, so
-/// whole heights give it without rounding.
+/// The plane of a right triangle, relative to its first corner. Twice the area is a power of two,
+/// so slopes between whole codes are exact.
 struct Plane {
   GridPoint at;
   double code, slope_x, slope_y;
@@ -66,7 +67,8 @@ struct Plane {
     slope_x = (bz * cy - cz * by) / area;
     slope_y = (cz * bx - bz * cx) / area;
   }
-  /// A bound on the residual of a sample; tight up to rounding.
+  /// A bound on |residual| of a sample, in codes; tight up to rounding.
+  /// @param exact  Codes are whole numbers: no rounding is added.
   [[nodiscard]] double residual(GridPoint p, double sample, bool exact) const noexcept {
     const double z = sample - code;
     const double x = slope_x * static_cast<double>(p.x - at.x);
@@ -96,12 +98,12 @@ class FirstPass {
   const FullSurface& surface_;
   const GridBox& box_;
   Samples samples_;
-  std::vector<std::uint8_t> is_free_;  ///< Samples that are no vertex and in no list yet.
-  std::vector<VertexId> place_;        ///< Of each sample that is a vertex.
+  std::vector<std::uint8_t> is_free_;  ///< 1 for a sample that is no vertex and in no list yet.
+  std::vector<VertexId> place_;        ///< The vertex of each sample; kNone for the others.
   Tile tile_;
-  std::vector<double> gap_;  ///< Beside the triangles: the largest along an edge.
-  std::vector<Sample> list_;
-  double worst_ = 0.0;  ///< Residual in list_.
+  std::vector<double> gap_;   ///< Beside the triangles: the largest gap along their edges, codes.
+  std::vector<Sample> list_;  ///< Samples of the triangle at hand.
+  double worst_ = 0.0;        ///< The largest residual in list_, codes.
 };
 
 Tile FirstPass::run(double tolerance) {
@@ -144,7 +146,7 @@ void FirstPass::take_triangles(const std::vector<RightTriangle>& triangles) {
   }
 }
 
-/// Neighbours, gaps along edges, and what every tile starts with.
+/// Links neighbours, measures the gaps along edges, and starts the tile.
 void FirstPass::link() {
   Tin& tin = tile_.tin;
   gap_.assign(tin.triangles.size(), 0.0);
@@ -178,7 +180,8 @@ void FirstPass::link() {
   }
 }
 
-/// To the full surface. Edges of cells are its own, and without heights there is no gap.
+/// The gap between an edge and the full surface, in codes; 0 along an edge of a cell, which is one
+/// of the full TIN, and at an end without a height.
 double FirstPass::gap_along(TriangleId t, int side) const {
   const Tin& tin = tile_.tin;
   const VertexId a = tin.triangles[t].v[next_corner(side)];
@@ -192,7 +195,7 @@ double FirstPass::gap_along(TriangleId t, int side) const {
   return surface_.largest_gap({p, code(a)}, {q, code(b)});
 }
 
-/// The free samples in a triangle, the worst one first.
+/// Takes the free samples in a triangle to list_, the one with the largest residual first.
 void FirstPass::collect(TriangleId t) {
   list_.clear();
   worst_ = 0.0;
@@ -224,7 +227,7 @@ void FirstPass::collect(TriangleId t) {
   }
 }
 
-/// Of its corners and of list_.
+/// The codes of the corners of a triangle and of the samples in list_.
 Interval FirstPass::codes_of(const Triangle& triangle) const {
   const HeightEncoding& heights = tile_.units.heights;
   Interval codes;
@@ -237,7 +240,7 @@ Interval FirstPass::codes_of(const Triangle& triangle) const {
   return codes;
 }
 
-/// Gives the triangle list_, and a record that says what it leaves out.
+/// Gives the triangle the samples in list_, and a record that says what it leaves out.
 void FirstPass::store(TriangleId t) {
   const HeightEncoding& heights = tile_.units.heights;
   const Triangle& triangle = tile_.tin.triangles[t];

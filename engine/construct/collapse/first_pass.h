@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The first pass of a build that leaves out fine detail (--max-error): most of what will be left
-// out goes without a queue.
+// The first pass of a build that leaves out fine detail (--max-error): most of the samples that no
+// file keeps go without a queue (engine/DESIGN.md, section 5.5).
 #pragma once
 
 #include "engine/construct/tile/full_surface.h"
@@ -10,17 +10,18 @@
 
 namespace ptin {
 
-/// The share of the largest error that the first pass takes. More would save more time and cost
-/// vertices at that error: engine/DECISIONS.md, section 5.1, has the figures.
+/// The tolerance of the first pass is this share of --max-error. A larger share would save more
+/// time and cost vertices at that error: engine/DECISIONS.md, section 5.1, has the figures.
 inline constexpr double kFirstPassShare = 0.7;
 
 /// Replaces the full TIN of a started tile by right triangles over some of its samples
-/// (right_triangles.h), whose residuals are at most `tolerance`, in codes. The other samples go to
-/// the lists of their triangles. What a triangle stands for is a record with its error, its
-/// deviation and its heights, as if a collapse had made it: never larger than the largest error of
-/// the build, so it is left out of the file like any other below it.
-/// REQUIRES: the samples of `box` fill tile.tin.vertices row by row (start_raster_tile()), nothing
-/// was collapsed, and locked vertices are on the border of the box.
+/// (construct/collapse/right_triangles.h). The other samples go to the lists of their triangles,
+/// with residuals of at most `tolerance`. A triangle that leaves something out carries a record
+/// with its error, its deviation and its heights, as if a collapse had made it. The error of such a
+/// record is below --max-error, so no file keeps it.
+/// @param tolerance  In height codes.
+/// REQUIRES: the samples of `box` fill tile.tin.vertices row by row (start_raster_tile()); nothing
+/// was collapsed; locked vertices are on the border of `box`.
 /// Cost: linear. Memory: about 200 bytes for each vertex that is left.
 void run_first_pass(Tile& tile, const FullSurface& full, const GridBox& box, double tolerance);
 

@@ -74,7 +74,7 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const FanError& own,
   return r;
 }
 
-/// Notes which records this one depends on; tightening saturates along them.
+/// Notes in the tile which records the next one depends on; tightening saturates along them.
 void RecordMaker::note_dependencies(const Star& star) {
   std::vector<std::uint32_t>& all = tile_.dependencies;
   const auto first = static_cast<std::ptrdiff_t>(all.size());
@@ -103,7 +103,7 @@ void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {
   if (s.count == 0) {
     gather_samples(tile_, s);
   }
-  prefetch_records(s.star);  // wanted after the measuring
+  prefetch_records(s.star);  // read after the measuring
   gather_sources(tile_, s);
   const FanError own = measure_fan(tile_, s, fan_, assignment_);
   const CollapseSite site = collapse_site(s.star, j);

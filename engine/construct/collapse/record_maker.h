@@ -18,17 +18,19 @@ namespace ptin {
 /// One a thread; keeps scratch buffers.
 class RecordMaker {
  public:
-  /// @param full  The full surface under the tile, when the tile holds all samples of its window:
-  /// then records
-  ///              are measured to the end and saturated. Null when it holds witnesses: then `error`
-  ///              of a record is its own part alone, `deviation` 0, and what it depends on is noted
-  ///              in the tile; tightening does the rest (tighten.h).
+  /// @param tile  Must outlive this object.
+  /// @param full  The full surface under a tile that holds all samples of its window: `error` and
+  ///     `deviation` of a record are measured to the end and saturated. Null for a tile that holds
+  ///     witnesses: `error` of a record is its own part alone, `deviation` is 0, and the records
+  ///     that it depends on are noted in the tile; tightening does the rest
+  ///     (construct/hierarchy/tighten.h).
   RecordMaker(Tile& tile, const FullSurface* full) : tile_(tile), full_(full) {}
 
-  /// Collapses the centre of `s` into link[j]: appends the record (engine/DESIGN.md, section 2.2: own part,
-  /// and the union and maximum of what the star carries), hands the samples of the star to the fan,
-  /// and changes the mesh.
-  /// @throws Error resource_exhausted when the rank would exceed 65 535
+  /// Collapses the centre of `s` into link[j]: appends the record (its own part, and the union and
+  /// maximum of what the star carries: engine/DESIGN.md, section 2.2), hands the samples of the
+  /// star to the fan, and changes the mesh.
+  /// @param s  As gather_star() leaves it. REQUIRES: the collapse into link[j] is allowed.
+  /// @throws Error resource_exhausted  the rank would exceed 65 535, or as SampleLists::take
   void collapse_and_record(StarSamples& s, std::size_t j);
 
  private:

@@ -10,7 +10,7 @@ namespace ptin {
 
 namespace {
 
-/// Doublings from a cell to a square in which the halving begins.
+/// How often a cell is doubled to the square in which the halving begins.
 constexpr int kDoublings = 5;
 constexpr std::int32_t kSquare = std::int32_t{1} << kDoublings;
 
@@ -21,8 +21,8 @@ struct Position {
 /// The part of a window that squares cover.
 std::int32_t covered(std::int32_t samples) { return (samples - 1) / kSquare * kSquare; }
 
-/// A row of samples of a triangle: `count` of them from `first`, and the height of the triangle's
-/// plane there, which falls or rises by `step`.
+/// A row of `count` samples of a triangle, from sample number `first` on. The plane of the triangle
+/// has the code `plane` at the first sample, and `step` more at each further one.
 struct Row {
   std::size_t first;
   std::int32_t count;
@@ -39,6 +39,7 @@ bool row_is_within(const SampleGrid& grid, const Row& row, double tolerance) {
   return worst <= tolerance;
 }
 
+/// True when `valid` of all samples of the row is this.
 bool row_is_of_class(const SampleGrid& grid, const Row& row, std::uint8_t valid) {
   std::uint8_t others = 0;
   for (std::int32_t i = 0; i < row.count; ++i) {
@@ -48,8 +49,8 @@ bool row_is_of_class(const SampleGrid& grid, const Row& row, std::uint8_t valid)
   return others == 0;
 }
 
-/// A triangle as the rows that its legs or its hypotenuse cut out of it: rows `apex.y`,
-/// `apex.y` + up, ..., each from `left` to `right`, which move on by a step each.
+/// A triangle as rows of samples: `rows` of them, at apex.y, apex.y + up and so on. The first goes
+/// from column `left` to column `right`; from row to row these move by left_step and right_step.
 struct Shape {
   Position apex;
   std::int32_t rows, up;
@@ -57,6 +58,8 @@ struct Shape {
   double slope_x, slope_y;  ///< Of the plane, codes a cell.
 };
 
+/// True when all samples of the triangle have a height and residuals within the tolerance, or none
+/// has a height.
 bool is_within(const SampleGrid& grid, const Shape& shape, double tolerance) {
   const std::size_t at = grid.at(shape.apex.x, shape.apex.y);
   const double apex = grid.codes[at];
@@ -116,8 +119,8 @@ class Thinning {
   std::int32_t width_, height_;
 };
 
-/// The triangle over the row from (m.x - side, m.y) to (m.x + side, m.y), its apex `up` * side
-/// away.
+/// Whether a triangle is within the tolerance: its hypotenuse goes along the row from (m.x - side,
+/// m.y) to (m.x + side, m.y), and its apex lies `side` rows above (`up` is 1) or below (-1).
 bool Thinning::holds_row(Position m, std::int32_t side, std::int32_t up) const {
   const std::int32_t y = m.y + up * side;
   const double west = code(m.x - side, m.y), east = code(m.x + side, m.y);
@@ -126,7 +129,8 @@ bool Thinning::holds_row(Position m, std::int32_t side, std::int32_t up) const {
   return is_within(grid_, {{m.x, y}, side + 1, -up, m.x, m.x, -1, 1, across, along}, tolerance_);
 }
 
-/// Over the column from (m.x, m.y - side) to (m.x, m.y + side): two halves, from the apex's row.
+/// The same with the hypotenuse along the column from (m.x, m.y - side) to (m.x, m.y + side), and
+/// the apex to the east (`right` is 1) or west (-1). Two halves, from the row of the apex.
 bool Thinning::holds_column(Position m, std::int32_t side, std::int32_t right) const {
   const std::int32_t x = m.x + right * side;
   const double south = code(m.x, m.y - side), north = code(m.x, m.y + side);
@@ -140,7 +144,8 @@ bool Thinning::holds_column(Position m, std::int32_t side, std::int32_t right) c
   return is_within(grid_, half(1), tolerance_) && is_within(grid_, half(-1), tolerance_);
 }
 
-/// The half of a square of 2 * side, its right angle at the apex.
+/// The same for half of a square of 2 * side with its right angle at `apex`: its legs go east or
+/// west (`right`) and north or south (`up`).
 bool Thinning::holds_corner(Position apex, std::int32_t side, std::int32_t right,
                             std::int32_t up) const {
   const std::int32_t length = 2 * side;
@@ -154,7 +159,8 @@ bool Thinning::holds_corner(Position apex, std::int32_t side, std::int32_t right
   return is_within(grid_, shape, tolerance_);
 }
 
-/// A corner in the middle of a hypotenuse along a row or a column.
+/// Whether the middle m of a hypotenuse along a row or a column can go: no smaller triangle needs
+/// it, and the triangles on both sides are within the tolerance.
 bool Thinning::side_is_free(Position m, std::int32_t side) const {
   if (side > 1) {
     const std::int32_t h = side / 2;
@@ -169,7 +175,8 @@ bool Thinning::side_is_free(Position m, std::int32_t side) const {
   return holds_column(m, side, 1) && holds_column(m, side, -1);
 }
 
-/// A corner in the middle of a square of 2 * side. The diagonal joins its corners with an even sum.
+/// The same for the middle of a square of 2 * side. The diagonal of the square joins the two
+/// corners whose column and row, counted in such squares, have an even sum.
 bool Thinning::centre_is_free(Position m, std::int32_t side) const {
   if (is_needed(m.x - side, m.y) || is_needed(m.x + side, m.y) || is_needed(m.x, m.y - side) ||
       is_needed(m.x, m.y + side)) {
@@ -215,7 +222,8 @@ class Halving {
   std::vector<RightTriangle> run();
 
  private:
-  /// `a`, `b` and the right angle `apex`, counter-clockwise.
+  /// Adds the triangle with the right angle at `apex`, or its halves where the middle of its
+  /// hypotenuse from a to b is needed. `apex`, `a` and `b` are counter-clockwise.
   void add(Position apex, Position a, Position b);
   void add_half_cell(Position apex, Position a, Position b);
   void add_square(Position corner);
@@ -227,11 +235,11 @@ class Halving {
 
   const SampleGrid& grid_;
   std::span<const std::uint8_t> needed_;
-  std::vector<std::uint32_t> other_half_;  ///< Of each cell, 1 + the triangle that is one half.
+  std::vector<std::uint32_t> other_half_;  ///< Of each cell: 1 + its half in triangles_; or 0.
   std::vector<RightTriangle> triangles_;
 };
 
-/// As the full TIN has them.
+/// The halves of a cell as the full TIN has them.
 std::array<RightTriangle, 2> Halving::halves(std::int32_t x, std::int32_t y) const {
   const std::uint32_t a = number({x, y}), b = a + 1, d = number({x, y + 1}), c = d + 1;
   if (grid_.rising[a] != 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Hands the samples of a star to the triangles that take the place of others.
+// Hands the samples of the triangles around a vertex to the triangles that take their place.
 #pragma once
 
 #include <cstddef>
@@ -18,18 +18,21 @@ namespace ptin {
 /// star when it comes back. One a thread; keeps scratch buffers.
 class SampleHandOver {
  public:
-  /// Empties the lists of the star's triangles and fills those of `receivers`, one for each
-  /// triangle of `frame`. Blocks that lie across a spoke are taken apart; long lists become blocks
-  /// where that pays.
-  /// @param assignment  Of the elements that are no blocks (measure_fan(), assign_samples()).
-  /// @param receivers   Ids of the triangles of the frame.
-  /// @param drop_center  Leave out the sample at the centre of the star, which is a vertex from now
-  /// on.
+  /// Empties the lists of the star's triangles, and fills the lists of `receivers`. A block that
+  /// lies across a spoke is taken apart; a long list is joined into blocks where that pays.
+  /// @param s            With `source` (gather_sources()).
+  /// @param frame        The triangles that the samples go to: the fan, or the star itself.
+  /// @param assignment   Where each element that is no block goes (measure_fan(),
+  ///     assign_samples()).
+  /// @param receivers    For each triangle of `frame`: its id in the tile.
+  /// @param drop_center  Leave out the sample at the centre of the star: it is a vertex again.
+  /// @throws Error resource_exhausted  as SampleLists::take
   void run(Tile& tile, const StarSamples& s, const FanFrame& frame, const FanAssignment& assignment,
            std::span<const TriangleId> receivers, bool drop_center);
 
  private:
-  /// The samples of one triangle; the worst comes first, since the next choice of w screens by it.
+  /// The samples of one triangle. The one with the largest residual comes first, since the next
+  /// choice of w measures it early.
   struct List {
     std::vector<Sample> samples;
     double worst = 0.0;

@@ -1,4 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The loop of construction (engine/DESIGN.md, section 5.1): which vertex goes next, and what
+// follows.
+//
+// A Simplifier borrows the tile for one run, alone. It owns the queue, what it knows of each vertex
+// (state_, target_), and one star (star_), which evaluate() gathers and collapse() uses up.
+// 1. fill_queue() measures the star of every vertex that is not locked: the best w, its error, and
+//    from that a priority.
+// 2. take_top() looks at the least entry. A clean one is collapsed into the w that it was measured
+//    with. A stale one is measured again: it is collapsed if it is still the least, and else goes
+//    back as a clean one. So a star that changes several times is measured once, when its turn
+//    comes.
+// 3. collapse() has the record made, the samples handed over and the mesh changed (RecordMaker), in
+//    this order, since the record is measured on the star. Then it sets the degrees, and makes the
+//    entries of the link stale. A link vertex that no collapse was allowed for gets a new chance at
+//    once.
+// 4. compact_when_sparse() comes before a vertex is taken, when nobody holds an id but state_,
+//    target_ and the queue, which get the new ones.
+// 5. prefetch_upcoming() asks for the memory of the stars whose turn is near; it decides nothing.
+// With witnesses (no full surface) the loop is the same, but lists are cut down at each compaction.
 #include "engine/construct/collapse/simplify.h"
 
 #include <algorithm>
@@ -21,7 +41,7 @@ namespace ptin {
 
 namespace {
 
-/// What the queue knows about a vertex.
+/// What is known about the entry of a vertex in the queue.
 enum class QueueState : std::uint8_t {
   kAbsent,  ///< No collapse was allowed when it was last measured, or it is locked or gone.
   kClean,   ///< In the queue, with the measure of its star.
@@ -63,8 +83,8 @@ class Simplifier {
 
   Tile& tile_;
   const SimplifyOptions& options_;
-  bool is_capped_;             ///< Lists are cut down to witnesses at each compaction.
-  std::size_t first_samples_;  ///< In all lists at the beginning.
+  bool is_capped_;             ///< Lists are cut down to witnesses at each compaction: no `full`.
+  std::size_t first_samples_;  ///< Samples in all lists at the beginning.
   RecordMaker maker_;
   CollapseChooser chooser_;
   PriorityScale scale_;
@@ -146,7 +166,8 @@ void Simplifier::fill_queue() {
   }
 }
 
-/// Collapses the centre of star_ and marks its link: those stars have changed.
+/// Collapses the centre u of star_ into link[j], and makes the stars of its link stale: they have
+/// changed.
 void Simplifier::collapse(VertexId u, std::size_t j) {
   const auto degree = static_cast<std::uint16_t>(star_.star.degree());
   const bool closed = star_.star.closed;
@@ -154,8 +175,8 @@ void Simplifier::collapse(VertexId u, std::size_t j) {
   const CollapseSite site = collapse_site(star_.star, j);
   maker_.collapse_and_record(star_, j);
   state_[u] = QueueState::kAbsent;
-  // w takes over the link but for itself and its two neighbours there (one at a border); those lose
-  // u and had w already.
+  // w takes over the link but for itself and its two neighbours there (one at a border). These
+  // neighbours lose u, and had w already.
   std::vector<VertexState>& vertices = tile_.vertex_state;
   vertices[w].degree = static_cast<std::uint16_t>(vertices[w].degree + degree - (closed ? 4 : 3));
   if (site.left != kNone) {
@@ -177,8 +198,8 @@ void Simplifier::collapse(VertexId u, std::size_t j) {
   ++collapsed_;
 }
 
-/// Samples that a triangle keeps at a compaction: all lists together hardly more than at the
-/// beginning.
+/// How many samples a triangle keeps at a compaction: so many that all lists together hold hardly
+/// more than at the beginning.
 std::size_t Simplifier::most_samples() const {
   if (!is_capped_) {
     return kAllSamples;
@@ -220,7 +241,7 @@ void Simplifier::for_each_around(VertexId v, const Visit& visit) const {
   } while (t != first && t != kNone);
 }
 
-/// The first triangle of a star is there: asks for those on both sides of it.
+/// Asks for the triangles beside the first one of a star, which was asked for earlier.
 void Simplifier::prefetch_beside(VertexId v) const {
   const Tin& tin = tile_.tin;
   const Triangle& first = tin.triangles[tin.vertices[v].triangle];
@@ -232,7 +253,7 @@ void Simplifier::prefetch_beside(VertexId v) const {
   }
 }
 
-/// Those on both sides are there: asks for what lies beyond them in the star.
+/// Asks for the triangles beyond those that prefetch_beside() asked for.
 void Simplifier::prefetch_beyond(VertexId v) const {
   const Tin& tin = tile_.tin;
   const Triangle& first = tin.triangles[tin.vertices[v].triangle];
@@ -271,8 +292,9 @@ void Simplifier::prefetch_samples(VertexId v) const {
   });
 }
 
-/// Most of the time would go by waiting for memory, and the queue says what will be wanted: asks
-/// for it some steps ahead, in the order in which one thing leads to the next.
+/// Most of the time would go by waiting for memory, and the queue says what will be wanted. Asks
+/// for it some steps ahead, in the order in which one thing leads to the next: vertex, first
+/// triangle, those beside it, those beyond, what the star refers to, samples.
 void Simplifier::prefetch_upcoming() const {
   const Tin& tin = tile_.tin;
   if (const QueueEntry* e = queue_.upcoming(16)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Takes the vertices of a tile off, one half-edge collapse after the other, and writes a record for
+// Takes the vertices of a tile off by one half-edge collapse after the other, and makes a record of
 // each.
 #pragma once
 
@@ -16,32 +16,33 @@ namespace ptin {
 
 struct SimplifyOptions {
   CostModel cost = CostModel::kError;
-  std::uint64_t keep = 0;  ///< Stop when this many vertices that are not locked are left; 0 goes on
-                           ///< while a collapse is allowed.
-  /// Arrays of the tile that are longer than this are made shorter when half of the vertices are
-  /// gone (tile_compact.h); what is left keeps its order, and the records do not depend on it.
-  /// The largest value leaves them alone.
+  /// Stop when this many vertices that are not locked are left. 0: go on while a collapse is
+  /// allowed.
+  std::uint64_t keep = 0;
+  /// Arrays are compacted when half of the vertices are gone and there were more than this, and
+  /// when lists of samples are sparse (construct/collapse/tile_compact.h). Vertices keep their
+  /// order, so records do not depend on it. The largest value: nothing is compacted.
   std::size_t compact_above = 4096;
   std::stop_token stop;
-  std::function<void(std::uint64_t collapsed)>
-      progress;  ///< Called every few thousand collapses; may be empty.
+  /// Called every few thousand steps. May be empty.
+  std::function<void(std::uint64_t collapsed)> progress;
 };
 
 /// Collapses vertices in the order of the cost until options.keep is reached or no collapse is
-/// allowed; appends a saturated record for each to tile.records and moves the samples of the star
-/// to the fan. Locked vertices stay. Ids of vertices and triangles change when arrays are
-/// compacted.
+/// allowed. For each collapse a saturated record is appended to tile.records, and the samples of
+/// the star move to the fan. Locked vertices stay. Ids of vertices and triangles change when arrays
+/// are compacted.
 ///
 /// An entry of the queue may be older than its star: it is measured again when it reaches the top
 /// (lazy evaluation), since errors and boxes mostly grow.
 /// @param full  The full surface under the tile, for deviations.
-/// @throws Error cancelled, resource_exhausted (rank above 65 535)
+/// @throws Error cancelled, resource_exhausted (rank above 65 535, or as SampleLists::take)
 /// Deterministic. Cost: about n log n residuals for n samples. One thread.
 void simplify(Tile& tile, const FullSurface& full, const SimplifyOptions& options);
 
-/// The same for a tile that holds witnesses instead of all samples: the `error` of a record is its
-/// own part alone, measured over the witnesses, `deviation` is 0, and dependencies are noted in the
-/// tile. Tightening does the rest (tighten.h).
+/// The same for a tile that holds witnesses instead of all samples. The `error` of a record is its
+/// own part alone, measured over the witnesses; its `deviation` is 0; and the records that it
+/// depends on are noted in the tile. Tightening does the rest (construct/hierarchy/tighten.h).
 void simplify_witnesses(Tile& tile, const SimplifyOptions& options);
 
 }  // namespace ptin

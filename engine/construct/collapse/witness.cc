@@ -11,12 +11,12 @@ namespace ptin {
 
 namespace {
 
-/// A sample as a candidate: its class of candidates (corner and sign) and how much it matters.
+/// A sample as a candidate. The heaviest of each corner and side is taken first.
 struct Candidate {
   Sample sample;
-  int corner = 0;
-  bool above = false;
-  double weight = 0.0;
+  int corner = 0;       ///< The corner of its largest barycentric coordinate.
+  bool above = false;   ///< Above the triangle; where there is no residual: it has a height.
+  double weight = 0.0;  ///< |residual| or charge, height codes.
 };
 
 class Judge {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Witnesses: the few samples of a triangle that a parent tile takes along (engine/DESIGN.md, section 5.6).
+// Witnesses: the few samples of a triangle that a parent tile takes along (engine/DESIGN.md,
+// section 5.6).
 #pragma once
 
 #include <cstddef>
@@ -11,17 +12,20 @@
 
 namespace ptin {
 
+/// Witnesses of a triangle that is pushed up.
 inline constexpr std::size_t kWitnessesOfTriangle = 16;
-/// Samples that a triangle of a tile of witnesses may keep while it is collapsed, at least and at
-/// most: coarse fans would otherwise hold all of them.
+/// The least and the greatest limit of samples of a triangle while a tile of witnesses is
+/// collapsed. Without a limit the few coarse fans at the end would hold the witnesses of all.
 inline constexpr std::size_t kWitnessesInWork = 32;
 inline constexpr std::size_t kMostWitnessesInWork = 1024;
 
-/// Cuts the samples of a triangle down to at most `most`: those with the largest residuals of
-/// either sign, spread over its corners; of samples in the wrong class the deepest, and of voids in
-/// a void triangle the deepest too, so that a parent knows what a surface over them would cost.
-/// They order the collapses of the parent and bound nothing: tightening does (tighten.h).
-/// Deterministic; a block is taken for its first sample. Cost: n log n.
+/// Cuts the samples of a triangle down to at most `most`, the weightiest ones, spread over its
+/// corners and over both signs. The weight of a sample with a height in a surface triangle is its
+/// |residual|. The weight of any other sample is what its depth would be charged: so of samples in
+/// the wrong class the deepest stay, and in a void triangle the deepest voids too, which tell a
+/// parent what a surface over them would cost. A block counts as its first sample.
+/// Witnesses order the collapses of the parent and bound nothing: tightening does
+/// (construct/hierarchy/tighten.h). Deterministic. Cost: n log n.
 /// REQUIRES: most >= 6.
 void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
                       std::size_t most = kWitnessesOfTriangle);

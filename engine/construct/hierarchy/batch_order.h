@@ -12,24 +12,25 @@
 
 namespace ptin {
 
-/// What one worker does in one go: a tile of level 1 with its leaves; where the root is a leaf,
-/// that one.
+/// The unit of work of one worker: a tile of level 1 with its leaves. Where the root is a leaf, the
+/// only batch is that leaf.
 struct Batch {
-  TileId top;
-  std::vector<TileId> leaves;
-  std::vector<TileId> ancestors;  ///< Above `top`, the root first.
-  std::vector<TileId> closed;     ///< Those of which this is the last batch, the lowest first.
+  TileId top;                     ///< The tile of level 1, or the root that is a leaf.
+  std::vector<TileId> leaves;     ///< In the order of TileTree::children().
+  std::vector<TileId> ancestors;  ///< The tiles above `top`, the root first.
+  std::vector<TileId> closed;     ///< The ancestors with no later batch, the lowest first.
 };
 
-/// Batches, depth-first.
+/// All batches of a tree, depth-first.
 class BatchOrder {
  public:
   explicit BatchOrder(const TileTree& tree);
 
   [[nodiscard]] const std::vector<Batch>& batches() const noexcept { return batches_; }
-  /// Place of `child` among the children of its parent.
+  /// Place of `child` among the children of its parent. REQUIRES: it is not the root.
   [[nodiscard]] static std::size_t place_in_parent(const TileTree& tree, const TileId& child);
-  /// Samples of the largest leaf of a batch: what its work is estimated by.
+  /// Samples of the largest leaf of a batch: the memory of its work is estimated from them
+  /// (TileBytes).
   [[nodiscard]] static std::uint64_t largest_leaf(const TileTree& tree, const Batch& batch);
   [[nodiscard]] static TileId parent_of(const TileId& id) noexcept {
     return {id.level + 1, id.x / 2, id.y / 2};

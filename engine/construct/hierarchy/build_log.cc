@@ -29,7 +29,8 @@ BuildLog::BuildLog(Workspace& workspace, SegmentOutput& output, std::chrono::mil
   if (position_.is_null()) {
     position_ = output_.position();
   }
-  output_.resume(position_);  // also from the very beginning: what lies behind it goes
+  // Also at the beginning: what the output holds behind the position goes.
+  output_.resume(position_);
 }
 
 void BuildLog::take_up(const nlohmann::json& line) {

@@ -38,7 +38,7 @@ void CollapseStage::skip_done_batches() {
   }
 }
 
-/// The parent of a collapsed tile is ready when all its children are collapsed.
+/// Makes the parent of a collapsed tile ready when all its children are collapsed.
 void CollapseStage::look_for_parent(const TileId& id) {
   const TileId parent = BatchOrder::parent_of(id);
   if (id == tree_.root() || log_.collapsed().contains(parent)) {
@@ -58,7 +58,7 @@ std::optional<std::uint64_t> CollapseStage::next_bytes() {
       pushed += log_.collapsed().at(child).pushed.bytes;
     }
     const std::uint64_t bytes = options_.tile_bytes.of_join(pushed);
-    if (bytes > options_.memory_for_tiles) {  // of a terrain that keeps more than the plan expected
+    if (bytes > options_.memory_for_tiles) {  // the terrain keeps more than the plan expected
       refuse_join(bytes);
     }
     return bytes;

@@ -19,16 +19,20 @@
 
 namespace ptin {
 
-/// Pieces are batches, in their order, and tiles above them as soon as their children are done:
-/// those go first, since they make temporary files superfluous.
+/// A piece is a batch, or one tile above the batches. Batches are handed out in their order. A tile
+/// above them is handed out as soon as all its children are collapsed, and before the next batch,
+/// since it makes the temporary files of its children superfluous.
 class CollapseStage final : public PieceSource {
  public:
+  /// Takes up what the log says is done. `tree`, `order`, `options` and `log` must outlive the
+  /// stage.
+  /// @param make_starter  Called once for each thread, here.
   CollapseStage(const std::function<LeafStarter()>& make_starter, const TileTree& tree,
                 const BatchOrder& order, const HierarchyOptions& options, BuildLog& log);
 
   [[nodiscard]] std::optional<std::uint64_t> next_bytes() override;
   [[nodiscard]] Piece take(int worker) override;
-  /// To be called when all pieces are done: makes that durable.
+  /// Makes all work durable. To be called when all pieces are done.
   void finish() { segments_.checkpoint(true); }
 
  private:
@@ -54,8 +58,8 @@ class CollapseStage final : public PieceSource {
   InOrderSegments segments_;
   std::vector<LeafStarter> starters_;  ///< One for each thread.
   std::size_t next_batch_ = 0;
-  std::set<TileId> ready_;  ///< Above batches: all children are collapsed.
-  std::mutex report_mutex_;
+  std::set<TileId> ready_;   ///< Tiles above batches, to be handed out: all children are collapsed.
+  std::mutex report_mutex_;  ///< Guards what follows, and calls of options_.progress.
   std::uint64_t samples_done_ = 0, leaves_done_ = 0;
 };
 

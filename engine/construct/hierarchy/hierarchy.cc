@@ -28,7 +28,7 @@ BuiltHierarchy build_hierarchy(const std::function<LeafStarter()>& make_starter,
   const TileId root = tree.root();
   ArrayFileReader file(log.path(root, kPushedEnding), log.collapsed().at(root).pushed);
   result.t0 = read_pushed(file, options.collapse.units).tin;
-  if (root.level > 1) {  // what measured all samples is final
+  if (root.level > 1) {  // else all tiles measured all their samples, and are final
     TightenStage stage(make_starter, tree, order, result.t0, options, log);
     result.most_bytes = std::max(result.most_bytes, run_pieces(stage, limits, options.stop));
     stage.finish();

@@ -22,28 +22,30 @@ namespace ptin {
 struct HierarchyOptions {
   CollapseOptions collapse;
   int threads = 1;
-  std::uint64_t memory_for_tiles = ~std::uint64_t{0};  ///< Bytes of all tiles in work at once.
-  TileBytes tile_bytes;                                ///< What each kind of work takes of them.
-  std::function<void(std::uint64_t bytes)> give_back;  ///< As PieceLimits says.
-  std::chrono::milliseconds checkpoint_interval{2000};
+  std::uint64_t memory_for_tiles = ~std::uint64_t{0};  ///< Bytes, for all work at once.
+  TileBytes tile_bytes;  ///< What each kind of work takes of them, by estimate.
+  std::function<void(std::uint64_t bytes)> give_back;   ///< PieceLimits::give_back.
+  std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
   std::stop_token stop;
-  /// Samples and leaves done and in all; called by any thread, but never twice at once. May be empty.
+  /// Told the samples and leaves that are done, and all there are. Called by any thread, but never
+  /// twice at once. May be empty.
   std::function<void(const StageProgress& progress)> progress;
 };
 
 struct BuiltHierarchy {
-  Tin t0;  ///< The coarsest TIN, every vertex alive.
-  std::uint64_t lone_samples = 0;
-  std::uint64_t most_bytes = 0;  ///< Admitted at once, by estimate.
+  Tin t0;                          ///< The coarsest TIN, every vertex alive.
+  std::uint64_t lone_samples = 0;  ///< In all leaves; see StartedTile.
+  std::uint64_t most_bytes = 0;    ///< The most that was admitted at once, by estimate.
 };
 
-/// Builds everything, or the rest of it when the workspace holds an interrupted build. Segments go
-/// to `output` in the order of the tree. Those of leaves and of level 1 are final when the tile is
-/// collapsed, since they measure all their samples; those of tiles above, a sixteenth of all
-/// records, lie in the workspace until tightening.
-/// @param make_starter  Called once for each thread.
-/// @throws Error as simplify(), the starters and the output; resource_exhausted, io_error; after
-/// the last two, and cancelled, the workspace can be taken up again.
+/// Builds a whole terrain, or the rest of it when the workspace holds an interrupted build.
+/// Segments go to `output` in an order that the tree alone decides. The segments of leaves and of
+/// tiles of level 1 are final when the tile is collapsed, since these tiles measure all their
+/// samples. The segments of tiles above, a sixteenth of all records, lie in the workspace until
+/// tightening.
+/// @param make_starter  Called once for each thread, in each of the two stages.
+/// @throws Error as simplify(), the starters and the output; resource_exhausted, io_error. After
+///     resource_exhausted, io_error and cancelled a later call can take the workspace up again.
 [[nodiscard]] BuiltHierarchy build_hierarchy(const std::function<LeafStarter()>& make_starter,
                                              const TileTree& tree, const HierarchyOptions& options,
                                              Workspace& workspace, SegmentOutput& output);

@@ -8,7 +8,7 @@ namespace ptin {
 InOrderSegments::InOrderSegments(BuildLog& log, const BatchOrder& order)
     : log_(log), order_(order), turn_(log.leaves_written()) {}
 
-/// Hands the segments of a file to the output, and forgets the file.
+/// Hands the segments that wait in the file of a batch to the output.
 void InOrderSegments::write_waiting(std::size_t batch, const ArrayFileFacts& facts) {
   ArrayFileReader file(log_.path(top(batch), kRecordsEnding), facts);
   while (!file.at_end()) {
@@ -21,7 +21,7 @@ void InOrderSegments::add(std::size_t batch, std::span<VertexSplit> records) {
   const std::lock_guard lock(mutex_);
   std::unique_ptr<ArrayFileWriter>& file = waiting_[batch];
   if (batch == turn_) {
-    if (file) {  // its turn came while it was being collapsed
+    if (file) {  // the batch got the turn while it was being collapsed
       const ArrayFileFacts facts = file->facts();
       file.reset();
       write_waiting(batch, facts);

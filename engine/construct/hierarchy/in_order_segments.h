@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Brings the segments of leaves into their order: batches end as the threads will have it, the file
-// is always the same.
+// Brings the segments of batches into the order of batches: threads end batches in any order, and
+// the output is always the same.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,23 @@
 
 namespace ptin {
 
-/// Segments of the batch whose turn it is go to the output at once; those of later ones wait in a
-/// file each. Threads: add() from several at once, one for each batch.
+/// One batch has the turn: the first in the order that is not collapsed. Its segments go to the
+/// output at once. The segments of a later batch wait in a temporary file, one for each batch.
+/// Threads: add() and end() from several at once, each for a batch of its own.
 class InOrderSegments {
  public:
   InOrderSegments(BuildLog& log, const BatchOrder& order);
 
-  /// The next segment of a batch. @throws Error as SegmentOutput::add_segment; io_error
+  /// The next segment of a batch; may be reordered in place.
+  /// @throws Error as SegmentOutput::add_segment; io_error
   void add(std::size_t batch, std::span<VertexSplit> records);
-  /// The batch's segments are complete: facts of the file in which they wait, if they do.
+  /// To be called when the segments of a batch are complete. Returns the facts of the file in which
+  /// they wait; 0 bytes when all of them are in the output.
   [[nodiscard]] ArrayFileFacts end(std::size_t batch);
-  /// Writes what has its turn, after the log took note of the batch.
+  /// To be called after the log took note of a collapsed batch. Moves the turn past all batches
+  /// that are collapsed, and writes those of their segments that wait.
   void advance();
-  /// As BuildLog::checkpoint, with no segment being written meanwhile.
+  /// BuildLog::checkpoint(), while no segment is being written.
   void checkpoint(bool force);
 
  private:
@@ -40,8 +44,9 @@ class InOrderSegments {
   const BatchOrder& order_;
   std::mutex mutex_;  ///< Guards the output and what follows.
   std::size_t turn_;
-  std::map<std::size_t, std::unique_ptr<ArrayFileWriter>> waiting_;  ///< Batches being collapsed.
-  std::vector<TileId> written_;  ///< Whose files are not needed any more.
+  /// For each batch in work: the file in which its segments wait; null when none does.
+  std::map<std::size_t, std::unique_ptr<ArrayFileWriter>> waiting_;
+  std::vector<TileId> written_;  ///< Tops of batches whose files are in the output.
 };
 
 }  // namespace ptin

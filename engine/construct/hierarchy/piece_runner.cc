@@ -17,7 +17,7 @@ namespace ptin {
 
 namespace {
 
-/// Lets others in for as long as this lives, however that ends.
+/// Lets go of a lock while this object lives, and takes it again however the scope ends.
 class Unlocked {
  public:
   explicit Unlocked(std::unique_lock<std::mutex>& lock) : lock_(lock) { lock_.unlock(); }
@@ -34,8 +34,10 @@ class Runner {
   Runner(PieceSource& source, const PieceLimits& limits, const std::stop_token& stop)
       : source_(source), limits_(limits), on_stop_(stop, [this] { halt_.request_stop(); }) {}
 
-  /// Orders what this thread did before all that workers do when they begin, or behind all that
-  /// they did when they have ended. oneTBB does so too, where thread sanitizers do not see it.
+  /// Locks the mutex of the workers and lets go of it. Called before they begin, this orders all
+  /// that the calling thread did before all that they do; called after they have ended, it orders
+  /// all that they did before what this thread does next. oneTBB orders both as well, but thread
+  /// sanitizers do not see that.
   void meet() { const std::lock_guard lock(mutex_); }
   /// One worker: takes pieces until there are none.
   void work(int worker) noexcept;
@@ -64,7 +66,8 @@ class Runner {
   std::exception_ptr failure_;
 };
 
-/// Waits for a piece that fits; none when there is nothing more to wait for.
+/// Waits for a piece that fits, and takes it. None once a stop is asked for, or when the source has
+/// no piece and none runs whose commit could bring one.
 std::optional<Piece> Runner::take(std::unique_lock<std::mutex>& lock, int worker) {
   bool gave_back = false;
   while (!halt_.stop_requested()) {
@@ -132,7 +135,7 @@ void Runner::work(int worker) noexcept {
       bytes_ -= piece->bytes;
       changed_.notify_all();
     }
-  } catch (...) {  // from the source itself
+  } catch (...) {  // thrown by the source or give_back
     fail(std::current_exception());
     changed_.notify_all();
   }

@@ -12,36 +12,40 @@
 
 namespace ptin {
 
-/// Final error and deviation of a record, as stored.
+/// Error and deviation of a record as stored: in the unit of heights, rounded up.
 struct RecordBounds {
   float error = 0.0F;
   float deviation = 0.0F;
   friend bool operator==(const RecordBounds&, const RecordBounds&) = default;
 };
 
-/// What a leaf showed of one record of a segment: error and deviation are at least these.
+/// What a leaf shows of one record of a segment: its error and deviation are at least `bounds`.
 struct BoundsRaise {
-  std::uint32_t record = 0;
+  std::uint32_t record = 0;  ///< Index in `records` of the segment.
   RecordBounds bounds;
 };
 
-/// The segment of a tile of level 2 or more after its collapses. Its records are numbered behind
-/// the foreign ones, those that its children pushed up: record i of `records` has number
-/// foreign.size() + i.
+/// The segment of a tile of level 2 or more after its collapses. Its records depend on **foreign**
+/// records, those that its children pushed up, and on one another; both kinds share one numbering.
+/// First come the foreign records, child after child. Record i of `records`, the tile's own, has
+/// number foreign.size() + i.
 struct InnerSegment {
   TileId id;
-  std::vector<RecordBounds> foreign;  ///< In the order of the children; final for those of level 1.
+  /// Bounds of the foreign records. Those from a child of level 1 are final; others become final by
+  /// SegmentBounds::set_foreign().
+  std::vector<RecordBounds> foreign;
   std::vector<std::uint32_t> child_begin;  ///< Where each child's begin in `foreign`.
-  std::vector<VertexSplit>
-      records;  ///< In the order of the collapses; error and deviation own parts so far.
-  std::vector<std::uint32_t>
-      dependencies;  ///< Numbers; record i depends on those before dependency_end[i].
+  /// In the order of the collapses. Until tightening `error` is the own part over witnesses, and
+  /// `deviation` is 0.
+  std::vector<VertexSplit> records;
+  /// Numbers of the records that own records depend on: those of own record i lie from
+  /// dependency_end[i - 1] (for i = 0: from 0) to before dependency_end[i].
+  std::vector<std::uint32_t> dependencies;
   std::vector<std::uint32_t> dependency_end;
-  std::vector<std::uint32_t>
-      exported;  ///< Numbers of the records that this tile pushed up in turn.
+  std::vector<std::uint32_t> exported;  ///< Numbers of the records that this tile pushed up.
 };
 
-/// The same, held by somebody else: a file, mostly (tile_files.h).
+/// The same, in arrays of another owner: a mapped file (construct/hierarchy/tile_files.h).
 struct SegmentView {
   TileId id;
   std::span<const RecordBounds> foreign;
@@ -52,27 +56,29 @@ struct SegmentView {
   std::span<const std::uint32_t> exported;
 };
 
-/// Errors and deviations of a segment while they are being tightened. Memory: 8 bytes a record.
+/// Errors and deviations of a segment while they are being tightened. Memory: 8 bytes for each
+/// record, foreign ones included.
 class SegmentBounds {
  public:
-  /// @param segment  Must live as long as this.
+  /// @param segment  Must outlive this object, with its arrays.
   explicit SegmentBounds(const SegmentView& segment);
 
-  /// Takes maxima: the order of calls does not matter.
+  /// Raises bounds of own records. Takes maxima, so the order of calls does not matter.
   void raise(std::span<const BoundsRaise> raises);
-  /// The final bounds of what a child pushed up.
+  /// Takes the final bounds of the records that a child pushed up, in their order.
+  /// @param child  Its place among the children.
   void set_foreign(std::size_t child, std::span<const RecordBounds> bounds);
 
-  /// Gives each record the maximum over itself and what it depends on. To be called once, when all
-  /// leaves below have raised. Returns the bounds of the exported records, in their order.
-  /// Cost: linear in the dependencies.
+  /// Gives each own record the maximum over itself and the records that it depends on. To be called
+  /// once, when all leaves below have raised and all foreign bounds are final. Returns the bounds
+  /// of the exported records, in their order. Cost: linear in the dependencies.
   [[nodiscard]] std::vector<RecordBounds> saturate();
-  /// The records with these bounds.
+  /// A copy of the own records, with these bounds.
   [[nodiscard]] std::vector<VertexSplit> records() const;
 
  private:
   const SegmentView* segment_;
-  std::vector<RecordBounds> bounds_;  ///< Foreign ones, then own ones.
+  std::vector<RecordBounds> bounds_;  ///< By number: of foreign records, then of own ones.
 };
 
 }  // namespace ptin

@@ -19,13 +19,14 @@ class SegmentOutput {
   SegmentOutput& operator=(const SegmentOutput&) = delete;
   virtual ~SegmentOutput() = default;
 
-  /// May reorder the records in place.
+  /// Takes the final records of one tile, and may reorder them in place.
   virtual void add_segment(std::span<VertexSplit> records) = 0;
-  /// Where it stands, as something that a manifest keeps.
+  /// Where the output ends, as JSON for the manifest.
   [[nodiscard]] virtual nlohmann::json position() const = 0;
   /// Makes everything up to position() durable.
   virtual void sync() = 0;
-  /// Goes back to a position that was made durable. @throws Error corruption
+  /// Goes back to a position that was made durable; what lies behind it goes.
+  /// @throws Error corruption
   virtual void resume(const nlohmann::json& position) = 0;
 };
 

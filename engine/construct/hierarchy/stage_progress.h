@@ -10,9 +10,9 @@ namespace ptin {
 struct StageProgress {
   /// The stage: "reading", "sorting", "collapsing", "tightening", "writing" ... A literal.
   const char* stage = "";
-  /// In units of the stage's own: bytes of text, samples, passes over points.
+  /// Work done and all work, in a unit of the stage: bytes of text, samples, passes over points.
   std::uint64_t done = 0, total = 0;
-  /// Leaves of the tree of tiles, of the stages that go through them; 0 of all others.
+  /// Leaves done and all leaves, in a stage that goes from leaf to leaf; both 0 in any other.
   std::uint64_t tiles_done = 0, tiles = 0;
 };
 

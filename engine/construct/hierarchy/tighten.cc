@@ -24,15 +24,15 @@ namespace ptin {
 
 namespace {
 
-/// A sample whose own charge is not to be counted again: of the vertex's class, with (nearly) no
-/// depth.
+/// The depth that a vertex has in a replay. Construction has charged the vertex itself, so it is
+/// not charged again: the depth is (nearly) 0, and its sign tells the class alone.
 float no_depth(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
 
 /// The mesh of one replay: T0, refined around one leaf, with the leaf's samples in its triangles.
 class Replay {
  public:
   Replay(const Tin& t0, StartedTile&& leaf);
-  /// What the leaf shows of the record.
+  /// Splits as the record says. Returns what the leaf shows of the record.
   RecordBounds apply(const VertexSplit& record);
 
   [[nodiscard]] const GridBox& box() const noexcept { return box_; }
@@ -50,7 +50,7 @@ class Replay {
   std::unique_ptr<FullSurface> full_;
   GridBox box_;
   std::vector<TriangleId> near_;  ///< Triangles of T0 that the leaf may touch.
-  PackedBoxes near_boxes_;        ///< Theirs.
+  PackedBoxes near_boxes_;        ///< Of the triangles in near_.
   std::unordered_map<VertexKey, VertexId> vertices_;
   StarSamples star_;
   FanFrame fan_, spokes_;
@@ -61,18 +61,18 @@ class Replay {
 Replay::Replay(const Tin& t0, StartedTile&& leaf) : full_(std::move(leaf.full)), box_(leaf.box) {
   tile_.units = leaf.tile.units;
   tile_.samples_fill_grid = leaf.tile.samples_fill_grid;
-  tile_.has_voids = true;  // of the whole, not of the leaf: T0 may be void where the leaf is not
+  tile_.has_voids = true;  // T0 may have void triangles where the leaf has none
   tile_.tin = t0;
   tile_.carried.resize(t0.triangles.size());
   for (VertexId v = 0; v < t0.vertices.size(); ++v) {
     vertices_.emplace(key_of(t0.position(v)), v);
     tile_.vertex_state.push_back({no_depth(t0.has_height[v] != 0), 0, false});
   }
-  take_samples(std::exchange(leaf.tile, {}));  // its mesh is not needed any more
+  take_samples(std::exchange(leaf.tile, {}));  // the leaf's mesh goes
 }
 
-/// Finds the triangles of T0 that the leaf may touch. T0 is two triangles on rasters, and the hull
-/// of points, which may be large.
+/// Finds the triangles of T0 that the leaf may touch. T0 is two triangles over a raster without
+/// voids; over points it fills the hull, and may be large.
 void Replay::look_around() {
   const auto box_of_triangle = [this](TriangleId t) {
     GridBox b;
@@ -131,6 +131,8 @@ void Replay::take_samples(const Tile& leaf) {
   }
 }
 
+/// Puts a sample or block into the list of a triangle that holds all of it. Quarters a block that
+/// no triangle holds.
 void Replay::place(Sample sample, std::vector<std::vector<Sample>>& lists) {
   const std::int32_t reach = (std::int32_t{1} << sample.side_log) - 1;
   const GridPoint p = sample.position;
@@ -201,8 +203,8 @@ RecordBounds Replay::apply(const VertexSplit& record) {
   return measure(site.w);
 }
 
-/// The star of u is there again, and its triangles hold the samples of the former fan: measures
-/// those against the fan.
+/// The star of u is there again (star_), and its triangles hold the samples of the former fan.
+/// Measures these samples against the fan from w, and hands them to the triangles of the star.
 RecordBounds Replay::measure(VertexId w) {
   const auto j = static_cast<std::size_t>(
       std::find(star_.star.link.begin(), star_.star.link.end(), w) - star_.star.link.begin());
@@ -217,8 +219,8 @@ RecordBounds Replay::measure(VertexId w) {
           height_bound(std::max(own.deviation, gap), tile_.units.heights)};
 }
 
-/// Hands the samples to the triangles around u; u's own sample, if the leaf has it, is a vertex
-/// from now on.
+/// Hands the samples to the triangles around u. The sample of u itself, if the leaf has it, is
+/// dropped: u is a vertex.
 void Replay::hand_to_star() {
   make_spokes_of_star(star_, spokes_);
   assign_samples(star_, spokes_, assignment_.triangle, assignment_.residual);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Tightening: true errors and deviations for records that were ordered by witnesses (engine/DESIGN.md, section 5.7).
+// Tightening: true errors and deviations for records that were ordered by witnesses
+// (engine/DESIGN.md, section 5.7).
 #pragma once
 
 #include <span>
@@ -12,26 +13,27 @@
 
 namespace ptin {
 
-/// A segment of a chain, and where what a leaf shows of its records goes.
+/// A segment to be replayed. Borrows what it names.
 struct ReplaySegment {
-  std::span<const VertexSplit> records;  ///< In the order of the collapses.
-  std::vector<BoundsRaise>* raises = nullptr;
+  std::span<const VertexSplit> records;        ///< In the order of the collapses.
+  std::vector<BoundsRaise>* raises = nullptr;  ///< Receives what the leaf shows of them.
 };
 
-/// Replays the splits of a chain of segments, root first, over all samples of one leaf, and notes
-/// for each record the own error and deviation that the leaf's samples and its part of the full
-/// surface show, where they are more than the record says.
+/// Replays the splits of a chain of segments, root first, over all samples of one leaf. Each record
+/// is measured over the leaf's samples and its part of the full surface. A record whose own error
+/// or deviation there is more than it says gets an entry in `raises`.
 ///
-/// Only records whose region of influence meets the leaf are applied: they are closed under
-/// dependency, and each fan that touches the leaf is there. A sample begins in a triangle of T0 and
-/// goes, split by split, to a triangle that replaces its own: so whichever records a refinement
-/// applies, it is in a triangle over which it was measured. Samples that are vertices at the time
-/// are not measured, as in construction.
+/// Only records whose region of influence meets the leaf are applied. They are closed under
+/// dependency, and every fan that touches the leaf is among theirs. A sample begins in a triangle
+/// of T0 and goes, split by split, to a triangle that replaces its own. So whichever records a
+/// refinement applies, the sample is in a triangle over which it was measured. A sample that is a
+/// vertex at the time is not measured, as in construction.
 ///
 /// @param chain  Segments of the leaf's ancestors, the root's first.
 /// @param t0     The coarsest TIN: what the root's collapses left. Every vertex alive.
-/// @param leaf   The leaf as it was started: start_raster_tile(), PointTileStarter,
-///               start_tin_tile(). Used up.
+/// @param leaf   The leaf as start_raster_tile(), PointTileStarter or start_tin_tile() gives it.
+///     Used up.
+/// @throws Error resource_exhausted  as SampleLists::take
 /// Cost: about 2.5 residuals a sample for each halving of the vertices above the leaf.
 void replay_over_leaf(std::span<const ReplaySegment> chain, const Tin& t0, StartedTile&& leaf);
 

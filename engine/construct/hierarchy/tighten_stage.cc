@@ -1,4 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+//
+// How the bounds of inner segments become final (engine/DESIGN.md, section 5.7).
+//
+// A piece of work is a batch. Its worker starts each leaf anew with a starter of its own, and
+// replays over it the segments of all ancestors of the batch, root first. Workers share these
+// segments: they are mapped files, only read, and closed with their last user (segment_of()). The
+// worker owns what comes of that, the raises for each ancestor, and keeps them in a `.bounds` file
+// too. Everything else is the stage's, and changes in commit() alone, which no two threads run at
+// once:
+// 1. A result waits until its batch has the turn. Raises are maxima and commute, so the turn does
+//    not decide bounds: it decides the order of the output, and keeps few segments open.
+// 2. The raises go to the bounds of the ancestors' segments. The first raise opens a segment.
+// 3. The last batch below an ancestor closes it: its bounds are saturated, its records go to the
+//    output, and the bounds of what it pushed up go to a file and to its parent. The lowest
+//    ancestor is closed first, since a parent saturates with the final bounds of its children.
+// 4. The log notes all that, and a checkpoint makes it durable.
+// A resumed build reads raises and bounds from these files as far as open segments need them
+// (take_up()), and replays the other batches.
 #include "engine/construct/hierarchy/tighten_stage.h"
 
 #include <algorithm>
@@ -12,7 +30,7 @@ namespace ptin {
 
 namespace {
 
-/// One entry for each record: the maxima over several leaves.
+/// Joins the raises of several leaves: leaves one entry for each record, the maxima.
 void combine(std::vector<BoundsRaise>& raises) {
   std::sort(raises.begin(), raises.end(),
             [](const BoundsRaise& a, const BoundsRaise& b) { return a.record < b.record; });
@@ -73,11 +91,11 @@ TightenStage::Open& TightenStage::open(const TileId& id) {
   return open_.emplace(id, Open{std::move(file), std::move(bounds)}).first->second;
 }
 
-// ---------------------------------------------------------------------------------------------------
+// -------------------------------------------------------------------------------------------------
 // Handing out.
 
 std::optional<std::uint64_t> TightenStage::next_bytes() {
-  // Results wait for their turn, and what they take is counted no more: so not too many of them.
+  // Results that wait for their turn are counted by no piece, so few batches may run ahead.
   const auto most_waiting = 2 * static_cast<std::size_t>(options_.threads);
   if (next_batch_ == order_.batches().size() || next_batch_ - turn_ >= most_waiting) {
     return std::nullopt;
@@ -130,7 +148,7 @@ TightenStage::Replayed TightenStage::replay(const Batch& batch, const LeafStarte
   return result;
 }
 
-// ---------------------------------------------------------------------------------------------------
+// -------------------------------------------------------------------------------------------------
 // Taking results, in order.
 
 void TightenStage::commit(std::size_t batch, Replayed&& replayed) {
@@ -152,7 +170,7 @@ void TightenStage::write(const Batch& batch, Replayed& replayed) {
   }
 }
 
-/// A tile all of whose leaves have raised, and all of whose children are final.
+/// Closes a tile: all its leaves have raised, and all its children are final.
 void TightenStage::write_closed(const TileId& id) {
   Open& tile = open(id);
   const std::vector<RecordBounds> exported = tile.bounds.saturate();
@@ -181,7 +199,7 @@ void TightenStage::hand_to_parent(const TileId& id, std::span<const RecordBounds
   }
 }
 
-/// What an earlier run did of a batch, as far as tiles that are not written yet need it.
+/// Takes up what an earlier run did of a batch, as far as tiles that are not written yet need it.
 void TightenStage::take_up(const Batch& batch) {
   const auto is_written = [&](const TileId& id) { return log_.tightened().contains(id); };
   if (std::all_of(batch.ancestors.begin(), batch.ancestors.end(), is_written)) {

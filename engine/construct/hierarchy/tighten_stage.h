@@ -18,22 +18,25 @@
 
 namespace ptin {
 
-/// Pieces are batches. Their results are taken in the order of batches, so that only segments on
-/// one path from the root are open at a time.
+/// A piece is a batch: its leaves are replayed. Results are taken in the order of batches, so that
+/// only segments on one path from the root are open at a time.
 class TightenStage final : public PieceSource {
  public:
+  /// Takes up what the log says is done. `tree`, `order`, `t0`, `options` and `log` must outlive
+  /// the stage.
+  /// @param make_starter  Called once for each thread, here.
   TightenStage(const std::function<LeafStarter()>& make_starter, const TileTree& tree,
                const BatchOrder& order, const Tin& t0, const HierarchyOptions& options,
                BuildLog& log);
 
   [[nodiscard]] std::optional<std::uint64_t> next_bytes() override;
   [[nodiscard]] Piece take(int worker) override;
-  /// To be called when all pieces are done: makes that durable.
+  /// Makes all work durable. To be called when all pieces are done.
   void finish() { log_.checkpoint(true); }
 
  private:
   using SharedSegment = std::shared_ptr<const SegmentFile>;
-  /// A segment some of whose leaves have been replayed.
+  /// A segment that some leaves below it have raised, but not all.
   struct Open {
     SharedSegment file;
     SegmentBounds bounds;
@@ -41,7 +44,7 @@ class TightenStage final : public PieceSource {
   /// What replaying the leaves of a batch gave.
   struct Replayed {
     std::vector<std::vector<BoundsRaise>> raises;  ///< For each ancestor, the root first.
-    ArrayFileFacts facts;                          ///< Of the file that keeps them.
+    ArrayFileFacts facts;                          ///< Of the `.bounds` file that keeps the raises.
   };
 
   Replayed replay(const Batch& batch, const LeafStarter& start, const std::stop_token& stop);
@@ -61,11 +64,11 @@ class TightenStage final : public PieceSource {
   const HierarchyOptions& options_;
   BuildLog& log_;
   std::vector<LeafStarter> starters_;  ///< One for each thread.
-  std::size_t next_batch_, turn_;
-  std::map<std::size_t, Replayed> waiting_;  ///< Replayed before their turn.
-  std::map<TileId, Open> open_;
-  std::mutex mutex_;  ///< Guards what follows.
-  std::map<TileId, std::weak_ptr<const SegmentFile>> files_;
+  std::size_t next_batch_, turn_;  ///< The next to be handed out; the next whose result is taken.
+  std::map<std::size_t, Replayed> waiting_;  ///< Results of batches after turn_.
+  std::map<TileId, Open> open_;              ///< The segments on one path from the root.
+  std::mutex mutex_;                         ///< Guards what follows.
+  std::map<TileId, std::weak_ptr<const SegmentFile>> files_;  ///< Mapped while somebody reads them.
   std::uint64_t samples_done_ = 0, leaves_done_ = 0;
 };
 

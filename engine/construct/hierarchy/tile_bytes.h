@@ -1,26 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What tiles in work take in memory, by measurement (engine/DECISIONS.md, section 4.8): workers are admitted by it.
+// What tiles in work take in memory, by measurement (engine/DECISIONS.md, section 4.8). Work is
+// admitted by these numbers.
 #pragma once
 
 #include <cstdint>
 
 namespace ptin {
 
-/// Bytes of each kind of work. Upper bounds for terrains of every kind that was measured.
+/// Bytes that each kind of work takes: upper bounds over terrains of every kind that was measured.
 struct TileBytes {
-  std::uint64_t collapse_of_sample = 1200;  ///< A leaf's, with its batch's join.
-  std::uint64_t replay_of_sample = 500;     ///< A leaf's.
-  double join_of_pushed = 2.0;              ///< Times the bytes of the files of the children.
-  std::uint64_t pushed_of_vertex = 820;     ///< In those files: plan only.
-  std::uint64_t fixed = 8U << 20;
+  std::uint64_t collapse_of_sample = 1200;  ///< Of a batch, for a sample of its largest leaf.
+  std::uint64_t replay_of_sample = 500;     ///< Of a replay, for a sample of the leaf.
+  double join_of_pushed = 2.0;           ///< Of a join, for a byte of its children's pushed files.
+  std::uint64_t pushed_of_vertex = 820;  ///< A vertex in these files; the plan expects joins by it.
+  std::uint64_t fixed = 8U << 20;        ///< Of any work, besides.
 
+  /// A batch: its leaves one by one, then their join.
+  /// @param leaf_samples  Of its largest leaf.
   [[nodiscard]] std::uint64_t of_batch(std::uint64_t leaf_samples) const noexcept {
     return fixed + leaf_samples * collapse_of_sample;
   }
+  /// A tile of level 2 or more.
+  /// @param pushed_bytes  Of the files of its children.
   [[nodiscard]] std::uint64_t of_join(std::uint64_t pushed_bytes) const noexcept {
     return fixed + static_cast<std::uint64_t>(static_cast<double>(pushed_bytes) * join_of_pushed);
   }
+  /// A batch in tightening, leaf by leaf.
+  /// @param leaf_samples  Of its largest leaf.
   [[nodiscard]] std::uint64_t of_replay(std::uint64_t leaf_samples) const noexcept {
     return fixed + leaf_samples * replay_of_sample;
   }

@@ -36,7 +36,7 @@ CollapsedLeaf collapse_leaf(const TileId& id, const TileTree& tree, const LeafSt
                             const CollapseOptions& options, const std::stop_token& stop) {
   StartedTile leaf = start(tree.window(id));
   lock_seams(leaf.tile, tree, id);
-  const std::uint64_t keep = vertices_to_keep(leaf.tile, tree, id);  // of all samples
+  const std::uint64_t keep = vertices_to_keep(leaf.tile, tree, id);  // before the first pass
   if (options.first_pass > 0.0 && leaf.tile.samples_fill_grid) {
     run_first_pass(leaf.tile, *leaf.full, leaf.box, options.first_pass);
   }

@@ -17,16 +17,16 @@
 
 namespace ptin {
 
-/// Starts a leaf: all samples of a window and the full surface under it, the same whenever it is
-/// called. Each leaf is started twice: for its collapses and for tightening.
+/// Starts a leaf: gives all samples of a window and the full surface under it, the same at each
+/// call. A leaf is started for its collapses, and once more for tightening.
 using LeafStarter = std::function<StartedTile(const SampleRange&)>;
 
 /// What collapsing a tile depends on besides the terrain.
 struct CollapseOptions {
   CostModel cost = CostModel::kError;
   MeasureUnits units;
-  /// Residual, in codes, up to which samples of a raster go without a queue (first_pass.h); 0:
-  /// none.
+  /// Up to this residual, in height codes, the first pass takes samples of a raster off without a
+  /// queue (construct/collapse/first_pass.h). 0: no first pass.
   double first_pass = 0.0;
 };
 
@@ -35,8 +35,8 @@ struct CollapsedLeaf {
   std::vector<VertexSplit> records;  ///< Final.
   Tile pushed;                       ///< With all samples.
   std::unique_ptr<FullSurface> full;
-  GridBox box;  ///< Of all samples and the full surface.
-  std::uint64_t lone_samples = 0;
+  GridBox box;                     ///< Of all samples and the full surface.
+  std::uint64_t lone_samples = 0;  ///< As StartedTile.
 };
 
 /// A tile of level 1 after its collapses.
@@ -48,25 +48,30 @@ struct CollapsedGroup {
 /// A tile of level 2 or more after its collapses.
 struct CollapsedInner {
   InnerSegment segment;  ///< To be tightened.
-  Tile pushed;
+  Tile pushed;           ///< With witnesses.
 };
 
-/// Collapses until a quarter of the vertices that are not on seams is left; at the root all that
-/// can go.  @throws Error as the starter and simplify()
+/// Starts a leaf and collapses it until a quarter of its unlocked vertices is left; where it is the
+/// root, until no collapse is allowed.
+/// @throws Error as the starter and simplify()
 [[nodiscard]] CollapsedLeaf collapse_leaf(const TileId& id, const TileTree& tree,
                                           const LeafStarter& start, const CollapseOptions& options,
                                           const std::stop_token& stop);
 
-/// The same for a tile of level 1, which measures all samples of its leaves too. The leaves' pushed
-/// tiles and surfaces are used up.
-/// @param leaves  In the order of TileTree::children().
+/// The same for a tile of level 1: joins its leaves and collapses them further. It measures all
+/// samples of its leaves too.
+/// @param leaves  In the order of TileTree::children(). What they pushed and their surfaces are
+///     used up.
+/// @throws Error as simplify()
 [[nodiscard]] CollapsedGroup collapse_group(const TileId& id, const TileTree& tree,
                                             std::vector<CollapsedLeaf>&& leaves,
                                             const CollapseOptions& options,
                                             const std::stop_token& stop);
 
-/// The same for a tile whose children pushed `parts`, in the order of TileTree::children(). Their
-/// records are foreign to the segment.
+/// The same for a tile of level 2 or more, which measures witnesses alone.
+/// @param parts  What its children pushed, in the order of TileTree::children(). Used up; their
+///     records are foreign to the segment.
+/// @throws Error as simplify()
 [[nodiscard]] CollapsedInner collapse_inner(const TileId& id, const TileTree& tree,
                                             std::vector<Tile>&& parts,
                                             const CollapseOptions& options,

@@ -1,4 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+//
+// From a finished tile to its parent, in two steps. Each takes its tiles over, shares nothing with
+// other threads, and frees what it has used.
+//
+// push_up() cuts a tile down to what its parent needs:
+// 1. Alive vertices and triangles get new numbers in their old order, so that nothing that is
+//    decided by order changes.
+// 2. Of the records only those stay that a triangle carries: the parent's records will depend on no
+//    other. `exported` remembers which they are, for tightening.
+// 3. Triangles are copied by these numbers, with all their samples (from a leaf) or with a few
+//    witnesses (from any other tile). The old tile is freed.
+// Between the steps the pushed tile lies in memory (leaves) or in a file
+// (construct/hierarchy/tile_files.h).
+//
+// join_tiles() makes one tile of up to four pushed ones, each of which counts from 0:
+// 1. Vertices come first, since triangles need their numbers: all are sorted by key, and those of
+//    one key, on a common seam, become one.
+// 2. Triangles, records and samples are appended part by part, with shifted numbers. A part is
+//    freed before the next one is copied, so that the whole is never there twice.
+// 3. link_seams() makes neighbours of triangles that share a seam edge.
+// 4. settle_vertices() counts degrees, and finds each vertex the triangle where the walk around it
+//    begins: both change on seams.
+// 5. lock_seams() locks what is on a seam of the parent. Common seams are free to collapse.
 #include "engine/construct/hierarchy/tile_push.h"
 
 #include <algorithm>
@@ -73,9 +96,9 @@ void keep_witnesses(const Tile& from, TriangleId t, std::vector<Sample>& scratch
   }
 }
 
-/// Vertices of all parts by key, each once.
+/// The new number of each vertex of each part.
 struct JoinedVertices {
-  std::vector<Renumbering> place;  ///< For each part.
+  std::vector<Renumbering> place;  ///< For each part, beside its vertices.
 };
 
 JoinedVertices join_vertices(const std::vector<Tile>& parts, Tile& to) {
@@ -108,7 +131,7 @@ JoinedVertices join_vertices(const std::vector<Tile>& parts, Tile& to) {
   return joined;
 }
 
-/// Links triangles across seams: two border edges between the same vertices.
+/// Links triangles across seams: two border edges between the same two vertices are one edge.
 void link_seams(Tin& tin) {
   struct Side {
     TriangleId triangle;
@@ -148,8 +171,7 @@ void settle_vertices(Tile& tile) {
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
     const Triangle& triangle = tin.triangles[t];
     for (int i = 0; i < 3; ++i) {
-      if (triangle.n[i] == kNone) {  // a border edge from next to previous corner: the walk of the
-                                     // former begins here
+      if (triangle.n[i] == kNone) {  // a border edge: the walk around its first end begins here
         tin.vertices[triangle.v[next_corner(i)]].triangle = t;
         ++tile.vertex_state[triangle.v[previous_corner(i)]].degree;
       }
@@ -206,7 +228,8 @@ PushedTile push_up(Tile&& tile, PushedSamples samples) {
 
 namespace {
 
-/// Arrays that grow step by step would be copied, and their pages touched, several times over.
+/// Makes room once: arrays that grow step by step are copied, and their pages touched, several
+/// times.
 void reserve_for(const std::vector<Tile>& parts, Tile& to) {
   std::size_t triangles = 0;
   std::size_t records = 0;
@@ -220,7 +243,7 @@ void reserve_for(const std::vector<Tile>& parts, Tile& to) {
   to.tin.classes.reserve(triangles);
   to.carried.reserve(triangles);
   to.records.reserve(records);
-  to.samples.reserve(samples + samples / 4);  // the first collapses take new lists
+  to.samples.reserve(samples + samples / 4);  // the first collapses take further lists
 }
 
 }  // namespace
@@ -262,8 +285,8 @@ Tile join_tiles(std::vector<Tile>&& parts, const TileTree& tree, const TileId& p
 
 namespace {
 
-/// Over points: a vertex whose triangles are not all in the tile has an edge with nothing beyond
-/// that is not on the hull, and the other way round.
+/// Over points and TINs: the triangles of a vertex are not all in the tile exactly when it has an
+/// edge with nothing beyond that is not on the hull.
 void lock_open_edges(Tile& tile, const ConvexHull& hull) {
   const Tin& tin = tile.tin;
   for (VertexState& v : tile.vertex_state) {

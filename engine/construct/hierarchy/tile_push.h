@@ -12,33 +12,34 @@
 namespace ptin {
 
 /// What is left of a tile: its alive vertices and triangles, their samples or witnesses, and of its
-/// records those that a triangle carries. `tile.records` are foreign to whoever takes it over.
+/// records those that a triangle carries. The parent takes these records as foreign ones.
 struct PushedTile {
   Tile tile;
-  std::vector<std::uint32_t>
-      exported;  ///< Of each foreign record: its index in the tile that pushed it.
+  /// For each of tile.records: its index in `records` of the tile that was cut down.
+  std::vector<std::uint32_t> exported;
 };
 
-/// What a parent is given to measure by.
+/// The samples that a parent is given to measure by.
 enum class PushedSamples {
-  kAll,        ///< Every sample: it certifies its records itself.
-  kWitnesses,  ///< A few of each triangle (witness.h): tightening certifies them.
+  kAll,        ///< Every sample: the parent certifies its records itself.
+  kWitnesses,  ///< A few of each triangle (construct/collapse/witness.h): tightening certifies.
 };
 
 /// Cuts a finished tile down to what is pushed. Vertices and triangles keep their order.
 /// Cost: linear. The argument is used up.
 [[nodiscard]] PushedTile push_up(Tile&& tile, PushedSamples samples);
 
-/// Joins siblings along their seams: vertices on them become one, neighbours are linked, and
-/// vertices are locked that are still on a seam of the parent. Records stand one after the other,
-/// in the order of the parts.
-/// @param parts  In the order of TileTree::children().
+/// Joins siblings along their seams. Vertices on a common seam become one, and triangles are linked
+/// across it; vertices on a seam of the parent are locked, all others are not. Records stand one
+/// after the other, in the order of the parts.
+/// @param parts  In the order of TileTree::children(). Used up.
 /// Cost: linear, and sorting of the vertices.
 [[nodiscard]] Tile join_tiles(std::vector<Tile>&& parts, const TileTree& tree,
                               const TileId& parent);
 
-/// Locks the vertices of a tile that are on its seams: over points those with an edge that has no
-/// triangle beyond and does not lie on the hull.
+/// Locks the vertices of a tile that are on its seams, and unlocks all others. Over points and TINs
+/// a vertex is on a seam when it has an edge without a triangle beyond that does not lie on the
+/// hull.
 void lock_seams(Tile& tile, const TileTree& tree, const TileId& id);
 
 }  // namespace ptin

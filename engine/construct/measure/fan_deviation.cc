@@ -9,7 +9,8 @@ namespace ptin {
 
 namespace {
 
-/// Which spokes count.
+/// Tells which spokes of a fan are new to a surface triangle. The first and the last spoke are the
+/// link edges at w.
 class SpokeFilter {
  public:
   SpokeFilter(const Tile& tile, const StarSamples& s, const FanFrame& fan)

@@ -11,16 +11,18 @@
 
 namespace ptin {
 
-/// Largest gap to the full surface, in codes, along the edges of a fan that are new to a surface
-/// triangle: inner edges with surface on one side at least; and of the link the two edges at w
-/// where the triangle that vanishes is void and the fan's is surface. Other link edges are covered
-/// by what the star carries.
-/// @param within  Edges that do not meet this box are left out: the window of `full`.
-/// Cost: the crossings.
+/// The largest gap to the full surface, in height codes, along the edges of a fan that are new to a
+/// surface triangle:
+/// - inner edges with surface on one side at least;
+/// - each of the two link edges at w where the triangle that vanishes there is void and the fan
+///   triangle is surface.
+/// Gaps along other link edges are covered by what the star carries.
+/// @param within  The window of `full`: edges that do not meet this box are left out.
+/// Cost: the crossings with edges of the full TIN.
 [[nodiscard]] double fan_deviation(const Tile& tile, const StarSamples& s, const FanFrame& fan,
                                    const FullSurface& full, const GridBox& within);
 
-/// Every edge meets this one.
+/// A box that every edge meets.
 inline constexpr GridBox kEverywhere{0, 0, kGridMax, kGridMax};
 
 }  // namespace ptin

@@ -17,22 +17,24 @@ struct FanError {
   double deviation = 0.0;  ///< Residuals alone: the deviation at samples.
 };
 
-/// Of each element of a gathered star (padded): the fan triangle that it goes to, and its residual
-/// there.
+/// For each sample of a gathered star (further corners of blocks and padding included): the number
+/// of the fan triangle that it goes to, and its |residual| there, in height codes. The element of a
+/// block has those of its south-western sample.
 struct FanAssignment {
   std::vector<double> triangle;
   std::vector<double> residual;
 };
 
-/// Measures a fan over every sample of the star and says where each goes. A sample on a spoke goes
-/// to the side of its own class; elements that are blocks are not assigned (sample_hand_over.h
-/// takes them apart). REQUIRES: gather_samples() and gather_sources() were called. Cost: samples
-/// times degree.
+/// Measures a fan over every sample of the star, and assigns each sample to a fan triangle. A
+/// sample on a spoke goes to the side of its own class. Blocks are measured but not assigned
+/// (construct/collapse/sample_hand_over.h takes them apart).
+/// @param fan  Its buffer `is_surface` may be overwritten.
+/// REQUIRES: gather_samples() and gather_sources() were called. Cost: samples times degree.
 [[nodiscard]] FanError measure_fan(const Tile& tile, const StarSamples& s, FanFrame& fan,
                                    FanAssignment& assignment);
 
-/// Assigns elements to triangles of the frame by class: one on a spoke goes to the side of its own.
-/// Changes `triangle` alone.
+/// Moves elements on a spoke to the side of their own class. Changes `assignment.triangle` alone:
+/// the residual is the same on both sides.
 void assign_by_class(const Tile& tile, const StarSamples& s, const FanFrame& frame,
                      FanAssignment& assignment);
 

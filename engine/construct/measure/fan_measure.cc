@@ -19,8 +19,8 @@ double cross(double ax, double ay, double bx, double by, bool wide) noexcept {
   return wide ? cross_wide(ax, ay, bx, by) : ax * by - ay * bx;
 }
 
-/// The loops below are the same for narrow coordinates; wide ones are rare (triangles more than
-/// 2^25 grid units across) and take the scalar loop.
+/// The loops in lanes are for narrow stars. Wide stars (more than 2^25 grid units across) are rare
+/// and take the scalar loop, residual_wide().
 PTIN_VERSIONS
 double largest_residual_narrow(const double* x, const double* y, const double* z,
                                const FanFrame& fan, std::size_t begin, std::size_t end,
@@ -81,7 +81,7 @@ void assign_narrow(const double* x, const double* y, const double* z, std::size_
   }
 }
 
-/// The plain form, for wide coordinates: sample k's triangle and residual.
+/// The scalar loop: returns the residual of sample k, and gives the fan triangle that holds it.
 double residual_wide(const StarSamples& s, const FanFrame& fan, std::size_t k,
                      double& found) noexcept {
   const double qx = s.x[k] - fan.w_x;

@@ -8,8 +8,8 @@
 
 #include "engine/construct/measure/star_samples.h"
 
-// Function versions are chosen once by the loader; sanitizers run before it may, so they get the
-// plain one.
+// The loader chooses the version of a function once. Sanitizers run before it may choose, so builds
+// with them have the plain version alone.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__x86_64__)
 #define PTIN_VERSIONS
 #else
@@ -21,7 +21,8 @@ namespace ptin {
 using Lanes = double __attribute__((vector_size(kSampleLanes * sizeof(double))));
 using LaneIndices = long long __attribute__((vector_size(kSampleLanes * sizeof(long long))));
 
-// Inlined whatever the version of the caller: an inline function has one version itself.
+// Always inlined, and so compiled for the version of its caller: an inline function that stands for
+// itself has one version only.
 #define PTIN_LANES inline __attribute__((always_inline))
 
 PTIN_LANES Lanes load_lanes(const double* from) noexcept {

@@ -95,7 +95,8 @@ double straddling_residual(const StarSamples& s, const FanFrame& fan) noexcept {
     const double y1 = b.y1 - fan.w_y;
     const double z = b.z - fan.w_z;
     for (std::size_t i = 1; i < fan.triangles(); ++i) {
-      // Where the spoke, from w at 0 to the link at 1, is inside of the box (Liang and Barsky).
+      // Between which fractions the spoke, from w (0) to the link (1), is in the box (Liang and
+      // Barsky).
       double enter = 0.0;
       double leave = 1.0;
       const auto clip = [&](double direction, double low, double high) {

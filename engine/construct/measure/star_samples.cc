@@ -41,8 +41,8 @@ void gather_link(const Tile& tile, GridPoint origin, double origin_code, StarSam
   out.largest_z = largest_z;
 }
 
-/// Lays samples out one after the other; heights of samples without one are 0 (those with depth
-/// below 0).
+/// Lays samples out one after the other. A sample without a height (its depth is below 0) gets
+/// height 0.
 template <HeightType type>
 class Layout {
  public:
@@ -85,7 +85,7 @@ class Layout {
     out_.is_void[n_] = s.depth < 0.0F ? 1.0 : 0.0;
     add(s);
   }
-  /// The further corners of blocks, then padding with u itself.
+  /// Adds the further corners of blocks, then padding: u itself.
   void finish() {
     const std::size_t total = n_ + 3 * out_.blocks.size();
     const std::size_t padded = (total + kSampleLanes - 1) / kSampleLanes * kSampleLanes;
@@ -132,8 +132,9 @@ class Layout {
   double largest_ = 0.0;
 };
 
-/// u, then the first sample of each list (the worst one of its triangle, so that the first lanes
-/// are a good screen for the choice of w), then the others.
+/// Calls add(sample) for u, then for the first sample of each list, then for all others. The first
+/// of a list is the worst one of its triangle, so the first lanes are a good screen for the choice
+/// of w.
 template <class Add>
 void for_each_sample(const Tile& tile, const StarSamples& s, const Add& add) {
   const Vertex& u = tile.tin.vertices[s.star.center];
@@ -174,8 +175,8 @@ void lay_out_samples(const Tile& tile, GridPoint origin, double origin_code, Sta
   out.largest_z = std::max(out.largest_z, layout.largest());
 }
 
-/// Whether all heights in and around the star are those of u: the link's are (largest_z is 0), and
-/// so are those that the star's triangles cover.
+/// Whether all heights in and around the star are that of u: those of the link are (largest_z is
+/// 0), and so are those that the triangles of the star cover.
 bool is_flat(const Tile& tile, const StarSamples& s) {
   if (!s.surface_only || s.largest_z != 0.0) {
     return false;
@@ -205,7 +206,8 @@ void classify(const Tile& tile, StarSamples& out) {
   }
 }
 
-/// Heights are taken relative to u's; where u has none, to that of some link vertex.
+/// The code that heights are taken relative to: that of u, or of the first link vertex that has a
+/// height where u has none; 0 where none has.
 double origin_code_of(const Tile& tile, const Star& star) {
   if (tile.tin.has_height[star.center] != 0) {
     return tile.units.heights.code(tile.tin.vertices[star.center].height);

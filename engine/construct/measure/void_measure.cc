@@ -17,10 +17,10 @@ bool is_void(const Tile& tile, const StarSamples& s, std::size_t star_triangle) 
 
 /// Where a sample lies in the fan.
 struct Place {
-  std::size_t surface = kNone;   ///< A surface triangle that holds it (closed), if any.
-  std::size_t any = kNone;       ///< Some triangle that holds it; a void one if any.
+  std::size_t surface = kNone;   ///< A closed surface triangle that holds it; kNone: none does.
+  std::size_t any = kNone;       ///< A triangle that holds it; a void one where one does.
   bool in_open_surface = false;  ///< Inside of a surface triangle, on no edge.
-  double residual = 0.0;         ///< To `surface`; without one, to the edge that it lies on.
+  double residual = 0.0;         ///< To `surface`; without that, to an edge with heights, or 0.
 };
 
 /// The |vertical distance| of a sample to the plane of fan triangle i.
@@ -30,9 +30,9 @@ double residual_to(const FanFrame& fan, std::size_t i, double before, double aft
   return std::abs(numerator) * fan.inverse[i];
 }
 
-/// True when a sample in (void) fan triangle i lies on an edge of it whose ends both have heights:
-/// a surface triangle may come to lie beyond, now or in another refinement, and hold the sample
-/// too.
+/// True when a sample in the void fan triangle i lies on an edge of it whose ends both have
+/// heights: beyond that edge a surface triangle may lie, here or in another refinement, and hold
+/// the sample too.
 bool on_edge_with_heights(const Tile& tile, const StarSamples& s, const FanFrame& fan,
                           std::size_t i, bool on_first_spoke, bool on_second_spoke, bool on_link) {
   const std::size_t degree = s.star.degree();
@@ -100,10 +100,12 @@ void measure_sample(const Tile& tile, const Place& place, float depth, VoidMeasu
   }
 }
 
-/// What kSampleLanes samples are found to be.
+/// What kSampleLanes samples are found to cost.
 struct LaneMeasure {
-  Lanes residual;  ///< Of those with a height: in surface triangles; -1 where they are in none.
-  Lanes charge;    ///< Of those without.
+  /// Of a sample with a height: the largest in a surface triangle that holds it; -1 where none
+  /// does. 0 of one without a height.
+  Lanes residual;
+  Lanes charge;  ///< Of a sample without a height: 0 unless inside of a surface triangle. Else 0.
 };
 
 PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,
@@ -136,8 +138,8 @@ PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,
 }
 
 /// Measures from sample `begin` on while every sample with a height has a surface triangle and the
-/// error does not exceed `stop_above`. Returns where it stopped: the first lanes that hold one that
-/// has none, or the end.
+/// error does not exceed `stop_above`. Returns the first place whose lanes hold a sample that has
+/// lost its surface, or s.x.size() when there is none or the error is exceeded.
 PTIN_VERSIONS
 std::size_t measure_while_found(const StarSamples& s, const FanFrame& fan,
                                 const unsigned char* is_surface, std::size_t begin,
@@ -156,8 +158,8 @@ std::size_t measure_while_found(const StarSamples& s, const FanFrame& fan,
   return s.x.size();
 }
 
-/// Charges a block: each corner as a sample; and where the corners are in different triangles, the
-/// classes between.
+/// Measures a block: each corner as a sample. Where the corners lie in different fan triangles, the
+/// block is charged for each of these triangles, and those between, that is of the wrong class.
 void measure_block(const Tile& tile, const StarSamples& s, const FanFrame& fan,
                    const SampleBlock& b, VoidMeasure& measure) {
   std::size_t first = fan.triangles();
@@ -177,7 +179,8 @@ void measure_block(const Tile& tile, const StarSamples& s, const FanFrame& fan,
   }
 }
 
-/// One by one: coordinates beyond the exact range of doubles, and samples that lose their surface.
+/// Measures samples one by one: those of a wide star, and those in lanes in which one has lost its
+/// surface.
 void measure_singly(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::size_t begin,
                     std::size_t end, VoidMeasure& measure) {
   for (std::size_t k = begin; k < std::min(end, s.count); ++k) {
@@ -242,7 +245,8 @@ bool had_surface(const Tile& tile, const StarSamples& s, std::size_t k) {
   return after || (has_before && !is_void(tile, s, k == 0 ? triangles - 1 : k - 1));
 }
 
-/// The same after it: w touches the whole fan, any other the fan triangles beside its spoke.
+/// True when link vertex `k` touches a surface triangle of the fan. w touches the whole fan, any
+/// other vertex the fan triangles beside its spoke.
 bool keeps_surface(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::size_t k) {
   const std::size_t degree = s.star.degree();
   const auto surface = [&](std::size_t i) {
@@ -273,7 +277,7 @@ VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, FanFrame&
     }
   }
   measure.allowed = true;
-  if (!s.surface_triangles) {  // else the whole fan is surface, and keeps everybody
+  if (!s.surface_triangles) {  // else the whole fan is surface, and no vertex loses its own
     for (std::size_t k = 0; k < s.star.degree(); ++k) {
       const VertexId v = s.star.link[k];
       if (tile.tin.has_height[v] != 0 && had_surface(tile, s, k) &&

@@ -29,7 +29,7 @@ std::uint64_t chained(std::uint64_t checksum, const ArrayHeader& header) {
   return checksum_of_object(link);
 }
 
-/// The name, free for a new file.
+/// Returns `path` after it has removed a file of that name, if there is one.
 const std::string& without_old(FileLayer& files, const std::string& path) {
   const int failure = files.unlink(path);
   if (failure != 0 && failure != ENOENT) {

@@ -20,7 +20,7 @@ namespace ptin {
 /// What a manifest knows of a finished file.
 struct ArrayFileFacts {
   std::uint64_t bytes = 0;
-  std::uint64_t checksum = 0;  ///< Of the headers of all arrays, which hold the arrays' own.
+  std::uint64_t checksum = 0;  ///< Of the headers, which hold the checksums of the arrays.
   friend bool operator==(const ArrayFileFacts&, const ArrayFileFacts&) = default;
 };
 
@@ -31,6 +31,7 @@ class ArrayFileWriter {
   /// @throws Error io_error, resource_exhausted
   ArrayFileWriter(FileLayer& files, const std::string& path);
 
+  /// @throws Error io_error, resource_exhausted
   template <class T>
   void put(std::span<const T> array) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -41,6 +42,7 @@ class ArrayFileWriter {
     put(std::span<const T>(array));
   }
 
+  /// Of the arrays written so far.
   [[nodiscard]] const ArrayFileFacts& facts() const noexcept { return facts_; }
   /// @throws Error io_error, resource_exhausted
   void sync() { file_.sync(); }
@@ -52,24 +54,27 @@ class ArrayFileWriter {
   ArrayFileFacts facts_;
 };
 
-/// Reads them back in the order of writing, in place: spans live as long as the reader, and take no
-/// memory of the process's own.
+/// Reads arrays back in the order of writing, from a mapping of the file. Spans live as long as the
+/// reader, and take no anonymous memory.
 class ArrayFileReader {
  public:
+  /// Checks the headers of all arrays; an array itself is checked when it is taken.
   /// @throws Error corruption  the file is not the one of `facts`; io_error, not_found
   ArrayFileReader(const std::string& path, const ArrayFileFacts& facts);
 
   [[nodiscard]] bool at_end() const noexcept { return offset_ == file_.bytes(); }
-  /// @throws Error corruption  the next array is not of this type or damaged
+  /// The next array.
+  /// @throws Error corruption  it is not of elements of this size, or damaged, or there is none
   template <class T>
   [[nodiscard]] std::span<const T> take() {
     const std::span<const std::byte> bytes = take_bytes(sizeof(T));
     return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
-  /// @throws Error corruption  when a span met a hole since: the file was cut short, or its disk
-  ///                           failed; to be called when the work with spans is done
+  /// To be called when the work with spans is done: the file may have lost bytes under its mapping
+  /// meanwhile, and what was read there is not what was written.
+  /// @throws Error corruption  a read met a hole: the file was cut short, or its disk failed
   void require_undamaged() const { mapped_.require_undamaged(); }
-  /// As take(), copied; nothing needs to be asked about the copy later on.
+  /// As take(), but a copy: nothing needs to be asked about it later on.
   template <class T>
   [[nodiscard]] std::vector<T> take_copy() {
     const std::span<const T> array = take<T>();

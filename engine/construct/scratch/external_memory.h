@@ -14,7 +14,7 @@ namespace ptin {
 struct ExternalMemory {
   FileLayer& files;
   std::string folder;  ///< Must exist. Files in it have no names: they are gone with the process.
-  std::uint64_t bytes = std::uint64_t{64} << 20;
+  std::uint64_t bytes = std::uint64_t{64} << 20;  ///< Memory that the step may take.
 };
 
 }  // namespace ptin

@@ -27,26 +27,28 @@ namespace ptin {
 /// What sorting took.
 struct SortCounts {
   std::uint64_t runs = 0;     ///< Sorted in memory and written.
-  std::uint64_t merges = 0;   ///< Of runs to longer ones on disk, before the one that hands out.
-  std::uint64_t written = 0;  ///< Records, each as often as it was.
+  std::uint64_t merges = 0;   ///< Of runs to a longer run on disk; not the last, which hands out.
+  std::uint64_t written = 0;  ///< Records; each counts as often as it was written.
   std::size_t widest = 0;     ///< Most runs merged at a time.
   std::size_t held = 0;       ///< Most records in memory at a time.
 };
 
-/// add() in any order, then take() or merge() everything once. With `Before` a total order on what
-/// the records hold, the result depends on the set of records alone.
+/// Takes records by add() in any order, then hands all of them out once, in ascending order, by
+/// take() or merge(). With `Before` a total order on what the records hold, the result depends on
+/// the set of records alone.
 ///
-/// Runs of as many records as fit into memory are sorted and written. So many are merged at a time
-/// as can have kLeastOfRun records each in that memory: as soon as there are more, all of them
-/// become one run of the next level, whose runs are treated likewise. Sorting n records in the
-/// memory of m thus writes each of them 1 + log(n / m) / log(m / 256) times, rounded down: once up
-/// to n = m^2 / 256.
+/// Runs of as many records as fit into memory are sorted and written. At most most_runs() runs are
+/// merged at a time: as many as can have kLeastOfRun records each in that memory. When so many runs
+/// are there and one more is to come, all of them become one run of the next level, whose runs are
+/// treated likewise. Sorting n records in the memory of m thus writes each of them 1 + log(n / m) /
+/// log(m / 256) times, rounded down: once up to n = m^2 / 256.
 template <class Record, class Before>
 class ExternalSorter {
   static_assert(std::is_trivially_copyable_v<Record>);
 
  public:
-  /// @param memory  Of which records for kLeastRecords are taken where it is less.
+  /// @param memory  Folder and bytes for records. Where the bytes are fewer than kLeastRecords
+  ///     records take, it takes these all the same.
   /// @param stem    Of the names of its files, for errors.
   /// @param stop    Looked at where add() merges.
   explicit ExternalSorter(const ExternalMemory& memory, std::string stem = "sorted",
@@ -71,8 +73,8 @@ class ExternalSorter {
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   [[nodiscard]] const SortCounts& counts() const noexcept { return counts_; }
 
-  /// The next records in ascending order, some thousands; false when there is none left. No add()
-  /// after the first call.
+  /// Gives the next records in ascending order, up to kBatch of them; false when none is left. No
+  /// add() after the first call.
   /// @throws Error as add(), cancelled
   /// Cost of all: O(n log n); nothing is written unless there is more than fits in memory.
   [[nodiscard]] bool take(std::vector<Record>& batch, const std::stop_token& stop = {}) {
@@ -107,9 +109,11 @@ class ExternalSorter {
     }
   }
 
+  /// Records that are handed out or copied at a time.
   static constexpr std::size_t kBatch = 4096;
-  /// Of a run, in memory while it is merged.
+  /// Least number of records of a run in memory while it is merged.
   static constexpr std::size_t kLeastOfRun = 256;
+  /// Least number of records that are held in memory, whatever the limit.
   static constexpr std::size_t kLeastRecords = 2 * kBatch;
 
  private:
@@ -126,7 +130,8 @@ class ExternalSorter {
   [[nodiscard]] std::size_t most_runs() const noexcept { return capacity_ / kLeastOfRun; }
   void note_held(std::size_t records) { counts_.held = std::max(counts_.held, records); }
 
-  /// False when the buffer is as large as it may be. Where it moves, both places count.
+  /// Makes the buffer larger; false when it is as large as it may be. While it moves, its old and
+  /// its new room count together.
   bool grow() {
     const std::size_t now = buffer_.capacity();
     const std::size_t most = capacity_ - now;
@@ -147,7 +152,7 @@ class ExternalSorter {
     begin_run(levels_.front());
     append(levels_.front(), buffer_);
     ++counts_.runs;
-    buffer_ = std::vector<Record>();  // the next one takes all memory at once; {} would keep it
+    buffer_ = std::vector<Record>();  // so that the next one can take all memory; {} would keep it
   }
 
   void begin_run(Level& level) {
@@ -163,7 +168,7 @@ class ExternalSorter {
     counts_.written += records.size();
   }
 
-  /// Merges all runs of a level to one of the next. REQUIRES: the buffer is empty.
+  /// Merges all runs of a level to one run of the next. REQUIRES: the buffer is empty.
   void lift(std::size_t level) {
     if (level + 1 == levels_.size()) {
       levels_.emplace_back();
@@ -207,7 +212,7 @@ class ExternalSorter {
       std::move(level.runs.begin(), level.runs.end(), std::back_inserter(runs));
     }
     levels_.clear();
-    while (runs.size() > most_runs()) {  // as few as leave what can be merged at a time
+    while (runs.size() > most_runs()) {  // merges few, so that the rest can be merged at once
       const std::size_t count = std::min(most_runs(), runs.size() - most_runs() + 1);
       const auto end = runs.begin() + static_cast<std::ptrdiff_t>(count);
       std::vector<SortedRun> first(std::make_move_iterator(runs.begin()),
@@ -224,7 +229,7 @@ class ExternalSorter {
   ExternalMemory memory_;
   std::string stem_;
   std::stop_token stop_;
-  std::size_t capacity_;  ///< Of the buffer, or of those of the runs that are merged; records.
+  std::size_t capacity_;  ///< Records in the buffer, or in those of all runs that are merged.
   [[no_unique_address]] Before before_;
   std::vector<Record> buffer_;
   std::vector<Level> levels_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The manifest of a build in the making: which work is done, durably (engine/DESIGN.md, section 5.9).
+// The manifest of a build in the making: which work is done, durably (engine/DESIGN.md,
+// section 5.9).
 #pragma once
 
 #include <cstdint>
@@ -13,9 +14,9 @@
 
 namespace ptin {
 
-/// Groups of JSON entries, each group one line behind its checksum, added at the end and never
-/// changed: a group is there as a whole or not at all. A line that was torn by a power cut ends
-/// what is believed, and is cut off.
+/// Groups of JSON entries. Each group is one line behind its checksum, added at the end and never
+/// changed: it is there as a whole or not at all. The first line whose checksum is wrong, torn by a
+/// power cut, ends what is believed; the file is cut off there.
 class Manifest {
  public:
   /// Opens `path`, or makes it. @throws Error io_error, resource_exhausted
@@ -24,9 +25,10 @@ class Manifest {
   Manifest(const Manifest&) = delete;
   Manifest& operator=(const Manifest&) = delete;
 
-  /// What was there when it was opened, group after group.
+  /// The entries that the file had when it was opened, group after group.
   [[nodiscard]] const std::vector<nlohmann::json>& entries() const noexcept { return entries_; }
-  /// Writes a group and syncs. What it speaks of must be synced before.
+  /// Writes a group and syncs it. What the group tells of must be durable before.
+  /// @throws Error io_error, resource_exhausted
   void append(const std::vector<nlohmann::json>& group);
 
  private:

@@ -23,18 +23,21 @@
 
 namespace ptin {
 
-/// Threads: after finish(), const members from any number at once.
+/// Records of one size in a file: added in order, finished, then read. Threads: after finish(),
+/// const members from any number at once.
 template <class Record>
 class RecordFile {
   static_assert(std::is_trivially_copyable_v<Record>);
 
  public:
+  /// In a file without a name in the folder of `memory`; it goes with the object.
+  /// @param stem  Of the name that errors show.
   /// @throws Error not_found (no such folder), io_error, resource_exhausted
   RecordFile(const ExternalMemory& memory, const std::string& stem)
       : file_(std::make_unique<ScratchFile>(memory.files, memory.folder, stem, true)) {}
 
   /// In a file of this name, which stays when the object goes.
-  /// @throws Error as above, and when a new one exists already
+  /// @throws Error as above, and when a file that is to be new exists already
   RecordFile(FileLayer& files, const std::string& path, ScratchFile::Kept kept)
       : file_(std::make_unique<ScratchFile>(files, path, kept)) {}
 
@@ -45,18 +48,22 @@ class RecordFile {
       finish();
     }
   }
-  /// To be called when the last record has been added.
+  /// Writes what add() still holds. To be called after the last record.
+  /// @throws Error as add()
   void finish() {
     file_->write_at(std::as_bytes(std::span(block_)), written_ * sizeof(Record));
     add_to_checksum(block_);
     written_ += block_.size();
     block_.clear();
   }
-  /// Of all blocks in their order.
+  /// Of all records, block by block. Complete after finish().
   [[nodiscard]] std::uint64_t checksum() const noexcept { return checksum_; }
   /// @throws Error io_error, resource_exhausted
   void sync() { file_->sync(); }
-  /// Reads what an earlier process left in the file. False when it is not what was written.
+  /// Takes up the file of an earlier process, which was finished: reads all of it. False when it is
+  /// not what was written.
+  /// @param path               Of the same file.
+  /// @param records, checksum  What size() and checksum() were.
   /// @throws Error io_error, cancelled
   [[nodiscard]] bool take_up(const std::string& path, std::uint64_t records, std::uint64_t checksum,
                              const std::stop_token& stop) {
@@ -75,6 +82,7 @@ class RecordFile {
   }
   [[nodiscard]] std::uint64_t size() const noexcept { return written_ + block_.size(); }
 
+  /// Reads records `first` to `first` + `count` - 1 into `records`, which gets that length.
   /// @throws Error io_error
   void take(std::uint64_t first, std::uint64_t count, std::vector<Record>& records) const {
     records.resize(count);

@@ -21,11 +21,13 @@ struct SortedRun {
   std::uint64_t next = 0, end = 0;
 };
 
+/// Merges sorted runs to one ascending sequence, by `Before`.
 template <class Record, class Before>
 class RunMerger {
  public:
-  /// @param runs     None empty.
-  /// @param records  That buffers of all runs hold together; at least one for each run.
+  /// @param runs     None of them empty.
+  /// @param records  How many records the buffers of all runs hold together; at least one for each
+  ///     run.
   /// @throws Error io_error
   RunMerger(std::vector<SortedRun> runs, std::size_t records) {
     cursors_.reserve(runs.size());
@@ -60,7 +62,7 @@ class RunMerger {
   }
 
  private:
-  /// A place in a run, and what comes next in memory.
+  /// A place in a run, with a buffer of the records from there on.
   class Cursor {
    public:
     Cursor(SortedRun run, std::size_t most) : run_(std::move(run)) {
@@ -82,7 +84,7 @@ class RunMerger {
       run_.file->read_at(std::as_writable_bytes(std::span(buffer_)), run_.next * sizeof(Record));
       run_.next += buffer_.size();
       if (run_.next == run_.end) {
-        run_.file.reset();  // the last of them frees the disk
+        run_.file.reset();  // the last run of a file frees its disk
       }
     }
 
@@ -91,7 +93,7 @@ class RunMerger {
     std::size_t at_ = 0;
   };
 
-  /// For a heap of the runs' smallest records.
+  /// The order of a heap of runs whose front has the smallest record.
   struct After {
     const RunMerger& merger;
     bool operator()(std::size_t a, std::size_t b) const {

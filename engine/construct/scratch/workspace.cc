@@ -39,7 +39,8 @@ bool is_empty_but_for(const std::string& folder, const std::string& name) {
                      [&](const std::string& path) { return path == name; });
 }
 
-/// A name that looks like ours proves nothing: everything in a folder is removed in the end.
+/// A name that looks like ours proves nothing, and everything in a folder is removed in the end: so
+/// a folder that holds something else is refused.
 void require_ours(bool is_ours, const std::string& folder) {
   if (!is_ours) {
     throw Error(ErrorCode::invalid_argument,
@@ -53,8 +54,8 @@ std::uint64_t checksum_of_text(const std::string& text) {
   return checksum_of(std::as_bytes(std::span(text)));
 }
 
-/// True for a folder in `--tmp` that belongs to the workspace of this path, or that holds nothing
-/// yet: of a build that was killed early.
+/// True for a folder in `--tmp` that belongs to the workspace with this owner; or that holds
+/// nothing yet, left by a build that was killed early.
 /// @param owner  Checksum of the path that the workspace had when its build began.
 bool is_owned(const std::string& tmp, std::uint64_t owner) {
   std::ifstream file(owner_in(tmp));
@@ -92,7 +93,7 @@ void make_folder(FileLayer& files, const std::string& path) {
   }
 }
 
-/// Removes a folder of ours with its files; one that is not there is no fault.
+/// Removes a folder of ours with its files. Does nothing where there is no such folder.
 void remove_folder(FileLayer& files, const std::string& path) {
   std::error_code ignored;  // what cannot be listed cannot be removed either, which says why
   std::vector<std::string> names;
@@ -116,8 +117,8 @@ void remove_folder(FileLayer& files, const std::string& path) {
   }
 }
 
-/// As it is when it has been written and read: NaN becomes null, and bytes that are no UTF-8 are
-/// replaced.
+/// The JSON as it is after it has been written and read: NaN becomes null, and bytes that are no
+/// UTF-8 are replaced.
 nlohmann::json as_read_back(const nlohmann::json& json) {
   return nlohmann::json::parse(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
@@ -132,7 +133,7 @@ nlohmann::json first_line(const nlohmann::json& fingerprint, const std::string& 
 
 }  // namespace
 
-/// An exclusive lock on the folder, for as long as this lives.
+/// An exclusive lock on the folder, held while this object lives.
 class Workspace::Lock {
  public:
   /// Null when the folder is not there, or was removed while we waited for it.
@@ -272,7 +273,7 @@ void Workspace::take_up(const nlohmann::json& fingerprint) {
   if (tmp_ == folder_) {
     return;
   }
-  if (!has_work_) {  // it may have been killed before the folder was there
+  if (!has_work_) {  // killed early, perhaps before the folder was made
     take_tmp(owner_of(first, folder_));
     return;
   }
@@ -284,7 +285,7 @@ void Workspace::take_up(const nlohmann::json& fingerprint) {
   require_ours(is_owned(tmp_, owner_of(first, folder_)), tmp_);
 }
 
-/// Makes the folder in `--tmp`, or finds that it is ours.
+/// Makes the folder in `--tmp`, or checks that the one there is ours.
 void Workspace::take_tmp(std::uint64_t owner) {
   make_folder(files_, tmp_);
   require_ours(is_owned(tmp_, owner), tmp_);
@@ -292,8 +293,9 @@ void Workspace::take_tmp(std::uint64_t owner) {
   write_owner(files_, tmp_, folder_);
 }
 
-/// The first line, which names the folder in `--tmp`, before that is made: whenever the process is
-/// killed, what there is can be found. An error leaves nothing behind.
+/// Writes the first line of the manifest, which names the folder in `--tmp`, then makes that
+/// folder: so whenever the process is killed, what it leaves can be found. An error leaves nothing
+/// behind.
 void Workspace::begin(const nlohmann::json& fingerprint) {
   try {
     manifest_->append({first_line(fingerprint, tmp_, folder_)});

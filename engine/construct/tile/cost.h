@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Costs: in which order vertices go (engine/DESIGN.md, section 5.1).
+// Costs: in which order vertices go (engine/DESIGN.md, section 5.1; PriorityScale has every term).
 #pragma once
 
 #include <cstdint>

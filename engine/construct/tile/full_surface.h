@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The full surface, asked along the edges of fans: the deviation of a piecewise planar surface from
-// another is largest at a vertex of their overlay (engine/DESIGN.md, section 5.3).
+// The full surface, asked along the edges of fans: there the deviation of a fan is measured
+// (engine/DESIGN.md, section 5.3).
 #pragma once
 
 #include <cstdint>
@@ -27,19 +27,22 @@ class FullSurface {
   virtual ~FullSurface() = default;
 
   /// A bound on the vertical distance between the straight edge a-b and the full surface along it,
-  /// taken at its crossings with edges of the full TIN that have surface beside them; height codes.
-  /// Tight up to rounding; 0 where all heights are equal. Cost: the number of crossings.
+  /// in height codes. It is taken where the edge crosses edges of the full TIN that have a surface
+  /// triangle on one side at least. Tight up to rounding; 0 where all heights are equal. Cost: the
+  /// number of crossings.
   [[nodiscard]] virtual double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const = 0;
 };
 
-/// Collects gaps at crossings and bounds their rounding: all terms are differences from one
-/// reference height, of at most Z; a crossing takes fewer than 16 roundings of 2^-53 relative to 2
-/// Z.
+/// The largest gap over the crossings of one edge, in height codes, with a bound of its rounding.
+/// All terms are differences from one reference code, of at most Z; a crossing takes fewer than 16
+/// roundings of 2^-53 relative to 2 Z.
 class GapMaximum {
  public:
   explicit GapMaximum(double reference) noexcept : reference_(reference) {}
-  /// A crossing: full surface between codes p and q at fraction f, edge height `e` relative to the
-  /// reference.
+  /// Adds a crossing.
+  /// @param p, q  Codes at the ends of the edge of the full TIN.
+  /// @param f     The fraction from p to q at which it is crossed.
+  /// @param e     Code of the edge a-b there, relative to the reference.
   void add(double p, double q, double f, double e) noexcept {
     const double low = p - reference_;
     const double rise = q - p;
@@ -48,6 +51,7 @@ class GapMaximum {
     const double size = (low < 0 ? -low : low) + (rise < 0 ? -rise : rise) + (e < 0 ? -e : e);
     size_ = size > size_ ? size : size_;
   }
+  /// The largest gap, raised by its rounding.
   [[nodiscard]] double bound() const noexcept { return gap_ + 0x1p-47 * size_; }
 
  private:

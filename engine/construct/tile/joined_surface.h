@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The full surface under a tile of several leaves: that of each leaf, asked one by one.
+// The full surface under a tile of several leaves: the surfaces of the leaves, asked one by one.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace ptin {
 
-/// Every edge of the full TIN is in the surface of some leaf, so the largest gap over leaves is the
-/// largest of all. REQUIRES: leaves that know ends by position, as those of more than one leaf do.
+/// Every edge of the full TIN is in the surface of some leaf, so the largest gap over the leaves is
+/// the largest of all. REQUIRES: the surface of a leaf answers for edges that lead out of the leaf.
 class JoinedSurface final : public FullSurface {
  public:
   /// @param box  Of all samples of the leaf and its full surface.

@@ -15,8 +15,8 @@ namespace ptin {
 /// at the end.
 struct PartSurface::Step {
   VertexId vertex = kNone;      ///< The vertex that the edge passes through, or kNone.
-  TriangleId triangle = kNone;  ///< Otherwise: the triangle to leave ...
-  int side = 0;                 ///< ... across this side; kNone: the edge does not go on here.
+  TriangleId triangle = kNone;  ///< Else the triangle that it leaves; kNone: the walk ends here.
+  int side = 0;                 ///< The side across which it leaves that triangle.
   [[nodiscard]] bool is_end() const noexcept { return vertex == kNone && triangle == kNone; }
 };
 
@@ -33,14 +33,15 @@ class PartSurface::Walk {
         length_y_(static_cast<double>(b.position.y) - a.position.y),
         gap_(a.code) {}
 
-  /// From a vertex on the edge into the triangles around it, `start` the first of them.
+  /// Walks from a vertex on the edge.
+  /// @param start  The first of the triangles around it.
   void from_vertex(VertexId v, TriangleId start) { go(leave_vertex(v, start)); }
-  /// Over a side of the border into the part.
+  /// Walks into the part over a side of its border.
   void from_side(const BorderSide& border) {
     cross(border.triangle, border.side);
     go(into(border.triangle, border.side));
   }
-  /// The edge passes through a vertex of the border.
+  /// Adds the gap at a vertex that the edge passes through.
   void touch(VertexId v) {
     if (tin_.has_height[v] == 0) {
       return;
@@ -81,7 +82,7 @@ class PartSurface::Walk {
   GapMaximum gap_;
 };
 
-/// The gap where the edge crosses a side.
+/// Adds the gap where the edge crosses a side.
 void PartSurface::Walk::cross(TriangleId t, int side) {
   const Triangle& triangle = tin_.triangles[t];
   if (!is_surface(t) && !is_surface(triangle.n[side])) {
@@ -95,8 +96,8 @@ void PartSurface::Walk::cross(TriangleId t, int side) {
   gap_.add(code(p), code(q), sp / (sp - sq), rise_ * (ta / (ta - tb)));
 }
 
-/// The triangle around `v`, from `start` on, into which the edge goes on, or the neighbour that it
-/// passes through.
+/// Where the edge goes on from vertex `v`: to a neighbour that it passes through, or into one of
+/// the triangles around `v`, of which `start` is the first.
 PartSurface::Step PartSurface::Walk::leave_vertex(VertexId v, TriangleId start) const {
   TriangleId t = start;
   do {
@@ -118,20 +119,21 @@ PartSurface::Step PartSurface::Walk::leave_vertex(VertexId v, TriangleId start) 
   return {};
 }
 
-/// In triangle `t`, entered over side `entry`: the vertex or side where the edge leaves it.
+/// Where the edge, which entered triangle `t` over side `entry`, leaves it: a vertex or a side.
 PartSurface::Step PartSurface::Walk::into(TriangleId t, int entry) const {
   const VertexId apex = tin_.triangles[t].v[entry];
   const std::int64_t side = side_of_edge(apex);
   if (side == 0) {
     return {apex, kNone, 0};
   }
-  // Seen along the edge, corner next(entry) lies to the left and previous(entry) to the right; it
-  // leaves across the side between the apex and the corner on the other hand.
+  // Seen along the edge, corner next(entry) lies to the left and previous(entry) to the right. An
+  // apex on the left is left behind on that side, so the edge leaves between the apex and the
+  // corner on the right; with an apex on the right it is the other way round.
   return {kNone, t, side > 0 ? next_corner(entry) : previous_corner(entry)};
 }
 
-/// Goes on to the end of the edge or of the piece. Vertices of the border are ends: other walks
-/// begin there.
+/// Goes on to the end of the edge, or to where it leaves the part. A vertex of the border ends the
+/// walk too: largest_gap() begins another walk there.
 void PartSurface::Walk::go(Step step) {
   while (!step.is_end()) {
     if (step.vertex != kNone) {

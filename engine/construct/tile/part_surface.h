@@ -12,23 +12,24 @@
 
 namespace ptin {
 
-/// A leaf of points: its own triangles of the full TIN. An edge may begin and end outside, and
-/// enter and leave more than once.
+/// The surface of a leaf of points or of a TIN: the triangles of the full TIN that are its own. An
+/// edge may begin and end outside of the part, and enter and leave it more than once.
 class PartSurface final : public FullSurface {
  public:
-  /// Keeps a copy of `part`, whose vertices are in the order of their keys. Neighbours are kNone at
-  /// its border.
+  /// Keeps a copy of `part`. REQUIRES: its vertices are in the order of their keys, and neighbours
+  /// are kNone at its border.
   PartSurface(const Tin& part, const HeightEncoding& encoding);
 
   /// Cost: the crossings, and the logarithm of the length of the border.
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
 
  private:
-  /// A side of a triangle without a neighbour; the walk around its first corner begins there.
+  /// A side of a triangle beyond which the part has no triangle. The walk around its first corner
+  /// begins in that triangle.
   struct BorderSide {
-    VertexId first, second;  ///< With the part on the left of first -> second.
+    VertexId first, second;  ///< The part is on the left of first -> second.
     TriangleId triangle;
-    int side;
+    int side;  ///< Opposite to this corner of `triangle`.
   };
   struct Step;
   class Walk;
@@ -42,8 +43,8 @@ class PartSurface final : public FullSurface {
   HeightEncoding encoding_;
   std::vector<BorderSide> border_;       ///< By first corner.
   std::vector<std::uint32_t> by_place_;  ///< Indices into border_, along the Hilbert curve.
-  PackedBoxes boxes_;                    ///< Of by_place_.
-  std::vector<std::uint8_t> on_border_;  ///< Beside the vertices.
+  PackedBoxes boxes_;                    ///< Of the sides, in that order.
+  std::vector<std::uint8_t> on_border_;  ///< Beside the vertices: 1 or 0.
 };
 
 }  // namespace ptin

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The removed samples that each triangle covers: short arrays in one pool.
+// The removed samples that each triangle covers: short lists in one pool.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,15 @@
 
 namespace ptin {
 
-/// A sample of the source that is no vertex any more, or a square block of them: 2^side_log by
-/// 2^side_log samples of a raster with one height, or all without one; `position` is its
-/// south-western sample, a multiple of its side. Lakes, seas and voids are blocks: a triangle over
-/// a million samples lists about as many elements as its border is long (sample_blocks.h).
+/// A removed sample: one that is no vertex any more. Or a square block of them: 2^side_log by
+/// 2^side_log samples of a raster, either all of one height or all without a height; `position` is
+/// the south-western sample, whose coordinates are multiples of the block's side. Lakes, seas and
+/// voids become blocks: a triangle over a million samples lists about as many elements as its
+/// border is long (construct/measure/sample_blocks.h).
 ///
 /// `depth` is the distance to the nearest sample of the other class in ground units, +infinity
-/// beyond the cut-off; negative for samples without a height (engine/DESIGN.md, section 3.2); of a block,
-/// the farthest from 0.
+/// beyond the cut-off; negative for samples without a height (engine/DESIGN.md, section 3.2). The
+/// depth of a block is the one farthest from 0.
 struct Sample {
   GridPoint position;
   HeightBits height = 0;
@@ -32,18 +33,19 @@ struct Sample {
   std::uint32_t side_log = 0;
 };
 
-/// Where a triangle's samples are. Owned by the triangle; only SampleLists makes sense of it.
+/// Where the list of a triangle lies. The triangle owns the list; only SampleLists can read a slot.
 struct SampleSlot {
   std::uint32_t offset = 0;
   std::uint32_t count = 0;
 };
 
-/// Arrays of samples whose capacities are powers of two, in one pool with a free list for each
-/// capacity. A list is taken at its final length and given back whole: a collapse takes the lists
-/// of the star and gives new ones to the fan. At most 2^32 - 1 samples in one pool (one tile).
+/// Lists of samples in one pool, with capacities that are powers of two and a free list for each
+/// capacity. A list is taken at its final length and given back whole: a collapse gives back the
+/// lists of the star and takes new ones for the fan. A pool (one tile) holds at most 2^32 - 1
+/// samples.
 class SampleLists {
  public:
-  /// A list of `count` samples, not initialised. Spans into the pool end with the next call.
+  /// A new list of `count` samples, not initialised. Invalidates spans and pointers into the pool.
   /// @throws Error resource_exhausted  the pool would hold more than 2^32 - 1 samples
   [[nodiscard]] SampleSlot take(std::uint32_t count) {
     if (count == 0) {
@@ -67,6 +69,7 @@ class SampleLists {
     return {static_cast<std::uint32_t>(offset), count};
   }
 
+  /// Frees a list.
   void give_back(SampleSlot slot) {
     if (slot.count != 0) {
       const auto capacity_log = static_cast<std::size_t>(std::bit_width(slot.count - 1));
@@ -75,13 +78,14 @@ class SampleLists {
     }
   }
 
-  /// True when a third of the pool is free lists of lengths that nobody asks for any more: as
-  /// triangles grow, so do their lists. Time to lay them out anew (tile_compact.h).
+  /// True when more than a third of a large pool is free. Its free lists are of lengths that are
+  /// hardly asked for any more, since lists grow as triangles do: time to compact the tile
+  /// (construct/collapse/tile_compact.h).
   [[nodiscard]] bool is_sparse() const noexcept {
     constexpr std::size_t kWorthwhile = std::size_t{1} << 16;
     return pool_.size() > kWorthwhile && pool_.size() / 3 * 2 > used_;
   }
-  /// Samples in lists, each rounded up to its capacity.
+  /// The capacities of all lists, in samples.
   [[nodiscard]] std::size_t used() const noexcept { return used_; }
 
   [[nodiscard]] std::span<Sample> samples(SampleSlot slot) noexcept {
@@ -94,10 +98,11 @@ class SampleLists {
     return pool_.data() + slot.offset;
   }
 
-  /// Moves lists to the front of the pool, in the order they have there, and lets the rest of it go
-  /// but for a quarter. Nothing is there twice meanwhile.
-  /// @param slots  Those of all lists; a count may have been lowered (the first elements stay).
-  /// Cost: linear in the pool, and n log n in the lists.
+  /// Moves all lists to the front of the pool, in the order in which they lie there. Gives back the
+  /// room behind them, but for a quarter of theirs. Works in place; invalidates spans and pointers.
+  /// @param slots  Of all lists that are not empty. A count may have been lowered: the first
+  ///     samples stay.
+  /// Cost: linear in the pool, and n log n in the number of lists.
   void close_gaps(std::vector<SampleSlot*> slots) {
     std::sort(slots.begin(), slots.end(),
               [](const SampleSlot* a, const SampleSlot* b) { return a->offset < b->offset; });
@@ -114,13 +119,13 @@ class SampleLists {
     pool_.shrink(used_);
   }
 
-  /// Room for so many in all.  @throws std::bad_alloc
+  /// Makes room for this many samples in all.  @throws std::bad_alloc
   void reserve(std::size_t samples) { pool_.reserve(samples); }
 
  private:
   GrowingArray<Sample> pool_;
-  std::size_t used_ = 0;
-  std::array<std::vector<std::uint32_t>, 33> free_;
+  std::size_t used_ = 0;                             ///< Sum of the capacities of lists.
+  std::array<std::vector<std::uint32_t>, 33> free_;  ///< By log2 of the capacity: offsets.
 };
 
 }  // namespace ptin

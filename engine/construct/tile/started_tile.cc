@@ -8,8 +8,8 @@ MeasureUnits measure_units(const TerrainFrame& frame, double void_slope) {
   units.heights = frame.heights;
   units.quantum_code = frame.height_quantum / frame.heights.step;
   units.void_slope_code = void_slope / frame.heights.step;
-  // Float32 heights may look like whole numbers and not be (the quantum is only what they are near
-  // to), and what a claim of exact arithmetic saves is rounding alone.
+  // Heights of float32 are never taken for exact: they may look like multiples of the quantum and
+  // be only near to them, and claiming exact arithmetic saves no more than a bound of rounding.
   units.exact_codes = frame.heights.type == HeightType::int32;
   return units;
 }

@@ -13,7 +13,7 @@
 
 namespace ptin {
 
-/// A tile with the full TIN of a window, and the full surface under it.
+/// A leaf with the full TIN of its window, and the full surface under it.
 struct StartedTile {
   Tile tile;
   std::unique_ptr<FullSurface> full;

@@ -17,8 +17,7 @@ void start_tile(Tile& tile, const std::vector<float>& depths) {
   for (const Triangle& triangle : tin.triangles) {
     for (int i = 0; i < 3; ++i) {
       ++tile.vertex_state[triangle.v[i]].degree;
-      if (triangle.n[i] ==
-          kNone) {  // a border edge adds the neighbour that no further triangle counts
+      if (triangle.n[i] == kNone) {  // at a border there is one neighbour more than triangles
         ++tile.vertex_state[triangle.v[previous_corner(i)]].degree;
       }
     }

@@ -17,22 +17,22 @@
 
 namespace ptin {
 
-/// What a triangle carries upwards (saturation, engine/DESIGN.md, section 2.2): the attributes of the record
-/// that created it. The box is kept here because every evaluation of a collapse asks for it; the
-/// rest is read from the record.
+/// What a triangle carries upwards (saturation, engine/DESIGN.md, section 2.2): the attributes of
+/// its maker, the record of the collapse that created it. The box is kept here because every
+/// evaluation of a collapse asks for it; the rest is read from the record.
 struct CarriedState {
   GridBox roi;  ///< Empty for a triangle of the full TIN.
-  std::uint32_t record =
-      kNone;           ///< Index into Tile::records; kNone for a triangle of the full TIN.
+  /// Index of its maker in Tile::records; kNone for a triangle of the full TIN.
+  std::uint32_t record = kNone;
   SampleSlot samples;  ///< Removed samples inside this triangle.
-  /// Length of the longest chain of collapses that ends here: 1 and the rank of its record, 65 535
-  /// at most; 0 for a triangle of the full TIN.
+  /// Length of the longest chain of collapses that ends with its maker: the rank of that record
+  /// plus 1, but at most 65 535; 0 for a triangle of the full TIN.
   std::uint16_t chain = 0;
-  bool holds_heights = false;  ///< Some of them have a height ...
-  bool holds_voids = false;    ///< ... and some have none.
+  bool holds_heights = false;  ///< Some of `samples` have a height.
+  bool holds_voids = false;    ///< Some of `samples` have none.
 };
 
-/// What a triangle carries that the record with index `id` has made.
+/// Makes record `r`, which has index `id` in Tile::records, the maker of a triangle.
 inline void carry_record(CarriedState& carried, const VertexSplit& r, std::uint32_t id) noexcept {
   carried.roi = r.roi;
   carried.record = id;
@@ -51,41 +51,41 @@ struct MeasureUnits {
   HeightEncoding heights;
   double quantum_code = 1.0;     ///< One height quantum, as a difference of codes.
   double void_slope_code = 0.0;  ///< Height codes charged per ground unit of depth.
-  bool exact_codes =
-      false;  ///< Codes are integers, so that residuals of small stars have no rounding.
+  bool exact_codes = false;      ///< Codes are integers: residuals of small stars have no rounding.
 
-  /// What a sample of the wrong class is charged, in codes. A depth beyond the cut-off is infinite,
-  /// and so is its charge, whatever the slope.
+  /// What a sample in the wrong class is charged, in height codes. A depth beyond the cut-off is
+  /// infinite, and so is its charge, whatever the slope.
   [[nodiscard]] double charge(float depth) const noexcept {
     return std::isinf(depth) ? std::numeric_limits<double>::infinity()
                              : static_cast<double>(std::abs(depth)) * void_slope_code;
   }
 };
 
-/// A tile: everything that a collapse reads and changes. What is pushed up to a parent is the TIN,
-/// `carried` (with the records it points to) and the samples.
+/// A tile: everything that a collapse reads and changes. A parent gets the TIN, `carried` with the
+/// records that it names, and samples or witnesses (construct/hierarchy/tile_push.h).
 struct Tile {
   Tin tin;
   std::vector<CarriedState> carried;      ///< Beside tin.triangles.
   std::vector<VertexState> vertex_state;  ///< Beside tin.vertices.
   SampleLists samples;
-  /// In the order of the collapses; before them what a first pass left out (first_pass.h), one for
-  /// each of its triangles, which no file keeps.
+  /// First the records that the tile begins with: foreign ones, which its children pushed up, or
+  /// those of a first pass (construct/collapse/first_pass.h), which no file keeps. Then its own, in
+  /// the order of the collapses.
   std::vector<VertexSplit> records;
-  /// What the own records of a tile of witnesses depend on, as indices into `records` (below that
-  /// of the record itself): record i of the own ones on dependencies[dependency_end[i - 1]] ..
-  /// [dependency_end[i]].
+  /// Of a tile of witnesses: the indices in `records` of what its own records depend on, each below
+  /// that of the dependent one. Those of the i-th own record lie from dependency_end[i - 1] (for
+  /// i = 0: from 0) to before dependency_end[i].
   std::vector<std::uint32_t> dependencies;
   std::vector<std::uint32_t> dependency_end;
   MeasureUnits units;
-  /// Every grid position inside is a sample: rasters. Then samples join into blocks.
+  /// Every grid point inside is a sample, as on rasters: then samples may be joined into blocks.
   bool samples_fill_grid = false;
   bool has_voids = false;  ///< Some triangle is void or some sample has no height.
 };
 
-/// Fills `carried` and `vertex_state` of a tile that holds the full TIN. Depths are +infinity where
-/// `depths` is empty.
-/// @param depths  Beside tin.vertices, unsigned; or empty.
+/// Sets everything else of a tile that holds the full TIN: `carried`, `vertex_state`, `has_voids`,
+/// and room for samples and records.
+/// @param depths  Beside tin.vertices, without signs. Empty: all are +infinity.
 void start_tile(Tile& tile, const std::vector<float>& depths);
 
 }  // namespace ptin

@@ -11,8 +11,8 @@ namespace ptin {
 
 namespace {
 
-/// Leaves along a length of `units` grid units. A rest of less than half a side is added to the
-/// last leaf.
+/// Number of leaves along a length of `units` grid units. A rest of less than half a side is added
+/// to the last leaf.
 std::int64_t leaves_along(std::int64_t units, std::int64_t side) {
   return std::max<std::int64_t>((units + side / 2) / side, 1);
 }
@@ -47,8 +47,8 @@ TileTree TileTree::over_points(std::uint64_t points, std::int64_t side,
 }
 
 std::uint64_t TileTree::leaf_number(const SampleRange& window) const noexcept {
-  // The curve through the 4^k squares of side 1, at the beginning of the curve of order 32: that
-  // begins with them in this order or mirrored at the diagonal, always the same.
+  // The curve of order 32 begins with the 4^k leaves. It visits them as the curve of order k does,
+  // or mirrored at the diagonal, always the same for one k.
   return hilbert_position(static_cast<std::uint32_t>(window.x0 / side_),
                           static_cast<std::uint32_t>(window.y0 / side_));
 }

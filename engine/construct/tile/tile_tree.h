@@ -13,8 +13,8 @@
 
 namespace ptin {
 
-/// A window of samples, grid orientation: columns x0 .. x0 + width - 1 from the west, rows from the
-/// south.
+/// A window of samples: columns x0 to x0 + width - 1 from the west, rows y0 to y0 + height - 1 from
+/// the south.
 struct SampleRange {
   std::int64_t x0 = 0, y0 = 0, width = 0, height = 0;
   [[nodiscard]] std::uint64_t samples() const noexcept {
@@ -23,40 +23,43 @@ struct SampleRange {
   friend bool operator==(const SampleRange&, const SampleRange&) = default;
 };
 
-/// A tile: level 0 are the leaves.
+/// A tile: its level (0: a leaf), and its column and row among the tiles of that level, from the
+/// south-west.
 struct TileId {
   int level = 0;
   std::int64_t x = 0, y = 0;
   friend auto operator<=>(const TileId&, const TileId&) = default;
 };
 
-/// Which tiles there are. A function of the raster's size (or the number of points) and the side
-/// alone: never of memory or threads.
+/// Which tiles there are. They depend on the size of the raster (or the number of points) and the
+/// side of a leaf alone, never on memory or threads.
 class TileTree {
  public:
+  /// The tree over a raster.
   /// @param width, height  Samples of the raster, at least 2 each.
-  /// @param side           Grid units along a leaf; neighbours share the row of samples between
-  /// them.
+  /// @param side           Grid units along a leaf. Neighbours share a row or column of samples.
   TileTree(std::int64_t width, std::int64_t height, std::int64_t side);
 
-  /// The tree over points: 4^k leaves that hold equally many, one after the other along the Hilbert
-  /// curve. Their windows are those of a raster of as many samples; leaf_number() says which leaf.
+  /// The tree over points, or over the vertices of a TIN: 4^k leaves with equally many points, one
+  /// after the other along the Hilbert curve. Its tiles have the windows of a square raster with
+  /// about as many samples; leaf_number() tells which piece of the curve a leaf is.
   /// @param points  Their number.
-  /// @param side    The root of how many a leaf holds at most.
+  /// @param side    A leaf holds at most side * side points.
   /// @param hull    Of all points: edges on it are no seams.
   [[nodiscard]] static TileTree over_points(std::uint64_t points, std::int64_t side,
                                             std::shared_ptr<const ConvexHull> hull);
   /// The hull of points; null over a raster.
   [[nodiscard]] const ConvexHull* hull() const noexcept { return hull_.get(); }
-  /// Over points: the place along the curve of the leaf that has this window.
+  /// Over points: the place, along the curve, of the leaf that has this window.
   [[nodiscard]] std::uint64_t leaf_number(const SampleRange& window) const noexcept;
 
-  /// The side that is used unless the caller names one: 256 (with which a leaf stays in the
-  /// processor's caches: a third faster than 512, for half a percent of vertices), or, beyond 16385
-  /// samples, the root of four times the raster's longer side, so that seams weigh little
-  /// (side / S^2 in tiles of S); the whole raster when it is no longer than one and a half of
-  /// that. Ten times the longer side would need 416 at 16385 samples, and more than
-  /// 256 MiB (engine/DECISIONS.md, section 4.1).
+  /// The side that is used unless the caller names one (engine/DECISIONS.md, section 4.1):
+  /// - up to 16385 samples along the longer side: 256, with which a leaf stays in the processor's
+  ///   caches: a third faster than 512, for half a percent of vertices;
+  /// - beyond: the root of four times the longer side, rounded up to a multiple of 32, so that
+  ///   seams weigh little (side / S^2 in tiles of S). Ten times the longer side would need 416 at
+  ///   16385 samples, and more than 256 MiB;
+  /// - the whole raster where it is no longer than one and a half of that.
   [[nodiscard]] static std::int64_t default_side(std::int64_t width, std::int64_t height) noexcept;
 
   [[nodiscard]] TileId root() const noexcept { return {levels_ - 1, 0, 0}; }
@@ -65,12 +68,13 @@ class TileTree {
   [[nodiscard]] std::uint64_t leaves() const noexcept {
     return static_cast<std::uint64_t>(leaves_x_) * static_cast<std::uint64_t>(leaves_y_);
   }
-  /// The tiles of level - 1 inside of `id`, in order of y, then x; empty for a leaf. One to four.
+  /// The tiles of the level below inside of `id`, one to four, in order of y, then x; none for a
+  /// leaf.
   [[nodiscard]] std::vector<TileId> children(const TileId& id) const;
   [[nodiscard]] SampleRange window(const TileId& id) const noexcept;
 
-  /// True when the sample at (x, y), inside of the tile's window, is on a seam: on a side of the
-  /// window that is not a side of the raster.
+  /// True when the sample at (x, y) is on a seam: on a side of the window of the tile that is not a
+  /// side of the raster. REQUIRES: it is inside of that window.
   [[nodiscard]] bool on_seam(const TileId& id, std::int64_t x, std::int64_t y) const noexcept;
 
  private:
