@@ -23,8 +23,7 @@ class Flipper {
   }
 
   SliverFlips run(std::vector<std::uint32_t> open) {
-    // A flip makes two triangles, which may be bad again: without a limit they could go on for
-    // ever.
+    // A flip makes two triangles, which may be bad again: without a limit this might never end.
     std::uint64_t left = 64 * open.size();
     SliverFlips flips;
     while (!open.empty() && left-- > 0) {

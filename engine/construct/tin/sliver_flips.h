@@ -28,8 +28,8 @@ struct SliverFlips {
 /// @param positions    Of the vertices, by id.
 /// @param triangles    A part of a mesh. Removing triangles changes the indices of others.
 /// @param slivers      Indices into `triangles`.
-/// @param is_complete  Beside `positions`: 1 where all triangles of the mesh at a vertex are at
-/// hand. Cost: O(n) expected for n triangles when there is a sliver, else nothing.
+/// @param is_complete  Beside `positions`: 1 where all triangles of the mesh at a vertex are given.
+/// Cost: O(n) expected for n triangles when there is a sliver, else nothing.
 [[nodiscard]] SliverFlips flip_slivers(std::span<const GridPoint> positions,
                                        std::vector<Corners>& triangles,
                                        std::vector<std::uint32_t> slivers,
