@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Buckets of points that the triangulation of a tile looks into, and which of their points it has
-// taken.
+// The buckets that the triangulation of a tile looks into, and which of their points are in it.
 #pragma once
 
 #include <cstddef>
@@ -15,25 +14,27 @@
 
 namespace ptin {
 
-/// Loads buckets when they are asked for, and forgets their points (not which of them were taken)
-/// when all of them weigh too much. Not thread-safe.
+/// Loads buckets when they are asked for, and knows which of their points are *taken*: inserted
+/// into the triangulation. When all that is loaded weighs too much, points are forgotten, but not
+/// which of them are taken. Not thread-safe.
 class BucketCache {
  public:
-  /// Points of a bucket that share a box.
+  /// Points of a bucket that share one of its boxes.
   static constexpr std::size_t kBlock = 32;
 
   struct Bucket {
     std::vector<BucketPoint> points;
-    std::vector<std::uint8_t> is_in;  ///< Beside them: taken.
-    std::vector<GridBox> boxes;       ///< Of the points not taken, kBlock at a time.
-    bool has_more = false;            ///< More are taken than those known from the beginning.
+    std::vector<std::uint8_t> is_in;  ///< Beside `points`: 1 for a taken one.
+    std::vector<GridBox> boxes;       ///< Of each kBlock points those that are not taken.
+    bool has_more = false;            ///< Some are taken that were not so from the beginning.
 
+    /// True when all points are taken.
     [[nodiscard]] bool is_used_up() const noexcept;
   };
 
-  /// @param first, end   Points of the buckets that are taken from the beginning.
-  /// @param most_bytes   Weight at which points are forgotten; a bucket in use may exceed it.
-  /// The buckets must live as long as this.
+  /// @param buckets      Must live as long as this.
+  /// @param first, end   The points first .. end - 1 are taken from the beginning: the tile's own.
+  /// @param most_bytes   The weight above which tidy() forgets points.
   BucketCache(const PointBuckets& buckets, std::uint64_t first, std::uint64_t end,
               std::size_t most_bytes)
       : buckets_(buckets), first_(first), end_(end), most_bytes_(most_bytes) {}
@@ -41,15 +42,16 @@ class BucketCache {
   /// Points in this box are taken from the beginning, too. To be called before load().
   void set_box(const GridBox& box) { box_ = box; }
 
-  /// The reference is valid until tidy() or the next call.  @throws Error io_error
+  /// A bucket, which is read unless it is loaded. The reference is valid until tidy(), or until
+  /// set_used_up() of this bucket.  @throws Error io_error
   [[nodiscard]] Bucket& load(std::uint64_t bucket);
-  /// All of its points are taken: it is not looked into again.
+  /// To be called when all points of a bucket are taken: it is not looked into again.
   void set_used_up(std::uint64_t bucket);
   [[nodiscard]] bool is_used_up(std::uint64_t bucket) const { return used_up_.contains(bucket); }
-  /// Forgets points where they weigh too much.
+  /// Forgets all loaded points where they weigh too much.
   void tidy();
 
-  /// Weight of what is loaded, bytes.
+  /// The weight of what is loaded, bytes.
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
  private:
@@ -61,7 +63,7 @@ class BucketCache {
   GridBox box_;
   std::size_t bytes_ = 0;
   std::unordered_map<std::uint64_t, Bucket> loaded_;
-  /// Of forgotten buckets that have more.
+  /// For buckets with has_more that were forgotten: which of their points are taken.
   std::unordered_map<std::uint64_t, std::vector<bool>> taken_;
   std::unordered_set<std::uint64_t> used_up_;
 };

@@ -25,11 +25,10 @@ namespace ptin {
 ///
 /// @param positions  In strictly ascending order of key_of(): sorted, all distinct, on the grid.
 /// @param heights    Beside `positions`.
-/// @return  Vertex ids are indices into `positions`; triangles start with their smallest id and are
-/// in
-///          ascending order of (first, second) corner.
+/// @return  Vertex ids are indices into `positions`; triangles start with their smallest id, and
+///          are in ascending order of (first, second) corner.
 /// @throws Error  invalid_argument    fewer than 3 points, all collinear, not in order, or not on
-/// the grid
+///                                    the grid
 ///                resource_exhausted  more points than one mesh in memory counts
 ///                cancelled           `stop` fired
 /// Cost: O(n log n) expected, about 1.4 us and 250 bytes a point while it runs.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// CGAL's Delaunay triangulation over grid points, and how it becomes a Tin. For *delaunay*.cc
-// alone.
+// CGAL's Delaunay triangulation over grid points, and how it becomes a Tin. For the sources
+// *delaunay*.cc alone: no others include CGAL.
 #pragma once
 
 #include <algorithm>
@@ -23,9 +23,10 @@ namespace ptin::delaunay_internal {
 
 using BaseKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// The kernel's points, whose coordinates are whole numbers below 2^31 here, with predicates in 64
-/// and 128 bits behind a filter in doubles: on grids, where everything is cocircular, the kernel's
-/// own fall back to arithmetic of any length.
+/// CGAL's kernel with predicates of our own, for points whose coordinates are whole numbers from 0
+/// to 2^30. Orientation is decided in 64 bits; the side of a circle in doubles, and where these do
+/// not tell, in 128 bits. CGAL's own predicates would then use numbers of any length, and on grids,
+/// where most points are cocircular, that is nearly always.
 class GridKernel : public BaseKernel {
  public:
   using Point_2 = BaseKernel::Point_2;
@@ -96,7 +97,8 @@ inline GridPoint position_of(const Delaunay::Vertex_handle& v) {
   return {static_cast<std::int32_t>(v->point().x()), static_cast<std::int32_t>(v->point().y())};
 }
 
-/// A face and where its smallest vertex id stands in it.
+/// A face, seen from its corner with the smallest id: corner(0) is that corner, and corner(1) and
+/// corner(2) follow counter-clockwise.
 struct Oriented {
   Delaunay::Face_handle face;
   int first = 0;
@@ -106,8 +108,9 @@ struct Oriented {
   [[nodiscard]] TriangleId neighbour(int i) const { return face->neighbor(place(i))->info(); }
 };
 
-/// Brings faces into the ascending order of their first two corners and numbers them so.
-/// REQUIRES: the info of all other faces is kNone.
+/// Sorts faces by corner(0), then corner(1), and sets the info of each to its place in that order.
+/// REQUIRES: the infos of their vertices are ids below `vertices`; those of all other faces are
+/// kNone.
 inline std::vector<Oriented> number_faces(const std::vector<Delaunay::Face_handle>& faces,
                                           std::size_t vertices) {
   std::vector<std::uint32_t> start(vertices + 1, 0);
@@ -140,7 +143,7 @@ inline std::vector<Oriented> number_faces(const std::vector<Delaunay::Face_handl
 }
 
 /// Adds numbered faces to a Tin that has its vertices, and gives each vertex a triangle: on the
-/// border the one without a clockwise neighbour, inside the first.
+/// border the triangle that has no neighbour clockwise around the vertex, inside its first one.
 inline void add_faces(const std::vector<Oriented>& faces, Tin& tin) {
   tin.triangles.reserve(faces.size());
   for (const Oriented& f : faces) {

@@ -15,11 +15,12 @@ namespace ptin::delaunay_internal {
 
 namespace {
 
-/// Spacings of points that the first margin is wide.
+/// Width of the first margin around a tile, in mean distances between its points.
 constexpr double kMargin = 6.0;
 
-/// The round in which a point is inserted: the last with 7 of 8 points, the one before it with 7 of
-/// 8 of the others, and so on. Points in the order of the curve would make quadratic work of rows.
+/// The round in which a point is inserted, counted back from the last one, by a hash of the point.
+/// The last round has 7 of 8 points, the round before it 7 of 8 of the others, and so on. In one
+/// round along the curve, points in rows would take quadratic work.
 int rounds_before_last(GridPoint p) noexcept {
   std::uint64_t h = key_of(p) * 0x9e3779b97f4a7c15U;
   h = (h ^ (h >> 31)) * 0xbf58476d1ce4e5b9U;
@@ -41,7 +42,8 @@ void GrowingDelaunay::insert(const BucketPoint& p, bool own) {
   inserted_.push_back(v->info());
 }
 
-/// The box of the tile's points, and a margin around it, as wide as does not double the work.
+/// Chooses the box: that of the own points, and a margin around it. The margin is quartered until
+/// the box meets no more than about twice the buckets of the tile.
 void GrowingDelaunay::choose_box(const std::vector<BucketPoint>& own) {
   GridBox tight;
   for (const BucketPoint& p : own) {
@@ -106,7 +108,8 @@ void GrowingDelaunay::triangulate() {
   inserted_.clear();
 }
 
-/// Points on one line have no triangles: goes on with the nearest ones around until they have.
+/// Where all points so far lie on one line there is no face yet: inserts the nearest points around
+/// them until there is one.
 void GrowingDelaunay::span_area() {
   if (delaunay_.dimension() == 2) {
     return;
@@ -194,8 +197,7 @@ bool GrowingDelaunay::see(const UnseenRegion& region, GridPoint near) {
   return !found;
 }
 
-/// True when nothing unseen lies in the face's disc; else points were inserted, and the face may be
-/// gone.
+/// True when a face is final. False when points were inserted instead: the face may be gone.
 bool GrowingDelaunay::is_final(const Face_handle& face) {
   if (delaunay_.is_infinite(face)) {
     const int i = face->index(delaunay_.infinite_vertex());
@@ -233,6 +235,8 @@ bool GrowingDelaunay::is_final(const Face_handle& face) {
   return true;
 }
 
+/// True when all faces at a vertex are final. False when points were inserted instead: its faces
+/// are to be looked at again.
 bool GrowingDelaunay::settle_star(VertexId v) {
   auto face = delaunay_.incident_faces(handles_[v]);
   const auto first = face;
@@ -259,7 +263,8 @@ void GrowingDelaunay::settle(std::vector<VertexId> vertices) {
       wanted[v] = 0;
       continue;
     }
-    // Faces at the new points are new: those of them at vertices of interest are to be looked at.
+    // Every new face has a new point as a corner. Its other corners have to be looked at again
+    // where they are own vertices or vertices of interest.
     for (const VertexId q : inserted_) {
       auto n = delaunay_.incident_vertices(handles_[q]);
       const auto begin = n;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The Delaunay triangulation around a tile's points, grown until the faces that matter are those of
-// the whole. For tile_delaunay.cc.
+// A Delaunay triangulation around the points of a tile, which grows until the faces of the tile are
+// faces of the triangulation of all points. For delaunay/tile_delaunay.cc.
 #pragma once
 
 #include <array>
@@ -19,14 +19,18 @@ namespace ptin::delaunay_internal {
 
 class UnseenRegion;
 
-/// The points of one tile with as many others around them as decide their triangles. Vertices are
-/// numbered as they come.
+/// The *own* points of one tile, triangulated with as many others around them as decide the tile's
+/// triangles. A face is *final* when no point that was not inserted lies where it would change the
+/// face (delaunay/unseen_region.h). Vertices are numbered in the order in which points are
+/// inserted.
 class GrowingDelaunay {
  public:
   using Vertex_handle = Delaunay::Vertex_handle;
   using Face_handle = Delaunay::Face_handle;
 
-  /// @param cache_bytes  Memory for points that were looked at and not taken.
+  /// @param buckets       Must live as long as this.
+  /// @param first, count  The own points: first .. first + count - 1 in the order of the buckets.
+  /// @param cache_bytes   Memory for points that were looked at and not inserted.
   GrowingDelaunay(const PointBuckets& buckets, std::uint64_t first, std::uint64_t count,
                   std::size_t cache_bytes, const std::stop_token& stop)
       : buckets_(buckets),
@@ -35,16 +39,21 @@ class GrowingDelaunay {
         stop_(stop),
         cache_(buckets, first, first + count, cache_bytes) {}
 
-  /// Inserts the tile's points and those of a margin. @throws Error io_error, cancelled
+  /// Inserts the own points and those of a margin. To be called once, before all else.
+  /// @throws Error io_error, cancelled
   void triangulate();
-  /// Makes every face at the given vertices final. @throws Error io_error, cancelled
+  /// Inserts points until every face at the given vertices, and at own vertices beside new ones, is
+  /// final.  @throws Error io_error, cancelled
   void settle(std::vector<VertexId> vertices);
+  /// The own vertices at which a face may not be final: its disc leaves the box.
   [[nodiscard]] std::vector<VertexId> own_vertices_to_settle();
 
+  /// True when all points are own points: all faces are final.
   [[nodiscard]] bool holds_everything() const noexcept {
     return first_ == 0 && end_ == buckets_.size();
   }
   [[nodiscard]] std::uint64_t own_points() const noexcept { return end_ - first_; }
+  /// Points inserted so far, and so the number of vertices.
   [[nodiscard]] std::size_t points() const noexcept { return handles_.size(); }
   [[nodiscard]] bool is_own(VertexId v) const noexcept { return own_[v] != 0; }
   [[nodiscard]] HeightBits height(VertexId v) const noexcept { return heights_[v]; }
@@ -72,14 +81,15 @@ class GrowingDelaunay {
   const PointBuckets& buckets_;
   std::uint64_t first_, end_;
   std::stop_token stop_;
-  GridBox box_;  ///< Everything inside of it is in.
+  GridBox box_;  ///< All points inside of it are inserted.
   Delaunay delaunay_;
   Face_handle hint_;
   std::vector<Vertex_handle> handles_;
   std::vector<HeightBits> heights_;
   std::vector<std::uint8_t> own_;
-  BucketCache cache_;               ///< Of what lies around the box.
-  std::vector<VertexId> inserted_;  ///< Since it was last cleared.
+  BucketCache cache_;               ///< Buckets that reach beyond the box.
+  std::vector<VertexId> inserted_;  ///< Vertices inserted since this was last cleared.
+  /// A face, from its smallest corner on; an infinite face by the ends of its edge and kNone.
   struct Corners {
     std::array<VertexId, 3> v;
     friend bool operator==(const Corners&, const Corners&) = default;
@@ -95,7 +105,7 @@ class GrowingDelaunay {
     }
   };
   std::unordered_set<Corners, HashCorners>
-      final_;  ///< Faces that took more than a look at the box.
+      final_;  ///< Those final faces whose circumdiscs leave the box.
 };
 
 }  // namespace ptin::delaunay_internal

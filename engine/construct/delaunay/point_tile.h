@@ -13,16 +13,17 @@
 
 namespace ptin {
 
-/// Starts leaf after leaf of points. Threads: one for each; any number on the same buckets.
+/// Starts the leaves of a terrain of points, one after the other. Not thread-safe: each thread
+/// needs a starter of its own; any number of them may share the buckets.
 class PointTileStarter {
  public:
-  /// @param longest_edge  As DelaunayTiler.
-  /// The buckets and the tree must live as long as this.
+  /// @param buckets, tree  Must live as long as this.
+  /// @param longest_edge   As DelaunayTiler.
   PointTileStarter(const PointBuckets& buckets, const TileTree& tree, const MeasureUnits& units,
                    std::optional<double> longest_edge, std::stop_token stop = {});
 
-  /// The leaf of this window: its part of the one Delaunay triangulation (tile_delaunay.h), and its
-  /// part of the full surface.
+  /// Starts the leaf that has this window: its part of the one Delaunay triangulation
+  /// (delaunay/tile_delaunay.h), and its part of the full surface.
   /// @throws Error as DelaunayTiler::make()
   [[nodiscard]] StartedTile start(const SampleRange& window);
 
@@ -37,7 +38,8 @@ class PointTileStarter {
 /// The tree over the points of buckets. @param side  As TileTree; none means
 /// TileTree::default_side() of a square of as many samples.
 [[nodiscard]] TileTree point_tree(const PointBuckets& buckets, std::optional<std::int64_t> side);
-/// The same for so many points, before they are known: for estimates, since it has no hull.
+/// The tree over so many points, before they are known. It has no hull, so it serves for estimates
+/// alone.
 [[nodiscard]] TileTree expected_point_tree(std::uint64_t points, std::optional<std::int64_t> side);
 
 }  // namespace ptin

@@ -19,7 +19,7 @@ using delaunay_internal::position_of;
 using Vertex_handle = Delaunay::Vertex_handle;
 using Face_handle = Delaunay::Face_handle;
 
-/// Which triangles are void. The same from whichever tile an edge is looked at.
+/// Tells which triangles are void. The answer for an edge is the same in every tile.
 struct LongestEdge {
   double length;  ///< On the ground.
   const GroundMetric& ground;
@@ -94,7 +94,7 @@ DelaunayTile cut_out(const GrowingDelaunay& grown, const std::vector<Face_handle
   return tile;
 }
 
-/// The corners of faces that are no points of the tile.
+/// The corners of faces that are not own points of the tile.
 std::vector<VertexId> other_corners(const GrowingDelaunay& grown,
                                     const std::vector<Face_handle>& faces) {
   std::vector<std::uint8_t> marked(grown.points(), 0);
@@ -111,7 +111,8 @@ std::vector<VertexId> other_corners(const GrowingDelaunay& grown,
   return corners;
 }
 
-/// Triangles with long edges become void, and vertices that have no others lose their height.
+/// Makes triangles with a long edge void. Vertices with void triangles alone lose their height, and
+/// are counted as lone where they are own points.
 void make_voids(const GrowingDelaunay& grown, const LongestEdge& longest, DelaunayTile& tile) {
   Tin& tin = tile.tin;
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
@@ -124,7 +125,7 @@ void make_voids(const GrowingDelaunay& grown, const LongestEdge& longest, Delaun
     const Vertex_handle handle = grown.handle(id);
     const VertexId v = handle->info();
     if (v >= tin.vertices.size() || tin.position(v) != position_of(handle)) {
-      continue;  // not one of the tile's
+      continue;  // no vertex of the tile
     }
     auto f = grown.delaunay().incident_faces(handle);
     const auto first = f;

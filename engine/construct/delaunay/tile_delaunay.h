@@ -22,8 +22,8 @@ struct DelaunayTile {
   /// another tile or the outside.
   Tin tin;
   std::uint64_t own_points = 0;
-  std::uint64_t lone_points = 0;   ///< Own ones that touch no surface triangle: without a height.
-  std::uint64_t other_points = 0;  ///< Of other tiles, that were triangulated along.
+  std::uint64_t lone_points = 0;   ///< Own points in no surface triangle: they lose their height.
+  std::uint64_t other_points = 0;  ///< Points of other tiles that were triangulated with them.
 };
 
 /// Cuts tiles out of one triangulation.
@@ -31,15 +31,16 @@ struct DelaunayTile {
 /// A tile's points are triangulated with what surrounds them: a margin first, then bucket by bucket
 /// what lies in the closed circumdisc of a triangle at one of its own points (or beyond an edge of
 /// the hull so far). A triangle is final when everything inside of its disc has been seen; where
-/// many points lie on a circle the tie is broken by coordinates alone (delaunay.h). So tiles are
-/// pieces of exactly the triangulation that make_delaunay_tin() would give.
+/// many points lie on a circle the tie is broken by coordinates alone (delaunay/delaunay.h). So
+/// tiles are pieces of exactly the triangulation that make_delaunay_tin() would give.
 ///
-/// Not thread-safe: one for each thread; any number on the same buckets.
+/// Not thread-safe: each thread needs a tiler of its own; any number of them may share the buckets.
 class DelaunayTiler {
  public:
-  /// @param longest_edge  Triangles with a longer edge are void; on the ground (crs.h): metres in a
-  ///                      geographic CRS, else CRS units. None: no voids.
-  /// @param cache_bytes   Memory for points that were looked at around a tile and not taken.
+  /// @param buckets       Must live as long as this.
+  /// @param longest_edge  Triangles with a longer edge are void; none: no triangle is. A length on
+  ///                      the ground (grid/crs.h): metres in a geographic CRS, else CRS units.
+  /// @param cache_bytes   Memory for points that were looked at around a tile and not inserted.
   explicit DelaunayTiler(const PointBuckets& buckets, std::optional<double> longest_edge = {},
                          std::size_t cache_bytes = std::size_t{16} << 20);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where unseen points would change a face of a Delaunay triangulation. For
-// growing_delaunay.cc.
+// Where a point that was not inserted would change a face of a Delaunay triangulation. For
+// delaunay/growing_delaunay.cc.
 #pragma once
 
 #include <cmath>
@@ -13,12 +13,14 @@
 
 namespace ptin::delaunay_internal {
 
-/// What must be empty of unseen points for a face to be final: the closed circumdisc of a finite
-/// one; beyond an edge of the hull the open half-plane and the edge itself.
+/// The region in which no point may be unseen (not inserted) for a face to be final. For a finite
+/// face it is the closed circumdisc. For an infinite one, beyond an edge of the hull, it is the
+/// open half-plane outside of the edge, and the edge itself.
 class UnseenRegion {
  public:
+  /// The region of a finite face.
   explicit UnseenRegion(const Circumdisc& disc) : disc_(disc) {}
-  /// To the right of a -> b.
+  /// The region of an infinite face, to the right of a -> b.
   UnseenRegion(GridPoint a, GridPoint b) : a_(a), b_(b) {}
 
   [[nodiscard]] bool holds(GridPoint p) const noexcept {
@@ -28,6 +30,8 @@ class UnseenRegion {
     const std::int64_t side = orient(a_, b_, p);
     return side < 0 || (side == 0 && contains(united(box_of(a_), b_), p));
   }
+  /// True when the box and the region have a point in common; also where they only just miss each
+  /// other.
   [[nodiscard]] bool may_meet(const GridBox& box) const noexcept {
     if (disc_) {
       return disc_->may_meet(box);
@@ -39,11 +43,12 @@ class UnseenRegion {
   }
 
  private:
-  std::optional<Circumdisc> disc_;
+  std::optional<Circumdisc> disc_;  ///< None: the edge a_ -> b_.
   GridPoint a_, b_;
 };
 
-/// True when the closed circumdisc of a triangle lies in the box, for certain; computed in doubles.
+/// True only when the closed circumdisc of a triangle lies inside of the box. Computed in doubles,
+/// so it may be false where the disc only just does.
 inline bool disc_lies_in(const GridBox& box, GridPoint a, GridPoint b, GridPoint c) noexcept {
   const double bx = static_cast<double>(b.x) - a.x, by = static_cast<double>(b.y) - a.y;
   const double cx = static_cast<double>(c.x) - a.x, cy = static_cast<double>(c.y) - a.y;

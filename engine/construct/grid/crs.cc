@@ -59,7 +59,7 @@ std::string or_unknown(const char* name) {
   return name == nullptr || *name == '\0' ? "unknown" : name;
 }
 
-/// The unit of heights, of a CRS with a vertical part.
+/// The unit of heights of a CRS that has a vertical part.
 std::string vertical_unit(const OGRSpatialReference& srs) {
   const char* name = nullptr;
   if (srs.IsCompound()) {

@@ -13,18 +13,20 @@ namespace ptin {
 
 /// A horizontal or compound CRS, or none.
 struct Crs {
-  std::string wkt;  ///< WKT2:2019 on one line; empty when unknown.
-  bool geographic = false;
-  bool vertical_known = false;  ///< A compound CRS, or a three-dimensional one.
+  std::string wkt;              ///< WKT2:2019 on one line; empty when unknown.
+  bool geographic = false;      ///< x and y are longitude and latitude.
+  bool vertical_known = false;  ///< `wkt` has a vertical part: it is compound or has three axes.
   std::string horizontal_unit = "unknown";
   std::string vertical_unit = "unknown";
 };
 
-/// The CRS of a source.
-/// @param declared      What the source says: anything GDAL understands; "" for nothing.
-/// @param a_srs         Takes the place of `declared`, its vertical part included; "" keeps it.
-/// @param vertical_crs  Takes the place of the vertical part, or adds one; "" keeps it.
-/// Nothing is fetched from the network.
+/// The CRS of a source; an empty Crs when `declared`, `a_srs` and `vertical_crs` are all empty.
+/// @param declared      The CRS that the source declares: any text that GDAL understands; "" for
+///                      none.
+/// @param a_srs         Replaces `declared`, its vertical part included; "" keeps `declared`.
+/// @param vertical_crs  Replaces the vertical part of the CRS, or adds one; "" keeps the CRS as it
+///                      is.
+/// No text makes GDAL open a file or use the network.
 /// @throws Error  invalid_argument  GDAL does not understand a text; `a_srs` or `declared` is
 ///                                  neither geographic nor projected nor local; `vertical_crs` is
 ///                                  not a vertical CRS, or there is no horizontal one to add it to
@@ -32,32 +34,38 @@ struct Crs {
 [[nodiscard]] Crs resolve_crs(const std::string& declared, const std::string& a_srs,
                               const std::string& vertical_crs);
 
-/// True when two texts name the same CRS, or both are empty. Axis order is not looked at.
+/// True when two texts name the same CRS, or both are empty. The order of the axes of a geographic
+/// CRS does not matter.
+/// @throws Error invalid_argument  GDAL does not understand a text
 [[nodiscard]] bool is_same_crs(const std::string& wkt_a, const std::string& wkt_b);
 
-/// Writes what `crs` says into `frame`.
+/// Sets those fields of `frame` that describe the CRS.
 void set_crs(TerrainFrame& frame, const Crs& crs);
 
-/// @param rows  Grid steps from the southernmost to the northernmost sample.
-/// @throws Error invalid_argument  the CRS has degrees, and y is none: metres, most likely
+/// Refuses a CRS in degrees for coordinates that are no latitudes: y below -91 or above 91. Most
+/// likely the coordinates are metres.
+/// @param rows     Grid steps from the southernmost to the northernmost sample.
+/// @param context  The path of the source, for the error.
+/// @throws Error invalid_argument  as above
 void require_latitudes(const TerrainFrame& frame, std::int64_t rows, const std::string& context);
 
-/// Lengths of one grid step on the ground.
+/// The lengths on the ground of one grid step in x and of one in y, in the unit of GroundMetric.
 struct GroundStep {
   double x = 1.0;
   double y = 1.0;
   friend bool operator==(const GroundStep&, const GroundStep&) = default;
 };
 
-/// Ground distances in the plane of the grid: in a geographic CRS metres at a sample's own row (on
-/// the ellipsoid, where a degree of longitude shrinks towards the poles), else units of the CRS. A
-/// pole's own row has steps of length 0 in x.
+/// How long grid steps are on the ground. In a geographic CRS lengths are metres on the ellipsoid
+/// and depend on the row: a degree of longitude shrinks towards the poles, and steps in x on the
+/// row of a pole have no length. In any other CRS lengths are units of the CRS, and all rows have
+/// the same steps.
 class GroundMetric {
  public:
   /// @throws Error invalid_argument  the frame's CRS is not one that GDAL understands
   explicit GroundMetric(const TerrainFrame& frame);
 
-  /// The steps at grid row `y`. Cost: a few dozen operations.
+  /// The steps at grid row `grid_y`, which need not be whole. Cost: a few dozen operations.
   [[nodiscard]] GroundStep at(double grid_y) const noexcept;
   /// True when every row has the same steps.
   [[nodiscard]] bool is_uniform() const noexcept { return semi_major_m_ == 0.0; }

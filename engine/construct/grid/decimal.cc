@@ -37,7 +37,8 @@ struct Digits {
   }
 };
 
-/// Reads an exponent into `exponent`, clamped far beyond what any number here can have.
+/// Reads an exponent into `exponent`, clamped far beyond what any number here can have. False when
+/// `text` is no whole number.
 bool parse_exponent(std::string_view text, int& exponent) {
   bool negative = false;
   if (!text.empty() && (text[0] == '+' || text[0] == '-')) {
@@ -74,6 +75,7 @@ bool normalise(std::int64_t& mantissa, std::int64_t& decimals) {
   return mantissa < kFirstTooLarge;  // rounding may have made it 10^18
 }
 
+/// True when `text` is `word`, in any case.
 /// @param word  In lower case.
 bool is_word(std::string_view text, std::string_view word) {
   return std::equal(text.begin(), text.end(), word.begin(), word.end(), [](char c, char lower) {

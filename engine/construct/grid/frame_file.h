@@ -8,9 +8,10 @@
 
 namespace ptin {
 
-/// @throws Error io_error, resource_exhausted
+/// Appends `frame` to a file of arrays.  @throws Error io_error, resource_exhausted
 void put_frame(ArrayFileWriter& file, const TerrainFrame& frame);
-/// @throws Error corruption
+/// Reads the frame that put_frame() wrote at this place of the file.
+/// @throws Error corruption  the next arrays are no frame, or are damaged
 [[nodiscard]] TerrainFrame take_frame(ArrayFileReader& file);
 
 }  // namespace ptin

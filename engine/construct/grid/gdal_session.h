@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Calling GDAL from a library that never prints: drivers are registered once, and what GDAL has to
-// say is collected for our own errors instead of going to the standard error stream.
+// Calling GDAL from a library that never prints: drivers are registered once, and GDAL's messages
+// are kept for our own errors instead of going to the standard error stream.
 #pragma once
 
 #include <string>
 
 namespace ptin {
 
-/// While one lives, errors and warnings that GDAL raises on this thread are kept here and printed
-/// nowhere. The first one registers GDAL's drivers. Scopes nest; each belongs to the thread that
-/// made it.
+/// A scope in which GDAL prints nothing. While a session lives, it keeps the first failure that
+/// GDAL raises on this thread; further failures, warnings and debug messages are dropped. The first
+/// session of the process registers GDAL's drivers. Sessions nest: the innermost receives the
+/// messages. Each belongs to the thread that made it.
 class GdalSession {
  public:
   GdalSession();
@@ -20,9 +21,10 @@ class GdalSession {
 
   /// The first failure that GDAL reported in this scope, without its final full stop; "" when none.
   [[nodiscard]] const std::string& first_failure() const noexcept { return first_failure_; }
+  /// True when GDAL reported a failure in this scope.
   [[nodiscard]] bool failed() const noexcept { return failed_; }
 
-  /// `sentence`, followed by GDAL's own words in brackets when there are any.
+  /// `sentence`, followed by the first failure in brackets when there is one.
   [[nodiscard]] std::string explain(std::string sentence) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the codes or heights of points are, found while they come.
+// The height encoding of points, found while their heights come one by one.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,14 @@
 
 namespace ptin {
 
-/// The height encoding of points that come one by one. Threads: one. Cost: constant a height.
+/// Finds the height encoding of points in one pass over their heights. Where heights are codes
+/// already (PointGrid::whole), the encoding is int32 with the step of the codes, and only their
+/// range is to be found; else HeightScan chooses it. Threads: one. Cost: constant a height.
 class HeightFinder {
  public:
-  /// @param whole  Heights are codes: whole steps of `step` (PointGrid).
-  /// @param step  Of a code, map units of height.
+  /// @param whole  True where add() receives codes: heights in whole steps of `step`. False where
+  ///               it receives heights in their own unit.
+  /// @param step   The height of one code, in the height's unit; unused unless `whole`.
   HeightFinder(bool whole, double step) : whole_(whole), step_(step) {}
 
   void add(double height) {

@@ -10,9 +10,10 @@
 namespace ptin {
 namespace {
 
-/// A height whose last bit is 2^-23 of itself (float32) or 2^-52 (float64) was a decimal before it
-/// was written in binary when it lies this near to one. For float32, where the answer only tells a
-/// quantum, resampling noise of a thousandth of the step passes too.
+/// How far a height may lie from a multiple of `step` and still count as one that was rounded to
+/// binary: a few units of its last bit, which is 2^-23 of the height in a float32 and 2^-52 in a
+/// float64. For float32 the answer decides the quantum alone and no stored height, so resampling
+/// noise of a thousandth of the step passes too.
 double tolerance(HeightScan::Given given, double height, double step) {
   return given == HeightScan::Given::kFloat32
              ? std::max(std::ldexp(std::abs(height), -23), std::ldexp(step, -10))
@@ -49,8 +50,9 @@ void HeightScan::add(double height) {
   }
 }
 
-/// A height is measured against finer steps than its own too: a later one may need them, and a
-/// whole number of hundredths is another double than as many hundreds of ten thousandths.
+/// Measures a height against the coarsest step that holds it and against all finer steps. A later
+/// height may need a finer step, and the distance from its multiples is another one: n * 0.01 and
+/// (100 n) * 0.0001 are different doubles.
 void HeightScan::test_decimals(double height) {
   bool fits = false;
   for (int decimals = decimals_; decimals <= kMaxDecimals; ++decimals) {
@@ -65,7 +67,7 @@ void HeightScan::test_decimals(double height) {
     double& rounding = decimal_rounding_[static_cast<std::size_t>(decimals)];
     rounding = std::max(rounding, distance);
     if (fits && given_ == Given::kFloat32) {
-      return;  // stays as it is, and rounds nothing
+      return;  // float32 heights are stored as they are: no rounding to be measured
     }
   }
   decimals_ = fits ? decimals_ : kMaxDecimals + 1;
@@ -99,8 +101,9 @@ HeightFit HeightScan::fit() const {
   return fit;
 }
 
-/// The decimal step, where float32 is fine enough at these heights to tell it from any number at
-/// all.
+/// The quantum of float32 heights: the decimal step that holds them, where float32 at these heights
+/// is at least four times as fine (else any number at all would pass for a decimal); otherwise the
+/// range / 2^16, or 1 where all heights are equal.
 double HeightScan::float_quantum() const {
   const double largest = std::max(std::abs(min_), std::abs(max_));
   if (decimals_ <= kMaxDecimals && std::ldexp(largest, -23) < decimal_step(decimals_) / 4) {

@@ -20,16 +20,20 @@ struct HeightFit {
       0.0;  ///< Bound of |decoded - given| over all heights, the height's unit; 0: exact.
   double min_height = 0.0;  ///< Decoded. min > max when there is no height.
   double max_height = -1.0;
-  std::uint64_t count = 0;
+  std::uint64_t count = 0;  ///< Heights seen.
 };
 
-/// Sees every height once, then chooses. Float32 heights stay float32. Others become int32 where
-/// they are whole numbers that fit, else float32 where it holds every one exactly, else int32 with
-/// a decimal step (0.1 .. 0.0001) where they are such decimals written in binary, else int32 with a
-/// power of two as its step, which moves a height by at most half a step, 2^-31 of the range (or an
-/// ulp of the largest).
+/// Sees every height of a source once, then chooses the encoding. The first of these that applies:
+///   1. float32, where the source gives float32;
+///   2. int32 with step 1, where all heights are whole numbers that fit;
+///   3. float32, where it holds every height exactly;
+///   4. int32 with a decimal step, down to 0.0001, where all heights are multiples of that step but
+///      for the rounding of decimals to binary;
+///   5. int32 with a power of two as its step. This moves a height by at most half a step: 2^-31 of
+///      the range, or an ulp of the largest height where that is more.
 class HeightScan {
  public:
+  /// The type in which the source holds its heights.
   enum class Given : std::uint8_t { kFloat32, kFloat64 };
   explicit HeightScan(Given given) : given_(given) {}
 
@@ -40,7 +44,7 @@ class HeightScan {
   [[nodiscard]] HeightFit fit() const;
 
  private:
-  static constexpr int kMaxDecimals = 4;  ///< That heights are tested for.
+  static constexpr int kMaxDecimals = 4;  ///< Of the finest decimal step that is tested.
   void test_decimals(double height);
   void choose_rounded(HeightFit& fit) const;
   [[nodiscard]] double float_quantum() const;
@@ -51,16 +55,17 @@ class HeightScan {
   double max_ = -std::numeric_limits<double>::infinity();
   bool all_int32_ = true;
   bool all_float32_ = true;
-  int decimals_ = 0;  ///< Fewest that all heights seen have; kMaxDecimals + 1: too many.
-  /// Largest distance of any height to a multiple of each step from decimals_ on.
+  int decimals_ = 0;  ///< Fewest that hold all heights seen; kMaxDecimals + 1: none tested does.
+  /// Entry d, for d >= decimals_: the largest distance of a height from a multiple of 10^-d.
   std::array<double, kMaxDecimals + 1> decimal_rounding_{};
 };
 
-/// Writes what `fit` says into `frame`.
+/// Sets those fields of `frame` that describe the heights.
 void set_heights(TerrainFrame& frame, const HeightFit& fit);
 
 /// The stored bits of `height`: the nearest code, ties to even.
-/// @throws Error io_error  it does not fit: the source changed between two readings
+/// @throws Error io_error  the code does not fit int32. The encoding was chosen from all heights,
+///                         so the source changed between two readings.
 [[nodiscard]] HeightBits encode_height(const HeightEncoding& encoding, double height);
 
 /// 10^-decimals, the double nearest to it. REQUIRES: 0 <= decimals <= 22.

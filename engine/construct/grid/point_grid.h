@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// From the coordinates of points, read once, to the grid that keeps their digits.
+// The grid that keeps the digits of all points, found in one pass over them.
 #pragma once
 
 #include <array>
@@ -16,20 +16,22 @@
 
 namespace ptin {
 
-/// Whole steps of a coordinate: exactly, in units of 10^-decimals, or rounded to the nearest
-/// multiple of a unit from an origin.
+/// Turns coordinates into whole numbers of steps, and back.
 class StepCounter {
  public:
   StepCounter() = default;
+  /// Steps of 10^-decimals from 0, counted exactly. REQUIRES: no value has more decimals.
   explicit StepCounter(int decimals) : decimals_(decimals) {}
+  /// Steps of `unit` from `origin`; coordinates are rounded to the nearest. REQUIRES: unit > 0.
   StepCounter(double unit, double origin) : unit_(unit), origin_(origin) {}
 
-  /// Beyond 2^62 in either direction is given as that: far beyond the grid. Monotone.
+  /// The steps of `value`. Numbers far beyond the grid are given as 2^62 or -2^62. Monotone.
   [[nodiscard]] std::int64_t steps(Decimal value) const noexcept;
+  /// The length of a step.
   [[nodiscard]] double unit() const noexcept;
   /// The coordinate at a number of steps.
   [[nodiscard]] double coordinate(std::int64_t steps) const noexcept;
-  /// How far from its place in the source a coordinate stands on the grid.
+  /// How far rounding to a step moves `value`; 0 where steps are counted exactly.
   [[nodiscard]] double shift(Decimal value) const noexcept {
     return unit_ > 0.0 ? distance(value) : 0.0;
   }
@@ -38,11 +40,12 @@ class StepCounter {
  private:
   [[nodiscard]] double distance(Decimal value) const noexcept;
   int decimals_ = 0;
-  double unit_ = 0.0;  ///< 0: decimals.
+  double unit_ = 0.0;  ///< 0: steps are 10^-decimals_, counted exactly.
   double origin_ = 0.0;
 };
 
-/// Smallest and largest of many decimals, exactly, and the most digits that one of them has.
+/// The smallest and the largest of many decimals, exactly, and the most digits after the point that
+/// one of them has.
 class DecimalRange {
  public:
   void add(Decimal d) noexcept {
@@ -50,50 +53,58 @@ class DecimalRange {
     e.low = d.mantissa < e.low ? d.mantissa : e.low;
     e.high = d.mantissa > e.high ? d.mantissa : e.high;
   }
+  /// The most digits after the point; 0 when nothing was added.
   [[nodiscard]] int decimals() const noexcept;
-  /// Steps of the smallest and of the largest one. REQUIRES: some were added.
+  /// The steps of the smallest decimal. REQUIRES: one was added.
   [[nodiscard]] std::int64_t lowest(const StepCounter& counter) const noexcept;
+  /// The steps of the largest decimal. REQUIRES: one was added.
   [[nodiscard]] std::int64_t highest(const StepCounter& counter) const noexcept;
 
  private:
   struct Extreme {
     std::int64_t low = INT64_MAX, high = INT64_MIN;
   };
-  std::array<Extreme, 19> extremes_;  ///< By decimals.
+  std::array<Extreme, 19> extremes_;  ///< By decimals: only such mantissas can be compared.
 };
 
-/// Where points go.
+/// The grid of points, and how their heights are held until the encoding is known.
 struct PointGrid {
   StepCounter x, y;
-  std::int64_t west = 0, south = 0;  ///< Steps of the grid's origin.
-  std::int64_t east = 0, north = 0;  ///< Steps of the farthest points.
-  StepCounter heights;               ///< Whole codes, where `whole`.
-  bool whole = false;  ///< Heights are codes: whole steps of a power of ten that fit int32.
+  std::int64_t west = 0, south = 0;  ///< Steps of the smallest x and y: the grid's origin.
+  std::int64_t east = 0, north = 0;  ///< Steps of the largest x and y.
+  StepCounter heights;               ///< Turns heights into codes, where `whole`.
+  bool whole = false;  ///< Heights are codes: whole steps of a power of ten, which fit int32.
+
+  /// REQUIRES: `p` is one of the points from which the grid was found.
 
   [[nodiscard]] GridPoint position(const SourcePoint& p) const noexcept {
     return {static_cast<std::int32_t>(x.steps(p.x) - west),
             static_cast<std::int32_t>(y.steps(p.y) - south)};
   }
-  /// The height as merging takes it: its code where `whole`, else in its unit.
+  /// The height of a point until it is encoded: its code where `whole`, else the height itself.
   [[nodiscard]] double height(Decimal z) const noexcept {
     return whole ? static_cast<double>(heights.steps(z)) : to_double(z);
   }
-  /// The largest x or y of all points, on the grid.
+  /// The largest x or y of all points, in grid units.
   [[nodiscard]] std::int64_t largest() const noexcept {
     return east - west > north - south ? east - west : north - south;
   }
-  /// How far in plan a point moves, CRS units.
+  /// How far a point moves in plan when it is put on the grid, CRS units.
   [[nodiscard]] double shift(const SourcePoint& p) const noexcept;
+  /// From the grid to the CRS.
   [[nodiscard]] AffineMap map() const noexcept;
 };
 
-/// Sees every point once, then knows the grid: PointBuckets::read() says which.
+/// Sees every point of all sources once, then gives their grid. PointBuckets::read() says by which
+/// rules (points/point_buckets.h).
 class PointGridScan {
  public:
-  /// @throws Error invalid_argument  a resolution that is no length
+  /// @param resolution  The grid unit in CRS units; none: the unit that keeps every digit.
+  /// @param context     The path of the first source, for errors.
+  /// @throws Error invalid_argument  the resolution is not finite, or not above 0
   PointGridScan(std::optional<double> resolution, const std::string& context);
 
-  /// Once for each file, before its points.
+  /// To be called once for each file, before its points are added.
   void add_source(const PointStreamFacts& facts);
   void add(const SourcePoint& p) noexcept {
     ++points_;
@@ -117,7 +128,8 @@ class PointGridScan {
   std::uint64_t points_ = 0;
 };
 
-/// True when a point's height and place are wanted: no `nodata`, and inside of the bounds.
+/// True when a point is to be built from: its height is not `options.nodata`, and it lies in
+/// `options.bbox`, which is closed.
 [[nodiscard]] bool is_wanted(const SourcePoint& p, const SourceOptions& options) noexcept;
 
 }  // namespace ptin

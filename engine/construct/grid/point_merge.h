@@ -12,19 +12,20 @@
 
 namespace ptin {
 
-/// Heights of points that share a position, given in ascending order, so that the sum does not
-/// depend on the order of the source.
+/// Merges the heights of points that share a position. Heights are given in ascending order, so
+/// that their sum does not depend on the order of the source.
 class MergedHeight {
  public:
   explicit MergedHeight(double lowest) noexcept : low_(lowest), high_(lowest), sum_(lowest) {}
-  /// REQUIRES: not below the ones before.
+  /// REQUIRES: `height` is not below the heights before.
   void add(double height) noexcept {
     high_ = height;
     sum_ += height;
     ++count_;
   }
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-  /// @param whole  Heights are codes: the mean is rounded to one, ties to even.
+  /// The merged height.
+  /// @param whole  Heights are codes: the mean is rounded to a code, ties to even.
   [[nodiscard]] double height(PointMerge rule, bool whole) const noexcept {
     if (rule != PointMerge::kMean || low_ == high_) {
       return rule == PointMerge::kHighest ? high_ : low_;
@@ -32,7 +33,7 @@ class MergedHeight {
     const double mean = sum_ / static_cast<double>(count_);
     return whole ? std::nearbyint(mean) : mean;
   }
-  /// How far the farthest of them is from `height`.
+  /// The distance of `height` from the farthest of the heights that were merged.
   [[nodiscard]] double shift(double height) const noexcept {
     return std::max(height - low_, high_ - height);
   }

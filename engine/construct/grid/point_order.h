@@ -14,18 +14,21 @@ namespace ptin {
 /// The curve over the square at the origin that just holds all points: coordinates are stretched to
 /// 32 bits, by the same factor in x and y, so that the curve's quarters are those of the terrain.
 ///
-/// With W the square's side in points, m = floor((2^32 - 1) 2^30 / W) and X = floor(x m / 2^30):
-/// since W <= 2^30 + 1, m >= 2^30, so X grows with each x and x = ceil(X 2^30 / m) again. x m < W m
-/// < 2^62.
+/// Let W be the side of the square in points, m = floor((2^32 - 1) 2^30 / W) the factor, and
+/// X = floor(x m / 2^30) the stretched coordinate. W is at most 2^30 + 1, so m is at least 2^30:
+/// each x has an X of its own, and x = ceil(X 2^30 / m). 64 bits hold the products, since
+/// x m < W m < 2^62.
 class PointOrder {
  public:
-  /// @param largest  The largest x or y of all points.
+  /// @param largest  The largest x or y of all points, in grid units.
   explicit PointOrder(std::int64_t largest)
       : factor_((((std::uint64_t{1} << 32) - 1) << 30) / static_cast<std::uint64_t>(largest + 1)) {}
 
+  /// The place of `p` along the curve.
   [[nodiscard]] std::uint64_t key(GridPoint p) const noexcept {
     return hilbert_position(stretched(p.x), stretched(p.y));
   }
+  /// The point at a place that key() gave.
   [[nodiscard]] GridPoint point(std::uint64_t key) const noexcept {
     const HilbertCell cell = hilbert_cell(key);
     return {back(cell.x), back(cell.y)};

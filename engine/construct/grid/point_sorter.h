@@ -9,10 +9,10 @@
 
 namespace ptin {
 
-/// A point to be sorted: by key, then height.
+/// A point to be sorted along the curve; points that fall together are sorted by height.
 struct KeyedHeight {
-  std::uint64_t key = 0;
-  double height = 0.0;  ///< No NaN.
+  std::uint64_t key = 0;  ///< PointOrder::key() of its position.
+  double height = 0.0;    ///< As PointGrid::height() has it; no NaN.
   friend bool operator==(const KeyedHeight&, const KeyedHeight&) = default;
 };
 

@@ -17,22 +17,23 @@ struct PointChoice {
   std::string z_field;       ///< OGR: the attribute that holds the height; "" for the geometry's z.
 };
 
-/// The height of points that fall together on one grid position.
+/// Which height stands for points that fall together on one grid position.
 enum class PointMerge : std::uint8_t { kMean, kLowest, kHighest };
 
 /// Choices that decide what is read from a source.
 struct SourceOptions {
-  /// Overrides the source's own. Points of this height are left out.
+  /// The height that means none; replaces the nodata value that a raster declares. Points with this
+  /// height are left out, and triangles of a TIN with such a corner.
   std::optional<double> nodata;
-  std::optional<double> resolution;  ///< Points: grid unit in CRS units.
+  std::optional<double> resolution;  ///< Points and TINs: the grid unit, in CRS units.
   struct Bounds {
     double min_x, min_y, max_x, max_y;
   };
-  std::optional<Bounds> bbox;            ///< CRS units; samples outside are left out.
-  std::string a_srs;                     ///< Overrides the CRS; anything GDAL understands.
-  std::string vertical_crs;              ///< Added as the vertical part, e.g. "EPSG:5773".
-  PointMerge merge = PointMerge::kMean;  ///< Points.
-  PointChoice points;                    ///< Points: which of them.
+  std::optional<Bounds> bbox;  ///< CRS units; samples outside are left out. Refused for TINs.
+  std::string a_srs;           ///< Replaces the CRS; "" keeps it. As resolve_crs().
+  std::string vertical_crs;    ///< Replaces or adds the vertical part, e.g. "EPSG:5773".
+  PointMerge merge = PointMerge::kMean;  ///< Points: how those that fall together are merged.
+  PointChoice points;                    ///< Points: which of them are wanted.
 };
 
 }  // namespace ptin

@@ -24,13 +24,13 @@ struct SourceLattice {
 /// What a source declares before its first point is read.
 struct PointStreamFacts {
   std::string crs;           ///< Anything GDAL understands; "" when the source does not say.
-  std::string vertical_crs;  ///< Likewise, where it is told apart from `crs`.
+  std::string vertical_crs;  ///< Likewise, where the source names it apart from `crs`.
   /// Digits after the point that coordinates and heights are declared to have: at least so many are
   /// kept.
   int plan_decimals = 0;
   int height_decimals = 0;
-  /// Set where steps are no power of ten or the offset is not a whole number of them:
-  /// `plan_decimals` says nothing then, and the grid is this one.
+  /// Set where the file's steps are no power of ten, or its offset is not a whole number of steps.
+  /// The grid is then this lattice, and `plan_decimals` means nothing.
   std::optional<SourceLattice> lattice;
 };
 

@@ -23,8 +23,8 @@ struct PointBuckets::Kept {
 };
 
 SourceDisk PointBuckets::disk_of(std::uint64_t points) noexcept {
-  // Tiles of points have longer borders than squares, and push up more: 42 bytes a point were
-  // measured for 3 million, 67 for 1 million.
+  // Tiles of points have longer borders than squares, and push up more: their files took 42 bytes a
+  // point for 3 million points, and 67 for 1 million.
   return {.while_reading = points * (PointSpool::kRecordBytes + sizeof(KeyedHeight)),
           .spooled = points * PointSpool::kRecordBytes,
           .kept = points * kMostPackedBytes,

@@ -12,13 +12,15 @@
 
 namespace ptin {
 
-/// Opens a file of points by its format (input_kind.h): LAS (las_reader.h), a TIN for its vertices
-/// (tin_vertices.h), text (xyz_reader.h), anything else as a layer of OGR's (ogr_points.h).
-/// @param nodata  This height means none: such points are handed out all the same, but that
-///                vertices of a TIN stay only where a triangle has three heights, as when it is
-///                built.
-/// @throws Error  not_found, io_error, invalid_argument, unsupported_version  as those; a choice
-///                that means nothing for the format
+/// Opens a file of points by its format (read/input_kind.h): LAS (read/las_reader.h), a TIN for its
+/// vertices (tin/tin_vertices.h), text (read/xyz_reader.h), anything else as a layer of OGR's
+/// (read/ogr_points.h).
+/// @param nodata     The height that means none. Of a TIN, only vertices are handed out that belong
+///                   to a triangle with three heights, as when the TIN itself is built. Of other
+///                   files, points with this height are handed out all the same.
+/// @param resources  For a TIN, while it is opened.
+/// @throws Error  as those readers; invalid_argument also for a choice that means nothing for the
+///                format
 [[nodiscard]] std::unique_ptr<PointStream> open_point_stream(const std::string& path,
                                                              const PointChoice& choice,
                                                              std::optional<double> nodata = {},

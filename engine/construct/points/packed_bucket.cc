@@ -10,10 +10,11 @@ namespace ptin {
 
 namespace {
 
-/// How a height is a number of 64 bits.
+/// How a height becomes a key, a number of 64 bits: the whole number that it is, or the bits of its
+/// float or double.
 enum class HeightKey : std::uint8_t { kWhole, kFloat, kDouble };
 
-/// So that whole numbers below zero come before those above.
+/// The key of 0 as a whole number, so that keys of numbers below 0 are smaller.
 constexpr std::uint64_t kZero = std::uint64_t{1} << 63;
 
 bool is_whole(double h) {
@@ -83,7 +84,7 @@ class BitWriter {
   }
   std::vector<std::byte>& to_;
   std::uint64_t waiting_ = 0;
-  unsigned held_ = 0;  ///< Of waiting_: fewer than 8 between calls.
+  unsigned held_ = 0;  ///< Bits in waiting_: fewer than 8 between calls.
 };
 
 class BitReader {
@@ -111,6 +112,7 @@ class BitReader {
 };
 static_assert(std::endian::native == std::endian::little);
 
+/// Bits of the numbers of a point.
 struct Widths {
   unsigned x, y, height;
   Widths(const GridBox& box, unsigned height_bits)
@@ -120,7 +122,7 @@ struct Widths {
   }
 };
 
-constexpr std::size_t kHeader = 10;  // kind of key, its bits, the smallest
+constexpr std::size_t kHeader = 10;  // bytes: the kind of key, the bits of a height, the least key
 
 }  // namespace
 

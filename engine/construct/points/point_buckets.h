@@ -35,7 +35,7 @@ struct BucketPoint {
 struct PointCounts {
   std::uint64_t source_points = 0;    ///< Read and not left out.
   std::uint64_t left_out_points = 0;  ///< By class or place, withheld, or without a height.
-  std::uint64_t merged_points = 0;    ///< Of the source's, less the positions that they fell on.
+  std::uint64_t merged_points = 0;    ///< source_points less the distinct positions.
   /// How far a point moved at most: in plan when it was snapped to the grid (CRS units; 0 where the
   /// grid keeps every digit), and in height when it was merged (height's unit).
   double largest_shift_plan = 0.0;
@@ -50,21 +50,23 @@ class PointBuckets {
 
   /// Reads the sources once, puts what they hold on one grid, and sorts it.
   ///
-  /// The grid unit is the power of ten of the CRS unit that keeps every digit of every x and y, and
-  /// the origin the smallest x and y; or it is `options.resolution`, and the origin a multiple of
-  /// that. LAS declares its digits with its scale factor; where that is no power of ten, the
-  /// smallest scale factor is the unit, and the origin is aligned with that file's offset. Points
-  /// that fall together are merged: their height is the mean, rounded as heights are, or the lowest
-  /// or highest one. Heights are int32 with the power of ten that keeps every digit, where that
-  /// fits; else as for a Float64 raster. The CRS is the one that all files declare, or
-  /// `options.a_srs`.
+  /// Grid: the unit is `options.resolution`, and the origin a multiple of it. Without a resolution
+  /// the unit is the power of ten of the CRS unit that keeps every digit of every x and y, and the
+  /// origin is the smallest x and y. LAS declares its digits with its scale factor. Where a scale
+  /// factor is no power of ten, the smallest of such files is the unit, and the origin is aligned
+  /// with the offset of its file.
+  /// Merging: points that fall together become one. `options.merge` decides its height: by default
+  /// the mean, rounded to a code where heights are codes.
+  /// Heights: int32 with the power of ten that keeps every digit, where that fits; else as for a
+  /// Float64 raster (grid/height_fit.h).
+  /// CRS: `options.a_srs`, else the CRS that all files declare.
   ///
   /// The result depends on the set of points alone, not on their order or the files that they come
   /// from.
   ///
-  /// Disk: 27 bytes a point while it is read, 43 while it is sorted, then
-  /// at most 16, mostly half of that (packed_bucket.h); in memory.folder. Memory: memory.bytes, and
-  /// 24 bytes for each of at most 2^20 buckets.
+  /// Disk, in memory.folder: 27 bytes a point while points are read, 43 while they are sorted, then
+  /// at most 16, mostly half of that (points/packed_bucket.h). Memory: memory.bytes, and 24 bytes
+  /// for each of at most 2^20 buckets.
   /// @param keep_as  A file that must not exist: the buckets stay in it, so that load() can take
   ///                 them up; "" keeps them in a file without a name.
   /// @throws Error  not_found, io_error, unsupported_version  as open_point_stream()
@@ -79,10 +81,11 @@ class PointBuckets {
   /// What read() takes of the disk for so many points.
   [[nodiscard]] static SourceDisk disk_of(std::uint64_t points) noexcept;
 
-  /// Writes all but the points to `index`, and makes both files durable.
+  /// Writes all but the points to the file `index`, and makes both files durable.
+  /// @return  What load() needs to know of `index`.
   /// @throws Error io_error, resource_exhausted
   [[nodiscard]] ArrayFileFacts save(FileLayer& files, const std::string& index) const;
-  /// Takes up what read() kept and save() wrote.
+  /// Takes up what read() kept in the file `buckets` and save() wrote to `index`.
   /// @throws Error corruption  a file is not what was written; not_found, io_error, cancelled
   /// Cost: one reading of the points, to check them.
   static PointBuckets load(FileLayer& files, const std::string& buckets, const std::string& index,
@@ -94,6 +97,7 @@ class PointBuckets {
   [[nodiscard]] const ConvexHull& hull() const noexcept { return hull_; }
   /// Distinct positions.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  /// Points of each bucket; the last one may have fewer.
   [[nodiscard]] std::uint64_t bucket_points() const noexcept { return bucket_points_; }
   [[nodiscard]] std::uint64_t buckets() const noexcept { return boxes_.boxes().size(); }
   [[nodiscard]] const GridBox& box(std::uint64_t bucket) const noexcept {
@@ -102,8 +106,9 @@ class PointBuckets {
   /// Points first .. first + count - 1 in the order of the curve.  @throws Error io_error
   void take(std::uint64_t first, std::uint64_t count, std::vector<BucketPoint>& points) const;
 
-  /// Calls visit(bucket) for each bucket whose box pleases `meets`, the nearest to `from` first,
-  /// until it returns false. `meets` must hold for every box around one for which it holds.
+  /// Calls visit(bucket) for each bucket with meets(box of the bucket), the nearest to `from`
+  /// first, until visit() returns false. Where meets() holds for a box it must hold for every box
+  /// around that.
   template <class Meets, class Visit>
   void visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const {
     boxes_.visit_nearest(from, meets, visit);
@@ -131,9 +136,9 @@ class PointBuckets {
   std::uint64_t bucket_points_ = 1024;
   bool codes_are_whole_ = false;  ///< Heights on disk are codes.
   std::unique_ptr<ScratchFile> file_;
-  std::vector<std::uint64_t> ends_;  ///< Of each bucket, in the file.
-  std::uint64_t checksum_ = 0;       ///< Of the buckets, each with what came before it.
-  PackedBoxes boxes_;                ///< Of buckets.
+  std::vector<std::uint64_t> ends_;  ///< Where each bucket ends in the file.
+  std::uint64_t checksum_ = 0;       ///< Of all buckets: a chain, from the first to the last.
+  PackedBoxes boxes_;                ///< Those of the buckets.
 };
 
 }  // namespace ptin

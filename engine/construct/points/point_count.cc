@@ -17,15 +17,17 @@ namespace ptin {
 
 namespace {
 
-/// Points of text are looked at until so many are known, to learn the length of a line.
+/// So many points of a text are looked at, to learn the length of a line.
 constexpr std::size_t kLookedAt = 10000;
-/// Of a line of text, where nothing better is known.
+/// Bytes of a line of text, where the reader does not know how many it has read (.gz).
 constexpr double kBytesOfPoint = 24.0;
-/// How much smaller packed text may be than 4 GiB of it, at most: its size is known modulo that.
+/// A .gz file ends with the size of its text, modulo 4 GiB. One of fewer bytes than this is taken
+/// to hold less than 4 GiB of text, so that its end is believed.
 constexpr std::uint64_t kSurelySmall = std::uint64_t{256} << 20;
+/// Bytes of text for each byte of a larger .gz file.
 constexpr double kPackedTimes = 4.0;
 
-/// Bytes of text in a .gz file: its last four bytes, where it cannot be longer than they count.
+/// The bytes of text in a .gz file of `packed` bytes, or an estimate of them.
 double unpacked_bytes(const std::string& path, std::uint64_t packed) {
   if (packed >= kSurelySmall || packed < 4) {
     return static_cast<double>(packed) * kPackedTimes;
@@ -38,7 +40,7 @@ double unpacked_bytes(const std::string& path, std::uint64_t packed) {
   return std::max(last, static_cast<double>(packed));
 }
 
-/// True for what must not be looked into before it is read.
+/// True for a pipe, a socket or a device: what is looked at before reading would be lost.
 bool can_be_read_once_only(const std::string& path) {
   std::error_code ignored;
   const auto type = std::filesystem::status(path, ignored).type();
@@ -47,7 +49,8 @@ bool can_be_read_once_only(const std::string& path) {
          type == std::filesystem::file_type::socket;
 }
 
-/// Text of as many bytes a point as its first ones have.
+/// Estimates the points of a text from its size and the bytes that its first points take. Exact for
+/// a text of fewer than kLookedAt points.
 std::uint64_t points_of_text(const std::string& path, PointStream& stream) {
   std::error_code ignored;
   const auto size = std::filesystem::file_size(path, ignored);

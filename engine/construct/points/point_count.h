@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How many points there may be, before they are read.
+// How many points some inputs may hold, before they are read.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,18 @@
 
 namespace ptin {
 
+/// What is known of the points of some inputs before they are read.
 struct PointCount {
-  std::uint64_t points = 0;          ///< At most, or nearly so: text is counted by its first lines.
-  std::uint64_t of_largest_tin = 0;  ///< Vertices: TINs are sorted one at a time.
+  /// Points of all inputs, those that a choice leaves out included. Of LAS the header says it; of a
+  /// layer OGR says its features, or nothing, which counts as 0; text and TINs are estimated from
+  /// how they begin (read/tin_count.h).
+  std::uint64_t points = 0;
+  std::uint64_t of_largest_tin = 0;  ///< Vertices of the largest: TINs are sorted one at a time.
   bool is_known = true;      ///< false: an input is no file (a pipe), and can be read only once.
-  bool may_be_less = false;  ///< Classes, bounds or nodata may leave out any part of them.
+  bool may_be_less = false;  ///< Classes, bounds or nodata may leave out any part of the points.
 };
 
-/// Looks at headers, and at the first points of text. Cost: opens each input.
+/// Looks at headers, and at the first points of text and TINs. Cost: opens each input.
 /// @throws Error as open_point_stream()
 [[nodiscard]] PointCount count_points(const std::vector<std::string>& inputs,
                                       const SourceOptions& options);

@@ -21,15 +21,16 @@ struct ExternalMemory;
 /// What is known when the last point has been read.
 struct PointReading {
   PointGrid grid;
-  std::string crs;             ///< As all files declare it; "" with options.a_srs.
-  std::string vertical_crs;    ///< Likewise; "" with options.vertical_crs, too.
-  double largest_shift = 0.0;  ///< That the sources made themselves, CRS units.
+  std::string crs;             ///< The CRS that all files declare; "" where a_srs replaces it.
+  std::string vertical_crs;    ///< Likewise; "" also where options.vertical_crs replaces it.
+  double largest_shift = 0.0;  ///< The largest PointStream::largest_shift(), CRS units.
   std::uint64_t points = 0;
   std::uint64_t left_out = 0;
 };
 
 /// Hands every wanted point to `take`, file after file.
-/// @param memory  For what is sorted before it is handed out (StreamResources).
+/// @param progress  Receives the progress in the file at hand (PointStream::done()); may be empty.
+/// @param memory    As StreamResources::memory.
 /// @throws Error as PointBuckets::read(), and what `take` throws
 [[nodiscard]] PointReading read_sources(
     const std::vector<std::string>& paths, const SourceOptions& options,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points of a source on their way to the grid, which is not known before the last one is read.
+// Keeps points on disk until the last one is read: the grid is not known before.
 #pragma once
 
 #include <array>
@@ -15,10 +15,11 @@
 
 namespace ptin {
 
-/// A queue on disk: all points in, then all points out, and the disk is free again piece by piece.
+/// A queue on disk: all points in, then all points out. As points are taken out, the disk is freed
+/// piece by piece.
 class PointSpool {
  public:
-  /// On disk, of a point: three mantissas and the decimals of each.
+  /// Bytes of a point on disk: three mantissas and the decimals of each.
   static constexpr std::size_t kRecordBytes = 3 * 8 + 3;
 
   explicit PointSpool(const ExternalMemory& memory) : memory_(memory) {}
@@ -27,13 +28,15 @@ class PointSpool {
   void add(const SourcePoint& p);
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-  /// The next points; false when there is none left. No add() after the first take().
+  /// The next points, in the order of add(); false when there is none left. No add() after the
+  /// first take().  @throws Error io_error, resource_exhausted
   [[nodiscard]] bool take(std::vector<SourcePoint>& batch);
 
  private:
   static constexpr std::size_t kBlockRecords = 1 << 15;
-  /// Files are small, so that they are given back early, and few, since each has a descriptor: of
-  /// kFileBlocks blocks, then of twice as many after kFilesOfSize of a size. 2 TB are 256 files.
+  /// Files are small, so that their disk is freed early, and few, since each has a descriptor. The
+  /// first kFilesOfSize files have kFileBlocks blocks, the next kFilesOfSize twice as many, and so
+  /// on: 2 TB are 256 files.
   static constexpr std::uint64_t kFileBlocks = 256;
   static constexpr std::size_t kFilesOfSize = 32;
   struct File {

@@ -67,9 +67,10 @@ GDALRasterBand* height_band(GDALDataset& data, const std::string& path) {
   return data.GetRasterBand(1);
 }
 
-/// The band that says where samples are masked out, or null where the band's nodata value alone
-/// decides: one of the whole dataset (NODATA_VALUES) is known to its mask only.
-/// @param is_overridden  Another nodata value takes the place of any declared one.
+/// The band that says where samples are masked out; null where all are valid, and where the nodata
+/// value of the band alone decides, which find_valid() compares. A nodata value of the whole
+/// dataset (NODATA_VALUES) is known to the mask only, so the mask is needed there.
+/// @param is_overridden  The caller's nodata value replaces any declared one.
 GDALRasterBand* mask_band(GDALRasterBand& band, bool is_overridden) {
   const int flags = band.GetMaskFlags();
   const bool by_value =
@@ -122,7 +123,8 @@ void describe_values(GDALRasterBand& band, const std::string& path, RasterShape&
   } else {
     shape.raw = RawType::kFloat64;
   }
-  // Whole numbers are not looked at one by one; floats are (check_heights).
+  // The range of integers is checked here, once for all; floats are checked one by one
+  // (check_heights).
   const double largest = std::ldexp(1.0, type == GDT_Byte ? 8 : type == GDT_Int32 ? 31 : 16);
   if (shape.raw == RawType::kInt32 &&
       std::abs(shape.scale) * largest + std::abs(shape.offset) > FLT_MAX) {
@@ -181,10 +183,10 @@ std::string declared_crs(GDALDataset& data) {
   return wkt;
 }
 
-/// The raw values that are the nodata value: all within [low, high]; an empty range when none can
-/// be. Values are compared as the file's type holds them, since a nodata value is often written
-/// with fewer digits than its float32; where it is huge (-3.4e38), everything within a millionth of
-/// it is meant.
+/// The range [low, high] of the raw values that count as the nodata value; an empty range when no
+/// value does. The nodata value is first converted to the file's type, since it is often written
+/// with fewer digits than its float32 has. Of a huge one (-3.4e38) everything within a millionth of
+/// it counts.
 template <class T>
 std::pair<T, T> nodata_range(std::optional<double> nodata) {
   const std::pair<T, T> none{std::numeric_limits<T>::max(), std::numeric_limits<T>::lowest()};
@@ -213,8 +215,8 @@ std::pair<T, T> nodata_range(std::optional<double> nodata) {
   }
 }
 
-/// Sets `valid` from the nodata value alone. Returns false when a valid value is no height:
-/// infinite, or beyond the range of a float32 once scaled.
+/// Sets `valid` from the nodata value, and to 0 for NaN; the mask is not looked at. Returns false
+/// when a valid value is no height: it is infinite, or beyond the range of a float32 once scaled.
 template <class T>
 bool find_valid(std::span<const T> values, std::span<std::uint8_t> valid,
                 std::optional<double> nodata, const RasterShape& shape) {
@@ -368,7 +370,7 @@ void RasterPart::read(const SampleRange& window, std::span<T> values,
       valid[i] = static_cast<std::uint8_t>(valid[i] & (mask[i] != 0));
     }
   }
-  if (!all_heights) {  // or so it was before the mask
+  if (!all_heights) {  // the mask may have taken out those that are none
     check_heights<T>(window, values, valid, shape_, path_);
   }
 }

@@ -16,7 +16,8 @@
 
 namespace ptin {
 
-/// How the raw values of a raster are read: integers of up to 32 bits, Float32, and all others.
+/// The type as which the raw values of a raster are read: int32 for Byte, Int16, UInt16 and Int32
+/// unless their scale is negative; float for Float32 without scale and offset; double otherwise.
 enum class RawType : std::uint8_t { kInt32, kFloat32, kFloat64 };
 
 /// What a raster file says of itself, in the grid's orientation: x to the east, y to the north,
@@ -24,7 +25,7 @@ enum class RawType : std::uint8_t { kInt32, kFloat32, kFloat64 };
 struct RasterShape {
   std::int64_t width = 0;
   std::int64_t height = 0;
-  AffineMap map;                   ///< Of sample (0, 0).
+  AffineMap map;                   ///< From samples to the CRS.
   bool georeferenced = false;      ///< false: the map is the identity, in pixels.
   bool rows_from_south = false;    ///< The file's first row is the southernmost.
   bool columns_from_east = false;  ///< The file's first column is the easternmost.
@@ -32,20 +33,22 @@ struct RasterShape {
   std::string unit;                ///< Of heights; empty when unknown.
   RawType raw = RawType::kInt32;
   std::string type_name;      ///< GDAL's: "Int16", "Float32" ...
-  bool signed_bytes = false;  ///< Of the type Byte, but from -128 to 127.
+  bool signed_bytes = false;  ///< Values are -128 to 127, though the type is Byte (GDAL < 3.7).
   double scale = 1.0;         ///< height = offset + scale * raw value
   double offset = 0.0;
   std::array<int, 2> block = {1, 1};  ///< Width and height of the file's own blocks.
 };
 
-/// A raster file, opened when needed. Not thread-safe: one call at a time.
+/// A raster file, which is opened when it is needed. Not thread-safe: one call at a time.
 class RasterPart {
  public:
+  /// Opens the file.
+  /// @param nodata_override  Replaces the nodata value that the file declares; none keeps that.
   /// @throws Error  not_found         no such file
-  ///                invalid_argument  not a raster, no band or several, complex, rotated, too
-  ///                large, ...
+  ///                invalid_argument  not a raster, no band or several, complex numbers, rotated,
+  ///                                  placed by ground control points alone, beyond the grid's size
   RasterPart(std::string path, std::optional<double> nodata_override);
-  /// The same part, closed: it reads with a descriptor of its own.
+  /// A copy that is closed: it opens the file again, with a descriptor of its own.
   [[nodiscard]] RasterPart closed_copy() const { return RasterPart(*this); }
   ~RasterPart();
   RasterPart(RasterPart&&) noexcept;
@@ -54,8 +57,8 @@ class RasterPart {
   [[nodiscard]] const RasterShape& shape() const noexcept { return shape_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
-  /// Gives the file's descriptor back; the next read() opens it again. A mosaic may have more files
-  /// than a process may have descriptors.
+  /// Closes the file until the next read(): a mosaic may have more files than a process may have
+  /// descriptors.
   void close() noexcept;
   [[nodiscard]] bool is_open() const noexcept { return bands_ != nullptr; }
 
@@ -74,7 +77,7 @@ class RasterPart {
 
   std::string path_;
   std::optional<double> nodata_override_;
-  std::optional<double> nodata_;  ///< A raw value.
+  std::optional<double> nodata_;  ///< The nodata value in force, compared with raw values.
   RasterShape shape_;
   std::unique_ptr<Bands> bands_;
 };

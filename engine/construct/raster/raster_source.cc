@@ -24,13 +24,14 @@
 namespace ptin {
 namespace {
 
-/// Files of a mosaic that one source has open at once.
+/// Most files of a mosaic that one source has open at once.
 constexpr std::size_t kMostOpenFiles = 64;
-/// Descriptors for all else: GDAL keeps up to 100 files of VRTs open, a build its own.
+/// Descriptors left for all else: GDAL keeps up to 100 files of VRTs open, and a build has files of
+/// its own.
 constexpr std::size_t kOtherFiles = 256;
 
-/// Files that each of some sources may have open, so that all of them stay within what the process
-/// may open (1024, often).
+/// How many files each of `sources` sources may have open, so that all of them together stay within
+/// the descriptors of the process (often 1024).
 std::size_t most_open_files(std::size_t sources) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
@@ -41,17 +42,18 @@ std::size_t most_open_files(std::size_t sources) {
   return std::clamp<std::size_t>(ours / sources, 1, kMostOpenFiles);
 }
 
-/// Samples looked at together by the first reading.
+/// About how many samples the first reading looks at together.
 constexpr std::int64_t kScanSamples = std::int64_t{1} << 20;
 
-/// Part of a step by which samples of different files, or bounds, may miss the grid.
+/// The parts of a step by which the samples of another file and the bounds of `bbox` may miss the
+/// grid.
 constexpr double kFileSlack = 0.01;
 constexpr double kBoundsSlack = 1e-6;
 
 struct PlacedPart {
   RasterPart part;
-  std::int64_t x = 0, y = 0;  ///< Of its south-western sample, in the terrain.
-  std::uint64_t last_used = 0;
+  std::int64_t x = 0, y = 0;    ///< Of its south-western sample, in the terrain.
+  std::uint64_t last_used = 0;  ///< Impl::clock at that time.
 };
 
 /// Why `b` cannot stand beside `a` in one terrain; empty when it can.
@@ -75,8 +77,8 @@ std::string mismatch(const RasterShape& a, const RasterShape& b, bool compare_cr
   return "";
 }
 
-/// Whole steps from `a` to `b`; refuses when their difference is not near to a whole number of
-/// them.
+/// Whole steps from `a` to `b`. Refuses the file `path`, whose origin is `b`, when their difference
+/// is not near to a whole number of steps.
 std::int64_t steps_between(double a, double b, double step, const std::string& path) {
   const double steps = (b - a) / step;
   if (!(std::abs(steps) <= 2.0 * kGridMax)) {
@@ -274,8 +276,8 @@ RasterSource RasterSource::duplicate() const {
 // ---------------------------------------------------------------------------------------------------
 // The first reading.
 
-/// The windows of the first reading: whole rows where the file's blocks are, else a few of its
-/// blocks.
+/// The size of the windows of the first reading: whole rows where the blocks of the file are whole
+/// rows, else a few blocks side by side.
 SampleRange RasterSource::Impl::scan_step() const {
   const auto [block_width, block_height] = parts[0].part.shape().block;
   const std::int64_t columns =
@@ -348,7 +350,7 @@ void RasterSource::Impl::scan(const std::stop_token& stop, const Progress& progr
 // ---------------------------------------------------------------------------------------------------
 // Reading windows.
 
-/// Marks a part as used, and closes those that were not for longest where too many are open.
+/// Marks a part as used. Where too many parts are open, closes those whose last use is longest ago.
 void RasterSource::Impl::touch(PlacedPart& placed) {
   placed.last_used = ++clock;
   std::vector<PlacedPart*> open;
@@ -369,7 +371,8 @@ void RasterSource::Impl::touch(PlacedPart& placed) {
   }
 }
 
-/// Reads what `placed` has of the window over what is there already.
+/// Reads the part of the window that `placed` covers. Its heights overwrite what is there already;
+/// its voids do not.
 template <class T>
 void RasterSource::Impl::overlay(PlacedPart& placed, const SampleRange& w, std::span<T> values,
                                  std::span<std::uint8_t> valid) {

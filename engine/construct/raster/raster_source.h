@@ -21,32 +21,31 @@ namespace ptin {
 /// file's own order; without a geotransform a grid unit is a pixel and the CRS unknown.
 ///
 /// A sample is void where it is the nodata value, NaN, masked out (mask band, alpha 0), or in no
-/// file. Where files overlap the last one given with a height wins. Scale and offset are applied;
-/// of integer rasters they become the height encoding, exactly.
+/// file. Where files overlap, the last file in the order given that has a height there decides.
+/// Scale and offset are applied; for integer rasters they become those of the height encoding, so
+/// that no height is rounded.
 ///
-/// Threads: const members may be called from several threads, and take turns at the files. For
-/// readers that do not wait for each other, give each a duplicate().
+/// Threads: const members may be called from several threads, which take turns at the files.
+/// Threads that are not to wait for each other need a duplicate() each.
 class RasterSource {
  public:
   using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
   /// Opens the files and reads all samples once, block by block, to count them and to choose the
   /// encoding.
-  /// @param paths     One raster, or several with the same steps, type, scale, offset and CRS,
-  /// whose
+  /// @param paths     One raster, or several with the same steps, type, scale, offset and CRS whose
   ///                  samples lie on one grid to a hundredth of a pixel.
-  /// @param options   `resolution` and `points` do not concern rasters.
+  /// @param options   `resolution`, `merge` and `points` do not concern rasters.
   /// @param progress  Called after each block with samples done and in all; may be empty.
   /// @throws Error  not_found         a file does not exist
   ///                invalid_argument  not a raster; no band or several; rotated; more than 2^30
-  ///                steps; a
-  ///                                  single row or column; no sample in `bbox`; an infinite height
-  ///                                  (the message names its pixel); files that are not of one
-  ///                                  grid; no height at all is not an error
+  ///                                  steps; a single row or column; no sample in `bbox`; an
+  ///                                  infinite height (the message names its pixel); files that are
+  ///                                  not of one grid. A raster without any height is no error.
   ///                io_error          a block cannot be read
   ///                cancelled         `stop` fired
-  /// Cost: one reading of all files. Memory: a few MiB, and GDAL's block cache, which is the
-  /// caller's to set.
+  /// Cost: one reading of all files. Memory: a few MiB, and GDAL's block cache, whose size the
+  /// caller sets.
   [[nodiscard]] static RasterSource open(const std::vector<std::string>& paths,
                                          const SourceOptions& options,
                                          const std::stop_token& stop = {},
@@ -56,7 +55,8 @@ class RasterSource {
   RasterSource& operator=(RasterSource&&) noexcept;
   ~RasterSource();
 
-  /// The same terrain with files of its own. Cost: opens no file before the first read().
+  /// The same terrain with files of its own. Cost: opens no file before the first read(). The files
+  /// of a mosaic are closed in this source too, until they are read again.
   [[nodiscard]] RasterSource duplicate() const;
 
   [[nodiscard]] const TerrainFrame& frame() const noexcept;
@@ -70,9 +70,9 @@ class RasterSource {
   /// the spans hold w * h.
   /// @throws Error  invalid_argument  the window or a span is not as required
   ///                io_error          a block cannot be read, or the file changed since open()
-  /// Cost: linear in the window, plus decoding of the blocks that it touches and GDAL's cache has
-  /// not. Memory besides: nothing for integers, one value a sample for Float32 and others, and for
-  /// mosaics.
+  /// Cost: linear in the window, and decoding those blocks under it that GDAL's cache does not
+  /// hold. Memory beside the spans: none for one file of integers; one value of 4 or 8 bytes a
+  /// sample for other types; for a mosaic besides the values of one file at a time.
   void read(std::int64_t x0, std::int64_t y0, std::int64_t w, std::int64_t h,
             std::span<HeightBits> heights, std::span<std::uint8_t> valid) const;
 

@@ -59,7 +59,8 @@ struct RasterSurface::Line {
   double rise;
   double enter = 0.0, leave = 1.0;
 
-  /// The crossings to look at, of `n` - 1 equally spaced ones: those near the window.
+  /// Of the crossings 1 .. n - 1 with a family of lines, which divide the edge into n equal parts,
+  /// first(n) .. end(n) - 1 hold all that may lie in the window, and a few more.
   [[nodiscard]] std::int64_t first(std::int64_t n) const noexcept {
     return enter <= 0.0 ? 1
                         : std::max<std::int64_t>(
@@ -70,6 +71,8 @@ struct RasterSurface::Line {
                         : std::min<std::int64_t>(
                               static_cast<std::int64_t>(leave * static_cast<double>(n)) + 2, n);
   }
+  /// Narrows [enter, leave] to where one coordinate, which goes from `from` to `from` + `length`
+  /// along the edge, is within 0 .. size - 1.
   void clip(std::int64_t from, std::int64_t length, std::int64_t size) noexcept {
     if (length == 0) {
       leave = from < 0 || from >= size ? -1.0 : leave;
@@ -97,7 +100,7 @@ RasterSurface::RasterSurface(std::vector<HeightBits> heights, std::vector<std::u
   mark_rising();
 }
 
-/// Diagonals are asked for many times each.
+/// Finds the diagonals of all cells once, since each is asked for many times.
 void RasterSurface::mark_rising() {
   const auto valid = [this](std::size_t i) {
     return static_cast<std::uint8_t>(flags_[i] & kValid);

@@ -10,10 +10,11 @@
 
 namespace ptin {
 
-/// Edges may lead out of the window: only what lies inside of it is looked at.
+/// The full surface over a window. Edges that are asked about may lead out of the window; only
+/// their crossings inside of it count.
 class RasterSurface final : public FullSurface {
  public:
-  /// Takes the samples over. Layout as make_raster_tin().
+  /// Keeps the samples, which are laid out as those of make_raster_tin().
   RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid,
                 std::int32_t width, std::int32_t height, const HeightEncoding& encoding,
                 GridPoint origin);
@@ -39,6 +40,10 @@ class RasterSurface final : public FullSurface {
   void cross_rows(const Line& line, GapMaximum& gap) const;
   void cross_rising(const Line& line, GapMaximum& gap) const;
   void cross_falling(const Line& line, GapMaximum& gap) const;
+  /// Adds the gap where an edge crosses the segment between the samples p and q, unless one of them
+  /// is void.
+  /// @param fraction  Where on the segment, from p (0) to q (1).
+  /// @param edge      The edge's height there, above its first end.
   void add(std::size_t p, std::size_t q, double fraction, double edge, GapMaximum& gap) const {
     if ((flags_[p] & flags_[q] & kValid) != 0) {
       gap.add(code(p), code(q), fraction, edge);
@@ -47,7 +52,7 @@ class RasterSurface final : public FullSurface {
 
   std::vector<HeightBits> heights_;
   static constexpr std::uint8_t kValid = 1;  ///< The sample has a height.
-  /// The cell whose lower left sample it is, is cut along its rising diagonal.
+  /// The cell that has this sample as its lower left corner is cut along its rising diagonal.
   static constexpr std::uint8_t kRises = 2;
   std::vector<std::uint8_t> flags_;
   std::int32_t width_;

@@ -14,7 +14,8 @@ namespace ptin {
 
 namespace {
 
-/// A sample is lone by the cells around it, so one more than the depth's cut-off.
+/// Depths need the samples within the cut-off; whether the last of these are lone, the cells around
+/// them tell: hence one more.
 constexpr std::int64_t kMargin = kVoidDepthCutOff + 1;
 
 SampleRange with_margin(const RasterSource& source, const SampleRange& window) {

@@ -9,8 +9,9 @@
 
 namespace ptin {
 
-/// Reads `window` (with a margin of the depth's cut-off around it where there is more), turns lone
-/// samples into voids and triangulates. Tiles get the same depths and classes as the whole.
+/// Reads `window`, turns lone samples into void ones and triangulates. Where the raster has voids,
+/// a margin of kVoidDepthCutOff + 1 samples is read around the window, as far as the raster
+/// reaches, so that depths and classes in a tile are those in the whole raster.
 /// @throws Error as RasterSource::read, resource_exhausted
 /// Cost: linear. Memory: about 200 bytes a sample.
 [[nodiscard]] StartedTile start_raster_tile(const RasterSource& source, const SampleRange& window,

@@ -19,7 +19,7 @@ double decode(HeightBits bits) noexcept {
   return static_cast<double>(std::bit_cast<T>(bits));
 }
 
-/// Whether x + y is odd; of each alone, since the sum may not fit.
+/// 1 where x + y is odd, else 0. The sum itself may not fit.
 std::uint32_t parity_of(GridPoint p) noexcept { return static_cast<std::uint32_t>(p.x ^ p.y) & 1; }
 
 struct Window {
@@ -101,8 +101,9 @@ void add_cell(Tin& tin, const Window& w, std::int32_t x, std::int32_t y, const D
   }
 }
 
-/// One triangle for each vertex of row `y`, given the diagonals of the cells above it (below it for
-/// the last row): the first of the counter-clockwise walk on the border, any inside.
+/// Writes the vertices of row `y`, each with one of its triangles: on the border the one at which
+/// the counter-clockwise walk around the vertex begins, inside any.
+/// @param below, above  The diagonals of the cells below and above the row, where there are such.
 void add_vertices(Tin& tin, const Window& w, std::int32_t y, const DiagonalRow& below,
                   const DiagonalRow& above) {
   const auto cells = static_cast<std::uint32_t>(w.cells_x());
@@ -112,13 +113,13 @@ void add_vertices(Tin& tin, const Window& w, std::int32_t y, const DiagonalRow& 
     const std::size_t i = w.at(x, y);
     const auto ux = static_cast<std::uint32_t>(x);
     TriangleId t = kNone;
-    if (x == 0 && y > 0) {  // the border lies to the south: walk from there
+    if (x == 0 && y > 0) {  // western border: the walk begins at the border edge to the south
       t = western(row_above - cells, below[0]);
-    } else if (top) {  // to the west
+    } else if (top) {  // northern border: at the edge to the west
       t = 2 * (row_above - cells + ux - 1) + 1;
-    } else if (x + 1 == w.width) {  // to the north
+    } else if (x + 1 == w.width) {  // eastern border: at the edge to the north
       t = eastern(row_above + cells - 1, above[cells - 1]);
-    } else {  // to the east, or inside
+    } else {  // southern border: at the edge to the east; or inside
       t = 2 * (row_above + ux);
     }
     const bool has = w.valid[i] != 0;

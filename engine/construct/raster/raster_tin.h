@@ -26,22 +26,21 @@ struct RasterCell {
 /// The diagonal that cuts the cell whose lower left corner is the grid point `corner`. It depends
 /// on the cell alone, so tiles agree. In this order:
 ///   1. the diagonal with fewer ends without a height (so that one void corner costs one triangle,
-///   not two);
+///      not two);
 ///   2. with four heights, the diagonal with the smaller difference between the codes at its ends;
 ///   3. rising where x + y of `corner` is even, falling where it is odd.
 [[nodiscard]] Diagonal cell_diagonal(const RasterCell& cell, GridPoint corner) noexcept;
 
 /// The full TIN of a window of `width` x `height` samples whose lower left one is the grid point
 /// `origin`. A triangle is void when one of its corners has no height.
-/// @param heights   Row-major, row 0 in the south. Not looked at where `valid` is 0: those vertices
-/// get height 0.
+/// @param heights   Row-major, row 0 in the south. Where `valid` is 0 the height is not looked at,
+///                  and the vertex gets height 0.
 /// @param valid     Beside `heights`; 0 for a sample without a height.
-/// @return  Vertex ids row-major from the south, so that their order is that of their keys; the
-/// triangles of cell
-///          (i, j) are 2 * c and 2 * c + 1 with c = j * (width - 1) + i, the one at the cell's
-///          lower edge first.
+/// @return  Vertices are numbered row by row from the south, so that their ids are in the order of
+///          their keys. Cell (i, j) has the triangles 2 * c and 2 * c + 1 with
+///          c = j * (width - 1) + i, the triangle at its lower edge first.
 /// @throws Error  invalid_argument    width or height below 2, spans of another size, or a corner
-/// off the grid
+///                                    off the grid
 ///                resource_exhausted  more triangles than a TriangleId counts
 /// Cost: linear; 67 bytes a sample. Threads: any number of calls at once.
 [[nodiscard]] Tin make_raster_tin(std::span<const HeightBits> heights,
@@ -53,8 +52,7 @@ struct RasterCell {
 /// of their cells has three corners with heights. Callers treat them as void; that changes the
 /// class of no triangle and makes no other sample lone.
 /// @return  Indices into `valid`, ascending. A sample on the window's border is judged by the cells
-/// inside the window:
-///          tiles pass a window with a margin of one sample and keep what lies inside.
+///          inside the window alone, so tiles pass a window with a margin of at least one sample.
 /// Cost: linear, one byte a sample read three times; nothing else where all is valid.
 [[nodiscard]] std::vector<std::uint64_t> find_lone_samples(std::span<const std::uint8_t> valid,
                                                            std::int64_t width, std::int64_t height);

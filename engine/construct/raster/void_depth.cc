@@ -83,8 +83,9 @@ class RowTransform {
   }
 
  private:
-  /// A sample of the other class, or the nearest of them in a column of the run: its column, its
-  /// squared distance along the column, and the first column of the row that it is nearest to.
+  /// A sample of the other class that may be the nearest to samples of a run: one beside the run,
+  /// or the nearest in a column of the run. Its column, its squared distance from the row along the
+  /// column, and the first column of the row to which it is the nearest candidate.
   struct Candidate {
     std::int64_t column;
     std::int64_t squared;
@@ -103,9 +104,9 @@ class RowTransform {
     return least > cut_off_ && one_class;
   }
 
-  /// The last column in which `a` is at least as near as `b`, which lies to the east of it.
-  /// Candidates that are further apart than two cut-offs do not meet within it: any column between
-  /// serves.
+  /// The last column in which `a` is at least as near as `b`, which lies to the east of `a`. Of
+  /// candidates that are more than two cut-offs apart no column is within the cut-off of both: any
+  /// column between them serves.
   [[nodiscard]] std::int64_t last_column_of(const Candidate& a, const Candidate& b,
                                             const RowWeights& weights) const {
     const std::int64_t apart = b.column - a.column;
@@ -119,7 +120,7 @@ class RowTransform {
     return a.column + floor;
   }
 
-  /// Adds a candidate to the east of all others, and drops those that it leaves no column.
+  /// Adds a candidate to the east of all others, and drops those to which it leaves no column.
   void add_candidate(Candidate c, const RowWeights& weights) {
     c.from = std::numeric_limits<std::int64_t>::min();
     while (!candidates_.empty()) {
@@ -133,8 +134,9 @@ class RowTransform {
     candidates_.push_back(c);
   }
 
-  /// Columns [first, end) are of one class; the samples beside them, if any, of the other. Nothing
-  /// beyond those can be nearer than they are.
+  /// Finds the depths of a run: columns [first, end), which are of one class. The samples of the
+  /// row beside the run, where there are any, are of the other class; no sample beyond them is
+  /// nearer.
   void transform_run(const Row& row, const RowWeights& weights, std::int64_t first,
                      std::int64_t end, float* depth) {
     candidates_.clear();
@@ -177,7 +179,8 @@ class RowTransform {
   std::vector<Candidate> candidates_;
 };
 
-/// Counts on along columns, from a row whose counts are in `rows_away` to the next one.
+/// Moves on from the row `from` to the row `to` beside it. `rows_away` says, for each sample of a
+/// row, how many rows back along its column the nearest sample of the other class lies.
 void count_rows(const std::uint8_t* from, const std::uint8_t* to, std::int64_t width,
                 std::uint16_t* rows_away) {
   for (std::int64_t x = 0; x < width; ++x) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // How deep each sample of a raster lies in its class: the distance to the nearest sample of the
-// other one.
+// other class.
 #pragma once
 
 #include <cstdint>
@@ -40,9 +40,9 @@ using GroundStepOfRow = std::function<GroundStep(std::int64_t y)>;
 /// comparisons matters.
 ///
 /// @param depth  Receives inner_width * inner_height values, row-major from the south.
-/// @throws Error invalid_argument  spans, window, steps (finite, >= 0, one > 0) or cut-off (1 ..
-/// 4096) are not
-///                                 as stated
+/// @throws Error invalid_argument  a span is not of its size; the inner window does not lie in the
+///                                 mask; a row's steps are not finite, one is negative or both are
+///                                 0; the cut-off is not within 1 .. 4096
 /// Cost: linear, whatever the cut-off; where only one class is in sight, one look at the mask.
 /// Memory: 2 bytes a sample of the window, none where only one class is in sight.
 /// Threads: any number of calls at once.

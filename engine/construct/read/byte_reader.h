@@ -14,13 +14,13 @@
 
 namespace ptin {
 
-/// Reads forwards through one buffer of 256 KiB. Not thread-safe. What it returns is valid until
-/// the next call.
+/// Reads forwards through one buffer of 256 KiB. Lines and spans that it returns point into the
+/// buffer, and are valid until the next call. Not thread-safe.
 class ByteReader {
  public:
   /// @throws Error not_found, io_error
   explicit ByteReader(std::string path);
-  /// Reads `content` itself; `name` stands for the path in errors.
+  /// Reads `content`, which it keeps, instead of a file; `name` stands for the path in errors.
   ByteReader(std::string name, std::string content);
 
   /// The next line without its end (LF, CR LF); false at the end of the file.
@@ -35,9 +35,11 @@ class ByteReader {
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }  ///< Of the whole file.
+  /// Bytes handed out so far.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
+  /// Lines handed out so far.
   [[nodiscard]] std::uint64_t line_number() const noexcept { return line_; }
-  /// "path:line", for errors.
+  /// "path:line" of the last line handed out, for errors.
   [[nodiscard]] std::string place() const { return path_ + ":" + std::to_string(line_); }
 
  private:
@@ -54,7 +56,7 @@ class ByteReader {
   std::string path_;
   std::unique_ptr<std::FILE, Closer> file_;
   std::vector<char> buffer_;
-  std::size_t begin_ = 0, end_ = 0;  ///< What is left of the buffer.
+  std::size_t begin_ = 0, end_ = 0;  ///< The bytes of buffer_ still to be handed out.
   std::uint64_t size_ = 0, position_ = 0, line_ = 0;
 };
 

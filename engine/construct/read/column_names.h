@@ -11,9 +11,12 @@ namespace ptin {
 
 enum class Coordinate { kX, kY, kZ };
 
-/// Which field names a coordinate: x, easting, lon, longitude, point_x; y, northing, lat, latitude,
-/// point_y; z, height, elevation, altitude, point_z and their short forms, in any case, quoted or
-/// not. Where several do, the first name of that order. `fields.size()` where none does.
+/// Which of the fields of a header names a coordinate. These names are known, in any case, quoted
+/// or not; where several fields bear one of them, the name that stands first here decides:
+///   x: x, easting, east, e, longitude, lon, long, point_x
+///   y: y, northing, north, n, latitude, lat, point_y
+///   z: z, height, h, elevation, elev, altitude, alt, point_z
+/// @return  An index into `fields`; fields.size() where no field names the coordinate.
 [[nodiscard]] std::size_t find_column(std::span<const std::string_view> fields, Coordinate which);
 
 }  // namespace ptin

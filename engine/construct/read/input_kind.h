@@ -17,21 +17,22 @@ enum class InputKind : std::uint8_t { kRaster, kPoints, kTin };
 /// The formats that points come in. A TIN is read as points where only its vertices are wanted.
 enum class PointFormat : std::uint8_t { kLas, kText, kTin, kLayer };
 
-/// The kind that a file's name alone tells, in any case of letters: .las and .laz are points, .csv,
-/// .xyz, .txt and .tsv too, also followed by .gz; .ply, .obj, .2dm and .xml are TINs. None for all
-/// other names. Cost: none.
+/// The kind that a file's name alone tells, in any case of letters. Names of points end in .las,
+/// .laz, or .csv, .xyz, .txt, .tsv, these four also followed by .gz; names of TINs end in .ply,
+/// .obj, .2dm, .xml, .landxml. No other name tells a kind. No file is opened.
 [[nodiscard]] std::optional<InputKind> kind_by_name(const std::string& path);
 
-/// True when a name says that text is packed, to be unpacked on the way: .gz, in any case.
+/// True when a name ends in .gz, in any case: the text in the file is unpacked while it is read.
 [[nodiscard]] bool is_packed(const std::string& path);
 
-/// The kind of an input: by its name; where the name does not tell, points when a layer or an
-/// attribute is chosen, or when OGR reads the file and GDAL finds no raster in it; else a raster.
-/// Cost: opens files whose name does not tell.
+/// The kind of an input. Its name decides where it tells a kind. Otherwise an input is points when
+/// `choice` names a layer or an attribute, or when OGR finds a layer in the file and GDAL finds no
+/// raster; else it is a raster. Cost: opens the file where neither name nor choice tells.
 [[nodiscard]] InputKind kind_of_input(const std::string& path, const PointChoice& choice);
 
-/// The format in which the points of an input are read. With a layer or an attribute chosen, files
-/// of text are layers too. REQUIRES: nothing; a raster is taken for a layer, which opening refuses.
+/// The format in which the points of an input are read, by its name. Files of text are read as
+/// layers where `choice` names a layer or an attribute. A raster too counts as a layer; opening it
+/// as one fails. No file is opened.
 [[nodiscard]] PointFormat point_format_of(const std::string& path, const PointChoice& choice);
 
 }  // namespace ptin

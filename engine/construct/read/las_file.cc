@@ -102,7 +102,10 @@ struct CrsRecords {
   Bytes keys, doubles, text;
 };
 
-/// Takes over a record's content if it belongs to the CRS.
+/// Reads the content of a record if it declares the CRS: as WKT (2112), or as GeoTIFF keys (34735)
+/// with their doubles (34736) and text (34737).
+/// @param head       The header of the record.
+/// @param at, bytes  Where its content lies in the file.
 void take_record(const LasFile& file, std::span<const unsigned char> head, std::uint64_t at,
                  std::uint64_t bytes, CrsRecords& crs) {
   if (at > file.bytes() || bytes > file.bytes() - at) {
@@ -134,7 +137,7 @@ void take_record(const LasFile& file, std::span<const unsigned char> head, std::
   }
 }
 
-/// Walks `count` records from byte `at`. Extended ones have a length of 64 bits.
+/// Walks `count` records from byte `at` on. Extended records have lengths of 64 bits.
 void walk_records(const LasFile& file, std::uint64_t at, std::uint64_t count, bool extended,
                   CrsRecords& crs) {
   const std::size_t head_bytes = extended ? 60 : 54;
@@ -154,7 +157,8 @@ void walk_records(const LasFile& file, std::uint64_t at, std::uint64_t count, bo
   }
 }
 
-/// A TIFF of one pixel with the keys in it: GDAL knows what GeoTIFF keys mean.
+/// A TIFF of one pixel that holds the GeoTIFF keys of a LAS file: GDAL opens it, and so tells what
+/// the keys mean.
 class KeyTiff {
  public:
   explicit KeyTiff(const CrsRecords& crs) {

@@ -16,7 +16,7 @@
 
 namespace ptin {
 
-/// Reads a little-endian value. REQUIRES: it lies inside of `bytes`.
+/// Reads a little-endian value that begins at byte `at`. REQUIRES: it lies inside of `bytes`.
 template <class T>
 [[nodiscard]] T las_value(std::span<const unsigned char> bytes, std::size_t at) noexcept {
   static_assert(std::endian::native == std::endian::little && std::is_trivially_copyable_v<T>);
@@ -25,7 +25,7 @@ template <class T>
   return value;
 }
 
-/// An open file with positioned reads that know how long it is.
+/// An open LAS file, read at any position.
 class LasFile {
  public:
   /// @throws Error not_found, io_error
@@ -36,7 +36,8 @@ class LasFile {
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
-  /// Fills `into` from byte `offset`.  @throws Error io_error
+  /// Fills `into` with the bytes from `offset` on.
+  /// @throws Error io_error  they cannot be read, or the file ends before
   void read(std::uint64_t offset, std::span<unsigned char> into) const;
 
  private:
@@ -45,12 +46,15 @@ class LasFile {
   std::uint64_t bytes_ = 0;
 };
 
+/// Reads the header, and checks it against itself and the size of the file.
 /// @throws Error as LasReader
 [[nodiscard]] LasHeader read_las_header(const LasFile& file);
 
-/// The CRS that the variable length records name: WKT text, or the WKT of GeoTIFF keys; "" for
-/// none.
-/// @throws Error invalid_argument  records that reach beyond the file, keys that mean nothing
+/// The CRS that the variable length records declare, the extended ones included: their WKT text
+/// where the header says so or there are no GeoTIFF keys, else the WKT that GDAL makes of the keys;
+/// "" where there is neither, and for keys that GDAL does not understand.
+/// @throws Error invalid_argument  a record reaches beyond the file; keys that are cut off
+///               io_error          the file cannot be read
 [[nodiscard]] std::string read_las_crs(const LasFile& file);
 
 }  // namespace ptin

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kBatchBytes = std::uint64_t{1} << 18;
 constexpr std::int64_t kMostMantissa = 1'000'000'000'000'000'000;
-/// Scales with more decimals are binary fractions of something, not decimals.
+/// A scale with more digits after the point is taken for a binary fraction, not for a decimal.
 constexpr int kMostScaleDecimals = 9;
 
 }  // namespace
@@ -25,12 +25,12 @@ struct LasReader::File : LasFile {
 };
 
 /// Steps become decimals exactly where the scale is a short decimal and the offset has no more
-/// digits than it.
+/// digits after the point than the scale.
 LasReader::Axis LasReader::make_axis(std::size_t i, bool powers_of_ten_only) const {
   Axis axis;
   axis.real_scale = header_.scale[i];
   axis.real_offset = header_.offset[i];
-  // Digits so that no mantissa exceeds 18 of them, for steps that are no decimals.
+  // For steps that are no decimals: as many digits after the point as leave mantissas of 18 digits.
   const double reach = std::abs(header_.offset[i]) + header_.scale[i] * 2147483648.0;
   axis.decimals = std::clamp(17 - static_cast<int>(std::ceil(std::log10(reach))), 0, 17);
   const Decimal scale = decimal_of(header_.scale[i]);
@@ -90,7 +90,8 @@ LasReader::LasReader(std::string path, const PointChoice& choice) : path_(std::m
 
 LasReader::~LasReader() = default;
 
-/// Formats 0 to 5 keep flags and class in one byte, 6 to 10 in two.
+/// True when a point is not withheld and of a class that is kept. Formats 0 to 5 hold flags and
+/// class in one byte, formats 6 to 10 in two.
 bool LasReader::wanted(const unsigned char* record) const {
   if (header_.point_format < 6) {
     return (record[15] & 0x80) == 0 && classes_.test(record[15] & 0x1f);

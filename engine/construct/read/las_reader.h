@@ -22,21 +22,21 @@ namespace ptin {
 struct LasHeader {
   int minor_version = 0;
   int point_format = 0;            ///< 0 .. 10
-  std::uint32_t record_bytes = 0;  ///< At least what the format needs; the rest are extra bytes.
+  std::uint32_t record_bytes = 0;  ///< A point; beyond what its format needs are extra bytes.
   std::uint64_t first_point = 0;   ///< Byte offset.
   std::uint64_t points = 0;
-  std::array<double, 3> scale{};  ///< > 0
-  std::array<double, 3> offset{};
+  std::array<double, 3> scale{};   ///< Lengths of a step in x, y and z, > 0.
+  std::array<double, 3> offset{};  ///< Coordinates of step 0.
 };
 
-/// A LAS file as a stream of points. Points that are marked as withheld are left out, and those of
-/// other classes than the chosen ones.
+/// A LAS file as a stream of points. Left out are points that are marked as withheld, and points of
+/// classes that were not chosen.
 ///
-/// Coordinates are whole numbers of steps (`scale`) from an offset. Where the step is a power of
-/// ten and the offset a whole number of steps they are decimals, exactly, and the step is the
-/// grid's; else the step and offset of x and y (the smaller step) are the lattice. The CRS is that
-/// of the WKT record, else of the GeoTIFF keys; one that is damaged or unknown to GDAL is an error
-/// when it is resolved, not here.
+/// LAS coordinates are whole numbers of steps (`scale`) from an offset. Where the steps of x and y
+/// are powers of ten, and their offsets whole numbers of steps, points are exact decimals and
+/// facts() declares their digits. Otherwise facts() declares a lattice: the smaller of the two
+/// steps as its unit, and the offsets. The CRS is that of read_las_crs() (read/las_file.h); text
+/// that GDAL does not understand is an error when the CRS is resolved, not here.
 class LasReader final : public PointStream {
  public:
   /// @throws Error  not_found, io_error    the file cannot be opened or read
@@ -44,8 +44,8 @@ class LasReader final : public PointStream {
   ///                                       itself or the file's size (truncated files); a class
   ///                                       beyond 0 .. 255
   ///                unsupported_version    of a later version than 1.4
-  /// Memory: 256 KiB at a time of the points, and the records before them, at most 64 MiB of which
-  /// are looked at.
+  /// Memory: 256 KiB of the file's points at a time; while the CRS is read, up to 64 MiB of records
+  /// that declare it.
   LasReader(std::string path, const PointChoice& choice);
   ~LasReader() override;
 
@@ -58,9 +58,11 @@ class LasReader final : public PointStream {
 
  private:
   struct File;
-  /// How one coordinate's steps become a decimal.
+  /// How the steps of one coordinate become a decimal.
   struct Axis {
-    bool exact = false;  ///< mantissa = steps * scale + offset, in units of 10^-decimals
+    /// True: the mantissa is steps * scale + offset. False: the double steps * real_scale +
+    /// real_offset is rounded to `decimals` digits.
+    bool exact = false;
     std::int64_t scale = 1;
     std::int64_t offset = 0;
     int decimals = 0;
@@ -76,7 +78,7 @@ class LasReader final : public PointStream {
   LasHeader header_;
   PointStreamFacts facts_;
   std::array<Axis, 3> axes_;
-  std::bitset<256> classes_;  ///< Kept.
+  std::bitset<256> classes_;  ///< Those that are kept.
   std::vector<unsigned char> buffer_;
   std::uint64_t read_ = 0;
   std::uint64_t left_out_ = 0;

@@ -15,15 +15,16 @@
 namespace ptin {
 
 /// The points (and multipoints) of one layer as a stream. The height is the geometry's z, or the
-/// number in the attribute `z_field`. Features without a geometry, and with a `z_field` that is not
-/// set, are left out. Coordinates are taken as the shortest decimals that read back as the same
-/// doubles, so that a layer gives the same terrain as the text that it was made of.
+/// number in the attribute PointChoice::z_field. Left out are features without a geometry, and
+/// features in which a chosen attribute is not set. Coordinates are taken as the shortest decimals
+/// that read back as the same doubles, so that a layer gives the same terrain as the text that it
+/// was made of.
 class OgrPoints final : public PointStream {
  public:
   /// @throws Error  not_found         there is no such file
-  ///                invalid_argument  OGR does not read it; no or several layers and none chosen;
-  ///                                  no such layer or attribute; a layer without heights; a layer
-  ///                                  of lines or areas
+  ///                invalid_argument  OGR does not read it; it has no layer, or several and none is
+  ///                                  chosen; no such layer or attribute; a layer without heights;
+  ///                                  a layer of lines or areas
   OgrPoints(std::string path, const PointChoice& choice);
   ~OgrPoints() override;
 
@@ -33,11 +34,12 @@ class OgrPoints final : public PointStream {
   [[nodiscard]] std::uint64_t done() const noexcept override { return read_; }
   [[nodiscard]] std::uint64_t total() const noexcept override { return total_; }
 
-  /// True when OGR reads the file, and it is no raster. Cost: opens it.
+  /// True when OGR finds a layer in the file and GDAL finds no raster. Cost: opens it up to twice.
   [[nodiscard]] static bool reads(const std::string& path);
 
  private:
   struct Layer;
+  // OGR's types stay out of this header: a feature is an OGRFeature, a point an OGRPoint.
   void add_feature(void* feature, std::vector<SourcePoint>& batch);
   void add_point(const void* point, double field_height, std::vector<SourcePoint>& batch);
   [[nodiscard]] Decimal number(double value, const char* role) const;
@@ -45,7 +47,7 @@ class OgrPoints final : public PointStream {
   std::string path_;
   std::unique_ptr<Layer> layer_;
   PointStreamFacts facts_;
-  std::int64_t feature_ = 0;  ///< The current one, for messages.
+  std::int64_t feature_ = 0;  ///< Number of the feature that was read last, for errors.
   std::uint64_t read_ = 0, total_ = 0, left_out_ = 0;
 };
 

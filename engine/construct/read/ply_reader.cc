@@ -50,7 +50,7 @@ std::size_t bytes_of(Type t) {
 struct Property {
   std::string name;
   Type type = Type::kInt32;
-  std::optional<Type> count;  ///< Of a list.
+  std::optional<Type> count;  ///< The type of a list's count; none where this is no list.
 };
 struct Element {
   std::string name;
@@ -181,7 +181,7 @@ class Values {
  public:
   Values(ByteReader& in, Encoding encoding) : in_(in), encoding_(encoding) {}
 
-  /// Before each row of an element: text has one a line.
+  /// To be called before each row of an element: in text a row is a line.
   void begin_row() {
     if (encoding_ != Encoding::kAscii) {
       return;
@@ -346,14 +346,15 @@ void read_faces(const Element& element, const ByteReader& in, Values& values, Ti
   }
 }
 
-/// A header may claim anything: a binary body of that many rows has at least so many bytes.
+/// Refuses a header that claims more rows than the rest of the file has bytes for, before anything
+/// is done for them.
 void check_counts(const Header& header, const ByteReader& in) {
   const std::uint64_t left = in.size() - std::min(in.size(), in.position());
   for (const Element& element : header.elements) {
     if (element.properties.empty()) {
       refuse_at(in, "the element " + element.name.substr(0, 40) + " has no properties");
     }
-    std::uint64_t row = 0;  // a value of text takes a digit and what ends it
+    std::uint64_t row = 0;  // its least bytes; in text a value is a digit and what ends it
     for (const Property& p : element.properties) {
       row += header.encoding == Encoding::kAscii ? 2 : bytes_of(p.count.value_or(p.type));
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points as they come: one file of points of any kind, read once, in batches.
+// The points of one file, in any format, read once in batches.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,16 @@ namespace ptin {
 
 struct ExternalMemory;
 
-/// What a source may take that is sorted before its first point comes.
+/// What a stream may use while it is opened. Only the vertices of a TIN need it: they are sorted on
+/// disk before the first of them comes (tin/tin_vertices.h).
 struct StreamResources {
-  const ExternalMemory* memory = nullptr;  ///< While the stream is opened; null: its own choice.
+  const ExternalMemory* memory = nullptr;  ///< Not owned; null: the stream chooses.
   std::stop_token stop;
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;  ///< May be empty.
 };
 
-/// One input file as a stream. Not thread-safe; files stay open as long as it lives.
+/// One input file as a stream of points. Not thread-safe. The file stays open as long as the stream
+/// lives.
 class PointStream {
  public:
   PointStream() = default;
@@ -31,6 +33,7 @@ class PointStream {
   PointStream& operator=(const PointStream&) = delete;
   virtual ~PointStream() = default;
 
+  /// What the file declares; known from the beginning.
   [[nodiscard]] virtual const PointStreamFacts& facts() const noexcept = 0;
   /// The next points, some thousands at a time; false when there is none left.
   /// @param batch  Overwritten.
@@ -38,12 +41,15 @@ class PointStream {
   ///                io_error          it cannot be read on
   [[nodiscard]] virtual bool next(std::vector<SourcePoint>& batch) = 0;
 
-  /// Points so far that the choice, or the source itself (withheld; no height), leaves out.
+  /// Points left out so far: by the PointChoice, or by the file itself, which marks them as
+  /// withheld or gives them no height.
   [[nodiscard]] virtual std::uint64_t left_out() const noexcept { return 0; }
-  /// How far dropping digits has moved a point so far, CRS units.
+  /// The farthest that a point has been moved in plan so far, because the stream dropped digits
+  /// that no grid keeps; CRS units.
   [[nodiscard]] virtual double largest_shift() const noexcept { return 0.0; }
-  /// Progress in units of its own; total 0 when that is unknown.
+  /// Progress so far, in a unit of the stream's own: points, features or bytes.
   [[nodiscard]] virtual std::uint64_t done() const noexcept = 0;
+  /// The progress at the end, in the unit of done(); 0 where it is unknown.
   [[nodiscard]] virtual std::uint64_t total() const noexcept = 0;
 };
 

@@ -15,12 +15,12 @@ namespace ptin {
 
 namespace {
 
-// Of text, where nothing better is known.
+/// Bytes of a vertex in text, where none was seen.
 constexpr double kBytesOfVertex = 32.0;
-/// Of a triangle beside the three numbers.
+/// Bytes of a triangle in text beside its three numbers, where no triangle was seen.
 constexpr double kBytesOfTriangle = 5.0;
 
-/// Counts, and knows where in the file it is.
+/// Counts vertices and triangles, and the bytes of the file that each kind takes.
 class CountingSink final : public SoupSink {
  public:
   explicit CountingSink(const ByteReader& in) : in_(in) {}
@@ -33,9 +33,10 @@ class CountingSink final : public SoupSink {
     triangles_.add(passed());
   }
 
+  /// The number of vertices in the file's header, where there is one.
   [[nodiscard]] std::optional<std::uint64_t> said() const { return said_; }
   [[nodiscard]] std::uint64_t seen() const { return vertices_.count; }
-  /// @param bytes  Of the whole file.
+  /// Vertices of a file of `bytes` bytes.
   [[nodiscard]] double estimate(double bytes) const {
     const double of_vertex = vertices_.mean(kBytesOfVertex);
     const double digits = std::max(1.0, std::floor(std::log10(bytes / (3.0 * of_vertex))));

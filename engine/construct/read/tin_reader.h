@@ -13,19 +13,24 @@
 
 namespace ptin {
 
-/// Splits at spaces and tabs.
+/// Splits a line at spaces and tabs.
+/// @param words  Overwritten; views into `line`.
 void split_words(std::string_view line, std::vector<std::string_view>& words);
 
-/// @throws Error invalid_argument at `place`: no finite number, or 10^18 and above
+/// The number that a word is.
+/// @param place  The context of errors: "path:line", or the path.
+/// @throws Error invalid_argument  the word is no finite number, or its magnitude is 10^18 or more
 [[nodiscard]] Decimal coordinate_of(std::string_view word, const std::string& place);
-/// The same for numbers in binary, with the shortest decimals that read back to the same bits.
+/// The same for a number in binary: the shortest decimal that reads back to the same bits.
 [[nodiscard]] Decimal coordinate_of(double value, const std::string& place);
 [[nodiscard]] Decimal coordinate_of(float value, const std::string& place);
 
-/// A whole number in decimals.  @throws Error invalid_argument at `place`
+/// The whole number that a word is.  @throws Error invalid_argument, with the context `place`
 [[nodiscard]] std::int64_t whole_of(std::string_view word, const std::string& place);
 
-/// Counts what goes to the sink, and looks at the stop token now and then.
+/// What a reader hands vertices and triangles to: counts them and passes them on to the sink. Every
+/// 65536 of them it reports the progress and looks at the stop token. Keeps references to all that
+/// it is made of.
 class TinReceiver {
  public:
   TinReceiver(const ByteReader& in, const TinReading& reading, SoupSink& sink)
@@ -36,25 +41,27 @@ class TinReceiver {
   void add_vertex(const SourcePoint& p) {
     add_vertex(static_cast<std::int64_t>(facts_.vertices), p);
   }
-  /// One with an id of the file's own.
+  /// A vertex with an id of the file's own.
   void add_vertex(std::int64_t id, const SourcePoint& p) {
     look_around();
     ++facts_.vertices;
     sink_.add_vertex(id, p);
   }
-  /// Three numbers or ids, as the vertices have.
+  /// @param ids  Of the corners: numbers from 0 where vertices are numbered, else their own ids.
   void add_triangle(const std::array<std::int64_t, 3>& ids) {
     look_around();
     ++facts_.triangles;
     sink_.add_triangle(ids);
   }
+  /// A triangle that the file marks as invisible: counted, and not passed on.
   void add_hidden() { ++facts_.hidden_triangles; }
   void set_crs(std::string crs, std::string vertical_crs = {}) {
     facts_.crs = std::move(crs);
     facts_.vertical_crs = std::move(vertical_crs);
   }
   [[nodiscard]] std::uint64_t vertices() const noexcept { return facts_.vertices; }
-  /// @throws Error invalid_argument  no vertex; no triangle
+  /// To be called at the end of the file.
+  /// @throws Error invalid_argument  there was no vertex, or no triangle
   [[nodiscard]] TinFileFacts finish();
 
  private:

@@ -134,7 +134,8 @@ TinFileFacts TinReceiver::finish() {
 
 namespace {
 
-/// Everything in memory, ids still to be found.
+/// Keeps everything in memory. Triangles keep the ids of their corners until finish() turns them
+/// into indices.
 class SoupCollector final : public SoupSink {
  public:
   explicit SoupCollector(std::string path) : path_(std::move(path)) {}

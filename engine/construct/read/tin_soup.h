@@ -26,16 +26,17 @@ class SoupSink {
   SoupSink& operator=(const SoupSink&) = delete;
   virtual ~SoupSink() = default;
 
-  /// How many vertices a header says that there will be; not every format does.
+  /// The number of vertices that the header of the file announces. Not called for formats that have
+  /// no such header.
   virtual void expect_vertices(std::uint64_t /*count*/) {}
-  /// `id` is the file's own, or the vertex's number from 0 where the format has none. May be there
-  /// twice.
+  /// `id` is the file's own, or the vertex's number from 0 where the format has no ids. A file at
+  /// fault may give an id twice.
   virtual void add_vertex(std::int64_t id, const SourcePoint& p) = 0;
-  /// Ids of vertices, which may come later, or not at all.
+  /// `ids` are those of the corners. The vertices that have them may come later, or not at all.
   virtual void add_triangle(const std::array<std::int64_t, 3>& ids) = 0;
 };
 
-/// What else a file holds.
+/// What a file declares, and how much was read from it.
 struct TinFileFacts {
   std::string crs;           ///< Anything GDAL understands; "" when the file is silent.
   std::string vertical_crs;  ///< Likewise.
@@ -50,7 +51,7 @@ struct TinSoup {
   TinFileFacts facts;
 };
 
-/// What a reader is told, and asked now and then.
+/// What a reader is told: which surface to read, when to stop, and to whom to report.
 struct TinReading {
   std::string surface;  ///< LandXML: the surface's name; "" where there is only one.
   std::stop_token stop;
@@ -59,28 +60,30 @@ struct TinReading {
 
 /// True when a name is that of a TIN: .ply, .obj, .2dm, .xml or .landxml, in any case.
 [[nodiscard]] bool is_tin_file(std::string_view path);
-/// True when it is that of a format whose files hold several surfaces, by name: LandXML.
+/// True when a name is that of a format whose files may hold several surfaces with names: LandXML.
 [[nodiscard]] bool may_have_surfaces(std::string_view path);
 
-/// Reads a TIN by its name's extension. At least one vertex and one triangle are handed out.
+/// Reads a TIN in the format that the extension of its name tells. At least one vertex and one
+/// triangle are handed out, else it is an error.
 /// @throws Error  not_found, io_error
 ///                invalid_argument    not what the format says, or cut short: the context names the
 ///                                    place; a face that is no triangle; coordinates that are no
 ///                                    finite numbers; no vertex, or no triangle
-///                cancelled           and what the sink throws
+///                cancelled           `reading.stop` fired
+///                and what the sink throws
 /// Memory: some hundred KiB, whatever the file's size.
 TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink);
 
-// The readers. Each documents its own conventions.
+// The readers. The source of each says what it reads of its format.
 using TinReader = TinFileFacts(ByteReader& in, const TinReading& reading, SoupSink& sink);
 TinReader read_ply, read_obj, read_two_dm, read_land_xml;
-/// The one for a name's extension.  @throws Error invalid_argument  there is none
+/// The reader for a name's extension.  @throws Error invalid_argument  there is none
 [[nodiscard]] TinReader& tin_reader_of(const std::string& path);
 
-/// What one of them reads, in memory.
+/// Everything that a reader reads, in memory.
 /// @throws Error  as read_tin_file(); invalid_argument  an id that no vertex has, or that two have
-/// Cost: 48 bytes a vertex, 12 a triangle; memory grows with what is read, never with what a
-/// header claims.
+/// Memory: 48 bytes a vertex and 12 a triangle; while it reads, besides, 24 bytes a triangle and a
+/// hash table of the ids. It grows with what is read, never with what a header claims.
 [[nodiscard]] TinSoup read_soup(TinReader& reader, ByteReader& in, const TinReading& reading);
 
 }  // namespace ptin

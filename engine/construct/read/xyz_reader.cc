@@ -90,7 +90,7 @@ void XyzReader::fill() {
   const std::size_t kept = buffer_.size();
   buffer_.resize(kept + kBufferBytes);
   const GdalSession session;
-  // No notes about the unpacked size beside a file that is not ours.
+  // GDAL would write a note of the unpacked size beside the file, in a folder that is not ours.
   const CPLConfigOptionSetter no_notes("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false);
   const std::size_t got = VSIFReadL(buffer_.data() + kept, 1, kBufferBytes, file_->handle);
   buffer_.resize(kept + got);

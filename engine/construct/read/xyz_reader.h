@@ -16,18 +16,19 @@ namespace ptin {
 
 using XyzPoint = SourcePoint;
 
-/// Reads points from CSV or XYZ text. Numbers have decimal points. The first line that is neither
-/// empty nor a comment ('#') decides the separator (semicolon, else comma, else spaces and tabs),
-/// the number of fields, and whether it is a header: its first field is no number then. A header
-/// names the columns (x, easting, lon, longitude; y, northing, lat, latitude; z, height, elevation,
-/// altitude; in any case, quoted or not); without one x, y and z are the first three. Further
-/// columns are passed over. Lines end in LF or CR LF; a file that is_packed() is unpacked on
-/// the way. Not thread-safe.
+/// Reads points from CSV or XYZ text. Numbers have decimal points; lines end in LF or CR LF; empty
+/// lines and comments ('#') are passed over. The first other line decides
+///   - the separator: semicolons where it has any, else commas, else spaces and tabs;
+///   - the number of fields, which is that of all lines;
+///   - whether it is a header, which it is when its first field is no number. A header names the
+///     columns (read/column_names.h); without a header x, y and z are the first three.
+/// Further columns are passed over. A file that is_packed() (read/input_kind.h) is unpacked while
+/// it is read. Not thread-safe.
 class XyzReader {
  public:
   /// @throws Error  not_found, io_error  the file cannot be opened
   explicit XyzReader(std::string path);
-  /// Reads `text` itself; `name` stands for the path in errors.
+  /// Reads `text`, which it keeps, instead of a file; `name` stands for the path in errors.
   XyzReader(std::string name, std::string text);
   ~XyzReader();
   XyzReader(const XyzReader&) = delete;
@@ -41,8 +42,9 @@ class XyzReader {
   /// Cost: about 0.1 us a line; 1 MiB of memory whatever the file's size.
   [[nodiscard]] bool next(XyzPoint& point);
 
-  /// Lines read so far. Bytes of the file's own size that lie behind, 0 when that is unknown (.gz).
+  /// Lines read so far, headers, comments and empty lines counted.
   [[nodiscard]] std::uint64_t line() const noexcept { return line_; }
+  /// Bytes of the file read so far; 0 where the file is packed, since they are not known.
   [[nodiscard]] std::uint64_t bytes_read() const noexcept { return bytes_read_; }
 
  private:
@@ -58,7 +60,7 @@ class XyzReader {
   std::string path_;
   std::unique_ptr<File> file_;
   std::string buffer_;
-  std::size_t begin_ = 0;  ///< Of what is left in the buffer.
+  std::size_t begin_ = 0;  ///< Where the part of buffer_ that is still to be read begins.
   bool at_end_ = false;
   std::uint64_t line_ = 0;
   std::uint64_t bytes_read_ = 0;

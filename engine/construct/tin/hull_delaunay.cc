@@ -36,7 +36,7 @@ bool is_before(const BorderEdge& a, const BorderEdge& b) {
   return a.from != b.from ? a.from < b.from : a.to < b.to;
 }
 
-/// The border's vertices and edges.
+/// The constrained Delaunay triangulation of the border's vertices, with its edges kept.
 Cdt triangulate(std::span<const GridPoint> positions, std::span<const BorderEdge> border,
                 const std::stop_token& stop) {
   std::vector<std::pair<Cdt::Point, VertexId>> points;
@@ -87,7 +87,7 @@ void wind(Cdt& cdt, std::span<const BorderEdge> border) {
       }
       g->info() = f->info();
       if (f->is_constrained(i)) {
-        // Seen from f the edge runs from ccw(i) + 1 on its left hand; from g the other way.
+        // The edge from ccw(i) to cw(i) has f on its left; the other way round it has g there.
         const BorderEdge from_g = {f->vertex(Cdt::cw(i))->info(), f->vertex(Cdt::ccw(i))->info()};
         const bool g_is_left = std::binary_search(border.begin(), border.end(), from_g, is_before);
         g->info() += g_is_left ? 1 : -1;
@@ -121,7 +121,7 @@ std::vector<Corners> fill_hull(std::span<const GridPoint> positions,
       faults.covered.add(positions[f->vertex(0)->info()]);
     }
   }
-  // An order of our own: smallest corner first.
+  // An order that does not depend on CGAL's: by corners, the smallest first.
   for (Corners& t : filling) {
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   }

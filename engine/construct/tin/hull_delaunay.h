@@ -11,16 +11,22 @@
 
 namespace ptin {
 
-/// Counts vertices inside of border edges, and border edges that cross.
-/// Cost: O(b log^2 b + pairs of edges whose boxes meet).
+/// Counts the faults of a border against itself: vertices inside of border edges (T-junctions), and
+/// pairs of border edges that cross.
+/// @param positions  Of the vertices, by id.
+/// @param faults     Its t_junctions and crossings grow.
+/// Cost: O(b log^2 b + pairs of edges whose boxes meet) for b edges.
 void check_border(std::span<const GridPoint> positions, std::span<const BorderEdge> border,
                   TinFaults& faults);
 
-/// The triangles that fill the convex hull around and between surface triangles: a constrained
-/// Delaunay triangulation of the border's vertices with the border's edges kept. Counter-clockwise.
-/// Also counts pieces that the surface covers more than once (another surface on top of it), by
-/// the winding number of the border.
-/// REQUIRES: a border that passed check_border(): edges meet in vertices alone.
+/// The triangles that fill the convex hull around and between surface triangles: those faces of a
+/// constrained Delaunay triangulation of the border's vertices, with the border's edges kept, that
+/// the surface does not cover. How often it covers a face, the winding number of the border tells.
+/// @param positions  Of the vertices, by id.
+/// @param border     In ascending order of (from, to).
+/// @param faults     Its `covered` counts the faces that are covered more than once.
+/// @return  Ids of the corners, counter-clockwise from the smallest; in ascending order.
+/// REQUIRES: a border in which check_border() finds no fault: edges meet in vertices alone.
 /// @throws Error cancelled
 /// Cost: O(b log b) expected for b vertices of the border.
 [[nodiscard]] std::vector<Corners> fill_hull(std::span<const GridPoint> positions,

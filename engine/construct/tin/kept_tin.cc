@@ -21,7 +21,7 @@ struct TinTriangles::Kept {
 
 namespace {
 
-/// Looks at all of a file while it is opened.
+/// Opens a file that an earlier process kept, and reads all of it to check it.
 template <class Record>
 std::unique_ptr<RecordFile<Record>> checked(FileLayer& files, const std::string& path,
                                             std::uint64_t records, std::uint64_t checksum,

@@ -23,7 +23,7 @@ class Flipper {
   }
 
   SliverFlips run(std::vector<std::uint32_t> open) {
-    // Every flip makes two triangles, so this ends even where bad ones chase each other.
+    // A flip makes two triangles, which may be bad again: without a limit this might never end.
     std::uint64_t left = 64 * open.size();
     SliverFlips flips;
     while (!open.empty() && left-- > 0) {
@@ -83,7 +83,7 @@ class Flipper {
       remove(t);
       return;
     }
-    // The longest edge from a to b, seen from c.
+    // Turned so that the longest edge runs from a to b, opposite to the apex.
     std::array<std::int64_t, 3> lengths{};
     for (std::size_t i = 0; i < 3; ++i) {
       lengths[i] = length_squared(c[(i + 1) % 3], c[(i + 2) % 3]);

@@ -13,20 +13,23 @@ namespace ptin {
 
 /// What became of slivers.
 struct SliverFlips {
-  std::uint64_t mended = 0;  ///< Triangles that were bad on the way.
-  /// Ends of an edge beyond which the mesh goes on, but not in the triangles at hand: they are to
-  /// be thrown away, and the work done again with all triangles around these.
+  std::uint64_t mended = 0;  ///< Bad triangles that were taken away: slivers, and what flips made.
+  /// Ends of edges beyond which there may be a triangle of the mesh that is not at hand. Where
+  /// there are any, the triangles at hand are to be thrown away, and the work is to be done again
+  /// with all triangles around these vertices.
   std::vector<VertexId> beyond;
 };
 
-/// Mends triangles that were counter-clockwise before their corners were snapped and are no more.
-/// One with two corners on one place, or with its longest edge on the border, goes; of another the
-/// longest edge is flipped, and so on where that leaves a bad one. What cannot be mended so is
-/// still there.
-/// @param triangles    A part of a mesh.
-/// @param slivers      Indices of such triangles.
-/// @param is_complete  Beside positions: 1 where all triangles of the mesh at a vertex are at hand.
-/// Cost: O(n log n) when there is one, else nothing.
+/// Mends slivers: triangles that were counter-clockwise before their corners were snapped to the
+/// grid, and are not any more. A sliver with two corners on one place is removed, and so is a
+/// sliver whose longest edge lies on the border. Of any other sliver the longest edge is flipped; a
+/// triangle that the flip makes and that is bad too is mended in the same way. After 64 steps for
+/// each sliver that was given the rest of them stay in `triangles`.
+/// @param positions    Of the vertices, by id.
+/// @param triangles    A part of a mesh. Removing triangles changes the indices of others.
+/// @param slivers      Indices into `triangles`.
+/// @param is_complete  Beside `positions`: 1 where all triangles of the mesh at a vertex are given.
+/// Cost: O(n) expected for n triangles when there is a sliver, else nothing.
 [[nodiscard]] SliverFlips flip_slivers(std::span<const GridPoint> positions,
                                        std::vector<Corners>& triangles,
                                        std::vector<std::uint32_t> slivers,

@@ -18,7 +18,8 @@ void BorderFinder::add(const GridTriangle& t) {
   }
 }
 
-/// Edges that have one triangle on each side are done with; others wait for the rest.
+/// Takes out the edges that have one triangle on each side. The others go to the sorter: triangles
+/// of other pieces may lie beside them.
 void BorderFinder::clear_piece() {
   std::sort(piece_.begin(), piece_.end(), ByEnds());
   for (std::size_t first = 0; first < piece_.size();) {
@@ -43,7 +44,7 @@ TinBorder border_in_memory(std::span<const GridEdge> edges) {
   for (const GridEdge& e : edges) {  // each vertex of a border is where some edge begins
     vertices.push_back(e.from);
   }
-  // The lowest of those that share a position.
+  // Of vertices that share a position the lowest stays.
   std::sort(vertices.begin(), vertices.end(), [](const GridVertex& a, const GridVertex& b) {
     return std::pair(key_of(a.position), a.height) < std::pair(key_of(b.position), b.height);
   });

@@ -17,18 +17,21 @@ struct GridEdge {
   GridVertex from, to;
 };
 
-/// Vertices in the order of their keys, and edges between them in that of (from, to).
+/// A border in memory: vertices in the order of their keys, edges in that of (from, to).
 struct TinBorder {
   std::vector<GridPoint> positions;
-  std::vector<double> heights;  ///< Beside them.
+  std::vector<double> heights;  ///< Beside `positions`.
   std::vector<BorderEdge> edges;
 };
 
-/// Edges of triangles, those that lie between two of them taken out piece by piece: pieces are of
-/// so many triangles, whatever the memory, so that the answer never depends on it.
+/// Finds the border of triangles: the edges that are left when those with one triangle on each side
+/// are taken out. Within a piece of 65536 triangles they are taken out in memory; what a piece
+/// leaves is sorted on disk, where edges between pieces meet. Pieces are of one size whatever the
+/// memory, so that the answer never depends on it.
 ///
-/// An edge with two triangles on one side is counted, unless equally many on the other lie in the
-/// same pieces: then the border is one that winds twice around what lies beside it.
+/// An edge with two triangles on one side is a fault, and counted. It is missed where two pieces
+/// each hold one triangle on either side of it. The border then winds twice around what is covered
+/// twice, and fill_hull() and sweep_voids() find that.
 class BorderFinder {
  public:
   explicit BorderFinder(const ExternalMemory& memory, const std::stop_token& stop = {})
@@ -36,7 +39,9 @@ class BorderFinder {
 
   /// @throws Error io_error, resource_exhausted (the disk is full)
   void add(const GridTriangle& t);
-  /// Calls visit(edge) for each edge of the border, in no order that means anything.
+  /// Calls visit(edge) for each edge of the border, in no order that means anything. To be called
+  /// once, after the last add().
+  /// @param faults  Its shared_edges counts edges with several triangles on one side.
   /// @throws Error as add(), cancelled
   template <class Visit>
   void finish(TinFaults& faults, const Visit& visit, const std::stop_token& stop = {}) {
@@ -74,7 +79,7 @@ class BorderFinder {
   /// All sides of one edge.
   struct Group {
     Side side;
-    std::array<std::uint64_t, 2> count{};
+    std::array<std::uint64_t, 2> count{};  ///< By is_reversed.
 
     [[nodiscard]] bool is_of(const Side& s) const noexcept {
       return side.low == s.low && side.high == s.high;
@@ -96,7 +101,8 @@ class BorderFinder {
   ExternalSorter<Side, ByEnds> edges_;
 };
 
-/// Puts edges into memory.
+/// Numbers the vertices of a border, and names its edges by these numbers. Where vertices share a
+/// position the one with the least height counts. Cost: O(b log b) for b edges.
 [[nodiscard]] TinBorder border_in_memory(std::span<const GridEdge> edges);
 
 }  // namespace ptin

@@ -17,6 +17,7 @@ long double value_of(Decimal d) noexcept {
   return static_cast<long double>(d.mantissa) / std::pow(10.0L, d.decimals);
 }
 
+/// Rounds `value` as drop_digits() does; returns the value before less the value after.
 double round_to(Decimal& value, int decimals) noexcept {
   if (value.decimals <= decimals) {
     return 0.0;

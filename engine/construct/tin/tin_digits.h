@@ -11,11 +11,12 @@
 
 namespace ptin {
 
-/// Sees all vertices once, then knows how many digits behind the point the grid keeps.
+/// Sees all vertices once, then tells how many digits after the point the grid keeps.
 class TinDigits {
  public:
   void add(const SourcePoint& p) noexcept;
-  /// Of those that x and y have, as many as leave no more than 2^30 steps across.
+  /// All digits after the point that some x or y has; fewer where the vertices would otherwise span
+  /// more than 2^30 steps, or lie farther than kMostStepsFromZero steps from 0.
   [[nodiscard]] int kept() const noexcept;
 
  private:
@@ -26,12 +27,12 @@ class TinDigits {
   int decimals_ = 0;
 };
 
-/// How far a vertex moved, CRS units: before less after.
+/// How dropping digits moved a vertex: coordinates before less those after, CRS units.
 struct DroppedDigits {
   double x = 0.0, y = 0.0;
 };
 
-/// Rounds x and y to so many digits behind the point, half away from zero.
+/// Rounds the x and y of `p` to at most `decimals` digits after the point, half away from zero.
 DroppedDigits drop_digits(SourcePoint& p, int decimals) noexcept;
 
 }  // namespace ptin

@@ -45,7 +45,10 @@ struct TinFaults {
   TinFault crossings;     ///< Edges of the border that cross.
   TinFault covered;       ///< Pieces of the plane that are covered more than once.
 
-  /// @throws Error invalid_argument  with every kind, how often and where first, if there is any
+  /// @param map   From the grid to the CRS, for the places in the message.
+  /// @param path  Of the TIN, for the message.
+  /// @throws Error invalid_argument  there is a fault; the message counts each kind and names its
+  ///                                 first place
   void refuse(const AffineMap& map, const std::string& path) const;
 };
 

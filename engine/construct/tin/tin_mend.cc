@@ -13,6 +13,7 @@ namespace ptin {
 
 namespace {
 
+/// Most triangles of a patch.
 constexpr std::uint64_t kMostAround = 1 << 20;
 
 /// What a triangle of a patch takes in memory while it is made and mended.
@@ -22,9 +23,9 @@ using KeySet = std::unordered_set<VertexKey>;
 
 /// All triangles at some vertices, in memory.
 struct Patch {
-  std::vector<GridVertex> vertices;  ///< By key.
-  std::vector<GridPoint> positions;  ///< Theirs.
-  std::vector<std::uint8_t> is_complete;
+  std::vector<GridVertex> vertices;       ///< In the order of their keys.
+  std::vector<GridPoint> positions;       ///< Those of `vertices`.
+  std::vector<std::uint8_t> is_complete;  ///< Beside `vertices`: 1 where all triangles are here.
   std::vector<Corners> triangles;
 
   [[nodiscard]] VertexId number(VertexKey key) const { return vertex_number(vertices, key); }
@@ -65,11 +66,12 @@ void require_fit(std::uint64_t triangles, const ExternalMemory& memory, const st
               path);
 }
 
+/// The patch of all triangles with a corner in `wanted`.
 Patch patch_around(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
                    const ExternalMemory& memory, const std::string& path,
                    const std::stop_token& stop) {
   std::vector<GridTriangle> found;
-  std::uint64_t around = 0;  // counted on where they do not fit, to say what would
+  std::uint64_t around = 0;  // all are counted, even where they do not fit: the error says how many
   mesh.visit(
       [&](const GridTriangle& t) {
         if (touches(t, wanted) && fits(++around, memory)) {
@@ -100,7 +102,8 @@ Patch patch_around(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
   return patch;
 }
 
-/// The mesh with the patch in the place of what was there.
+/// The mesh with `patch`, in the order of ByPlace, in the place of the triangles with a corner in
+/// `wanted`.
 RecordFile<GridTriangle> replaced(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
                                   const std::vector<GridTriangle>& patch,
                                   const ExternalMemory& memory, const std::stop_token& stop) {
@@ -124,7 +127,7 @@ RecordFile<GridTriangle> replaced(const RecordFile<GridTriangle>& mesh, const Ke
   return to;
 }
 
-/// Vertices that have lost all their triangles go.
+/// Removes the places of vertices that have lost all their triangles.
 void drop_lone(RecordFile<std::uint64_t>& places, const Patch& patch, const PointOrder& order,
                const ExternalMemory& memory, const std::stop_token& stop) {
   std::vector<std::uint8_t> is_used(patch.vertices.size(), 0);
@@ -152,7 +155,9 @@ void drop_lone(RecordFile<std::uint64_t>& places, const Patch& patch, const Poin
   places = std::move(kept);
 }
 
-/// Flips in a patch that grows until it holds all that is asked for.
+/// Flips slivers in a patch that grows until no flip needs a triangle outside of it.
+/// @param wanted  Vertices whose triangles the patch holds; grows with it.
+/// @param patch   Receives the patch with mended triangles.
 SliverFlips mend(const RecordFile<GridTriangle>& mesh, const std::vector<GridTriangle>& slivers,
                  KeySet& wanted, Patch& patch, const ExternalMemory& memory,
                  const std::string& path, const std::stop_token& stop) {

@@ -86,10 +86,11 @@ class NameReader {
   const TinGridReading& reading_;
   const ExternalMemory& memory_;
   NamedTin tin_;
-  NumberSorter without_height_;  ///< Triangles with such a corner, once for each.
+  NumberSorter without_height_;  ///< Triangles with a corner without a height, once for each.
 };
 
-/// Every corner finds its vertex; vertices that are named stay.
+/// Finds the vertex of every corner: both are sorted by id and merged. Keeps the vertices that a
+/// corner names, and notes triangles with a corner without a height.
 void NameReader::match() {
   NameSink file(memory_, reading_.stop);
   const auto progress = [&](std::uint64_t done, std::uint64_t total) {
@@ -132,6 +133,7 @@ void NameReader::match() {
   tin_.corners.finish();
 }
 
+/// Drops the corners of the triangles in without_height_.
 void NameReader::leave_out_triangles() {
   ExternalSorter<NamedCorner, ByTriangle> by_triangle(memory_, "corners", reading_.stop);
   tin_.corners.visit([&](const NamedCorner& c) { by_triangle.add(c); }, reading_.stop);
@@ -166,7 +168,7 @@ void NameReader::leave_out_triangles() {
   tin_.corners.finish();
 }
 
-/// Those that none but such triangles name.
+/// Drops the vertices that only triangles without a height named.
 void NameReader::leave_out_vertices() {
   RecordFile<NamedVertex> kept(memory_, "vertices");
   InOrder corners = in_order(tin_.corners, reading_.stop);

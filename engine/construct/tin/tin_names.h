@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Vertices and triangles of a file matched by the ids that triangles name vertices by: which of
-// them belong to the terrain is known before the grid is chosen.
+// Matches the triangles of a file with its vertices, by the ids with which triangles name them. So
+// it is known which of both belong to the terrain before the grid is chosen.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@
 
 namespace ptin {
 
-/// One record after the other of what comes in batches.
+/// Hands out, one after the other, records that come in batches.
 template <class Record>
 class InOrder {
  public:
@@ -31,7 +31,7 @@ class InOrder {
   explicit InOrder(std::function<void(std::vector<Record>&)> fill) : fill_(std::move(fill)) {
     next();
   }
-  /// Null at the end. Valid until next().
+  /// The record at hand, valid until next(); null at the end.
   [[nodiscard]] const Record* now() const noexcept {
     return at_ < batch_.size() ? &batch_[at_] : nullptr;
   }
@@ -48,13 +48,14 @@ class InOrder {
   std::size_t at_ = 0;
 };
 
-/// Of what is sorted; of a file. Both must outlive it.
+/// The records of a sorter, in ascending order. The sorter must outlive the result.
 template <class Record, class Before>
 [[nodiscard]] InOrder<Record> in_order(ExternalSorter<Record, Before>& sorter,
                                        const std::stop_token& stop) {
   return InOrder<Record>(
       [&sorter, stop](std::vector<Record>& batch) { static_cast<void>(sorter.take(batch, stop)); });
 }
+/// The records of a file, in their order there. The file must outlive the result.
 template <class Record>
 [[nodiscard]] InOrder<Record> in_order(const RecordFile<Record>& file,
                                        const std::stop_token& stop) {
@@ -67,7 +68,7 @@ template <class Record>
       });
 }
 
-/// A vertex as the file has it.
+/// A vertex as the file has it, in 40 bytes.
 struct NamedVertex {
   std::int64_t id = 0;
   std::array<std::int64_t, 3> mantissa{};
@@ -84,24 +85,25 @@ struct NamedVertex {
   }
 };
 
-/// A corner of a triangle by the id of its vertex.
+/// A corner of a triangle, which names its vertex.
 struct NamedCorner {
-  std::int64_t id = 0;
-  std::uint64_t place = 0;  ///< Four times the triangle's number, and which corner it is.
+  std::int64_t id = 0;      ///< Of the vertex.
+  std::uint64_t place = 0;  ///< 4 t + c for corner c (0, 1, 2) of triangle t of the file.
 };
 
 /// A file's terrain: triangles whose corners all have a height, and the vertices that they name.
 struct NamedTin {
   RecordFile<NamedVertex> vertices;  ///< Ascending by id, each once.
-  RecordFile<NamedCorner> corners;   ///< Likewise; the id of each is among `vertices`.
+  RecordFile<NamedCorner> corners;   ///< Ascending by id, then place; each id is in `vertices`.
   TinFileFacts facts;
-  std::uint64_t left_out_triangles = 0;  ///< A corner has no height.
-  std::uint64_t unused_vertices = 0;
+  std::uint64_t left_out_triangles = 0;  ///< Those with a corner without a height.
+  std::uint64_t unused_vertices = 0;     ///< Vertices that no triangle names, or only such ones.
 };
 
 /// Reads the file once.
-/// @param memory  Of one sorter; three hold it at the same time.
-/// @throws Error as read_on_grid()
+/// @param memory  What one sorter may take; up to three sorters take as much at the same time.
+///                reading.memory is not looked at.
+/// @throws Error as read_on_grid() (tin/tin_on_grid.h)
 /// Cost: O(n log n); the corners are sorted twice more where triangles are left out.
 [[nodiscard]] NamedTin read_named_tin(const std::string& path, const TinGridReading& reading,
                                       const ExternalMemory& memory);

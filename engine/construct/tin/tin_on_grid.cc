@@ -21,12 +21,11 @@ namespace {
 /// Slivers that are mended at once; more are refused.
 constexpr std::size_t kMostSlivers = 1 << 16;
 
-/// A corner of a triangle with its vertex, and how far that is from its place in the file, grid
-/// units.
+/// A corner of a triangle with its vertex.
 struct JoinedCorner {
-  std::uint64_t place = 0;
+  std::uint64_t place = 0;  ///< As NamedCorner::place.
   GridVertex vertex;
-  float off_x = 0.0F, off_y = 0.0F;
+  float off_x = 0.0F, off_y = 0.0F;  ///< Its place in the file less that on the grid, grid units.
 };
 struct ByCorner {
   bool operator()(const JoinedCorner& a, const JoinedCorner& b) const noexcept {
@@ -36,7 +35,8 @@ struct ByCorner {
 
 using CornerSorter = ExternalSorter<JoinedCorner, ByCorner>;
 
-/// Twice the area of a triangle of the file; its sign is right but for the flattest of all.
+/// Twice the area that a triangle has in the file, in grid units. Its sign is right but for the
+/// flattest of triangles.
 long double source_area(const std::array<JoinedCorner, 3>& c) {
   const auto whole = [&](auto axis, std::size_t i) {
     return static_cast<long double>(c[i].vertex.position.*axis) - c[0].vertex.position.*axis;
@@ -52,9 +52,11 @@ long double source_area(const std::array<JoinedCorner, 3>& c) {
 
 int sign_of(long double v) { return v > 0 ? 1 : (v < 0 ? -1 : 0); }
 
-/// What is wrong with triangles, while it is not known which way round is right.
+/// Collects the faults of triangles for either way round, since only the last triangle shows which
+/// one most triangles have.
 class Orientations {
  public:
+  /// @param in_file  The sign of the triangle's area in the file.
   void add(const GridTriangle& t, int in_file) {
     const int on_grid = sign_of(static_cast<long double>(t.area()));
     excess_ += on_grid;
@@ -82,7 +84,7 @@ class Orientations {
   std::array<OrientationFaults, 2> faults_;
 };
 
-/// One file on its way.
+/// Puts one file on the grid.
 class GridReader {
  public:
   GridReader(const std::string& path, const TinGridReading& reading)
@@ -93,7 +95,7 @@ class GridReader {
   TinOnGrid read();
 
  private:
-  static constexpr std::uint64_t kSorters = 5;  ///< That hold memory at the same time.
+  static constexpr std::uint64_t kSorters = 5;  ///< Most that hold memory at the same time.
 
   void choose_grid();
   void join();
@@ -115,7 +117,7 @@ class GridReader {
   std::optional<PointOrder> order_;
   std::optional<NamedTin> named_;
   std::unique_ptr<CornerSorter> corners_;
-  std::unique_ptr<PointSorter> points_;  ///< Vertices.
+  std::unique_ptr<PointSorter> points_;  ///< The vertices.
 };
 
 void GridReader::choose_grid() {
@@ -196,7 +198,8 @@ void GridReader::assemble() {
   tin_.faults = orientations.take();
 }
 
-/// Distinct positions along the curve, and what their heights are.
+/// Writes the distinct positions along the curve, finds the height encoding, and counts positions
+/// with several heights.
 void GridReader::number_vertices() {
   tin_.places = std::make_unique<RecordFile<std::uint64_t>>(memory_, "places");
   HeightFinder heights(tin_.grid.whole, tin_.grid.heights.unit());

@@ -24,43 +24,45 @@
 
 namespace ptin {
 
-/// A vertex on the grid, its height as PointGrid::height() has it.
+/// A vertex on the grid. Its height is as PointGrid::height() has it.
 struct GridVertex {
   GridPoint position;
   double height = 0.0;
 };
 
-/// Where the vertex of a key stands among vertices in the order of their keys.
-/// REQUIRES: it is among them. Cost: O(log n).
+/// The index of the vertex with this key among vertices in the order of their keys.
+/// REQUIRES: there is such a vertex. Cost: O(log n).
 [[nodiscard]] VertexId vertex_number(std::span<const GridVertex> vertices, VertexKey key) noexcept;
 
-/// A triangle by itself.
+/// A triangle that holds its corners, so that it needs no list of vertices.
 struct GridTriangle {
   std::uint64_t place = 0;            ///< Of the first corner, along the curve (PointOrder).
-  std::array<GridVertex, 3> corners;  ///< From the one with the smallest key on.
+  std::array<GridVertex, 3> corners;  ///< In turn, from the one with the smallest key on.
 
-  [[nodiscard]] std::int64_t area() const noexcept;  ///< orient() of its corners.
+  [[nodiscard]] std::int64_t area() const noexcept;  ///< orient() of its corners: twice the area.
 };
 
 class PointOrder;
 
-/// Makes one of three corners; keeps which way round they go.
+/// Makes a triangle of three corners; keeps which way round they go.
 [[nodiscard]] GridTriangle grid_triangle(const std::array<GridVertex, 3>& corners,
                                          const PointOrder& order) noexcept;
 
-/// Along the curve, by the first corner; those of one vertex by the others.
+/// The order of triangles along the curve: by the place of the first corner, then by the keys of
+/// the second and the third.
 struct ByPlace {
   bool operator()(const GridTriangle& a, const GridTriangle& b) const noexcept;
 };
 using TriangleSorter = ExternalSorter<GridTriangle, ByPlace>;
 
-/// What is wrong with triangles one by one, if those that are counter-clockwise (or clockwise) are
-/// the right ones.
+/// Triangles that are wrong by themselves, given that one way round, counter-clockwise or
+/// clockwise, is the right one.
 struct OrientationFaults {
   TinFault no_area, turned_over;
-  /// Upright in the file and not on the grid: snapping spoiled them.
+  /// Triangles that go the right way round in the file, and do not on the grid: snapping spoiled
+  /// them. At most 65536 are kept.
   std::vector<GridTriangle> slivers;
-  std::uint64_t more_slivers = 0;  ///< Than are kept.
+  std::uint64_t more_slivers = 0;  ///< How many slivers there are besides.
 };
 
 /// All triangles of a file, on the grid.
@@ -68,19 +70,20 @@ struct TinOnGrid {
   PointGrid grid;
   std::string crs, vertical_crs;
   HeightFit heights;
-  std::unique_ptr<TriangleSorter> triangles;  ///< As the file has them, turned over or not.
+  std::unique_ptr<TriangleSorter> triangles;  ///< The way round that they have in the file.
   /// Distinct positions of the vertices of triangles, along the curve.
   std::unique_ptr<RecordFile<std::uint64_t>> places;
-  bool is_clockwise = false;  ///< Most of them are: all are to be turned.
-  OrientationFaults faults;   ///< Seen so.
+  bool is_clockwise = false;  ///< Most triangles are clockwise: all are to be turned.
+  OrientationFaults faults;   ///< With the way round of most triangles as the right one.
   TinFault heights_differ;    ///< Positions with several heights.
+  // As TinCounts (tin/tin_source.h).
   std::uint64_t left_out_triangles = 0;
   std::uint64_t unused_vertices = 0;
   std::uint64_t merged_vertices = 0;
   double largest_shift_plan = 0.0;
 };
 
-/// How it is read.
+/// How a file is read. Options and memory must outlive the reading.
 struct TinGridReading {
   const SourceOptions& options;
   const ExternalMemory& memory;
@@ -88,11 +91,11 @@ struct TinGridReading {
   std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress;
 };
 
-/// Reads the file once (tin_source.h says by which rules vertices are snapped).
+/// Reads the file once. By which rules vertices are snapped, tin/tin_source.h says.
 /// @throws Error as read_tin_file(); invalid_argument  an id that no vertex has, or that two have;
 ///               no triangle has a height; io_error, resource_exhausted (the disk is full)
-/// Cost: O(n log n). Disk: about 500 bytes a vertex for a while, 130 in the end. Memory: that
-/// given.
+/// Cost: O(n log n). Disk: about 500 bytes a vertex for a while, 130 in the end. Memory:
+/// reading.memory.bytes.
 [[nodiscard]] TinOnGrid read_on_grid(const std::string& path, const TinGridReading& reading);
 
 }  // namespace ptin

@@ -31,7 +31,7 @@ RecordFile<Record> new_file(const ExternalMemory& memory, const std::string& nam
                       : RecordFile<Record>(memory.files, name, ScratchFile::Kept::kNew);
 }
 
-/// The same under its own name, where it is to have one.
+/// The same records in a file called `name`; the given file where `name` is empty.
 template <class Record>
 RecordFile<Record> named(RecordFile<Record> file, const ExternalMemory& memory,
                          const std::string& name, const std::stop_token& stop) {
@@ -44,8 +44,8 @@ RecordFile<Record> named(RecordFile<Record> file, const ExternalMemory& memory,
   return to;
 }
 
-/// The file's triangles in their order, the right way round.
-/// @param kept_as  Name of the file of triangles.
+/// Writes the triangles along the curve, all counter-clockwise, and mends their slivers.
+/// @param kept_as  Name of the file in which they stay; "" for one without a name.
 MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory& memory,
                    const std::string& path, const std::string& kept_as, TinCounts& counts,
                    TinFaults& faults, const std::stop_token& stop) {
@@ -79,7 +79,7 @@ MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory
   return mesh;
 }
 
-/// A mesh on its way to a convex one.
+/// Makes a mesh convex.
 class HullFiller {
  public:
   HullFiller(const PointOrder& order, const AffineMap& map, const ExternalMemory& memory,
@@ -93,7 +93,8 @@ class HullFiller {
         border_(memory, "border"),
         voids_({memory.files, memory.folder, memory.bytes / 8}, "voids", stop) {}
 
-  /// Writes the triangles that fill the hull of the others. Returns the hull.
+  /// Writes to `to` the void triangles that fill the convex hull around and between `triangles`.
+  /// Returns the hull.
   ConvexHull fill(const RecordFile<GridTriangle>& triangles, RecordFile<GridTriangle>& to) {
     find_border(triangles);
     if (border_.size() <= TinTriangles::kMostBorderInMemory) {
@@ -126,7 +127,7 @@ class HullFiller {
         },
         stop_);
     border_.finish();
-    // Of triangles that are wrong one by one, the border says nothing more.
+    // Where triangles are wrong by themselves, faults of the border would tell nothing more.
     faults_.refuse(map_, path_);
   }
 
@@ -169,7 +170,7 @@ class HullFiller {
   HullCollector hull_;
 };
 
-/// The first record whose place is not before `place`.
+/// The index of the first triangle whose place is not before `place`.
 std::uint64_t first_from(const RecordFile<GridTriangle>& triangles, std::uint64_t place) {
   std::uint64_t low = 0, high = triangles.size();
   while (low < high) {
@@ -183,7 +184,7 @@ std::uint64_t first_from(const RecordFile<GridTriangle>& triangles, std::uint64_
   return low;
 }
 
-/// Vertices of triangles, each once, by key.
+/// The vertices of triangles, each once, in the order of their keys.
 std::vector<GridVertex> vertices_of(const std::vector<GridTriangle>& triangles) {
   std::vector<GridVertex> vertices;
   vertices.reserve(3 * triangles.size());
@@ -211,7 +212,7 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   }
   TinOnGrid tin = read_on_grid(path, {options, memory, stop, progress});
   TinTriangles to;
-  // What --a-srs takes the place of is the source's CRS with its vertical part.
+  // --a-srs replaces the CRS of the source together with its vertical part.
   const bool keeps_vertical = options.a_srs.empty() && options.vertical_crs.empty();
   set_crs(to.frame_, resolve_crs(tin.crs, options.a_srs,
                                  keeps_vertical ? tin.vertical_crs : options.vertical_crs));
@@ -246,7 +247,8 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
 }
 
 SourceDisk TinTriangles::disk_of(std::uint64_t vertices) noexcept {
-  // Two triangles of 56 bytes a vertex, its place, and void triangles; tiles as those of points.
+  // What is kept: for each vertex two triangles of 56 bytes and its place; and void triangles.
+  // Tiles take what those of points take.
   return {.while_reading = vertices * 500, .kept = vertices * 130, .tiles_of_vertex = 72.0};
 }
 

@@ -12,7 +12,7 @@
 
 namespace ptin {
 
-/// The leaf of this window: its part of the triangles, and of the full surface.
+/// Starts the leaf that has this window: its part of the triangles, and of the full surface.
 /// @throws Error as TinTriangles::part()
 /// Threads: any number at once.
 [[nodiscard]] StartedTile start_tin_tile(const TinTriangles& triangles, const TileTree& tree,

@@ -16,7 +16,7 @@ namespace ptin {
 
 namespace {
 
-/// That NameReader holds memory at the same time.
+/// Sorters of read_named_tin() that hold memory at the same time.
 constexpr std::uint64_t kSorters = 3;
 
 ExternalMemory memory_of(const StreamResources& resources) {

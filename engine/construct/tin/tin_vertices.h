@@ -15,21 +15,24 @@
 
 namespace ptin {
 
-/// The vertices of a TIN's triangles, on the digits that TinTriangles keeps, in the order of their
-/// ids. Of any number: vertices find their triangles by sorting on disk.
+/// A stream of the vertices that a TIN's triangles name, in the order of their ids, rounded to the
+/// digits that TinTriangles keeps. TINs may be of any size: vertices and triangles are matched by
+/// sorting on disk.
 class TinVertices final : public PointStream {
  public:
   /// Reads the file once.
+  /// @param choice     Its `layer` names the surface of a LandXML file.
   /// @param nodata     Triangles with a corner of this height are left out.
-  /// @param resources  Without memory: 64 MiB, and temporary files where the system has its own.
+  /// @param resources  Where it names no memory: 64 MiB, and the system's temporary folder.
   /// @throws Error as read_tin_file(); invalid_argument  an id that no vertex has, or that two
   ///               have; no triangle has a height; io_error, resource_exhausted, cancelled
   TinVertices(const std::string& path, const PointChoice& choice, std::optional<double> nodata = {},
               const StreamResources& resources = {});
   ~TinVertices() override;
 
-  /// What that takes of the disk at most, bytes a vertex: 40 and six corners of 16 while they are
-  /// sorted, the same when they have been matched; corners again where triangles are left out.
+  /// The most bytes of disk that the constructor takes for a vertex: 40 for itself and 96 for six
+  /// corners while they are sorted, as much for the same when they have been matched, and 96 more
+  /// for corners that are sorted again where triangles are left out.
   [[nodiscard]] static std::uint64_t disk_of_vertex(bool has_nodata) noexcept {
     constexpr std::uint64_t kVertex = 40, kCorners = 96;
     return 2 * (kVertex + kCorners) + (has_nodata ? kCorners : 0);

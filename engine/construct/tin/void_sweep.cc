@@ -1,4 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+//
+// How the sweep works. sweep_voids() owns the events, which are both ends of each border edge,
+// sorted on disk by key: so vertices come from the lowest up. `Sweep` owns the line: the edges that
+// it crosses, from left to right. An edge on the line owns the gap on its right, and a gap of void
+// holds the ends of its chain. `Chains` owns the nodes of all chains, and makes the triangles. At a
+// vertex Sweep::pass()
+//   1. finds the edges on the line that hold it; all must end there, else it is a T-junction;
+//   2. closes the gaps between them, whose chains become triangles, and adds the vertex to the
+//      chains on both sides; where no edge ends, it splits the chain of the gap that it lies in;
+//   3. takes these edges off the line, and only then puts on it those that begin, since an edge
+//      that ends at a vertex has no order with one that begins there; a gap between two new edges
+//      begins a chain, and where no edge begins the chains on both sides are joined;
+//   4. compares edges that have become neighbours: edges that cross are neighbours just before, so
+//      no crossing is missed. The first fault ends the work, since beyond it the line has no order.
+// Nodes that triangles cut off are used again, so memory grows with the line, not with the border.
 #include "engine/construct/tin/void_sweep.h"
 
 #include <algorithm>
@@ -15,11 +30,11 @@ namespace {
 
 using Triangles = std::function<void(const std::array<GridVertex, 3>&)>;
 
-/// An end of a border edge, in the order in which the line meets them.
+/// The line meets one end of a border edge.
 struct Event {
-  VertexKey at = 0, other = 0;
+  VertexKey at = 0, other = 0;  ///< Of this end and of the other one.
   double height = 0.0, other_height = 0.0;
-  std::uint32_t is_upward = 0;  ///< The edge goes from its lower to its upper end.
+  std::uint32_t is_upward = 0;  ///< 1: the edge goes from its lower to its upper end.
 
   [[nodiscard]] bool begins_edge() const noexcept { return at < other; }
 };
@@ -31,21 +46,25 @@ struct ByKeys {
   }
 };
 
-/// Chains of vertices, from left to right, the void on their left hand. Nodes are used again.
+/// The chains of all gaps. A chain runs from left to right, with the void above it on its left
+/// hand. A vertex *sees* an edge of a chain when it lies to the left of the edge.
 class Chains {
  public:
+  /// The nodes at the ends of a chain; kNone for no chain.
   struct Chain {
     std::uint32_t first = kNone, last = kNone;
-    std::uint32_t newest = kNone;  ///< The highest vertex.
+    std::uint32_t newest = kNone;  ///< The node that was added last: the highest vertex.
   };
 
   explicit Chains(const Triangles& visit) : visit_(visit) {}
 
+  /// A new chain of one vertex.
   [[nodiscard]] Chain of(const GridVertex& v) {
     const std::uint32_t n = make(v);
     return {n, n, n};
   }
-  /// Takes what `v` sees at the right end, and puts it there.
+  /// Makes triangles of `v` and the edges that it sees from the right end of a chain on; then `v`
+  /// is the right end. push_front() does the same at the left end.
   void push_back(Chain& chain, const GridVertex& v) {
     std::uint32_t at = chain.last;
     while (nodes_[at].previous != kNone && sees(v, nodes_[at].previous, at)) {
@@ -64,7 +83,8 @@ class Chains {
     link(n, at);
     chain.first = chain.newest = n;
   }
-  /// Cuts a chain where `v`, above it, sees its highest vertex: both parts end in `v`.
+  /// Cuts a chain at its highest vertex, which `v` above the chain sees. Then `v` is the right end
+  /// of the left part and the left end of the right part. Without a chain both parts are `v` alone.
   [[nodiscard]] std::pair<Chain, Chain> split(const Chain& chain, const GridVertex& v) {
     if (chain.first == kNone) {
       return {of(v), of(v)};
@@ -81,7 +101,7 @@ class Chains {
     push_front(right, v);
     return {left, right};
   }
-  /// Two chains that end and begin with the same vertex.
+  /// Joins two chains: `left` ends with the vertex with which `right` begins.
   [[nodiscard]] Chain joined(const Chain& left, const Chain& right) {
     const std::uint32_t after = nodes_[right.first].next;
     free_.push_back(right.first);
@@ -91,7 +111,8 @@ class Chains {
     link(left.last, after);
     return {left.first, right.last, left.last};
   }
-  /// Takes all of a chain whose both edges end in `v`. False when it does not see all of it.
+  /// Makes triangles of `v` and all of a chain, when the edges on both sides of its gap end in `v`.
+  /// False when `v` does not see all of the chain.
   [[nodiscard]] bool close(const Chain& chain, const GridVertex& v) {
     std::uint32_t at = chain.first;
     for (; nodes_[at].next != kNone; at = drop(at, nodes_[at].next, v, false)) {
@@ -102,6 +123,7 @@ class Chains {
     free_.push_back(at);
     return true;
   }
+  /// Nodes in memory, in use or free.
   [[nodiscard]] std::size_t size() const noexcept { return nodes_.size(); }
 
  private:
@@ -127,7 +149,10 @@ class Chains {
   [[nodiscard]] bool sees(const GridVertex& v, std::uint32_t a, std::uint32_t b) const {
     return orient(nodes_[a].vertex.position, nodes_[b].vertex.position, v.position) > 0;
   }
-  /// Makes a triangle of `v` and the edge between two nodes, and drops the first of them.
+  /// Makes a triangle of `v` and the edge between two nodes, and frees the first of them, which is
+  /// an end of what is left of its chain.
+  /// @param goes_left  `neighbour` is to the left of `node`.
+  /// @return  `neighbour`
   std::uint32_t drop(std::uint32_t node, std::uint32_t neighbour, const GridVertex& v,
                      bool goes_left) {
     const GridVertex &a = nodes_[node].vertex, &b = nodes_[neighbour].vertex;
@@ -139,23 +164,23 @@ class Chains {
 
   const Triangles& visit_;
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> free_;
+  std::vector<std::uint32_t> free_;  ///< Nodes to be used again.
 };
 
-/// What lies between two edges on the line.
+/// What lies between two edges next to each other on the line.
 struct Gap {
-  int cover = 0;  ///< How often the surface covers it: 0 void.
-  Chains::Chain chain;
+  int cover = 0;        ///< How often the surface covers it: 0 is void, 1 surface.
+  Chains::Chain chain;  ///< Below the gap, where it is void.
 };
 
-/// An edge that the line crosses, and what is on its right.
+/// An edge that the line crosses, and the gap on its right.
 struct ActiveEdge {
   GridVertex low, high;
   bool is_upward = false;
-  mutable Gap right;  ///< No part of the order.
+  mutable Gap right;  ///< Changes in the set, since the order does not look at it.
 };
 
-/// From left to right. A vertex on an edge equals it.
+/// The order of edges on the line, from left to right. A point that lies on an edge equals it.
 struct LeftToRight {
   using is_transparent = void;
   static std::int64_t side(const ActiveEdge& e, GridPoint p) noexcept {
@@ -182,13 +207,15 @@ class Sweep {
         faults_(faults),
         path_(path) {}
 
-  /// All edges that begin at a vertex. False when a fault ends the work.
+  /// Moves the line over a vertex.
+  /// @param beginning  The lower ends of all edges that begin at `v`.
+  /// @return  False when there is a fault, which `faults` has received: the work ends.
   [[nodiscard]] bool pass(const GridVertex& v, const std::vector<Event>& beginning);
   /// True when every edge has ended.
   [[nodiscard]] bool is_over() const noexcept { return line_.empty(); }
 
  private:
-  static constexpr std::uint64_t kBytes = 192;  ///< Of an edge and its share of the chains.
+  static constexpr std::uint64_t kBytes = 192;  ///< Counted for an edge, and for four nodes.
   using Line = std::set<ActiveEdge, LeftToRight>;
 
   [[nodiscard]] Gap& left_of(Line::iterator edge) {
@@ -204,7 +231,7 @@ class Sweep {
     return false;
   }
 
-  std::uint64_t most_;
+  std::uint64_t most_;  ///< Edges on the line, with a quarter of one for each node.
   Chains chains_;
   TinFaults& faults_;
   const std::string& path_;
@@ -212,7 +239,10 @@ class Sweep {
   Gap outside_;  ///< To the left of all edges.
 };
 
-/// Ends the edges at `v`; what is left and right of them is the chains' up to there.
+/// Ends the edges [first, end) of the line in `v`, and gives `v` to the chains beside them. Where
+/// there are none, `v` lies inside the gap `left`, which is split in two.
+/// @param left   The gap to the left of the edges; receives `v`.
+/// @param right  Receives the gap to the right of the edges, with `v`.
 bool Sweep::end_edges(const GridVertex& v, Line::iterator first, Line::iterator end, Gap& left,
                       Gap& right) {
   if (first == end) {
@@ -240,7 +270,7 @@ bool Sweep::end_edges(const GridVertex& v, Line::iterator first, Line::iterator 
   return true;
 }
 
-/// True when the edge and the one on its left cross.
+/// True when an edge on the line and the one on its left cross.
 bool Sweep::cross(Line::iterator right_edge) {
   if (right_edge == line_.end() || right_edge == line_.begin()) {
     return false;
@@ -253,6 +283,8 @@ bool Sweep::cross(Line::iterator right_edge) {
              0;
 }
 
+/// Puts the edges that begin at `v` on the line, before the edge `before`.
+/// @param left, right  The gaps on both sides of `v`, as end_edges() leaves them.
 bool Sweep::begin_edges(const GridVertex& v, const std::vector<Event>& beginning,
                         Line::iterator before, const Gap& left, const Gap& right) {
   std::vector<ActiveEdge> edges;

@@ -11,22 +11,25 @@
 
 namespace ptin {
 
-/// Fills the convex hull around and between surface triangles with void ones, as fill_hull() does,
-/// but in the memory that the edges take which a horizontal line crosses. The triangles are worse:
-/// as they come, not Delaunay.
+/// Fills the convex hull around and between surface triangles with void triangles, as fill_hull()
+/// does, but keeps only those border edges in memory that one horizontal line crosses. The
+/// triangles are worse than those of fill_hull(): they are made as the line meets vertices, and not
+/// Delaunay.
 ///
-/// A line goes up over the vertices. Between two edges next to each other on it lies surface or
-/// void. Below a piece of void is a chain of vertices, bent into the void everywhere, from the
-/// last vertex of the edge on its left to that of the edge on its right; a new vertex takes all
-/// edges of the chain that it sees, from the chain's highest vertex on, for triangles (Hertel and
-/// Mehlhorn: Fast triangulation of simple polygons, 1983).
-/// @param border  Of counter-clockwise triangles.
-/// @param visit   Receives counter-clockwise triangles.
-/// @param faults  Receives the first T-junction, crossing or piece that is covered twice: then the
-///                work ends.
+/// The line goes up over the vertices. The *gap* between two edges next to each other on the line
+/// is surface or void. Below a gap of void lies a *chain* of vertices, from the lower end of the
+/// edge on its left to the lower end of the edge on its right, which bulges into the void at every
+/// vertex between these. A new vertex makes triangles with those edges of the chain that it sees,
+/// and joins the chain (Hertel and Mehlhorn: Fast triangulation of simple polygons, 1983).
+/// @param border  Edges with counter-clockwise triangles on their left, in any order.
+/// @param memory  A quarter of its bytes is for sorting, a half for the line and its chains.
+/// @param visit   Receives the void triangles, counter-clockwise, in no order that means anything.
+/// @param faults  Receives the first T-junction, crossing or doubly covered place that is met; the
+///                work then ends, and the triangles so far mean nothing.
 /// @param path    Of the TIN, for errors.
-/// @throws Error cancelled, io_error; resource_exhausted  the line crosses more edges than fit
-/// Cost: O(b log b).
+/// @throws Error cancelled, io_error; resource_exhausted  the line crosses more edges than fit, or
+///               the disk is full; and what `visit` throws
+/// Cost: O(b log b) for b edges.
 void sweep_voids(const RecordFile<GridEdge>& border, const ExternalMemory& memory,
                  const std::function<void(const std::array<GridVertex, 3>&)>& visit,
                  TinFaults& faults, const std::string& path, const std::stop_token& stop = {});
