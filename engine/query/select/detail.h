@@ -36,7 +36,7 @@ class Detail {
   explicit Detail(const StoreFile& store) : certificate_(certify_below(store, -1.0)) {}
 
   /// @throws Error invalid_argument    tolerance negative or NaN; both given; fewer vertices than
-  ///               T0
+  ///                                   T0
   ///               resource_exhausted  the last bin of errors exceeds the memory limit
   ///               corruption, io_error, cancelled
   /// Cost: with `vertices` it reads, over the whole terrain, every page with an error in the last

@@ -71,7 +71,7 @@ struct Footing {
 /// Where a line crosses the mesh.
 struct Crossing {
   Footing footing;
-  /// Share of the way from the line's begin p to its end q, exactly: numerator / denominator, in
+  /// Share of the way along the line, from p to q (LineWalk), exactly: numerator / denominator, in
   /// [0, 1].
   Int128 numerator = 0;
   Int128 denominator = 1;
