@@ -76,8 +76,8 @@ class BoundedMesh {
   const OpenedTerrain& terrain_;
   Detail detail_;
   Refinement refinement_;
-  std::vector<Made> made_;      ///< Beside the vertices.
-  std::vector<Made> entering_;  ///< Beside `splits_`.
+  std::vector<Made> made_;      ///< For each vertex.
+  std::vector<Made> entering_;  ///< For each of `splits_`.
   std::vector<VertexSplit> records_;
   std::vector<PendingSplit> splits_;
 };

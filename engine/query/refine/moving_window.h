@@ -34,7 +34,7 @@ struct MovingWindowOptions {
 struct MoveResult {
   std::uint64_t entered = 0;         ///< Splits made.
   std::uint64_t left = 0;            ///< Splits undone.
-  std::uint64_t vertices = 0;        ///< Of the mesh, T0 and void ones included.
+  std::uint64_t vertices = 0;        ///< Of the mesh, T0 and those without a height included.
   std::uint64_t triangles = 0;       ///< Of the mesh.
   std::uint64_t pages_examined = 0;  ///< Pages whose records were tested, read or from the cache.
   Certificate certificate;           ///< Over the whole domain.

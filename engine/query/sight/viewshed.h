@@ -34,8 +34,8 @@ struct ViewshedRequest {
   std::optional<double> pixel_size;
   bool pixels = true;         ///< Fill the raster.
   bool list_vertices = true;  ///< List the vertices.
-  /// At a level of detail the TIN that is swept is finer towards the eye: records of a deviation
-  /// above certified_deviation * distance / radius are kept too.
+  /// At a level of detail the TIN that is swept is finer towards the eye: it also has the records
+  /// of a deviation above Viewshed::certified_deviation * distance / radius.
   DetailRequest detail;
   QueryLimits limits;
 };

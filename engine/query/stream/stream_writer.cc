@@ -191,7 +191,8 @@ void append(std::vector<std::byte>& out, const T& object) {
   append_bytes(out, std::as_bytes(std::span(&object, 1)));
 }
 
-/// By falling rank; within a rank along the Hilbert curve, where the mesh is in the caches.
+/// Sorts splits by falling rank, and within a rank along the Hilbert curve, where the mesh is in
+/// the caches.
 void sort_by_rank(std::span<PendingSplit> splits) {
   struct Place {
     std::uint64_t curve;
