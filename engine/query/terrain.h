@@ -3,27 +3,30 @@
 // Terrain: the one face of engine/query. All questions that can be asked of a file, for the
 // program, a service and bindings: plain requests in, plain results out.
 //
-// | question                                  | function         | request         | header           |
-// |-------------------------------------------|------------------|-----------------|------------------|
-// | a mesh at a level of detail, in a region  | refine           | RefineRequest   | refine/refine.h  |
-// | the same, part by part, of any size       | parts            | PartRequest     | refine/part_refiner.h |
-// | a mesh that follows a moving region       | moving_window    | MovingWindowOptions | refine/moving_window.h |
-// | heights at points                         | locate           | LocateRequest   | heights/locate.h |
-// | heights along lines                       | profile          | ProfileRequest  | heights/profile.h |
-// | the highest or lowest point               | highest          | HighestRequest  | heights/highest.h |
-// | whether two points see each other         | sight, sight_lines | SightRequest  | sight/sight.h    |
-// | what an observer sees                     | viewshed         | ViewshedRequest | sight/viewshed.h |
-// | contours                                  | isolines         | IsolineRequest  | isoline/isoline.h |
-// | the file, most important vertices first   | stream           | StreamRequest   | stream/stream_writer.h |
+// | question                       | function      | request             | header                 |
+// |--------------------------------|---------------|---------------------|------------------------|
+// | mesh at a level of detail      | refine        | RefineRequest       | refine/refine.h        |
+// | the same in parts, of any size | parts         | PartRequest         | refine/part_refiner.h  |
+// | mesh that follows a region     | moving_window | MovingWindowOptions | refine/moving_window.h |
+// | heights at points              | locate        | LocateRequest       | heights/locate.h       |
+// | heights along lines            | profile       | ProfileRequest      | heights/profile.h      |
+// | highest or lowest point        | highest       | HighestRequest      | heights/highest.h      |
+// | do two points see each other   | sight         | SightRequest        | sight/sight.h          |
+// | the same of many pairs         | sight_lines   | SightRequest        | sight/sight.h          |
+// | what an observer sees          | viewshed      | ViewshedRequest     | sight/viewshed.h       |
+// | contours                       | isolines      | IsolineRequest      | isoline/isoline.h      |
+// | the file, coarse to fine       | stream        | StreamRequest       | stream/stream_writer.h |
 //
-// Every request holds a DetailRequest (which TIN: the full one, one within an error, or the most
+// A request holds a DetailRequest (which TIN: the full one, one within an error, or the most
 // important vertices; select/detail.h) and QueryLimits (memory and stop token;
-// select/query_limits.h). A stream says by its predicate what is wanted, and a moving window is
-// asked anew with each move. Every result holds what it is certified for and what it cost.
+// select/query_limits.h). Two requests differ. A StreamRequest names what is wanted by a predicate.
+// A MovingWindow gets its predicate and its stop token with each move. Every result tells what it
+// is certified for and what it cost.
 //
-// What is done with results comes along: polygons between levels (isoline_bands.h), lines cut at a
-// window (isoline_clip.h), isolines of a mesh that grows (isoline_progressive.h), and the receiver
-// of a stream (stream_reader.h).
+// This header also brings what is done with results: polygons between levels
+// (isoline/isoline_bands.h), lines cut at a window (isoline/isoline_clip.h), isolines of a mesh
+// that grows (isoline/isoline_progressive.h), and the receiver of a stream
+// (stream/stream_reader.h).
 #pragma once
 
 #include <cstdint>
@@ -54,10 +57,10 @@
 namespace ptin {
 
 /// A terrain on disk that answers questions. A copy shares the file and costs nothing.
-/// Threads: all functions but use_index() are const and may be called at once; no question blocks
+/// Threads: all functions but use_index() are const and may be called at once. No question blocks
 /// another, and each keeps to limits of its own.
 ///
-/// Errors, of every question, and besides those that its header names:
+/// Errors that every question may throw; the header of a question names further ones:
 ///   invalid_argument    a request that means nothing
 ///   resource_exhausted  the answer needs more memory than the limit; told before pages are read
 ///   corruption          a page of the file is damaged, or the file changed since it was opened
@@ -67,6 +70,7 @@ class Terrain : public OpenedTerrain {
  public:
   using OpenedTerrain::OpenedTerrain;
 
+  /// Opens the file at `path`.
   /// @throws Error as StoreFile::open; corruption when the stored T0 is not a valid TIN
   [[nodiscard]] static Terrain open(const std::string& path,
                                     PageAccess access = PageAccess::kMapped) {
@@ -75,9 +79,11 @@ class Terrain : public OpenedTerrain {
 
   /// The TIN at a level of detail, over the whole domain or in a region.
   [[nodiscard]] RefinedTin refine(const RefineRequest& request) const;
-  /// The same in parts that fit the memory. The terrain must outlive what is returned.
+  /// The TIN at a level of detail, refined part by part, each part within the memory limit. The
+  /// terrain must outlive the PartRefiner.
   [[nodiscard]] PartRefiner parts(PartRequest request) const;
-  /// A mesh that begins as T0 and follows predicates. Shares the file.
+  /// A mesh that begins as T0 and follows predicates. The window shares the file and may outlive
+  /// the terrain.
   [[nodiscard]] MovingWindow moving_window(const MovingWindowOptions& options = {}) const;
 
   /// Heights at points in map units: surface, void and outside told apart.
@@ -93,8 +99,8 @@ class Terrain : public OpenedTerrain {
 
   /// Whether the ends of a line see each other.
   [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request = {}) const;
-  /// For many lines, which share a coarse mesh. The terrain must outlive what is returned.
-  /// @param base_records  As SightSolver.
+  /// Sight lines of many pairs, over one coarse mesh. The terrain must outlive the SightSolver.
+  /// @param base_records  As for the constructor of SightSolver.
   [[nodiscard]] SightSolver sight_lines(const SightRequest& request,
                                         std::uint64_t base_records = std::uint64_t{1} << 15) const;
   /// What one observer sees.
@@ -103,7 +109,7 @@ class Terrain : public OpenedTerrain {
   /// Isolines, joined over the whole terrain.
   [[nodiscard]] Isolines isolines(const IsolineRequest& request) const;
 
-  /// Sends T0 and then splits, the most important ones first; StreamReader (stream_reader.h)
+  /// Sends T0 and then splits, the most important ones first. StreamReader (stream/stream_reader.h)
   /// receives them.
   StreamSummary stream(const StreamRequest& request, const ByteSink& sink) const;
 };

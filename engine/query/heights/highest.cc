@@ -21,7 +21,7 @@ namespace ptin {
 
 namespace {
 
-constexpr std::size_t kFirstSpare = 16;  // vertices looked up beyond those asked for
+constexpr std::size_t kFirstSpare = 16;  // vertices located beyond those asked for
 
 /// A rectangle on the grid, in real numbers.
 struct Rectangle {
@@ -61,7 +61,8 @@ std::vector<Corner> clipped(std::vector<Corner> polygon, const Rectangle& r) {
   return polygon;
 }
 
-/// A corner of the window in spots; what lies beyond the domain's box does so by two grid units.
+/// A corner of the window as a spot. A corner beyond the domain's box is moved to two grid units
+/// beyond it.
 Spot spot_of_clamped(double x, double y, const GridBox& b) {
   const auto spot = [](double v, std::int32_t low, std::int32_t high) {
     return std::llround(std::ldexp(std::clamp(v, low - 2.0, high + 2.0), kSpotBits));
@@ -92,7 +93,7 @@ class Search {
     result.certified_deviation = detail.certificate().deviation;
     result.exact = detail.is_exact(facts_);
     if (region_ && !region_->meets(facts_.bounds)) {
-      store_.pages().check_unchanged();  // bounds of a file that is gone say nothing
+      store_.pages().check_unchanged();  // the bounds of a file that was replaced say nothing
       result.state = PointState::kOutside;
       result.cost = context_.cost;
       return result;
@@ -100,7 +101,8 @@ class Search {
     const PredicatePtr predicate = predicate_of(detail);
     HighGatherer gatherer(store_, *predicate, detail, region_ ? &*region_ : nullptr,
                           request_.lowest, context_);
-    // At a level of detail a vertex may be of the surface later, and of none yet.
+    // At a level of detail a vertex may stand in void triangles alone, and touch the surface in a
+    // finer TIN.
     const bool any_rejected = detail.is_asked() || !facts_.free_of_voids;
     const std::vector<HighCandidate> best =
         any_rejected ? find_on_surface(gatherer) : find(gatherer, request_.listed);
@@ -145,7 +147,7 @@ class Search {
     return gatherer.take_best();
   }
 
-  /// With another index: the same order, after a whole search.
+  /// For another index: visits the pages in the same order, after a search of all of them.
   void search_in_order(HighGatherer& gatherer) {
     std::vector<PageId> pages;
     terrain_.index().search(*predicate_of_pages(), pages, context_.cost.io);
@@ -168,9 +170,9 @@ class Search {
     return request_.window ? meets_region(*request_.window, facts_.map) : everything();
   }
 
-  /// A vertex whose triangles are all void has a height, but no surface. Searches until enough are
-  /// left, each time with more to spare, and the best, above which records were gathered, is one
-  /// of them.
+  /// A vertex whose triangles are all void has a height, but is not of the surface. So it searches
+  /// again, each time for more spare vertices, until enough vertices of the surface are found and
+  /// the very best vertex is one of them: the records were gathered that reach above that vertex.
   std::vector<HighCandidate> find_on_surface(HighGatherer& gatherer) {
     std::size_t spare = 0;
     while (true) {
@@ -187,8 +189,8 @@ class Search {
     }
   }
 
-  /// Tells the gatherer of each candidate that it was not told of before whether the surface has
-  /// it.
+  /// Locates the candidates that the gatherer was not told of before, and tells it which of them
+  /// are of the surface.
   void look_up(const std::vector<HighCandidate>& best, HighGatherer& gatherer) {
     std::vector<VertexKey> keys;
     for (const HighCandidate& c : best) {
@@ -228,7 +230,7 @@ class Search {
     return {low.x, low.y, high.x, high.y};
   }
 
-  /// The highest vertex, or a point on the window's border above it.
+  /// Sets the point of `result`: the highest vertex, or a higher point on the border of the window.
   void find_point(const Tin& tin, const std::vector<HighCandidate>& best, HighestResult& result) {
     double most = best.empty() ? -kInfinity : best.front().value;
     if (!best.empty()) {
@@ -267,7 +269,7 @@ class Search {
       result.state = meets_domain() ? PointState::kVoid : PointState::kOutside;
       return;
     }
-    // Widened by the rounding of the height and of the sum.
+    // The deviation, widened by the rounding of the height and of the sum.
     const double deviation = result.certified_deviation;
     const double rounding =
         16 * std::numeric_limits<double>::epsilon() *
@@ -277,8 +279,8 @@ class Search {
     result.height_max = result.point.height + reach;
   }
 
-  /// Whether the window and some triangle of T0, which cover the domain, share a point. Exact, of
-  /// corners taken to spots.
+  /// Whether the window and the domain, which the triangles of T0 cover, share a point. Exact for
+  /// the corners of the window as spots.
   [[nodiscard]] bool meets_domain() const {
     const GridBox& b = facts_.bounds;
     const Rectangle r = rectangle();
@@ -294,7 +296,7 @@ class Search {
       if (high.x < box_low.x || high.y < box_low.y || box_high.x < low.x || box_high.y < low.y) {
         return false;
       }
-      for (int i = 0; i < 3; ++i) {  // no side has all of the window beyond it
+      for (int i = 0; i < 3; ++i) {  // apart when one side has the whole window beyond it
         const GridPoint from = t0.position(t.v[i]);
         const GridPoint to = t0.position(t.v[next_corner(i)]);
         if (std::all_of(corners.begin(), corners.end(),

@@ -10,7 +10,7 @@ namespace ptin {
 
 namespace {
 
-constexpr std::size_t kFewSplits = 4096;  // not worth looking through
+constexpr std::size_t kFewSplits = 4096;  // fewer are not worth looking through
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The best-first search of highest(): the highest vertices, and the records that reach above them.
+// The best-first search of highest(): gathers the highest vertices, and the records that reach
+// above them.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +20,19 @@ namespace ptin {
 
 /// A vertex that may be among the highest.
 struct HighCandidate {
-  double value;         ///< Its height's code, negated when the lowest are wanted.
-  std::uint64_t found;  ///< How many were found before: of equal values the first one counts.
+  double value;  ///< Its height's code, negated when the lowest are wanted.
+  /// Candidates found before this one: of equal values the one found first is better.
+  std::uint64_t found;
   VertexKey key;
 };
 
 /// Gathers, in one search, the best vertices, and the records that reach above the very best one.
-/// Threads: one owner.
+/// "Above" means below when the lowest are wanted. Threads: one owner.
 class HighGatherer final : public BestFirstVisitor {
  public:
-  /// All borrowed.
-  /// @param predicate  Region and tolerance of `detail`.  @param window  None: everywhere.
+  /// All borrowed for the life of the gatherer.
+  /// @param predicate  Region of the request and tolerance of `detail`.
+  /// @param window     Vertices outside of it do not count; null: everywhere.
   HighGatherer(const StoreFile& store, const AttributePredicate& predicate, const Detail& detail,
                const GridRegion* window, bool lowest, QueryContext& context)
       : store_(store),
@@ -39,28 +42,31 @@ class HighGatherer final : public BestFirstVisitor {
         lowest_(lowest),
         context_(context) {}
 
-  /// Begins a search for `wanted` vertices; those that were told to be off the surface do not
+  /// Begins a search for `wanted` vertices. Vertices that tell() said to be off the surface do not
   /// count. REQUIRES: wanted > 0.
   void start(std::size_t wanted);
 
-  /// Makes room to be told of `more` vertices. Cost: linear in all of them when it grows.
+  /// Makes room for `more` calls of tell(). Cost: linear in all vertices told of when the room
+  /// grows.
   void reserve_told(std::size_t more);
-  /// Tells of a vertex whether it is the surface's. REQUIRES: not told before; room for it.
+  /// Tells whether a vertex is of the surface. REQUIRES: not told before; reserve_told() made room.
   void tell(VertexKey key, bool on_surface) noexcept { told_.insert(key, on_surface ? 1 : 0); }
   [[nodiscard]] bool is_told(VertexKey key) const noexcept {
     return told_.find(key) != KeyTable::kAbsent;
   }
   [[nodiscard]] bool is_rejected(VertexKey key) const noexcept { return told_.find(key) == 0; }
 
+  /// The best value below these attributes; -infinity where the predicate is false or all is void.
   [[nodiscard]] double bound(const Attributes& a) const override;
+  /// Takes a page's vertices and records; returns the smallest bound that is still worth a visit.
   double visit(PageId page) override;
 
-  /// The best vertices, falling; fewer than wanted when there are fewer. Ends the search.
+  /// The best vertices, by falling value; fewer than wanted when there are fewer. Ends the search.
   /// Cost: n log n.
   [[nodiscard]] std::vector<HighCandidate> take_best();
 
   [[nodiscard]] const Detail& detail() const noexcept { return detail_; }
-  /// What is kept between searches: the records so far, and what was told.
+  /// Bytes kept between searches: the records gathered, and what was told.
   [[nodiscard]] std::uint64_t held_bytes() const noexcept;
 
   /// The records that reach above the best vertex, a set closed under dependency.
@@ -71,13 +77,13 @@ class HighGatherer final : public BestFirstVisitor {
     PendingSplit split;
     double bound;
   };
-  /// The order of the best, and of the heap whose top is the last of them.
+  /// The order of the best vertices. In the heap the last of them is on top.
   static bool is_better(const HighCandidate& a, const HighCandidate& b) noexcept {
     return a.value != b.value ? a.value > b.value : a.found < b.found;
   }
   void offer(GridPoint p, HeightBits height);
   void drop_what_ends_below();
-  /// Nothing at or below this is wanted: the value of the last of the best.
+  /// No value at or below this is wanted: it is that of the last of the best vertices.
   [[nodiscard]] double cut_off() const noexcept {
     return heap_.size() == wanted_ ? heap_.front().value : -kInfinity;
   }
@@ -90,10 +96,10 @@ class HighGatherer final : public BestFirstVisitor {
   QueryContext& context_;
   std::size_t wanted_ = 1;
   std::uint64_t found_ = 0;
-  double most_ = -kInfinity;  ///< The best value.
+  double most_ = -kInfinity;  ///< The best value found.
   std::vector<HighCandidate> heap_;
   std::vector<Reaching> splits_;
-  std::size_t looked_through_ = 0;  ///< Splits when they were last looked through.
+  std::size_t looked_through_ = 0;  ///< Splits left by the last drop_what_ends_below().
   std::vector<VertexSplit> records_;
   KeyTable told_;  ///< 1: on the surface, 0: rejected.
   std::size_t told_capacity_ = 0;

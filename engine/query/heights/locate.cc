@@ -23,8 +23,8 @@ namespace ptin {
 
 namespace {
 
-/// Points refined together: enough that coarse records are shared, few enough that their mesh stays
-/// near the processor.
+/// Points refined together: so many that they share coarse records, so few that their mesh stays in
+/// the processor's caches.
 constexpr std::size_t kGroupPoints = 8192;
 constexpr std::uint64_t kGroupRecords = std::uint64_t{1} << 18;
 
@@ -37,7 +37,7 @@ struct Ordered {
 
 class Locating {
  public:
-  /// @param detail  Of the request, where it was found before; else none.
+  /// @param detail  The level of the request where the caller has found it already; else null.
   Locating(const OpenedTerrain& terrain, const LocateRequest& request, const Detail* detail)
       : terrain_(terrain),
         facts_(terrain.store().facts()),
@@ -68,7 +68,8 @@ class Locating {
                       const SpotSet& wanted);
   void locate_bounded(std::span<const Ordered> group, std::span<const PageId> pages,
                       const SpotSet& wanted);
-  /// `bounds_of(t)`: what is known of the full surface below a triangle.
+  /// Answers the points of a group on `tin`.  @param bounds_of  Bounds of the full surface below a
+  /// triangle.
   template <typename BoundsOf>
   void walk_group(const Tin& tin, std::span<const Ordered> group, const BoundsOf& bounds_of);
   [[nodiscard]] LocatedPoint answer(const Tin& tin, Spot spot, const Place& place) const;
@@ -79,7 +80,7 @@ class Locating {
   const LocateRequest& request_;
   QueryContext context_;
   Detail detail_;
-  // Of the group at hand: the next one uses the same memory.
+  // Of the group at hand; the next group uses the same memory.
   std::vector<PendingSplit> splits_;
   std::optional<Refinement> refinement_;
   LocateResult result_;
@@ -101,7 +102,7 @@ std::vector<Ordered> Locating::order(std::span<const MapPoint> points) const {
                   terrain_.store().path());
     }
     const std::optional<Spot> spot = map.spot(points[i]);
-    if (spot && contains(facts_.bounds, *spot)) {  // others keep their answer: outside
+    if (spot && contains(facts_.bounds, *spot)) {  // other points keep the state kOutside
       const auto x = static_cast<std::uint32_t>(spot->x >> kSpotBits);
       const auto y = static_cast<std::uint32_t>(spot->y >> kSpotBits);
       ordered.push_back({points.size() > 1 ? hilbert_position(x, y) : 0, i, *spot});
@@ -205,8 +206,9 @@ LocatedPoint Locating::answer(const Tin& tin, Spot spot, const Place& place) con
   return point;
 }
 
-/// What the full surface can be here: the file's base and the triangle's deviation around the
-/// height, widened by the height's own rounding, and within the heights below the triangle.
+/// Sets the interval that holds the full surface at a point: the height plus and minus the
+/// triangle's deviation (at least the file's base), widened by the rounding of the height, and cut
+/// to the heights of the full surface below the triangle.
 void Locating::set_interval(const SurfaceBounds& bounds, LocatedPoint& point) const {
   const double deviation = std::max(bounds.deviation, facts_.base_deviation);
   if (deviation == 0) {
@@ -215,7 +217,8 @@ void Locating::set_interval(const SurfaceBounds& bounds, LocatedPoint& point) co
   }
   const double rounding = 16 * std::numeric_limits<double>::epsilon() *
                           (std::abs(point.height) + std::abs(facts_.heights.offset) + deviation);
-  // Heights below are those stored; the source's may be off by the base (rounding, --max-error).
+  // The heights below the triangle are stored ones; the source's may be off by the base (rounding,
+  // --max-error).
   const double lowest =
       std::max(facts_.heights.height_of_code(bounds.heights.lo), facts_.min_height);
   const double highest =

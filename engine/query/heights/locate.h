@@ -21,7 +21,7 @@
 namespace ptin {
 
 struct LocateRequest {
-  DetailRequest detail;  ///< Of which TIN the heights are.
+  DetailRequest detail;  ///< The TIN of which the heights are.
   QueryLimits limits;
 };
 
@@ -33,11 +33,12 @@ struct LocatedPoint {
     double height = std::numeric_limits<double>::quiet_NaN();  ///< NaN: the vertex has none.
   };
   PointState state = PointState::kOutside;
-  /// Of the TIN that was asked, height's unit; NaN unless `state` is surface. On an edge it is that
-  /// between the edge's ends, on a vertex the vertex's.
+  /// Height on the TIN that was asked, height's unit; NaN unless `state` is surface. On an edge it
+  /// is interpolated between the ends of the edge; on a vertex it is the vertex's.
   double height = std::numeric_limits<double>::quiet_NaN();
-  /// The full surface lies in here at this point, if it is surface there; NaN where `height` is.
-  /// Equal to `height` where nothing was left out.
+  /// [height_min, height_max] holds the height of the source's full TIN at this point, if that TIN
+  /// is surface there. NaN where `height` is NaN; both equal to `height` where nothing was left
+  /// out.
   double height_min = std::numeric_limits<double>::quiet_NaN();
   double height_max = std::numeric_limits<double>::quiet_NaN();
   /// The closed triangle that holds the point; of several, a surface one before a void one, then
@@ -47,8 +48,8 @@ struct LocatedPoint {
 
 struct LocateResult {
   std::vector<LocatedPoint> points;  ///< In the order of the request.
-  double certified_error = 0.0;      ///< Bound at every sample near a point.
-  /// Bound at every point, both of whose TINs are surface there.
+  double certified_error = 0.0;      ///< Bound of the error at every sample near a point.
+  /// Bound of the deviation at every point where the TIN asked and the full one are both surface.
   double certified_deviation = 0.0;
   bool exact = false;  ///< Nothing was left out, and the file's base error is 0.
   QueryCost cost;
@@ -58,16 +59,17 @@ struct LocateResult {
 /// one refinement each.
 /// @throws Error invalid_argument    a coordinate is not finite (names the point); tolerance
 ///                                   negative or NaN; as Detail
-///               resource_exhausted  one group of points, however small, exceeds the memory limit
+///               resource_exhausted  a single point's records, beside the results, exceed the
+///                                   memory limit
 ///               corruption, io_error, cancelled
-/// Cost: one point: the records whose region of influence holds it, O(log n) of them in practice. A
-/// batch: the records that any of its points needs, each read and applied once per group. With
-/// `vertices` that of finding the last one is added, once a call (detail.h).
+/// Cost: for one point the records whose region of influence holds it, O(log n) of them in
+/// practice. For a batch the records that any of its points needs, each read and applied once per
+/// group. With `vertices` the cost of Detail is added, once a call (select/detail.h).
 [[nodiscard]] LocateResult locate(const OpenedTerrain& terrain, std::span<const MapPoint> points,
                                   const LocateRequest& request = {});
 
-/// As locate(), at a level of detail that was found before: for questions that locate several times.
-/// @param detail  That of the request's tolerance and vertices.
+/// As locate(), for questions that locate several times at one level of detail.
+/// @param detail  The level that `request.detail` means, found before.
 [[nodiscard]] LocateResult locate_at(const OpenedTerrain& terrain, std::span<const MapPoint> points,
                                      const LocateRequest& request, const Detail& detail);
 

@@ -52,8 +52,8 @@ double distance_between(const MapPoint& a, const MapPoint& b, const ProfileReque
   return std::sqrt(dx * dx + dy * dy);
 }
 
-/// With fewer than two spots when the line has no length.
-/// @param count  Of the lines.
+/// A line as spots, repetitions left out; fewer than two spots when the line has no length.
+/// @param number, count  Which line of how many, for errors.
 SpotLine spot_line(std::span<const MapPoint> line, std::size_t number, std::size_t count,
                    const StoreFacts& facts, const ProfileRequest& request) {
   const SpotMap map(facts.map, facts.bounds);
@@ -80,7 +80,8 @@ SpotLine spot_line(std::span<const MapPoint> line, std::size_t number, std::size
   return made;
 }
 
-/// Appends the points of one segment. A point that is there already only learns what begins at it.
+/// Appends the points of one segment. Where a point of the same line and distance is there already,
+/// it is brought up to date instead.
 class SegmentWriter {
  public:
   SegmentWriter(const Tin& tin, const StoreFacts& facts, const SpotLine& line,
@@ -112,7 +113,8 @@ class SegmentWriter {
   }
 
  private:
-  /// `end`, one of the piece's, when the piece is surface, or touches surface there at a vertex.
+  /// `end`, which is an end of `piece`, when there is ground at it: the piece is surface, or `end`
+  /// is a vertex that touches surface. Else null.
   [[nodiscard]] const Crossing* ground_at(const LinePiece& piece, const Crossing& end) const {
     const Footing& f = end.footing;
     const bool surface = piece.is_surface(tin_) ||
@@ -120,11 +122,12 @@ class SegmentWriter {
     return surface ? &end : nullptr;
   }
 
-  /// `entry` when it is the line's end on a surface, else nothing.
+  /// `entry` when the segment only touches the domain with its end, and that end stands on surface.
+  /// Else null.
   [[nodiscard]] const Crossing* touched(const Crossing& entry, std::size_t end,
                                         TriangleId near) const {
     if (entry.share() != 1.0) {
-      return nullptr;  // the last piece has told its height
+      return nullptr;  // the last piece has told the height of the end
     }
     const Place place = find_spot(tin_, line_.spots[end], near);
     const TriangleId triangle = answering_triangle(tin_, place);
@@ -163,11 +166,11 @@ class SegmentWriter {
 
 /// A line on its way along the Hilbert curve.
 struct OrderedLine {
-  std::uint64_t along;  ///< Of the middle of its first segment.
+  std::uint64_t along;  ///< Position of the middle of its first segment.
   std::size_t index;    ///< In the request.
 };
 
-/// Segments of a line: those from `first` up to `end`.
+/// The segments of a line from `first` up to, not including, `end`.
 struct LinePart {
   const SpotLine* line;
   std::size_t first, end;
@@ -253,7 +256,8 @@ class Profiling {
     }
   }
 
-  /// Halves what does not fit: lines, then the segments of one.
+  /// Walks along parts of lines. Parts that do not fit the memory together are halved; a single one
+  /// is halved by its segments.
   void walk(std::span<const LinePart> parts) {
     std::vector<SpotSegment> segments;
     for (const LinePart& part : parts) {
@@ -306,7 +310,8 @@ class Profiling {
     refinement_.apply(splits, context_);
   }
 
-  /// False, and nothing written, when mesh and points do not fit together, but halves may.
+  /// Writes the points of the parts. Returns false, and has written nothing, when mesh and points
+  /// do not fit together but halves may.
   [[nodiscard]] bool write(std::span<const LinePart> parts) {
     const std::size_t before = result_.points.size();
     TriangleId near = 0;
@@ -330,7 +335,7 @@ class Profiling {
     return true;
   }
 
-  /// By a quarter: what doubles takes room for points that never come.
+  /// Grows the room for points by a quarter: doubling would take memory for points that never come.
   void make_room() {
     std::vector<ProfilePoint>& points = result_.points;
     if (points.capacity() - points.size() < points.size() / 8) {
@@ -338,7 +343,7 @@ class Profiling {
     }
   }
 
-  /// From the order along the curve to that of the request.
+  /// Puts the points of the lines from the order along the curve into that of the request.
   void put_in_order(std::span<const OrderedLine> order, std::size_t lines) {
     if (std::is_sorted(order.begin(), order.end(),
                        [](const auto& a, const auto& b) { return a.index < b.index; })) {
@@ -353,7 +358,7 @@ class Profiling {
     std::vector<ProfilePoint> points;
     points.reserve(result_.points.size());
     for (std::size_t line = 0; line < lines; ++line) {
-      if (ends[line] > 0) {  // not skipped: a line has points
+      if (ends[line] > 0) {  // a line that is not skipped has points
         points.insert(points.end(),
                       result_.points.begin() + static_cast<std::ptrdiff_t>(begins_[line]),
                       result_.points.begin() + static_cast<std::ptrdiff_t>(ends[line]));

@@ -17,11 +17,11 @@
 namespace ptin {
 
 struct ProfileRequest {
-  /// Distance over ground between two map positions; none: in the plane of the map. For the
-  /// ellipsoid below geographic coordinates.
+  /// Distance over ground between two map positions, for example along the ellipsoid of a
+  /// geographic CRS; none: the distance in the plane, in map units.
   std::function<double(MapPoint, MapPoint)> ground_distance;
-  DetailRequest detail;  ///< Of which TIN the profile is.
-  /// Lines whose records do not fit the memory are walked one by one, or in pieces.
+  DetailRequest detail;  ///< The TIN along which the profile runs.
+  /// Lines whose records do not fit the memory together are walked one by one, or in pieces.
   QueryLimits limits;
 };
 
@@ -29,34 +29,36 @@ struct ProfileRequest {
 /// of the TIN. Between two points the surface is straight.
 struct ProfilePoint {
   MapPoint position;      ///< Map units.
-  double distance = 0.0;  ///< Along its line, over ground; in between in proportion.
+  double distance = 0.0;  ///< From the beginning of its line, over ground.
   /// Height's unit; NaN where no surface touches the line.
   double height = std::numeric_limits<double>::quiet_NaN();
-  /// What the stretch that begins here runs over; of a last point, what the one before does.
+  /// What the stretch that begins here runs over. For the last point of a line: what the stretch
+  /// before it runs over.
   PointState state = PointState::kOutside;
-  std::uint32_t part = 0;  ///< Which segment of its line it is on.
-  std::uint32_t line = 0;  ///< Which line.
+  std::uint32_t part = 0;  ///< Segment of its line, from 0.
+  std::uint32_t line = 0;  ///< Index of its line in the request.
 };
 
 struct ProfileResult {
   std::vector<ProfilePoint> points;  ///< Line by line.
-  std::uint64_t skipped_lines = 0;   ///< Of several: those without length, which have no points.
-  double certified_error = 0.0;      ///< At samples.
-  double certified_deviation = 0.0;  ///< Of every height.
+  std::uint64_t skipped_lines = 0;   ///< Lines without length among several; they have no points.
+  double certified_error = 0.0;      ///< Bound of the error at samples.
+  double certified_deviation = 0.0;  ///< Bound of the deviation of every height.
   bool exact = false;
   QueryCost cost;
 };
 
-/// Walks along polylines. Segments of no length are left out, and of several lines those without
-/// any length.
+/// The heights along polylines. Segments of no length are left out, and among several lines those
+/// without any length.
 /// @throws Error invalid_argument    no line has a length; a coordinate that is not finite, or more
 ///                                   than 2^31 grid units away (names the line); as Detail
-///               resource_exhausted  one segment, or the points, exceed the memory limit
+///               resource_exhausted  the records of one segment, or the points of the result,
+///                                   exceed the memory limit
 ///               corruption, io_error, cancelled
-/// Cost: the records whose region of influence meets a line, each test of one the logarithm of the
-/// segments, and the triangles on the way. Lines are taken along the Hilbert curve, in groups that
-/// share one refinement each, so what several need is read and applied once a group. With
-/// `vertices` that of Detail is added.
+/// Cost: the records whose region of influence meets a line, where each test takes the logarithm of
+/// the number of segments; and the triangles on the way. Lines are taken along the Hilbert curve,
+/// in groups that share one refinement each, so a record that several lines need is read and
+/// applied once a group. With `vertices` the cost of Detail is added.
 [[nodiscard]] ProfileResult profile(const OpenedTerrain& terrain, std::span<const MapPoint> line,
                                     const ProfileRequest& request = {});
 [[nodiscard]] ProfileResult profile(const OpenedTerrain& terrain,

@@ -16,7 +16,8 @@ namespace ptin {
 namespace {
 
 constexpr std::uint64_t kSmallestLimit = 1 << 20;
-/// A point of a line that is handed out and written: as it is, in a geometry, as bytes of a format.
+/// Bytes of a point while its line is written: the point itself, in a geometry, and as bytes of a
+/// format.
 constexpr std::uint64_t kBytesAPointOut = 80;
 
 }  // namespace
@@ -65,8 +66,8 @@ class IsolineExtraction {
   }
 
  private:
-  /// Tiles take half of the memory; pieces three eighths, since they cannot be put aside; points
-  /// the rest.
+  /// Tiles take half of the memory. Pieces take three eighths, since they cannot be put on disk;
+  /// points take the rest.
   void trace() {
     const TileTraceRequest request{levels_,
                                    predicate_,
@@ -82,7 +83,8 @@ class IsolineExtraction {
     result_.tiles = traces.tiles;
   }
 
-  /// The tiles' memory is free again: lines are joined and written in it.
+  /// Checks that the longest line fits. Lines are joined and written in the memory that tiles have
+  /// given back.
   void admit_lines() const {
     std::uint64_t longest = 0;
     for (const JoinedLine& line : result_.lines_.lines) {

@@ -22,17 +22,19 @@
 namespace ptin {
 
 struct IsolineRequest {
-  std::vector<double> levels;    ///< Height's unit; sorted, and repetitions dropped (levels.h).
+  std::vector<double> levels;    ///< Height's unit, in any order; repetitions are dropped.
   std::optional<Window> window;  ///< Map units; lines are cut at its border. None: everywhere.
-  DetailRequest detail;          ///< Of which TIN the isolines are.
-  std::uint64_t most_lines = 10'000'000;
+  DetailRequest detail;          ///< The TIN of which the isolines are.
+  std::uint64_t most_lines = 10'000'000;  ///< More lines than this are refused.
   QueryLimits limits;
-  /// Where points go that do not fit the memory. Empty: nowhere, and the extraction fails then.
+  /// Folder of a temporary file for points that do not fit the memory. Empty: no such file, and an
+  /// extraction that needs one fails (resource_exhausted).
   std::string temporary_folder;
-  int threads = 1;  ///< At most; fewer where the memory is small. The lines are the same.
+  int threads = 1;  ///< At most; fewer where the memory is small. The lines do not depend on it.
 };
 
-/// A line to be read: `points` are in map units, without repetitions in a row.
+/// A line to be read. `points` are in map units, without repetitions in a row, and lie in the
+/// vector that was given to Isolines::line().
 struct Isoline {
   std::uint32_t level = 0;  ///< Index into Isolines::levels().
   bool ring = false;        ///< The last point is the first one again.
@@ -41,28 +43,30 @@ struct Isoline {
 
 /// The isolines of a request. Higher ground lies to the right of each.
 ///
-/// Laws: lines of one TIN never cross; they share a point only at a vertex exactly at their level.
-/// A line's ends lie on the border of the surface (domain or void) or of the window. A ridge
-/// exactly at a level, lower on both sides, is gone round: there and back. A peak exactly at a
-/// level gives nothing. Lines and their order do not depend on memory limit or tiles; a window's
-/// lines are those of the whole terrain, cut, whichever window: a cut is computed from the ends of
-/// the segment it cuts.
+/// Laws. Lines of one TIN never cross; they share a point only at a vertex exactly at their level.
+/// A line ends on the border of the surface (at the domain's border or a void) or of the window. A
+/// ridge exactly at a level, lower on both sides, is gone round: there and back. A peak exactly at
+/// a level gives no line. Lines and their order do not depend on memory limit or tiles. The lines
+/// of any window are those of the whole terrain, cut: a cut is computed from the ends of the
+/// segment it cuts.
 /// Threads: const functions may be called at once.
 class Isolines {
  public:
   [[nodiscard]] const std::vector<double>& levels() const noexcept { return levels_; }
   [[nodiscard]] std::size_t size() const noexcept { return lines_.lines.size(); }
-  /// Line `i`. Ordered by level. @param points  Holds the points of the result.
+  /// Line `i`; lines are ordered by level.
+  /// @param points  Filled with the points of the line, to which the result refers.
   /// @throws Error io_error  when its points are in a temporary file that cannot be read
   [[nodiscard]] Isoline line(std::size_t i, std::vector<MapPoint>& points) const;
   [[nodiscard]] std::uint64_t points() const noexcept { return points_.size(); }
 
   QueryCost cost;
-  TraceCounts crossed;
-  std::uint64_t tiles = 0;       ///< Parts in which the terrain was processed.
-  double certified_error = 0.0;  ///< Of the TIN whose isolines these are.
+  TraceCounts crossed;      ///< What the levels cross, over all tiles.
+  std::uint64_t tiles = 0;  ///< Parts in which the terrain was processed.
+  /// Certificate of the TIN whose isolines these are, height's unit.
+  double certified_error = 0.0;
   double certified_deviation = 0.0;
-  bool exact = false;
+  bool exact = false;  ///< Nothing was left out, and the file's base error is 0.
 
  private:
   friend class IsolineExtraction;
@@ -75,14 +79,14 @@ class Isolines {
 };
 
 /// Extracts isolines. All levels share one refinement. The terrain is processed in tiles that fit
-/// the memory, known from the index before their pages are read; lines are joined exactly across
-/// them.
+/// the memory, by what the index tells before their pages are read; lines are joined exactly across
+/// tiles.
 /// @throws Error invalid_argument    levels, window or tolerance mean nothing; as Detail
 ///               resource_exhausted  more than most_lines lines, told before any is handed out; a
 ///                                   tile that cannot be made small enough; no room for points
 ///               corruption, io_error, cancelled
-/// Cost: records whose height interval holds a level; O(n log n) in the lines. With `vertices` that
-/// of finding the last one is added (detail.h).
+/// Cost: the records whose height interval holds a level; O(n log n) in the lines. With `vertices`
+/// the cost of Detail is added (select/detail.h).
 [[nodiscard]] Isolines isolines(const OpenedTerrain& terrain, const IsolineRequest& request);
 
 }  // namespace ptin

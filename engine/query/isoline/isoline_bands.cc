@@ -14,7 +14,7 @@ namespace {
 
 using Ring = std::vector<MapPoint>;
 
-/// Twice the signed area, around the first point.
+/// Twice the signed area of a ring, computed relative to its first point.
 double twice_area(const Ring& ring) {
   double sum = 0;
   const MapPoint o = ring.front();
@@ -25,8 +25,8 @@ double twice_area(const Ring& ring) {
 }
 
 /// Takes a ring apart where it comes back to a vertex. A walk keeps its inside on the left and
-/// never crosses itself, so each part is simple; parts of fewer than three points are ways there
-/// and back.
+/// never crosses itself, so each part is simple. Parts of fewer than three points go there and
+/// back, and are dropped.
 void split_at_repetitions(const std::vector<RingPoint>& ring, std::vector<Ring>& parts) {
   std::vector<RingPoint> path;
   std::unordered_map<VertexId, std::size_t> place;  // of a vertex in path
@@ -99,12 +99,12 @@ bool holds(const Ring& shell, const Ring& hole) {
 
 struct Part {
   std::uint32_t band, component;
-  double area;  ///< Twice, signed.
+  double area;  ///< Twice the signed area.
   Ring ring;
 };
 
-/// The parts of one component become polygons. It has one shell, but where it hangs together by a
-/// vertex exactly at a level only.
+/// Makes polygons of the rings of one component. The component has one shell, unless parts of it
+/// hang together only by a vertex exactly at a level: then each of them has a shell.
 void assemble(std::span<Part> parts, std::vector<BandPolygon>& polygons) {
   const std::size_t first = polygons.size();
   for (Part& part : parts) {

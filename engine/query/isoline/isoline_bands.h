@@ -13,30 +13,30 @@
 
 namespace ptin {
 
-/// A surface as plain arrays: x, y in map units, z in the height's unit; triangles
+/// A surface as plain arrays, borrowed: x, y in map units, z in the height's unit; triangles
 /// counter-clockwise, meeting in whole edges.
 struct SurfaceArrays {
   std::span<const std::array<double, 3>> vertices;
   std::span<const std::array<std::uint32_t, 3>> triangles;
 };
 
-/// One polygon of a band. Band b lies from level b - 1 (which belongs to it) up to level b; band 0
-/// below the first level, the last one from the last level up.
+/// One polygon of a band. Band b lies from level b - 1, which belongs to it, up to level b, which
+/// does not. Band 0 lies below the first level, the last band from the last level up.
 struct BandPolygon {
   std::uint32_t band = 0;
-  /// The shell, counter-clockwise, then holes, clockwise. Each ends with its first point, has no
-  /// repeated point otherwise, and touches others in single points at most.
+  /// The shell, counter-clockwise, then the holes, clockwise. Each ring ends with its first point,
+  /// repeats no other point, and touches other rings in single points at most.
   std::vector<std::vector<MapPoint>> rings;
 };
 
-/// The polygons of all bands. Their borders are the isolines (isoline.h; the same rule: a vertex at
-/// a level counts as above it, and the same cuts but for rounding in map units) and the border of
-/// the surface. Together the polygons cover the surface, and their interiors share no point. What
-/// has no area (a peak or a ridge exactly at a level) is left out.
-/// Valid by the rules of OGC simple features, as long as neighbouring cuts are told apart by
-/// doubles: cuts closer to each other than about 1e-16 of a coordinate may fall together.
-/// @param levels  Ascending, each once.
-/// Ordered by band.
+/// The polygons of all bands, ordered by band. Their borders are the isolines and the border of the
+/// surface. The isolines are those of isoline/isoline.h: a vertex at a level counts as above it,
+/// and cuts are the same but for rounding in map units. Together the polygons cover the surface,
+/// and their interiors share no point. What has no area (a peak or a ridge exactly at a level) is
+/// left out.
+/// Valid by the rules of OGC simple features, as long as doubles tell neighbouring cuts apart: cuts
+/// closer to each other than about 1e-16 of a coordinate may fall together.
+/// @param levels  Height's unit, ascending, each once.
 /// @throws Error resource_exhausted  more than the context's memory
 ///               cancelled
 /// Cost: O(n log n) in triangles and cuts.

@@ -25,8 +25,8 @@ double meet(double au, double av, double bu, double bv, double at) noexcept {
   return av + (at - au) / (bu - au) * (bv - av);
 }
 
-/// The first point of a -> b in the window. A point outside is beyond one side or two, and where
-/// the segment comes in it crosses one of these.
+/// The first point of a -> b in the window. A point outside lies beyond one or two sides of the
+/// window, and where the segment comes in it crosses one of these sides.
 std::optional<MapPoint> entry(MapPoint a, MapPoint b, const Window& w) noexcept {
   if (is_inside(a, w)) {
     return a;

@@ -15,17 +15,18 @@
 namespace ptin {
 
 /// The part of the segment a -> b in the closed window; none when they share at most one point. A
-/// cut on a side has that side's coordinate, and the other one interpolated between the ends in
-/// lexicographic order: it depends on the segment and that side alone.
+/// cut on a side of the window has that side's coordinate. Its other coordinate is interpolated
+/// between the ends in lexicographic order, so it depends on the segment and that side alone.
 [[nodiscard]] std::optional<std::pair<MapPoint, MapPoint>> clip_segment(MapPoint a, MapPoint b,
                                                                         const Window& window);
 
-/// The parts of a line in the closed window, in its direction; each of at least two points, none
-/// repeated in a row. A ring (its last point is its first) that lies inside stays one; the part
-/// that holds its first point otherwise is one part, not two.
+/// The parts of a line in the closed window, in the direction of the line. Each part has at least
+/// two points, and none repeated in a row. A ring (its last point is its first) that lies inside
+/// stays a ring. Of a ring that is cut, the part that holds the ring's first point is one part, not
+/// two.
 struct ClippedParts {
   std::vector<std::vector<MapPoint>> parts;
-  bool whole = false;  ///< All of the line is inside: `parts` holds it as it was.
+  bool whole = false;  ///< The whole line is inside; `parts` holds it unchanged.
 };
 [[nodiscard]] ClippedParts clip_line(std::span<const MapPoint> line, const Window& window);
 

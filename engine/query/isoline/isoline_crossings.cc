@@ -19,7 +19,8 @@ class Collector {
 
   void count();
   void collect();
-  /// What collecting and tracing take; known once counted. A line has a point more than pieces.
+  /// Bytes that collecting and tracing take. REQUIRES: count() was called. A line has one point
+  /// more than segments.
   [[nodiscard]] std::uint64_t bytes() const noexcept {
     return tin_.vertices.size() * (sizeof(std::uint32_t) + 1) +
            tin_.triangles.size() * kTraceBytesATriangle +
@@ -79,7 +80,9 @@ void Collector::count() {
       continue;
     }
     for (const VertexId v : triangle.v) {
-      seen[v] = 1;  // those in the tile are known whole: all triangles around them meet it
+      // All crossed triangles around a corner in the tile are in this mesh, since they meet the
+      // tile.
+      seen[v] = 1;
     }
     if (!is_in_tile(triangle)) {
       continue;

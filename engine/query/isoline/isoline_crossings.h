@@ -17,40 +17,41 @@ namespace ptin {
 
 /// Which triangles of a mesh are traced: those that belong to a tile, and meet a region.
 struct TraceScope {
-  /// A triangle belongs to the tile that holds its corner of the smallest key. Tiles that share no
-  /// grid point and cover the domain have each triangle once.
+  /// Grid units, closed. A triangle belongs to the tile that holds its corner of the smallest key.
+  /// Tiles that share no grid point and cover the domain have each triangle once.
   GridBox tile;
   const GridRegion* region = nullptr;  ///< Borrowed; null: everywhere.
 };
 
 struct TraceCounts {
   std::uint64_t triangles = 0;  ///< Crossed by at least one level.
-  std::uint64_t vertices = 0;   ///< Of those triangles, in the tile.
-  std::uint64_t segments = 0;   ///< One a triangle and level.
+  std::uint64_t vertices = 0;   ///< Corners in the tile of triangles that a level crosses.
+  std::uint64_t segments = 0;   ///< One for each triangle and level that crosses it.
 };
 
 /// The triangles of a mesh that levels cross.
 struct Crossings {
-  std::vector<std::uint32_t> bands;   ///< Beside the vertices.
-  std::vector<std::uint8_t> traced;   ///< Beside the triangles: 1 where a line may pass.
-  std::vector<std::uint64_t> begin;   ///< Of each level in `triangles`; one more at the end.
-  std::vector<TriangleId> triangles;  ///< By level; in a level each once.
+  std::vector<std::uint32_t> bands;  ///< For each vertex its band (LevelSet::band_of()).
+  std::vector<std::uint8_t> traced;  ///< For each triangle 1 where lines are traced.
+  /// Where each level begins in `triangles`; one more at the end.
+  std::vector<std::uint64_t> begin;
+  std::vector<TriangleId> triangles;  ///< Those that each level crosses, level by level.
 };
-/// Marks beside the triangles that tracing needs.
+/// Bytes of the marks that tracing needs for each triangle of a mesh.
 inline constexpr std::uint64_t kTraceBytesATriangle = sizeof(std::uint32_t) + 1;
 
-/// What was found, or what it would have taken.
+/// The crossings found, or how much memory finding them would have taken.
 struct FoundCrossings {
   bool found = false;
-  std::uint64_t bytes = 0;  ///< What finding and tracing take.
+  std::uint64_t bytes = 0;  ///< Bytes that finding and tracing take.
   TraceCounts counts;
   Crossings crossings;
 };
 
-/// Finds the triangles of `scope` that each level crosses. Nothing is found when that and tracing
-/// would take more than `most_bytes`, beside mesh and pieces.
+/// Finds the triangles of `scope` that each level crosses. Finds nothing (`found` is false) when
+/// finding and tracing would take more than `most_bytes`, not counting mesh and pieces.
 /// @throws Error cancelled
-/// Cost: linear in the mesh, and in what is crossed.
+/// Cost: linear in the mesh, and in the segments found.
 [[nodiscard]] FoundCrossings find_crossings(const Tin& tin, const LevelSet& levels,
                                             const HeightEncoding& heights, const TraceScope& scope,
                                             std::uint64_t most_bytes, const QueryContext& context);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where an isoline crosses an edge: one function, so that whoever asks gets the same bits.
+// Where an isoline crosses an edge: one function, so that every caller gets the same bits.
 #pragma once
 
 #include <compare>
@@ -12,7 +12,7 @@
 namespace ptin {
 
 /// The edge that an isoline crosses, by the keys of its ends: `below` lies under the level, `above`
-/// at or over it.
+/// at or above it.
 struct CutEdge {
   VertexKey below = kNoVertexKey;
   VertexKey above = kNoVertexKey;
@@ -24,9 +24,10 @@ struct CutEnd {
   double x, y, code;
 };
 
-/// The point at height `level` on an edge. It depends on the edge and the level alone, from the
-/// lower end to the higher one, so every triangle, tile and window gets the same bits; at the
-/// height of the higher end it is that end exactly. Grid units in, grid units out.
+/// The point at height `level` (a code) on an edge, in grid units as the ends are. It is
+/// interpolated from the lower end to the higher one and depends on the edge and the level alone,
+/// so every triangle, tile and window gets the same bits. At the code of the higher end it is that
+/// end exactly.
 /// REQUIRES: below.code < level <= above.code.
 [[nodiscard]] inline MapPoint cut_of(const CutEnd& below, const CutEnd& above,
                                      double level) noexcept {
@@ -37,10 +38,10 @@ struct CutEnd {
   return {below.x + t * (above.x - below.x), below.y + t * (above.y - below.y)};
 }
 
-/// Side of triangle `t` through which an isoline enters when it keeps higher ground on its right:
-/// walked counter-clockwise, that edge rises from below the level to above it.
-/// @param above  Of each corner. REQUIRES: neither all nor none.
-/// Returns the corner opposite to the edge, as Triangle::n is numbered.
+/// The side through which an isoline with higher ground on its right enters a triangle: walked
+/// counter-clockwise, the side rises from below the level to above it.
+/// @param above  For each corner whether it is above the level. REQUIRES: neither all nor none.
+/// Returns the corner opposite to the side, as Triangle::n is numbered.
 [[nodiscard]] constexpr int entry_side(const bool (&above)[3]) noexcept {
   for (int i = 0; i < 3; ++i) {
     if (!above[next_corner(i)] && above[previous_corner(i)]) {
@@ -50,7 +51,7 @@ struct CutEnd {
   return 0;
 }
 
-/// Likewise the side through which it leaves: the edge that falls.
+/// Likewise the side through which the isoline leaves the triangle: the one that falls.
 [[nodiscard]] constexpr int exit_side(const bool (&above)[3]) noexcept {
   for (int i = 0; i < 3; ++i) {
     if (above[next_corner(i)] && !above[previous_corner(i)]) {

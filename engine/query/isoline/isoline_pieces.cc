@@ -136,7 +136,7 @@ void drop_single_points(JoinedLines& joined, std::span<const IsolinePiece> piece
   std::erase_if(joined.lines, [&](const JoinedLine& line) {
     for (std::uint32_t k = 0; k < line.pieces; ++k) {
       if (pieces[joined.order[line.first_piece + k]].count > 1) {
-        return false;  // its points differ in a row
+        return false;  // the points of one piece differ in a row, so the line has two
       }
     }
     points_of(line, joined, pieces, store, points);

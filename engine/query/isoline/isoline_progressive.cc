@@ -17,8 +17,9 @@ ProgressiveIsolines::ProgressiveIsolines(const Tin& tin, LevelSet levels,
   restart(tin);
 }
 
-/// For `more` elements: asked for before it is taken, with what is held while they are moved. At
-/// least doubled, so moving costs a constant an element.
+/// Makes room for `more` elements. Asks the context before it takes the memory, the old array
+/// included, which stays while elements are moved. Room at least doubles, so that moving costs O(1)
+/// an element.
 template <typename T>
 void ProgressiveIsolines::make_room(std::vector<T>& array, std::uint64_t more) const {
   const std::uint64_t needed = array.size() + more;
@@ -83,7 +84,7 @@ IsolineChange ProgressiveIsolines::advance(const Tin& tin) {
     for (const TriangleId t : star_.triangles) {
       const auto& v = tin.triangles[t].v;
       if (std::max({v[0], v[1], v[2]}) != u) {
-        continue;  // it has a newer corner, and its turn comes then
+        continue;  // has a newer corner, and is taken with that one
       }
       ++change.triangles;
       remove_pieces(t, change);
@@ -107,7 +108,7 @@ void ProgressiveIsolines::remove_pieces(TriangleId t, IsolineChange& change) {
     level[slots_[s].place] = last;
     slots_[last].place = slots_[s].place;
     level.pop_back();
-    free_.push_back(s);  // which has room for all slots
+    free_.push_back(s);  // free_ has room for all slots
     ++change.removed;
   }
 }

@@ -13,8 +13,9 @@ namespace ptin {
 namespace {
 constexpr std::uint64_t kTriangleBytes = 12 + 4 + 1 + 3 * 16;  // neighbours, pieces, sides to sort
 constexpr std::uint64_t kPieceBytes = 4 + 1;
-/// A line through a triangle: a point of the polygon above it and one of that below, each as found,
-/// in its polygon, and as whoever writes it needs it once more.
+/// A line through a triangle gives a point to the polygon above it and one to the polygon below it.
+/// Each of the two is held as found (24 bytes), in its polygon (2 x 16), and as whoever writes it
+/// needs it (40).
 constexpr std::uint64_t kLineBytes = 2 * (24 + 2 * 16 + 40);
 }  // namespace
 
@@ -82,8 +83,8 @@ std::uint32_t BandMesh::component(std::uint32_t piece) noexcept {
   return piece;
 }
 
-/// Two triangles share the bands of which their common edge holds more than a point, and the band
-/// below a ridge.
+/// Joins the pieces of neighbouring triangles into components: in each band of which the common
+/// edge holds more than a point, and in the band below the edge where the edge is a ridge.
 void BandMesh::join_components() {
   const auto join = [&](std::uint32_t a, std::uint32_t b) {
     a = component(a), b = component(b);
@@ -161,9 +162,10 @@ int BandMesh::line_side(TriangleId t, std::uint32_t level, bool entry) const noe
   return entry ? entry_side(above) : exit_side(above);
 }
 
-/// What follows vertex `v`, in the band, within one sector of it: the border side that leaves it,
-/// or the lower border of the band where `v` lies on it.
-/// @param arrived  `t` itself was walked already.
+/// What a ring walks along after vertex `v` of `t`, which lies in the band. Turns clockwise around
+/// `v`, beginning with `t`, until it comes to the border side that leaves `v`, or to the lower
+/// border of the band where `v` lies exactly on it.
+/// @param arrived  The ring came through `t`, whose line is therefore not taken again.
 BandMesh::Element BandMesh::around(TriangleId t, VertexId v, std::uint32_t band,
                                    bool arrived) const {
   const bool exact = band > 0 && is_at(v, band - 1);
@@ -182,8 +184,8 @@ BandMesh::Element BandMesh::around(TriangleId t, VertexId v, std::uint32_t band,
   }
 }
 
-/// From a point on border side `side` of `t` on along the side: to its end, and round it; or to
-/// where a line leaves the side.
+/// Goes on along border side `side` of `t`, from a point on it: to the end of the side and round
+/// that vertex, or to where a line leaves the side. Adds the point there.
 BandMesh::Element BandMesh::along_border(TriangleId t, int side, std::uint32_t band,
                                          std::vector<RingPoint>& ring) const {
   const VertexId end = surface_.triangles[t][previous_corner(side)];
@@ -200,8 +202,8 @@ BandMesh::Element BandMesh::along_border(TriangleId t, int side, std::uint32_t b
   return around(t, end, band, false);
 }
 
-/// The upper border of the band goes on through `t`; where that is along a ridge, on the other side
-/// of it from the same point.
+/// Goes on along the upper border of the band, through `t`. Where that border is a ridge, which
+/// does not divide the band, it goes on from the same point on the other side of the ridge.
 BandMesh::Element BandMesh::over_ridges(TriangleId t, std::uint32_t band,
                                         std::vector<RingPoint>& ring) const {
   for (;;) {
@@ -254,7 +256,7 @@ void BandMesh::visit_from(const Element& start, std::uint32_t band, const Visito
   do {
     visited(e, band) |= bit(e);
     e = walk(e, band, ring_);
-    PTIN_CHECK(ring_.size() <= 2 * parent_.size() + 3 * border_visited_.size());  // each once
+    PTIN_CHECK(ring_.size() <= 2 * parent_.size() + 3 * border_visited_.size());  // each step once
   } while (e != start);
   visitor(band, component(piece(start.t, band)), ring_);
 }
@@ -273,8 +275,8 @@ void BandMesh::visit_rings(const Visitor& visitor) {
       }
     }
   }
-  // What no line meets: whole borders in one band. A side that falls from a vertex exactly at a
-  // level has only that point in the vertex's band.
+  // Then the rings that no line meets: borders of the surface that lie in one band as a whole. A
+  // side that falls from a vertex exactly at a level has only that point in the vertex's band.
   for (TriangleId t = 0; t < surface_.triangles.size(); ++t) {
     for (int side = 0; side < 3; ++side) {
       const std::uint32_t band = bands_[surface_.triangles[t][next_corner(side)]];

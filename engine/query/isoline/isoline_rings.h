@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Rings around the parts of a surface in bands of heights, walked over its triangles. For
-// isoline_bands.cc.
+// Rings around the parts of a surface in bands of heights, walked over the triangles of the
+// surface. For isoline_bands.cc.
 #pragma once
 
 #include <cstdint>
@@ -15,32 +15,44 @@
 
 namespace ptin {
 
-/// A point of a ring, and the vertex of the surface that it is; kNone between vertices.
+/// A point of a ring, in map units. `vertex` is the vertex of the surface at the point; kNone
+/// between vertices.
 struct RingPoint {
   MapPoint point;
   VertexId vertex = kNone;
 };
 
-/// A surface cut by levels. A vertex at a level counts as above it, but here what has no area is no
-/// part of a band: two parts that meet in a vertex exactly at the level are two, and a ridge
-/// exactly at a level, lower on both sides, does not part what is below. So no ring touches another
-/// but in single points, and none surrounds what hangs together by points alone. Of triangle t, the
-/// part in band b is piece `piece(t, b)`; pieces that share more than a point are of one component.
+/// A surface cut by levels. The part of triangle t in band b is piece `piece(t, b)`. Pieces of a
+/// band that share more than a single point belong to one component.
+///
+/// A vertex at a level counts as above it, as it does for isolines. But a part without area belongs
+/// to no band, which decides two cases:
+/// - Two parts of a band that meet only in a vertex exactly at a level are two components.
+/// - A ridge exactly at a level, lower on both sides, does not divide the band below it.
+///
+/// So two rings touch in single points at most, and no ring runs around several parts that hang
+/// together only at points.
 class BandMesh {
  public:
+  /// All borrowed for the life of the mesh.
+  /// @throws Error resource_exhausted, cancelled
+  /// Cost: O(n log n) in triangles and pieces.
   BandMesh(const SurfaceArrays& surface, std::span<const double> levels,
            const QueryContext& context);
 
-  /// Called for every ring with its band, the component inside and its points: the inside is on the
-  /// left. Points may repeat; a ring may have no area.
+  /// Called once for every ring, with its band, the component inside of it, and its points. The
+  /// inside lies to the left. Points may repeat, and a ring may have no area.
   using Visitor = std::function<void(std::uint32_t band, std::uint32_t component,
                                      const std::vector<RingPoint>& ring)>;
+  /// Walks along all rings. May be called once.  @throws Error cancelled; what `visitor` throws
   void visit_rings(const Visitor& visitor);
 
  private:
   enum class Kind : std::uint8_t { kForward, kBackward, kBorder };
-  /// What a ring walks along: a line through triangle `t` (forward: the upper border of the band;
-  /// backward: the lower one), or the border side `side` of `t`, from a vertex in the band.
+  /// One step of a ring, which has its band on the left:
+  /// kForward   the line through triangle `t` that is the upper border of the band;
+  /// kBackward  the line through `t` that is the lower border of the band;
+  /// kBorder    side `side` of `t`, a border side of the surface, from a vertex in the band.
   struct Element {
     Kind kind = Kind::kBorder;
     TriangleId t = kNone;
@@ -75,12 +87,13 @@ class BandMesh {
   SurfaceArrays surface_;
   std::span<const double> levels_;
   const QueryContext& context_;
-  std::vector<std::array<TriangleId, 3>> neighbours_;  ///< Opposite to the corners.
-  std::vector<std::uint32_t> bands_;                   ///< Beside the vertices.
-  std::vector<std::uint32_t> first_piece_;             ///< Beside the triangles.
-  std::vector<std::uint32_t> parent_;                  ///< Union-find over the pieces.
-  std::vector<std::uint8_t> visited_;  ///< Beside the pieces: a bit for each kind but kBorder.
-  std::vector<std::uint8_t> border_visited_;  ///< Beside the triangles: a bit a side.
+  /// For each triangle its neighbours, opposite to its corners.
+  std::vector<std::array<TriangleId, 3>> neighbours_;
+  std::vector<std::uint32_t> bands_;          ///< For each vertex its band.
+  std::vector<std::uint32_t> first_piece_;    ///< For each triangle the piece in its lowest band.
+  std::vector<std::uint32_t> parent_;         ///< Union-find over the pieces.
+  std::vector<std::uint8_t> visited_;         ///< For each piece a bit for each kind but kBorder.
+  std::vector<std::uint8_t> border_visited_;  ///< For each triangle a bit for each side.
   std::vector<RingPoint> ring_;
 };
 

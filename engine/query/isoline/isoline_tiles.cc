@@ -38,13 +38,14 @@ std::string size_text(std::uint64_t bytes) {
                             : std::to_string((bytes + 0xFFFFF) >> 20) + " MiB";
 }
 
-/// Tiles that wait to be traced. A tile in work may come back as its halves, so nobody leaves
-/// before all are done. Threads: any.
+/// Tiles that wait to be traced. A tile in work may come back as its halves, so no worker leaves
+/// before all tiles are done. Threads: any.
 class TileQueue {
  public:
   explicit TileQueue(const GridBox& all) : waiting_{all} {}
 
-  /// The next tile, to be told done(); none when all are, or on failure.
+  /// The next tile, of which the worker then tells done() or fail(). None when all tiles are done,
+  /// or after a failure.
   std::optional<GridBox> take() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return failed_ || !waiting_.empty() || in_work_ == 0; });
@@ -67,7 +68,7 @@ class TileQueue {
     --in_work_;
     changed_.notify_all();
   }
-  /// Keeps the first failure; nobody gets another tile.
+  /// Ends a tile by a failure, of which the first is kept. No worker gets another tile.
   void fail(std::exception_ptr failure) {
     const std::lock_guard lock(mutex_);
     if (!failed_) {
@@ -226,7 +227,7 @@ class Worker {
   std::vector<PendingSplit> splits_;
 };
 
-/// As many as asked for, as long as each has room for a tile of a useful size.
+/// As many threads as asked for, as long as each has room for a tile of a useful size.
 int threads_within(const TileTraceRequest& request, std::size_t t0_vertices) {
   const std::uint64_t useful = 2 * refinement_bytes(t0_vertices) + request.tile_bytes / 4;
   const std::uint64_t most = std::max<std::uint64_t>(request.memory_bytes / useful, 1);
@@ -252,7 +253,7 @@ TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& req
         threads.emplace_back(
             [worker = workers[static_cast<std::size_t>(i)].get()] { worker->run(); });
       } catch (const std::system_error&) {
-        break;  // the system gives no more: those that run do all of the work
+        break;  // the system gives no more threads: those that run do all of the work
       }
     }
     workers.front()->run();

@@ -47,7 +47,7 @@ class Tracer {
   const AffineMap& map_;
   const Crossings& crossings_;
   const QueryContext& context_;
-  std::vector<std::uint32_t> visited_;  ///< Beside the triangles: 1 + the last level traced there.
+  std::vector<std::uint32_t> visited_;  ///< For each triangle 1 + the last level traced there.
   std::vector<Step> steps_;             ///< Of the piece at hand.
 };
 
@@ -62,8 +62,8 @@ Tracer::Step Tracer::cut(VertexId below, VertexId above, std::uint32_t level) co
   return {{key_of(b.position), key_of(a.position)}, map_.to_map(p.x, p.y)};
 }
 
-/// One step for each edge crossed. A ring has no step for the edge that it began with: it comes
-/// back to it as the last.
+/// Takes the piece that begins in `start`, one step for each edge crossed. A ring has no step for
+/// the edge by which it enters `start`: it comes back to that edge last.
 void Tracer::trace_from(TriangleId start, std::uint32_t level, bool ring) {
   steps_.clear();
   TriangleId t = start;
@@ -118,7 +118,8 @@ void Tracer::trace(TracedPieces& out) {
     const auto crossed = std::span(crossings_.triangles)
                              .subspan(crossings_.begin[level],
                                       crossings_.begin[level + 1] - crossings_.begin[level]);
-    for (const bool ring : {false, true}) {  // what is left when all open lines are traced
+    // Rings are what is left once all open lines are traced.
+    for (const bool ring : {false, true}) {
       for (const TriangleId t : crossed) {
         if (visited_[t] == level + 1) {
           continue;

@@ -17,8 +17,8 @@
 namespace ptin {
 
 struct TraceResult {
-  bool traced = false;
-  std::uint64_t bytes = 0;  ///< What tracing takes.
+  bool traced = false;      ///< False: nothing was traced, since it would take too much.
+  std::uint64_t bytes = 0;  ///< Bytes that tracing takes.
   TraceCounts counts;
 };
 
@@ -36,18 +36,19 @@ struct TracedPieces {
   std::vector<MapPoint> points;
 };
 
-/// Traces every level through the triangles of `scope` and adds its pieces and their points to
+/// Traces every level through the triangles of `scope` and adds the pieces and their points to
 /// `out`, with higher ground on the right. A line ends where the surface does, at a border or a
 /// void, and where the scope does. Nothing is traced when that would take more than `most_bytes`,
-/// beside mesh and pieces.
+/// not counting mesh and pieces.
 /// @throws Error cancelled
-/// Cost: linear in the mesh, and in what is crossed.
+/// Cost: linear in the mesh, and in the segments.
 TraceResult trace_isolines(const TraceSource& source, const TraceScope& scope,
                            std::uint64_t most_bytes, const QueryContext& context,
                            TracedPieces& out);
 
-/// As trace_isolines(), where it is known already what is crossed.
-/// Cost: linear in what is crossed, and marks beside the triangles.
+/// As trace_isolines(), for crossings that are known already.
+/// @throws Error cancelled
+/// Cost: linear in the crossings, plus a mark for each triangle.
 void trace_crossings(const TraceSource& source, const Crossings& crossings,
                      const QueryContext& context, TracedPieces& out);
 

@@ -27,8 +27,8 @@ class CrossesLevel final : public AttributePredicate {
   std::shared_ptr<const Ladder> codes_;
 };
 
-/// The code of a level. Converting back and forth carries a few units of rounding of the offset and
-/// the height, so an integer code that close is what was meant.
+/// The code of a level. Where an integer code lies within a few units of rounding of the level, as
+/// many as converting back and forth carries, that code is what was meant.
 double code_of(double height, const HeightEncoding& encoding) {
   const double code = (height - encoding.offset) / encoding.step;
   const double nearest = std::nearbyint(code);

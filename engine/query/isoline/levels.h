@@ -17,14 +17,15 @@ namespace ptin {
 /// Most levels that one question may have.
 inline constexpr std::size_t kMostLevels = 65536;
 
-/// Ascending numbers, and how many of them lie at or below another: by a table, then a few steps.
-/// Every record and vertex asks. Threads: immutable.
+/// Ascending numbers, the steps, that tell how many of them lie at or below a value. A table says
+/// where to begin, and a few comparisons finish: every record and vertex asks. Threads: immutable.
 class Ladder {
  public:
   Ladder() = default;
   /// @param steps  Ascending, each once, finite; not empty.
   explicit Ladder(std::vector<double> steps);
   [[nodiscard]] const std::vector<double>& steps() const noexcept { return steps_; }
+  /// How many steps are at most v.
   [[nodiscard]] std::uint32_t at_or_below(double v) const noexcept {
     std::uint32_t i = first_[slot(v)];
     while (i < steps_.size() && steps_[i] <= v) {
@@ -34,14 +35,15 @@ class Ladder {
   }
 
  private:
-  /// Rises with v, under rounding too; so steps in a smaller slot than v's are below it.
+  /// Never falls while v grows, under rounding too; so a step in a smaller slot than v's is below
+  /// v.
   [[nodiscard]] std::size_t slot(double v) const noexcept {
     const double place = (v - steps_.front()) * per_slot_;
     const auto last = static_cast<double>(first_.size() - 1);
     return place > 0 ? static_cast<std::size_t>(place < last ? place : last) : 0;
   }
   std::vector<double> steps_;
-  std::vector<std::uint32_t> first_;  ///< Of each slot: how many steps lie in smaller ones.
+  std::vector<std::uint32_t> first_;  ///< For each slot how many steps lie in smaller slots.
   double per_slot_ = 0;
 };
 
@@ -74,8 +76,8 @@ class LevelSet {
     return codes_->at_or_below(code);
   }
 
-  /// True for what some level may cross: lowest height < level <= highest. Monotone; what is left
-  /// out lies on one side of every level, so no isoline passes through it.
+  /// True for records whose surface some level may cross: lowest height < level <= highest.
+  /// Monotone. A record left out lies on one side of every level, so no isoline passes through it.
   [[nodiscard]] PredicatePtr crossing() const;
 
  private:
@@ -83,8 +85,8 @@ class LevelSet {
   std::shared_ptr<const Ladder> codes_;
 };
 
-/// The levels base + n * interval within [low, high], n an integer: as gdal_contour -i.
-/// None where all is void: low > high.
+/// The levels base + n * interval within [low, high], n an integer, as gdal_contour -i has them.
+/// None when low > high, as where all is void.
 /// @throws Error invalid_argument  interval not positive, a value not finite, |n| > 2^53, or more
 ///                                 than kMostLevels levels
 [[nodiscard]] std::vector<double> levels_at(double interval, double base, double low, double high);

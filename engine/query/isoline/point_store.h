@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points of lines while these are made: in memory as far as they fit, then on disk.
+// Points of lines while the lines are made: in memory as far as they fit, then on disk.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,18 @@
 namespace ptin {
 
 /// Points in the order in which they were added: in memory up to a budget, then in a file without a
-/// name. One that was moved from can only be assigned to or destroyed. Threads: none; one owner.
+/// name. A store that was moved from can only be assigned to or destroyed. Threads: none; one
+/// owner.
 class PointStore {
  public:
-  /// @param budget_bytes      Of points kept in memory, in blocks of at most a megabyte.
-  /// @param temporary_folder  Where the file is made when they do not fit; empty: nowhere.
-  /// @param files             Borrowed.
+  /// @param budget_bytes      Bytes of points kept in memory, in blocks of at most a megabyte.
+  /// @param temporary_folder  Where the file is made when the points do not fit; empty: no file.
+  /// @param files             Borrowed for the life of the store.
   PointStore(std::uint64_t budget_bytes, std::string temporary_folder,
              FileLayer& files = FileLayer::system());
 
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  /// Appends points.
   /// @throws Error resource_exhausted  over the budget and no folder, or the disk is full
   ///               not_found           there is no such folder
   ///               io_error
@@ -37,8 +39,8 @@ class PointStore {
   void add_block();
   void spill();
 
-  std::uint64_t block_points_;  ///< In a block.
-  std::uint64_t most_blocks_;   ///< In memory.
+  std::uint64_t block_points_;  ///< Points in a block.
+  std::uint64_t most_blocks_;   ///< Blocks in memory at most.
   std::string folder_;
   FileLayer* files_;
   std::vector<std::unique_ptr<MapPoint[]>> blocks_;  ///< The last points; all but the last full.

@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t kSplitsInCell = 4096;
 constexpr std::uint32_t kMostDepth = 8;
 
-/// A quadtree over where most splits are. What lies outside is moved to its border: that keeps a
-/// box within a larger one.
+/// A quadtree over the square where most splits are. A box that reaches beyond the square is
+/// clamped to it, so a box within another one stays within it.
 class Cells {
  public:
   explicit Cells(std::span<const PendingSplit> splits) {
@@ -33,9 +33,10 @@ class Cells {
 
   /// Few splits are one cell.
   [[nodiscard]] bool is_one() const noexcept { return depth_ == 0; }
-  /// Numbers below this.
+  /// Cell numbers are below this.
   [[nodiscard]] std::size_t numbers() const noexcept { return std::size_t{16} << (2 * depth_); }
-  /// The number of the smallest cell that holds a box; above those of the cells that hold it.
+  /// The number of the smallest cell that holds a box, larger than the numbers of the cells above
+  /// that cell.
   [[nodiscard]] std::uint32_t number_of(const GridBox& box) const noexcept {
     const std::uint32_t low_x = column(box.min_x, origin_x_);
     const std::uint32_t low_y = column(box.min_y, origin_y_);
@@ -48,8 +49,8 @@ class Cells {
   }
 
  private:
-  /// From the quartiles of a sample: the middle half in x and y holds about a quarter of the
-  /// splits, however far the others are spread.
+  /// Places the square by the quartiles of a sample: the middle half in x and y holds about a
+  /// quarter of the splits, however far the others are spread.
   void set_frame(std::span<const PendingSplit> splits) {
     constexpr std::size_t kSample = 256;
     std::array<std::int32_t, kSample> x{};
@@ -87,7 +88,7 @@ struct Sorted {
   std::uint32_t split, cell;
 };
 
-/// Counts become the places where each one's splits begin.
+/// Turns the counts of the cells into the places where their splits begin.
 void begin_each(std::vector<std::uint32_t>& next) {
   std::uint32_t before = 0;
   for (std::uint32_t& n : next) {

@@ -11,14 +11,15 @@
 
 namespace ptin {
 
-/// The indices of `splits` in an order in which every split comes after what it needs.
+/// The indices of `splits` in an order in which every split comes after those that it needs.
 ///
-/// Each split belongs to the smallest cell of a quadtree that holds its roi; cells come before
-/// their children, and in a cell splits come by falling rank. What a split needs has a larger roi
-/// and a larger rank (saturation): so it lies in the same cell, and before, or in one above. A
-/// cell's part of the mesh fits into the caches, where an order by rank alone walks the whole mesh
-/// once a rank. Few splits are one cell: the order by rank. Equal ones keep their order, and with
-/// it the file's. Cost: O(k + largest rank) time and memory, by two counting sorts.
+/// Each split belongs to the smallest cell of a quadtree that holds its roi. Cells come before
+/// their children, and within a cell splits come by falling rank. What a split needs has a larger
+/// roi and a larger rank (saturation), so it lies in the same cell and comes first there, or lies
+/// in a cell above. The part of the mesh in a cell fits into the caches, while an order by rank
+/// alone walks the whole mesh once for each rank. Up to 4096 splits form one cell and are ordered
+/// by rank alone. Splits of the same cell and rank keep the order in which they are given.
+/// Cost: O(k + largest rank) time and memory for k splits, by two counting sorts.
 [[nodiscard]] std::vector<std::uint32_t> order_of(std::span<const PendingSplit> splits);
 
 }  // namespace ptin

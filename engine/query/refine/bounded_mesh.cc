@@ -38,13 +38,14 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
   const StoreFile& store = terrain_.store();
   const HeightEncoding& heights = store.facts().heights;
   const std::uint64_t most = most_records(store, pages);
-  // Room for what is made grows by half, with the old room beside the new, and what enters.
+  // `made_` grows by half, and the old array stays beside the new one while it is copied. The
+  // records that enter are held once in `entering_` and once in `made_`.
   const std::uint64_t made = made_.size() * 5 / 2 + 2 * most;
   context.admit(bytes_of(tin()) + refinement_bytes(most) + made * sizeof(Made));
   store.pages().announce(pages, context.cost.io);
   splits_.clear();
   entering_.clear();
-  splits_.reserve(most);  // what was admitted: growing would take twice as much
+  splits_.reserve(most);  // as much as was admitted: growing would take twice that
   entering_.reserve(most);
   for (const PageId page : pages) {
     context.check_stop();

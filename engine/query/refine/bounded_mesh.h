@@ -14,34 +14,37 @@
 
 namespace ptin {
 
-/// What holds of everything below one triangle of a refinement.
+/// Bounds of the full surface below one triangle of a refinement.
 struct SurfaceBounds {
-  double deviation = 0.0;  ///< Vertical distance to the full surface, height's unit, where both are
-                           ///< surface.
-  Interval heights;        ///< Codes of the full surface; empty: nothing but void.
+  /// Most vertical distance to the full surface where both are surface, height's unit.
+  double deviation = 0.0;
+  Interval heights;  ///< Codes of the full surface; empty: nothing but void.
 };
 
 /// A mesh that starts as T0 and to which closed sets of records are added, one after the other.
 ///
-/// The bounds of a triangle are those of the record that made it: whatever record refines the
-/// triangle later depends on that one, so its saturated attributes are no larger. (That record is
-/// the one of the corner of least rank: a triangle appears with the last of its corners, and what a
-/// fan stands on has a larger rank.) Threads: one owner.
+/// The bounds of a triangle are those of the record that made it. Every record that refines the
+/// triangle later depends on that one, so its saturated attributes are no larger. The maker of a
+/// triangle is the record of the corner of least rank: a triangle appears with the last of its
+/// corners, and every corner of a fan has a larger rank than the record that splits the fan.
+/// Threads: one owner.
 class BoundedMesh {
  public:
   explicit BoundedMesh(const OpenedTerrain& terrain)
       : BoundedMesh(terrain, Detail(terrain.store())) {}
-  /// @param detail  Records that it leaves out are not added, unless a question goes beyond it.
+  /// @param terrain  Borrowed for the life of the mesh.
+  /// @param detail   Records that it leaves out are not added, but for those that the parameter
+  ///                 `beyond` of refine() names.
   BoundedMesh(const OpenedTerrain& terrain, const Detail& detail);
 
   [[nodiscard]] const Tin& tin() const noexcept { return refinement_.tin(); }
 
   /// Adds the records for which a monotone predicate is true and that are not there yet.
-  /// @param beyond  Monotone; records for which it is true come in although the detail leaves them
-  ///                out. None: null.
+  /// @param beyond  Monotone, or null: a record for which this is true too is added although the
+  ///                level of detail leaves it out.
   /// @returns how many were added
-  /// @throws Error resource_exhausted (before anything is read), corruption, cancelled, io_error;
-  /// after an error the mesh must be thrown away
+  /// @throws Error resource_exhausted (before a page is read), corruption, cancelled, io_error;
+  ///               after an error the mesh must be thrown away
   std::size_t refine(const AttributePredicate& predicate, QueryContext& context,
                      const AttributePredicate* beyond = nullptr);
 
@@ -49,19 +52,21 @@ class BoundedMesh {
   std::size_t refine(std::span<const PageId> pages, const AttributePredicate& predicate,
                      QueryContext& context, const AttributePredicate* beyond = nullptr);
 
-  /// Pages whose attributes satisfy the predicate.  @throws Error corruption
+  /// The pages whose attributes satisfy the predicate, ascending.  @throws Error corruption,
+  /// cancelled
   [[nodiscard]] std::vector<PageId> search(const AttributePredicate& predicate,
                                            QueryContext& context) const;
 
+  /// Bounds of the full surface below triangle `t`; infinite for a triangle of T0.
   [[nodiscard]] SurfaceBounds bounds(TriangleId t) const noexcept;
 
-  /// What it holds, the records that were added last included.
+  /// Bytes that the mesh holds, the records that were added last included.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
-  /// Gives back what only another refine() would use.
+  /// Frees memory that only another refine() would use.
   void release_records() noexcept;
 
  private:
-  /// Of the record that made a vertex.
+  /// What is kept of the record that made a vertex.
   struct Made {
     double lowest, highest;  ///< Codes.
     float deviation;
@@ -71,8 +76,8 @@ class BoundedMesh {
   const OpenedTerrain& terrain_;
   Detail detail_;
   Refinement refinement_;
-  std::vector<Made> made_;      ///< Beside the vertices.
-  std::vector<Made> entering_;  ///< Beside `splits_`.
+  std::vector<Made> made_;      ///< For each vertex.
+  std::vector<Made> entering_;  ///< For each of `splits_`.
   std::vector<VertexSplit> records_;
   std::vector<PendingSplit> splits_;
 };

@@ -14,9 +14,10 @@ namespace ptin {
 
 /// Keeps the triangles that meet `region`, and their vertices; both are renumbered and keep their
 /// order. Neighbours that went become kNone. What is left need not be a disk: it may be empty or in
-/// pieces, and where two pieces touch in one vertex, that vertex names a triangle of one of them;
-/// on the border still the first of a counter-clockwise walk.
-/// @param pages  Beside the triangles, when not empty: kept beside them.
+/// pieces. Where two pieces touch in one vertex, Vertex::triangle is a triangle of one of the
+/// pieces, on the border the first of a counter-clockwise walk.
+/// @param pages  Empty, or one entry for each triangle; the entries of triangles that stay are
+///               kept.
 /// @throws Error cancelled
 /// Cost: linear.
 void keep_meeting(Tin& tin, const GridRegion& region, std::vector<std::uint32_t>& pages,

@@ -29,8 +29,8 @@ class Asked {
 };
 
 /// True where two predicates may differ: for every page and subtree with a record for which exactly
-/// one of them is true. (One is true for that record, so for what holds it; the other is false for
-/// it, so not true for all.)
+/// one of them is true. That one is true for the record, and so for the page that holds it; the
+/// other one is false for the record, and so not true for all records of the page.
 class MayDiffer final : public AttributePredicate {
  public:
   MayDiffer(const AttributePredicate& was, const AttributePredicate& now) : was_(was), now_(now) {}
@@ -102,8 +102,8 @@ std::vector<PageId> MovingWindow::search(const AttributePredicate& predicate,
   return pages;
 }
 
-/// Of the pages found, those that are not as they should be already; asks for the memory that they
-/// may take.
+/// Of the pages found, those whose applied records may have to change. Asks for the memory that the
+/// change may take.
 std::vector<MovingWindow::Candidate> MovingWindow::candidates(const AttributePredicate& predicate,
                                                               QueryContext& context) const {
   const Asked asked(predicate);
@@ -172,7 +172,8 @@ void MovingWindow::compare_page(const Candidate& page, const AttributePredicate&
   }
 }
 
-/// First what leaves: what stays then is the records of both predicates, a closed set.
+/// Undoes the records that leave, then applies those that enter. In between the mesh has the
+/// records for which both predicates are true, a closed set.
 void MovingWindow::carry_out(Change& change, QueryContext& context) {
   is_spoilt_ = true;
   try {
@@ -186,7 +187,7 @@ void MovingWindow::carry_out(Change& change, QueryContext& context) {
   is_spoilt_ = false;
 }
 
-/// What the pages and the mesh hold now.
+/// Notes which records of the pages are applied now, and their errors.
 void MovingWindow::note(Change& change) {
   for (auto& [page, held] : change.pages) {
     if (held.count == 0) {

@@ -22,10 +22,11 @@
 namespace ptin {
 
 struct MovingWindowOptions {
-  /// For the mesh, what a move retrieves and the cache; known before a page is read.
+  /// Most bytes for the mesh, the records that a move retrieves, and the page cache. The need is
+  /// known before a page is read.
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
-  /// Of these, for pages that are kept between moves: 72 bytes a record. Pages that were looked at
-  /// longest ago are given up, and read again when a move needs them.
+  /// The part of memory_bytes for pages that are kept between moves: 72 bytes a record. The pages
+  /// used longest ago are dropped, and read again when a move needs them.
   std::uint64_t page_cache_bytes = std::uint64_t{256} << 20;
 };
 
@@ -33,11 +34,11 @@ struct MovingWindowOptions {
 struct MoveResult {
   std::uint64_t entered = 0;         ///< Splits made.
   std::uint64_t left = 0;            ///< Splits undone.
-  std::uint64_t vertices = 0;        ///< Of the mesh, T0 and void ones included.
+  std::uint64_t vertices = 0;        ///< Of the mesh, T0 and those without a height included.
   std::uint64_t triangles = 0;       ///< Of the mesh.
-  std::uint64_t pages_examined = 0;  ///< Pages whose records were asked, read or kept.
+  std::uint64_t pages_examined = 0;  ///< Pages whose records were tested, read or from the cache.
   Certificate certificate;           ///< Over the whole domain.
-  /// Pages that were kept cost nothing here; records_retrieved are those that entered.
+  /// Pages from the cache do not count as read. records_retrieved counts the records that entered.
   QueryCost cost;
 };
 
@@ -59,17 +60,18 @@ class MovingWindow {
   MovingWindow(const MovingWindow&) = delete;
   MovingWindow& operator=(const MovingWindow&) = delete;
 
-  /// Makes the mesh that of `predicate`.
+  /// Changes the mesh into that of `predicate`.
   /// @throws Error invalid_argument (null), resource_exhausted (before a page is read), corruption,
-  /// io_error, cancelled. The mesh stays as it was; when the error came while it was changed (a
-  /// damaged record, a late cancellation, no memory) it is T0 again, or will be when the next move
-  /// begins, where there is no memory for T0 either. Either way the next move works.
-  /// Cost: index entries of what changed or is near it; the pages of border and change (read once,
-  /// then kept); O(1) expected for each record that enters or leaves.
+  /// io_error, cancelled. The mesh stays as it was, unless the error came while the mesh was being
+  /// changed (a damaged record, a late cancellation, no memory): then it is T0 again. Where there
+  /// is no memory for T0 either, it becomes T0 when the next move begins. In each case the next
+  /// move works.
+  /// Cost: the index entries and pages on which the old and the new predicate may differ (a page is
+  /// read once, then kept in the cache); O(1) expected for each record that enters or leaves.
   MoveResult move_to(PredicatePtr predicate, const std::stop_token& stop = {});
 
-  /// The mesh: removed vertices and triangles stand among the others, and their places are used
-  /// again; ids of what stays do not change in a move.
+  /// The mesh. Removed vertices and triangles stand among the others, and later moves use their
+  /// places again. A move does not change the ids of what stays.
   [[nodiscard]] const Tin& tin() const noexcept { return refinement_.tin(); }
   /// Local index of a vertex, or KeyTable::kAbsent.
   [[nodiscard]] VertexId find(VertexKey key) const noexcept { return refinement_.find(key); }
@@ -111,7 +113,7 @@ class MovingWindow {
   MovingWindowOptions options_;
   Refinement refinement_;
   PredicatePtr predicate_;                        ///< Of the mesh; null: nothing is applied.
-  std::unordered_map<std::uint64_t, Held> held_;  ///< By page; those of which a record is applied.
+  std::unordered_map<std::uint64_t, Held> held_;  ///< By page; only pages with an applied record.
   AppliedErrors errors_;
   bool is_spoilt_ = false;  ///< Changed in part: to be reset before it is used again.
   PageCache cache_;

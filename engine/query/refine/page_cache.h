@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Record pages that a question keeps between two moves: decoded, within a limit of memory.
+// Record pages that a moving window keeps between two moves: decoded, within a limit of memory.
 #pragma once
 
 #include <cstddef>
@@ -23,17 +23,19 @@ class PageCache {
   PageCache(const StoreFile& store, std::uint64_t limit_bytes)
       : store_(store), limit_bytes_(limit_bytes) {}
 
-  /// Tells the store which of `pages` (ascending) will be read, since they are not here.
+  /// Announces to the store those of `pages` (ascending) that are not in the cache and so will be
+  /// read.
   void announce(std::span<const PageId> pages, QueryContext& context) const;
 
-  /// All records of a page, in the order of the file; valid until the next call. A page that is
-  /// here costs a look-up, another one is read.
+  /// All records of a page, in the order of the file; valid until the next call. Cost: a look-up
+  /// for a page in the cache; another page is read, and the pages used longest ago make room for
+  /// it.
   /// @throws Error corruption, io_error
   [[nodiscard]] std::span<const VertexSplit> records(PageId page, QueryContext& context);
 
   [[nodiscard]] std::uint64_t limit_bytes() const noexcept { return limit_bytes_; }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
-  /// Pages that were asked for and were here, since the cache was made.
+  /// Calls of records() whose page was in the cache.
   [[nodiscard]] std::uint64_t hits() const noexcept { return hits_; }
 
  private:

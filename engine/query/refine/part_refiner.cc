@@ -66,7 +66,7 @@ class Walk {
     if (!meets(box, domain_)) return;
     stop_if_asked(refiner_.request().limits.stop, "the walk over the terrain",
                   refiner_.terrain().store().path());
-    // Asking the index lists the pages: not for cells that are far too large anyway.
+    // A search of the index lists all pages: not worth it for cells that are far too large anyway.
     const bool is_hopeless =
         refinement_bytes(expected) / 16 > refiner_.request().limits.memory_bytes;
     if (cell.level > 0 && (is_hopeless || !refiner_.fits(box))) {

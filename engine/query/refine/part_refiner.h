@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A terrain of any size refined part by part: boxes of the grid at one tolerance, each within a
-// memory limit. Promise P5 joins them: parts agree on every triangle that meets both.
+// A terrain of any size refined part by part: boxes of the grid at one level of detail, each within
+// a memory limit. Promise P5 joins the parts: they agree on every triangle that meets both.
 #pragma once
 
 #include <cstdint>
@@ -19,35 +19,37 @@ namespace ptin {
 
 /// What is asked of every part.
 struct PartRequest {
-  std::optional<Region> region;  ///< Where to refine at all; none means everywhere.
-  DetailRequest detail;          ///< Of which TIN the parts are, whatever the region.
+  std::optional<Region> region;  ///< Where to refine at all, map units; none: everywhere.
+  DetailRequest detail;          ///< The TIN of which the parts are, the same for every region.
   PredicatePtr also;             ///< Any further monotone predicate; none: nothing further.
   QueryLimits limits{.memory_bytes = std::uint64_t{1} << 30};  ///< Of one part.
 };
 
-/// Refines parts of a terrain, and knows before it reads what one takes.
+/// Refines parts of a terrain, and knows the memory that a part takes before it reads a page.
 /// Threads: const functions may run at once, each within its own limit.
 class PartRefiner {
  public:
-  /// @param terrain  Borrowed.
-  /// @throws Error invalid_argument as meets_region() and Detail; as Detail
+  /// @param terrain  Borrowed for the life of the refiner.
+  /// @throws Error as meets_region() and Detail
   /// Cost: that of Detail.
   PartRefiner(const OpenedTerrain& terrain, PartRequest request);
 
-  /// Most bytes that refine(box) may take, from the index alone. Cost: its pages.
+  /// Most bytes that refine(box) may take, by the index alone. Cost: a search of the index, and the
+  /// descriptors of the pages found.
   /// @throws Error corruption
   [[nodiscard]] std::uint64_t bytes_for(const GridBox& box) const;
   [[nodiscard]] bool fits(const GridBox& box) const {
     return bytes_for(box) <= request_.limits.memory_bytes;
   }
 
-  /// The whole domain, where every triangle that meets both `box` and the region is one of the TIN
-  /// of the request (P5); coarser elsewhere. Certificates are those of `box`.
-  /// @throws Error as OpenedTerrain::refine
+  /// Refines one part. The mesh covers the whole domain: every triangle that meets both `box` (grid
+  /// units, closed) and the region is one of the TIN of the request (P5); elsewhere the mesh is
+  /// coarser. The certificate holds where `box` meets the region.
+  /// @throws Error as refine() (refine/refine.h)
   [[nodiscard]] RefinedTin refine(const GridBox& box) const;
 
-  /// Records of the whole file that the level of detail asks for; at most one bin of errors too
-  /// many.
+  /// Records of the whole file that the level of detail asks for, by the table of errors: at most
+  /// one bin of errors too many.
   [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
   [[nodiscard]] const OpenedTerrain& terrain() const noexcept { return terrain_; }
   [[nodiscard]] const Detail& detail() const noexcept { return detail_; }
@@ -57,13 +59,13 @@ class PartRefiner {
   const OpenedTerrain& terrain_;
   PartRequest request_;
   Detail detail_;
-  PredicatePtr wanted_;  ///< Region and tolerance.
+  PredicatePtr wanted_;  ///< Region, tolerance and `also`.
   std::uint64_t t0_bytes_;
   std::uint64_t records_ = 0;
 };
 
-/// A square of the grid whose sides are 2^level, aligned to that: its positions follow one another
-/// along the Hilbert curve.
+/// A square of 2^level x 2^level grid positions, its corner a multiple of 2^level. Its positions
+/// follow one another along the Hilbert curve.
 struct GridCell {
   std::uint32_t x = 0, y = 0;  ///< Lower left corner, a multiple of 2^level.
   int level = 0;
@@ -78,8 +80,9 @@ struct GridCell {
 
 /// Cuts the domain into cells that fit the memory limit and hands each, refined, to `visit` in the
 /// order of the Hilbert curve (hilbert_position()). Every vertex lies in exactly one cell. So what
-/// is written a cell at a time in the order of the curve does not depend on where the cuts are.
-/// @param visit  (cell, its refinement, share of the domain's area that is done after it).
+/// is written cell by cell, in the order of the curve, does not depend on where the cuts are.
+/// @param visit  Gets the cell, its refinement, and the share of the domain's area that is done
+///               after it.
 /// @throws Error resource_exhausted  what a single position needs does not fit
 ///               as PartRefiner::refine, and what `visit` throws
 /// Cost: the refinements; a triangle that meets several cells is made in each of them.

@@ -23,7 +23,7 @@ struct Selection {
   Certificate certificate;
 };
 
-/// The predicate of a request, `vertices` left aside.
+/// The predicate of a request, without its number of vertices.
 PredicatePtr predicate_of(const RefineRequest& request, const StoreFacts& facts) {
   std::vector<PredicatePtr> parts;
   if (request.detail.tolerance) {
@@ -59,7 +59,7 @@ Selection select(const RefineRequest& request, const RecordSource& source,
   } else {
     selection.splits = retrieve(source, *predicate, fixed_bytes, context);
   }
-  // What a caller's own predicate leaves out is known only by counting what it does not.
+  // What a caller's own predicate leaves out is known only by counting what was applied.
   selection.certificate = request.also == nullptr ? certify_below(source.store, left)
                                                   : certify_applied(source.store, selection.splits);
   return selection;

@@ -23,54 +23,56 @@ namespace ptin {
 enum class ResultForm { kWholeDomain, kMeetingRegion };
 
 struct RefineRequest {
-  /// Where to refine; none means everywhere. Window, point, segment or polygon, in map units
-  /// (predicate.h).
+  /// Where to refine: a window, point, segment or polygon in map units (select/region.h). None
+  /// means everywhere.
   std::optional<Region> region;
-  /// A tolerance of 0 means every sample exact: flat and coplanar parts stay coarse. A number of
-  /// vertices is here one of the mesh, T0 and void ones counted, and is reached exactly: with a
-  /// region its most important records are taken. More than there are gives all of them, and
-  /// RefinedTin::exact. Vertices are counted before triangles outside of the region are left out
-  /// (kMeetingRegion).
+  /// A tolerance of 0 means every sample exact: flat and coplanar parts stay coarse.
+  /// A number of vertices is here that of the mesh, T0 and vertices without a height included. It
+  /// is reached exactly: with a region by the most important records of the region. A number above
+  /// all there are gives all of them. Vertices are counted before kMeetingRegion drops the
+  /// triangles outside of the region.
   DetailRequest detail;
-  /// Any further monotone predicate; intersected with the above. Borrowed for the call.
+  /// A further monotone predicate, intersected with region and tolerance; null: none. Borrowed for
+  /// the call.
   const AttributePredicate* also = nullptr;
   ResultForm form = ResultForm::kWholeDomain;  ///< Without a region both forms are the same.
   bool page_of_triangle = false;               ///< Fill RefinedTin::page_of_triangle.
   QueryLimits limits;
 };
 
-/// A refined TIN. Positions are grid positions; `map` and `heights` of the store turn them into map
-/// units.
+/// A refined TIN. Positions are grid positions and heights are stored ones; `map` and `heights` of
+/// the store's facts turn them into map units and heights.
 struct RefinedTin {
   Tin tin;  ///< Compact: every vertex and triangle is alive (kMeetingRegion: renumbered).
-  std::vector<std::uint32_t> page_of_triangle;  ///< Filled on request (render --pages): page of the
-                                                ///< record that made it, or kNone.
-  std::uint64_t vertices = 0;                   ///< Of the mesh, void ones included.
+  /// Filled on request: for each triangle the page of the record that made it, or kNone for T0.
+  std::vector<std::uint32_t> page_of_triangle;
+  std::uint64_t vertices = 0;  ///< Of the mesh, those without a height included.
   std::uint64_t void_vertices = 0;
   std::uint64_t triangles = 0;
   std::uint64_t t0_vertices = 0;
-  /// Bound at every sample in the region (everywhere when there is none); >= base_error.
+  /// Bound of the error at every sample in the region (everywhere when there is none), height's
+  /// unit; at least base_error.
   double certified_error = 0.0;
-  double certified_deviation = 0.0;  ///< Bound at any point, likewise.
+  double certified_deviation = 0.0;  ///< Bound of the deviation at any point, likewise.
   /// Every triangle that meets the region is one of the full TIN, and base_error is 0.
   bool exact = false;
   QueryCost cost;
 };
 
-/// Refines T0: retrieves the records for which the request's predicate is true, sorts them by
-/// rank (counting sort), applies them. Exact (P1), certified (P2), valid (P3), closed and lean
+/// Refines T0: retrieves the records for which the request's predicate is true, orders them
+/// (refine/apply_order.h) and applies them. Exact (P1), certified (P2), valid (P3), closed and lean
 /// (P4), joined (P5).
-/// @throws Error invalid_argument    tolerance negative or NaN; `vertices` below |T0|; both
-///                                   given; region not finite
-///               resource_exhausted  the index says that the answer exceeds the memory limit;
-///                                   names `export`
+/// @throws Error invalid_argument    tolerance negative or NaN; `vertices` below |T0|; both given;
+///                                   region not finite
+///               resource_exhausted  the index says that the answer exceeds the memory limit; names
+///                                   `export`
 ///               corruption, io_error, cancelled
-/// Cost: k records retrieved: O(|T0| + k) time and memory; index pages usually O(k / B + log_B
-/// n).
+/// Cost: O(|T0| + k) time and memory for k records retrieved; usually O(k / B + log_B n) index
+/// pages, B entries a page.
 [[nodiscard]] RefinedTin refine(const OpenedTerrain& terrain, const RefineRequest& request);
 
-/// Completes a result whose mesh is there: counts its parts, and fills in its certificate and cost.
-/// For those who refine in another way and answer with the same result.
+/// Completes a result of which only the mesh is there: counts its parts, and fills in certificate
+/// and cost. For callers that refine in another way and answer with the same result.
 /// @param begin  When the question was asked.
 void complete(RefinedTin& result, const OpenedTerrain& terrain, const Certificate& certificate,
               const QueryContext& context, std::chrono::steady_clock::time_point begin);

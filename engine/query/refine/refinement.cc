@@ -43,22 +43,23 @@ bool classes_fit(const Tin& tin, const SplitSite& s) {
               context.file());
 }
 
-/// Before they are numbered in 32 bits.
+/// Refuses splits that 32 bits cannot number.
 void refuse_too_many(std::span<const PendingSplit> splits, const QueryContext& context) {
   if (splits.size() >= kNone) {
     throw_too_many(context);
   }
 }
 
-/// Fetches ahead of the splits what they will touch: the record, its slots in the table of keys,
-/// and one step along the star of w at a time, so that no step waits for memory. Looks at the mesh
-/// as it is now; what changes until the split comes costs a miss and nothing else.
+/// Fetches into the caches, ahead of the splits, what they will touch: the record, its slots in the
+/// table of keys, and one step along the star of w at a time, so that no step waits for memory.
+/// Looks at the mesh as it is now: where the mesh changes before the split comes, the split misses
+/// the cache, and nothing else happens.
 class StarFetcher {
  public:
   explicit StarFetcher(const Tin& tin) : tin_(tin) {}
 
-  /// How many splits after the record is fetched the other steps are taken; in the end it is
-  /// applied.
+  /// Steps of the pipeline: how many splits after the fetch of its record a split reaches each of
+  /// them. The last one applies the split.
   static constexpr std::size_t kSlots = 8, kEnter = 16, kTriangle = 24, kNeighbours = 30,
                                kBeyond = 35, kApply = 40;
 
@@ -101,7 +102,8 @@ class StarFetcher {
   }
 
  private:
-  // Fetches what w has no part in too: finding out would cost more.
+  // Fetches neighbours and corners that are not around w too: finding out which are would cost
+  // more.
   void fetch_around(const Triangle& triangle) const noexcept {
     for (const TriangleId n : triangle.n) {
       fetch(n);
@@ -111,7 +113,7 @@ class StarFetcher {
     }
   }
   void fetch(TriangleId t) const noexcept {
-    // kNone is fetched from triangle 0's line.
+    // For kNone it fetches triangle 0.
     prefetch(&tin_.triangles[t == kNone ? 0 : t]);
   }
 
@@ -142,7 +144,7 @@ void Refinement::restart(const Tin& t0) {
 }
 
 void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& context) {
-  static constexpr std::size_t kFew = 4096;  // a mesh that stays in the caches by itself
+  static constexpr std::size_t kFew = 4096;  // splits of a mesh that stays in the caches anyway
   refuse_too_many(splits, context);
   order_ = order_of(splits);
   const Batch batch = reserve(splits, context);
@@ -167,8 +169,8 @@ void Refinement::apply_one_by_one(std::span<const PendingSplit> splits, const Ba
   }
 }
 
-/// While one split is applied, others behind it are looked up and fetched. A split's w, vl and vr
-/// are looked up after those before it were entered, so they are there.
+/// While one split is applied, the splits behind it are looked up and fetched. The w, vl and vr of
+/// a split are looked up after all splits before it were entered, so they are found.
 void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const Batch& batch,
                                    const QueryContext& context) {
   const StarFetcher fetcher(tin_);
@@ -182,7 +184,8 @@ void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const B
     if (step % kStopInterval == 0) {
       context.check_stop();
     }
-    // The number of the split that has come so far; none (beyond count) before the first, too.
+    // The split that is `distance` behind the step. Before the first split it wraps around, to a
+    // number beyond `count`.
     const auto at = [step](std::size_t distance) { return step - distance; };
     if (step < count) {
       F::fetch_record(splits[order_[step]]);
@@ -212,9 +215,9 @@ void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const B
   }
 }
 
-/// Makes room for the vertices and triangles to come; triangles stay removed until their split is
-/// made. A mesh that grows a second time grows by half at least, so that many small batches do not
-/// copy it each time.
+/// Makes room for the vertices and triangles to come. A new triangle counts as removed until its
+/// split is made. A mesh that grows a second time grows by half at least, so that many small
+/// batches do not copy it each time.
 Refinement::Batch Refinement::reserve(std::span<const PendingSplit> splits,
                                       const QueryContext& context) {
   Batch batch{splits.size(), 0, static_cast<VertexId>(tin_.vertices.size()),
@@ -246,7 +249,7 @@ Refinement::Batch Refinement::reserve(std::span<const PendingSplit> splits,
   return batch;
 }
 
-/// The places that the batch took are free no more.
+/// Takes the places that the batch has filled off the lists of free places.
 void Refinement::forget_places(const Batch& batch) {
   const auto drop = [](auto& free, std::size_t taken) {
     free.erase(free.begin(),
@@ -256,7 +259,8 @@ void Refinement::forget_places(const Batch& batch) {
   drop(free_triangles_, batch.triangles);
 }
 
-/// Puts the new vertex in its place, in no triangle yet, and looks up those that the split names.
+/// Puts the new vertex in its place, in no triangle yet, and looks up the vertices w, vl and vr of
+/// its split.
 Refinement::Resolved Refinement::enter(const PendingSplit& s, VertexId u,
                                        const QueryContext& context) {
   if (!ids_.insert(s.u, u)) [[unlikely]] {
@@ -279,8 +283,8 @@ void Refinement::apply_one(const Resolved& s, const Batch& batch,
                            std::span<const PendingSplit> splits, const QueryContext& context) {
   const SplitSite site = site_of(s.u, s.w, s.vl, s.vr, s.flags);
   const bool w_is_there = tin_.vertices[s.w].triangle != kNone;
-  // Of a record with one side only (or, damaged, none) the other place is not used, and may be
-  // none.
+  // A record with one side (or, damaged, with none) does not use the other place, which may not
+  // exist.
   const TriangleId left = triangle_place(batch, s.triangle);
   const TriangleId right = triangle_place(batch, s.triangle + (site.has_left ? 1 : 0));
   const bool is_applied = w_is_there && split_into(tin_, site, left, right);

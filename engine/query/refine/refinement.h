@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Refinement: records sorted by rank and applied to a mesh, which starts as T0 (paper, section 4;
+// Refinement: records put in order and applied to a mesh, which starts as T0 (paper, section 4;
 // engine/DESIGN.md, sections 6.2 and 6.3).
 #pragma once
 
@@ -17,25 +17,26 @@
 
 namespace ptin {
 
-/// Bytes of a mesh and its key table: what a refinement begins with, of T0.
+/// Bytes of a mesh and its key table. For T0: what a refinement begins with.
 [[nodiscard]] std::uint64_t bytes_of(const Tin& tin) noexcept;
 
-/// A mesh that splits are applied to and taken back from. Later questions keep one, apply what
-/// enters and undo what leaves. Threads: one owner.
+/// A mesh that splits are applied to and taken back from. A moving window keeps one, applies what
+/// enters and undoes what leaves. Threads: one owner.
 class Refinement {
  public:
-  /// @param t0           Borrowed for the call.
+  /// @param t0           Copied.
   /// @param track_pages  Keep for each triangle the page of the record that made it.
   explicit Refinement(const Tin& t0, bool track_pages = false);
 
-  /// A copy of `t0` again, in the memory that there is: for one refinement after the other.
+  /// Begins anew with a copy of `t0`, in the memory that is there: for several refinements one
+  /// after the other.
   void restart(const Tin& t0);
 
-  /// Applies `splits` in the order of apply_order.h, and numbers vertices and triangles along it:
-  /// so what lies near in the terrain mostly lies near in memory. Together with what was applied
-  /// before they must be closed under dependency, as the records of a monotone predicate are.
-  /// Result: the TIN does not depend on the order of `splits` (the theorem: engine/DESIGN.md, section 2.4), but its numbering
-  /// does.
+  /// Applies `splits` in the order of refine/apply_order.h, and numbers vertices and triangles
+  /// along that order: so what lies near in the terrain mostly lies near in memory. Together with
+  /// what was applied before they must be closed under dependency, as the records of a monotone
+  /// predicate are. Result: the TIN does not depend on the order of `splits` (the theorem:
+  /// engine/DESIGN.md, section 2.4), but its numbering does.
   /// @throws Error corruption  a vertex comes twice, or a record does not find its w, vl, vr and
   ///                           fan; names page and vertex. Throw the refinement away then.
   ///               resource_exhausted  more triangles than 32 bits number
@@ -43,10 +44,10 @@ class Refinement {
   /// Cost: O(k + largest rank) expected time and memory for k splits of bounded degree.
   void apply(std::span<const PendingSplit> splits, QueryContext& context);
 
-  /// Undoes `splits`, which were applied: collapses, in order of rising rank. What stays must be
-  /// closed under dependency, as the records of a monotone predicate are. Result: the TIN of what
-  /// stays (a collapse is the exact inverse of its split); the places of what went are used again
-  /// by the next apply().
+  /// Undoes `splits`, which must be applied, by collapses in the order of rising rank. What stays
+  /// must be closed under dependency, as the records of a monotone predicate are. Result: the TIN
+  /// of what stays, since a collapse is the exact inverse of its split. The next apply() uses the
+  /// places of what went again. REQUIRES: pages are not tracked.
   /// @throws Error corruption  a collapse is not the inverse of its split: the records' attributes
   ///                           are not saturated; names page and vertex. Throw the refinement away
   ///                           then.
@@ -58,7 +59,7 @@ class Refinement {
   /// nothing was undone, their vertices are the last ones of the mesh, in this order.
   [[nodiscard]] std::span<const std::uint32_t> applied_order() const noexcept { return order_; }
 
-  /// After undo() with removed vertices and triangles among the others (mesh/tin.h).
+  /// The mesh. After undo() it has removed vertices and triangles among the others (mesh/tin.h).
   [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
   /// Vertices and triangles that are not removed. Cost: none.
   [[nodiscard]] std::size_t alive_vertices() const noexcept {
@@ -69,9 +70,9 @@ class Refinement {
   }
   /// Local index of a vertex, or KeyTable::kAbsent.
   [[nodiscard]] VertexId find(VertexKey key) const noexcept { return ids_.find(key); }
-  /// Gives the mesh away; the refinement is spent.
+  /// Gives the mesh away; the refinement is not used afterwards.
   [[nodiscard]] Tin release_tin() noexcept { return std::move(tin_); }
-  /// Beside the triangles: page of the record that made each, kNone for those of T0. Empty when not
+  /// For each triangle the page of the record that made it, kNone for T0. Empty when pages are not
   /// tracked.
   [[nodiscard]] std::vector<std::uint32_t> release_pages() noexcept {
     return std::move(triangle_pages_);
@@ -84,8 +85,8 @@ class Refinement {
     std::uint32_t triangle;  ///< Number of its first new triangle among those of its batch.
     std::uint32_t flags;
   };
-  /// Where a batch puts its new vertices and triangles: in the places of removed ones, then behind
-  /// `first_*`.
+  /// Where a batch puts its new vertices and triangles: first in the places of removed ones, then
+  /// from `first_vertex` and `first_triangle` on.
   struct Batch {
     std::size_t vertices = 0, triangles = 0;
     VertexId first_vertex = 0;

@@ -21,7 +21,7 @@ void throw_refused(const PendingSplit& s, const std::string& why, const QueryCon
 }
 
 void Refinement::undo(std::span<const PendingSplit> splits, QueryContext& context) {
-  PTIN_CHECK(!track_pages_);  // which page made a triangle before is not known
+  PTIN_CHECK(!track_pages_);  // the page that made a triangle before its split is not known
   RankOrder falling(splits);
   std::vector<std::uint32_t> order(splits.size());
   for (std::uint32_t i = 0; i < splits.size(); ++i) {
@@ -39,8 +39,8 @@ void Refinement::undo(std::span<const PendingSplit> splits, QueryContext& contex
   }
 }
 
-/// Looks whether the collapse is the inverse of the split, down to its ends vl and vr, before it
-/// changes anything: a record that others still need has another star.
+/// Undoes one split. Before it changes anything it checks that the collapse is the inverse of the
+/// split, down to the ends vl and vr: a record that applied records still need has another star.
 void Refinement::undo_one(const PendingSplit& s, Star& star, const QueryContext& context) {
   const VertexId u = ids_.find(s.u);
   const VertexId w = ids_.find(s.w);

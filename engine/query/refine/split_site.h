@@ -16,8 +16,8 @@
 
 namespace ptin {
 
-/// Where each rank's records begin when sorted by falling rank: the counting sort (paper, section
-/// 4).
+/// The counting sort of records by falling rank (paper, section 4): hands out places in the sorted
+/// order.
 class RankOrder {
  public:
   explicit RankOrder(std::span<const PendingSplit> splits) {
@@ -36,11 +36,11 @@ class RankOrder {
   std::uint32_t take(std::uint16_t rank) noexcept { return next_[rank]++; }
 
  private:
-  std::vector<std::uint32_t> next_;  ///< Of each rank: how many were counted, then the next place.
+  std::vector<std::uint32_t> next_;  ///< For each rank the next place.
 };
 
-/// New triangles of a split: one at a border, otherwise two. A record that has neither is refused
-/// by split().
+/// How many triangles a split adds: one at a border, otherwise two. None only for a damaged record,
+/// which split() refuses.
 [[nodiscard]] inline std::uint32_t triangles_of(std::uint32_t flags) noexcept {
   return ((flags & VertexSplit::kNoLeft) == 0 ? 1 : 0) +
          ((flags & VertexSplit::kNoRight) == 0 ? 1 : 0);
@@ -62,7 +62,9 @@ class RankOrder {
           class_of(VertexSplit::kRightVoid)};
 }
 
-/// @throws Error corruption  always: names page and vertex
+/// Refuses a record that does not fit the mesh.
+/// @param why  A clause: "it does not fit the mesh".
+/// @throws Error corruption  always; names page and vertex
 [[noreturn]] void throw_refused(const PendingSplit& s, const std::string& why,
                                 const QueryContext& context);
 

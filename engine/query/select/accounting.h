@@ -18,17 +18,18 @@ namespace ptin {
 struct QueryCost {
   /// Records of the pages read for which the predicate is true.
   std::uint64_t records_retrieved = 0;
-  std::uint64_t records_examined = 0;  ///< Records decoded and asked.
+  std::uint64_t records_examined = 0;  ///< Records decoded and tested by the predicate.
   std::uint64_t records_applied = 0;   ///< Splits made.
   IoCounters io;
-  double seconds = 0.0;
+  double seconds = 0.0;  ///< Elapsed time of the answer.
 
-  /// Adds what a part of the answer cost; `seconds` is the whole answer's, and left alone.
+  /// Adds the counts of a part of the answer. `seconds` is left alone: it is the time of the whole
+  /// answer.
   void add_counts(const QueryCost& part) noexcept;
 };
 
-/// The context of one query. Every step of it is handed the same one; nothing of it is shared
-/// between queries. Threads: none; one query, one thread.
+/// The context of one query. Every step of the query is handed the same context, and no two queries
+/// share one. Threads: one; a query runs on one thread.
 class QueryContext {
  public:
   /// @param file  Named in errors.
@@ -42,15 +43,17 @@ class QueryContext {
     }
   }
 
-  /// @param bytes  What the query would hold at its largest, as far as the index can tell.
-  /// @throws Error resource_exhausted when that exceeds the limit; names both figures and `export`.
+  /// @param bytes  Most bytes that the query will hold, as far as the index can tell.
+  /// @throws Error resource_exhausted when `bytes` exceeds the limit; names both figures and
+  /// `export`.
   void admit(std::uint64_t bytes) const {
     if (bytes > limits_.memory_bytes) [[unlikely]] {
       throw_exhausted(bytes);
     }
   }
 
-  /// The limit of a part of the query that keeps account of itself, while the query holds `bytes`.
+  /// What the limit leaves beside `bytes` that the query holds: the limit for a part of the query
+  /// that has a context of its own.
   /// @throws Error as admit()
   [[nodiscard]] std::uint64_t left_beside(std::uint64_t bytes) const {
     admit(bytes);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Certificates: what the records that were left out can be off by, from the file's table of errors
-// (engine/DESIGN.md, section 2.7).
+// Certificates: how far the TIN of an answer can be from the source, given the records that were
+// left out. The bounds come from the file's table of errors (engine/DESIGN.md, section 2.7).
 #pragma once
 
 #include <cstddef>
@@ -14,41 +14,42 @@
 
 namespace ptin {
 
-/// Bounds of an answer, in the height's unit; at least those of the file's finest TIN against its
-/// source.
+/// Bounds on the vertical distance between the TIN of an answer and the source, in the height's
+/// unit. Both are at least those of the file's finest TIN (base_error, base_deviation).
 struct Certificate {
   double error = 0.0;      ///< At every input sample.
   double deviation = 0.0;  ///< At any point.
   bool complete = true;    ///< No record was left out.
 };
 
-/// How many records of each bin of a file are applied: what is left out is bounded by the bins that
-/// are not complete. Borrows the store.
+/// Counts the applied records by the bins of the file's table of errors. What is left out is
+/// bounded by the bins that are not complete. Borrows the store.
 class AppliedErrors {
  public:
   explicit AppliedErrors(const StoreFile& store);
   void add(float error) noexcept { ++applied_[bin_of(error)]; }
-  /// REQUIRES: it was added.
+  /// REQUIRES: a record of this error was added and not removed since.
   void remove(float error) noexcept { --applied_[bin_of(error)]; }
   /// Bounds over the whole domain. A bin of which any record was left out counts as a whole. Cost:
   /// the number of bins.
   [[nodiscard]] Certificate certificate() const;
 
  private:
-  /// Errors above all bins, which a damaged table can leave, are counted behind them.
+  /// Bin of an error. Errors above the last bin, which a damaged table can leave, share one more
+  /// bin at the end.
   [[nodiscard]] std::size_t bin_of(float error) const noexcept;
 
   const StoreFile* store_;
   std::vector<std::uint64_t> applied_;
 };
 
-/// For an answer that leaves out only records with error <= `bound` (where it was asked); a
-/// negative bound: none. Bounds are rounded up to the end of a bin, the eighth of an octave, but
-/// never above `bound`.
+/// The certificate of an answer that leaves out, where it was asked, only records of error at most
+/// `bound`; a negative `bound` leaves out none. Bins are eighths of an octave: `error` is the upper
+/// end of the last bin that may be left out, but never above `bound`.
 [[nodiscard]] Certificate certify_below(const StoreFile& store, double bound);
 
-/// For an answer that applied `splits` of the whole file, whichever they are: bounds over the whole
-/// domain. A bin of which any record was left out counts as a whole.
+/// The certificate of an answer that applied `splits`, whichever records of the file these are:
+/// bounds over the whole domain. A bin of which any record was left out counts as a whole.
 [[nodiscard]] Certificate certify_applied(const StoreFile& store,
                                           std::span<const PendingSplit> splits);
 

@@ -10,8 +10,8 @@
 
 namespace ptin {
 
-/// T0 as a mesh with neighbours: what every query starts from a copy of. Vertices and triangles
-/// keep their order.
+/// T0 as a mesh with neighbours; every query starts from a copy of it. Vertices and triangles keep
+/// their order.
 /// @param file  Named in errors.
 /// @throws Error corruption when the stored triangles are not a valid TIN (mesh/validate.h)
 /// Cost: O(|T0| log |T0|).

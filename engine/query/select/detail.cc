@@ -47,8 +47,8 @@ void Detail::keep(std::vector<PendingSplit>& splits) const {
   }
 }
 
-/// The table of errors says which bin holds the last record; where it is wrong, all records are
-/// looked at.
+/// Leaves out all but the first `records` records. The table of errors says which bin holds the
+/// last one; where the table is wrong, all records are looked at.
 void Detail::cut_behind(std::uint64_t records, const RecordSource& source, QueryContext& context) {
   if (records == source.store.record_count()) {
     certificate_ = certify_below(source.store, -1.0);
@@ -78,7 +78,8 @@ void Detail::cut_behind(std::uint64_t records, const RecordSource& source, Query
   }
 }
 
-/// Looks for the last record among those of error in (low, high]. False when it is not there.
+/// Looks for the last of the first `records` records among those of error in (low, high]. False
+/// when it is not there.
 bool Detail::cut_between(double low, double high, std::uint64_t records, const RecordSource& source,
                          QueryContext& context) {
   const AboveError predicate(low);

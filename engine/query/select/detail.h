@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Levels of detail: the full TIN, a certified error, or the most important vertices (paper, M_t),
-// turned once into what a question leaves out and into its certificate.
+// Levels of detail: the full TIN, the TIN of a certified error, or that of the most important
+// vertices (the paper's M_t). A level is turned once into the records that a question leaves out,
+// and into the certificate of its answers.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +16,20 @@
 
 namespace ptin {
 
-/// How finely a question looks at the terrain. Nothing given: the full TIN.
+/// How finely a question looks at the terrain. Neither member set: the full TIN.
 struct DetailRequest {
   /// Certified error allowed, in the height's unit, >= 0.
   std::optional<double> tolerance;
-  /// The first so many vertices of the whole terrain in the total order (total_order.h), T0 and
-  /// void ones counted: >= |T0|; more than there are means all. Excludes `tolerance`. Unlike
-  /// RefineRequest::vertices, which counts within a region, this is one TIN wherever it is asked.
+  /// The TIN of this many vertices: the first ones of the whole terrain in the total order
+  /// (select/total_order.h), T0 and vertices without a height included. At least |T0|; more than
+  /// there are means all. Excludes `tolerance`. The TIN is the same wherever it is asked, except by
+  /// refine() with a region, which counts within the region (refine/refine.h).
   std::optional<std::uint64_t> vertices;
 };
 
 /// A level of detail as questions use it: a TIN between T0 and the full one, the same wherever it
-/// is asked. The records it keeps are closed under dependency, and so are those of them for which
-/// a monotone predicate is true. Threads: immutable.
+/// is asked. The records that the level keeps are closed under dependency, and so are those of them
+/// for which a monotone predicate is true. Threads: immutable.
 class Detail {
  public:
   /// The full TIN.
@@ -37,12 +39,13 @@ class Detail {
   ///                                   T0
   ///               resource_exhausted  the last bin of errors exceeds the memory limit
   ///               corruption, io_error, cancelled
-  /// Cost: none but for `vertices`: reads the pages with errors as large as the last vertex's, of
-  /// the whole terrain; memory for the vertices whose error is within an eighth of an octave of it.
+  /// Cost: with `vertices` it reads, over the whole terrain, every page with an error in the last
+  /// vertex's bin (an eighth of an octave) or above, and keeps 16 bytes for each record of that
+  /// bin. Otherwise it reads no page.
   Detail(const DetailRequest& request, const RecordSource& source, QueryContext& context);
 
-  /// Records of error at or below it are left out: for predicates of pages and records, before
-  /// keep(). Negative: none are.
+  /// Every record of error at or below this is left out; negative: none are. Questions put it into
+  /// the predicate by which they select pages and records, and call keep() afterwards.
   [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
   /// True when the level keeps the record.
   [[nodiscard]] bool keeps(const PendingSplit& split) const noexcept {
@@ -51,11 +54,12 @@ class Detail {
   /// Drops the splits that the level leaves out; the others keep their order.
   void keep(std::vector<PendingSplit>& splits) const;
 
-  /// False for the full TIN as it was asked for: answers then have no interval.
+  /// True when a tolerance or a number of vertices was asked for. False when the full TIN was:
+  /// heights in answers are then no intervals.
   [[nodiscard]] bool is_asked() const noexcept { return asked_; }
-  /// Of the answers, wherever they are.
+  /// The certificate of every answer at this level.
   [[nodiscard]] const Certificate& certificate() const noexcept { return certificate_; }
-  /// Nothing was left out, and the file's finest TIN is its source.
+  /// True when no record is left out and the file's finest TIN is its source's.
   [[nodiscard]] bool is_exact(const StoreFacts& facts) const noexcept {
     return certificate_.complete && facts.base_error == 0;
   }
@@ -69,13 +73,15 @@ class Detail {
                                  const RecordSource& source, QueryContext& context);
 
   double tolerance_ = -1.0;
-  std::optional<RecordPlace> last_;  ///< What is kept ends with it; none: the tolerance says all.
+  /// Last record kept, in the total order; none: the tolerance alone decides.
+  std::optional<RecordPlace> last_;
   bool asked_ = false;
   Certificate certificate_;
 };
 
-/// Records that come with the first `vertices` vertices, at most all.
-/// @throws Error invalid_argument  fewer than T0 has
+/// How many records the TIN of `vertices` vertices applies: `vertices` - |T0|, but at most all of
+/// the file.
+/// @throws Error invalid_argument  `vertices` is below |T0|
 [[nodiscard]] std::uint64_t records_of_first(std::uint64_t vertices, const StoreFile& store);
 
 }  // namespace ptin

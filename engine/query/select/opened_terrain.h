@@ -13,8 +13,9 @@
 
 namespace ptin {
 
-/// A store, its T0 as a mesh, and the index that searches use. T0, the map and the upper levels of
-/// the index that were touched stay in memory; everything else is paged.
+/// A store, its T0 as a mesh, and the index that searches use. T0, the map, and those upper levels
+/// of the index that were touched stay in memory; everything else is paged. A copy shares all of
+/// them.
 /// Threads: all functions but use_index() are const and may be called at once.
 class OpenedTerrain {
  public:
@@ -24,17 +25,17 @@ class OpenedTerrain {
   explicit OpenedTerrain(std::shared_ptr<const StoreFile> store);
 
   [[nodiscard]] const StoreFile& store() const noexcept { return *store_; }
-  /// T0 with neighbours: what every question starts from a copy of.
+  /// T0 with neighbours. Every question starts from a copy of it.
   [[nodiscard]] const Tin& t0() const noexcept { return *t0_; }
   /// The index in use.
   [[nodiscard]] const RecordIndex& index() const noexcept {
     return index_ ? *index_ : store_->index();
   }
-  /// Where records come from. Borrowed.
+  /// The store and the index in use, borrowed from this object.
   [[nodiscard]] RecordSource records() const noexcept { return {*store_, index()}; }
 
-  /// Uses `index` instead of the packed R-tree (the same answers; tests and `--index
-  /// spatialindex`). Not thread-safe.
+  /// Uses `index` instead of the packed R-tree, for tests and `--index spatialindex`; the answers
+  /// are the same. Null: the packed R-tree again. Not thread-safe.
   void use_index(std::shared_ptr<const RecordIndex> index);
 
  private:

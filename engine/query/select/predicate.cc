@@ -36,8 +36,8 @@ class MeetsRegion final : public BoundedPredicate {
   GridRegion region_;
 };
 
-/// Compares decoded heights: decoding is monotone in the code, and it is what callers see of the
-/// vertices.
+/// Compares decoded heights, which are what callers see at vertices. Decoding is monotone in the
+/// code, so the predicate is monotone too.
 class HeightsMeet final : public BoundedPredicate {
  public:
   HeightsMeet(double low, double high, const HeightEncoding& heights)
@@ -46,7 +46,7 @@ class HeightsMeet final : public BoundedPredicate {
     return heights_.height_of_code(a.heights.lo) <= high_ &&
            low_ <= heights_.height_of_code(a.heights.hi);
   }
-  /// Never certain: where all is void a record's interval is empty, and meets nothing.
+  /// Never certain: a record around which all is void has an empty interval, which meets nothing.
   [[nodiscard]] bool holds_for_all(const Attributes&, double) const noexcept override {
     return false;
   }
@@ -77,8 +77,9 @@ class SeenFrom final : public BoundedPredicate {
     }
     return a.error > view_.tau * (std::sqrt(squares) * kRoundDown);
   }
-  /// With the largest distance that a box in `all.roi` can have; each step is monotone under
-  /// rounding. In space it is never certain: where all is void a record is infinitely far away.
+  /// Takes the largest distance that a box in `all.roi` can have; each step is monotone under
+  /// rounding. For an eye with a height nothing is certain: a record around which all is void is
+  /// infinitely far away.
   [[nodiscard]] bool holds_for_all(const Attributes& all,
                                    double least_error) const noexcept override {
     const double dx = farther_end(all.roi.min_x, all.roi.max_x, eye_.x) * ground_x_;
@@ -109,7 +110,7 @@ class SeenFrom final : public BoundedPredicate {
   double ground_x_ = 1, ground_y_ = 1, slack_x_ = 0, slack_y_ = 0;
 };
 
-/// Beside the parts: each as a predicate that can speak of many records, null where it cannot.
+/// For each part the part as a BoundedPredicate, or null where it is none.
 std::vector<const BoundedPredicate*> bounded_parts(const std::vector<PredicatePtr>& parts) {
   std::vector<const BoundedPredicate*> result;
   result.reserve(parts.size());
@@ -127,7 +128,7 @@ class AllOf final : public BoundedPredicate {
     return std::all_of(parts_.begin(), parts_.end(),
                        [&](const PredicatePtr& p) { return p->holds(a); });
   }
-  /// The smallest of its parts'.
+  /// The smallest reach of a part.
   [[nodiscard]] GridBox reach() const noexcept override {
     GridBox least = AttributePredicate::reach();
     for (const PredicatePtr& p : parts_) {

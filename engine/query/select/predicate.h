@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The monotone predicates (engine/DESIGN.md, section 2.3): once true, true for everything larger. Built from
-// comparisons, +, x and square roots of sums of squares, each of which keeps its order under
-// rounding, so they are monotone in floating point too.
+// The monotone predicates (engine/DESIGN.md, section 2.3): once true, true for everything larger.
+// They are built from comparisons, +, x and square roots of sums of squares. Each of these keeps
+// its order under rounding, so the predicates are monotone in floating point too.
 //
 // Predicates are immutable values behind a shared pointer: a composition keeps its parts alive, and
-// nothing is borrowed unless asked for. Threads: callable from several threads at once.
+// only borrowed() borrows. Threads: callable from several threads at once.
 #pragma once
 
 #include <cstddef>
@@ -21,19 +21,22 @@
 
 namespace ptin {
 
-/// A monotone predicate that can tell, of all records of a page or a subtree at once, that it is
-/// true for them: what two questions agree on need not be looked at. All predicates below are.
+/// A monotone predicate that can also tell that it is true for all records of a page or a subtree.
+/// A moving window skips the pages on which its old and its new predicate agree in this way
+/// (refine/moving_window.h). All predicates below but MeetsBox are bounded.
 class BoundedPredicate : public AttributePredicate {
  public:
-  /// True only when holds(r) for every r whose roi is not empty and lies in `all.roi`, whose
-  /// heights lie in `all.heights` (or are empty), and whose error is at least `least_error`. Falls
-  /// as `all` grows or `least_error` falls; false where it is not certain.
+  /// True only when holds(r) is certain for every record r whose roi is not empty and lies in
+  /// `all.roi`, whose heights lie in `all.heights` (or are empty), and whose error is at least
+  /// `least_error`. False where that is not certain. Once false, it stays false while `all` grows
+  /// or `least_error` falls.
   [[nodiscard]] virtual bool holds_for_all(const Attributes& all,
                                            double least_error) const noexcept = 0;
 };
 
-/// True above a bound, which, unlike error_above()'s tolerance, may be negative (always true) or
-/// infinite (never). Monotone, exact. Threads: immutable.
+/// True for records of an error above a bound (height's unit). Unlike the tolerance of
+/// error_above(), the bound may be negative (always true) or infinite (never true). Monotone,
+/// exact. Threads: immutable.
 class AboveError final : public BoundedPredicate {
  public:
   explicit AboveError(double bound) : bound_(bound) {}
@@ -62,24 +65,25 @@ class MeetsBox final : public AttributePredicate {
 
 using PredicatePtr = std::shared_ptr<const AttributePredicate>;
 
-/// A predicate that the caller keeps alive, as a part of what goes before it does.
+/// A predicate of the caller's, as a part of a composition. Nothing is copied: the caller keeps it
+/// alive at least as long as the composition.
 [[nodiscard]] PredicatePtr borrowed(const AttributePredicate& predicate);
 
 /// Always true: every record, the full TIN.
 [[nodiscard]] PredicatePtr everything();
 
-/// `roi` meets the region.  @throws Error invalid_argument as GridRegion
+/// True when `roi` meets the region.  @throws Error invalid_argument as GridRegion
 [[nodiscard]] PredicatePtr meets_region(const Region& region, const AffineMap& map);
 
-/// `error` > tolerance (height's unit): what is left out is certified within it.
+/// True when `error` > tolerance (height's unit): records left out have at most this error.
 /// @throws Error invalid_argument unless tolerance >= 0
 [[nodiscard]] PredicatePtr error_above(double tolerance);
 
-/// `heights` contains `height` (height's unit): what an isoline needs.
+/// True when `heights` contains `height` (height's unit): the records that an isoline needs.
 /// @throws Error invalid_argument when not finite
 [[nodiscard]] PredicatePtr contains_height(double height, const HeightEncoding& heights);
 
-/// `heights` meets [low, high] (height's unit); infinite ends are fine.
+/// True when `heights` meets [low, high] (height's unit); infinite ends are fine.
 /// @throws Error invalid_argument when NaN or inverted
 [[nodiscard]] PredicatePtr heights_meet(double low, double high, const HeightEncoding& heights);
 
@@ -87,24 +91,26 @@ using PredicatePtr = std::shared_ptr<const AttributePredicate>;
 struct View {
   MapPoint eye;                      ///< Map units.
   std::optional<double> eye_height;  ///< Height's unit; none measures distance in the plane.
-  double tau = 0.001;  ///< Error allowed at distance 1: a pixel's angle, in radians. >= 0.
+  double tau = 0.001;  ///< Error allowed at ground distance 1: a pixel's angle, in radians. >= 0.
   /// Ground units (those of heights) in a map unit: 1 for a projected CRS in the height's unit;
   /// metres a degree, at the eye, for a geographic one.
   double ground_per_map_x = 1.0;
   double ground_per_map_y = 1.0;
 };
 
-/// `error` > tau * distance(roi, eye), where the distance of a 3-D eye is to the box of roi and
-/// heights; rounded down. So a record left out has at most tau times the distance of anything that
-/// depends on it as its error.
+/// True when `error` > tau * d, where d is the ground distance from the eye to the roi; for an eye
+/// with a height, to the box of roi and heights. d is rounded down. So the error of a record left
+/// out is at most tau times the distance of anything that depends on the record.
 /// @throws Error invalid_argument when a value is not finite, tau is negative or a ground factor is
 /// not positive
 [[nodiscard]] PredicatePtr seen_from(const View& view, const AffineMap& map,
                                      const HeightEncoding& heights);
 
-/// True when every part is (an empty list: everything).
+/// True when every part is true (an empty list: always).
+/// @throws Error invalid_argument when a part is null
 [[nodiscard]] PredicatePtr all_of(std::vector<PredicatePtr> parts);
-/// True when some part is (an empty list: nothing).
+/// True when some part is true (an empty list: never).
+/// @throws Error invalid_argument when a part is null
 [[nodiscard]] PredicatePtr any_of(std::vector<PredicatePtr> parts);
 
 }  // namespace ptin

@@ -28,9 +28,10 @@ double to_grid(double map_value, double origin, double step, double& slack) {
   return grid;
 }
 
-/// Twice the area of (a, b, (x, y)) lies surely below zero.
+/// True when twice the signed area of (a, b, (x, y)) lies surely below zero.
 /// Rounding: each product carries at most 3u of itself, their difference u more; `reach` is what a
-/// displacement of (x, y) adds. Eight u of the products' sizes is twice that.
+/// displacement of (x, y) adds. Eight u of the products' sizes and twice `reach` is twice the
+/// bound.
 bool surely_right(GridPoint a, GridPoint b, double x, double y, double slack_x,
                   double slack_y) noexcept {
   const double abx = static_cast<double>(b.x) - a.x;

@@ -29,10 +29,10 @@ struct Segment {
 };
 using Region = std::variant<Window, MapPoint, Segment, Polygon>;
 
-/// A region on the grid, ready to be asked of boxes (records, pages, nodes) and of triangles.
+/// A region on the grid, ready to be tested against boxes (of records, pages, nodes) and triangles.
 ///
 /// Map coordinates become grid coordinates once, as doubles. All rounding errs outward, so a box or
-/// triangle that meets the region in real numbers is never lost: the region is widened by the error
+/// triangle that meets the region in real numbers is never lost. The region is widened by the error
 /// of that conversion (a few units in the last place of the map coordinates, 1e-9 grid units for
 /// UTM metres on a 1 m grid) and, for slanted edges, by that of the test (about 1e-6 grid units;
 /// more only for edges that reach far beyond the grid). So a vertex whose rounded map position lies
@@ -43,8 +43,8 @@ using Region = std::variant<Window, MapPoint, Segment, Polygon>;
 ///   by comparisons and by its line function at the extreme corners of the box, evaluated as
 ///   nx * (x - ax) + ny * (y - ay) with constants that do not depend on the box, and each rounded
 ///   operation is monotone in x and y.
-/// - Consistent: meets(a, b, c) implies meets(their box). So a triangle that meets the region and
-///   is the fan of a record lies in a box that meets it (promise P1).
+/// - Consistent: meets(a, b, c) implies meets(their box). So when a triangle of a record's fan
+///   meets the region, the record's roi, which contains that triangle, meets it too (promise P1).
 ///
 /// Threads: immutable.
 class GridRegion {
@@ -59,12 +59,13 @@ class GridRegion {
   /// empty. Cost: a polygon's edges near the box.
   [[nodiscard]] bool meets(const GridBox& box) const noexcept;
 
-  /// A box that every box meets that meets the region. A little larger than need be.
+  /// A box (grid units) around the region: every box that meets the region meets this one. A little
+  /// larger than need be.
   [[nodiscard]] GridBox bounds() const noexcept;
 
-  /// True only when every box within `box` that is not empty meets the region: `box` lies inside.
-  /// False where that is not certain; always for segments. Law: contains(a) and b within a imply
-  /// contains(b) and meets(b). REQUIRES: `box` not empty. Cost: as meets().
+  /// True only when `box` lies inside of the region: every box within `box` that is not empty meets
+  /// the region. False where that is not certain, and always for segments. Law: contains(a) and b
+  /// within a imply contains(b) and meets(b). REQUIRES: `box` not empty. Cost: as meets().
   [[nodiscard]] bool contains(const GridBox& box) const noexcept;
 
   /// True when the closed triangle shares a point with the region, conservative by the widening.
@@ -79,13 +80,14 @@ class GridRegion {
   struct WidenedPoint {
     double x, y, slack_x, slack_y;
   };
-  /// A straight edge a -> b; (nx, ny) points to its right. Box and line function already widened.
+  /// A straight edge a -> b; (nx, ny) points to its right. The box (min_x to max_y) and `slack`
+  /// hold the widening already.
   struct Edge {
     double ax, ay, bx, by;
     double min_x, min_y, max_x, max_y;
     double nx, ny;
     double slack;  ///< Values of the line function up to this from 0 may belong to the edge.
-    double slack_x, slack_y;  ///< Of the two ends.
+    double slack_x, slack_y;  ///< How far the true ends may be away.
   };
 
   static WidenedPoint widened(MapPoint p, const AffineMap& map);

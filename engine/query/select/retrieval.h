@@ -14,19 +14,20 @@
 
 namespace ptin {
 
-/// What is kept of a record between reading and applying: 64 bytes.
+/// What is kept of a record between reading and applying it: 64 bytes.
 struct PendingSplit {
   VertexKey u, w, vl, vr;
   HeightBits height;
   std::uint16_t rank;
   std::uint16_t flags;  ///< VertexSplit::Flag.
   float error;
-  GridBox roi;         ///< What it needs has a larger one: an order of applying follows from it.
+  /// Contained in the roi of each record that it needs: refine/apply_order.h orders by it.
+  GridBox roi;
   std::uint32_t page;  ///< Index of its page, for errors and pictures; modulo 2^32.
 };
 static_assert(sizeof(PendingSplit) == 64);
 
-/// What applying keeps of a record.
+/// The part of a record that applying needs.
 [[nodiscard]] inline PendingSplit pending_of(const VertexSplit& r, PageId page) noexcept {
   return {key_of(r.u),  key_of(r.w),
           key_of(r.vl), key_of(r.vr),
@@ -35,7 +36,7 @@ static_assert(sizeof(PendingSplit) == 64);
           r.roi,        static_cast<std::uint32_t>(index_of(page))};
 }
 
-/// Bytes that reading and applying `records` records may take: records, mesh and key table.
+/// Bytes that reading and applying `records` records take at most: records, mesh and key table.
 [[nodiscard]] std::uint64_t refinement_bytes(std::uint64_t records) noexcept;
 
 /// Where records come from. Borrowed: store and index outlive the query.
@@ -56,9 +57,10 @@ void read_pages(const StoreFile& store, std::span<const PageId> pages,
                 const AttributePredicate& predicate, QueryContext& context,
                 std::vector<PendingSplit>& out);
 
-/// Searches the index, asks for the memory that the answer may take, reads.
+/// Retrieves the records for which `predicate` is true: searches the index, asks `context` for the
+/// memory that the answer may take, then reads the pages.
 /// @param fixed_bytes  What the query holds besides its records (T0).
-/// @throws Error resource_exhausted (before anything is read), corruption, io_error, cancelled
+/// @throws Error resource_exhausted (before any page is read), corruption, io_error, cancelled
 [[nodiscard]] std::vector<PendingSplit> retrieve(const RecordSource& source,
                                                  const AttributePredicate& predicate,
                                                  std::uint64_t fixed_bytes, QueryContext& context);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kLeastPages = 16;  // Pages read at once, at least.
 
-/// A bound that at least `count` records of the whole file exceed, as the table of errors has it;
-/// -1 when all are needed.
+/// A bound that the errors of at least `count` records of the whole file exceed, by the table of
+/// errors; -1 when all are needed.
 double bound_exceeded_by(std::span<const ErrorBin> bins, std::uint64_t count) {
   std::uint64_t records = 0;
   for (std::size_t i = bins.size(); i-- > 1;) {
@@ -33,7 +33,8 @@ struct RankedPage {
   double largest_error;
 };
 
-/// The search's state: what was found, what was read, and the largest error of what was given up.
+/// The state of the search: the records found, the pages read, and the largest error of what was
+/// given up.
 class Search {
  public:
   Search(const RecordSource& source, const AttributePredicate& predicate, std::uint64_t count,
@@ -83,8 +84,8 @@ class Search {
     return pages;
   }
 
-  /// Reads as many pages as the missing records take at least; once there are enough, an eighth of
-  /// those read so far.
+  /// Reads the next pages. While records are missing: as many pages as could hold the missing ones.
+  /// Once there are enough records: an eighth of the pages read so far, 16 at least.
   std::size_t read_some(const std::vector<RankedPage>& pages, std::size_t next) {
     const std::uint64_t missing = count_ - std::min<std::uint64_t>(count_, found_.size());
     const std::size_t least = next + std::max(kLeastPages, read_.size() / 8);
@@ -105,7 +106,7 @@ class Search {
     return next;
   }
 
-  /// Keeps the first `count` of what was found, in the order it was read.
+  /// Keeps the first `count` of the records found, in the order in which they were read.
   void prune() {
     if (!is_full()) {
       return;
@@ -128,8 +129,8 @@ class Search {
   std::vector<PendingSplit> found_, order_;
   std::vector<PageId> read_;  ///< Ascending.
   double smallest_ = 0.0;     ///< Error of the last of the first `count`.
-  double dropped_ = -1.0;
-  double left_ = -1.0;
+  double dropped_ = -1.0;     ///< Largest error of a record found and given up.
+  double left_ = -1.0;        ///< No record in an unread page has a larger error.
 };
 
 }  // namespace

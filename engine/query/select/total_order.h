@@ -12,9 +12,9 @@
 
 namespace ptin {
 
-/// What places a record in the total order. Every record comes after what it needs, whose error is
-/// not smaller and whose rank is larger (saturation): so any prefix, within any closed set, is
-/// closed.
+/// What places a record in the total order. What a record needs has no smaller error and a larger
+/// rank (saturation), so it comes before the record: any prefix of the order, within any closed
+/// set, is closed.
 struct RecordPlace {
   float error;
   std::uint16_t rank;
@@ -37,18 +37,20 @@ struct RecordPlace {
 /// The first records of the total order among those for which a predicate is true.
 struct FirstRecords {
   std::vector<PendingSplit> splits;
-  /// No record left out (for which the predicate is true) is above; -1: none is left out.
+  /// No record that was left out, of those for which the predicate is true, has an error above
+  /// this. -1: none was left out.
   double largest_error_left = -1.0;
 };
 
-/// Finds the first `count` records, or all there are. Reads pages in order of falling largest
-/// error, and no page whose largest error is below the smallest one taken, but for an eighth more
-/// read ahead. The file's table of errors says where to begin; it only saves work, and may be
-/// wrong.
+/// Finds the first `count` records for which `predicate` is true, or all there are. Pages are read
+/// in the order of falling largest error. A page whose largest error is below the smallest error
+/// taken is not read, but for an eighth more pages (16 at least) that are read ahead. The file's
+/// table of errors says where to begin; it only saves work, and may be wrong.
+/// @param fixed_bytes  What the query holds besides its records (T0).
 /// @throws Error resource_exhausted (before the pages concerned are read), corruption, io_error,
 ///               cancelled
-/// Cost: O(t) records read and compared, times the logarithm of what share of the terrain the
-/// predicate leaves.
+/// Cost: O(t) records read and compared, t = `count`, times the logarithm of 1 / (the share of the
+/// terrain that the predicate leaves).
 [[nodiscard]] FirstRecords first_records(const RecordSource& source,
                                          const AttributePredicate& predicate, std::uint64_t count,
                                          std::uint64_t fixed_bytes, QueryContext& context);

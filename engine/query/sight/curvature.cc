@@ -8,7 +8,7 @@
 namespace ptin {
 
 void check(const Curvature& curvature) {
-  constexpr double kMost = 1000;  // a ball of 13 km
+  constexpr double kMost = 1000;  // as on a ball of 13 km diameter
   if (!(curvature.coefficient >= 0) || !(curvature.coefficient <= kMost)) {
     throw Error(ErrorCode::invalid_argument,
                 "the curvature coefficient is negative or too large: expected 0 (a flat Earth) "

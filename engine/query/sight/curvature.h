@@ -11,9 +11,9 @@ namespace ptin {
 struct Curvature {
   /// The share that light feels: 1 without refraction, 0 for a flat Earth; up to 1000.
   double coefficient = 0.85714;
-  double earth_diameter = 2 * 6378137.0;  ///< Height's unit.
+  double earth_diameter = 2 * 6378137.0;  ///< Height's unit; > 0.
 
-  /// How much lower; all in the height's unit.
+  /// How much lower a point at `distance` looks; both in the height's unit.
   [[nodiscard]] double drop_at(double distance) const noexcept {
     return drop_at_square(distance * distance);
   }
@@ -22,7 +22,8 @@ struct Curvature {
   }
 };
 
-/// @throws Error invalid_argument when a number means nothing
+/// @throws Error invalid_argument when the coefficient is not in [0, 1000] or the diameter is not
+/// positive
 void check(const Curvature& curvature);
 
 }  // namespace ptin

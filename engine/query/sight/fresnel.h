@@ -5,12 +5,13 @@
 
 namespace ptin {
 
-/// Where clearance(s) / sqrt(s (1 - s)) is least over [from, to], for the convex parabola that has
-/// the values `c_from` and `c_to` at the ends and the leading coefficient `bend`. The ends of the
-/// whole line (shares 0 and 1) have no zone: there the ratio is the limit from inside.
+/// Where clearance(s) / sqrt(s (1 - s)) is least for shares s of the way in [from, to]. The
+/// clearance is the convex parabola that has the values `c_from` and `c_to` at the ends and the
+/// leading coefficient `bend`. The ends of the whole line (shares 0 and 1) are left out, since the
+/// zone has no width there. REQUIRES: from < to.
 struct LeastRatio {
-  double ratio;  ///< Infinite when there is no inner point.
-  double at;
+  double ratio;  ///< Infinite when [from, to] has no inner point of the line.
+  double at;     ///< Share of the way.
 };
 [[nodiscard]] LeastRatio least_fresnel_ratio(double from, double c_from, double to, double c_to,
                                              double bend);

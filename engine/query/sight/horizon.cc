@@ -17,7 +17,7 @@ double diamond_of(double x, double y) noexcept {
   return x < 0 ? 2 - y / (-x - y) : 3 + x / (x - y);
 }
 
-/// Buckets begin where no direction of a grid is.
+/// Share of a bucket by which all borders are turned, so that none lies in a direction of the grid.
 constexpr double kFirst = 0.3819660112501051;
 
 }  // namespace
@@ -46,7 +46,8 @@ Horizon::Horizon(std::size_t buckets) : buckets_(buckets) {
   pieces_ = buckets;
 }
 
-/// The guess is off by rounding at most.
+/// The bucket of a direction: guessed by diamond_of(), which rounding may put one bucket off, then
+/// checked against the borders.
 std::size_t Horizon::bucket_of(Direction d) const noexcept {
   const auto count = static_cast<double>(buckets_.size());
   const double at = diamond_of(d.x, d.y) * count / 4 - kFirst;
@@ -77,7 +78,8 @@ void Horizon::raise(const Offset& a, const Offset& b) {
   raise_in(i, from, to, plane);
 }
 
-/// A piece of no width, where planes meet in the direction in which a piece begins, is overwritten.
+/// Appends a piece. It takes the place of a last piece of no width, where planes meet in the
+/// direction in which that piece begins.
 void Horizon::add(Direction start, const Plane& plane) {
   if (!scratch_.empty() && !(turn(scratch_.back().start, start) > 0)) {
     start = scratch_.back().start;
@@ -88,8 +90,9 @@ void Horizon::add(Direction start, const Plane& plane) {
   }
 }
 
-/// Most edges are hidden: nothing is written until a piece is found that the plane rises above.
-/// In direction d the plane's slope over the piece's is m . d over the product of both z.
+/// Raises one bucket to a plane between two directions. Most edges are hidden, so nothing is
+/// written until a piece is found above which the plane rises. In direction d the plane's slope
+/// exceeds the piece's by m . d over the product of both z.
 void Horizon::raise_in(std::size_t bucket, Direction from, Direction to, const Plane& plane) {
   std::vector<Piece>& pieces = buckets_[bucket];
   const Direction end = borders_[after(bucket)];

@@ -9,7 +9,7 @@
 
 namespace ptin {
 
-/// A point relative to the eye, in any unit that is the same for all.
+/// A point relative to the eye. x and y have one unit; z may have another, the same for all points.
 struct Offset {
   double x = 0, y = 0, z = 0;
 };
@@ -19,27 +19,30 @@ struct Offset {
   return a.x * b.y - a.y * b.x;
 }
 
-/// The upper envelope, over the directions around the eye, of the edges that were raised. An edge
-/// is the plane through it and the eye: a direction sees its height as a slope that is linear in
-/// the direction. So there are no angles, and where offsets are integers of moderate size (products
-/// of three below 2^53) no comparison rounds, but for where two edges cross each other's direction.
-/// Threads: one owner.
+/// The upper envelope of the edges raised so far, over the directions around the eye. An edge is
+/// kept as the plane through the edge and the eye. In a direction the plane has a slope, which is
+/// linear in the direction, so no angles are computed. Where offsets are integers of moderate size
+/// (products of three below 2^53) no comparison rounds, except near the direction at which two
+/// edges cross.
 ///
-/// Edges must come front to back: whatever is asked lies beyond all edges raised in its direction.
-/// Directions are kept in buckets, each with its pieces in order; edges near the eye span many
-/// buckets, those far away one.
+/// Edges must come front to back: a point that is asked for lies beyond all edges raised in its
+/// direction. Directions are kept in buckets, each with its pieces in order; an edge near the eye
+/// spans many buckets, one far away few.
+/// Threads: one owner.
 class Horizon {
  public:
-  /// @param buckets  About four times the radius in edges' lengths; >= 4.
+  /// @param buckets  About four times the radius divided by the length of an edge; >= 4.
   explicit Horizon(std::size_t buckets);
 
-  /// Which of two pieces that meet exactly in the direction asked for counts.
+  /// Which pieces count in a direction in which two pieces meet: both, or the one to its left or
+  /// right.
   enum class Side : std::uint8_t { kBoth, kLeft, kRight };
 
   /// Raises the horizon to the edge a -> b. REQUIRES: turn(a, b) > 0.
   void raise(const Offset& a, const Offset& b);
 
-  /// True when no edge in front rises strictly above the ray to `p`. REQUIRES: not the eye itself.
+  /// True when no edge raised so far rises strictly above the ray to `p`. REQUIRES: `p` is not
+  /// above or below the eye itself. Cost: the pieces in the bucket.
   [[nodiscard]] bool sees(const Offset& p, Side side = Side::kBoth) const noexcept;
 
   [[nodiscard]] std::size_t pieces() const noexcept { return pieces_; }
@@ -48,7 +51,8 @@ class Horizon {
   struct Direction {
     double x, y;
   };
-  /// Points with n . p >= 0 lie on or above the plane; z == 0: no edge yet.
+  /// A plane through the eye with the normal n = (x, y, z): points with n . p >= 0 lie on it or
+  /// above. z == 0: no edge yet.
   struct Plane {
     double x = 0, y = 0, z = 0;
     friend bool operator==(const Plane&, const Plane&) = default;
@@ -69,7 +73,7 @@ class Horizon {
   void raise_in(std::size_t bucket, Direction from, Direction to, const Plane& plane);
   void add(Direction start, const Plane& plane);
 
-  std::vector<Direction> borders_;  ///< Where each bucket begins.
+  std::vector<Direction> borders_;  ///< Direction in which each bucket begins.
   std::vector<std::vector<Piece>> buckets_;
   std::vector<Piece> scratch_;
   std::size_t pieces_ = 0;

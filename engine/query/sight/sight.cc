@@ -67,7 +67,8 @@ double first_below(const SightView& view, const SightPiece& piece) {
   return piece.from + t * width;
 }
 
-/// All before it is visible, and it is what it is in the full TIN.
+/// True when every piece before `hidden` is visible and `hidden` is what it is in the full TIN.
+/// Without a hidden piece, where a vertex alone hides the line: when all pieces are visible.
 bool is_first_for_certain(const SightView& view, const SightPiece* hidden) {
   const auto first = std::find_if(view.pieces.begin(), view.pieces.end(), [](const auto& p) {
     return p.verdict != PieceVerdict::kVisible;
@@ -113,7 +114,7 @@ class SightSolver::Impl {
   SpotMap map_;
   double step_ = 0.0;
   Detail detail_;
-  std::optional<BoundedMesh> base_;  ///< As it was built; not kept when it is T0.
+  std::optional<BoundedMesh> base_;  ///< The coarse mesh, as it was built.
   std::optional<BoundedMesh> mesh_;
   std::size_t base_vertices_ = 0;
   bool is_spoilt_ = false;  ///< An error came while the mesh was changed.
@@ -138,7 +139,7 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   facts_.finest_deviation = finest.deviation;
   facts_.max_height = store_facts_.max_height;
   facts_.has_voids = !store.facts().free_of_voids;
-  // An error of 0 does not do: voids may differ between samples.
+  // A certified error of 0 does not settle the voids: they may differ between samples.
   facts_.exact_settles = !facts_.has_voids || store_facts_.base_error == 0;
   facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);
   facts_.base_deviation = kInfinity;
@@ -167,7 +168,7 @@ void SightSolver::Impl::renew_mesh() {
 }
 
 Spot SightSolver::Impl::spot_of_end(MapPoint p, double height) const {
-  constexpr double kMost = 1e30;  // differences and products of such are finite
+  constexpr double kMost = 1e30;  // differences and products of such heights are finite
   if (!(std::abs(height) <= kMost)) {
     throw_invalid("the height of an end is not a finite number, or beyond 1e30");
   }
@@ -262,7 +263,7 @@ void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& resul
     result.certified_deviation = kInfinity;
     return;
   }
-  LocateRequest request;  // exact: ends are, whatever the tolerance
+  LocateRequest request;  // no level of detail: the ground below ends is always exact
   request.limits.memory_bytes = request_.limits.memory_bytes;
   request.limits.stop = request_.limits.stop;
   const LocateResult located = locate(terrain_, {&pair.a, 1}, request);
@@ -308,7 +309,8 @@ SightPoint SightSolver::Impl::point_at(const SightPair& pair, const SightView& v
           view.ray().middle(share)};
 }
 
-/// First obstruction, smallest clearance, and what is measured along the whole line.
+/// Measures the first obstruction, the smallest clearance, and what runs along the whole line
+/// (voids, the Fresnel zone).
 /// @returns whether all of that is as in the full TIN
 bool SightSolver::Impl::measure(SightSearch& search, const SightPair& pair, SightResult& result) {
   search.finish_ends();
@@ -361,7 +363,7 @@ void SightSolver::Impl::set_clearance(const SightView& view, const SightPair& pa
 void SightSolver::Impl::measure_line(const SightView& view, const SightPair& pair,
                                      SightResult& result) const {
   double voids = 0.0;
-  bool whole = true;  // else the budget ended first
+  bool whole = true;  // every piece is final; else the budget ended first
   LeastRatio least{kInfinity, 0.0};
   for (const SightPiece& p : view.pieces) {
     if (facts_.has_voids && !p.settled) {

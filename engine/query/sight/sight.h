@@ -16,7 +16,8 @@
 
 namespace ptin {
 
-/// Two ends in map units, and their heights (height's unit) above ground, or absolute.
+/// Two ends in map units, and their heights (height's unit) above ground, or absolute
+/// (SightRequest::absolute).
 struct SightPair {
   MapPoint a;
   double height_a = 0.0;
@@ -25,28 +26,30 @@ struct SightPair {
 };
 
 struct SightRequest {
-  bool absolute = false;  ///< Heights of the ends are absolute.
+  bool absolute = false;  ///< Heights of the ends are absolute, not above ground.
   Curvature curvature;
   /// Ground distance of two map positions in the height's unit (a geographic CRS: along the
   /// ellipsoid). None: the plane distance in map units.
   std::function<double(MapPoint, MapPoint)> ground_distance;
   double wavelength = 0.0;  ///< Height's unit; above 0 the first Fresnel zone is measured.
-  /// What this level leaves out is left out of the search, but not below the ends, nor at a point
-  /// that hides the line unless that point is a void.
+  /// Records that this level leaves out are not read, with two exceptions. The ground below the
+  /// ends is exact all the same. And where a single point hides the line unless it is a void, the
+  /// surface at that point is exact.
   DetailRequest detail;
-  /// Stop once this many records were retrieved for one pair: looked at before each step, so that
-  /// the last one may overrun it.
+  /// Stop once this many records were retrieved for one pair. Checked before each step, so the last
+  /// step may overrun it.
   std::optional<std::uint64_t> budget;
-  /// Nothing but the verdict is wanted: obstruction and clearance are what deciding it happened to
-  /// show.
+  /// Only the verdict is wanted. The obstruction is then any point below ground that deciding
+  /// showed, and clearances are NaN unless both ends have one position.
   bool verdict_only = false;
   QueryLimits limits;
 };
 
 /// Hidden: some inner point of the straight line (bent by curvature) lies strictly below the closed
-/// surface. Touching is visible, voids do not obstruct. Undecided: the request stopped earlier, or
-/// the file itself is not exact. Undefined: heights are above ground and an end stands on none. The
-/// other three are certain, also of a request that leaves something out.
+/// surface. Touching is visible, and voids do not obstruct. Undefined: heights are above ground,
+/// and an end stands on no ground. Undecided: the level of detail or the budget left out what
+/// decides, or the file itself is not exact. Visible, hidden and undefined are certain, also for a
+/// request that leaves records out.
 enum class SightVerdict : std::uint8_t { kVisible, kHidden, kUndecided, kUndefined };
 
 /// A point of the line.
@@ -59,41 +62,45 @@ struct SightPoint {
 
 struct SightResult {
   SightVerdict verdict = SightVerdict::kUndecided;
-  /// Exact, unless the budget ended before them.
+  /// What the ends stand on. Exact, unless the budget ended before they were known.
   PointState state_a = PointState::kOutside, state_b = PointState::kOutside;
-  double length = 0.0;  ///< Over ground, height's unit.
-  /// Hidden: where the line first goes below ground (with `verdict_only`, or not exact: some point
-  /// where it is below).
+  double length = 0.0;  ///< Of the line over ground, height's unit.
+  /// Set when hidden: where the line first goes below ground. With `verdict_only`, or when not
+  /// exact, some point where it is below ground.
   std::optional<SightPoint> obstruction;
-  /// Smallest height of the line above the surface, ends included, and where: the truth lies in
-  /// [clearance_min, clearance_max], equal when exact; the larger is infinite when all there is may
-  /// be void. NaN where there is no surface.
+  /// Smallest height of the line above the surface, ends included, height's unit: the true one lies
+  /// in [clearance_min, clearance_max], which are equal when exact. clearance_max is infinite when
+  /// everything below the line may be void. NaN where no surface is below the line.
   double clearance_min = std::numeric_limits<double>::quiet_NaN();
   double clearance_max = std::numeric_limits<double>::quiet_NaN();
-  std::optional<SightPoint> clearance_at;
-  /// Smallest clearance over the radius of the first Fresnel zone, ends excluded; none when the
-  /// budget ended before. At a tolerance that of the coarser surface.
+  std::optional<SightPoint> clearance_at;  ///< Where the clearance is smallest.
+  /// Smallest ratio of clearance to the radius of the first Fresnel zone, ends excluded; none when
+  /// the budget ended before the whole line was known. At a level of detail that of the coarser
+  /// surface.
   std::optional<double> fresnel_ratio;
   std::optional<SightPoint> fresnel_at;
-  /// Length of the line over voids, height's unit; NaN when not known (`verdict_only`, or records
-  /// left out that decide it).
+  /// Length of the line over voids, height's unit. NaN when not known: with `verdict_only`, or when
+  /// records left out may change it.
   double void_length = std::numeric_limits<double>::quiet_NaN();
-  double certified_deviation = 0.0;  ///< Of what is undecided; 0 when nothing is.
-  bool exact = false;                ///< All that is told is true of the source.
+  /// Most that the surface may deviate where the line is undecided; 0 when it is decided.
+  double certified_deviation = 0.0;
+  bool exact = false;  ///< All that the result tells holds of the source.
   QueryCost cost;
 };
 
-/// Answers pairs one after the other over one mesh: a coarse one of the whole terrain, in which
-/// most lines are decided, and what single lines had refined, until it grows too large.
+/// Answers pairs one after the other over one mesh. The mesh begins as a coarse one of the whole
+/// terrain, in which most lines are decided. What single lines had refined stays for the next ones,
+/// until the mesh grows too large and begins anew.
 ///
-/// The path is straight in the file's CRS and distances are proportional along it (geographic CRS:
-/// to a thousandth at 100 km and middle latitudes). Threads: one owner; several solvers may work
-/// over one terrain.
+/// The path is straight in the file's CRS, and distances are proportional along it. (In a
+/// geographic CRS that is true to a thousandth at 100 km and middle latitudes.) Threads: one owner;
+/// several solvers may work over one terrain.
 class SightSolver {
  public:
   /// @param terrain       Borrowed for the life of the solver.
-  /// @param base_records  Records of the coarse mesh: more decides more lines without reading, but
-  ///                      each walks farther. 0: none, best for one pair.
+  /// @param base_records  About how many records the coarse mesh has. More of them decide more
+  ///                      lines without reading, but each line walks farther. 0: none, best for one
+  ///                      pair.
   /// @throws Error invalid_argument (as Detail too), resource_exhausted, corruption, io_error,
   /// cancelled
   SightSolver(const OpenedTerrain& terrain, SightRequest request,
@@ -102,9 +109,10 @@ class SightSolver {
   SightSolver(SightSolver&&) noexcept;
   SightSolver& operator=(SightSolver&&) noexcept;
 
-  /// Cost of the coarse mesh, and of finding the last of `vertices`; not part of any result's.
+  /// Cost of the coarse mesh, and of finding the last of `vertices`; no result's cost includes it.
   [[nodiscard]] const QueryCost& base_cost() const noexcept;
 
+  /// Answers one pair. After an error the solver can be asked again.
   /// @throws Error invalid_argument (a number is not finite, a height beyond 1e30, a position more
   /// than 2^31 grid units away), resource_exhausted, corruption, io_error, cancelled
   [[nodiscard]] SightResult solve(const SightPair& pair);
@@ -114,7 +122,7 @@ class SightSolver {
   std::unique_ptr<Impl> impl_;
 };
 
-/// One pair; its cost is all of it.  @throws Error as SightSolver
+/// Answers one pair; the cost in the result is the whole cost.  @throws Error as SightSolver
 [[nodiscard]] SightResult sight(const OpenedTerrain& terrain, const SightPair& pair,
                                 const SightRequest& request = {});
 

@@ -14,7 +14,8 @@ std::int32_t clamped(double v) noexcept {
   return static_cast<std::int32_t>(std::clamp(v, -2147483648.0, 2147483647.0));
 }
 
-/// A box around the stretch, a grid unit wider on each side than rounding could need.
+/// A box around the stretch, at least one grid unit wider on each side, which is more than rounding
+/// needs.
 GridBox box_around(Spot p, Spot q, double from, double to) noexcept {
   const MapPoint a = grid_of(p);
   const MapPoint b = grid_of(q);

@@ -12,10 +12,11 @@
 
 namespace ptin {
 
-/// Least value of a convex parabola with leading coefficient `bend` >= 0 between two points of it.
+/// Least value of the convex parabola with leading coefficient `bend` >= 0 through (s0, v0) and
+/// (s1, v1), between these points.
 struct Lowest {
   double value;
-  double at;
+  double at;  ///< Where, as s.
 };
 [[nodiscard]] inline Lowest lowest_between(double s0, double v0, double s1, double v1,
                                            double bend) noexcept {
@@ -31,8 +32,8 @@ struct Lowest {
   return {std::min(v0 - bend * (at - s0) * (at - s0), ends.value), at};
 }
 
-/// Heights of the line: z(s) = z_a + s (z_b - z_a) - bend s (1 - s), where the ends are known
-/// within intervals.
+/// Heights of the line at share s of the way: z(s) = z_a + s (z_b - z_a) - bend s (1 - s), where
+/// the heights of the ends are known within intervals.
 struct Ray {
   Interval a, b;      ///< Heights of the ends, height's unit.
   double bend = 0.0;  ///< Curvature::drop_at(length).
@@ -40,7 +41,7 @@ struct Ray {
   [[nodiscard]] double low(double s) const noexcept { return at(a.lo, b.lo, s); }
   [[nodiscard]] double high(double s) const noexcept { return at(a.hi, b.hi, s); }
   [[nodiscard]] double middle(double s) const noexcept { return (low(s) + high(s)) / 2; }
-  /// Least height between two shares.
+  /// Lower bound of the heights between two shares.
   [[nodiscard]] double lowest(double s0, double s1) const noexcept {
     return lowest_between(s0, low(s0), s1, low(s1), bend).value;
   }
@@ -48,19 +49,19 @@ struct Ray {
 
  private:
   [[nodiscard]] double at(double za, double zb, double s) const noexcept {
-    // An end of which nothing is known says nothing of the line.
+    // An end of which nothing is known counts as high as the other end.
     return std::isfinite(za) && std::isfinite(zb) ? za * (1 - s) + zb * s - bend * s * (1 - s)
                                                   : (std::isfinite(za) ? zb : za);
   }
 };
 
-/// An end, for exact comparisons: height above the ground at a footing, or absolute.
+/// An end, for exact comparisons: `height` above the ground at a footing, or absolute.
 struct ExactEnd {
   double height = 0.0;
   const Footing* ground = nullptr;  ///< Null: absolute.
 };
 
-/// Decides in rationals what doubles cannot.
+/// Decides in rationals what doubles cannot. Borrows mesh and footings.
 class ExactRay {
  public:
   ExactRay(const Tin& tin, const HeightEncoding& heights, const ExactEnd& a, const ExactEnd& b,
@@ -70,7 +71,8 @@ class ExactRay {
   /// Sign of the line's height above the surface at a crossing. REQUIRES: its vertices have
   /// heights.
   [[nodiscard]] int sign_at(const Crossing& c) const;
-  /// Sign of its least height above the surface over a piece, ends included.
+  /// Sign of the line's least height above the surface over a piece, ends included. REQUIRES: as
+  /// sign_at().
   [[nodiscard]] int sign_over(const LinePiece& piece) const;
 
  private:

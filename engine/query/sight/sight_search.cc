@@ -45,7 +45,7 @@ void SightSearch::look() {
   view_.decide(mesh_);
 }
 
-/// Of absolute ends only their states are asked, and those only voids can change.
+/// Of absolute ends only the states are asked, and only voids can change a state.
 bool SightSearch::ends_known() const noexcept {
   return (view_.a.known && view_.b.known) ||
          (request_.absolute && (!facts_.has_voids || request_.verdict_only));
@@ -71,8 +71,8 @@ void SightSearch::finish_line() {
   }
 }
 
-/// Where the line is not final: everything at once, or with a budget step by step, to overrun it
-/// by one step at most.
+/// The stretches where the line is not final: with all their records at once, or with a budget step
+/// by step, so that the last step alone overruns it.
 std::vector<SightPredicate::Stretch> SightSearch::unfinished_stretches() const {
   std::vector<Stretch> stretches;
   for (const SightPiece& p : view_.pieces) {
@@ -83,13 +83,14 @@ std::vector<SightPredicate::Stretch> SightSearch::unfinished_stretches() const {
   return stretches;
 }
 
-/// One point: as fine as it gets.
+/// Refines the one point in which the line meets the domain, as far as the file goes.
 void SightSearch::settle_touch() {
   refine({{0.0, 1.0, kEverything, -kInfinity, true}}, kEverything, kInfinity);
 }
 
-/// Applies what the stretches and ends ask for, notes it, and looks again. Records whose surface
-/// ends lower than `margin` below the lowest the line can be are left out of a stretch.
+/// Adds the records that the stretches and ends ask for, notes in `known` what is applied, and
+/// looks again. `margin` tells what cut_below_line() left out of the stretches: records whose
+/// surface ends lower than `margin` below the lowest height of the line there.
 void SightSearch::refine(std::vector<Stretch> stretches, double end_deviation, double margin) {
   const bool asks_ends = !ends_known();
   const double ends = asks_ends ? end_deviation : kInfinity;
@@ -110,10 +111,12 @@ void SightSearch::refine(std::vector<Stretch> stretches, double end_deviation, d
   look();
 }
 
-/// What deviation to ask for so that a piece that is `margin` away from a decision, and within
-/// `deviation`, is likely to be decided. At least half of what is known.
+/// The deviation to ask for, so that a piece is likely to be decided whose clearance is `margin`
+/// and whose deviation is `deviation`: at most half of that deviation. Every record is asked for
+/// where the deviation wanted would be too small for a search of its own.
 double SightSearch::target(double margin, double deviation) const noexcept {
-  // Nothing is known over T0: a first look at a sixteenth of the relief.
+  // Where nothing is known, over T0, the margin is infinite: a first look asks for a sixteenth of
+  // the relief (256 steps).
   const double share = ends_known() ? 0.7 : 0.45;
   const double wanted = std::isfinite(margin) ? std::min(share * std::abs(margin), 0.5 * deviation)
                                               : std::min(0.5 * deviation, 256 * step_);
@@ -125,7 +128,7 @@ double SightSearch::quarter_of(double deviation) const noexcept {
   return quarter > std::max(step_, facts_.finest_deviation) ? quarter : kEverything;
 }
 
-/// Joins a stretch to the last one when they follow one another.
+/// Adds a stretch; joins it to the last one where it follows that.
 void SightSearch::add(std::vector<Stretch>& stretches, double from, double to,
                       double deviation) const {
   if (!stretches.empty() && stretches.back().to == from) {
@@ -137,8 +140,9 @@ void SightSearch::add(std::vector<Stretch>& stretches, double from, double to,
   }
 }
 
-/// Leaves out of each stretch what ends lower than `margin` below the lowest the line can be there.
-/// Where there are voids it may still say what is void above.
+/// Leaves out of each stretch the records whose surface ends lower than `margin` below the lowest
+/// height of the line there. With voids it leaves out none, since such a record may still say what
+/// is void above.
 void SightSearch::cut_below_line(std::vector<Stretch>& stretches, double margin) const {
   if (facts_.has_voids) {
     return;
@@ -182,7 +186,7 @@ SightVerdict SightSearch::decide() {
     if (stretches.empty() && ends_known()) {
       stretches = unsettled_stretch();
       if (stretches.empty()) {
-        return SightVerdict::kUndecided;  // the file, or the tolerance, does not say more
+        return SightVerdict::kUndecided;  // neither the file nor the level of detail says more
       }
     }
     double ends = kInfinity;
@@ -193,8 +197,8 @@ SightVerdict SightSearch::decide() {
   }
 }
 
-/// The one point that is most likely to hide the line, if some is; else everything undecided: all
-/// of it must be seen to be visible.
+/// What to refine next. If the mesh rises above the line somewhere: the one point that is most
+/// likely to hide the line. Else all undecided pieces, since each of them must turn out visible.
 std::vector<SightPredicate::Stretch> SightSearch::undecided_stretches() const {
   const SightPiece* likely = nullptr;
   for (const SightPiece& p : view_.pieces) {
@@ -221,7 +225,8 @@ std::vector<SightPredicate::Stretch> SightSearch::undecided_stretches() const {
   return stretches;
 }
 
-/// The one point that hides the line if it is no void, which a tolerance does not tell.
+/// The one point that hides the line unless it is a void, which only records beyond the level of
+/// detail tell; empty when there is none.
 std::vector<SightPredicate::Stretch> SightSearch::unsettled_stretch() const {
   const SightPiece* likely = nullptr;
   for (const SightPiece& p : view_.pieces) {
@@ -245,15 +250,17 @@ const SightPiece* SightSearch::find_first_hidden() {
       return first == view_.pieces.end() ? nullptr : hidden_piece();
     }
     if (first->final && ends_known()) {
-      return hidden_piece();  // the first, unless a tolerance leaves one before it undecided
+      // The first one, unless a level of detail leaves a piece before it undecided.
+      return hidden_piece();
     }
     std::vector<Stretch> stretches = stretch_to_first_hidden();
     refine(std::move(stretches), kEverything, 0.0);
   }
 }
 
-/// From the first piece that may hide the line to the first that does, in steps of a quarter of
-/// what is known: so little is refined behind the place that is looked for.
+/// The stretches from the first piece that may hide the line to the first piece that does.
+/// Deviations are asked for in steps of a quarter, so that little is refined behind the place that
+/// is looked for.
 std::vector<SightPredicate::Stretch> SightSearch::stretch_to_first_hidden() const {
   std::vector<Stretch> stretches;
   for (const SightPiece& p : view_.pieces) {
@@ -275,8 +282,8 @@ std::vector<SightPredicate::Stretch> SightSearch::stretch_to_first_hidden() cons
 
 void SightSearch::find_least_clearance() {
   double most = kInfinity;
-  // What was left out because it lies below the line may matter now, unless the line is hidden:
-  // then only what is above it does.
+  // Records that were left out because they end below the line may matter now. Where the line is
+  // hidden they do not: then only what is above the line does.
   if (hidden_piece() == nullptr) {
     std::erase_if(view_.known, [](const KnownStretch& k) { return k.margin < kInfinity; });
     look();
@@ -293,7 +300,7 @@ void SightSearch::find_least_clearance() {
   }
 }
 
-/// The pieces that may hold a smaller clearance than `most`.
+/// The stretches of the pieces that may hold a smaller clearance than `most`.
 std::vector<SightPredicate::Stretch> SightSearch::stretches_of_least(double most) const {
   std::vector<Stretch> stretches;
   for (const SightPiece& p : view_.pieces) {

@@ -17,27 +17,33 @@ namespace ptin {
 class SightSearch {
  public:
   /// All borrowed for the life of the search.
+  /// @param step  Deviations below this are not worth a search of their own, height's unit.
   SightSearch(const SightFacts& facts, const SightRequest& request, BoundedMesh& mesh,
               QueryContext& context, double step);
 
-  /// Sets the line. REQUIRES: p != q.
+  /// Sets the line and looks at it over the mesh as it is. REQUIRES: p != q.
+  /// @param bend   Curvature::drop_at() of the line's length.
+  /// @param start  Any triangle; one near p is fast.
   void begin(Spot p, Spot q, const SightPair& pair, double bend, TriangleId start);
 
-  /// Makes ends exact, or the whole line as fine as it gets; stops when the budget is spent.
+  /// finish_ends() makes the ground below the ends exact; finish_line() makes the whole line as
+  /// fine as the level of detail. Both stop when the budget is spent.
   void finish_ends();
   void finish_line();
 
   /// Refines until the line is known to be hidden or visible, or nothing more can be known.
   [[nodiscard]] SightVerdict decide();
-  /// Refines until the first piece that is not visible is final. REQUIRES: hidden.
+  /// Refines until the first piece that is not visible is final. Returns the first hidden piece, or
+  /// null. REQUIRES: decide() said hidden.
   [[nodiscard]] const SightPiece* find_first_hidden();
   /// Refines until no piece can have a smaller clearance than the least one known.
   void find_least_clearance();
 
   [[nodiscard]] const SightView& view() const noexcept { return view_; }
+  /// The first piece that is hidden for certain, or null; valid until the mesh is refined.
   [[nodiscard]] const SightPiece* hidden_piece() const noexcept;
   [[nodiscard]] bool out_of_budget() const noexcept;
-  /// Whatever is asked of the ends is known.
+  /// True when all that is asked of the ends is known.
   [[nodiscard]] bool ends_known() const noexcept;
 
  private:

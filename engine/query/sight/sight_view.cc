@@ -10,13 +10,15 @@ namespace ptin {
 
 namespace {
 
-/// What is known of a stretch holds of the triangles that it touches. Where records were left out
-/// because they end below the line, it holds only inside: beyond, the line may be lower.
+/// Whether what is known of a stretch holds for a piece. It holds for the triangles that the
+/// stretch touches. Where records were left out because they end below the line, it holds only for
+/// pieces within the stretch: beyond it the line may be lower.
 bool is_known_by(const KnownStretch& k, const SightPiece& p) noexcept {
   return std::isinf(k.margin) ? k.from <= p.to && p.from <= k.to : k.from <= p.from && p.to <= k.to;
 }
 
-/// All codes of a footing are the same: then its height carries no rounding but the decoding's.
+/// True when all codes of a footing are the same: its height then carries no rounding but that of
+/// decoding.
 bool is_level(const Tin& tin, const Footing& f) {
   for (std::size_t i = 1; i < static_cast<std::size_t>(f.count); ++i) {
     if (tin.vertices[f.vertex[i]].height != tin.vertices[f.vertex[0]].height) {
@@ -68,8 +70,8 @@ void SightView::look(const BoundedMesh& mesh, TriangleId start) {
   set_level(b);
 }
 
-/// An end on the border of the domain from where the line stays outside, or a corner of the domain
-/// that the line touches.
+/// Looks at a line that meets the domain in one point alone: an end on the border from where the
+/// line stays outside, or a corner of the domain that the line touches.
 void SightView::set_only_point(const BoundedMesh& mesh, const LineWalk& walk) {
   for (SightEnd* end : {&a, &b}) {
     if (end->inside) {
@@ -128,7 +130,8 @@ void SightView::add_piece(const BoundedMesh& mesh, const LinePiece& piece) {
   pieces.push_back(view);
 }
 
-/// The closed surface counts: an end on a vertex or an edge beside a void stands on ground.
+/// Sets what is known of an end. The closed surface counts: an end on a vertex or an edge beside a
+/// void stands on ground.
 void SightView::set_end(const BoundedMesh& mesh, const Crossing& c, TriangleId t, bool surface,
                         SightEnd& end) const {
   const Tin& tin = mesh.tin();
@@ -154,9 +157,9 @@ void SightView::set_level(SightEnd& end) const {
   }
 }
 
-/// Ground: 8u of the largest code from code_at and 3u of decoding; the line: shares of 3u, products
-/// and sums of at most 12u of its largest term. 2^-46 of the sum of all magnitudes is four times
-/// that.
+/// With u = 2^-53. Ground: 8u of the largest code from code_at and 3u of decoding. The line: shares
+/// of 3u, products and sums of at most 12u of its largest term. 2^-46 of the sum of all magnitudes
+/// is four times that.
 double SightView::rounding() const noexcept {
   const double ends = std::max(
       {std::abs(ray_.a.lo), std::abs(ray_.a.hi), std::abs(ray_.b.lo), std::abs(ray_.b.hi)});
@@ -190,7 +193,7 @@ void SightView::decide_by_bounds(SightPiece& p) const {
               p.deviation - slack;
     const Lowest high = lowest_between(p.from, ray_.high(p.from) - p.ground_from, p.to,
                                        ray_.high(p.to) - p.ground_to, bend);
-    // Where the mesh is coarse there may be a void instead.
+    // Where the piece is not settled, the full TIN may have a void instead.
     p.most = facts_.has_voids && !p.settled ? kInfinity : high.value + p.deviation + slack;
     const Lowest guess = lowest_between(p.from, ray_.middle(p.from) - p.ground_from, p.to,
                                         ray_.middle(p.to) - p.ground_to, bend);
@@ -205,7 +208,7 @@ void SightView::decide_by_bounds(SightPiece& p) const {
                            : (p.most < 0 ? PieceVerdict::kHidden : PieceVerdict::kUndecided);
 }
 
-/// Walks once more and asks rationals where doubles could not tell.
+/// Walks once more, and decides in rationals what doubles could not tell.
 void SightView::decide_exactly(const BoundedMesh& mesh) {
   const Tin& tin = mesh.tin();
   const ExactRay exact(tin, facts_.heights, {a.height, a.absolute ? nullptr : &a.footing},
@@ -234,8 +237,9 @@ void SightView::decide_exactly(const BoundedMesh& mesh) {
   }
 }
 
-/// A single point of the surface: a vertex whose surface triangles lie beside the line. An end of
-/// the line there does not hide it.
+/// Looks at a crossing where the line meets the surface in a single point: a vertex whose surface
+/// triangles lie beside the line, or an end on the domain's border. An end of the line there does
+/// not hide the line.
 void SightView::check_touch(const BoundedMesh& mesh, const Crossing& c, const ExactRay& exact) {
   const bool inner = c.numerator > 0 && c.numerator < c.denominator;
   if (c.footing.lies() == Lies::kOnVertex) {

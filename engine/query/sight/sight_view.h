@@ -14,61 +14,67 @@ namespace ptin {
 
 enum class PieceVerdict : std::uint8_t { kVisible, kHidden, kUndecided };
 
-/// One piece of the line. Clearance: height of the line above the full surface.
+/// One piece of the line, inside of one triangle or along one edge of the mesh. Its clearance is
+/// the height of the line above the full surface. Heights are in the height's unit.
 struct SightPiece {
   double from = 0.0, to = 0.0;                ///< Shares of the way.
-  double ground_from = 0.0, ground_to = 0.0;  ///< Of the mesh; only on surface.
-  double deviation = 0.0;                     ///< Of the full surface from the mesh.
-  double highest = 0.0;                       ///< Nothing of the full surface is above.
+  double ground_from = 0.0, ground_to = 0.0;  ///< Heights of the mesh at both; set only on surface.
+  double deviation = 0.0;  ///< Most that the full surface deviates from the mesh.
+  double highest = 0.0;    ///< No point of the full surface is higher.
   bool surface = false;
-  bool final = false;                  ///< No record that may be asked for will change it.
-  bool exact = false;                  ///< No record at all will, whatever the tolerance.
-  bool settled = false;                ///< What it is, surface or void, is so in the full TIN.
-  double least = 0.0, most = 0.0;      ///< Bounds of the smallest clearance.
-  double guess = 0.0, guess_at = 0.0;  ///< Smallest clearance over the mesh; where.
-  PieceVerdict verdict = PieceVerdict::kUndecided;
+  bool final = false;              ///< No record that the request may ask for changes the piece.
+  bool exact = false;              ///< No record of the file changes it, whatever the tolerance.
+  bool settled = false;            ///< It is surface, or void, in the full TIN too.
+  double least = 0.0, most = 0.0;  ///< Bounds of the smallest clearance.
+  /// Smallest clearance over the mesh, and its share of the way.
+  double guess = 0.0, guess_at = 0.0;
+  PieceVerdict verdict = PieceVerdict::kUndecided;  ///< What the bounds, or exact arithmetic, say.
 };
 
-/// Nothing was left out of the piece that would change a clearance over it.
+/// True when no record was left out that would change a clearance over the piece.
 [[nodiscard]] inline bool is_final_truth(const SightPiece& p) noexcept {
   return p.final && p.settled && p.deviation == 0;
 }
 
-/// A stretch of the line in which all records above a deviation are applied, unless their surface
-/// ends lower than `margin` below the line; infinite: all of them.
+/// A stretch of the line and what the mesh holds there: all records of a deviation above
+/// `deviation`, except those whose surface ends lower than `margin` below the line.
 struct KnownStretch {
   double from = 0.0, to = 0.0;
-  double deviation = -1.0;  ///< Negative: all.
-  double margin = 0.0;
-  bool beyond = false;  ///< Those within the tolerance too.
+  double deviation = -1.0;  ///< Negative: records of any deviation.
+  double margin = 0.0;      ///< Infinite: no record is missing for its height.
+  bool beyond = false;      ///< Records within the tolerance of the level of detail are there too.
 };
 
 /// What does not change while one terrain is asked.
 struct SightFacts {
   HeightEncoding heights;
-  double file_deviation = 0.0;    ///< Of the full TIN from its source.
-  double finest_deviation = 0.0;  ///< Of what is final: the file's, or that of the tolerance.
-  double base_deviation = 0.0;    ///< Of the coarse mesh; applied everywhere.
+  double file_deviation = 0.0;    ///< Of the file's full TIN from its source.
+  double finest_deviation = 0.0;  ///< Of final pieces: the file's, or that of the level of detail.
+  double base_deviation = 0.0;    ///< The mesh has all records above this, everywhere.
   double max_height = 0.0;        ///< Of the whole terrain.
-  double tolerance = -1.0;        ///< Of the level of detail; negative: all records.
-  bool is_level_asked = false;    ///< Else there is nothing beyond it.
+  double tolerance = -1.0;        ///< Of the level of detail; negative: it keeps all records.
+  bool is_level_asked = false;    ///< A level of detail was asked for: records beyond it exist.
   bool has_voids = false;
-  bool final_settles = true;  ///< Where the mesh is final, its voids are those of the source.
-  bool exact_settles = true;  ///< Where it is exact, they are.
+  bool final_settles = true;  ///< Voids of final pieces are those of the source.
+  bool exact_settles = true;  ///< Voids of exact pieces are those of the source.
 };
 
-/// One end of the line: what is given, and the ground below it as far as it is known.
+/// One end of the line: what the request gives, and what is known of the ground below it.
 struct SightEnd {
-  double height = 0.0;
+  double height = 0.0;  ///< Above ground, or absolute.
   bool absolute = false;
-  bool inside = false;      ///< Of the domain.
-  bool surface = false;     ///< Over ground.
-  bool known = false;       ///< The mesh is exact there.
-  double deviation = -1.0;  ///< Records above it are applied here; negative: all; before: infinite.
-  Footing footing;
-  Interval level;  ///< Height of the end.
+  bool inside = false;   ///< The end lies in the domain.
+  bool surface = false;  ///< The end stands on ground.
+  bool known = false;    ///< All records at the end are applied.
+  /// Records at the end of a larger deviation are applied. Negative: all are. Infinite: none is
+  /// known to be, as before the ends are asked for.
+  double deviation = -1.0;
+  Footing footing;  ///< Where on the mesh the end stands.
+  Interval level;   ///< Bounds of the height of the end.
 };
 
+/// A line over a mesh, as far as the mesh tells. The owner says in `known` which records the mesh
+/// holds along the line, refines the mesh, and looks again. Threads: one owner.
 class SightView {
  public:
   SightView(const SightFacts& facts, Spot p, Spot q) : facts_(facts), p_(p), q_(q) {}
@@ -78,28 +84,34 @@ class SightView {
   std::vector<KnownStretch> known;
   std::vector<SightPiece> pieces;
 
-  /// Walks the mesh from p to q and fills pieces and ends. Cost: the triangles on the way.
+  /// Walks the mesh from p to q and fills pieces and ends.  @param start  Any triangle; one near p
+  /// is fast. Cost: the triangles on the way.
   void look(const BoundedMesh& mesh, TriangleId start);
-  /// Decides each piece as far as bounds can, and exactly where nothing is left out.
+  /// Decides each piece: by bounds, and where these do not tell and no record was left out,
+  /// exactly.
   void decide(const BoundedMesh& mesh);
 
   [[nodiscard]] const Ray& ray() const noexcept { return ray_; }
-  /// Over every void: something below the line is missing.
+  /// True when both ends have a height: each is absolute or stands on ground.
   [[nodiscard]] bool ends_defined() const noexcept {
     return (a.absolute || a.surface) && (b.absolute || b.surface);
   }
-  /// The heights of both ends are as certain as the file is.
+  /// True when the heights of both ends are as certain as the file is.
   [[nodiscard]] bool knows_levels() const noexcept {
     return (a.absolute || a.known) && (b.absolute || b.known);
   }
+  /// The triangle in which the last look() began to walk.
   [[nodiscard]] TriangleId start() const noexcept { return start_; }
-  /// The line meets the domain in one point alone, and whether that is ground may still change.
+  /// True when the line meets the domain in one point alone, and records may still change whether
+  /// that point is ground.
   [[nodiscard]] bool is_touch_open() const noexcept { return touch_open_; }
-  /// A vertex that the line passes between voids, or touches from outside, lies above the line.
+  /// True when a vertex hides the line alone: the line passes it between voids, or touches it from
+  /// outside of the domain, and the vertex lies above the line.
   [[nodiscard]] bool is_touched_from_below() const noexcept { return touched_ <= 1.0; }
-  /// Share of the way of the first such vertex.
+  /// Share of the way of the first vertex that hides the line so; above 1 when there is none.
   [[nodiscard]] double touched_at() const noexcept { return touched_; }
-  /// The least clearance over the vertices that it passes so; infinite when there is none.
+  /// The least clearance over all vertices that the line passes or touches so; infinite when there
+  /// is none.
   [[nodiscard]] const Lowest& least_touch() const noexcept { return least_touch_; }
 
  private:
@@ -114,15 +126,17 @@ class SightView {
   void decide_exactly(const BoundedMesh& mesh);
   void check_touch(const BoundedMesh& mesh, const Crossing& c, const ExactRay& exact);
   [[nodiscard]] double ground_at(const BoundedMesh& mesh, const Crossing& c) const;
-  /// Bound of the rounding of any clearance here.
+  /// Bound of the rounding of any clearance of the line.
   [[nodiscard]] double rounding() const noexcept;
 
   SightFacts facts_;
   Spot p_, q_;
   TriangleId start_ = 0;
   Ray ray_;
-  double magnitude_ = 0.0;  ///< Largest height of the mesh on the way.
-  double touched_ = 2.0;    ///< Above 1: none.
+  /// Largest of the heights of the mesh on the way, and at least the sum of the ends' given heights
+  /// and the offset.
+  double magnitude_ = 0.0;
+  double touched_ = 2.0;  ///< As touched_at().
   Lowest least_touch_{};
   bool any_exact_ = false;  ///< Some piece needs exact arithmetic.
   bool touch_open_ = false;

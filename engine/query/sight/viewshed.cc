@@ -38,7 +38,7 @@ void check(const ViewshedRequest& r) {
 }
 
 /// True for records that may deviate by more than `slope` times their distance from the eye, and
-/// for all that hold it. Monotone: a larger box is no farther.
+/// for all whose roi holds the eye. Monotone: a larger box is no farther.
 class DeviationTowards final : public AttributePredicate {
  public:
   /// @param eye  Grid units.  @param ground_x, ground_y  Ground units of a grid unit.
@@ -56,7 +56,7 @@ class DeviationTowards final : public AttributePredicate {
   double ground_x_, ground_y_, slope_;
 };
 
-/// Puts what two biased sweeps are certain of into the plain one.
+/// Puts what two biased sweeps are certain of into the result of the plain sweep.
 class Certainty {
  public:
   explicit Certainty(Viewshed& seen) : seen_(seen) {
@@ -70,7 +70,8 @@ class Certainty {
     }
   }
 
-  /// What a sweep answers that was biased against `certain`.
+  /// Takes over the targets for which a sweep biased against the answer `certain` gives that answer
+  /// nevertheless.
   void add(const Viewshed& biased, Sight certain) {
     for (std::size_t i = 0; i < seen_.pixels.size(); ++i) {
       if (biased.pixels[i] == certain) {
@@ -104,8 +105,8 @@ class Certainty {
   Viewshed& seen_;
 };
 
-/// How far the file's full TIN is from the source's; 0 where heights alone were rounded, which
-/// decides what the heights are.
+/// How far the file's full TIN is from the source's because records were left out. 0 where heights
+/// alone were rounded: then the rounded heights are the terrain's.
 double deviation_of_left_out(const StoreFacts& facts) {
   const double largest = std::max(std::abs(facts.min_height), std::abs(facts.max_height));
   const double rounding =
@@ -114,7 +115,7 @@ double deviation_of_left_out(const StoreFacts& facts) {
   return facts.base_deviation <= kSlack * rounding ? 0.0 : facts.base_deviation;
 }
 
-/// The mesh of a request, and what it leaves open.
+/// Refines the mesh of a request, sweeps it, and tells which answers are certain.
 class ViewshedSearch {
  public:
   ViewshedSearch(const OpenedTerrain& terrain, const ViewshedRequest& request)
@@ -151,7 +152,7 @@ class ViewshedSearch {
     if (!std::isfinite(left_out_)) {
       return;
     }
-    // The eye stands on ground that is not known either.
+    // The ground on which the eye stands is not known either.
     const double base = request_.absolute ? left_out_ : 2 * left_out_;
     const bool voids = !store_.facts().free_of_voids;
     certainty.add(sweep({1, slope_, voids, base}), Sight::kVisible);
@@ -173,14 +174,16 @@ class ViewshedSearch {
     }
     slope_ = allowed() / request_.radius;
     const auto spot = SpotMap(map, store_.facts().bounds).spot(eye);
-    const MapPoint at = spot ? grid_of(*spot) : map.to_grid(eye);  // outside is found out later
+    // find_eye() refuses an eye outside
+    const MapPoint at = spot ? grid_of(*spot) : map.to_grid(eye);
     const auto towards = std::make_shared<DeviationTowards>(
         at, map.step_x * request_.ground_per_map_x, map.step_y * request_.ground_per_map_y, slope_);
     const auto level = std::make_shared<AboveError>(detail_.tolerance());
     mesh_.refine(*all_of({near, any_of({level, towards})}), context_, towards.get());
   }
 
-  /// The deviation at the radius: what is asked for, at any point.
+  /// The deviation allowed at the radius: the tolerance asked for, or the certified error of the
+  /// vertices asked for.
   [[nodiscard]] double allowed() const noexcept {
     return request_.detail.tolerance.value_or(detail_.certificate().error);
   }
@@ -197,7 +200,8 @@ class ViewshedSearch {
   BoundedMesh mesh_;
   double left_out_;  ///< Deviation of the file's full TIN from the source's.
   double slope_ = 0;
-  std::uint64_t results_held_ = 1;  ///< The plain sweep's, and beside it one that is biased.
+  /// Results at once: that of the plain sweep, and of a biased one.
+  std::uint64_t results_held_ = 1;
 };
 
 }  // namespace

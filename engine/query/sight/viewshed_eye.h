@@ -12,12 +12,14 @@ namespace ptin {
 
 struct ViewshedEye {
   Spot spot;
-  TriangleId triangle = kNone;  ///< A closed one that holds it.
-  double height = 0;            ///< Of itself.
-  double above_ground = 0;      ///< Infinite over a void.
+  TriangleId triangle = kNone;  ///< A closed triangle that holds the spot.
+  double height = 0;            ///< Absolute, height's unit.
+  double above_ground = 0;      ///< Height's unit; infinite over a void.
 };
 
-/// @throws Error invalid_argument  outside; on a void without an absolute height; below the surface
+/// Finds where the observer of `request` stands on `tin`.
+/// @throws Error invalid_argument  outside of the terrain; on a void without an absolute height;
+///                                 below the surface
 [[nodiscard]] ViewshedEye find_eye(const Tin& tin, const StoreFacts& facts,
                                    const ViewshedRequest& request);
 

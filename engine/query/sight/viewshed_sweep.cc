@@ -21,7 +21,8 @@ constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
 constexpr double kMostBuckets = 65536;
 constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few pieces in each
 
-/// Whether a corner of a triangle, or a point of it, is looked at from within the triangle.
+/// Whether a target of a triangle is looked at from within the triangle, and by which pieces of the
+/// horizon.
 struct Approach {
   bool from_within = false;
   Horizon::Side side = Horizon::Side::kBoth;
@@ -70,7 +71,7 @@ class Viewer {
   void look_at(TriangleId t, Horizon& horizon);
   void raise(TriangleId t, TriangleId n, Offset a, Offset b, Horizon& horizon) const;
   [[nodiscard]] double longest_side(TriangleId t) const noexcept;
-  /// How far the full surface may be from this one. Rounded up.
+  /// How far the full surface may be from the swept one at an offset. Rounded up.
   [[nodiscard]] double unknown_at(double x, double y) const noexcept {
     const double gx = x * ground_x_;
     const double gy = y * ground_y_;
@@ -98,8 +99,9 @@ class Viewer {
   [[nodiscard]] bool is_surface(TriangleId t) const noexcept {
     return t != kNone && tin_.classes[t] == TriangleClass::kSurface;
   }
-  /// A target in line with an edge is looked at along it from both sides, each when its triangle
-  /// comes: only then is what was raised on that side in front of the target.
+  /// Combines the answers for a target. A target in line with an edge is looked at along it from
+  /// both sides, each when the triangle of that side comes: only then are the edges that were
+  /// raised on that side in front of the target. It is visible when both sides see it.
   static void see(Sight& target, bool visible) noexcept {
     target = visible && target != Sight::kHidden ? Sight::kVisible : Sight::kHidden;
   }
@@ -113,16 +115,16 @@ class Viewer {
   ViewshedEye eye_;
   MapPoint eye_at_;  ///< Grid units.
   double ground_x_ = 1, ground_y_ = 1;
-  std::vector<Offset> offsets_;       ///< Beside the vertices: grid units, and height's unit.
-  std::vector<Sight> seen_;           ///< Beside the vertices; kNothing: not looked at yet.
+  std::vector<Offset> offsets_;  ///< For each vertex: x, y in grid units, z in the height's unit.
+  std::vector<Sight> seen_;      ///< For each vertex; kNothing: not looked at yet.
   double pixel_x_ = 1, pixel_y_ = 1;  ///< Grid units.
   double first_x_ = 0, first_y_ = 0;  ///< Offset of pixel 0.
   bool pixels_on_grid_ = false;
-  std::optional<WalkedView> walked_;  ///< Once no order is left.
+  std::optional<WalkedView> walked_;  ///< Set once the triangles left have no order.
   Viewshed result_;
 };
 
-/// Mesh, rasters and horizon together, before any of them is taken.
+/// Asks for the memory of mesh, rasters and horizon together, before any of it is taken.
 void Viewer::admit() const {
   const std::uint64_t a_vertex =
       kVertexBytes + (request_.list_vertices ? held_.results * sizeof(Viewshed::Target) : 0);
@@ -154,7 +156,7 @@ void Viewer::place_pixels() {
   if (reach_x > kMostPixels || reach_y > kMostPixels) {
     refuse("the raster has more than 200 000 pixels a side: give a larger pixel size");
   }
-  // On the grid: centres are the grid points, whatever the eye.
+  // On the grid, centres are the grid points, wherever the eye is.
   const double centre_x = pixels_on_grid_ ? std::floor(eye_at_.x + 0.5) - eye_at_.x : 0.0;
   const double centre_y = pixels_on_grid_ ? std::floor(eye_at_.y + 0.5) - eye_at_.y : 0.0;
   result_.width = static_cast<std::uint32_t>(2 * reach_x) + 1;
@@ -166,8 +168,9 @@ void Viewer::place_pixels() {
   result_.step_y = pixel_y_ * facts_.map.step_y;
 }
 
-/// Front to back: a triangle comes when all neighbours across the sides that face the eye have
-/// come. A side that turns its back to the eye is raised when its triangle has been looked at.
+/// Takes the triangles front to back: a triangle comes when all neighbours across the sides that
+/// face the eye have come. The sides that turn their back to the eye are raised after their
+/// triangle has been looked at.
 void Viewer::sweep() {
   std::vector<std::uint8_t> waits(tin_.triangles.size());
   std::vector<TriangleId> ready;
@@ -193,8 +196,8 @@ void Viewer::sweep() {
     }
   }
   Horizon horizon(buckets());
-  // The last that became ready comes first: any order that keeps front before back does, and this
-  // one stays where the mesh and the horizon are in the cache.
+  // The triangle that became ready last comes first. Any order that keeps front before back would
+  // do; this one stays where the mesh and the horizon are in the caches.
   while (!ready.empty()) {
     if (left % kStopInterval == 0) {
       context_.check_stop();
@@ -222,9 +225,10 @@ void Viewer::sweep() {
   }
 }
 
-/// Along the ray, what is not known grows with the distance, in a straight line: so between two
-/// sides it changes no slope by more than at them. Curvature does, by a quarter of the drop over a
-/// side, within the triangle and again along its side.
+/// Raises the horizon to side a -> b of triangle `t`, beyond which lies `n`, moved by the bias.
+/// What is not known grows with the distance in a straight line, so between two sides it changes no
+/// slope by more than at these sides. Curvature does: by a quarter of the drop over a side within
+/// the triangle, and by as much again along the side.
 void Viewer::raise(TriangleId t, TriangleId n, Offset a, Offset b, Horizon& horizon) const {
   const bool surface = is_surface(t) || is_surface(n);
   if (bias_.sign == 0) {
@@ -259,8 +263,8 @@ double Viewer::longest_side(TriangleId t) const noexcept {
   return std::sqrt(square);
 }
 
-/// Triangles that hide one another in a ring, and all behind: only where the mesh is far from
-/// Delaunay.
+/// Looks at the triangles that hide one another in a ring, and at all behind them, by walks. There
+/// are some only where the mesh is far from Delaunay.
 void Viewer::walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon) {
   walked_.emplace(tin_, offsets_, eye_.spot);
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
@@ -273,13 +277,13 @@ void Viewer::walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& hor
 
 bool Viewer::sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon& horizon) {
   if (bias_.sign != 0 && walked_) {
-    return bias_.sign < 0;  // undecided: the walk knows no bias
+    return bias_.sign < 0;  // the answer that leaves the target undecided: the walk knows no bias
   }
   Offset p = at;
   p.z -= bias_.sign * unknown_at(p.x, p.y);
   if (!walked_) {
-    // The ground just before a target that is lower than this may hide it.
-    // Ground beside the observer that is higher than the observer may hide everything.
+    // A target that is lower than twice what is not known may be hidden by the ground just before
+    // it. An observer below ground that may lie beside it may see nothing.
     const bool stands_out =
         bias_.sign <= 0 ||
         (request_.target_height >= 2 * unknown_at(p.x, p.y) && eye_.above_ground >= bias_.base);
@@ -290,7 +294,7 @@ bool Viewer::sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon
 }
 
 /// The ray to a corner comes through the triangle when the eye is on the inner side of both sides
-/// at that corner; along a side when it is in line with it.
+/// at that corner. It comes along a side when the eye is in line with it.
 Approach Viewer::approach_corner(const std::array<Offset, 3>& o, int corner) const noexcept {
   const Offset& at = o[static_cast<std::size_t>(corner)];
   const Offset& next = o[static_cast<std::size_t>(next_corner(corner))];
@@ -335,7 +339,8 @@ void Viewer::look_at(TriangleId t, Horizon& horizon) {
   }
 }
 
-/// Pixel centres in the box of the triangle, but for those on its corners, which are vertices.
+/// Looks at the pixel centres in the box of the triangle, except those on its corners, which are
+/// vertices.
 void Viewer::look_at_pixels(TriangleId t, const Horizon& horizon) {
   if (!is_surface(t)) {
     look_at_pixels_behind(t, horizon);
@@ -354,8 +359,8 @@ void Viewer::look_at_pixels(TriangleId t, const Horizon& horizon) {
   look_at_box(t, horizon, {o[0], o[1], o[2]});
 }
 
-/// The ray to a target on the rim of a void, seen across it, comes through a void triangle: no
-/// surface triangle takes such a target, so the void one does.
+/// Looks at the targets on the rim of a void that are seen across the void. The ray to such a
+/// target comes through a void triangle, so no surface triangle takes it.
 void Viewer::look_at_pixels_behind(TriangleId t, const Horizon& horizon) {
   const auto o = offsets(t);
   for (int i = 0; i < 3; ++i) {
@@ -431,7 +436,8 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
     pixel = Sight::kVisible;
     return;
   }
-  // On the plane of the triangle, and lowered as a point of its own: the corners' were lowered too.
+  // The height on the plane of the triangle without curvature, then lowered by the drop at the
+  // point itself.
   for (std::size_t i = 0; i < 3; ++i) {
     p.z += weights[i] / sum * (o[i].z + drop(o[i].x, o[i].y));
   }

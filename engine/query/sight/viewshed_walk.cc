@@ -9,7 +9,7 @@ bool WalkedView::sees(Spot spot, double z, TriangleId start) const {
     return true;
   }
   LineWalk walk(tin_, eye_, spot, start);
-  bool before = false;  // the last piece was surface
+  bool before = false;  // the piece before was surface
   while (walk.next()) {
     const LinePiece& piece = walk.piece();
     const bool surface = piece.is_surface(tin_);

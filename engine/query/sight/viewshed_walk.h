@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One target of a viewshed by itself: the line to it, walked over the mesh. For what has no order
-// from front to back.
+// One target of a viewshed at a time: the line to it, walked over the mesh. For targets in
+// triangles that have no order from front to back.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,11 @@
 
 namespace ptin {
 
-/// Whether a surface triangle holds a point of the void triangle `t`: the rim of a void, seen across
-/// it. The sight line comes through a void triangle, which therefore looks at the targets on its
-/// sides and corners that are the surface's too.
-/// @param weights  Of the corners; >= 0. Cost: a corner's degree at a corner, else O(1).
+/// Whether a point of the void triangle `t` is on the rim of the void: some surface triangle holds
+/// it too. A sight line across the void comes to such a target through a void triangle, so the void
+/// triangle looks at it.
+/// @param weights  Of the corners of `t` at the point; >= 0.
+/// Cost: a corner's degree at a corner, else O(1).
 [[nodiscard]] inline bool holds_surface(const Tin& tin, TriangleId t, const double (&weights)[3]) {
   const Triangle& triangle = tin.triangles[t];
   for (int i = 0; i < 3; ++i) {
@@ -32,15 +33,17 @@ namespace ptin {
   return false;
 }
 
-/// Borrows all for its life. Threads: several may ask.
+/// Tells what an eye sees by walking to each target. Borrows all for its life. Threads: several may
+/// ask.
 class WalkedView {
  public:
-  /// @param offsets  Of the vertices from the eye; those of no height are not read.
+  /// @param offsets  Of each vertex from the eye; z is not read for vertices without a height.
   WalkedView(const Tin& tin, const std::vector<Offset>& offsets, Spot eye)
       : tin_(tin), offsets_(offsets), eye_(eye) {}
 
-  /// True when no surface rises strictly above the inner part of the line to a target at `spot`, at
-  /// height `z` from the eye.  @param start  Any triangle; near the eye is fast.
+  /// True when no surface rises strictly above the inner part of the line to a target at `spot`,
+  /// which is `z` higher than the eye.
+  /// @param start  Any triangle; one near the eye is fast.
   /// Cost: the triangles on the way.
   [[nodiscard]] bool sees(Spot spot, double z, TriangleId start) const;
 

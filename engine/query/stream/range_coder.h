@@ -31,12 +31,13 @@ class BitModel {
   std::uint16_t fast_ = 32768, slow_ = 32768;
 };
 
-/// Writes bits. Each costs -log2 of the share that its model gave it.
+/// Writes bits. A bit costs -log2 of the share that its model gave it.
 class RangeEncoder {
  public:
   /// @param out  Borrowed; appended to.
   explicit RangeEncoder(std::vector<std::byte>& out) : out_(out) {}
 
+  /// Writes a bit by the model, which learns it. Returns the bit.
   bool code(BitModel& model, bool bit) {
     code_share(model.zero(), bit);
     model.learn(bit);
@@ -57,7 +58,7 @@ class RangeEncoder {
     }
     return bit;
   }
-  /// Ends the code: what the decoder reads ahead.
+  /// Ends the code: writes the bytes that a decoder reads ahead.
   void finish() {
     for (int i = 0; i < 5; ++i) {
       shift();
@@ -85,8 +86,8 @@ class RangeEncoder {
   std::uint8_t cache_ = 0;
 };
 
-/// Reads them again. Behind the end of its input it reads zeros and counts them: no input is
-/// unsafe.
+/// Reads the bits again. Behind the end of its input it reads zeros and counts them, so any input
+/// is safe.
 class RangeDecoder {
  public:
   /// @param in  Borrowed.
@@ -96,6 +97,8 @@ class RangeDecoder {
     }
   }
 
+  /// Reads a bit by the model, which learns it. The second argument makes the call that of an
+  /// encoder.
   bool code(BitModel& model, bool /*unknown*/ = false) {
     const bool bit = code_share(model.zero());
     model.learn(bit);
@@ -112,7 +115,7 @@ class RangeDecoder {
     }
     return bit;
   }
-  /// Bytes taken so far; more than there were when the code is damaged.
+  /// Bytes taken so far; more than there are when the code is damaged.
   [[nodiscard]] std::size_t taken() const noexcept { return at_; }
 
  private:
@@ -127,8 +130,8 @@ class RangeDecoder {
   std::uint32_t code_ = 0;
 };
 
-/// A number from 0 to 2^40 - 1 of unknown size: its length in bits, then the bits, of which two are
-/// learned.
+/// A number from 0 to 2^40 - 1 of unknown size: its length in bits, then the bits below the leading
+/// one. Length and the first two of these bits are learned.
 class NumberModel {
  public:
   /// Codes `v`; a decoder ignores it. Returns the number.
@@ -162,8 +165,9 @@ class NumberModel {
   std::array<std::array<BitModel, 4>, kMostBits + 1> top_;
 };
 
-/// A number from 0 to a known bound, by halving: the first four halves are learned, for each bound
-/// below 16 apart and for larger ones by their length; the rest is uniform.
+/// A number from 0 to a known bound, by halving the range. The first four halvings are learned:
+/// apart for each bound below 16, and for larger bounds by their length in bits. Further halvings
+/// are uniform.
 class RangeModel {
  public:
   /// Codes `v`, 0 <= v <= most; a decoder ignores it. Returns the number. REQUIRES: most < 2^31.

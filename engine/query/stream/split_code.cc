@@ -29,7 +29,8 @@ bool is_void(const Tin& tin, TriangleId t) { return tin.classes[t] == TriangleCl
 
 }  // namespace
 
-/// Heights as whole numbers in their own order: an int32 as it is, a float32 by its bits.
+/// A height as a whole number that keeps the order of heights: an int32 as it is, a float32 by its
+/// bits.
 std::int64_t SplitCode::number_of(HeightBits bits) const noexcept {
   const auto n = std::bit_cast<std::int32_t>(bits);
   return type_ == HeightType::int32 || n >= 0 ? n : n ^ INT32_MAX;
@@ -116,7 +117,8 @@ const char* SplitCode::code_w(Coder& coder, const Tin& tin, LocalSplit& s) {
   return nullptr;
 }
 
-/// Which of the triangles around w get u: from corner vl on, so many.
+/// Codes the fan, the triangles around w that get u: the place of corner vl, and how many triangles
+/// follow.
 template <class Coder>
 const char* SplitCode::code_fan(Coder& coder, const Tin& tin, LocalSplit& s) {
   read_star(tin, s.w);
@@ -252,8 +254,9 @@ std::size_t SplitCode::fan_triangle_of(const Tin& tin, GridPoint u) const noexce
   return fan_size_ - 1;
 }
 
-/// The height of fan triangle k at u, rounded to the nearest number, halves up; of a corner that
-/// has one where not all do; the last one coded where none does.
+/// The number expected for the height of u: that of the plane of fan triangle k at u, rounded to
+/// nearest, halves up. Where not all corners have heights, that of the first corner that has one;
+/// where none has, the last height coded.
 std::int64_t SplitCode::predicted(const Tin& tin, const LocalSplit& s, std::size_t k) const {
   const VertexId v[3] = {s.w, corner(k), corner(k + 1)};
   __extension__ using Wide = __int128;  // weights below 2^61, heights below 2^32
@@ -282,7 +285,8 @@ std::int64_t SplitCode::predicted(const Tin& tin, const LocalSplit& s, std::size
   return last_height_;
 }
 
-/// Length in bits of the range of the fan's heights: how far off a prediction may well be.
+/// Length in bits of the range of the heights of w and the fan, which tells how far off a
+/// prediction may be; 33 where none has a height.
 std::size_t SplitCode::roughness(const Tin& tin) const {
   std::int64_t low = INT64_MAX;
   std::int64_t high = INT64_MIN;
@@ -345,7 +349,8 @@ const char* SplitCode::code_height(Coder& coder, const Tin& tin, LocalSplit& s) 
   return nullptr;
 }
 
-/// Only a triangle whose corners have heights can be surface.
+/// Codes the classes of the new triangles. Only a triangle whose corners all have heights can be
+/// surface.
 template <class Coder>
 void SplitCode::code_classes(Coder& coder, const Tin& tin, LocalSplit& s) {
   const bool has_height = (s.flags & VertexSplit::kVertexVoid) == 0;

@@ -38,9 +38,11 @@ struct FrameHead {
 static_assert(sizeof(FrameHead) == 24);
 inline constexpr std::uint32_t kMaxFrameBytes = 1U << 28;
 
-inline constexpr std::uint32_t kIsDelta = 1;  ///< Flag of Start: it goes on from another stream.
+/// Flag of Start: the stream goes on from another one.
+inline constexpr std::uint32_t kIsDelta = 1;
 
-/// Payload of a start frame; the metadata follows.
+/// Payload of a start frame; the metadata follows. Steps, offsets, origins, heights and bounds are
+/// the bits of doubles.
 struct Start {
   std::uint64_t fingerprint;                 //   0  of the file
   std::uint32_t height_type, flags;          //   8
@@ -68,18 +70,22 @@ struct T0Counts {
 /// Payload of a frame of splits; their code follows.
 struct Splits {
   std::uint32_t count, reserved;
-  std::uint64_t error, deviation;  ///< Certified once they are applied. double
+  std::uint64_t error, deviation;  ///< Bits of doubles: certified once the splits are applied.
 };
 static_assert(sizeof(Splits) == 24);
-/// A code of so many bytes holds at most four times as many splits: memory is bounded by input.
+/// A code holds at most this many splits for each of its bytes: a receiver's memory is bounded by
+/// its input.
 inline constexpr std::uint64_t kMostSplitsPerByte = 4;
-/// A frame has at least a 64th as many splits as the mesh has vertices, or 2^20, unless it is the
-/// stream's last: a receiver numbers the mesh for each frame, so time is bounded by input.
+/// A frame has at least a 64th as many splits as the mesh has vertices, or at least 2^20, unless it
+/// is the last of its stream: a receiver numbers the mesh anew for each frame, so its time is
+/// bounded by its input.
 inline constexpr std::uint64_t kLeastShare = 64;
 inline constexpr std::uint64_t kMostLeastSplits = std::uint64_t{1} << 20;
 
+/// Payload of an end frame.
 struct End {
-  std::uint64_t splits, vertices, digest;  ///< Of this stream; of the mesh; of its vertices.
+  /// Splits of this stream; vertices and digest of the mesh.
+  std::uint64_t splits, vertices, digest;
 };
 static_assert(sizeof(End) == 24);
 
@@ -87,11 +93,12 @@ static_assert(layout::kIsPlainBytes<Head> && layout::kIsPlainBytes<FrameHead> &&
               layout::kIsPlainBytes<Start> && layout::kIsPlainBytes<Splits> &&
               layout::kIsPlainBytes<End>);
 
-/// Checksum of a frame, over its head (its checksum left out) and its payload.
+/// Checksum of a frame: over its head without the checksum, and its payload.
 [[nodiscard]] std::uint64_t checksum_of_frame(const FrameHead& head,
                                               std::span<const std::byte> payload);
 
-/// What stands for a set of vertices whatever their order: the sum of their checksums, modulo 2^64.
+/// The digest of a vertex. That of a mesh is the sum of the digests of its vertices, modulo 2^64,
+/// so it does not depend on their order.
 [[nodiscard]] std::uint64_t digest_of(GridPoint position, HeightBits height,
                                       bool has_height) noexcept;
 [[nodiscard]] std::uint64_t digest_of(const Tin& tin) noexcept;

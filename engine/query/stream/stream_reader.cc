@@ -155,7 +155,8 @@ void StreamReader::take(std::span<const std::byte> bytes) {
   ++sequence_;
 }
 
-/// Of as much of the head as there is: a few other bytes are no stream that was cut.
+/// Checks as much of the magic as has arrived: so a few bytes of something else are not taken for a
+/// stream that was cut.
 void StreamReader::check_magic() const {
   const std::size_t bytes = std::min(waiting_.size(), stream::kMagic.size());
   if (!std::equal(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(bytes),
@@ -319,8 +320,8 @@ void StreamReader::take_splits(std::span<const std::byte> payload) {
   certificate_ = now;
 }
 
-/// What decode() gives has its corners in order and fitting classes; what is left is the geometry
-/// of a border and of the new triangles, and split() looks at all of it.
+/// Applies a split that decode() gave. Its corners are in order and its classes fit. What is left
+/// to check, the geometry of a border and of the new triangles, split() checks.
 void StreamReader::apply(const LocalSplit& s) {
   const auto u = static_cast<VertexId>(tin_.vertices.size());
   if (u >= kNone / 2) {

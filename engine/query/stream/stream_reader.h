@@ -21,57 +21,60 @@
 namespace ptin {
 
 struct StreamReaderOptions {
-  /// The memory is for frames that wait and for the mesh; it is asked for before either grows.
+  /// The memory is for a frame that is not whole yet and for the mesh; the limit is checked before
+  /// either grows.
   QueryLimits limits;
 };
 
-/// Follows a stream, and after it streams that go on from it. Threads: one owner.
+/// Follows a stream, and after its end the streams that go on from it. Threads: one owner.
 class StreamReader {
  public:
-  /// @param name  Of the stream, in errors.
+  /// @param name  Name of the stream, in errors.
   explicit StreamReader(std::string name, StreamReaderOptions options = {})
       : name_(std::move(name)), options_(std::move(options)) {}
 
   /// Takes the next bytes, however they were cut, and applies every frame that is whole by now.
-  /// @return How many were taken: all, unless the stream ended before. What is fed behind the end
-  ///         of a stream is another one, which goes on from there.
-  /// @throws Error corruption           bytes that no program wrote (FORMAT.md, "A reader of
-  ///                                    streams must reject"), a stream that does not go on from
+  /// @return Number of bytes taken: all, unless the stream ends before. Bytes behind the end of a
+  /// stream belong to another stream, which goes on from there: feed them again.
+  /// @throws Error corruption           bytes that no program wrote (storage/FORMAT.md, "A reader
+  ///                                    of streams must reject"), a stream that does not go on from
   ///                                    this mesh; names frame and byte. The mesh stays valid, its
   ///                                    certificate that of the last whole frame; nothing more can
   ///                                    be fed.
   ///               unsupported_version
   ///               resource_exhausted   what comes would exceed the memory limit
   ///               cancelled
-  /// Cost: linear in the bytes and, where stars are of bounded degree, in the splits; a stream that
-  /// goes on from another costs O(n log n) on a mesh of n vertices, however few splits it brings
-  /// (so a caller who does not trust the sender limits how many there are). A frame that is not
-  /// whole waits in memory, nothing is reserved before it came.
+  /// Cost: linear in the bytes and, where stars are of bounded degree, in the splits. A stream that
+  /// goes on from another costs O(n log n) on a mesh of n vertices, however few splits it brings;
+  /// so a caller who does not trust the sender limits how many there are. A frame that is not whole
+  /// waits in memory, and nothing is reserved before its bytes came.
   std::size_t feed(std::span<const std::byte> bytes) { return feed(bytes, false); }
 
-  /// As feed(), but takes nothing behind the head, or the frame, that `bytes` make whole: for who
-  /// wants to see the mesh after each frame.
+  /// As feed(), but takes nothing behind the first head or frame that `bytes` complete: for callers
+  /// that look at the mesh after each frame.
   std::size_t feed_frame(std::span<const std::byte> bytes) { return feed(bytes, true); }
 
-  /// Gives up the rest of a stream that was cut: what is fed next is the head of another one.
+  /// Gives up the rest of a stream that was cut. The bytes fed next are those of another stream,
+  /// from its head on.
   void begin_next();
 
-  /// False until T0 arrived; then the rest can be asked.
+  /// False until T0 has arrived. Before that the mesh and its certificate mean nothing.
   [[nodiscard]] bool has_mesh() const noexcept { return !tin_.triangles.empty(); }
-  /// The mesh: every vertex and triangle is alive, and those that are there keep their ids until
-  /// another stream begins.
+  /// The mesh. Every vertex and triangle is alive, and keeps its id until another stream begins.
   [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
-  /// Changes when vertices and triangles that are there get other ids: with T0 and with each stream
-  /// that goes on from another.
+  /// A number that changes when vertices and triangles get other ids: when T0 arrives, and when a
+  /// stream that goes on from another begins.
   [[nodiscard]] std::uint64_t numbering() const noexcept { return numbering_; }
-  /// What the mesh is certified for, where the stream was asked for; at least base_error.
+  /// What the mesh is certified for in the region that the stream was asked for; at least
+  /// base_error.
   [[nodiscard]] const Certificate& certificate() const noexcept { return certificate_; }
-  /// Of the file that the stream came from.
+  /// Facts of the file from which the stream came, as far as a stream tells them: map, heights,
+  /// bounds, base.
   [[nodiscard]] const StoreFacts& facts() const noexcept { return facts_; }
   [[nodiscard]] const std::string& metadata() const noexcept { return metadata_; }
   [[nodiscard]] std::uint64_t t0_vertices() const noexcept { return t0_vertices_; }
 
-  /// Splits of the current stream: those applied, those that it has in all.
+  /// Splits of the current stream that are applied, and all that it has.
   [[nodiscard]] std::uint64_t splits() const noexcept { return splits_; }
   [[nodiscard]] std::uint64_t splits_in_all() const noexcept { return splits_in_all_; }
   /// True once the end of the current stream arrived.
@@ -102,7 +105,7 @@ class StreamReader {
 
   std::string name_;
   StreamReaderOptions options_;
-  std::vector<std::byte> waiting_;  ///< Of a frame that is not whole.
+  std::vector<std::byte> waiting_;  ///< Bytes of a frame that is not whole.
   std::uint64_t offset_ = 0;
   std::uint32_t sequence_ = 0;
   Expects expects_ = Expects::kHead;

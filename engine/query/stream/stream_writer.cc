@@ -63,8 +63,8 @@ class GrowingMesh {
   KeyTable ids_;
 };
 
-/// How many splits of the same frame each split comes after, one needing the other: level 0 needs
-/// none. Splits of one level can come in any order.
+/// The level of each split of a frame: the length of the longest chain of splits of the frame that
+/// it depends on. Level 0 depends on none of them. The splits of one level can come in any order.
 class Levels {
  public:
   Levels(const Tin& base, std::uint64_t splits) : mesh_(base, splits) {}
@@ -96,11 +96,11 @@ class Levels {
   }
   GrowingMesh mesh_;
   std::vector<std::uint32_t>
-      marks_;  ///< By triangle: 1 + level of the split of this frame that made it.
+      marks_;  ///< For each triangle 1 + level of the split of this frame that made it.
   Star star_;
 };
 
-/// A split of a level, in its place.
+/// A split of a level, and the number of its w.
 struct Ordered {
   std::uint32_t rank;
   VertexId w;
@@ -191,7 +191,8 @@ void append(std::vector<std::byte>& out, const T& object) {
   append_bytes(out, std::as_bytes(std::span(&object, 1)));
 }
 
-/// By falling rank; within a rank along the Hilbert curve, where the mesh is in the caches.
+/// Sorts splits by falling rank, and within a rank along the Hilbert curve, where the mesh is in
+/// the caches.
 void sort_by_rank(std::span<PendingSplit> splits) {
   struct Place {
     std::uint64_t curve;
@@ -217,15 +218,16 @@ void sort_by_rank(std::span<PendingSplit> splits) {
   std::copy(sorted.begin(), sorted.end(), splits.begin());
 }
 
-/// What the receiver has, numbered as it numbers it: T0, and the records it was served. Each
-/// serving is closed under dependency, and so are they together.
+/// The mesh that the receiver has, numbered as the receiver numbers it: T0, and the records of all
+/// servings. Each serving is closed under dependency together with those before it.
 Tin Writer::base_mesh() {
   Refinement refinement(terrain_.t0());
   for (const StreamHeld& held : request_.held) {
     const PredicatePtr predicate = held.predicate ? held.predicate : everything();
     std::vector<PendingSplit> splits =
         retrieve(source_, *predicate, refinement_bytes(refinement.tin().vertices.size()), context_);
-    // Before cutting: the receiver counts what it was sent, without what it had by then.
+    // Before cutting, since a serving counts the splits that it sent, without those that the
+    // receiver had by then.
     std::erase_if(splits,
                   [&](const PendingSplit& s) { return refinement.find(s.u) != KeyTable::kAbsent; });
     if (held.splits < splits.size()) {
@@ -238,8 +240,8 @@ Tin Writer::base_mesh() {
   return stream::numbered_by_key(refinement.tin());
 }
 
-/// What is wanted and not held, in the total order. Closed together with what is held: so is any
-/// first part of it.
+/// The records that are wanted and not held, in the total order. They are closed together with
+/// those that are held, and so is any first part of them.
 std::vector<PendingSplit> Writer::missing_splits(const Tin& base) {
   const PredicatePtr wanted = request_.wanted ? request_.wanted : everything();
   const std::uint64_t base_bytes = 2 * refinement_bytes(base.vertices.size());
@@ -265,7 +267,7 @@ std::vector<PendingSplit> Writer::missing_splits(const Tin& base) {
   return splits;
 }
 
-/// When everything before `next` is applied.
+/// The certificate of the mesh once all splits before `next` are applied.
 Certificate Writer::certificate_from(std::span<const PendingSplit> splits, std::size_t next) const {
   const double left = next < splits.size() ? splits[next].error : left_out_;
   return certify_below(store_, std::max(left, request_.tolerance.value_or(-1.0)));
@@ -340,8 +342,8 @@ void Writer::send_t0(const Tin& base) {
   send_frame(stream::FrameKind::kT0, payload);
 }
 
-/// Within a frame splits come level by level, and in a level by the number of w: an order costs
-/// bits only where it says something.
+/// Sends one frame. Within it splits come level by level, and in a level by the number of w: an
+/// order costs bits only where it says something.
 void Writer::send_splits(std::span<PendingSplit> splits, const Certificate& left, GrowingMesh& mesh,
                          Levels& levels) {
   sort_by_rank(splits);

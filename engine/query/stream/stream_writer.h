@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Progressive transmission, the sender: T0, then splits, most important first, in frames of which
-// any first few are a valid TIN with a known certified error (paper, sections 1 and 5.2).
+// Progressive transmission, the sender: T0, then splits, most important first, in frames. Any first
+// few of the frames give a valid TIN with a known certified error (paper, sections 1 and 5.2).
 #pragma once
 
 #include <cstddef>
@@ -23,22 +23,24 @@
 
 namespace ptin {
 
-/// Something that a receiver was served before: of the records for which `predicate` is true and
-/// which no serving before this one in the list brought, the first `splits` of the total order. So
-/// servings are listed in the order in which they were received.
+/// One serving that a receiver has had. Of the records for which `predicate` is true and which no
+/// earlier serving in the list brought, it is the first `splits` in the total order. So servings
+/// are listed in the order in which they were received.
 struct StreamHeld {
-  PredicatePtr predicate;                                            ///< Null: everything.
-  std::uint64_t splits = std::numeric_limits<std::uint64_t>::max();  ///< Fewer: it was cut there.
+  PredicatePtr predicate;  ///< Null: everything.
+  /// Fewer than there are: the serving was cut there.
+  std::uint64_t splits = std::numeric_limits<std::uint64_t>::max();
 };
 
 struct StreamRequest {
-  /// What the receiver shall have. Null: everything.
+  /// Monotone: what the receiver shall have. Null: everything.
   PredicatePtr wanted;
-  /// The tolerance that is part of `wanted`, if there is one: certificates say so at the end.
+  /// The tolerance that is part of `wanted`, if there is one: certificates count what it leaves
+  /// out.
   std::optional<double> tolerance;
-  /// In the order received; empty: nothing, not even T0.
+  /// What the receiver has, serving by serving; empty: nothing, not even T0.
   std::vector<StreamHeld> held;
-  /// At most so many splits, the most important ones.
+  /// Most splits to send; the most important ones are sent.
   std::uint64_t most_splits = std::numeric_limits<std::uint64_t>::max();
   /// Text for the receiver (JSON: CRS, units, what was asked); at most 1 MiB.
   std::string metadata;
@@ -50,22 +52,23 @@ struct StreamSummary {
   std::uint64_t splits = 0;         ///< Sent.
   std::uint64_t frames = 0;
   std::uint64_t bytes = 0;
-  std::uint64_t split_bytes = 0;  ///< Of these, frames of splits with their heads.
-  Certificate certificate;        ///< Once all is received; where it was asked for.
+  std::uint64_t split_bytes = 0;  ///< Of `bytes`, those of frames of splits, heads included.
+  Certificate certificate;        ///< Once all is received, in the region asked for.
   QueryCost cost;
 };
 
 /// Takes bytes, in order.
 using ByteSink = std::function<void(std::span<const std::byte>)>;
 
-/// Sends what `request` asks and the receiver does not have. A frame of splits holds an eighth as
-/// many as the mesh has vertices by then, at least 256: so of what arrived at most a ninth waits.
-/// Certificates are those of a refinement by `wanted` that is cut there: true where it was asked
-/// for (everywhere when it is all or a tolerance alone).
+/// Sends what `request` asks for and the receiver does not have. A frame of splits holds an eighth
+/// as many splits as the mesh has vertices by then, but 256 to 2^20 of them: so at most about a
+/// ninth of what has arrived waits in a frame that is not whole. The certificate of a frame is that
+/// of a refinement by `wanted` that is cut there. It holds in the region asked for; everywhere when
+/// `wanted` is everything or a tolerance alone.
 /// @throws Error invalid_argument, resource_exhausted (before a page is read), corruption,
-///               io_error, cancelled; what `sink` throws
-/// Cost: k splits sent, h held: O(|T0| + h + k log k) time;
-/// memory for two meshes of h + k vertices, known beforehand.
+/// io_error, cancelled; what `sink` throws
+/// Cost: O(|T0| + h + k log k) time for k splits sent and h held; memory for two meshes of h + k
+/// vertices, known beforehand.
 StreamSummary write_stream(const OpenedTerrain& terrain, const StreamRequest& request,
                            const ByteSink& sink);
 

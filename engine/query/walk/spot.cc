@@ -11,7 +11,8 @@ namespace ptin {
 
 namespace {
 
-/// Of a vertex's own map position, X = fl(fl(o) + fl(s g)).
+/// Bound, in grid units, of the error with which a vertex's own map position X =
+/// fl(fl(o) + fl(s g)) converts back to its grid coordinate g.
 double conversion_error(double origin, double step, double grid) {
   return rounding_to_grid(origin + step * grid, origin, step, grid);
 }

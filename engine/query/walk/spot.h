@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Spots: positions between grid points, in fixed point, so that everything asked of one is decided
-// exactly.
+// Spots: positions between grid points, in fixed point. Every decision about a spot is exact.
 #pragma once
 
 #include <cstdint>
@@ -30,13 +29,13 @@ struct Spot {
 [[nodiscard]] constexpr Spot spot_of(GridPoint p) noexcept {
   return {std::int64_t{p.x} << kSpotBits, std::int64_t{p.y} << kSpotBits};
 }
-/// The grid coordinates of a spot. Exact on the grid's side of 2^31 (53 bits).
+/// The grid coordinates of a spot. Exact, since a spot's coordinates are at most 2^53.
 [[nodiscard]] constexpr MapPoint grid_of(Spot s) noexcept {
   constexpr double kUnit = 1.0 / (std::int64_t{1} << kSpotBits);
   return {static_cast<double>(s.x) * kUnit, static_cast<double>(s.y) * kUnit};
 }
 
-/// The closed box (grid units) holds the spot. Exact.
+/// True when the closed box (grid units) holds the spot. Exact.
 [[nodiscard]] constexpr bool contains(const GridBox& b, Spot s) noexcept {
   const Spot low = spot_of(GridPoint{b.min_x, b.min_y});
   const Spot high = spot_of(GridPoint{b.max_x, b.max_y});
@@ -58,7 +57,7 @@ struct Spot {
   return Int128{q.x - p.x} * (to.y - p.y) - Int128{q.y - p.y} * (to.x - p.x);
 }
 
-/// The corners of the box (grid units) do not all lie strictly on one side of the line through p
+/// True unless all corners of the box (grid units) lie strictly on one side of the line through p
 /// and q. Exact.
 [[nodiscard]] constexpr bool line_meets(Spot p, Spot q, const GridBox& b) noexcept {
   // The corners farthest to the left and to the right of the direction of the line.
@@ -69,21 +68,23 @@ struct Spot {
   return side(p, q, left) >= 0 && side(p, q, right) <= 0;
 }
 
-/// From map positions to spots.
+/// The map from positions in map units to spots.
 ///
 /// The grid position of a map position is (X - origin) / step in doubles, rounded to the nearest
-/// multiple of 2^-bits(): this rounded position is what every question is asked of, and from here
-/// on nothing is rounded again. bits() is 22, or as many as leave a vertex's own map position on
-/// the vertex (the conversion's error stays below half a multiple everywhere in the domain), so
-/// that heights at samples are the samples'.
+/// multiple of 2^-bits(). Every question is asked of this rounded position, and nothing is rounded
+/// after it.
+///
+/// bits() is 22, or fewer where doubles are too coarse for 22: the error of the conversion stays
+/// below half a multiple everywhere in the domain. So the map position of a vertex becomes exactly
+/// that vertex, and the height at a sample is the sample's.
 class SpotMap {
  public:
-  /// @param bounds  Of the domain.
+  /// @param bounds  Box of the domain, grid units.
   SpotMap(const AffineMap& map, const GridBox& bounds);
 
   [[nodiscard]] int bits() const noexcept { return bits_; }
-  /// The spot; nothing when it lies more than 2^31 grid units away from the grid's origin, where no
-  /// terrain is.
+  /// The spot of a map position; nothing when the position lies more than 2^31 grid units away from
+  /// the grid's origin, where no terrain is.
   /// @throws Error invalid_argument when a coordinate is not finite
   [[nodiscard]] std::optional<Spot> spot(MapPoint p) const;
   [[nodiscard]] MapPoint map(Spot s) const noexcept {

@@ -52,14 +52,14 @@ bool SpotPath::meets(const GridBox& grid) const noexcept {
   const Spot low = spot_of(GridPoint{grid.min_x, grid.min_y});
   const Spot high = spot_of(GridPoint{grid.max_x, grid.max_y});
   const SpotBox box{low.x, low.y, high.x, high.y};
-  std::array<std::size_t, 128> waiting;  // Two a level at most.
+  std::array<std::size_t, 128> waiting;  // At most two nodes of a level wait.
   std::size_t count = 0;
   waiting[count++] = 0;
   while (count != 0) {
     const std::size_t i = waiting[--count];
     const SpotBox& b = around_[i];
     if (b.max_x < box.min_x || box.max_x < b.min_x || b.max_y < box.min_y || box.max_y < b.min_y) {
-      continue;  // so does a node without segments
+      continue;  // ends here for a node without segments too: its box is inverted
     }
     if (box.min_x <= b.min_x && b.max_x <= box.max_x && box.min_y <= b.min_y &&
         b.max_y <= box.max_y) {
@@ -76,8 +76,9 @@ bool SpotPath::meets(const GridBox& grid) const noexcept {
   return false;
 }
 
-/// REQUIRES: the boxes meet. Then they share a point unless the corners of the box all lie strictly
-/// on one side of the line.
+/// Whether a segment meets the box, which is given in spot units and in grid units. REQUIRES: the
+/// box meets the bounding box of the segment. Then box and segment share a point unless the corners
+/// of the box all lie strictly on one side of the line.
 bool SpotPath::segment_meets(std::size_t segment, const SpotBox& box,
                              const GridBox& grid) const noexcept {
   const auto& [p, q] = segments_[segment];

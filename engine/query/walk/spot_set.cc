@@ -66,8 +66,8 @@ std::uint32_t SpotSet::cell_of(std::int64_t grid, std::int64_t low) const noexce
   return static_cast<std::uint32_t>((grid - low) >> cell_shift_);
 }
 
-/// Cells strictly between those of the box's sides lie inside of the box; spots of the others are
-/// looked at one by one, row by row.
+/// A cell strictly between the cells of the box's sides lies inside of the box, so one spot in such
+/// a cell decides. The spots of the other cells are looked at one by one, row by row.
 bool SpotSet::holds_one(const GridBox& b) const noexcept {
   const std::uint32_t left = cell_of(std::max<std::int64_t>(b.min_x, low_x_), low_x_);
   const std::uint32_t right = cell_of(std::min<std::int64_t>(b.max_x, high_x_), low_x_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The predicate of a batch of points: the region of influence holds one of them.
+// The predicate of a batch of points: true when the region of influence holds one of them.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,17 @@
 
 namespace ptin {
 
-/// True for boxes that hold at least one of some spots, and errors above a tolerance. Exact, so
-/// monotone. Threads: immutable.
+/// True for records whose region of influence holds at least one of some spots and whose error is
+/// above a tolerance. Exact, so monotone. Threads: immutable.
 class SpotSet final : public AttributePredicate {
  public:
-  /// @param tolerance  Errors at or below it are left out; negative: none are.
+  /// @param spots      At least one, all on the grid. Copied.
+  /// @param tolerance  Records of an error at or below it are left out; negative: none are.
   /// Cost: O(spots).
   SpotSet(std::span<const Spot> spots, double tolerance);
 
-  /// Cost: constant for boxes much larger than the distance between spots; otherwise the spots
-  /// near the box.
+  /// Cost: constant for a box much larger than the distance between spots; otherwise the number of
+  /// spots near the box.
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return a.error > tolerance_ && meets(a.roi) && (single_ || holds_one(a.roi));
   }
@@ -33,7 +34,9 @@ class SpotSet final : public AttributePredicate {
 
  private:
   [[nodiscard]] bool meets(const GridBox& b) const noexcept {
-    // All spots lie in [low_, high_]: grid cells, and for one spot exactly it.
+    // All spots lie in the box [low_, high_], the smallest grid box around them. A box that holds
+    // it holds a spot. A box that only meets it may hold one of several spots, but not a single
+    // spot.
     return b.min_x <= low_x_ && high_x_ <= b.max_x && b.min_y <= low_y_ && high_y_ <= b.max_y
                ? true
                : !single_ && b.min_x <= high_x_ && low_x_ <= b.max_x && b.min_y <= high_y_ &&
@@ -47,13 +50,15 @@ class SpotSet final : public AttributePredicate {
 
   double tolerance_;
   bool single_;
-  std::int64_t low_x_, low_y_, high_x_, high_y_;  ///< Grid units around all spots, outward.
-  int cell_shift_ = 0;                            ///< Cells of 2^shift grid units.
+  std::int64_t low_x_, low_y_, high_x_, high_y_;  ///< Smallest grid box around all spots.
+  int cell_shift_ = 0;                            ///< A cell is 2^shift grid units wide.
   std::uint32_t columns_ = 1, rows_ = 1;
-  std::vector<std::uint32_t> sums_;   ///< Spots in the cells below and to the left: (columns + 1) x
-                                      ///< (rows + 1).
-  std::vector<std::uint32_t> begin_;  ///< First spot of each cell, by rows; one more at the end.
-  std::vector<Spot> spots_;           ///< By cells.
+  /// Entry (column, row) counts the spots in cells of smaller column and row:
+  /// (columns + 1) x (rows + 1) entries, row by row.
+  std::vector<std::uint32_t> sums_;
+  /// First spot of each cell in spots_, row by row; one more at the end.
+  std::vector<std::uint32_t> begin_;
+  std::vector<Spot> spots_;  ///< Cell by cell.
 };
 
 }  // namespace ptin

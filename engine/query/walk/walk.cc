@@ -31,7 +31,7 @@ Int128 magnitude(Int128 v) noexcept { return v < 0 ? -v : v; }
 
 /// What find_spot() found out about one triangle.
 struct Look {
-  int beyond = -1;  ///< A side that has the spot strictly beyond it.
+  int beyond = -1;  ///< A side that has the spot strictly beyond it; -1: none.
   int zeros = 0;    ///< Sides on whose line the spot lies, one bit each.
 };
 
@@ -63,7 +63,7 @@ Place inside(TriangleId t, int zeros) {
       return {Lies::kOnEdge, t, 1};
     case 4:
       return {Lies::kOnEdge, t, 2};
-    default:  // on two sides: on the corner that both have, which is opposite to the third
+    default:  // on two sides: on the corner that both share, opposite to the third side
       return {Lies::kOnVertex, t, zeros == 6 ? 0 : (zeros == 5 ? 1 : 2)};
   }
 }
@@ -179,9 +179,10 @@ Footing footing_of(const Tin& tin, Spot q, const Place& place) {
   return f;
 }
 
-/// z0 + sum w_i (z_i - z0) / W. With u = 2^-53: differences, quotients of exact sums and products
-/// carry 4u of |z_i - z0| <= 2 max |z|, weights sum to at most W, so 8u max |z| covers the
-/// products; sums add u each of what is at most max |z| after the clamp.
+/// Computes z0 + sum w_i (z_i - z0) / W, where W is the sum of the weights. Bound, with u = 2^-53:
+/// differences, quotients of exact sums and products carry 4u of |z_i - z0|, which is at most
+/// 2 max |z|. The weights sum to at most W, so 8u max |z| covers the products. Each sum adds u of a
+/// value that is at most max |z| after the clamp.
 double code_at(const Tin& tin, const HeightEncoding& heights, const Footing& f) {
   const double z0 = heights.code(tin.vertices[f.vertex[0]].height);
   if (f.count == 1) {
@@ -258,8 +259,8 @@ void LineWalk::enter_through(TriangleId t, int edge_side) {
   right_turn_ = turn(triangle.v[previous_corner(edge_side)]);
 }
 
-/// Of the border edges that p sees, the one where the line comes in: goes round the whole border,
-/// since which of them p sees is known one by one.
+/// Finds the border edge through which the line comes in, among those that p sees. Goes round the
+/// whole border, since only a test of each edge tells whether p sees it.
 void LineWalk::begin_outside(const Place& place) {
   TriangleId t = place.triangle;
   int edge_side = place.index;
@@ -323,8 +324,8 @@ bool LineWalk::next() {
   return false;
 }
 
-/// From inside of a triangle: out by the edge whose first end lies to the right and whose second to
-/// the left, or by the vertex between them.
+/// From the inside of a triangle: the line leaves by the edge whose first end lies to its right and
+/// whose second end to its left, or by the vertex between two such edges.
 void LineWalk::leave_triangle(TriangleId t) {
   const Triangle& triangle = tin_->triangles[t];
   const Int128 turns[3] = {turn(triangle.v[0]), turn(triangle.v[1]), turn(triangle.v[2])};
@@ -341,7 +342,8 @@ void LineWalk::leave_triangle(TriangleId t) {
   }
 }
 
-/// From side_ (first end left, second right) through triangle_.
+/// Crosses triangle_ from side_, whose first end lies to the left of the line and whose second end
+/// to the right.
 void LineWalk::cross_triangle() {
   const TriangleId t = triangle_;
   const VertexId apex = tin_->triangles[t].v[side_];
@@ -390,8 +392,8 @@ void LineWalk::exit_by_vertex(TriangleId t, VertexId v) {
   vertex_ = v;
 }
 
-/// Along an edge whose other end lies on the line ahead, or into the triangle that the line cuts;
-/// false when there is neither: the line leaves the domain.
+/// Goes along an edge whose other end lies on the line ahead, or into the triangle that the line
+/// cuts. Returns false when there is neither: the line leaves the domain.
 bool LineWalk::step_from_vertex() {
   bool stepped = false;
   around_vertex(*tin_, vertex_, [&](TriangleId t, int corner) {

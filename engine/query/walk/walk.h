@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Walks over a mesh: to a spot, and along a straight line. Every decision is exact (spot.h), so
-// lines through vertices, along edges and along the border are no special luck.
+// Walks over a mesh: to a spot, and along a straight line. Every decision is exact (walk/spot.h),
+// so a line through vertices, along edges or along the border is walked like any other.
 //
-// The mesh must be valid and whole (mesh/validate.h): a disk over a convex domain. Parts cut out by
-// keep_meeting() are not.
+// The mesh must be valid and whole (mesh/validate.h): a disk over a convex domain. A mesh that
+// keep_meeting() has cut (refine/clip.h) is not.
 #pragma once
 
 #include <array>
@@ -16,36 +16,39 @@
 
 namespace ptin {
 
-/// Where a spot lies: on a vertex, in an edge, in a triangle (all without their borders), or
+/// Where a spot lies: on a vertex, in an edge without its ends, in a triangle without its sides, or
 /// outside of the domain.
 enum class Lies : std::uint8_t { kOutside, kInTriangle, kOnEdge, kOnVertex };
 
 struct Place {
   Lies lies = Lies::kOutside;
-  /// A closed triangle that holds the spot; outside: one whose border edge has the spot beyond it.
+  /// A closed triangle that holds the spot. For kOutside a triangle with a border edge that has the
+  /// spot beyond it.
   TriangleId triangle = kNone;
-  int index = 0;  ///< kOnEdge, kOutside: the side (opposite to that corner); kOnVertex: the corner.
+  /// kOnEdge, kOutside: the side, numbered by the corner opposite to it; kOnVertex: the corner.
+  int index = 0;
 };
 
-/// Finds a spot by a visibility walk whose choices are pseudo-random but the same in every run
-/// (Devillers, Pion, Teillaud 2002: it ends with probability 1; after as many steps as there are
-/// triangles all are looked at instead).
-/// @param start  Any triangle; near is fast.
-/// Cost: about the square root of the triangles between.
+/// Finds the place of a spot by a visibility walk whose choices are pseudo-random but the same in
+/// every run. Such a walk ends with probability 1 (Devillers, Pion, Teillaud 2002). After as many
+/// steps as the mesh has triangles all triangles are looked at instead.
+/// @param start  Any triangle; one near the spot is fast.
+/// Cost: about the square root of the number of triangles between `start` and the spot.
 [[nodiscard]] Place find_spot(const Tin& tin, Spot q, TriangleId start);
 
 /// The triangle that answers for a place that several closed triangles share, the same however the
-/// mesh is numbered: a surface triangle before a void one; then the one whose corners' keys, in
-/// ascending order, come first. kNone outside. Cost: the degree of the vertex.
+/// mesh is numbered: a surface triangle before a void one; among equals the one whose corners'
+/// keys, in ascending order, come first. Returns kNone for a place outside. Cost: the degree of the
+/// vertex.
 [[nodiscard]] TriangleId answering_triangle(const Tin& tin, const Place& place);
 
 /// True when a surface triangle holds the vertex. Cost: its degree.
 [[nodiscard]] bool touches_surface(const Tin& tin, VertexId v);
 
-/// A point of the mesh as a weighted mean of one, two or three vertices: the vertex it is on, the
-/// ends of its edge, the corners of its triangle. Vertices ascend by key, so that the same point
-/// is the same mean from both sides of an edge and in every numbering. Weights are positive and
-/// exact.
+/// A point of the mesh as a weighted mean of one, two or three vertices: the vertex that it is on,
+/// the ends of its edge, or the corners of its triangle. Vertices ascend by key, so that the same
+/// point is the same mean from both sides of an edge and in every numbering. Weights are positive
+/// and exact.
 struct Footing {
   int count = 0;
   std::array<VertexId, 3> vertex{kNone, kNone, kNone};
@@ -59,15 +62,17 @@ struct Footing {
 /// The footing of a spot. REQUIRES: place = find_spot(tin, q, ...), not outside.
 [[nodiscard]] Footing footing_of(const Tin& tin, Spot q, const Place& place);
 
-/// The height code there, from the vertices' codes: exact on a vertex and where all are equal, else
-/// off by at most 8 units of rounding (2^-53) of the largest code's magnitude, and never outside of
-/// their range. REQUIRES: all have heights.
+/// The height code at a footing, interpolated between the codes of its vertices. Exact on a vertex
+/// and where all codes are equal; else off by at most 8 units of rounding (2^-53) of the largest
+/// code's magnitude, and never outside of the range of the codes. REQUIRES: all vertices of the
+/// footing have heights.
 [[nodiscard]] double code_at(const Tin& tin, const HeightEncoding& heights, const Footing& f);
 
 /// Where a line crosses the mesh.
 struct Crossing {
   Footing footing;
-  /// Share of the way from p to q, exactly: numerator / denominator, in [0, 1].
+  /// Share of the way along the line, from p to q (LineWalk), exactly: numerator / denominator, in
+  /// [0, 1].
   Int128 numerator = 0;
   Int128 denominator = 1;
 
@@ -79,33 +84,37 @@ struct Crossing {
 /// A stretch of a line between two crossings: inside of one triangle, or along one edge.
 struct LinePiece {
   Crossing from, to;
-  TriangleId triangle = kNone;  ///< Holds the piece; along an edge one of the two.
-  TriangleId other = kNone;     ///< The other one along an edge; kNone inside, and at the border.
+  TriangleId triangle = kNone;  ///< Holds the piece; along an edge one of its two triangles.
+  /// Along an edge the other triangle, kNone at the border; inside kNone.
+  TriangleId other = kNone;
 
-  /// On a closed surface triangle.
+  /// True when the piece lies on a closed surface triangle.
   [[nodiscard]] bool is_surface(const Tin& tin) const noexcept {
     return tin.classes[triangle] == TriangleClass::kSurface ||
            (other != kNone && tin.classes[other] == TriangleClass::kSurface);
   }
 };
 
-/// Walks from p to q piece by piece, in order. A line that begins outside is entered where it meets
-/// the domain; one that leaves the domain, which is convex, ends there.
+/// Walks from p to q piece by piece, in order. A line that begins outside of the domain is walked
+/// from where it enters the domain. A line that leaves the domain ends there, since the domain is
+/// convex.
 class LineWalk {
  public:
-  /// REQUIRES: p != q.  @param start  Any triangle; near p is fast.
+  /// REQUIRES: p != q.
+  /// @param tin    Borrowed for the life of the walk.
+  /// @param start  Any triangle; one near p is fast.
   LineWalk(const Tin& tin, Spot p, Spot q, TriangleId start);
 
   /// False when the line and the domain share no point.
   [[nodiscard]] bool meets_domain() const noexcept { return meets_; }
-  /// The first shared point; kept by next().
+  /// The first point of the line in the domain, set when meets_domain(). next() does not change it.
   [[nodiscard]] const Crossing& entry() const noexcept { return entry_; }
-  /// p itself lies in the domain.
+  /// True when p itself lies in the domain.
   [[nodiscard]] bool begins_inside() const noexcept { return begins_inside_; }
-  /// After next() was false: q itself lies in the domain.
+  /// True when q itself lies in the domain. Known once next() has returned false.
   [[nodiscard]] bool ends_inside() const noexcept { return ends_inside_; }
 
-  /// Steps on; false when there is no further piece. Cost: constant, at a vertex its degree.
+  /// Goes to the next piece; false when there is none. Cost: constant; at a vertex its degree.
   bool next();
   [[nodiscard]] const LinePiece& piece() const noexcept { return piece_; }
 
@@ -133,10 +142,10 @@ class LineWalk {
   const Tin* tin_;
   Spot p_, q_;
   State state_ = State::kDone;
-  TriangleId triangle_ = kNone;            ///< To be crossed next.
+  TriangleId triangle_ = kNone;            ///< The triangle to cross next.
   int side_ = 0;                           ///< kIntoEdge: entered through this side of triangle_.
-  Int128 right_turn_ = 0, left_turn_ = 0;  ///< Turns of the ends of the edge entered through.
-  VertexId vertex_ = kNone;                ///< kAtVertex: where; kAlongEdge: the end ahead.
+  Int128 right_turn_ = 0, left_turn_ = 0;  ///< turn() of the ends of the edge entered through.
+  VertexId vertex_ = kNone;                ///< kAtVertex: the vertex; kAlongEdge: the end ahead.
   TriangleId beside_ = kNone;              ///< kAlongEdge: the other triangle of the edge.
   bool meets_ = false, begins_inside_ = false, ends_inside_ = false;
   Crossing entry_;
