@@ -26,7 +26,7 @@ struct VerifyFault {
 struct VerifyReport {
   std::vector<VerifyFault> faults;
   bool stopped_early = false;  ///< max_faults was reached.
-  std::uint64_t pages = 0;     ///< That were looked at, as those below.
+  std::uint64_t pages = 0;     ///< Pages looked at; records and nodes likewise.
   std::uint64_t records = 0;
   std::uint64_t index_nodes = 0;
   std::uint64_t key_passes = 1;  ///< How often the pages were read to compare vertex keys.
