@@ -14,7 +14,7 @@
     }                                                       \
   } while (false)
 
-/// The same in builds without NDEBUG; nothing otherwise. For inner loops.
+/// As PTIN_CHECK in builds without NDEBUG; does nothing in builds with NDEBUG. For inner loops.
 #ifdef NDEBUG
 #define PTIN_DCHECK(condition) \
   do {                         \

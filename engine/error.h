@@ -46,11 +46,13 @@ class Error : public std::runtime_error {
   std::string context_;
 };
 
-/// The commonest error: what was given cannot be used.
-/// @throws Error invalid_argument, always.
+/// Throws the commonest error: a value or an input of the caller cannot be used.
+/// @param message, context  As Error's.
+/// @throws Error invalid_argument  always
 [[noreturn]] void refuse(std::string_view message, std::string_view context = {});
 
-/// An io_error, not_found (ENOENT) or resource_exhausted (ENOSPC, EDQUOT) made from `errno_value`.
+/// The error for a call of the system that failed: not_found (ENOENT, ENOTDIR), resource_exhausted
+/// (ENOSPC, EDQUOT, EFBIG, ENOMEM) or else io_error.
 /// @param action  What was attempted, for the message: "cannot open", "cannot write".
 /// @param path    The file concerned.
 [[nodiscard]] Error system_error(int errno_value, std::string_view action, std::string_view path);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// An array that grows to unknown length without its old and its new room there at once.
+// An array that grows to a length that nobody knows beforehand, without having its old and its new
+// memory at the same time.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +16,9 @@
 
 namespace ptin {
 
-/// Elements that can be moved as bytes, in one block that grows as realloc() does it: a large one
-/// keeps its pages and only gets further ones, where a vector would touch as many again and copy.
-/// Elements that grow() adds are not initialised.
+/// An array of elements that can be moved as bytes, in one block that grows by realloc(). The
+/// system grows a large block by moving its pages and adding further ones; a vector would take a
+/// second block and copy. Elements that grow() adds are not initialised.
 template <typename T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -41,9 +42,9 @@ class GrowingArray {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 
-  /// Room for `capacity` elements, on large pages when it is much. Cost: none for the elements
-  /// where the system moves pages, else a copy of them.
-  /// @throws std::bad_alloc  nothing has changed
+  /// Makes room for `capacity` elements, on large pages when it is much. Cost: nothing for each
+  /// element where the system moves pages, else a copy of the elements.
+  /// @throws std::bad_alloc  the array is as before
   void reserve(std::size_t capacity) {
     if (capacity <= capacity_) {
       return;
@@ -59,8 +60,9 @@ class GrowingArray {
     advise();
   }
 
-  /// To `size` elements, and room for a quarter more when there was not enough. Cost, errors: as
-  /// reserve(), which is called once for each quarter.
+  /// Changes the size to `size` elements. Where there is not enough room, makes room for a quarter
+  /// more than `size`. Cost and errors: as reserve(), which is called once for each quarter of
+  /// growth.
   void grow(std::size_t size) {
     if (size > capacity_) {
       reserve(size + size / 4);
@@ -68,8 +70,8 @@ class GrowingArray {
     size_ = size;
   }
 
-  /// To `size` elements, fewer than there are, and gives back room beyond a quarter more.
-  /// Cost: as reserve().
+  /// Changes the size to `size` elements, fewer than there are, and gives back the room beyond a
+  /// quarter more than `size`. Cost: as reserve().
   void shrink(std::size_t size) noexcept {
     size_ = size;
     const std::size_t capacity = size + size / 4;
@@ -83,8 +85,8 @@ class GrowingArray {
   }
 
  private:
-  /// Whole pages around the block: the system moves a block's pages only where all of them have
-  /// been given the same advice.
+  /// Asks for large pages, for all pages that the block touches: the system moves the pages of a
+  /// block only where all of them have been given the same advice.
   void advise() noexcept {
     constexpr std::uintptr_t kPage = 4096;
     const auto begin = reinterpret_cast<std::uintptr_t>(data_);

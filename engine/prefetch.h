@@ -5,9 +5,9 @@
 
 namespace ptin {
 
-/// Asks the processor to fetch the cache line at `p`, which need not be readable.
-/// The empty statement keeps gcc from taking a function that does nothing else for one without
-/// effects, and dropping its calls (gcc 12 does).
+/// Asks the processor to fetch the cache line at `p`. `p` need not be readable. The empty asm
+/// statement counts as an effect: without it gcc 12 drops calls of functions that do nothing but
+/// prefetch.
 inline void prefetch(const void* p) noexcept {
   __builtin_prefetch(p);
   __asm__ volatile("");

@@ -11,18 +11,19 @@
 
 namespace ptin {
 
-/// The saturated attributes of a record, or the union and maximum over a page or a subtree.
+/// The saturated attributes of a record, or the union and maximum of those of a page's or a
+/// subtree's records.
 struct Attributes {
   GridBox roi;         ///< Region of influence, grid units, closed.
   Interval heights;    ///< Height codes (geometry/height.h); empty where everything is void.
   double error = 0.0;  ///< Certified error at samples, in the height's unit; may be +infinity.
-  double deviation =
-      0.0;  ///< Certified deviation at any point, in the height's unit; may be +infinity.
+  /// Certified deviation at any point, in the height's unit; may be +infinity.
+  double deviation = 0.0;
   friend bool operator==(const Attributes&, const Attributes&) = default;
 };
 
-/// A monotone test: once true, it stays true when the arguments grow (engine/DESIGN.md, section 2.3). The
-/// index asks it of nodes and pages, the refinement of records. Implementations are in
+/// A monotone test: once true, it stays true when the arguments grow (engine/DESIGN.md, section
+/// 2.3). The index asks it of nodes and pages, the refinement of records. Implementations are in
 /// engine/query/select/predicate.h. Threads: const, callable from several threads at once.
 class AttributePredicate {
  public:
@@ -31,8 +32,8 @@ class AttributePredicate {
   AttributePredicate& operator=(const AttributePredicate&) = default;
   virtual ~AttributePredicate() = default;
   [[nodiscard]] virtual bool holds(const Attributes& a) const noexcept = 0;
-  /// A box that every roi meets of which it can be true: what lies elsewhere need not be asked
-  /// about. Everywhere where nothing better is known.
+  /// A box that meets the roi of every record for which the predicate is true: records whose roi
+  /// lies elsewhere need not be asked. Where nothing better is known, it is the box of everything.
   [[nodiscard]] virtual GridBox reach() const noexcept {
     return {INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
   }

@@ -23,13 +23,13 @@ template <class Lanes>
   return v;
 }
 
-/// True when a bit of any lane is set: of a comparison, when it holds for any lane.
+/// True when any bit of `v` is set. Of the result of a comparison: true when it holds for any lane.
 [[nodiscard]] inline bool any(Int4 v) noexcept {
   const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(v);
   return (halves[0] | halves[1]) != 0;
 }
 
-/// Lanes 0 1 0 1 and 2 3 2 3.
+/// The lower half of `v` twice, lanes 0 1 0 1, and the upper half twice, lanes 2 3 2 3.
 [[nodiscard]] inline Int4 lower_twice(Int4 v) noexcept {
   return __builtin_shufflevector(v, v, 0, 1, 0, 1);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Descriptors: what an entry of the index says of a page or a subtree, made from records and joined
-// upwards.
+// Descriptors: what an entry of the index says of a page or a subtree. They are made from records,
+// and joined upwards.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace ptin {
 
-/// The arguments of a predicate that an entry stands for. The entry must be sound (is_sound()).
+/// The attributes in an entry of the index: the union and maximum over the page or subtree that it
+/// describes. REQUIRES: is_sound(e, heights).
 [[nodiscard]] inline Attributes attributes_of(const layout::NodeEntry& e,
                                               const HeightEncoding& heights) noexcept {
   return {{e.min_x, e.min_y, e.max_x, e.max_y},
@@ -20,7 +21,7 @@ namespace ptin {
           layout::to_float(e.deviation_max)};
 }
 
-/// The arguments of a predicate that a record stands for, from its first bytes alone. Not checked.
+/// The attributes of a record, from its first bytes alone. Nothing is checked.
 [[nodiscard]] inline Attributes attributes_of(const layout::RecordHead& h,
                                               const HeightEncoding& heights) noexcept {
   return {{h.min_x, h.min_y, h.max_x, h.max_y},
@@ -29,19 +30,21 @@ namespace ptin {
           layout::to_float(h.deviation)};
 }
 
-/// True when no field of the entry is one that no writer writes: box on the grid and not empty,
-/// heights no NaN, errors not negative and in order. Says nothing of `kind_and_count`.
+/// True when each field of the entry is possible: the box on the grid and not empty, heights not
+/// NaN, errors and deviation neither NaN nor negative, the least error not above the largest.
+/// `kind_and_count` and `checksum` are not looked at.
 [[nodiscard]] bool is_sound(const layout::NodeEntry& e, const HeightEncoding& heights) noexcept;
 
-/// The union and maximum over records or entries.
+/// Makes the entry of the index over records, or over the entries of the level below.
 class Descriptor {
  public:
   explicit Descriptor(const HeightEncoding& heights) : encoding_(heights) {}
   void add(const VertexSplit& r) noexcept;
   void add(const layout::NodeEntry& e) noexcept;
-  /// The entry; `kind_and_count` and `checksum` are left 0. An empty height interval has one form
-  /// only: the largest int32 down to the smallest, or +infinity down to -infinity. REQUIRES:
-  /// something was added.
+  /// The entry over all that was added; `kind_and_count` and `checksum` are left 0. An empty height
+  /// interval has one form only: the largest int32 down to the smallest, or +infinity down to
+  /// -infinity.
+  /// REQUIRES: something was added.
   [[nodiscard]] layout::NodeEntry entry() const noexcept;
 
  private:

@@ -13,8 +13,10 @@
 
 namespace ptin {
 
-/// Upper end of the bin that holds `error`: 0 for 0, otherwise the next float whose lower 20
-/// mantissa bits are zero (eight of them an octave); +infinity for +infinity. REQUIRES: error >= 0.
+/// The upper end of the bin that holds `error`: 0 for 0, +infinity for +infinity, otherwise the
+/// least float not below `error` whose lower 20 mantissa bits are zero. An octave has eight such
+/// floats.
+/// REQUIRES: error >= 0.
 [[nodiscard]] float error_bin_upper(float error) noexcept;
 
 /// Counts records into bins. Memory: one bin for each that is not empty, at most 2041.

@@ -12,9 +12,9 @@
 
 namespace ptin {
 
-/// The small concept behind both indexes: the packed R-tree (packed_rtree.h, the default) and
-/// libspatialindex's bulk-loaded disk R-tree (spatialindex_rtree.h). Threads: const, callable from
-/// several threads at once.
+/// What both indexes have in common: the packed R-tree (storage/packed_rtree.h, the default) and
+/// libspatialindex's bulk-loaded disk R-tree (storage/spatialindex_rtree.h). Threads: const,
+/// callable from several threads at once.
 class RecordIndex {
  public:
   RecordIndex() = default;
@@ -22,10 +22,10 @@ class RecordIndex {
   RecordIndex& operator=(const RecordIndex&) = delete;
   virtual ~RecordIndex() = default;
 
-  /// Pages whose attributes satisfy `predicate`, ascending, each once. Every page with a record
-  /// that satisfies it is there; no page is there whose own attributes (the union over its records)
-  /// do not.
-  /// @throws Error corruption
+  /// Appends to `pages` the pages whose attributes, the union and maximum over their records,
+  /// satisfy `predicate`: each once, ascending, and no others. Since the predicate is monotone,
+  /// every page with a record that satisfies it is among them.
+  /// @throws Error corruption, io_error
   virtual void search(const AttributePredicate& predicate, std::vector<PageId>& pages,
                       IoCounters& counters) const = 0;
 };

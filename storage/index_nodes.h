@@ -20,9 +20,9 @@
 
 namespace ptin {
 
-/// Each entry holds the checksum of what it describes and the section table that of the root: so a
-/// node is known to be what was written before its entries are used, and the header's checksum
-/// stands for the whole file. Threads: const functions may be called at once.
+/// Reads nodes of the index, and verifies each before its entries are used. An entry holds the
+/// checksum of the node or page that it describes, and the section table holds the root's: so the
+/// header's checksum stands for the whole file. Threads: const functions may be called at once.
 class IndexNodes {
  public:
   struct Place {
@@ -39,20 +39,24 @@ class IndexNodes {
   [[nodiscard]] std::uint64_t root_checksum() const noexcept { return place_.root_checksum; }
   [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
 
-  /// A node whose bytes have the checksum `expected`: its parent's word. The result is `scratch` or
-  /// lies in the mapping. REQUIRES: level and number inside of the shape.
+  /// The node `number` of `level`, verified.
+  /// @param expected  The checksum of the node, from its parent's entry or from the section table.
+  /// @param scratch   Room for the node, where it is not read in place.
+  /// @return `scratch`, or the node in the mapping.
+  /// REQUIRES: level and number inside of the shape.
   /// @throws Error corruption, io_error
   [[nodiscard]] virtual const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
                                                       std::uint64_t expected,
                                                       layout::IndexNode& scratch) const = 0;
 
-  /// Starts reading those nodes of a level that have not been read before. `numbers` ascend. A
-  /// hint.
+  /// Starts reading those of the nodes `numbers` of a level that were not read before. `numbers`
+  /// ascend. A hint: never fails.
   virtual void announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
                         IoCounters& counters) const noexcept = 0;
 
-  /// The descriptor of a page: a copy, not yet checked for sense. Cost: the path from the root when
-  /// its leaf is not verified (mapped) or not cached (pread), otherwise one copy.
+  /// A copy of the descriptor of a page. Its bytes are verified; whether its fields are possible
+  /// (is_sound()) is not checked. Cost: one copy when the leaf of the page was verified before
+  /// (mapped) or is in the cache (pread), otherwise the path from the root.
   /// @throws Error corruption (also: no such page), io_error
   [[nodiscard]] virtual layout::NodeEntry descriptor(PageId page) const = 0;
 
@@ -65,15 +69,19 @@ class IndexNodes {
   [[nodiscard]] std::uint64_t offset_of(std::uint64_t position) const noexcept {
     return place_.offset + position * layout::kNodeBytes;
   }
-  /// Compares checksum and place. @throws Error corruption
+  /// Compares the checksum of a node with `expected`, and the level, number and entries that it
+  /// names with its place. @throws Error corruption
   void verify(const layout::IndexNode& node, std::uint32_t level, std::uint64_t number,
               std::uint64_t expected) const;
-  /// Calls `start(offset, bytes)` for ranges of nodes of a level, near ones joined, of which
-  /// `is_known(position)` is false.
+  /// Calls start(offset, bytes) for the ranges of the file that hold the nodes `numbers` of a
+  /// level, except those for which is_known(position) is true. Ranges that lie near each other are
+  /// joined.
   template <class IsKnown, class Start>
   void join_ranges(std::uint32_t level, std::span<const std::uint64_t> numbers,
                    const IsKnown& is_known, const Start& start) const noexcept {
-    constexpr std::uint64_t kGap = 8;  // nodes: 32 KiB, which one request reads along
+    // Ranges fewer nodes apart, 32 KiB in all, are joined: reading those nodes along takes no
+    // further request.
+    constexpr std::uint64_t kGap = 8;
     std::uint64_t begin = 0;
     std::uint64_t end = 0;
     for (const std::uint64_t number : numbers) {
@@ -92,14 +100,14 @@ class IndexNodes {
       start(offset_of(begin), (end - begin) * layout::kNodeBytes);
     }
   }
-  /// The entry of a page, found from the root.
+  /// The entry of a page in its leaf, found from the root down.
   [[nodiscard]] layout::NodeEntry descend_to(PageId page) const;
 
   const ReadOnlyFile& file_;
   Place place_;
 };
 
-/// Read in place. A node is verified when it is first touched.
+/// Nodes are read in place, in the mapping. A node is verified when it is first touched.
 class MappedIndexNodes final : public IndexNodes {
  public:
   MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping, const Place& place);
@@ -116,7 +124,7 @@ class MappedIndexNodes final : public IndexNodes {
   TouchBits verified_;
 };
 
-/// Read by pread and kept, verified, in a cache of at most 4 MiB.
+/// Nodes are read by pread. Verified ones are kept in a cache of at most 4 MiB.
 class PreadIndexNodes final : public IndexNodes {
  public:
   PreadIndexNodes(const ReadOnlyFile& file, const Place& place);
@@ -128,8 +136,8 @@ class PreadIndexNodes final : public IndexNodes {
   [[nodiscard]] layout::NodeEntry descriptor(PageId page) const override;
 
  private:
-  /// A node has one slot it can be in. The lock is held for a copy, never while reading from the
-  /// disk.
+  /// A place of the cache. A node can be in one slot alone: its position modulo kSlots. The lock is
+  /// held while a node is copied, never while it is read from the disk.
   struct Slot {
     std::mutex lock;
     std::uint64_t position = UINT64_MAX;

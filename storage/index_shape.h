@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where the nodes of a packed R-tree are: everything follows from the number of pages. FORMAT.md,
-// "Index".
+// Where the nodes of a packed R-tree lie. All of it follows from the number of pages
+// (storage/FORMAT.md, "Index").
 #pragma once
 
 #include <array>
@@ -37,13 +37,13 @@ class IndexShape {
     }
   }
 
-  [[nodiscard]] std::uint32_t levels() const noexcept {
-    return levels_;
-  }  ///< 0 when there is no page.
+  /// Number of levels; 0 when there is no page.
+  [[nodiscard]] std::uint32_t levels() const noexcept { return levels_; }
   [[nodiscard]] std::uint64_t nodes(std::uint32_t level) const noexcept { return nodes_[level]; }
   [[nodiscard]] std::uint64_t total_nodes() const noexcept { return total_; }
   [[nodiscard]] std::uint64_t total_bytes() const noexcept { return total_ * layout::kNodeBytes; }
-  /// Position of a node among all nodes. REQUIRES: level < levels(), number < nodes(level).
+  /// Position of a node in the order of the file, from 0 for the root.
+  /// REQUIRES: level < levels(), number < nodes(level).
   [[nodiscard]] std::uint64_t position(std::uint32_t level, std::uint64_t number) const noexcept {
     return first_[level] + number;
   }

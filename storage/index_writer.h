@@ -14,13 +14,14 @@
 
 namespace ptin {
 
-/// Pages come in the order of the file, which is already a spatial one (record_order.h), so that
-/// the tree is packed in that order: no sort, and the children of a node are implicit by position.
-/// Leaves go to a nameless side file as they fill up. Memory: 64 KiB, and 48 bytes a leaf: less
-/// than one byte for a hundred records.
+/// Builds the packed R-tree over pages in the order in which they come. That is the order of the
+/// file, which is a spatial one already (storage/record_order.h): so nothing is sorted, and the
+/// children of a node follow from its position. Leaves go to a nameless side file as they fill up.
+/// Memory: 64 KiB, and 48 bytes for each leaf, which is less than one byte for a hundred records.
 class IndexWriter {
  public:
-  /// @param files, folder, stem  Where the side file is made, when there is a first leaf to keep.
+  /// @param files, folder, stem  Where the side file is made, once there are 16 leaves; `files` is
+  /// borrowed.
   IndexWriter(FileLayer& files, std::string folder, std::string stem,
               const HeightEncoding& heights);
 
@@ -28,8 +29,9 @@ class IndexWriter {
   void add(const layout::NodeEntry& page);
   [[nodiscard]] std::uint64_t pages() const noexcept { return pages_; }
 
-  /// Writes all nodes to `out` from `offset` on, root first. Returns the checksum of the root; 0
-  /// without pages. Call once, after the last page.
+  /// Writes all nodes to `out` from `offset` on, the root first. Returns the checksum of the root,
+  /// or 0 when there are no pages. Call once, after the last page.
+  /// @throws Error io_error, resource_exhausted
   std::uint64_t write_to(ScratchFile& out, std::uint64_t offset);
 
  private:

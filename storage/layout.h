@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The bytes of a .ptin file, structure by structure. FORMAT.md says what each field means; here are
-// their places. Every structure has a fixed size, no padding and no bit-field; floating-point
+// The bytes of a .ptin file, structure by structure: where each field lies. What it means is in
+// storage/FORMAT.md. Every structure has a fixed size, no padding and no bit-field; floating-point
 // fields are kept as their bits.
 #pragma once
 
@@ -16,8 +16,8 @@ namespace ptin::layout {
 static_assert(std::endian::native == std::endian::little,
               "files are little-endian and read in place");
 
-/// As in PNG: a byte with the high bit, then CR LF and Ctrl-Z, so that a transfer as text is
-/// noticed at once.
+/// As in PNG: the first byte has its high bit set, and CR LF and Ctrl-Z follow the name, so that a
+/// transfer as text is noticed at once.
 inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'T', 'I', 'N', 0x0D, 0x0A, 0x1A};
 inline constexpr std::uint16_t kMajorVersion = 1;
 inline constexpr std::uint16_t kMinorVersion = 0;
@@ -112,7 +112,7 @@ inline constexpr std::uint32_t kFanOut = 85;
 
 struct IndexNode {
   std::uint32_t level;    ///< 0 for a leaf.
-  std::uint32_t entries;  ///< Used; the rest is zero.
+  std::uint32_t entries;  ///< Entries in use; the others are zero.
   std::uint64_t number;   ///< Within its level.
   std::array<NodeEntry, kFanOut> entry;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the metadata of a file or a stream may be, before anything parses it.
+// How deep the metadata of a file or a stream are nested, found before anything parses them.
 #pragma once
 
 #include <algorithm>
@@ -9,12 +9,13 @@
 
 namespace ptin {
 
-/// Deepest nesting of metadata; ours has four. Parsers copy and print by recursion, and a file may
-/// come from anybody.
+/// The deepest nesting of metadata that readers accept; metadata that `ptin` writes have four
+/// levels. JSON parsers copy and print by recursion, so that text from an unknown source could use
+/// up the stack.
 inline constexpr std::size_t kMostNesting = 64;
 
-/// How deep brackets and braces of a JSON text are nested, those in strings left out. Of a text
-/// that is no JSON a number all the same. Cost: linear.
+/// How deep brackets and braces of a JSON text are nested, not counting those in strings. A text
+/// that is not JSON gives a number too. Cost: linear.
 [[nodiscard]] inline std::size_t nesting_of(std::string_view json) noexcept {
   std::size_t depth = 0, deepest = 0;
   bool in_string = false;

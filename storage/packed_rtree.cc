@@ -14,15 +14,16 @@ namespace ptin {
 
 namespace {
 
-/// Nodes of a level that are to be visited: their numbers, ascending, and checksums.
+/// The nodes of a level that are to be visited: their numbers, which ascend, and their checksums.
 struct Found {
   std::vector<std::uint64_t> numbers, checksums;
 };
 
 }  // namespace
 
-/// Level by level, each announced before it is read: so a search waits once a level for the disk,
-/// not once a node. Within a level from left to right, so that pages come out ascending.
+/// Searches level by level, and announces the nodes of each level before it reads them: so a search
+/// waits for the disk once a level, not once a node. Within a level nodes are visited from left to
+/// right, so that pages come out ascending.
 void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId>& pages,
                          IoCounters& counters) const {
   const IndexShape& shape = nodes_.shape();

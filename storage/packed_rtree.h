@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The packed R-tree: static, bulk-loaded once, children implicit by position, read in place.
-// FORMAT.md, "Index".
+// The packed R-tree: static, bulk-loaded once, children implicit by position, read in place
+// (storage/FORMAT.md, "Index").
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace ptin {
 
-/// What a best-first search asks, and gives.
+/// The caller's part of a best-first search: bounds, and what is done with each page.
 class BestFirstVisitor {
  public:
   BestFirstVisitor() = default;
   BestFirstVisitor(const BestFirstVisitor&) = delete;
   BestFirstVisitor& operator=(const BestFirstVisitor&) = delete;
   virtual ~BestFirstVisitor() = default;
-  /// The best that anything with these attributes can be; -infinity: nothing. Monotone: not smaller
-  /// for larger attributes.
+  /// An upper bound of the value of any record with these attributes or smaller ones; -infinity
+  /// when no such record is wanted. Monotone: larger attributes have no smaller bound.
   [[nodiscard]] virtual double bound(const Attributes& a) const = 0;
-  /// Called for pages in the order of falling bounds. Returns the cut-off: what is bounded below it
-  /// is not visited any more. It never falls.
+  /// Called for pages in the order of falling bounds. Returns the cut-off, which never falls: pages
+  /// and nodes whose bound is below it are not visited.
   virtual double visit(PageId page) = 0;
 };
 
@@ -35,15 +35,15 @@ class PackedRTree final : public RecordIndex {
   PackedRTree(const IndexNodes& nodes, const HeightEncoding& heights)
       : nodes_(nodes), heights_(heights) {}
 
-  /// As RecordIndex::search. Entries are tested where they lie. Cost: one call of the predicate for
-  /// each entry of each node visited; a node is visited when its own entry satisfies the predicate.
-  /// The nodes of a level that were never read are announced together before they are.
+  /// As RecordIndex::search. Entries are tested where they lie. Nodes of a level that were never
+  /// read are announced together before they are read. Cost: one call of the predicate for each
+  /// entry of each node visited; a node is visited when its own entry satisfies the predicate.
   void search(const AttributePredicate& predicate, std::vector<PageId>& pages,
               IoCounters& counters) const override;
 
-  /// Visits pages best first, until the cut-off is above the bound of all that is left.
-  /// @throws Error corruption; what the visitor throws
-  /// Cost: nodes and pages whose bound is at least the final cut-off, times a logarithm.
+  /// Visits pages best first, until the bounds of all that are left lie below the cut-off.
+  /// @throws Error corruption, io_error; what the visitor throws
+  /// Cost: the nodes and pages whose bound is at least the final cut-off, times a logarithm.
   void search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The descriptors of pages that are on disk already, kept beside them so that an interrupted build
-// can go on where it was.
+// The descriptors of the pages that a build has written already, in a file of their own, so that an
+// interrupted build can go on where it was.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,18 @@
 
 namespace ptin {
 
-/// How far a store in the making is safely on disk.
+/// How much of an unfinished store is safely on disk.
 struct StoreCheckpoint {
   std::uint64_t pages = 0;
-  /// Over the descriptors of these pages, each hashed with what came before it; they hold the
-  /// checksums of the pages.
+  /// A checksum over the descriptors of these pages, made by hashing each descriptor together with
+  /// the checksum of those before it. Descriptors hold the checksums of their pages, so it stands
+  /// for the content of the pages too.
   std::uint64_t chain = 0;
   friend bool operator==(const StoreCheckpoint&, const StoreCheckpoint&) = default;
 };
 
-/// Said before the first pages are overwritten by the front of the file: where their copies are.
+/// Written before publish() puts the front of the file over the first pages: says where copies of
+/// those pages are.
 struct PublishMark {
   std::uint64_t magic = 0;
   std::uint64_t pages = 0;
@@ -33,22 +35,24 @@ struct PublishMark {
   std::uint64_t checksum = 0;     ///< Of the fields above.
 };
 
-/// Append-only file of descriptors. Memory: what was added since the last sync().
+/// An append-only file of descriptors. Memory: at most 4096 descriptors.
 class PageJournal {
  public:
+  /// Creates or opens the file `path` (ScratchFile::Kept). `files` is borrowed.
   /// @throws Error io_error, resource_exhausted, not_found
   PageJournal(FileLayer& files, const std::string& path, ScratchFile::Kept kept);
 
   void add(const layout::NodeEntry& page);
   [[nodiscard]] const StoreCheckpoint& end() const noexcept { return end_; }
-  /// Writes and syncs what was added.
+  /// Writes what was added, and syncs the file.  @throws Error io_error, resource_exhausted
   void sync();
-  /// Appends and syncs a mark.
+  /// Appends a mark behind all descriptors, and syncs the file.
   void mark(std::uint64_t moved_bytes, std::uint64_t moved_to);
 
-  /// The mark at the end of the file, if there is one.
+  /// The mark at the end of the file; none when the file does not end with a sound one.
   [[nodiscard]] std::optional<PublishMark> find_mark() const;
-  /// Hands over the first `checkpoint.pages` descriptors, then forgets what follows them.
+  /// Calls page(descriptor) for the first `checkpoint.pages` descriptors, in order, then cuts the
+  /// file behind them.
   /// @throws Error corruption  they are not those of the checkpoint
   void replay(const StoreCheckpoint& checkpoint,
               const std::function<void(const layout::NodeEntry&)>& page);

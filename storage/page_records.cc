@@ -17,12 +17,14 @@ namespace {
 
 using lanes::Int4;
 
-// The lanes of Int4 as numbers of the type in which heights are stored. Errors are not negative: so
-// as floats and as their bits they have the same order.
+// The lanes of Int4 as numbers of the type in which heights are stored. Errors and deviations may
+// be compared as either type: they are not negative, so their bits have the same order as their
+// values.
 template <class Code>
 using Lanes = std::conditional_t<std::is_same_v<Code, float>, lanes::Float4, Int4>;
 
-// What a page's descriptor admits. `Code` is the type in which heights are stored.
+// The bounds that a page's descriptor sets for its records. `Code` is the type in which heights are
+// stored.
 template <class Code>
 class Bounds {
  public:
@@ -37,9 +39,9 @@ class Bounds {
     const Int4 minima{-1, -1, 0, 0};
     const Int4 outside = ((roi < box_) & minima) | ((roi > box_) & ~minima);
     const auto values = lanes::load<Lanes<Code>>(&r.height_lo);
-    // Asked so that a NaN is not within.
+    // Both comparisons are false for a NaN, so that a NaN is not within the bounds.
     const Int4 within = (values >= least_) & (values <= most_);
-    // An empty interval of heights (lo > hi) lies in any other.
+    // An empty interval of heights (lo > hi) lies in every interval.
     const std::int32_t is_empty = values[0] > values[1] ? -1 : 0;
     const Int4 excused{is_empty, is_empty, 0, 0};
     const auto height = std::bit_cast<Code>(r.height);
@@ -119,7 +121,7 @@ void DescribedPage::decode_matching(std::span<const std::byte> bytes,
   const std::size_t before = out.size();
   std::array<std::uint16_t, kMostRecords> near;  // NOLINT: written before it is read
   const std::size_t count = find_near(bytes, predicate.reach(), near);
-  std::size_t matching = 0;  // without branches, as find_near()
+  std::size_t matching = 0;  // Counted without branches, as in find_near().
   for (std::size_t k = 0; k < count; ++k) {
     layout::RecordHead head;
     std::memcpy(&head, bytes.data() + near[k] * step, sizeof head);
@@ -141,8 +143,9 @@ void DescribedPage::decode_matching(std::span<const std::byte> bytes,
   }
 }
 
-/// The records whose roi meets a box. Without branches: which ones do cannot be predicted, and of
-/// a point's pages it is one record in three.
+/// Lists in `near` the records whose roi meets a box, and returns their number. Without branches,
+/// since it cannot be predicted which records meet it: of the records on a point's pages, one in
+/// three does.
 std::size_t DescribedPage::find_near(std::span<const std::byte> bytes, const GridBox& box,
                                      std::span<std::uint16_t> near) const noexcept {
   const std::size_t step = record_bytes(kind());

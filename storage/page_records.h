@@ -16,8 +16,8 @@
 
 namespace ptin {
 
-/// A page's descriptor, found sound: kind and number of records fit the page, box and errors are
-/// possible.
+/// A page as its descriptor describes it. The constructor checks the descriptor: kind and number of
+/// records fit the page, and box, heights and errors are possible.
 class DescribedPage {
  public:
   /// @param path  Borrowed; for messages.
@@ -35,18 +35,19 @@ class DescribedPage {
     return descriptor_.kind_and_count & (layout::kWidePage - 1);
   }
 
-  /// Appends all records. On an error `out` is as before.
+  /// Appends all records of the page to `out`. On an error `out` is as before.
   /// @throws Error corruption  a field cannot be what was written, or lies outside of what the
-  /// descriptor says
+  ///                           descriptor says
   void decode(std::span<const std::byte> bytes, std::vector<VertexSplit>& out) const;
 
-  /// Appends the records for which the predicate is true. The same checks for these; those that are
-  /// left out are looked at no further than their attributes.
+  /// Appends the records for which the predicate is true. They are checked as by decode(); of the
+  /// other records nothing but the attributes is looked at.
+  /// @throws Error as decode()
   void decode_matching(std::span<const std::byte> bytes, const AttributePredicate& predicate,
                        std::vector<VertexSplit>& out) const;
 
  private:
-  /// How many records come before the first that the descriptor excludes.
+  /// The number of records before the first one that the descriptor excludes.
   [[nodiscard]] std::size_t admitted(std::span<const VertexSplit> records) const noexcept;
   [[nodiscard]] std::size_t find_near(std::span<const std::byte> bytes, const GridBox& box,
                                       std::span<std::uint16_t> near) const noexcept;

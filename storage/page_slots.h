@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where the record pages are. They are written before it is known how long the front of the file
-// is, and only as many of them as the front takes are moved, to the end: so the page in the first
-// slot need not be page 0.
+// Where the record pages lie in the file. A writer writes them before it knows how long the front
+// of the file is. Then it moves only those pages to the end whose place the front takes. So the
+// page in the first slot need not be page 0.
 #pragma once
 
 #include <cstdint>

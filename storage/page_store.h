@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The page store: the one way to the record pages. Two models here (mapped, pread); bench adds
-// io_uring.
+// The page store: the one way to the record pages. storage/page_stores.h has two implementations
+// (mapped, pread); bench/support/uring_pages.h reads through io_uring.
 #pragma once
 
 #include <cstddef>
@@ -18,9 +18,9 @@ enum class PageId : std::uint64_t {};
   return static_cast<std::uint64_t>(id);
 }
 
-/// Reads record pages. Every model verifies a page's checksum before its bytes are seen: `mapped`
-/// on first touch, `pread` on every read. Threads: all functions may be called at once on one
-/// store; counters belong to the caller.
+/// Reads record pages. Every implementation verifies a page's checksum before its bytes are seen:
+/// the mapped one at the first touch, the pread one at every read. Threads: all functions may be
+/// called at once on one store; counters belong to the caller.
 class PageStore {
  public:
   PageStore() = default;
@@ -31,8 +31,8 @@ class PageStore {
   [[nodiscard]] virtual std::uint64_t page_count() const noexcept = 0;
   [[nodiscard]] virtual std::size_t page_bytes() const noexcept = 0;
 
-  /// Tells the kernel which pages are read next; coalesces near ones into ranges. `ids` ascend. A
-  /// hint: never fails.
+  /// Tells the kernel which pages are read next; pages that lie near each other become one range.
+  /// `ids` ascend. A hint: never fails.
   virtual void announce(std::span<const PageId> ids, IoCounters& counters) const noexcept = 0;
 
   /// Copies page `id` into `out` (page_bytes() long). The copy is what is checked, so bytes cannot
@@ -41,9 +41,9 @@ class PageStore {
   /// io_error
   virtual void read(PageId id, std::span<std::byte> out, IoCounters& counters) const = 0;
 
-  /// Compares size, mtime and ctime with those at opening, and looks at the damage mark of a
-  /// mapping that lost its file.
-  /// @throws Error corruption when the file was replaced, cut short or written while open
+  /// Compares size, modification time and change time of the file with those at opening, and looks
+  /// whether a mapping has lost bytes of its file.
+  /// @throws Error corruption  the file was replaced, cut short or written while it was open
   virtual void check_unchanged() const = 0;
 };
 

@@ -11,13 +11,13 @@ namespace ptin {
 
 namespace {
 
-// Pages between two wanted ones are read along when they are few: one request of the disk costs as
-// much as this.
+// Unwanted pages between two wanted ones are read along when they are no more than this: one more
+// request to the disk costs as much.
 constexpr std::uint64_t kGapBytes = std::uint64_t{32} << 10;
-// But of what is read, no more than a third is waste.
+// Yet at most a third of what a run of requests reads is unwanted.
 constexpr std::uint64_t kWantedPerWaste = 2;
 
-// Ranges of slots that hold wanted pages, near ones joined.
+// Makes ranges of slots from the slots of wanted pages; ranges that lie near each other are joined.
 class RangeJoiner {
  public:
   explicit RangeJoiner(std::uint64_t page_bytes) : gap_(kGapBytes / page_bytes) {}
@@ -90,7 +90,8 @@ void DescribedPageStore::verify(PageId id, const layout::NodeEntry& descriptor,
 void MappedPageStore::read_described(PageId id, const layout::NodeEntry& descriptor,
                                      std::span<std::byte> out, IoCounters& counters) const {
   std::memcpy(out.data(), mapping_.at(slots_.offset_of(id)), out.size());
-  // After the copy: if it met a hole, it is not what the file held, verified before or not.
+  // After the copy: if the copy met lost bytes, it is not what the file held, whether the page was
+  // verified before or not.
   mapping_.require_undamaged();
   ++counters.pages;
   counters.bytes_read += out.size();

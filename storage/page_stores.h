@@ -15,7 +15,8 @@
 
 namespace ptin {
 
-/// What both have in common: where a page lies, and the descriptor that holds its checksum.
+/// What both page stores have in common: where a page lies, and the index with the descriptor that
+/// holds its checksum.
 class DescribedPageStore : public PageStore {
  public:
   [[nodiscard]] std::uint64_t page_count() const noexcept final { return slots_.pages; }
@@ -23,13 +24,13 @@ class DescribedPageStore : public PageStore {
   void announce(std::span<const PageId> ids, IoCounters& counters) const noexcept final;
   void read(PageId id, std::span<std::byte> out, IoCounters& counters) const final;
 
-  /// As read(), when the page's descriptor is at hand. REQUIRES: id < page_count(), out.size() ==
-  /// page_bytes().
+  /// As read(), for a caller that has the page's descriptor. REQUIRES: id < page_count(),
+  /// out.size() == page_bytes().
   virtual void read_described(PageId id, const layout::NodeEntry& descriptor,
                               std::span<std::byte> out, IoCounters& counters) const = 0;
-  /// As read_described(), of bytes that are looked at once: where the page lies in memory already
-  /// and was verified before, no copy is made. After them, and before anything that was made of
-  /// them is used, comes require_undamaged().
+  /// As read_described(), but makes no copy of a page that is mapped and was verified before. The
+  /// file may lose its bytes while they are looked at: so the caller calls require_undamaged()
+  /// after the last look, and before it uses anything made of them.
   /// @return `buffer`, or the bytes in the mapping.
   [[nodiscard]] virtual std::span<const std::byte> view_described(
       PageId id, const layout::NodeEntry& descriptor, std::span<std::byte> buffer,
@@ -37,7 +38,7 @@ class DescribedPageStore : public PageStore {
     read_described(id, descriptor, buffer, counters);
     return buffer;
   }
-  /// @throws Error corruption  the bytes of a view may not have been the file's
+  /// @throws Error corruption  bytes that view_described() returned may not be those of the file
   virtual void require_undamaged() const {}
 
  protected:
@@ -54,8 +55,8 @@ class DescribedPageStore : public PageStore {
   const IndexNodes& nodes_;
 };
 
-/// Copies out of the mapping, or shows what lies there. The checksum is compared at the first touch
-/// of a page, on the copy; later looks are trusted as long as the file is unchanged.
+/// Reads pages from a mapping. The checksum of a page is compared at the first touch, over a copy;
+/// from then on the page is trusted as long as the file is unchanged.
 class MappedPageStore final : public DescribedPageStore {
  public:
   MappedPageStore(const ReadOnlyFile& file, const MappedFile& mapping, const PageSlots& slots,

@@ -58,9 +58,9 @@ void encode_as(const VertexSplit& r, std::byte* out) {
 
 using lanes::Int4;
 
-// What every record holds in quadruples. Stored numbers may be anything: sums wrap instead of
-// overflowing. Nothing wraps onto the grid, since u is found to be on it: a sum beyond 2^31 - 1
-// becomes negative.
+// The fields of a record in quadruples. Stored numbers may be anything, so u and an offset are
+// added with wrap-around. No sum that wraps is taken for a position on the grid: u is found to be
+// on it, so that a sum beyond 2^31 - 1 becomes negative.
 struct Quadruples {
   Int4 roi;     // min x, min y, max x, max y
   Int4 values;  // height_lo, height_hi, error, deviation
@@ -101,7 +101,8 @@ bool is_sound(const Quadruples& q, std::uint16_t flags) {
   // Since u lies in it, the roi is not empty either.
   Int4 fault = (q.roi < 0) | (q.roi > kGridMax) | (q.w_vl < lo) | (q.w_vl > hi) | (q.vr_u < lo) |
                (q.vr_u > hi) | q.unequal;
-  // Bits of error and deviation: negative numbers and NaNs are below 0 or above infinity.
+  // Error and deviation are compared as bits: those of negative numbers and NaNs are below 0 or
+  // above the bits of infinity.
   constexpr auto kInfinity = static_cast<std::int32_t>(layout::kInfinityBits);
   const Int4 least{INT32_MIN, INT32_MIN, 0, 0};
   const Int4 most{INT32_MAX, INT32_MAX, kInfinity, kInfinity};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The vertex-split record, and its two encodings in bytes: narrow and wide. FORMAT.md, "Records".
+// The vertex-split record, and its two encodings in bytes: narrow and wide (storage/FORMAT.md,
+// "Records").
 #pragma once
 
 #include <cstddef>
@@ -67,9 +68,9 @@ void encode_record(const VertexSplit& r, RecordKind kind, std::span<std::byte> o
 [[nodiscard]] bool decode_record(std::span<const std::byte> in, RecordKind kind,
                                  VertexSplit& r) noexcept;
 
-/// Reads `out.size()` records that lie one behind the other in `in`; the same checks. Returns how
-/// many are sound before the first that is not: out.size() when all are. What follows that one is
-/// unspecified. Cost: about 5 ns a record.
+/// Reads `out.size()` records that lie one behind the other in `in`, with the checks of
+/// decode_record(). Returns the number of records before the first that fails them: out.size() when
+/// none fails. That record and those behind it are unspecified in `out`. Cost: about 5 ns a record.
 [[nodiscard]] std::size_t decode_records(std::span<const std::byte> in, RecordKind kind,
                                          std::span<VertexSplit> out) noexcept;
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A page is read for a point when its box holds it, and for a tolerance when its largest error is
-// above it. So we cut as builders of bounding volume hierarchies do (surface area heuristic, in
-// bins: Wald 2007), by what a cut makes pages cost: the share of the area that they cover, and the
-// octaves of error that they reach up to. Position, size and error are axes alike. Only integers
-// are compared and added up, and records are drawn by a hash of their vertex: so every machine cuts
-// alike.
+// A page is read for a point when its box holds the point, and for a tolerance when its largest
+// error is above the tolerance. So records are cut into pages as builders of bounding volume
+// hierarchies cut (surface area heuristic, in bins: Wald 2007). The cost of a cut is what its pages
+// come to: the share of the area that they cover, and the octaves of error that they reach up to. A
+// cut goes along one of four axes: both coordinates, size and error. Costs are integers, and the
+// records that decide are drawn by a hash of their vertex: so every machine makes the same cuts.
 #include "storage/record_order.h"
 
 #include <algorithm>
@@ -26,18 +26,19 @@ namespace {
 constexpr std::size_t kAxes = 4;
 constexpr int kBinBits = 5;
 constexpr std::size_t kBins = std::size_t{1} << kBinBits;
-constexpr std::size_t kSample = 1024;  // Records that decide about a cut; about.
+constexpr std::size_t kSample = 1024;  // About how many records decide on a cut.
 constexpr std::uint32_t kOctave = 64;  // Steps of error in an octave.
-// An octave of error of a page costs as much as so many times the area that is one page's when all
-// have the same.
+// An octave of a page's largest error costs as much as this many times the area that each page has
+// when all pages have the same.
 constexpr std::uint64_t kPagesAnOctave = 8;
 
-// A part of a cut is at least this fraction, so that no segment takes a cut for each of its pages.
+// Each part of a cut has at least one page in this many, so that a segment does not take as many
+// cuts as it has pages.
 constexpr std::size_t kMostUneven = 64;
 
 using lanes::Int4;
 
-/// What a record is placed by.
+/// What decides on the place of a record.
 struct Item {
   Int4 roi;  ///< min x, min y, -max x, -max y: a union is four minima.
   VertexKey key;
@@ -50,7 +51,8 @@ std::uint32_t hash_of(VertexKey key) {
   return static_cast<std::uint32_t>(((key ^ (key >> 27)) * kGoldenRatio) >> 32);
 }
 
-/// Large and coarse ones have small numbers.
+/// The place of a record on an axis: 0 and 1 are x and y of the middle of its box, 2 is its size, 3
+/// its error. Large and coarse records have small numbers.
 std::uint32_t along(const Item& item, std::size_t axis) {
   const Int4& b = item.roi;
   switch (axis) {
@@ -106,7 +108,7 @@ class Cutter {
 
   struct Choice {
     std::size_t axis = 0;
-    std::uint64_t before = 0, of = 0;  // The part of the records drawn that goes first.
+    std::uint64_t before = 0, of = 0;  // Of the `of` records drawn, `before` go first.
     bool is_made = false;
   };
 
@@ -114,7 +116,7 @@ class Cutter {
   [[nodiscard]] Choice choose(std::size_t begin, std::size_t end);
   void part(std::size_t begin, std::size_t middle, std::size_t end, std::size_t axis);
 
-  /// What pages with these records drawn, each for `weight`, cost.
+  /// The cost of the pages that hold the records of `c`, each of which stands for `weight` records.
   [[nodiscard]] std::uint64_t cost(const Cover& c, std::uint64_t weight) const {
     const auto area = static_cast<std::uint64_t>(static_cast<double>(c.area()) * an_area_);
     const std::uint64_t pages = (c.records * weight + a_page_ - 1) / a_page_;
@@ -140,7 +142,8 @@ void Cutter::cut(std::size_t begin, std::size_t end) {
     }
     const std::size_t middle = begin + first * a_page_;
     part(begin, middle, end, choice.axis);
-    if (middle - begin <= end - middle) {  // the smaller part, so that calls nest log n deep
+    // The call is for the smaller part, so that calls nest log n deep.
+    if (middle - begin <= end - middle) {
       cut(begin, middle);
       begin = middle;
     } else {
@@ -154,7 +157,7 @@ void Cutter::cut(std::size_t begin, std::size_t end) {
             });
 }
 
-/// The cut with the least cost of those between bins.
+/// The cut between two bins of an axis that costs least.
 Cutter::Choice Cutter::choose(std::size_t begin, std::size_t end) {
   int shift = 32;
   while (((end - begin) >> (32 - shift)) > kSample) {
@@ -187,7 +190,7 @@ Cutter::Choice Cutter::choose(std::size_t begin, std::size_t end) {
     for (const Item& item : drawn_) {
       bins[(along(item, axis) - low[axis]) >> fine].add(item.roi, item.error, 1);
     }
-    std::array<Cover, kBins> behind;  // and with this one
+    std::array<Cover, kBins> behind;  // behind[i]: the records of bin i and of all bins behind it.
     Cover sum;
     for (std::size_t i = kBins; i-- > 0;) {
       sum.add(bins[i]);
@@ -209,7 +212,8 @@ Cutter::Choice Cutter::choose(std::size_t begin, std::size_t end) {
   return best;
 }
 
-/// Puts first those that come before along the axis; ties by the vertex.
+/// Puts the `middle - begin` records with the smallest numbers on an axis first; ties by the
+/// vertex.
 void Cutter::part(std::size_t begin, std::size_t middle, std::size_t end, std::size_t axis) {
   const auto at = [this](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(at(begin), at(middle), at(end), [&](const Item& a, const Item& b) {
@@ -219,7 +223,8 @@ void Cutter::part(std::size_t begin, std::size_t middle, std::size_t end, std::s
   });
 }
 
-/// Errors as steps of the logarithm: the bits of a float are nearly that.
+/// Errors as whole steps of their logarithm, which the bits of a float are nearly: 0 for error 0,
+/// and from kOctave on above it.
 class ErrorSteps {
  public:
   explicit ErrorSteps(std::span<const VertexSplit> records) {

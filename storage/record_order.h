@@ -10,13 +10,15 @@
 
 namespace ptin {
 
-/// Orders the records of a segment so that pages of `page_bytes`, filled one after the other, have
-/// small boxes and records of like error: wide records first, narrow ones behind them, each cut in
-/// two again and again down to single pages, where a page's share of the area and its largest error
-/// grow least. The records of a page come by falling error (steps of 1/64 octave), then by the key
-/// of u. The result depends on the set of records alone, as long as no u comes twice. Memory: 32
-/// bytes a record, and a copy of the records. Cost: O(n log n), about 0.2 microseconds a record of
-/// a segment of 50 000.
+/// Orders the records of a segment for pages of `page_bytes` that are filled one after the other,
+/// so that pages have small boxes and records of like error. Wide records come first, narrow ones
+/// behind them. Either kind is cut in two, and the parts again and again, down to single pages.
+/// Each cut is the one after which pages cover the least area and reach up to the least errors. The
+/// records of a page come by falling error (in steps of 1/64 octave), then by the key of u.
+///
+/// The result depends on the set of records alone. REQUIRES: no u comes twice. Memory: 32 bytes a
+/// record, and a copy of the records. Cost: O(n log n), about 0.2 microseconds a record in a
+/// segment of 50 000.
 void order_segment(std::span<VertexSplit> records, std::size_t page_bytes);
 
 }  // namespace ptin

@@ -12,13 +12,14 @@
 
 namespace ptin {
 
-/// The arrays of BASE.dat, found by BASE.idx. While it is made, arrays are kept; once it is opened
-/// again, it only reads (libspatialindex's tree writes its header anew whenever it goes).
+/// libspatialindex's arrays in BASE.dat, found by BASE.idx. Storage that create() makes writes
+/// arrays. Storage that open() gives only reads: it drops what libspatialindex's tree writes, which
+/// is its header whenever it is destroyed.
 class SealedStorage final : public SpatialIndex::IStorageManager {
  public:
-  /// For new files, which hold nothing until seal().
+  /// Makes new files, which open() accepts once seal() has closed them.
   static std::unique_ptr<SealedStorage> create(std::string base, std::uint32_t page_bytes);
-  /// Of files that were sealed. Null when they are not there, or BASE.idx is not what was sealed.
+  /// Opens sealed files. Null when they are not there, or when BASE.idx is not what was sealed.
   static std::unique_ptr<SealedStorage> open(std::string base);
 
   /// @throws Error corruption  the array is not what was stored
@@ -26,10 +27,11 @@ class SealedStorage final : public SpatialIndex::IStorageManager {
   void storeByteArray(SpatialIndex::id_type& id, std::uint32_t bytes,
                       const std::uint8_t* data) override;
   void deleteByteArray(SpatialIndex::id_type id) override;
-  void flush() override {}  // libspatialindex's own writes BASE.idx when it goes
+  void flush() override {}  // `disk_` writes BASE.idx when it goes.
 
-  /// Closes the files of what create() began, and puts the checksum behind BASE.idx: to be called
-  /// once nothing refers to this any more.  @throws Error io_error, resource_exhausted
+  /// Closes the files of a storage that create() made, and puts the checksum behind BASE.idx. To be
+  /// called when nothing refers to the storage any more.  @throws Error io_error,
+  /// resource_exhausted
   static void seal(std::unique_ptr<SealedStorage> storage);
 
  private:

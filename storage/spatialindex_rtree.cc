@@ -34,7 +34,8 @@ constexpr std::uint32_t kDiskPageBytes = 4096;
 // would just fit.
 constexpr std::uint32_t kCapacity = 50;
 constexpr double kFill = 0.99;
-// What the bulk loader keeps for each entry: a record on the heap with a region of eight doubles.
+// Bytes that the bulk loader keeps for each entry: a record on the heap with a region of eight
+// doubles.
 constexpr std::uint64_t kSortBytes = 256;
 // Stands for an infinite error or height: beyond every float, and sums of two are finite.
 constexpr double kBeyond = 0x1p200;
@@ -70,7 +71,7 @@ auto translated(const std::string& base, Work work) {
 double bounded(double v) { return std::clamp(v, -kBeyond, kBeyond); }
 
 si::Region region_of(const Attributes& a) {
-  // An empty interval of heights becomes a point: the box may be larger than what it stands for,
+  // An empty interval of heights becomes a point: a box may be larger than what it stands for,
   // never smaller.
   const bool empty = is_empty(a.heights);
   const std::array<double, kDimensions> low = {static_cast<double>(a.roi.min_x),
@@ -184,8 +185,8 @@ Tools::PropertySet tree_properties(std::uint64_t entries_in_memory) {
   set(p, "Dimension", kDimensions);
   set(p, "IndexCapacity", kCapacity);
   set(p, "LeafCapacity", kCapacity);
-  // Entries of a page of the sorter, and pages it keeps: it spills beyond their product. It merges
-  // as many runs at once as it has pages.
+  // The number of entries on a page of the sorter, and the number of pages that it keeps: beyond
+  // their product it spills. It merges as many runs at once as it has pages.
   constexpr std::uint32_t kSorterPages = 64;
   const std::uint64_t page_entries =
       std::clamp<std::uint64_t>(entries_in_memory / kSorterPages, 64, 1U << 24);
@@ -213,8 +214,8 @@ void bulk_load(const StoreFile& store, const std::string& base, std::uint64_t me
   SealedStorage::seal(std::move(disk));
 }
 
-// The external sorter puts its runs into the current folder. A thread can have one of its own: the
-// process keeps its.
+// libspatialindex's external sorter puts its runs into the working folder. So the bulk loader runs
+// on a thread that has a working folder of its own, and the working folder of the process stays.
 void bulk_load_in(const std::string& folder, const StoreFile& store, const std::string& base,
                   std::uint64_t memory_bytes) {
   std::exception_ptr failure;
@@ -240,7 +241,8 @@ void remove_tree(const std::string& base) {
   fs::remove(base + ".idx", ignored);
 }
 
-// Under another name first; the .dat file, which holds the stamp, gets its name last.
+// Builds the tree under another name and renames its files. The .dat file, which holds the stamp,
+// gets its name last.
 void build(const StoreFile& store, const std::string& base, const SpatialIndexOptions& options) {
   const std::string scratch = base + "." + std::to_string(::getpid()) + ".tmp";
   const std::string folder = options.temporary_folder.empty()
@@ -312,7 +314,8 @@ struct SpatialIndexRTree::Tree {
 SpatialIndexRTree::SpatialIndexRTree(std::unique_ptr<Tree> tree) : tree_(std::move(tree)) {}
 
 SpatialIndexRTree::~SpatialIndexRTree() {
-  // The tree writes its header into the storage manager when it goes: so it goes first.
+  // The tree writes its header into the storage manager when it is destroyed, so it is destroyed
+  // first.
   tree_->tree.reset();
 }
 

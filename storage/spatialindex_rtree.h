@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The second model of RecordIndex: libspatialindex's disk R-tree, bulk-loaded beside the file on
-// demand.
+// The second implementation of RecordIndex: libspatialindex's disk R-tree, bulk-loaded beside the
+// file on demand.
 #pragma once
 
 #include <cstdint>
@@ -23,19 +23,21 @@ struct SpatialIndexOptions {
   std::uint64_t memory_bytes = std::uint64_t{256} << 20;
 };
 
-/// Boxes of four dimensions (x, y, height codes, [0, error]) of the record pages, in an R-tree
-/// packed by sort-tile-recursive. A query strategy evaluates the predicate on node boxes, with an
-/// infinite deviation, which is no dimension of the tree; what a leaf holds is asked exactly, by
-/// the page's descriptor. So the answers are those of the packed R-tree.
+/// An R-tree over the boxes of the record pages in four dimensions (x, y, height codes, [0,
+/// error]), packed by sort-tile-recursive. A search asks the predicate of the boxes of nodes, with
+/// an infinite deviation, since deviation is no dimension of the tree. Of the pages in a leaf it
+/// asks the predicate of the descriptors, exactly. So the answers are those of the packed R-tree.
 ///
-/// The tree is built when it is not there, is of another store (its first page holds the store's
-/// fingerprint) or its table of pages is damaged. It is a cache: written under temporary names and
-/// renamed, but not synced. Every page carries a checksum, verified whenever it is read.
+/// The tree is built when it is not there, when it is of another store (its first page holds the
+/// store's fingerprint), or when its table of pages is damaged. It is a cache: written under
+/// temporary names and renamed, but not synced. Every page carries a checksum, verified whenever it
+/// is read.
 ///
 /// Threads: searches take turns, since libspatialindex reads through one stream.
 class SpatialIndexRTree final : public RecordIndex {
  public:
-  /// @throws Error io_error, resource_exhausted, not_found (no such folder); corruption (of the
+  /// Opens the tree of `store`, and builds it first where that is needed. Shares `store`.
+  /// @throws Error io_error, resource_exhausted, not_found (no such folder), corruption (of the
   /// store)
   static std::unique_ptr<SpatialIndexRTree> open(std::shared_ptr<const StoreFile> store,
                                                  const SpatialIndexOptions& options = {});

@@ -118,7 +118,7 @@ std::uint32_t StoreFileImpl::read_matching(PageId id, const AttributePredicate& 
     pages_->require_undamaged();
   } catch (const Error&) {
     out.resize(before);
-    pages_->require_undamaged();  // then that is why
+    pages_->require_undamaged();  // Lost bytes are the cause, where there are any.
     throw;
   }
   return page.records();

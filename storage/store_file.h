@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// An open .ptin file: header, metadata, T0, index and record pages. FORMAT.md has the bytes.
+// An open .ptin file: header, metadata, T0, index and record pages. storage/FORMAT.md has the
+// bytes.
 #pragma once
 
 #include <cstdint>
@@ -26,11 +27,13 @@ struct StoreFacts {
   GridBox bounds;           ///< Of the whole domain, grid units.
   double min_height = 0.0;  ///< Of all samples, height's unit; min > max when all is void.
   double max_height = 0.0;
-  double base_error = 0.0;  ///< Error of the file's finest TIN against its source (--max-error,
-                            ///< rounding of heights).
+  /// Error of the file's finest TIN against its source, in the height's unit: what --max-error left
+  /// out, and the rounding of heights.
+  double base_error = 0.0;
   double base_deviation = 0.0;
   std::uint64_t source_samples = 0;  ///< Samples with a height in the source.
-  /// No triangle of the source's TIN, or of any coarser one, is void. False where nobody knows.
+  /// No triangle of the source's TIN, or of any coarser one, is void, and every vertex has a
+  /// height. False where that is not known.
   bool free_of_voids = false;
   std::uint32_t page_bytes = 4096;
   friend bool operator==(const StoreFacts&, const StoreFacts&) = default;
@@ -52,17 +55,17 @@ struct CoarsestTin {
   std::vector<T> triangles;
 };
 
-/// Whether any triangle is void or any vertex without a height.
+/// True when a triangle of T0 is void or a vertex of T0 has no height.
 [[nodiscard]] bool has_void(const CoarsestTin& t0) noexcept;
 
-/// One bin of the table of errors: the records with error in (previous upper, upper].
-/// Bins ascend; the first has upper 0 (records of error exactly 0), the last may be +infinity. An
-/// eighth of an octave each.
+/// One bin of the table of errors: the records with error in (previous upper, upper]. Bins ascend,
+/// and each is an eighth of an octave wide. The first has upper 0 and holds records of error
+/// exactly 0; the last may have upper +infinity.
 struct ErrorBin {
   float upper = 0.0F;
   float max_deviation = 0.0F;  ///< Largest deviation in this bin alone.
   std::uint64_t records = 0;
-  std::uint64_t void_vertices = 0;  ///< Of these, records whose vertex has no height.
+  std::uint64_t void_vertices = 0;  ///< Those of the records whose vertex has no height.
 };
 
 struct SectionInfo {
@@ -90,21 +93,22 @@ class StoreFile {
 
   [[nodiscard]] virtual const std::string& path() const noexcept = 0;
   [[nodiscard]] virtual const StoreFacts& facts() const noexcept = 0;
-  [[nodiscard]] virtual std::string_view metadata_json()
-      const noexcept = 0;  ///< CRS, options, source, counts; UTF-8 JSON.
+  /// CRS, options, source and counts, as UTF-8 JSON.
+  [[nodiscard]] virtual std::string_view metadata_json() const noexcept = 0;
   [[nodiscard]] virtual const CoarsestTin& t0() const noexcept = 0;
   [[nodiscard]] virtual std::uint64_t record_count() const noexcept = 0;
   [[nodiscard]] virtual std::uint16_t max_rank() const noexcept = 0;
   [[nodiscard]] virtual std::span<const ErrorBin> error_bins() const noexcept = 0;
   [[nodiscard]] virtual std::vector<SectionInfo> sections() const = 0;
   [[nodiscard]] virtual std::uint64_t file_bytes() const noexcept = 0;
-  /// Checksum of the header. The header holds the checksums of all sections, an index entry that of
-  /// what it describes: so this one number stands for the content of the file.
+  /// The checksum of the header. The header holds the checksum of the table with the checksums of
+  /// all sections, and an index entry that of what it describes: so this one number stands for the
+  /// content of the file.
   [[nodiscard]] virtual std::uint64_t fingerprint() const noexcept = 0;
   [[nodiscard]] virtual const RecordIndex& index() const noexcept = 0;  ///< The packed R-tree.
   [[nodiscard]] virtual const PageStore& pages() const noexcept = 0;
 
-  /// Kind and number of the records of a page; from its descriptor, range-checked.
+  /// What the descriptor of a page says; kind and number of the records are range-checked.
   struct PageInfo {
     RecordKind kind;
     std::uint32_t records;
@@ -120,8 +124,9 @@ class StoreFile {
   virtual void read_records(PageId id, std::vector<VertexSplit>& out,
                             IoCounters& counters) const = 0;
 
-  /// As read_records(), for the records alone whose attributes satisfy `predicate`; the others are
-  /// not decoded, and not checked. Returns the number of records examined: all of the page.
+  /// As read_records(), for those records alone whose attributes satisfy `predicate`. The others
+  /// are not decoded, and not checked. Returns the number of records examined: all records of the
+  /// page.
   /// @throws Error corruption, io_error
   virtual std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
                                       std::vector<VertexSplit>& out,

@@ -119,7 +119,7 @@ const SectionEntry& find(const std::vector<SectionEntry>& table, SectionKind kin
   return *found;
 }
 
-// A whole section as an array of T, its checksum compared.
+// A whole section as an array of T, once its checksum was compared.
 template <class T>
 std::vector<T> read_section(const std::vector<SectionEntry>& table, SectionKind kind,
                             const ReadOnlyFile& file) {

@@ -18,8 +18,8 @@ namespace ptin {
 
 struct StoreFront {
   layout::FileHeader header;
-  std::vector<layout::SectionEntry>
-      sections;  ///< Ascending by offset; kinds of later minor versions too.
+  /// Ascending by offset. Sections of unknown kinds, from later minor versions, are among them.
+  std::vector<layout::SectionEntry> sections;
   StoreFacts facts;
   std::string metadata;
   CoarsestTin t0;
@@ -30,17 +30,17 @@ struct StoreFront {
   std::uint64_t root_checksum = 0;
 };
 
-/// Reads the front of a file and checks everything that FORMAT.md lists under "at opening".
+/// Reads the front of a file and checks everything that storage/FORMAT.md lists under "At opening".
 /// Cost: five reads, O(|T0|).
 /// @throws Error corruption, unsupported_version, io_error
 [[nodiscard]] StoreFront read_front(const ReadOnlyFile& file);
 
-/// What is wrong with a T0, as a sentence; null when nothing is: vertices within the bounds,
-/// heights finite numbers, corners in range and different, no surface triangle with a corner that
-/// has no height.
+/// What is wrong with a T0, as a sentence; null when nothing is. A sound T0 has vertices within the
+/// bounds, finite heights, triangles whose corners are vertices and different, and no surface
+/// triangle with a corner without a height.
 [[nodiscard]] const char* fault_in(const CoarsestTin& t0, const StoreFacts& facts) noexcept;
 
-/// Name of a section as `info` shows it: "metadata", "t0 vertices", ..., "unknown".
+/// The name of a section as `ptin info` shows it: "metadata", "t0 vertices", ..., "unknown".
 [[nodiscard]] const char* name_of(layout::SectionKind kind) noexcept;
 
 }  // namespace ptin

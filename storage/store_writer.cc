@@ -76,8 +76,8 @@ class PagePacker {
                                      record_bytes(kind));
     encode_record(r, kind, place);
     VertexSplit back;
-    // What a reader would refuse must not be written: better known now, beside its cause, than when
-    // it is read.
+    // What a reader would refuse must not be written: it is better found here, beside its cause,
+    // than when the file is read.
     PTIN_CHECK(decode_record(place, kind, back));
     PTIN_CHECK(!std::isnan(heights_.code(r.height)) && !std::isnan(heights_.code(r.height_lo)) &&
                !std::isnan(heights_.code(r.height_hi)));
@@ -241,7 +241,7 @@ void StoreWriterImpl::add_segment(std::span<VertexSplit> records, const HeightEn
   for (const VertexSplit& r : records) {
     add(r);
   }
-  // A page of two segments would have the box of both.
+  // A page of two segments would have the box of both, so a segment ends its last page.
   if (!page_->empty()) {
     finish_page();
   }
@@ -289,7 +289,8 @@ void StoreWriterImpl::sync() {
   journal_->sync();
 }
 
-// A publish() that was interrupted has put the front of the file over the first pages.
+// Where publish() was interrupted, it has put the front of the file over the first pages. Puts
+// their copies back.
 void StoreWriterImpl::restore_moved_pages() {
   const std::optional<PublishMark> mark = journal_->find_mark();
   if (!mark) {
@@ -304,7 +305,7 @@ void StoreWriterImpl::restore_moved_pages() {
   file_.sync();
 }
 
-// Reads the next page again, and counts it as add() and finish_page() did.
+// Reads the next page again, checks it, and counts it as add() and finish_page() did.
 void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page) {
   const std::uint32_t count = entry.kind_and_count & (layout::kWidePage - 1);
   const RecordKind kind =
@@ -334,21 +335,21 @@ void StoreWriterImpl::resume(const StoreCheckpoint& checkpoint, const HeightEnco
   restore_moved_pages();
   std::vector<std::byte> page(options_.page_bytes);
   journal_->replay(checkpoint, [&](const layout::NodeEntry& entry) { take_back(entry, page); });
-  // A mark of publishing that comes back after a power cut would speak of copies that are cut off
-  // here.
+  // The journal is synced before the pages are cut. Otherwise a power cut could bring back a mark
+  // of publishing that speaks of copies which were cut off.
   journal_->sync();
   file_.truncate(written_bytes_);
 }
 
-// Makes room for the front: the pages that are in its way go to the end, which moves no more bytes
-// than the front has.
+// Makes room for the front: copies the pages that are in its way to the end. That moves no more
+// bytes than the front has. Returns where the pages lie then.
 PageSlots StoreWriterImpl::move_pages_behind(std::uint64_t front_bytes) {
   const std::uint64_t pages_bytes = written_bytes_;
   const std::uint64_t moved = std::min(front_bytes, pages_bytes);
   file_.reserve(pages_bytes, front_bytes);
   file_.copy_from(file_, 0, moved, std::max(front_bytes, pages_bytes));
   if (journal_) {
-    file_.sync();  // from here on the first pages are in their copies alone
+    file_.sync();  // The mark promises the copies: they come first.
     journal_->mark(moved, std::max(front_bytes, pages_bytes));
   }
   const std::uint64_t pages = pages_bytes / options_.page_bytes;

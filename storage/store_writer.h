@@ -18,26 +18,30 @@ namespace ptin {
 class FileLayer;
 
 struct StoreWriterOptions {
-  bool overwrite =
-      false;  ///< Replace an existing file; otherwise its existence is an invalid_argument.
-  std::uint32_t page_bytes =
-      4096;  ///< Power of two from 4096 to 65536. StoreFacts::page_bytes is not looked at.
-  FileLayer* files =
-      nullptr;  ///< Through which to write; borrowed; null means the system. For tests.
-  /// A folder on the file system of the target. When it is named, work is kept there, in the files
-  /// `pages` and `descriptors`, until publish(), so that another writer can go on from a
-  /// checkpoint; its owner removes them. Otherwise nothing is ever left behind.
+  /// Whether to replace an existing file. When off, an existing file is an invalid_argument.
+  bool overwrite = false;
+  /// A power of two from 4096 to 65536. StoreFacts::page_bytes is not looked at.
+  std::uint32_t page_bytes = 4096;
+  /// The files to write through; borrowed; null means those of the system. For tests.
+  FileLayer* files = nullptr;
+  /// A folder on the file system of the target. When it is named, the writer keeps its work there
+  /// until publish(), in the files `pages` and `descriptors`, so that another writer can go on from
+  /// a checkpoint; the owner of the folder removes them. When it is not named, nothing is ever left
+  /// behind.
   std::string work_folder = {};
 };
 
-/// Writes beside the target under a temporary name; publish() syncs and renames. Destroyed without
-/// publish(), it removes what it wrote: the target's name never shows a part. (A process that is
-/// killed leaves a file named .TARGET.PID-N.tmp.)
-/// Segments arrive in any order of dependency; the file keeps the order of segments, each on pages
-/// of its own, and inside a segment orders records by record_order.h. The bytes depend on
-/// nothing but what is given. Memory: one segment twice and 32 bytes for each of its records while
-/// it is ordered; 2 MiB; less than one byte for a hundred records (leaves of the index go to a
-/// nameless side file).
+/// Writes a store beside the target, under a temporary name; publish() syncs and renames it. A
+/// writer that is destroyed without publish() removes what it wrote: the target's name never shows
+/// a part. (A process that is killed leaves a file named .TARGET.PID-N.tmp.)
+///
+/// The file keeps the order in which segments come, whatever their records need of each other; each
+/// segment has pages of its own, and its records are ordered by storage/record_order.h. The bytes
+/// depend on what is given alone.
+///
+/// Memory: one segment twice, and 32 bytes for each of its records, while the segment is ordered; 2
+/// MiB; and less than one byte for a hundred records, since leaves of the index go to a nameless
+/// side file.
 class StoreWriter {
  public:
   /// @throws Error invalid_argument (target exists and overwrite is off), io_error, not_found (no
@@ -48,15 +52,17 @@ class StoreWriter {
   StoreWriter& operator=(const StoreWriter&) = delete;
   virtual ~StoreWriter() = default;
 
-  /// Goes on from a checkpoint that a writer with the same work folder, target and options made:
-  /// pages behind it are forgotten, those before it are read again and checked. To be called first.
+  /// Goes on from a checkpoint that a writer with the same work folder, target and options made.
+  /// Pages behind the checkpoint are forgotten; those before it are read again and checked. To be
+  /// called first.
+  /// REQUIRES: a work folder.
   /// @throws Error corruption (the pages are not those of the checkpoint), io_error
   /// Cost: one reading of the pages.
   virtual void resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) = 0;
 
-  /// Where the writer stands: behind the last segment. Only with a work folder, as sync().
+  /// The checkpoint behind the last segment. REQUIRES: a work folder.
   [[nodiscard]] virtual StoreCheckpoint position() const = 0;
-  /// Makes all segments so far durable.
+  /// Makes all segments so far durable. REQUIRES: a work folder.
   /// @throws Error resource_exhausted, io_error
   virtual void sync() = 0;
 
@@ -66,10 +72,11 @@ class StoreWriter {
   virtual void add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) = 0;
 
   /// Writes T0, metadata, index and tables, syncs, renames onto the target, syncs the folder. To be
-  /// called once. Moves as many bytes of pages as the front of the file is long.
+  /// called once, at the end. Cost besides: moves as many bytes of pages as the front of the file
+  /// is long.
   /// @param metadata_json  UTF-8 JSON; not looked at.
-  /// @throws Error invalid_argument    facts or T0 that no reader would accept; the target exists
-  /// by now
+  /// @throws Error invalid_argument    facts or T0 that no reader would accept; the target has
+  ///                                   appeared meanwhile and `overwrite` is off
   ///               resource_exhausted  disk full
   ///               io_error            also when all is done but the folder could not be synced
   virtual void publish(const StoreFacts& facts, const CoarsestTin& t0,

@@ -11,9 +11,10 @@
 
 namespace ptin {
 
-/// Bits that are set once and never cleared. The memory comes zeroed from the system, so that
-/// making many costs nothing before they are touched: an eighth of a byte each. Threads: all
-/// functions may be called at once. test() that sees a bit sees what came before its set().
+/// Bits that are set once and never cleared. The system gives the memory zeroed, an eighth of a
+/// byte for each bit, so that many bits cost nothing before they are touched. Threads: all
+/// functions may be called at once. A thread that sees a bit by test() sees all that came before
+/// its set().
 class TouchBits {
  public:
   /// @throws std::bad_alloc

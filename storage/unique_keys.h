@@ -12,14 +12,17 @@
 
 namespace ptin {
 
-/// Keys are given once in each pass: for (p = 0; p < passes(); ++p) { begin(p); add(...) ...;
-/// end(); } One pass and one bit a position where the bounds have few enough positions; otherwise
-/// as many passes as it takes to keep one part of the keys at a time, told apart by a hash, and to
-/// sort them.
+/// Finds the keys that come twice. The caller gives all keys once in each pass:
+///
+///   for (p = 0; p < passes(); ++p) { begin(p); add(...); ...; end(); }
+///
+/// Where one bit for each position of the bounds fits the memory, there is one pass and a bit for
+/// each position. Otherwise each pass keeps one part of the keys, told by a hash, and sorts it;
+/// there are as many passes as that takes.
 class UniqueKeys {
  public:
-  /// @param keys        How many will come, at most.
-  /// @param most_twice  As many that come twice are kept; the others are as bad.
+  /// @param keys        At most so many keys come in a pass.
+  /// @param most_twice  At most so many keys that come twice are kept; further ones are dropped.
   UniqueKeys(const GridBox& bounds, std::uint64_t keys, std::uint64_t memory_bytes,
              std::size_t most_twice)
       : bounds_(bounds),
@@ -57,7 +60,7 @@ class UniqueKeys {
       part_.push_back(key_of(p));
     }
   }
-  /// Keys found twice so far. Those of a sorted part are known at its end.
+  /// Ends a pass. Where keys are sorted, those that come twice are found here.
   void end() {
     std::sort(part_.begin(), part_.end());
     for (std::size_t i = 1; i < part_.size(); ++i) {

@@ -41,7 +41,7 @@ class Verifier {
                      const std::function<void(std::span<const std::byte>)>& take);
   void look_for_zeros(std::uint64_t begin, std::uint64_t end, const std::string& where);
   void look_at_tree();
-  // Looks at a node and all below it; returns the union over its entries, none when the node is
+  // Looks at a node and at all below it. Returns the union over its entries; none when the node is
   // damaged.
   std::optional<layout::NodeEntry> look_at_node(std::uint32_t level, std::uint64_t number,
                                                 std::uint64_t checksum);
@@ -105,7 +105,7 @@ void Verifier::run() {
     report(fault, "T0");
   }
   const std::uint64_t vertices = front_.header.record_count + front_.t0.vertices.size();
-  // One more than may be told: then there are more.
+  // One more than may be reported is kept, so that the report can say that there are more.
   keys_.emplace(front_.facts.bounds, vertices, options_.memory_bytes, options_.max_faults + 1);
   report_.key_passes = keys_->passes();
   for (pass_ = 0; pass_ < keys_->passes(); ++pass_) {
@@ -144,7 +144,8 @@ void Verifier::look_at_sections() {
   }
 }
 
-// The file says how long it is: no part of it is taken whole.
+// Hands the bytes [begin, end) to `take`, piece by piece. The file names the lengths of its
+// sections, so no section is read into memory as a whole.
 void Verifier::read_in_parts(std::uint64_t begin, std::uint64_t end,
                              const std::function<void(std::span<const std::byte>)>& take) {
   std::vector<std::byte> bytes(std::size_t{1} << 16);
@@ -257,7 +258,8 @@ std::optional<layout::NodeEntry> Verifier::look_at_page(PageId id,
   return all.entry();
 }
 
-// Fills `records_`. Reports damage, in the first pass.
+// Fills `records_` with the records of a page. Returns false when the page is damaged, which is
+// reported in the first pass.
 bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
   records_.clear();
   try {
@@ -306,8 +308,9 @@ void Verifier::count_height(HeightBits bits) {
   heights_ = {std::min(heights_.lo, height), std::max(heights_.hi, height)};
 }
 
-// The interval covers the triangles of u that are surface, and so u when it has one. Whether it
-// has, the record knows of the two that it makes.
+// Checks the height of u against the record's interval of heights. The interval covers the surface
+// triangles of u, and so the height of u when u has one. Of the triangles of u the record tells the
+// classes of only the two that it makes: so the height is checked where one of these is surface.
 void Verifier::look_at_height(const VertexSplit& r) {
   if ((r.flags & VertexSplit::kVertexVoid) != 0) {
     return;
@@ -329,7 +332,7 @@ void Verifier::compare_totals() {
     report("the vertex comes twice", "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")");
   }
   if (!all_seen_) {
-    return;  // sums over a part say nothing
+    return;  // Sums over a part of the records say nothing.
   }
   if (report_.records != front_.header.record_count) {
     report("the header says " + std::to_string(front_.header.record_count) +

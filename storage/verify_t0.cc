@@ -14,7 +14,7 @@ namespace {
 // Sums of at most 2^32 areas below 2^62 each.
 __extension__ using WideArea = __int128;
 
-using Edge = std::uint64_t;  // from one vertex to another
+using Edge = std::uint64_t;  // The ids of its ends: from the upper half to the lower.
 
 Edge edge(std::uint32_t from, std::uint32_t to) { return Edge{from} << 32 | to; }
 Edge reversed(Edge e) { return e << 32 | e >> 32; }
@@ -57,12 +57,13 @@ std::vector<std::uint32_t> border_of(const std::vector<Edge>& edges) {
   return border.size() == next.size() ? border : std::vector<std::uint32_t>{};
 }
 
-// To the right or up.
+// True when the edge goes up, or level and to the right.
 bool is_rising(GridPoint from, GridPoint to) {
   return to.y > from.y || (to.y == from.y && to.x > from.x);
 }
 
-// Turns to the left only, and once around: a star of five turns to the left only, twice around.
+// True when the border never turns right, and goes around once: a five-pointed star never turns
+// right either, and goes around twice.
 bool is_convex(const CoarsestTin& t0, const std::vector<std::uint32_t>& border) {
   const std::size_t n = border.size();
   int rounds = 0;

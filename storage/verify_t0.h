@@ -10,8 +10,9 @@
 
 namespace ptin {
 
-/// Sentences that say what is wrong; none when T0 is a triangulation of a convex domain whose box
-/// is `bounds`. REQUIRES: fault_in(t0, facts) is null (store_front.h). Cost: O(n log n).
+/// What is wrong with a T0, as sentences; empty when T0 is a triangulation of a convex domain whose
+/// box is `bounds`. REQUIRES: fault_in(t0, facts) is null (storage/store_front.h). Cost: O(n log
+/// n).
 [[nodiscard]] std::vector<std::string> faults_of_cover(const CoarsestTin& t0,
                                                        const GridBox& bounds);
 

@@ -38,7 +38,7 @@ Error current_error() noexcept {
     return {ErrorCode::resource_exhausted,
             "the system gives no more memory; ask for less (a window, a larger --error) or close "
             "other programs"};
-  } catch (const std::system_error& error) {  // a thread, in all that we call
+  } catch (const std::system_error& error) {  // Only starting a thread throws this.
     if (error.code() == std::errc::resource_unavailable_try_again) {
       return {ErrorCode::resource_exhausted,
               "the system gives no more threads; raise the limit on processes, or close other "

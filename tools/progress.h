@@ -27,12 +27,12 @@ class Progress {
   /// Ends an open line, so that what is printed next starts on its own.
   ~Progress();
 
-  /// `done` of `total` units of `stage` are done; total 0 means unknown. A new stage ends the one
-  /// before.
-  /// @param detail  Shown behind the bar on a terminal.
+  /// Says that `done` of `total` units of `stage` are done; total 0 means unknown. A new stage ends
+  /// the one before.
   void report(const char* stage, std::uint64_t done, std::uint64_t total,
               const std::string& detail = "");
-  /// Ends the current stage; nothing when there is none.
+  /// Ends the current stage, if there is one.
+  /// @param complete  On: a sparse line goes on to 100 and says "done". Off: it stops where it is.
   void finish(bool complete = true);
 
  private:

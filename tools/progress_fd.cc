@@ -38,7 +38,7 @@ void ProgressFd::report(const char* stage, std::uint64_t done, std::uint64_t tot
   if (facts.remaining_seconds >= 0) json["remaining_seconds"] = facts.remaining_seconds;
   const std::string line = json.dump() + "\n";
   if (::write(fd_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
-    fd_ = -1;  // nobody listens any more
+    fd_ = -1;  // The reader has gone away.
   }
 }
 

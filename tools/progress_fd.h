@@ -9,7 +9,7 @@
 
 namespace ptin::tools {
 
-/// What is known of a stage besides how far it is.
+/// What is known of a stage besides `done` and `total`.
 struct ProgressFacts {
   std::uint64_t memory = 0;  ///< Bytes of anonymous memory.
   std::uint64_t tiles_done = 0, tiles = 0;
@@ -19,7 +19,7 @@ struct ProgressFacts {
 
 /// Writes `{"stage", "done", "total", "seconds", "memory", "tiles_done", "tiles", "per_second",
 /// "remaining_seconds"}` at most five times a second, and at the beginning and the end of each
-/// stage. A reader that went away is no fault.
+/// stage. When the reader has gone away, nothing more is written; that is no error.
 class ProgressFd {
  public:
   /// @throws Error invalid_argument  the descriptor is not open for writing

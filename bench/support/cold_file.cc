@@ -112,8 +112,8 @@ std::uint64_t drop_from_cache(const std::string& path) {
     }
     left = resident_bytes(path);
     if (left == 0) break;
-    std::this_thread::sleep_for(
-        std::chrono::milliseconds(5));  // pages on their way are dropped next time
+    // Pages that are just being read or written are dropped in a later round.
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return left;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The page cache under our feet: dropping a file from it, looking what of it is there, and what a
-// step made the system read.
+// The system's page cache: dropping a file from it, asking how much of a file is in it, and what a
+// step of a benchmark made the system read.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace ptin::bench {
 
-/// Drops the file's pages from the cache (sync, then posix_fadvise DONTNEED, a few times) and
-/// returns the bytes that are resident all the same, by mincore; 0 is cold. Mapped pages stay:
-/// close every store on it before.
+/// Drops the pages of a file from the cache (sync, then posix_fadvise DONTNEED, up to 20 times).
+/// Returns the bytes that are resident all the same, by mincore: 0 means that the file is cold.
+/// Mapped pages stay, so close every store on the file before.
 /// @throws std::system_error
 std::uint64_t drop_from_cache(const std::string& path);
 
 /// Bytes of the file that are in the page cache.  @throws std::system_error
 [[nodiscard]] std::uint64_t resident_bytes(const std::string& path);
 
-/// What this process had the system do so far.
+/// What this process has made the system read since it began.
 struct SystemReads {
-  std::uint64_t device_bytes =
-      0;  ///< read_bytes of /proc/self/io: asked of the block layer, read-ahead included.
+  /// read_bytes of /proc/self/io: bytes asked of the block layer, read-ahead included.
+  std::uint64_t device_bytes = 0;
   std::uint64_t major_faults = 0;  ///< Faults that waited for the device.
   std::uint64_t minor_faults = 0;
 
@@ -32,13 +32,13 @@ struct SystemReads {
   }
 };
 
-/// What the device under a file gives, read around the page cache (O_DIRECT).
+/// How fast the device under a file is, read around the page cache (O_DIRECT).
 struct DeviceSpeed {
-  double sequential_mb_s =
-      0;  ///< Best of several passes of 8 readers, 1 MiB blocks, over at most 512 MiB.
+  /// Best of five passes of 8 readers, in blocks of 1 MiB, over at most 512 MiB.
+  double sequential_mb_s = 0;
   double random_4k_ms = 0;  ///< Median of single 4 KiB reads, one at a time.
 };
-/// @throws std::system_error  also where the file system has no O_DIRECT
+/// @throws std::system_error  also: the file system has no O_DIRECT
 [[nodiscard]] DeviceSpeed measure_device(const std::string& path);
 
 }  // namespace ptin::bench

@@ -12,21 +12,21 @@
 
 namespace ptin::bench {
 
-/// bench_store(); null when there is none.
+/// bench_store(), opened; null when there is no such store.
 inline const std::shared_ptr<const StoreFile>& store() {
   static const std::shared_ptr<const StoreFile> file =
       bench_store().empty() ? nullptr : StoreFile::open(bench_store());
   return file;
 }
 
-/// The same, to be asked; null when there is none.
+/// store() as a terrain that answers questions; null when there is no such store.
 inline const Terrain* terrain() {
   if (store() == nullptr) return nullptr;
   static const Terrain opened(store());
   return &opened;
 }
 
-/// True, and said in the results, when there is none.
+/// True when there is no store to ask; the results of the benchmark then say what it needs.
 inline bool skipped(benchmark::State& state) {
   if (store() != nullptr) return false;
   state.SkipWithError("needs PTIN_BENCH_STORE or srtm1_bigtujunga_utm_1197x643.tif");

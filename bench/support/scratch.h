@@ -9,11 +9,12 @@
 
 namespace ptin::bench {
 
-/// A file of the folder of larger terrains (PTIN_SHARED_DATA at configuration); empty when it is
-/// not there.
+/// The path of a file in the folder of larger terrains (PTIN_SHARED_DATA at configuration); empty
+/// when the file is not there.
 [[nodiscard]] std::string shared_terrain(const std::string& name);
 
-/// A folder of its own in the build folder (on a disk, which a temporary folder need not be).
+/// A folder of its own in the build folder. The build folder is on a disk; a temporary folder need
+/// not be.
 class ScratchFolder : public test::TestFolder {
  public:
   ScratchFolder();
@@ -21,7 +22,7 @@ class ScratchFolder : public test::TestFolder {
 
 /// The store that benchmarks of queries read: the one that the environment variable
 /// PTIN_BENCH_STORE names, else one that is built from srtm1_bigtujunga on the first call and
-/// removed when the program ends; empty when there is neither.
+/// removed when the program ends. Empty when there is neither.
 [[nodiscard]] const std::string& bench_store();
 
 }  // namespace ptin::bench

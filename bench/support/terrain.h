@@ -31,17 +31,19 @@ struct GridPoints {
 
 /// The heights that random points are given.
 enum class Relief {
-  kHills,  ///< 48 plane waves of 1 to 128 periods a side, amplitude falling with the frequency:
-           ///< 1000 m in all.
-  kNoise,  ///< Independent uniform heights.
-  kFlat,   ///< All the same.
+  /// 48 plane waves of 1 to 128 periods a side. Amplitudes fall with the frequency; together they
+  /// are 1000 m.
+  kHills,
+  kNoise,  ///< Independent uniform heights, 0 to 1000 m.
+  kFlat,   ///< One height for all points.
 };
 
 /// `count` uniform points in the unit square (2^24 grid units a side), heights in millimetres.
 [[nodiscard]] MadeTerrain random_terrain(std::size_t count, std::uint64_t seed,
                                          Relief relief = Relief::kHills);
 
-/// A square of `side` x `side` samples with the south-western one at (x0, y0) of a raster.
+/// The samples of a raster in a square of `side` x `side` whose south-western sample is (x0, y0),
+/// cut at the border of the raster.
 [[nodiscard]] MadeTerrain raster_terrain(const std::string& path, std::int64_t x0, std::int64_t y0,
                                          std::int64_t side);
 

@@ -35,7 +35,7 @@ PageSlots page_slots_of(const std::string& store) {
 
 namespace {
 
-/// A ring that is given back.
+/// An io_uring that is closed when the object goes.
 class Ring {
  public:
   explicit Ring(unsigned depth) {

@@ -20,9 +20,10 @@ inline constexpr unsigned kUringDepth = 64;
 /// Whether this program was built with liburing.
 [[nodiscard]] bool has_uring() noexcept;
 
-/// Reads the pages in whatever order they arrive, at most kUringDepth under way, and hands each to
-/// `seen` once.
-/// @throws Error io_error  also where the kernel refuses io_uring, or without liburing
+/// Reads `pages` and hands each to `seen` once, in the order in which they arrive. At most
+/// kUringDepth reads are under way at once. Nothing is verified.
+/// @throws Error io_error  also: the kernel refuses io_uring, or the program was built without
+///                         liburing
 void read_with_uring(const std::string& store, const PageSlots& slots,
                      std::span<const PageId> pages,
                      const std::function<void(PageId, std::span<const std::byte>)>& seen);

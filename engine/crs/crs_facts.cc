@@ -16,7 +16,7 @@ std::string text_or_empty(const char* text) {
   return text == nullptr ? std::string() : std::string(text);
 }
 
-/// "AUTHORITY:CODE" of a node of the CRS; empty when it has none.
+/// "AUTHORITY:CODE" of a node of the CRS, null for the root; empty when the node has no code.
 std::string code_of(const OGRSpatialReference& srs, const char* node) {
   const char* authority = srs.GetAuthorityName(node);
   const char* code = srs.GetAuthorityCode(node);

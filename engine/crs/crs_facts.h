@@ -21,27 +21,28 @@ struct CrsFacts {
   std::string horizontal_unit = "unknown";
   std::string vertical_unit = "unknown";
 
-  /// The short form for file headers: the code where there is one, else the WKT.
+  /// The short form for the headers of files: the code where there is one, else the WKT.
   [[nodiscard]] std::string horizontal_text() const { return code.empty() ? wkt : code; }
   [[nodiscard]] std::string vertical_text() const {
     return vertical_code.empty() ? vertical_name : vertical_code;
   }
 };
 
-/// `units` of every answer.
+/// The object `units` of every answer: {"horizontal", "height"}.
 [[nodiscard]] nlohmann::json units_json(const CrsFacts& crs);
 
-/// The facts of a WKT text. One that GDAL does not understand gives facts with the text alone.
+/// The facts of a WKT text. Of a text that GDAL does not understand: facts that hold the text
+/// alone.
 [[nodiscard]] CrsFacts crs_facts(const std::string& wkt);
 
 /// The metadata of a store as JSON.  @throws Error corruption when it is none
 [[nodiscard]] nlohmann::json metadata_of(const StoreFile& store);
 
-/// The facts of a CRS as metadata hold it (`crs`, `crs_wkt`, `units`); units from there where the
-/// WKT says nothing.
+/// The facts of the CRS that a store's metadata hold. The WKT is that of `crs` or `crs_wkt`; units
+/// that it does not tell are those of `crs` or `units`.
 [[nodiscard]] CrsFacts crs_facts_of(const nlohmann::json& metadata);
 
-/// The facts of a store's CRS; units from the metadata where the WKT says nothing.
+/// As crs_facts_of(metadata_of(store)).  @throws Error corruption as metadata_of()
 [[nodiscard]] CrsFacts crs_facts(const StoreFile& store);
 
 }  // namespace ptin

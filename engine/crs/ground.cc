@@ -13,15 +13,16 @@ namespace ptin {
 
 namespace {
 
-/// Metres in a unit of height: that of the vertical CRS, of the source's band, or, where neither
-/// says anything, of the plane, as GDAL's tools take it.
+/// Metres in the unit of the heights: that of the vertical CRS, else `unit`, which is that of the
+/// source's band. Where neither is known: the unit of the plane, as GDAL's tools take it.
 double metres_per_height(const OGRSpatialReference& srs, const std::string& unit) {
   if (srs.IsCompound() != 0) return srs.GetTargetLinearUnits("VERT_CS", nullptr);
   if (const std::optional<double> metres = metres_in(unit)) return *metres;
   return srs.IsGeographic() != 0 ? 1.0 : srs.GetLinearUnits();
 }
 
-/// By the radii of curvature across the meridian and along it.
+/// Lengths of one map unit on the ellipsoid, from its radii of curvature: across the meridian for
+/// x, along the meridian for y.
 std::function<MapPoint(MapPoint)> on_ellipsoid(const OGRSpatialReference& srs, double height_unit) {
   const double a = srs.GetSemiMajor() / height_unit;
   const double inverse = srs.GetInvFlattening();

@@ -12,22 +12,25 @@
 namespace ptin {
 
 struct Ground {
-  /// Between two positions in map units: along the ellipsoid in a geographic CRS, else in the
-  /// plane.
+  /// The distance over ground between two positions in map units: along the ellipsoid in a
+  /// geographic CRS, else in the plane.
   std::function<double(MapPoint, MapPoint)> distance;
-  /// How long a step of one map unit along x, and along y, is over ground at a position: in a
-  /// geographic CRS on the ellipsoid there.
+  /// The length over ground, at a position, of one map unit along x and of one along y. In a
+  /// geographic CRS these are lengths on the ellipsoid.
   std::function<MapPoint(MapPoint)> per_map_unit;
-  double earth_diameter = 2 * 6378137.0;  ///< Twice the semi-major axis, as GDAL takes it.
+  /// Twice the semi-major axis, as GDAL takes it, in the unit of the heights.
+  double earth_diameter = 2 * 6378137.0;
   double metres_per_height = 1.0;
   bool geographic = false;  ///< Map units are angles.
 };
 
-/// The unit of lengths over ground, by name: that of heights, or what is taken for it.
+/// The name of the unit of lengths over ground. It is the unit of the heights. Where nothing tells
+/// that unit, it is the unit of the plane, or "metre" where the plane is in degrees.
 [[nodiscard]] std::string unit_of_ground(const CrsFacts& crs);
 
-/// @param crs  One without WKT, or whose WKT is not understood: plane metres, heights in metres.
-///             Heights of no known unit are in that of the plane, over degrees in metres.
+/// @param crs  Without WKT, or with one that GDAL does not understand: a plane in metres, with
+///             heights in metres. Heights of no known unit are taken to be in the unit of the
+///             plane, or in metres where the plane is in degrees.
 [[nodiscard]] Ground ground_of(const CrsFacts& crs);
 
 }  // namespace ptin

@@ -13,7 +13,8 @@ namespace ptin {
 /// do not matter. A name that nobody knows stays as it is; an empty one is "unknown".
 [[nodiscard]] std::string height_unit_named(const std::string& text);
 
-/// Metres in the unit of that name, in the form of height_unit_named(); none where it is not known.
+/// Metres in a unit, by the name that height_unit_named() gives it; none where the name is not
+/// known.
 [[nodiscard]] std::optional<double> metres_in(std::string_view unit) noexcept;
 
 }  // namespace ptin

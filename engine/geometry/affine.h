@@ -13,7 +13,8 @@ struct MapPoint {
 };
 
 /// Axis-aligned map from grid to CRS: X = origin_x + step_x * x, Y = origin_y + step_y * y, steps >
-/// 0. Grid y grows to the north; sources with rows from the north are turned over on the way in.
+/// 0. Grid y grows to the north; a source whose rows run to the south is turned over when it is
+/// read.
 struct AffineMap {
   double origin_x = 0.0;
   double origin_y = 0.0;

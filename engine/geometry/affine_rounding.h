@@ -8,11 +8,13 @@
 
 namespace ptin {
 
-/// A bound, in grid units, for one coordinate `grid` = (map_value - origin) / step in doubles, on
-/// its distance to the true preimage of every map position that rounds to `map_value`: the
-/// quotient carries at most 2u |grid| (1 + u) of rounding, u = 2^-53, and map_value itself, when it
-/// was computed as origin + step g, at most u (|map_value| + |map_value - origin|) of its own.
-/// Twice the sum of both is taken.
+/// Bounds what rounding does to one coordinate, in grid units. `grid` = (map_value - origin) /
+/// step, as doubles compute it. The bound holds for the distance from `grid` to the exact grid
+/// position of every real number that rounds to `map_value`.
+///
+/// Two roundings add up; u = 2^-53. Subtraction and quotient cost at most 2u |grid| (1 + u). Where
+/// map_value was computed as origin + step * g, it carries at most u (|map_value| + |map_value -
+/// origin|) map units of its own. The result is at least twice the sum of both.
 [[nodiscard]] inline double rounding_to_grid(double map_value, double origin, double step,
                                              double grid) noexcept {
   return 2 * std::numeric_limits<double>::epsilon() *

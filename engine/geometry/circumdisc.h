@@ -38,8 +38,8 @@ class Circumdisc {
     return along(std::int64_t{p.x} - a_.x, u_) + along(std::int64_t{p.y} - a_.y, v_) <= 0;
   }
 
-  /// True when the disc and the closed box have a grid point or any other point in common; may be
-  /// true too when they pass each other within a grid unit.
+  /// True when the disc and the closed box have a point in common, on the grid or between. May also
+  /// be true when they have none, but pass each other within a grid unit.
   [[nodiscard]] bool may_meet(const GridBox& box) const noexcept {
     return least(box.min_x - std::int64_t{a_.x}, box.max_x - std::int64_t{a_.x}, centre_x_, u_) +
                least(box.min_y - std::int64_t{a_.y}, box.max_y - std::int64_t{a_.y}, centre_y_,
@@ -58,8 +58,8 @@ class Circumdisc {
   [[nodiscard]] Int128 along(std::int64_t x, Int128 t) const noexcept {
     return Int128{area_} * (x * x) - t * x;
   }
-  /// A lower bound of the parabola over [low, high]: between whole numbers it is at most A / 4
-  /// below its value at the nearest one.
+  /// A lower bound of the parabola A x^2 - t x over [low, high]. `lowest_at` is the whole number
+  /// nearest to its lowest point; the parabola goes at most A / 4 below its value there.
   [[nodiscard]] Int128 least(std::int64_t low, std::int64_t high, std::int64_t lowest_at,
                              Int128 t) const noexcept {
     const std::int64_t x = std::clamp(lowest_at, low, high);

@@ -9,8 +9,8 @@ namespace ptin {
 
 namespace {
 
-/// The strict corners of the hull of sorted, distinct points (by key), counter-clockwise; all of
-/// them when there are fewer than three or when they are collinear: the two ends.
+/// The strict corners of the hull of `points`, counter-clockwise from the smallest key. Of points
+/// on one line: the two ends. Of fewer than three distinct points: all of them.
 std::vector<GridPoint> hull_of(std::vector<GridPoint> points) {
   std::sort(points.begin(), points.end(),
             [](GridPoint a, GridPoint b) { return key_of(a) < key_of(b); });
@@ -37,15 +37,14 @@ std::vector<GridPoint> hull_of(std::vector<GridPoint> points) {
 }  // namespace
 
 bool ConvexHull::has_on_border(GridPoint a, GridPoint b) const noexcept {
-  // With the hull on its left, the edge lies on the side whose outward normal is that of a -> b:
-  // the corner farthest to the right of the edge's direction begins or ends it.
+  // A side with the hull on its left can hold the edge only if both have the same direction.
   const std::size_t n = corners_.size();
   if (n < 3) {
     return false;
   }
   const std::int64_t dx = std::int64_t{b.x} - a.x, dy = std::int64_t{b.y} - a.y;
-  // Sides are sorted by direction from 0 to 360 degrees, beginning at the lowest corner: the side
-  // is the first whose direction is not before that of the edge.
+  // Sides are sorted by direction, from 0 to 360 degrees, since they begin at the lowest corner.
+  // The side that is looked for is the first whose direction is not before that of the edge.
   const auto half = [](std::int64_t x, std::int64_t y) {
     return y < 0 || (y == 0 && x < 0) ? 1 : 0;
   };

@@ -12,10 +12,11 @@
 namespace ptin {
 
 /// A convex hull: its strict corners, counter-clockwise, from the lowest (then leftmost) one.
+/// Points on one line have a hull of two corners, a single point one of one.
 class ConvexHull {
  public:
   ConvexHull() = default;
-  /// @param corners  As they are kept.
+  /// @param corners  The strict corners, in the order in which corners() returns them.
   explicit ConvexHull(std::vector<GridPoint> corners) : corners_(std::move(corners)) {}
 
   [[nodiscard]] const std::vector<GridPoint>& corners() const noexcept { return corners_; }
@@ -27,8 +28,9 @@ class ConvexHull {
   std::vector<GridPoint> corners_;
 };
 
-/// Collects the hull. Memory: some thousand points, and the corners of the hull. Cost: most points
-/// lie in the octagon of those seen before, and are passed over at once.
+/// Collects the convex hull of points that come one by one. Memory: 4096 points, or twice the
+/// corners of the hull where that is more. Cost of add(): eight orientations for most points, since
+/// they lie in the octagon of the extreme points before them and are dropped.
 class HullCollector {
  public:
   void add(GridPoint p) {
@@ -46,7 +48,8 @@ class HullCollector {
   void shrink();
 
   std::vector<GridPoint> points_;
-  std::vector<GridPoint> octagon_;  ///< Counter-clockwise; empty at first.
+  /// The hull of extreme points seen so far, counter-clockwise; empty at first.
+  std::vector<GridPoint> octagon_;
   std::size_t limit_ = 4096;
 };
 

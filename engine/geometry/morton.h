@@ -17,7 +17,8 @@ namespace ptin {
   return (x | (x << 1)) & 0x5555555555555555U;
 }
 
-/// Place of a cell among those of its size: the four quarters of a larger one follow each other.
+/// Place of the cell (x, y) among all cells of its size, in the order of a quadtree: the four
+/// quarters of a larger cell follow one another.
 [[nodiscard]] constexpr std::uint64_t morton_position(std::uint32_t x, std::uint32_t y) noexcept {
   return spread_bits(x) | (spread_bits(y) << 1);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Boxes in memory, found by what they meet: a packed tree without pointers.
+// Boxes in memory, found by a condition on boxes: a packed tree without pointers.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,8 @@
 
 namespace ptin {
 
-/// A tree over boxes in a given order; neighbours in it should be neighbours in the plane.
+/// A static tree over boxes, in the order in which they are given. Sixteen boxes that follow one
+/// another share a node, so neighbours in that order should be neighbours in the plane.
 class PackedBoxes {
  public:
   PackedBoxes() = default;
@@ -38,8 +39,8 @@ class PackedBoxes {
     return levels_.empty() ? std::span<const GridBox>() : levels_.front();
   }
 
-  /// Calls visit(number) in ascending order for each box that pleases `meets`, which must hold for
-  /// every box around one for which it holds.
+  /// Calls visit(number), numbers ascending, for each box for which `meets(box)` is true.
+  /// REQUIRES: where `meets` is true for a box, it is true for every box that contains that box.
   template <class Meets, class Visit>
   void visit(const Meets& meets, const Visit& visit) const {
     if (!levels_.empty()) {
@@ -47,7 +48,8 @@ class PackedBoxes {
     }
   }
 
-  /// The same, the nearest to `from` first, until visit() returns false.
+  /// As visit() above, but the boxes nearest to `from` come first, and the first visit(number) that
+  /// returns false is the last.
   template <class Meets, class Visit>
   void visit_nearest(GridPoint from, const Meets& meets, const Visit& visit) const;
 
@@ -69,7 +71,9 @@ class PackedBoxes {
     }
   }
 
-  std::vector<std::vector<GridBox>> levels_;  ///< The boxes, those of 16 of them, and so on.
+  /// levels_[0] holds the boxes, each further level the union of every 16 boxes of the level
+  /// before.
+  std::vector<std::vector<GridBox>> levels_;
 };
 
 template <class Meets, class Visit>

@@ -19,8 +19,8 @@ struct GridPoint {
   friend bool operator==(const GridPoint&, const GridPoint&) = default;
 };
 
-/// A vertex is its grid position: the key orders by y, then x. No numbering, so tiles, threads and
-/// machines need not agree on one.
+/// The key of a vertex is its grid position, ordered by y, then x. Vertices have no numbers on
+/// which tiles, threads and machines would have to agree.
 using VertexKey = std::uint64_t;
 
 /// A key that no vertex has.

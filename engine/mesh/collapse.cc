@@ -28,7 +28,8 @@ void remove_triangle(Tin& tin, TriangleId t) {
   triangle.n[0] = triangle.n[1] = triangle.n[2] = kNone;
 }
 
-/// Joins `kept` with what lies beyond `gone`, on the far side from the centre.
+/// Makes `kept` and the triangle across the edge of `gone` opposite to the centre neighbours of
+/// each other.
 void bridge(Tin& tin, VertexId center, TriangleId gone, TriangleId kept) {
   const Triangle& triangle = tin.triangles[gone];
   const TriangleId outer = triangle.n[corner_of(triangle, center)];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The half-edge collapse u -> w: u goes, its star becomes the fan from w.
+// The half-edge collapse u -> w: u is removed, its star becomes the fan from w.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,13 @@ namespace ptin {
 /// (engine/DESIGN.md, section 2.1).
 inline constexpr std::size_t kComfortableDegree = 64;
 
-/// True when collapsing the centre of `star` into link vertex `j` leaves a valid mesh: every fan
-/// triangle strictly counter-clockwise; a border vertex only along the border, between collinear
-/// neighbours, so that the domain stays. Cost: the degree.
+/// True when collapsing the centre of `star` into link vertex `j` leaves a valid mesh. Every fan
+/// triangle has to be strictly counter-clockwise. A border vertex goes along the border alone,
+/// between two neighbours on one line with it, so that the domain stays. Cost: the degree.
 [[nodiscard]] bool can_collapse(const Tin& tin, const Star& star, std::size_t j) noexcept;
 
-/// The split that undoes a collapse, in ids: vl and vr are the neighbours of u beside w, or at a
-/// border the ends of the fan.
+/// The split that undoes a collapse, in ids. vl and vr are the neighbours of u beside w; at a
+/// border, where one of the two triangles does not exist, they are the ends of the fan.
 struct CollapseSite {
   VertexId u, w, vl, vr;
   TriangleId left = kNone;   ///< The triangle (u, w, vl) that vanishes; kNone at a border.
@@ -31,11 +31,11 @@ struct CollapseSite {
 [[nodiscard]] CollapseSite collapse_site(const Star& star, std::size_t j) noexcept;
 
 /// Collapses the centre u of `star` into w = star.link[j].
-/// REQUIRES: can_collapse(tin, star, j), and `star` is the star of u now.
-/// Post-conditions: u is removed (its triangle is kNone; position and height stay readable); the
-/// triangles `left` and `right` of the site are removed; every other triangle of the star has w in
-/// u's place, with its id and class kept; nothing else changes. Vertex::triangle of w and of the
-/// link is kept as I6 asks.
+/// REQUIRES: can_collapse(tin, star, j), and `star` is the present star of u.
+/// Post-conditions: u is removed (its triangle is kNone; position and height stay readable). The
+/// triangles `left` and `right` of the site are removed. Every other triangle of the star has w in
+/// u's place and keeps its id and class. Nothing else changes. Vertex::triangle of w and of the
+/// link vertices obeys invariant I6 (mesh/validate.h).
 CollapseSite collapse(Tin& tin, const Star& star, std::size_t j);
 
 }  // namespace ptin

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Drops what is removed from a mesh's arrays, so that what is left lies together.
+// Drops removed triangles and unused vertices from the arrays of a mesh.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,11 @@
 
 namespace ptin {
 
-/// Old index to new one, for those kept, which stay in their order; kNone for the others.
+/// New index by old index; kNone for what is dropped. What is kept stays in its order.
 using Renumbering = std::vector<std::uint32_t>;
 
-/// Keeps of an array that lies beside what was renumbered what was kept. Cost: linear.
+/// Drops, from an array that lies beside a renumbered one, the elements that the renumbering drops.
+/// Cost: linear.
 template <typename T>
 requires std::is_trivially_copyable_v<T>
 void keep_numbered(const Renumbering& number, std::vector<T>& beside) {
@@ -28,11 +29,12 @@ void keep_numbered(const Renumbering& number, std::vector<T>& beside) {
   beside.resize(kept);
 }
 
-/// Drops the removed triangles. Neighbours and triangles of vertices that were removed are kNone
-/// afterwards. Cost: linear.
+/// Drops the removed triangles, and returns the new ids of triangles. A Triangle::n or
+/// Vertex::triangle that named a removed triangle is kNone afterwards. Cost: linear.
 Renumbering compact_triangles(Tin& tin);
 
-/// Drops the vertices of no triangle. REQUIRES: no removed triangle. Cost: linear.
+/// Drops the vertices that stand in no triangle, and returns the new ids of vertices. REQUIRES: the
+/// mesh has no removed triangle. Cost: linear.
 Renumbering compact_vertices(Tin& tin);
 
 }  // namespace ptin

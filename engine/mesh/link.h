@@ -12,11 +12,11 @@
 
 namespace ptin {
 
-/// A side of a triangle, under the edge that it lies on.
+/// A side of a triangle. Sorting sides by `edge` brings those of one edge together.
 struct TriangleSide {
-  std::uint64_t edge;  ///< Its ends, the smaller one in the upper half.
+  std::uint64_t edge;  ///< The ids of both ends, the smaller id in the upper 32 bits.
   TriangleId triangle;
-  std::uint32_t place;  ///< The corner opposite to it.
+  std::uint32_t place;  ///< The corner opposite to the side: 0, 1 or 2.
 };
 
 /// All sides of triangles 0 to `count` - 1, whose corner i is `corner(t, i)`.
@@ -35,8 +35,9 @@ template <typename CornerOf>
   return sides;
 }
 
-/// Calls `join(a, b)` for every two sides of one edge; of an edge with more, by pairs in the order
-/// of their triangles. Sorts `sides`. Cost: O(n log n).
+/// Calls join(a, b) for the two sides of every edge that two triangles share. Where more than two
+/// share an edge, its sides are joined two by two in the order of their triangles. Sorts `sides`.
+/// Cost: O(n log n).
 template <typename Join>
 void join_sides(std::vector<TriangleSide>& sides, const Join& join) {
   std::sort(sides.begin(), sides.end(), [](const TriangleSide& a, const TriangleSide& b) {
@@ -50,9 +51,9 @@ void join_sides(std::vector<TriangleSide>& sides, const Join& join) {
   }
 }
 
-/// Fills Triangle::n and Vertex::triangle, those of the border as invariant I6 asks (validate.h).
-/// Of triangles that do not fit together, as a damaged file may have them, the result is a mesh
-/// that validate() refuses.
+/// Fills Triangle::n and Vertex::triangle; border vertices point where invariant I6
+/// (mesh/validate.h) says. Triangles that do not fit together, as a damaged file may have them,
+/// become a mesh that validate() refuses.
 /// REQUIRES: no neighbour is set; corners are vertices.
 /// Cost: O(n log n); 16 bytes a side.
 void link_tin(Tin& tin);

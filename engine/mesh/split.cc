@@ -7,8 +7,8 @@ namespace ptin {
 
 namespace {
 
-// Places in a triangle, without branches: which corner it is cannot be predicted. REQUIRES as
-// corner_of() and side_of().
+// Place (0, 1 or 2) of an id in the corners or neighbours of a triangle. Without branches, since
+// the place cannot be predicted. REQUIRES: one of the three is `id`.
 int place_of(const std::uint32_t (&ids)[3], std::uint32_t id) noexcept {
   return static_cast<int>(ids[1] == id) + 2 * static_cast<int>(ids[2] == id);
 }
@@ -74,8 +74,9 @@ void replace_corner(Tin& tin, TriangleId t, TriangleId last, VertexId was, Verte
   }
 }
 
-/// Walks the fan and puts u in w's place, as long as each triangle stays counter-clockwise. When it
-/// does not fit, the triangles from `first` to `last` are those that were changed.
+/// Walks the fan and puts u in w's place, as long as each triangle stays counter-clockwise. Where
+/// the fan does not fit, the triangles from `first` to `last` have been changed already, and the
+/// caller changes them back.
 Fan move_fan(Tin& tin, const SplitSite& site) {
   Fan fan;
   fan.first = find_first(tin, site.w, site.vl);
@@ -110,8 +111,8 @@ Fan move_fan(Tin& tin, const SplitSite& site) {
   return fan;
 }
 
-/// The sides of the split: new triangles strictly counter-clockwise, missing ones flat and on the
-/// border.
+/// True when the sides of the split fit. A side that exists is a strictly counter-clockwise
+/// triangle. A side that does not exist lies flat on the border.
 bool sides_fit(const Tin& tin, const SplitSite& s, const Fan& fan) {
   const bool left = s.has_left
                         ? turns_left(tin, s.u, s.w, s.vl)

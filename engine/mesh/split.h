@@ -27,16 +27,17 @@ struct SplitResult {
 
 /// Applies split(w; u, vl, vr). Post-conditions: the triangles of w from vl counter-clockwise round
 /// to vr have u in w's place and keep their ids and classes; (u, w, vl) and (u, vr, w) exist,
-/// appended at the end; nothing else changes. Not applied, and the mesh unchanged, when vl and vr
-/// are not neighbours of w in that order, or when a triangle would not be strictly
+/// appended at the end; nothing else changes. A split is not applied, and the mesh stays unchanged,
+/// when vl and vr are not neighbours of w in that order, or when a triangle would not be strictly
 /// counter-clockwise: so a damaged record never makes an invalid mesh. REQUIRES: w is alive. Cost:
 /// the degree of w.
 SplitResult split(Tin& tin, const SplitSite& site);
 
-/// The same, but the new triangles take the places `left` and `right`, of removed triangles: so a
+/// As split(), but the triangles (u, w, vl) and (u, vr, w) get the ids `left` and `right`. So a
 /// caller that knows all splits beforehand decides which triangles lie near each other in memory.
-/// The place of a side that does not exist is left alone. Returns whether it was applied: one word,
-/// since a struct of three goes through memory, and the caller waits for it to get there.
+/// Returns whether the split was applied, in one word, since the caller waits for it and a
+/// SplitResult would go through memory (engine/DECISIONS.md, section 7.3).
+/// REQUIRES: both ids are of removed triangles. The id of a side that does not exist is not used.
 [[nodiscard]] bool split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId right);
 
 }  // namespace ptin

@@ -10,10 +10,10 @@
 
 namespace ptin {
 
-/// The star of `center`. Triangle i is (center, link[i], link[i + 1]), indices modulo degree when
-/// closed. Closed (interior vertex): as many link vertices as triangles. Open (border vertex): one
-/// link vertex more; the first is the next vertex along the border (counter-clockwise round the
-/// domain), the last the previous one.
+/// The star of `center`. Triangle i is (center, link[i], link[i + 1]).
+/// - Closed, around an interior vertex: as many link vertices as triangles; indices are cyclic.
+/// - Open, around a border vertex: one link vertex more than triangles. The first is the next
+///   vertex along the border (counter-clockwise round the domain), the last is the previous one.
 struct Star {
   VertexId center = kNone;
   bool closed = true;
@@ -21,7 +21,7 @@ struct Star {
   std::vector<VertexId> link;
 
   [[nodiscard]] std::size_t degree() const noexcept { return link.size(); }
-  /// Index of the triangle before the one at `i`, modulo; only for closed stars or i > 0.
+  /// Index of the triangle before triangle `i`, cyclically. REQUIRES: the star is closed, or i > 0.
   [[nodiscard]] std::size_t before(std::size_t i) const noexcept {
     return i == 0 ? triangles.size() - 1 : i - 1;
   }
@@ -30,8 +30,8 @@ struct Star {
   }
 };
 
-/// Walks the star of `v` into `star`, whose buffers are used again.
-/// REQUIRES: `v` is alive and the mesh valid. Cost: its degree.
+/// Walks the star of `v` into `star`, and uses the buffers of `star` again. REQUIRES: `v` is alive
+/// and the mesh valid. Cost: the degree of `v`.
 void walk_star(const Tin& tin, VertexId v, Star& star);
 
 }  // namespace ptin

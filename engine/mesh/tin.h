@@ -22,9 +22,9 @@ inline constexpr std::uint32_t kNone = UINT32_MAX;
 /// heights.
 enum class TriangleClass : std::uint8_t { kSurface = 0, kVoid = 1 };
 
-/// A vertex. `triangle` is one triangle around it; on the border it is the first of the
-/// counter-clockwise walk, the one whose clockwise neighbour around the vertex is missing (I6). A
-/// removed vertex has kNone.
+/// A vertex. `triangle` is one triangle around it. On the border it is the first of the
+/// counter-clockwise walk, whose clockwise neighbour around the vertex is missing (invariant I6 of
+/// mesh/validate.h). A removed vertex has kNone.
 struct Vertex {
   GridPoint position;
   HeightBits height = 0;
@@ -38,10 +38,10 @@ struct Triangle {
   TriangleId n[3];
 };
 
-/// A triangulation of a simply connected domain: every point of it covered once, no crack, no
-/// overlap, no T-junction. Plain arrays; functions beside it (star.h, collapse.h, split.h) change
-/// it, validate.h states its invariants. A vertex whose bit `has_height` is 0 stands in void
-/// triangles only.
+/// A triangulation of a convex domain: every point of it is covered once, with no crack, no overlap
+/// and no T-junction. Plain arrays: functions in mesh/collapse.h and mesh/split.h change them,
+/// mesh/star.h walks them, mesh/validate.h numbers their invariants. A vertex without a height
+/// stands in void triangles only.
 struct Tin {
   std::vector<Vertex> vertices;
   std::vector<std::uint8_t> has_height;  ///< Beside `vertices`: 1 when the vertex carries a height.
@@ -55,21 +55,21 @@ struct Tin {
   [[nodiscard]] std::size_t alive_triangles() const noexcept;
 };
 
-/// Place of vertex `v` (0, 1, 2) in triangle `t`. REQUIRES: it is a corner.
+/// Place of vertex `v` (0, 1, 2) in triangle `t`. REQUIRES: `v` is a corner of `t`.
 [[nodiscard]] inline int corner_of(const Triangle& t, VertexId v) noexcept {
-  // Without branches: which one it is cannot be predicted, and walks do little else.
+  // Without branches: the place cannot be predicted, and walks do little else than ask for it.
   const int first_two = static_cast<int>(t.v[1] == v);
   return t.v[2] == v ? 2 : first_two;
 }
 
-/// Place of neighbour `n` in triangle `t`. REQUIRES: it is a neighbour.
+/// Place of neighbour `n` (0, 1, 2) in triangle `t`. REQUIRES: `n` is a neighbour of `t`.
 [[nodiscard]] inline int side_of(const Triangle& t, TriangleId n) noexcept {
   const bool beyond_first = t.n[0] != n;
   return static_cast<int>(beyond_first) + static_cast<int>(beyond_first & (t.n[1] != n));
 }
 
-/// Neighbour `was` of triangle `t` becomes `now`. Does nothing where `t` is kNone, beyond the
-/// border. REQUIRES: `was` is a neighbour.
+/// Puts `now` in the place of neighbour `was` of triangle `t`. Does nothing where `t` is kNone,
+/// which is what lies beyond the border. REQUIRES: `was` is a neighbour of `t`.
 inline void replace_neighbour(Tin& tin, TriangleId t, TriangleId was, TriangleId now) noexcept {
   if (t != kNone) {
     Triangle& triangle = tin.triangles[t];
@@ -77,9 +77,9 @@ inline void replace_neighbour(Tin& tin, TriangleId t, TriangleId was, TriangleId
   }
 }
 
-/// Points each vertex at one of its triangles: on the border at the first of the counter-clockwise
-/// walk (invariant I6). Vertices of no triangle point at kNone. REQUIRES: no removed triangle.
-/// Cost: linear.
+/// Points each vertex at one of its triangles: a border vertex at the first of the
+/// counter-clockwise walk (invariant I6 of mesh/validate.h), a vertex of no triangle at kNone.
+/// REQUIRES: no removed triangle. Cost: linear.
 void point_vertices(Tin& tin);
 
 [[nodiscard]] inline constexpr int next_corner(int i) noexcept { return i == 2 ? 0 : i + 1; }

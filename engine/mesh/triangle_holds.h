@@ -8,7 +8,8 @@
 
 namespace ptin {
 
-/// True for the closed triangle. Exact. REQUIRES: counter-clockwise. Cost: three orientations.
+/// True when `p` lies in the closed triangle, which is one of `tin`. Exact. REQUIRES: the triangle
+/// is counter-clockwise. Cost: three orientations.
 [[nodiscard]] inline bool triangle_holds(const Tin& tin, const Triangle& triangle,
                                          GridPoint p) noexcept {
   for (int i = 0; i < 3; ++i) {

@@ -76,7 +76,9 @@ std::string check_neighbours(const Tin& tin) {
   return {};
 }
 
-/// Border edges (a -> b, the domain to their left), by first vertex; kNone where a vertex has none.
+/// Fills `next` with the second end of the border edge that leaves each vertex with the domain on
+/// its left; kNone where no border edge does. Fills `edges` with their number. Returns a fault in
+/// words, or an empty string.
 std::string collect_border(const Tin& tin, std::vector<VertexId>& next, std::size_t& edges) {
   next.assign(tin.vertices.size(), kNone);
   edges = 0;
@@ -102,7 +104,7 @@ std::string collect_border(const Tin& tin, std::vector<VertexId>& next, std::siz
 /// True for directions in [0, 180) degrees.
 bool points_up(GridPoint a, GridPoint b) { return b.y > a.y || (b.y == a.y && b.x > a.x); }
 
-/// The border turns left or goes straight on everywhere, and round once. A mesh of
+/// Checks that the border turns left or goes straight on everywhere, and goes round once. A mesh of
 /// counter-clockwise triangles maps its disk onto the plane without folds, so inside of such a
 /// border every point is covered as often as the border winds: once.
 std::string check_convex(const Tin& tin, const std::vector<VertexId>& next, VertexId start) {
@@ -125,7 +127,8 @@ std::string check_convex(const Tin& tin, const std::vector<VertexId>& next, Vert
 
 __extension__ using Wide = __int128;
 
-/// Of a mesh that need not be valid, whose triangles may cover the domain many times.
+/// Twice the area of the triangles of any mesh. One that is not valid may cover the domain many
+/// times, which takes 128 bits.
 Wide wide_twice_area(const Tin& tin) {
   Wide sum = 0;
   for (const Triangle& t : tin.triangles) {
@@ -161,7 +164,7 @@ std::string check_border_and_cover(const Tin& tin) {
   if (std::string fault = check_convex(tin, next, start); !fault.empty()) {
     return fault;
   }
-  // Once round and convex: now the sum fits.
+  // The border goes round once and is convex, so twice the area inside of it fits 64 bits.
   std::int64_t border_area = 0;
   const GridPoint origin = tin.position(start);
   for (VertexId v = next[start]; v != start; v = next[v]) {

@@ -26,8 +26,8 @@ namespace ptin {
 /// Cost: linear, with hashing of vertices; for tests and debugging.
 [[nodiscard]] std::string validate(const Tin& tin);
 
-/// Twice the area of all triangles. Exact (the domain is at most 2^30 x 2^30, so the sum is at most
-/// 2^61).
+/// Twice the area of all triangles, exactly. REQUIRES: they cover a domain once, so that the sum
+/// fits: the grid has 2^30 steps a side, and the sum is at most 2^61.
 [[nodiscard]] std::int64_t twice_area(const Tin& tin);
 
 }  // namespace ptin

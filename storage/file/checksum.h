@@ -12,7 +12,7 @@ namespace ptin {
 
 [[nodiscard]] std::uint64_t checksum_of(std::span<const std::byte> bytes) noexcept;
 
-/// The same of bytes that come in parts.
+/// checksum_of() bytes that come in parts.
 class RunningChecksum {
  public:
   RunningChecksum();
@@ -22,7 +22,7 @@ class RunningChecksum {
 
   void add(std::span<const std::byte> part) noexcept;
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }  ///< Added so far.
-  [[nodiscard]] std::uint64_t value() const noexcept;  ///< checksum_of() what was added so far.
+  [[nodiscard]] std::uint64_t value() const noexcept;                    ///< Of all parts so far.
 
  private:
   struct State;

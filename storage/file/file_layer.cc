@@ -17,8 +17,8 @@ namespace ptin {
 
 namespace {
 
-// Renaming without replacing, where the file system has no such call: a second name, then the first
-// one goes.
+// Renames without replacing, on a file system that has no call for it: gives the file its new name
+// besides the old one, then removes the old one.
 int rename_by_link(const char* from, const char* to) {
   if (::link(from, to) != 0) {
     return errno;
@@ -40,7 +40,8 @@ int FileLayer::create(const std::string& path, int& fd) noexcept {
 
 int FileLayer::create_nameless(const std::string& folder, int& fd) noexcept {
   fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  // A kernel or a file system that does not know the flag takes this for opening the folder.
+  // A kernel or a file system that does not know O_TMPFILE takes the call for opening the folder
+  // itself, and answers EISDIR or EINVAL.
   return fd >= 0 ? 0 : errno == EISDIR || errno == EINVAL ? EOPNOTSUPP : errno;
 }
 

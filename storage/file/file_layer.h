@@ -12,8 +12,8 @@
 
 namespace ptin {
 
-/// The system's files. Every function returns 0 or the errno value; none throws.
-/// Threads: no state of its own; as safe as the calls it makes.
+/// The system's files, as virtual functions that tests replace. Every function returns 0 or the
+/// errno value; none throws. Threads: it has no state, so functions may be called at once.
 class FileLayer {
  public:
   FileLayer() = default;
@@ -27,10 +27,11 @@ class FileLayer {
   /// Creates a file that must not exist yet, for reading and writing; `fd` is valid when 0 is
   /// returned.
   virtual int create(const std::string& path, int& fd) noexcept;
-  /// Creates a file without a name in a folder, for reading and writing: it is gone with its
-  /// descriptor, however the process ends. File systems that cannot do it answer EOPNOTSUPP.
+  /// Creates a file without a name in a folder, for reading and writing. It is gone when its
+  /// descriptor is closed, however the process ends. File systems that cannot do it answer
+  /// EOPNOTSUPP.
   virtual int create_nameless(const std::string& folder, int& fd) noexcept;
-  /// Opens a file for reading and writing that exists.
+  /// Opens an existing file for reading and writing.
   virtual int open(const std::string& path, int& fd) noexcept;
   virtual int close(int fd) noexcept;
   /// May write less than asked for, like pwrite(2).
@@ -43,7 +44,7 @@ class FileLayer {
   /// EOPNOTSUPP.
   virtual int allocate(int fd, std::uint64_t offset, std::uint64_t bytes) noexcept;
   virtual int size(int fd, std::uint64_t& bytes) noexcept;
-  /// Cuts the file to `bytes`, or fills it with zeros up to there.
+  /// Cuts the file to `bytes`, or lengthens it with zeros up to there.
   virtual int truncate(int fd, std::uint64_t bytes) noexcept;
   virtual int sync(int fd) noexcept;
   /// Puts `from` in the place of `to` in one step. With `replace` off an existing `to` is EEXIST.
@@ -57,20 +58,22 @@ class FileLayer {
   virtual int sync_folder(const std::string& path) noexcept;
 };
 
-/// A file being written: closed when destroyed, removed too unless it is a kept one. Errors are
-/// ptin::Error and name the file.
+/// A file that is being written. The destructor closes it, and removes it too unless it is a kept
+/// one or was published. Errors are ptin::Error and name the file: resource_exhausted when the disk
+/// is full, io_error otherwise.
 class ScratchFile {
  public:
   enum class Kept { kNew, kExisting };
-  /// kExisting when there is something of this name.
-  /// @throws Error io_error  that cannot be told
+  /// kExisting when something of this name is there, else kNew.
+  /// @throws Error io_error  the system does not say whether it is (storage/file/file_questions.h)
   [[nodiscard]] static Kept kept_at(const std::string& path);
-  /// A file of this very name, which stays when the object goes: work that can be taken up again.
-  /// @throws Error not_found, io_error, resource_exhausted; also when a new one exists already
+  /// Creates (kNew) or opens (kExisting) a kept file: one with the name `path`, which stays when
+  /// the object goes. It holds work that can be taken up again. `files` is borrowed.
+  /// @throws Error not_found, io_error (also: kNew, and the file exists), resource_exhausted
   ScratchFile(FileLayer& files, const std::string& path, Kept kept);
-  /// Creates `folder`/`.stem.N.tmp` with the first N that is free. With `nameless` on it has no
-  /// name, so that nothing can be left behind; where the file system cannot do that, one that is
-  /// removed at once.
+  /// Creates `folder`/`.stem.PID-N.tmp` with the first N that is free. With `nameless` on, the file
+  /// has no name, so that nothing can be left behind; a file system without nameless files gets one
+  /// whose name is removed at once. `files` is borrowed.
   /// @throws Error not_found (no such folder), io_error, resource_exhausted
   ScratchFile(FileLayer& files, const std::string& folder, const std::string& stem, bool nameless);
   ScratchFile(const ScratchFile&) = delete;
@@ -79,16 +82,16 @@ class ScratchFile {
 
   void write_at(std::span<const std::byte> bytes, std::uint64_t offset);
   void read_at(std::span<std::byte> bytes, std::uint64_t offset) const;
-  /// Copies a range of `from` to `offset` here, in pieces. The ranges must not overlap when both
-  /// are this file.
+  /// Copies `bytes` bytes of `from`, from `from_offset` on, to `offset` here, a mebibyte at a time.
+  /// The ranges must not overlap when both are of this file.
   void copy_from(const ScratchFile& from, std::uint64_t from_offset, std::uint64_t bytes,
                  std::uint64_t offset);
   [[nodiscard]] std::uint64_t size() const;
   void reserve(std::uint64_t offset, std::uint64_t bytes);
   void truncate(std::uint64_t bytes);
   void sync();
-  /// Syncs, closes, renames onto `target`, syncs the folder. With `replace` off an existing target
-  /// is invalid_argument.
+  /// Syncs, closes, renames onto `target` and syncs the folder. With `replace` off an existing
+  /// target is invalid_argument.
   void publish_as(const std::string& target, bool replace);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is asked about files by their names: as std::filesystem answers, but that the system's
-// refusals are Errors.
+// Questions about files, asked by name. std::filesystem answers them; what the system refuses to
+// tell is an Error.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace ptin {
 
-/// The folder that a path names a file in: "." for a bare name.
+/// The folder of the file that `path` names; "." for a bare name.
 [[nodiscard]] std::string folder_of(const std::string& path);
 
 /// False when there is nothing of this name.
@@ -18,13 +18,13 @@ namespace ptin {
 ///                         look
 [[nodiscard]] bool is_there(const std::string& path);
 
-/// @throws Error not_found, io_error (a folder, too)
+/// The length of a file. @throws Error not_found, io_error (also: it is a folder)
 [[nodiscard]] std::uint64_t bytes_of_file(const std::string& path);
 
-/// The paths of what a folder holds. @throws Error not_found, io_error
+/// The paths of all files and folders in a folder, in no order. @throws Error not_found, io_error
 [[nodiscard]] std::vector<std::string> paths_in(const std::string& folder);
 
-/// The path from the root. @throws Error not_found  the working folder is gone; io_error
+/// The path of a file from the root. @throws Error not_found  the working folder is gone; io_error
 [[nodiscard]] std::string absolute_path(const std::string& path);
 
 /// Where the system keeps temporary files. @throws Error not_found, io_error

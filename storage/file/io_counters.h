@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What reading cost (promise P9): plain counters in the query's own context.
+// What reading costs (promise P9): plain counters, in the context of one query.
 #pragma once
 
 #include <cstdint>

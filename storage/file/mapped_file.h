@@ -15,8 +15,8 @@ namespace ptin {
 
 class MappedFile {
  public:
-  /// Maps all of `file`, and tells the kernel that reading will not be sequential: its default
-  /// read-ahead reads many times what a query wants.
+  /// Maps all of `file`, and tells the kernel that reads will jump about: its default read-ahead
+  /// reads many times what a query wants.
   /// @throws Error io_error
   explicit MappedFile(const ReadOnlyFile& file);
 
@@ -24,13 +24,14 @@ class MappedFile {
     return static_cast<const std::byte*>(region_.get_address()) + offset;
   }
   [[nodiscard]] bool is_damaged() const noexcept { return guard_.is_damaged(); }
-  /// @throws Error corruption  when a read met a hole (sigbus_guard.h)
+  /// @throws Error corruption  a read met bytes that the file has lost
+  ///                           (storage/file/sigbus_guard.h)
   void require_undamaged() const {
     if (is_damaged()) [[unlikely]] {
       report_damage();
     }
   }
-  /// Starts reading a range from the disk. A hint.
+  /// Starts reading a range from the disk. A hint: never fails.
   void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept;
 
  private:

@@ -56,7 +56,8 @@ ReadOnlyFile::Seen ReadOnlyFile::look() const {
   if (::fstat(descriptor(), &s) != 0) {
     throw system_error(errno, "cannot look at the open file", path_);
   }
-  if (!S_ISREG(s.st_mode)) {  // it was another one when it was looked at before opening
+  // Another file can have taken the name since require_regular() looked at it.
+  if (!S_ISREG(s.st_mode)) {
     throw_irregular(path_);
   }
   return {static_cast<std::uint64_t>(s.st_size), s.st_mtim.tv_sec, s.st_mtim.tv_nsec,

@@ -12,7 +12,8 @@
 
 namespace ptin {
 
-/// Threads: const functions may be called at once.
+/// A file opened for reading, closed when destroyed. Threads: const functions may be called at
+/// once.
 class ReadOnlyFile {
  public:
   /// @throws Error not_found, io_error, invalid_argument (no regular file)
@@ -27,15 +28,15 @@ class ReadOnlyFile {
   /// @throws Error io_error; corruption when the file ends before
   void read_at(std::span<std::byte> out, std::uint64_t offset) const;
 
-  /// Tells the kernel that reads will jump about: its read-ahead reads up to three times what a
-  /// point needs. A hint.
+  /// Tells the kernel that reads will jump about: otherwise its read-ahead reads up to three times
+  /// what a question about a point needs. A hint: never fails.
   void expect_jumps() const noexcept;
-  /// Starts reading a range. A hint.
+  /// Starts reading a range. A hint: never fails.
   void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept;
 
-  /// Compares size, modification and change time with those at opening.
-  /// What keeps all three (a write through a mapping made before, say) is not seen.
-  /// @throws Error corruption
+  /// Compares size, modification time and change time of the file with those at opening. A change
+  /// that keeps all three is not seen, such as a write through a mapping that was made before.
+  /// @throws Error corruption  one of them differs; io_error
   void check_unchanged() const;
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What happens when a mapped file loses bytes under its mapping: reading them raises SIGBUS.
+// What happens when a mapped file is cut while it is mapped: reading the bytes that are lost raises
+// SIGBUS.
 #pragma once
 
 #include <atomic>
@@ -10,16 +11,17 @@
 namespace ptin {
 
 /// Installs a SIGBUS handler for the whole process, once; later calls do nothing. A library does
-/// not take a signal unasked: without this call such a read ends the process. The handler lays a
-/// page of zeros over the hole, marks the mapping as damaged (every read from that store fails from
-/// then on) and goes on; faults elsewhere are handed to the handler that was there before. A cut
-/// inside of a page raises no signal, the rest of that page reads as zeros:
-/// PageStore::check_unchanged() sees it.
+/// not take a signal unasked: without this call, reading lost bytes ends the process.
+///
+/// With it, the handler maps a page of zeros over the lost page, marks the mapping as damaged, and
+/// the read goes on; from then on every read from that store fails. Faults elsewhere are handed to
+/// the handler that was installed before. A cut inside of a page raises no signal: the rest of that
+/// page reads as zeros, and PageStore::check_unchanged() sees the cut.
 /// @throws Error io_error
 void install_sigbus_guard();
 
-/// One mapping under guard, from construction to destruction. Does nothing while no handler is
-/// installed.
+/// Keeps one mapping under guard, from construction to destruction. Does nothing while no handler
+/// is installed.
 class GuardedMapping {
  public:
   GuardedMapping(const void* address, std::size_t bytes);
@@ -27,12 +29,12 @@ class GuardedMapping {
   GuardedMapping& operator=(const GuardedMapping&) = delete;
   ~GuardedMapping();
 
-  /// True once a read of this mapping met a hole.
+  /// True once a read of this mapping has met lost bytes.
   [[nodiscard]] bool is_damaged() const noexcept {
     return range_->damaged.load(std::memory_order_acquire);
   }
 
-  /// For the handler.
+  /// What the handler knows of a mapping.
   struct Range {
     std::atomic<std::uintptr_t> begin{0};
     std::atomic<std::uintptr_t> end{0};

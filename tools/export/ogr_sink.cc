@@ -80,7 +80,7 @@ class OgrSink final : public TinSink {
     feature_.reset();
     CPLErrorReset();
     const bool was_disk_full = is_disk_full(pending_.path());
-    GDALClose(dataset_.release());  // has no result: what went wrong is in GDAL's last error
+    GDALClose(dataset_.release());  // Has no result; GDAL's last error tells.
     if (CPLGetLastErrorType() >= CE_Failure || !is_complete())
       throw gdal_failure("cannot finish the output", pending_.path(), was_disk_full);
     pending_.publish();
@@ -102,8 +102,9 @@ class OgrSink final : public TinSink {
       begin();
     }
   }
-  /// A database says itself what it could not write. Of plain files GDAL does not notice every
-  /// short write, so they are read back.
+  /// Looks whether all features were written. A database (GeoPackage) says itself what it could not
+  /// write. Of a plain file GDAL does not notice every short write, so its features are read back
+  /// and counted.
   [[nodiscard]] bool is_complete() const {
     if (has_transactions_) return true;
     const GDALDatasetUniquePtr written(

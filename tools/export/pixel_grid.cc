@@ -39,7 +39,7 @@ struct Spot {
   std::int64_t x, y;
 };
 
-/// A corner of a triangle: on the grid and on the lattice.
+/// A corner of a triangle: its position on the grid and on the lattice, and its height code.
 struct Corner {
   GridPoint at;
   Spot spot;
@@ -51,7 +51,8 @@ Int128 area(const Corner& a, const Corner& b, Spot p) {
   return Int128{b.at.x - a.at.x} * (p.y - a.spot.y) - Int128{b.at.y - a.at.y} * (p.x - a.spot.x);
 }
 
-/// (sum of weight * code) / (sum of weights). Whole codes: exact up to the last rounding.
+/// (sum of weight * code) / (sum of weights). Where codes are whole numbers, exact up to the last
+/// rounding.
 double weighted(const std::array<Int128, 3>& w, const std::array<double, 3>& code, bool whole) {
   const Int128 sum = w[0] + w[1] + w[2];
   if (!whole) {
@@ -66,7 +67,7 @@ double weighted(const std::array<Int128, 3>& w, const std::array<double, 3>& cod
          static_cast<double>(moment % sum) / static_cast<double>(sum);
 }
 
-/// A surface triangle, its corners in the order of their keys, ready to be asked.
+/// A surface triangle with its corners in the order of their keys, which is asked for heights.
 class Facet {
  public:
   Facet(const Tin& tin, TriangleId t, const HeightEncoding& heights)
@@ -91,7 +92,7 @@ class Facet {
     return {corner_[0].spot.y, corner_[2].spot.y};  // keys order by y first
   }
 
-  /// About where the row `y` enters and leaves, never too narrow by more than rounding.
+  /// About the x at which the row `y` enters and leaves the triangle; off by rounding alone.
   [[nodiscard]] std::array<double, 2> span(std::int64_t y) const {
     double low = INFINITY;
     double high = -INFINITY;
@@ -127,7 +128,8 @@ class Facet {
   }
 
  private:
-  /// On the edge of two corners: from their distances along the longer axis alone.
+  /// The code at a point of the edge between two corners, from distances along the longer axis
+  /// alone.
   [[nodiscard]] double code_on_edge(std::size_t i, std::size_t j, Spot p) const {
     const Corner& a = corner_[std::min(i, j)];
     const Corner& b = corner_[std::max(i, j)];
@@ -192,7 +194,8 @@ GridBox PixelGrid::box(const PixelRect& rect) const noexcept {
 void sample_tin(const RefinedTin& refined, const StoreFacts& facts, const PixelGrid& grid,
                 const PixelRect& part, const PixelRect& rect, std::vector<double>& heights) {
   const Tin& tin = refined.tin;
-  // Positions once: rows from the north, so descending in y.
+  // The positions of columns and rows, computed once. Row j from the north stands at ys.size() - 1
+  // - j, so that both ascend.
   std::vector<std::int64_t> xs(static_cast<std::size_t>(part.width));
   std::vector<std::int64_t> ys(static_cast<std::size_t>(part.height));
   for (std::size_t i = 0; i < xs.size(); ++i) {

@@ -10,8 +10,9 @@ namespace ptin::tools {
 
 namespace {
 
-/// The header of PLY: of one length for all counts, so that it can be written last. What is spare
-/// is a row of dots in a comment, since readers split header lines at single spaces.
+/// The header of the PLY. It has one length for all counts, so that it can be written again at the
+/// end. Spare room is a row of dots in a comment, since readers split header lines at single
+/// spaces.
 std::string header_of(const CrsFacts& crs, std::uint64_t vertices, std::uint64_t triangles) {
   constexpr std::size_t kMostDigits = 20;
   const std::string v = std::to_string(vertices);

@@ -23,8 +23,8 @@ namespace {
 
 constexpr const char* kBlockSide = "512";
 
-/// Float64 where Float32 does not hold every height of a vertex: whole multiples of a power of two
-/// that take 24 bits it does, tenths it does not.
+/// The type of the pixels: Float64 where Float32 does not hold every height of a vertex. Float32
+/// holds whole multiples of a power of two that take at most 24 bits; it does not hold tenths.
 GDALDataType type_for(const StoreFacts& facts) {
   const HeightEncoding& heights = facts.heights;
   if (heights.type != HeightType::int32) return GDT_Float32;
@@ -63,8 +63,9 @@ CPLStringList options_of(const RasterTarget& target, bool for_copy) {
   return options;
 }
 
-/// GDAL keeps the place and the size of every block in memory, of a COG those of the raster it is
-/// copied from too, and of the overviews.
+/// Checks that the table of blocks fits its memory: GDAL keeps the place and the size of every
+/// block in memory. For a COG it keeps those of the raster that is copied and of the overviews
+/// besides.
 void check_table(const PixelGrid& grid, const RasterTarget& target) {
   const std::int64_t side = std::stoi(kBlockSide);
   const auto across = [&](std::int64_t pixels) {
@@ -204,7 +205,7 @@ class RasterWriter {
 
   void note_rounding(double height, double written) noexcept {
     if (height != target_.nodata) {
-      // Exact: they are nearly the same.
+      // Exact: the two numbers are nearly the same.
       largest_rounding_ = std::max(largest_rounding_, std::abs(written - height));
     }
   }
@@ -221,7 +222,7 @@ class RasterWriter {
   std::vector<double> heights_;
 };
 
-/// GDAL only warns of options that it does not know.
+/// Refuses options that the driver does not know; GDAL itself only warns of them.
 void check_creation_options(GDALDriver* driver, const CPLStringList& options,
                             const std::string& path) {
   CPLErrorReset();
@@ -254,7 +255,8 @@ GDALDatasetUniquePtr create(const PendingFile& file, const PixelGrid& grid,
   return dataset;
 }
 
-/// Closes a dataset and tells what its last writes met. GDALClose has no result in this GDAL.
+/// Closes a dataset, and throws when its last writes failed: GDALClose() has no result in this
+/// GDAL.
 void close_checked(GDALDatasetUniquePtr& dataset, const std::string& path) {
   CPLErrorReset();
   GDALClose(dataset.release());

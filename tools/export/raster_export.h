@@ -20,30 +20,32 @@ struct RasterTarget {
   bool overwrite = false;
   bool is_cog = false;
   double nodata = -9999.0;
-  std::vector<std::string> creation_options;  ///< KEY=VALUE for the driver; override ours.
+  std::vector<std::string> creation_options;  ///< KEY=VALUE for the driver; they override ours.
   CrsFacts crs;
-  std::uint64_t buffer_bytes = std::uint64_t{64} << 20;  ///< For pixels and GDAL's cache, each.
-  std::uint64_t table_bytes = std::uint64_t{64} << 20;   ///< For GDAL's table of blocks.
+  /// For pixels, and as much again for GDAL's cache.
+  std::uint64_t buffer_bytes = std::uint64_t{64} << 20;
+  std::uint64_t table_bytes = std::uint64_t{64} << 20;  ///< For GDAL's table of blocks.
 };
 
-/// Samples the TIN of `refiner` at the centres of `grid` and writes it: Float32, or Float64 where
-/// Float32 does not hold every height of a vertex. Where there is no surface: nodata.
-///
-/// Returns how far a written height is from that of the TIN at most: what Float32 rounds between
-/// vertices.
+/// Samples the TIN of `refiner` at the centres of `grid` and writes the heights: as Float32, or as
+/// Float64 where Float32 does not hold every height of a vertex. A pixel without surface gets
+/// `nodata`.
 ///
 /// Blocks are sampled together as far as memory allows, and written in an order that depends on the
-/// size of the raster alone. A COG is copied by GDAL from a GeoTIFF beside it, with its overviews.
-/// @param progress  Share done, 0 to 1; may be empty.
+/// size of the raster alone. A COG is copied by GDAL, with its overviews, from a GeoTIFF beside it.
+/// @param progress  Called with the share done, 0 to 1; may be empty.
+/// @return The largest distance of a written height from that of the TIN: what Float32 rounds
+/// between vertices.
 /// @throws Error  invalid_argument    GDAL refuses an option, or the output exists
-///                resource_exhausted  what a single pixel needs does not fit; so many blocks that
-///                                    their table does not; disk full
+///                resource_exhausted  what a single pixel needs does not fit the memory; the table
+///                                    of blocks does not fit `table_bytes`; the disk is full
 ///                as PartRefiner::refine; io_error; cancelled. Nothing is left behind.
 [[nodiscard]] double export_raster(const PartRefiner& refiner, const PixelGrid& grid,
                                    const RasterTarget& target,
                                    const std::function<void(double)>& progress);
 
-/// A value for pixels without a height: -9999, or one below every height when the terrain has it.
+/// A value for pixels without a height: -9999, or the lowest float when -9999 lies between the
+/// terrain's least and largest height.
 [[nodiscard]] double default_nodata(const StoreFacts& facts) noexcept;
 
 }  // namespace ptin::tools

@@ -18,7 +18,7 @@ std::uint64_t position_of(GridPoint p) {
   return hilbert_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y));
 }
 
-/// Place of the corner that comes last along the curve.
+/// The place (0, 1 or 2) of the corner that comes last along the curve.
 int last_corner(const Triangle& t, const std::vector<std::uint64_t>& along) {
   const int a = along[t.v[0]] > along[t.v[1]] ? 0 : 1;
   return along[t.v[a]] > along[t.v[2]] ? a : 2;
@@ -29,8 +29,9 @@ int last_corner(const Triangle& t, const std::vector<std::uint64_t>& along) {
 /// What a cell owns, sorted along the curve.
 struct PatchMaker::Sorted {
   std::vector<VertexId> vertices;
-  std::vector<std::uint32_t> rank;     ///< Beside tin.vertices: place in `vertices`, else kNone.
-  std::vector<std::uint32_t> pending;  ///< Beside `vertices`: triangles of later cells.
+  std::vector<std::uint32_t> rank;  ///< Beside tin.vertices: place in `vertices`, else kNone.
+  /// Beside `vertices`: how many triangles of later cells use each.
+  std::vector<std::uint32_t> pending;
   struct Owned {
     std::uint32_t owner;             ///< Rank of the last corner.
     std::array<VertexId, 3> corner;  ///< The last corner first.
@@ -67,7 +68,7 @@ PatchMaker::Sorted PatchMaker::sort_cell(const GridCell& cell, const Tin& tin) c
   }
   Sorted sorted;
   sorted.rank.assign(n, kNone);
-  // First which vertices and triangles there are, then their order.
+  // First the cell's vertices and triangles are found, then they are sorted.
   std::vector<TriangleId> owned;
   std::vector<TriangleId> later;
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A TIN larger than memory, cut into patches that join: every triangle and every vertex in exactly
-// one, numbered the same however it was cut.
+// A TIN larger than memory, cut into patches that join: every triangle and every vertex is in
+// exactly one patch, and their numbers do not depend on how the TIN was cut.
 #pragma once
 
 #include <array>
@@ -44,17 +44,17 @@ class PatchMaker {
   /// @throws Error invalid_argument as GridRegion
   PatchMaker(const StoreFile& store, const std::optional<Region>& region);
 
-  /// The patch of the next cell. Borrows `refined`.
+  /// The patch of the next cell. It borrows `refined`.
   /// @throws Error corruption          cells do not join: the file is damaged
-  ///               resource_exhausted  the border between what is done and what is not takes more
-  ///                                   than `border_limit_bytes`
+  ///               resource_exhausted  the vertices that later cells use take more than
+  ///                                   `border_limit_bytes`
   /// Cost: linear in the refinement; memory as much again as the mesh.
   [[nodiscard]] TinPatch make(const GridCell& cell, const RefinedTin& refined,
                               std::uint64_t border_limit_bytes);
 
   [[nodiscard]] std::uint64_t vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::uint64_t triangles() const noexcept { return triangles_; }
-  /// After the last cell.  @throws Error corruption  a triangle is missing
+  /// To be called after the last cell.  @throws Error corruption  a triangle is missing
   void finish() const;
 
  private:

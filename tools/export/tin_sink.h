@@ -17,9 +17,9 @@ struct SinkTarget {
   std::string path;
   bool overwrite = false;
   CrsFacts crs;
-  std::uint64_t border_bytes = std::uint64_t{64} << 20;  ///< As PatchMaker::make.
+  std::uint64_t border_bytes = std::uint64_t{64} << 20;  ///< What PatchMaker::make() may take.
   std::uint64_t index_bytes = std::uint64_t{256} << 20;  ///< For an index of features.
-  std::uint64_t most_triangles = 0;                      ///< Upper bound, for that.
+  std::uint64_t most_triangles = 0;                      ///< At most; tells the size of that index.
 };
 
 /// Takes patches in order. Destroyed before publish(), it leaves nothing behind.
@@ -36,17 +36,17 @@ class TinSink {
   virtual void publish() = 0;
 };
 
-/// PLY, binary: the conventions of tools/formats/ply.cc. Vertices go to the file as they come,
-/// triangles to a nameless one beside it first. Indices are `int`, or `uint` where there are more
-/// than 2^31 - 1 vertices; up to 2^32 - 1.
+/// PLY, binary, with the conventions of tools/formats/ply.cc. Vertices go to the file as they come,
+/// triangles first to a nameless file beside it. Indices are `int`, or `uint` where there are more
+/// than 2^31 - 1 vertices; at most 2^32 vertices.
 [[nodiscard]] std::unique_ptr<TinSink> make_ply_sink(const SinkTarget& target);
 
-/// Triangles as polygons with heights (POLYGON Z: what QGIS reads of any version), one feature
-/// each, by GDAL. A GeoPackage gets its spatial index when it is finished; a FlatGeobuf one where
-/// the index fits `index_bytes` (128 bytes a triangle).
+/// Triangles as polygons with heights, one feature each, written by GDAL as POLYGON Z, which QGIS
+/// reads in any version. A GeoPackage gets its spatial index when it is finished. A FlatGeobuf gets
+/// one where the index fits `index_bytes` (128 bytes a triangle).
 [[nodiscard]] std::unique_ptr<TinSink> make_geopackage_sink(const SinkTarget& target);
 [[nodiscard]] std::unique_ptr<TinSink> make_flatgeobuf_sink(const SinkTarget& target);
-/// Whether a FlatGeobuf gets its index.
+/// True when a FlatGeobuf gets its index.
 [[nodiscard]] bool flatgeobuf_index_fits(const SinkTarget& target);
 
 }  // namespace ptin::tools

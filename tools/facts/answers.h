@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Words of answers, the same in text and JSON.
+// The words of answers, the same in text and JSON.
 #pragma once
 
 #include <cmath>

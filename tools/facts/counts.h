@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What holds for options that count.
+// Checks of options that are counts, or numbers that are not negative.
 #pragma once
 
 #include <cstdlib>
@@ -10,7 +10,7 @@
 
 namespace ptin::tools {
 
-/// Refuses a sign, which CLI11 would turn from -5 into 2^64 - 5.
+/// Refuses a number with a minus sign: CLI11 would read the count -5 as 2^64 - 5.
 [[nodiscard]] inline CLI::Validator counts() {
   return {[](const std::string& text) {
             return text.starts_with('-') ? "a count is no less than 0, and " + text + " is"
@@ -19,8 +19,8 @@ namespace ptin::tools {
           ""};
 }
 
-/// Refuses what lies below 0, in fewer words than CLI11, whose sentence holds its 300 digits of the
-/// largest number.
+/// Refuses a number below 0. The message is shorter than that of CLI11's own check, which holds the
+/// 300 digits of the largest number.
 [[nodiscard]] inline CLI::Validator not_negative() {
   return {[](const std::string& text) {
             return std::strtod(text.c_str(), nullptr) < 0

@@ -10,7 +10,7 @@ namespace ptin::tools {
 
 /// 1234567 -> "1,234,567".
 [[nodiscard]] std::string grouped(std::uint64_t n);
-/// "1 page", "1,234 pages"; `plural` where it is not the word and an s.
+/// "1 page", "1,234 pages". `plural` is needed where it is not `one` with an s.
 [[nodiscard]] std::string counted(std::uint64_t n, const std::string& one,
                                   const std::string& plural = {});
 /// Bytes as "3.2 MiB"; below 1024 "512 bytes".
@@ -19,9 +19,10 @@ namespace ptin::tools {
 [[nodiscard]] std::string human_duration(double seconds);
 /// Six significant digits without trailing zeros; "inf" when infinite.
 [[nodiscard]] std::string short_number(double value);
-/// Control characters as question marks: what a file says must not steer the terminal.
+/// The text with question marks in the place of control characters: what a file says must not steer
+/// the terminal.
 [[nodiscard]] std::string printable(std::string text);
-/// As few digits as read back as the same number.
+/// The fewest digits that read back as the same number.
 [[nodiscard]] std::string exact_number(double value);
 /// A size in bytes from "512M", "2G", "4096": suffixes K, M, G, T are powers of 1024.
 /// @throws Error invalid_argument

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// glTF 2.0 binary. Positions are float32, so they stand around a local origin, the middle of the
-// mesh: coordinates of millions of metres would jitter. The origin is in `extras` of the node (x,
-// y, z of the CRS, as doubles), not in its translation, because several programs add that in
-// float32 again. glTF is y-up: (x, y, z) becomes (x, z, -y). Degrees and feet become metres on the
-// way (a metre a unit, as glTF says), as long as they are at the origin; `extras.scale` has the
+// glTF 2.0 binary. Positions are float32, in which coordinates of millions of metres would jitter:
+// so they stand around a local origin, the middle of the mesh. The origin is in `extras` of the
+// node (x, y, z of the CRS, as doubles). It is not in the node's translation, because several
+// programs add that in float32 again. glTF is y-up: (x, y, z) becomes (x, z, -y). glTF units are
+// metres: degrees and feet become metres by their lengths at the origin. `extras.scale` has the
 // factors: crs = origin + local / scale.
 #include <cmath>
 
@@ -19,7 +19,7 @@ namespace {
 
 using Vec3f = std::array<float, 3>;
 
-/// Where the local frame stands, and how many local units an x, y, z unit is long.
+/// The origin of the local frame, and the number of local units in a unit of x, y and z.
 struct LocalFrame {
   std::array<double, 3> origin{};
   std::array<double, 3> scale{1.0, 1.0, 1.0};
@@ -126,7 +126,7 @@ void write_glb(const Mesh& mesh, OutputFile& out) {
 
   nlohmann::json json = scene_of(mesh, frame);
   if (!mesh.triangles.empty())
-    describe_buffers(json, points, mesh.triangles.size() * 3);  // glTF has no empty buffers
+    describe_buffers(json, points, mesh.triangles.size() * 3);  // glTF has no empty buffers.
   std::string text = json.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::uint64_t binary =

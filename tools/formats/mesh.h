@@ -12,13 +12,14 @@ namespace ptin::tools {
 
 /// What a format writer writes. Surface triangles only: void ones are left out before.
 struct Mesh {
-  std::vector<std::array<double, 3>>
-      vertices;  ///< x, y in the CRS's units, z in the height's unit.
+  /// x, y in the CRS's units, z in the height's unit.
+  std::vector<std::array<double, 3>> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Counter-clockwise seen from above.
-  std::string
-      crs;  ///< "EPSG:32611" where the CRS has a code, else WKT2 on one line; empty when unknown.
+  /// "EPSG:32611" where the CRS has a code, else WKT2 on one line; empty when unknown.
+  std::string crs;
   std::string vertical_crs;  ///< Likewise; empty when unknown.
-  /// Of x and y at the middle of the mesh, and of heights; 1 where nothing is known of them.
+  /// Metres in a unit of x and of y, at the middle of the mesh, and of heights; 1 where that is
+  /// unknown.
   std::array<double, 3> metres_per_unit{1.0, 1.0, 1.0};
 };
 

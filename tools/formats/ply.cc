@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // PLY as QGIS (MDAL), Blender and MeshLab read it: binary little-endian; vertices x y z in lower
-// case, as doubles; faces as a list `vertex_indices` of int behind a uchar count, first property of
-// the face. MDAL takes `comment crs: ...` for the CRS; every header line has a word, since it
-// splits them without looking.
+// case, as doubles; faces as a list `vertex_indices` of int behind a uchar count, as the first
+// property of the face. MDAL reads the CRS from `comment crs: ...`. No header line is empty, since
+// MDAL splits lines into words without looking.
 #include <cstring>
 
 #include "engine/error.h"

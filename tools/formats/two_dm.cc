@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // SMS 2DM: MESH2D, then E3T (element, three nodes, material) and ND (node, x, y, z), ids from 1.
-// The format has no place for a CRS; QGIS asks for it, or a .prj beside the file tells.
+// The format has no place for a CRS; QGIS asks for it, or reads a .prj beside the file.
 #include "tools/formats/mesh_writer.h"
 #include "tools/formats/number_text.h"
 

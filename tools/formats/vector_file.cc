@@ -30,8 +30,9 @@ constexpr std::array<VectorFormat, 4> kVectorFormats = {
     {{"gpkg", "GPKG"}, {"fgb", "FlatGeobuf"}, {"geojson", "GeoJSON"}, {"shp", "ESRI Shapefile"}}};
 constexpr const VectorFormat& kGeoJson = kVectorFormats[2];
 
-/// What SQLite does for the safety of a file that nobody knows of yet, and whose parts nobody
-/// keeps, is switched off: the finished file is synced before it gets its name.
+/// Switches off what SQLite does for the safety of a file, as long as the object lives. Nobody
+/// knows of the file yet, and nobody keeps a part of it: the finished file is synced before it gets
+/// its name.
 class UnsafeSqlite {
  public:
   UnsafeSqlite() {
@@ -69,7 +70,8 @@ void create_fields(OGRLayer& layer, const VectorFile::Layer& wanted, const std::
   }
 }
 
-/// GDAL's GeoJSON driver tells nobody when the disk takes no more: a whole file ends "]\n}".
+/// True when a file ends as whole GeoJSON does, with "]\n}". GDAL's GeoJSON driver does not tell
+/// when the disk is full.
 bool ends_as_geojson(const std::string& path) {
   constexpr std::streamoff kTail = 16;
   std::ifstream in(path, std::ios::binary | std::ios::ate);
@@ -82,8 +84,9 @@ bool ends_as_geojson(const std::string& path) {
   return tail.ends_with("]}");
 }
 
-/// The name that a file of the output gets: the caller's own for the one asked for. GDAL writes
-/// X.shp, X.shx and X.dbf for X.SHP; those beside it are in capitals too then.
+/// The name under which a file of the output is published. The file that was asked for gets the
+/// caller's own name. GDAL writes X.shp, X.shx and X.dbf for X.SHP: where the caller's extension is
+/// in capitals, the files beside it get theirs in capitals too.
 std::string published_name(const fs::path& written, const fs::path& wanted) {
   std::string extension = written.extension().string();
   if (extension == lower_extension(wanted.string())) return wanted.filename().string();
@@ -199,8 +202,8 @@ void VectorFile::add(std::unique_ptr<OGRGeometry> geometry, std::span<const Valu
   }
 }
 
-/// GDAL's drivers write most when they close, and some tell of a full disk only by an error message
-/// then.
+/// Closes the dataset, and throws when that fails. GDAL's drivers write most of a file when they
+/// close it, and some tell of a full disk only by an error message then.
 void VectorFile::close() {
   const UnsafeSqlite unsafe;
   CPLErrorReset();
@@ -219,7 +222,8 @@ void VectorFile::close() {
 void VectorFile::publish() {
   close();
   if (folder_.empty()) return;
-  // A shapefile is several files: its own name last, so that what is there is complete.
+  // A shapefile is several files. The one that was asked for gets its name last, so that what is
+  // there is complete.
   const fs::path target(target_);
   std::vector<std::pair<std::string, fs::path>> files;  // by the names that they get
   for (const auto& entry : fs::directory_iterator(folder_)) {

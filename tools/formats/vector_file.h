@@ -32,11 +32,12 @@ struct VectorFormat {
 /// @throws Error invalid_argument  unknown extension
 [[nodiscard]] const VectorFormat& vector_format_of(const std::string& path);
 
-/// One layer in one file. Written into a folder beside the target; publish() renames. Destroyed
-/// without publish(), it removes what it wrote. With "-" features go to stdout as they come.
+/// One layer in one file. It is written in a folder beside the target, and publish() renames it.
+/// Destroyed without publish(), it removes what it wrote. With "-" features go to stdout as they
+/// come.
 class VectorFile {
  public:
-  /// kInteger: all of 64 bits; in a shapefile, which keeps digits, 18 of them and a sign. kFlag: 0
+  /// kInteger has 64 bits, but in a shapefile, which keeps digits, 18 digits and a sign. kFlag is 0
   /// or 1.
   enum class FieldType { kInteger, kFlag, kReal };
   struct Field {
@@ -57,24 +58,24 @@ class VectorFile {
   VectorFile& operator=(const VectorFile&) = delete;
   ~VectorFile();
 
-  /// Adds a feature; `values` beside the layer's fields.  @throws Error io_error
+  /// Adds a feature; `values` in the order of the layer's fields.  @throws Error io_error
   void add(std::unique_ptr<OGRGeometry> geometry, std::span<const Value> values);
 
-  /// Closes and makes the file appear under its name.  @throws Error io_error, resource_exhausted,
-  /// invalid_argument
+  /// Closes the file and makes it appear under its name.
+  /// @throws Error io_error, resource_exhausted, invalid_argument
   void publish();
 
  private:
   void close();
 
-  std::string path_, target_;  ///< As given, for messages; where it leads.
-  std::string folder_;         ///< Temporary; empty on stdout.
+  std::string path_, target_;  ///< `path_` as given, for messages; `target_` where it leads.
+  std::string folder_;         ///< For the work, temporary; empty on stdout.
   bool overwrite_;
   std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> dataset_;
   OGRLayer* layer_ = nullptr;
 };
 
-/// A line of map points, at height `z` when given.
+/// A line through map points; all of them at height `z`, unless `z` is null.
 [[nodiscard]] std::unique_ptr<OGRGeometry> line_geometry(std::span<const MapPoint> points,
                                                          const double* z);
 

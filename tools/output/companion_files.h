@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Files that programs read along with one of another name: a GeoPackage's journal, a shapefile's
-// index, a raster's overviews. Beside a file that was replaced they speak of what is gone.
+// Companions: files that programs read along with another one, such as a GeoPackage's journal, a
+// shapefile's index or a raster's overviews. Beside a file that was replaced they belong to the
+// file that is gone.
 #pragma once
 
 #include <string>
@@ -9,11 +10,12 @@
 
 namespace ptin::tools {
 
-/// The names that companions of `path` have, whether they are there or not, by its extension: what
-/// GDAL and SQLite look for and would believe. None that GDAL writes anew with the file itself.
+/// The names that companions of `path` would have, by its extension, whether they are there or not:
+/// those that GDAL and SQLite look for and would believe. Files that GDAL writes anew with `path`
+/// itself are not among them.
 [[nodiscard]] std::vector<std::string> companions_of(const std::string& path);
 
-/// Removes those that are there.  @throws Error io_error  one cannot be removed
+/// Removes the companions of `path` that are there.  @throws Error io_error  one cannot be removed
 void remove_companions(const std::string& path);
 
 }  // namespace ptin::tools

@@ -29,7 +29,7 @@ Error exists_already(const std::string& path) {
           "exists already; give another name, or --overwrite to replace it", path};
 }
 
-/// Syncs what was written; some file systems cannot, and there is nothing more to do there.
+/// Syncs what was written. Some file systems cannot sync a file; there is nothing more to do there.
 int sync_content(FileLayer& files, int fd) {
   const int failure = files.sync(fd);
   return failure == EINVAL || failure == EROFS ? 0 : failure;
@@ -56,9 +56,10 @@ bool is_within(const fs::path& folder, const fs::path& other) {
          other.end();
 }
 
-/// Names there stand for devices and for what a process has open.
+/// True for a path below /proc or /dev, but for /dev/shm: names there stand for devices and for
+/// what a process has open.
 bool is_of_the_system(const fs::path& path) {
-  std::error_code unknown;  // a folder that is not there is somebody else's matter
+  std::error_code unknown;  // A missing folder is found by check_output().
   const fs::path folder = fs::canonical(folder_of(path.string()), unknown);
   return !unknown && (is_within(folder, "/proc") ||
                       (is_within(folder, "/dev") && !is_within(folder, "/dev/shm")));

@@ -34,7 +34,7 @@ void PendingFile::remove_side_files() const noexcept {
 void PendingFile::publish() {
   if (overwrite_) remove_companions(target_);
   move_into_place(temporary_, target_, overwrite_);
-  remove_side_files();  // they bear the name that is gone
+  remove_side_files();  // Their names begin with the temporary one.
   temporary_.clear();
 }
 

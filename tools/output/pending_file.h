@@ -14,22 +14,23 @@ class PendingFile {
   PendingFile(std::string path, bool overwrite);
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
-  /// Removes the temporary file, and those that GDAL and SQLite keep beside one.
+  /// Removes the temporary file, and the side files that GDAL and SQLite keep beside it.
   ~PendingFile();
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] const std::string& temporary() const noexcept { return temporary_; }
 
   /// Syncs the temporary file, renames it, syncs the folder, and removes the side files. With
-  /// `overwrite` the companions of what it replaces go first. REQUIRES: written and closed.
-  /// @throws Error resource_exhausted, io_error; invalid_argument when the target appeared
+  /// `overwrite` the companions of the file that it replaces are removed first.
+  /// REQUIRES: the temporary file is written and closed.
+  /// @throws Error resource_exhausted, io_error; invalid_argument when the target has appeared
   /// meanwhile and `overwrite` is off
   void publish();
 
  private:
   void remove_side_files() const noexcept;
 
-  std::string path_, target_;  ///< As given, for messages; where it leads.
+  std::string path_, target_;  ///< `path_` as given, for messages; `target_` where it leads.
   std::string temporary_;
   bool overwrite_;
 };

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kSpillBufferBytes = std::size_t{1} << 20;
 
-/// What `act` returns; its errors name the file that the user knows.
+/// Returns what `act` returns; the errors of `act` name the output, which is the file that the user
+/// knows.
 template <typename Act>
 auto for_output(const std::string& output, const Act& act) {
   try {

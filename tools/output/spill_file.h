@@ -17,14 +17,15 @@ namespace ptin::tools {
 /// program ends. One thread.
 class SpillFile {
  public:
-  /// @param output  The file that the bytes are for: they lie in its folder, errors name it.
+  /// @param output  The file that the bytes are for: the spill file lies in its folder, and errors
+  ///                name it.
   /// @throws Error not_found, io_error, resource_exhausted
   explicit SpillFile(std::string output, FileLayer& files = FileLayer::system());
 
   /// Appends; buffered.  @throws Error resource_exhausted (disk full), io_error
   void write(const void* data, std::size_t bytes);
-  /// The next bytes from the beginning, at most a mebibyte at once; empty at the end. No writing
-  /// afterwards.  @throws Error as write
+  /// The next bytes, from the beginning on, at most a mebibyte at a time; empty at the end. Valid
+  /// until the next call. REQUIRES: write() is not called afterwards.  @throws Error as write
   [[nodiscard]] std::span<const char> read();
 
  private:

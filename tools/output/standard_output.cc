@@ -28,8 +28,8 @@ void finish_stdout() {
   errno = 0;
   if (std::fflush(stdout) != 0) throw_lost(errno);
   if (std::ferror(stdout) == 0) return;
-  // Somebody's write failed before, and its reason is gone with errno: what is there is a part
-  // already, and one byte more tells whether the disk is full.
+  // An earlier write failed, and its errno is gone. What is there is a part of the answer already,
+  // so one byte more is written, which tells whether the disk is full.
   errno = 0;
   static_cast<void>(::write(STDOUT_FILENO, "\n", 1) == 1);
   throw_lost(errno);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Standard output that says when it could not take what was written.
+// Standard output, with an Error when something could not be written.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace ptin::tools {
 /// Writes to stdout; buffered.  @throws Error resource_exhausted (disk full), io_error
 void write_to_stdout(std::string_view text);
 
-/// Writes what is buffered, and looks whether anything before was lost.  @throws Error as above
+/// Writes what is buffered.  @throws Error as above, also when an earlier write to stdout was lost
 void finish_stdout();
 
 }  // namespace ptin::tools

@@ -161,7 +161,7 @@ constexpr const char* kExitStatuses =
     "5 file of a newer version; 6 input/output error; 7 out of memory or disk; 8 cancelled; 70 a "
     "fault of ours.\n";
 
-/// The first word, where it is meant as a subcommand and is none; else empty.
+/// The first word of the command line, where it is no option and names no subcommand; else empty.
 std::string unknown_subcommand(int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   const std::string word = argv[1];
@@ -170,7 +170,7 @@ std::string unknown_subcommand(int argc, const char* const* argv) {
   return known ? std::string() : word;
 }
 
-/// What CLI11 has to say about wrong use, with the way to the help.
+/// Writes what CLI11 says about wrong use, and how to get help.
 int report_wrong_use(const CLI::App& app, const CLI::ParseError& error, const std::string& unknown,
                      bool json) {
   std::string name;

@@ -13,15 +13,15 @@ namespace ptin::tools {
 /// The parser of the whole program, and the action of the subcommand that it found.
 struct CommandLine {
   std::unique_ptr<CLI::App> app;
-  std::vector<Action> actions;  ///< Beside commands().
+  std::vector<Action> actions;  ///< actions[i] runs commands()[i].
 };
 [[nodiscard]] CommandLine make_command_line(Context& context);
 
 /// Every exit status in one sentence.
 [[nodiscard]] const char* exit_statuses() noexcept;
 
-/// Parses and runs. --help and --version return 0, wrong use returns 2 after one sentence on
-/// stderr.
+/// Parses the command line and runs its subcommand. --help and --version return 0; wrong use writes
+/// a sentence to stderr and returns 2.
 /// @throws Error  what the subcommand throws
 int run_command_line(int argc, const char* const* argv, Context& context);
 

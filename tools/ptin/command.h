@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a subcommand is: one file each, one row each in the table of commands.
+// What a subcommand is. Each has a file of its own and a row in the table of commands.
 #pragma once
 
 #include <functional>

@@ -44,7 +44,7 @@ std::vector<double> round_tolerances(const StoreFile& store, std::size_t count) 
   const double largest = largest_finite_error(store);
   std::vector<double> tolerances;
   if (!(largest > 0)) return tolerances;
-  // Powers of ten as decimal text would read them, so that 0.1 is 0.1.
+  // Products and quotients by powers of ten that round as decimal text does, so that 0.1 is 0.1.
   for (int decade = static_cast<int>(std::ceil(std::log10(largest))); decade >= -12; --decade) {
     for (const double digit : {5.0, 2.0, 1.0}) {
       const double value =

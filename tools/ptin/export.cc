@@ -37,10 +37,11 @@ struct ExportOptions {
   bool overwrite = false;
 };
 
-/// A format: triangles into a sink, or a raster.
+/// A format: one that writes triangles into a sink, or a raster.
 struct ExportFormat {
-  const char* name;       ///< As GDAL calls it.
-  const char* extension;  ///< Chooses it; empty when only --format does.
+  const char* name;  ///< As GDAL calls it.
+  /// The extension that chooses the format; empty where only --format does.
+  const char* extension;
   std::unique_ptr<TinSink> (*make_sink)(const SinkTarget& target);  ///< Null for rasters.
   bool is_cog;
 };
@@ -70,13 +71,13 @@ const ExportFormat& format_of(const ExportOptions& options) {
               options.output);
 }
 
-/// Shares of --memory. What is left is the program itself and the allocator's slack.
+/// The shares of --memory, in bytes. The rest is for the program itself and the allocator's slack.
 struct ExportMemory {
   static constexpr std::uint64_t kProgram = std::uint64_t{16} << 20;
   explicit ExportMemory(std::uint64_t bytes)
       : part((bytes - kProgram) / 2), buffers(bytes / 16), index(bytes / 4) {}
   std::uint64_t part;     ///< One refined part, and the patch made from it.
-  std::uint64_t buffers;  ///< Each of: pixels, GDAL's cache, the open border.
+  std::uint64_t buffers;  ///< For pixels; for GDAL's cache; for the open border: each.
   std::uint64_t index;    ///< A format's index of features, or of blocks.
 };
 
@@ -112,7 +113,7 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
   check_output(options.output, options.overwrite);
 }
 
-/// What was asked, or the grid's step.
+/// The pixel size that was asked for, else that of the source's raster.
 std::array<double, 2> pixel_size_of(const ExportOptions& options, const StoreFile& store) {
   if (!options.pixel_size.empty()) return {options.pixel_size.front(), options.pixel_size.back()};
   return own_pixel_size(store);
@@ -128,7 +129,7 @@ struct Exported {
   std::uint64_t vertices = 0, triangles = 0, cells = 0;
   std::int64_t columns = 0, rows = 0;
   Certificate certificate;
-  double rounding = 0.0;  ///< Of pixels, when they were written.
+  double rounding = 0.0;  ///< Of heights to pixels; rasters only.
 };
 
 using Report = std::function<void(double)>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// ptin highest: the highest or lowest point of a window.
+// ptin highest: the highest or the lowest point of a window.
 #include <cstdio>
 #include <memory>
 

@@ -41,7 +41,7 @@ nlohmann::json bounds_json(const StoreFacts& facts) {
 }
 
 nlohmann::json heights_json(const StoreFacts& facts) {
-  if (facts.min_height > facts.max_height) return nullptr;  // all void
+  if (facts.min_height > facts.max_height) return nullptr;  // All of it is void.
   return {{"min", facts.min_height},
           {"max", facts.max_height},
           {"stored_as", facts.heights.type == HeightType::int32 ? "int32" : "float32"},
@@ -107,7 +107,7 @@ nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
           {"metadata", metadata}};
 }
 
-/// Metadata beyond what has a line of its own, flattened to "key value" lines.
+/// Prints metadata as "key value" lines, flattened, but for what has a line of its own.
 void print_metadata(const nlohmann::json& object, const std::string& prefix) {
   for (const auto& [key, value] : object.items()) {
     if (key == "crs" || key == "crs_wkt" || value.is_null()) continue;

@@ -100,8 +100,9 @@ int run_lines(const IsolineOptions& options, const IsolineRequest& request, cons
   return kExitDone;
 }
 
-/// A full grid without a void: its triangles away from the levels may stay coarse, since its border
-/// is straight. Otherwise the borders of voids are wanted everywhere, and the index knows none.
+/// True when the terrain is a full grid of samples without a void. Its border is straight then, so
+/// its triangles away from the levels may stay coarse. Otherwise bands need the borders of voids
+/// everywhere, and the index does not know those.
 bool has_straight_border(const StoreFile& store) {
   const GridBox& b = store.facts().bounds;
   const std::uint64_t full = (static_cast<std::uint64_t>(b.max_x - b.min_x) + 1) *
@@ -136,7 +137,7 @@ std::unique_ptr<OGRGeometry> polygon_geometry(const BandPolygon& polygon) {
   return geometry;
 }
 
-/// One feature a band that has an area, as gdal_contour -p.
+/// Writes one feature for each band that has an area, as gdal_contour -p does.
 std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelSet& levels,
                           const StoreFacts& facts, const IsolineOptions& options,
                           const std::string& wkt) {
@@ -172,11 +173,11 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
   const Mesh mesh = request.window ? cut_to_region(refined, facts, *request.window)
                                    : surface_mesh(refined, facts);
   refined.tin = {};
-  std::vector<double> heights;  // as the vertices' are decoded
+  std::vector<double> heights;  // Decoded as those of vertices are.
   for (std::size_t i = 0; i < levels.size(); ++i) {
     heights.push_back(facts.heights.height_of_code(levels.code(i)));
   }
-  // The refined mesh is gone by now, its cut copy and the polygons are counted together.
+  // The refined mesh is freed by now: the limit counts its cut copy and the polygons.
   const QueryContext query(request.limits, terrain.store().path());
   const std::vector<BandPolygon> polygons =
       band_polygons({mesh.vertices, mesh.triangles}, heights, query);

@@ -14,7 +14,8 @@
 
 namespace ptin::tools {
 
-/// A state of isolines that change: fields of the same names in the layer.
+/// A state of isolines that change while splits arrive; written as the fields `step`, `splits` and
+/// `error`.
 struct IsolineStep {
   std::uint64_t step = 0;        ///< From 0.
   std::uint64_t splits = 0;      ///< Applied to T0 by then.
@@ -27,7 +28,7 @@ class IsolineLayer {
     std::string path;
     bool overwrite = false;
     bool z = false;      ///< Points carry the height of their line.
-    bool steps = false;  ///< Lines of several states: three fields more.
+    bool steps = false;  ///< Lines of several states; adds the fields of IsolineStep.
     std::string crs_wkt;
     std::stop_token stop;
   };
@@ -38,7 +39,7 @@ class IsolineLayer {
   /// @throws Error as VectorFile
   explicit IsolineLayer(const Options& options);
 
-  /// Writes lines behind those that are there, cut at `window` when given.
+  /// Writes lines behind those that were written before, cut at `window` when there is one.
   /// @throws Error cancelled, io_error
   Written add(const Isolines& lines, const IsolineStep& step = {},
               const std::optional<Window>& window = {});

@@ -23,7 +23,8 @@ struct FileIdentity {
   bool operator==(const FileIdentity&) const = default;
 };
 
-/// None where no file has this name: text such as WKT, or a file still to be made.
+/// The identity of a file; none where no regular file has this name, as for WKT or a file still to
+/// be made.
 std::optional<FileIdentity> identity_of(const std::string& path) {
   struct stat status {};
   const int failure = path == "-" ? fstat(STDIN_FILENO, &status) : stat(path.c_str(), &status);
@@ -37,8 +38,8 @@ bool is_number(const std::string& text) {
   return !text.empty() && *end == '\0';
 }
 
-/// The files that a VRT is made of; only of that, since other drivers may read a whole file to open
-/// it.
+/// The files that a VRT is made of. Other formats are not opened, since their drivers may read a
+/// whole file to open it.
 std::vector<std::string> files_behind(const std::string& path) {
   if (lower_extension(path) != ".vrt") return {};
   const char* drivers[] = {"VRT", "OGR_VRT", nullptr};

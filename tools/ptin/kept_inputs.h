@@ -7,11 +7,11 @@
 
 namespace ptin::tools {
 
-/// Compares the file that -o of a parsed subcommand names, if there is one, with every file that
-/// its other arguments name: by device and inode, so through links too; "-" is standard input.
-/// Looks at the sources of a VRT as well. Any argument counts that is no number and names a file,
-/// so that an input cannot be forgotten here.
-/// @throws Error invalid_argument  the output is one of them
+/// Compares the file that -o of a parsed subcommand names, if it is there, with every file that its
+/// other arguments name. Files are compared by device and inode, so through links too; "-" is
+/// standard input, and the files behind a VRT are compared as well. Every argument counts that
+/// names a file and is no number: so no option that takes an input can be forgotten here.
+/// @throws Error invalid_argument  the output is one of these files
 /// Cost: a look at each argument.
 void check_inputs_are_kept(const CLI::App& command);
 

@@ -44,7 +44,7 @@ nlohmann::json point_json(const MapPoint& at, const LocatedPoint& p, const Store
   return json;
 }
 
-/// One row a point, in the order of the request; what is unknown is left empty.
+/// Prints one row for each point, in the order of the request; what is unknown is left empty.
 void print_rows(const std::vector<MapPoint>& points, const LocateResult& result) {
   std::string text = "x,y,state,height,height_min,height_max\n";
   for (std::size_t i = 0; i < points.size(); ++i) {

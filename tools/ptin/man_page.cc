@@ -25,7 +25,8 @@ std::string escaped(const std::string& text) {
   return roff;
 }
 
-/// Help breaks lines where a terminal would; a page breaks them itself.
+/// The text without line breaks: help breaks lines where a terminal would, a page breaks them
+/// itself.
 std::string on_one_line(std::string text) {
   for (char& c : text) {
     if (c == '\n') c = ' ';
@@ -51,7 +52,7 @@ void add_option(const CLI::Option& option, std::string& page) {
   page.append("\n").append(escaped(on_one_line(option.get_description()))).append("\n");
 }
 
-/// The footer: paragraphs, then examples line by line.
+/// Adds the footer of a subcommand: paragraphs, then examples line by line.
 void add_footer(const std::string& footer, std::string& page) {
   const std::size_t examples = footer.find("Example");
   const std::string before = footer.substr(0, examples);

@@ -8,7 +8,7 @@
 
 namespace ptin::tools {
 
-/// The names of the CRS, and how long its units are at the middle of the mesh.
+/// Fills in the names of the CRS, and the lengths of its units at the middle of the mesh.
 void set_crs(Mesh& mesh, const CrsFacts& crs);
 
 }  // namespace ptin::tools

@@ -29,9 +29,9 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// The fields of a line. Blanks only set apart; two commas, semicolons or (in a line without
-/// those) tabs in a row have an empty field between them: a number that is missing must not shift
-/// the others.
+/// Splits a line into fields. Blanks only set fields apart. Two commas, two semicolons or, in a
+/// line without either, two tabs in a row have an empty field between them: a number that is
+/// missing must not shift the others.
 void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
   const bool listed = line.find_first_of(",;") != std::string_view::npos;
   const std::string_view separators = listed ? ",;" : "\t";
@@ -70,7 +70,8 @@ std::optional<double> number_of(std::string_view field) {
   return value;
 }
 
-/// True for numbers, and for what was meant as one: quoted, with a unit or a decimal comma.
+/// True for a number, and for a field that was meant as one: quoted, with a unit or a decimal
+/// comma.
 bool looks_like_number(std::string_view field) {
   const std::size_t begin = field.find_first_not_of("\"'+-.");
   return number_of(field) ||
@@ -89,7 +90,7 @@ bool looks_like_number(std::string_view field) {
 using ByHeader =
     std::function<void(std::span<const std::string_view> names, std::vector<std::size_t>& columns)>;
 
-/// x and y where the header names them.
+/// Chooses the columns of x and y where the header names both.
 void choose_x_and_y(std::span<const std::string_view> names, std::vector<std::size_t>& columns) {
   const std::size_t x = find_column(names, Coordinate::kX);
   const std::size_t y = find_column(names, Coordinate::kY);
@@ -105,7 +106,7 @@ void choose_x_and_y(std::span<const std::string_view> names, std::vector<std::si
   columns = {x, y};
 }
 
-/// The numbers of the fields `columns`, in this order.
+/// Appends the numbers of the fields `columns` to `rows`, in the order of `columns`.
 void append_row(std::span<const std::string_view> fields, std::span<const std::size_t> columns,
                 std::size_t line, const std::string& name, std::vector<double>& rows) {
   for (const std::size_t i : columns) {
@@ -120,13 +121,13 @@ void append_row(std::span<const std::string_view> fields, std::span<const std::s
   }
 }
 
-/// @param columns  Where there is no header, or none of use to `by_header`.
+/// @param columns  The columns where there is no header, or `by_header` finds no names in it.
 std::vector<double> rows_of(std::istream& in, const std::string& name,
                             std::vector<std::size_t> columns, const ByHeader& by_header) {
   std::vector<double> rows;
   std::vector<std::string_view> fields;
   std::string line;
-  bool is_first = true;  // but for blank lines and comments
+  bool is_first = true;  // Blank lines and comments do not count.
   for (std::size_t number = 1; std::getline(in, line); ++number) {
     if (number == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
     split_fields(line, fields);
@@ -172,7 +173,7 @@ std::vector<double> rows_of_file(const std::string& path, const std::vector<std:
                                  const ByHeader& by_header) {
   if (path == "-") return rows_of(std::cin, "standard input", columns, by_header);
   require_file(path);
-  std::error_code ignored;  // whatever is wrong, opening tells
+  std::error_code ignored;  // Opening tells what is wrong.
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error(ErrorCode::invalid_argument, "is a folder; name a text file with numbers", path);
   }

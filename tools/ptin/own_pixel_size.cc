@@ -13,8 +13,8 @@ namespace ptin::tools {
 
 namespace {
 
-/// A count that the build wrote of its source; 0 when it wrote none.
-/// @throws Error corruption  it is no count
+/// A count that the build wrote about its source; 0 when it wrote none.
+/// @throws Error corruption  what stands there is no count
 std::uint64_t source_count(const nlohmann::json& metadata, const char* key,
                            const std::string& path) {
   const auto source = metadata.find("source");

@@ -9,9 +9,11 @@
 
 namespace ptin::tools {
 
-/// Their width and height, map units: the grid's steps, where the samples fill the grid.
-/// @throws Error invalid_argument  it was built from points or a TIN: asks for --pixel-size
-///               corruption        the metadata holds no counts
+/// Width and height of the pixels of the raster that a terrain was built from, in map units: the
+/// steps of the grid.
+/// @throws Error invalid_argument  samples do not fill the grid, so the terrain was built from
+///                                 points or a TIN; asks for --pixel-size
+/// @throws Error corruption  the counts in the metadata are no counts
 [[nodiscard]] std::array<double, 2> own_pixel_size(const StoreFile& store);
 
 }  // namespace ptin::tools

@@ -40,12 +40,12 @@ struct ProfileOptions {
   bool overwrite = false;
 };
 
-/// Of distances along the lines.
+/// The unit of distances along the lines.
 std::string unit_of_lengths(const CrsFacts& crs) {
   return crs.geographic ? "metre" : crs.horizontal_unit;
 }
 
-/// The points of each line.
+/// The points of the profile, line by line.
 std::vector<std::span<const ProfilePoint>> lines_of(const ProfileResult& profile) {
   std::vector<std::span<const ProfilePoint>> lines;
   const std::span<const ProfilePoint> all(profile.points);
@@ -57,14 +57,14 @@ std::vector<std::span<const ProfilePoint>> lines_of(const ProfileResult& profile
   return lines;
 }
 
-/// Of all lines together.
+/// The length of all lines together.
 double length_of(const ProfileResult& profile) {
   double length = 0.0;
   for (const auto& line : lines_of(profile)) length += line.back().distance;
   return length;
 }
 
-/// Heights with the interval that the certificate guarantees.
+/// The profile as CSV: heights, with the interval that the certificate guarantees.
 std::string csv_of(const ProfileResult& profile) {
   std::string text = "distance,x,y,height,state,line,height_min,height_max\n";
   for (const ProfilePoint& p : profile.points) {
@@ -93,7 +93,7 @@ void add_crs(const CrsFacts& crs, nlohmann::json& collection) {
   collection["crs"] = {{"type", "name"}, {"properties", {{"name", name}}}};
 }
 
-/// The stretches of one line over ground, with heights: the coordinates of a MultiLineString.
+/// The coordinates of a MultiLineString: the stretches of one line that have heights.
 nlohmann::json stretches_of(std::span<const ProfilePoint> points) {
   nlohmann::json lines = nlohmann::json::array();
   nlohmann::json line = nlohmann::json::array();
@@ -110,7 +110,7 @@ nlohmann::json stretches_of(std::span<const ProfilePoint> points) {
   return lines;
 }
 
-/// A feature for each line.
+/// The profile as GeoJSON, a feature for each line.
 nlohmann::json geojson_of(const ProfileResult& profile, const CrsFacts& crs) {
   nlohmann::json features = nlohmann::json::array();
   for (const std::span<const ProfilePoint> line : lines_of(profile)) {
@@ -138,8 +138,9 @@ std::string label_of(double value, const std::string& unit) {
   return std::string(text.data()).append(metres ? (kilo ? " km" : " m") : "");
 }
 
-/// Distance to the right, height upwards, both filling the picture, lines one behind the other; a
-/// grey line at each end of the heights, which are written there, as is the length.
+/// A plot of the profile: distance to the right, height upwards, both filling the picture, lines
+/// one behind the other. A grey line stands at the lowest and at the highest height. These heights
+/// are written beside it, and so is the length.
 Image plot_of(const ProfileResult& profile, const CrsFacts& crs) {
   constexpr int kWidth = 1200, kHeight = 400, kMargin = 20;
   constexpr Colour kPaper{255, 255, 255}, kLine{150, 60, 30}, kFrame{200, 200, 200};
@@ -181,7 +182,7 @@ Image plot_of(const ProfileResult& profile, const CrsFacts& crs) {
   return image;
 }
 
-/// Into a file, or with "-" as GeoJSON to stdout.
+/// Writes the profile into a file, or with "-" to stdout as GeoJSON.
 void write_profile(const ProfileOptions& options, const ProfileResult& profile,
                    const CrsFacts& crs) {
   if (options.output == "-") {
@@ -254,7 +255,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   request.detail.vertices = options.detail.vertices;
   request.limits.memory_bytes = memory_limit_of(options.memory);
   request.limits.stop = context.stop;
-  if (const Ground ground = ground_of(crs); ground.geographic) {  // degrees are no lengths
+  if (const Ground ground = ground_of(crs); ground.geographic) {  // Degrees are no lengths.
     request.ground_distance = [ground](MapPoint a, MapPoint b) {
       return ground.distance(a, b) * ground.metres_per_height;
     };

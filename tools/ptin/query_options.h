@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Options that all questions to a .ptin file share: the file and how it is read, the region, the
-// level of detail.
+// level of detail, levels, memory.
 #pragma once
 
 #include <cstdint>
@@ -42,21 +42,23 @@ void add_region_options(CLI::App& app, RegionOptions& options, bool window_only 
 [[nodiscard]] std::optional<Region> region_of(const RegionOptions& options,
                                               const std::string& crs_wkt);
 
-/// --curvature, of whatever looks over the ground (engine/query/sight/curvature.h).
+/// Declares --curvature, of subcommands that look over the ground (engine/query/sight/curvature.h).
 void add_curvature_option(CLI::App& app, double& coefficient);
 
-/// --error and --vertices: how finely the terrain is looked at; at most one.
+/// --error and --vertices, of which at most one may be given: the level of detail.
 struct DetailOptions {
   std::optional<double> error;
   std::optional<std::uint64_t> vertices;
 };
-/// @param error_help, vertices_help  What each means here, after the words that are always true.
+/// @param error_help     What --error means for this subcommand; appended to the words that hold
+///                       for all.
+/// @param vertices_help  What --vertices means for this subcommand.
 void add_detail_options(CLI::App& app, DetailOptions& options, const std::string& error_help,
                         const std::string& vertices_help);
 /// @throws Error invalid_argument  --error negative or not a number
 void check_detail(const DetailOptions& options);
-/// A line on stderr where the file keeps less detail than --error asks for (`build --max-error`):
-/// answers certify what there is.
+/// Writes a warning to stderr where the file keeps less detail than --error asks for (`build
+/// --max-error`): the answer then certifies what the file keeps. Silent with -q and --json.
 void warn_of_base_error(const StoreFile& store, const std::optional<double>& error,
                         const Context& context);
 
@@ -71,16 +73,17 @@ struct LevelOptions {
 /// @param level_help, interval_help  What each asks for here.
 void add_level_options(CLI::App& app, LevelOptions& options, const std::string& level_help,
                        const std::string& interval_help);
-/// The heights: those given, or the multiples of the interval that the terrain has.
+/// The heights that were given, or the multiples of the interval, counted from the base, that lie
+/// within the heights of the terrain.
 /// @param file  Named in errors.
-/// @throws Error invalid_argument  it has none
+/// @throws Error invalid_argument  no multiple lies there
 [[nodiscard]] std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts,
                                             const std::string& file);
 
-/// --memory SIZE
+/// Declares --memory SIZE.
 void add_memory_option(CLI::App& app, std::string& memory);
-/// What was given; else `otherwise`, or three quarters of what the process is allowed where that is
-/// less.  @throws Error invalid_argument as parse_bytes
+/// The bytes that --memory names. Without --memory: `otherwise`, or three quarters of what the
+/// process is allowed where that is less.  @throws Error invalid_argument as parse_bytes
 [[nodiscard]] std::uint64_t memory_limit_of(const std::string& memory,
                                             std::uint64_t otherwise = std::uint64_t{4} << 30);
 

@@ -58,11 +58,11 @@ double share_of(const Window& w, const Window& whole) {
 
 constexpr int kSupersampling = 2;
 
-/// Memory that is left for the TIN beside the picture.
-/// @throws Error resource_exhausted  the picture alone takes more
+/// The memory that is left for the TIN beside the picture, in bytes.
+/// @throws Error resource_exhausted  the picture alone takes more than the limit
 std::uint64_t memory_beside_picture(const RenderOptions& options, const View& view) {
   const std::uint64_t limit = memory_limit_of(options.memory);
-  // Pixels of the relief, then those of the picture; making it a PNG takes less.
+  // Pixels of the relief and of the picture; making a PNG takes less.
   const std::uint64_t bytes =
       static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height) *
       (kSupersampling * kSupersampling * raster_bytes_per_pixel(options.pages) + sizeof(Colour));
@@ -74,8 +74,8 @@ std::uint64_t memory_beside_picture(const RenderOptions& options, const View& vi
               options.output);
 }
 
-/// None (the full TIN) where it has at most a few vertices a pixel; else the smallest round
-/// tolerance that does.
+/// A tolerance at which the TIN has at most a few vertices a pixel: none where the full TIN has no
+/// more, else the smallest round tolerance that does.
 std::optional<double> tolerance_for(const StoreFile& store, double share, const View& view) {
   const double budget = std::max(300'000.0, 2.0 * view.width * view.height);
   const auto vertices = static_cast<double>(store.t0().vertices.size() + store.record_count());
@@ -104,7 +104,7 @@ View view_of(const RenderOptions& options, const Window& window, const CrsFacts&
                    sized ? options.size[1] : 0);
 }
 
-/// The window and what else of the map is seen beside it when the picture has another shape.
+/// The window, and the map beside it that is seen when the picture has another shape.
 Window visible_window(const View& view) {
   const double beside = view.left / view.scale_x;
   const double above = view.top / view.scale_y;
@@ -112,7 +112,7 @@ Window visible_window(const View& view) {
   return {w.min_x - beside, w.min_y - above, w.max_x + beside, w.max_y + above};
 }
 
-/// Pixels between samples, as far as the grid tells.
+/// The number of pixels between samples, as far as the grid tells.
 int reach_for(const StoreFacts& facts, const View& view) {
   const double spacing = std::max(facts.map.step_x * view.scale_x, facts.map.step_y * view.scale_y);
   return static_cast<int>(std::clamp(std::round(spacing), 1.0, 12.0));

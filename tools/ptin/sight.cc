@@ -22,7 +22,7 @@ namespace ptin::tools {
 namespace {
 
 constexpr double kSpeedOfLight = 299792458.0;  // m/s
-constexpr std::size_t kFewPairs = 16;          // below, a coarse mesh of all is not worth its price
+constexpr std::size_t kFewPairs = 16;          // Fewer pairs are not worth a coarse mesh.
 
 struct SightOptions {
   TerrainOptions terrain;

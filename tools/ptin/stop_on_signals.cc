@@ -11,8 +11,7 @@ namespace ptin::tools {
 
 namespace {
 
-/// Waits for signals on a thread of its own: there a stop may be requested safely, unlike in a
-/// handler.
+/// Waits for signals on a thread of its own, since a stop may not be requested in a signal handler.
 void wait_for_signals(sigset_t signals, std::stop_source stop) {
   int signal = 0;
   sigwait(&signals, &signal);

@@ -44,7 +44,8 @@ void check_options(const StreamOptions& options, const Context& context) {
   }
 }
 
-/// CRS and units for the receiver, and what was asked, so that it can say what it has.
+/// The metadata of the stream: CRS and units for the receiver, and what was asked for, so that the
+/// receiver can say what it has.
 std::string metadata_for(const StoreFile& store, const Serving& wanted) {
   const nlohmann::json all = metadata_of(store);
   nlohmann::json metadata = {{"request", to_json(wanted)}};
@@ -130,7 +131,7 @@ int run_stream(const StreamOptions& options, const Context& context) {
   return kExitDone;
 }
 
-/// --window, --error, --level and --splits under a common prefix.
+/// Declares --window, --error, --level and --splits with a common prefix.
 void add_serving(CLI::App& app, Serving& serving, const std::string& prefix,
                  const std::string& what) {
   app.add_option("--" + prefix + "window", serving.window, what + " window, in map units")

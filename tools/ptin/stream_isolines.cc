@@ -43,7 +43,7 @@ void StreamIsolines::follow(const StreamReader& reader) {
   } else if (reader.numbering() != numbering_) {
     isolines_->restart(reader.tin());
     numbering_ = reader.numbering();
-    return;  // a stream that goes on from this one begins: the same mesh, numbered anew
+    return;  // A further stream begins: the same mesh, numbered anew.
   } else {
     const IsolineChange change = isolines_->advance(reader.tin());
     if (change.splits == 0) {

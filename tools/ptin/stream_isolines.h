@@ -29,18 +29,20 @@ struct StreamIsolineOptions {
 };
 void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options);
 
-/// Follows a reader and writes the isolines of its mesh: of what arrived in the end, or after T0
-/// and after every frame of splits.
+/// Follows a StreamReader and writes the isolines of its mesh: once, of the mesh at the end, or
+/// with --steps after T0 and after every frame of splits.
 class StreamIsolines {
  public:
-  /// @param limits  The memory is for what is kept of the isolines and for writing them.
+  /// @param output  The layer; empty writes none.
+  /// @param limits  Memory for the isolines that are kept and for writing them; the stop token.
   StreamIsolines(const StreamIsolineOptions& options, std::string output, bool overwrite,
                  QueryLimits limits);
 
-  /// To be called after every StreamReader::feed_frame(). Cost: what changed
-  /// (isoline_progressive.h), and with --steps the lines.
+  /// To be called after every StreamReader::feed_frame(). Cost: what the frame changed
+  /// (engine/query/isoline/isoline_progressive.h), and with --steps all lines.
   void follow(const StreamReader& reader);
-  /// Writes what is left to write, publishes, and tells what there was.
+  /// Writes what is left to write, publishes the layer, and returns the object `isolines` of the
+  /// answer.
   [[nodiscard]] nlohmann::json finish(const StreamReader& reader);
 
  private:
@@ -54,9 +56,10 @@ class StreamIsolines {
   QueryContext context_;
   std::optional<Window> window_;
   std::optional<ProgressiveIsolines> isolines_;
-  std::unique_ptr<IsolineLayer> layer_;  ///< None without an output.
-  IsolineChange change_;                 ///< Of all splits.
-  std::uint64_t numbering_ = 0;          ///< Of the mesh that isolines_ follow.
+  /// Null without an output.
+  std::unique_ptr<IsolineLayer> layer_;
+  IsolineChange change_;         ///< The sum over all splits.
+  std::uint64_t numbering_ = 0;  ///< Of the mesh that isolines_ follow.
   IsolineLayer::Written last_;
   nlohmann::json steps_ = nlohmann::json::array();
 };

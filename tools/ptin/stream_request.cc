@@ -56,7 +56,7 @@ PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts) {
   if (const auto window = region_of(region, "")) parts.push_back(meets_region(*window, facts.map));
   if (serving.error) parts.push_back(error_above(*serving.error));
   if (!serving.levels.empty()) {
-    // By the rule of isolines, which knows that 254.97 is the stored height 25497 x 0.01.
+    // By the rule of isolines, by which 254.97 is the stored height 25497 x 0.01.
     parts.push_back(LevelSet(serving.levels, facts.heights).crossing());
   }
   return all_of(std::move(parts));

@@ -54,7 +54,7 @@ nlohmann::json metadata_of(const StreamReader& reader) {
   return json;
 }
 
-/// What the sender was asked for.  @throws Error corruption  it is nothing that can be asked
+/// What the sender was asked for, from the metadata.  @throws Error corruption  it is no request
 Serving serving_in(const nlohmann::json& metadata) {
   const nlohmann::json request = metadata.value("request", nlohmann::json::object());
   try {
@@ -66,7 +66,7 @@ Serving serving_in(const nlohmann::json& metadata) {
               "the request in the stream's metadata is none; `ptin stream` did not write it");
 }
 
-/// Reads streams one after the other, and notes what each brought.
+/// Reads streams one after the other, and keeps what each of them brought.
 class Receiver {
  public:
   /// @param isolines  Borrowed; follows what arrives. May be null.
@@ -95,21 +95,23 @@ class Receiver {
   [[nodiscard]] const StreamReader& reader() const { return reader_; }
   [[nodiscard]] const nlohmann::json& have() const { return have_; }
   [[nodiscard]] bool complete() const { return !within_ && reader_.has_mesh(); }
-  /// What the certificate of the last stream holds for: its window and levels.
+  /// The window and the levels that the certificate of the last stream holds for.
   [[nodiscard]] Serving certified_for() const {
     const Serving& last = servings_.back();
     return {last.window, std::nullopt, last.levels, std::nullopt};
   }
-  /// The last stream came whole, and what came whole holds all of `asked` as the source has it.
+  /// True when the last stream came whole, and the streams without error and splits together hold
+  /// all of `asked` as the source has it.
   [[nodiscard]] bool exact(const Serving& asked) const {
     std::vector<Serving> whole;
     std::copy_if(servings_.begin(), servings_.end(), std::back_inserter(whole),
                  [](const Serving& s) { return !s.error && !s.splits; });
     return complete() && reader_.facts().base_error == 0 && covers(whole, asked);
   }
-  /// The streams brought all of `asked`, at whatever error.
+  /// True when the streams brought all of `asked`, at whatever error.
   [[nodiscard]] bool holds(const Serving& asked) const { return covers(servings_, asked); }
-  /// What is asked for within the terrain.
+  /// The same request with its window cut at the terrain's box; with that box where it has no
+  /// window.
   [[nodiscard]] Serving within_terrain(Serving asked) const {
     const StoreFacts& facts = reader_.facts();
     const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
@@ -134,11 +136,11 @@ class Receiver {
   StreamReader reader_;
   StreamIsolines* isolines_;
   nlohmann::json have_ = nlohmann::json::array();
-  std::vector<Serving> servings_;  ///< The same.
-  bool within_ = true;             ///< The last stream was not read to its end.
+  std::vector<Serving> servings_;  ///< have_, as Servings.
+  bool within_ = true;             ///< The last stream has not ended.
 };
 
-/// All but the mesh itself.
+/// The counts of the reader's mesh as those of a refinement, which holds no mesh itself.
 RefinedTin counts_of(const StreamReader& reader) {
   const Tin& tin = reader.tin();
   RefinedTin refined;
@@ -152,7 +154,8 @@ RefinedTin counts_of(const StreamReader& reader) {
   return refined;
 }
 
-/// What lies beyond what was served is whatever came along, which no error bounds.
+/// Warns when more is asked for than was served: what lies beyond is whatever came along, and no
+/// error bounds it.
 void warn_of_what_is_beyond(const Receiver& receiver, const Serving& asked,
                             const Context& context) {
   if (context.quiet || receiver.holds(asked)) return;
@@ -206,7 +209,7 @@ void print_report(const Receiver& receiver, const RefinedTin& refined) {
   }
 }
 
-/// The isolines instead of the mesh.
+/// Writes the isolines instead of the mesh.
 int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
                    StreamIsolines& isolines, const Context& context) {
   const nlohmann::json lines = isolines.finish(receiver.reader());
@@ -259,7 +262,7 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
                      QueryLimits{memory / 2, context.stop});
   }
   std::string name = options.inputs.size() == 1 ? options.inputs.front() : "streams";
-  // Half for what arrives, half for what is written of it.
+  // Half of the memory is for what arrives, half for what is written of it.
   Receiver receiver(name == "-" ? "stdin" : std::move(name),
                     StreamReaderOptions{{memory / 2, context.stop}},
                     isolines ? &*isolines : nullptr);

@@ -33,16 +33,16 @@ struct VerifyCommand {
   std::size_t faults = 20;
 };
 
-/// What was found; faults of all three parts in one list.
+/// What was found. `faults` holds those of all three parts: file, refinement and source.
 struct Findings {
   VerifyReport store;
-  std::uint64_t windows = 0;  ///< Refined and validated.
+  std::uint64_t windows = 0;  ///< Windows that were refined and validated.
   std::vector<VerifyFault> faults;
   std::uint64_t fault_count = 0;
   std::optional<AgainstReport> against;
 };
 
-/// Squares of the terrain that hold about a million records each.
+/// Squares that cover the terrain, with about a million records each.
 std::vector<Window> squares_of(const StoreFile& store) {
   constexpr double kRecords = 1e6;
   const auto side =
@@ -85,8 +85,9 @@ void verify_refinement(const Terrain& terrain, const Context& context, Progress&
   }
 }
 
-/// The full TIN, tolerance 0, and four round tolerances: numbers of vertices in even steps of scale
-/// between what tolerance 0 takes and T0.
+/// The tolerances that are checked: those given, else tolerance 0 and four round ones, whose
+/// numbers of vertices lie in even steps of a logarithmic scale between that of tolerance 0 and
+/// that of T0. The full TIN (no tolerance) comes first in either case.
 std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
                                                  const StoreFile& store) {
   std::vector<std::optional<double>> tolerances{std::nullopt};
@@ -138,7 +139,7 @@ Findings verify(const VerifyCommand& command, const Context& context) {
       command.terrain.file, options, context.stop,
       [&](std::uint64_t done, std::uint64_t total) { progress.report("pages", done, total); });
   findings.faults = findings.store.faults;
-  if (findings.store.is_sound()) {  // what is damaged already is not asked further
+  if (findings.store.is_sound()) {  // A damaged file answers no questions.
     const Terrain terrain = open_terrain(command.terrain);
     verify_refinement(terrain, context, progress, findings);
     if (!command.against.empty()) verify_source(command, terrain, context, progress, findings);

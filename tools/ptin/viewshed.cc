@@ -74,7 +74,7 @@ void check_stop(const Context& context, const ViewshedOptions& options) {
   stop_if_asked(context.stop, "writing", options.output);
 }
 
-/// By rows of blocks, between which it may be stopped.
+/// Writes the raster by rows of blocks, between which a stop is obeyed.
 void write_pixels(GDALRasterBand& band, const Viewshed& seen, const ViewshedOptions& options,
                   const Context& context) {
   const int width = band.GetXSize();
@@ -110,7 +110,7 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
   GDALRasterBand* band = file->GetRasterBand(1);
   require_done(band->SetNoDataValue(static_cast<double>(Sight::kNothing)),
                "cannot set the nodata value", options.output);
-  // The mesh is gone by now: half of what was for it does for GDAL.
+  // The mesh is freed by now: half of its memory is enough for GDAL.
   const std::uint64_t memory = request_memory(options);
   const GdalCacheLimit cache(std::clamp<std::uint64_t>(memory / 2, kLeastCache, kMostCache));
   CPLErrorReset();
@@ -142,7 +142,7 @@ void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const 
   file.publish();
 }
 
-/// Null: not asked for.
+/// Counts of targets as JSON; null where they were not asked for.
 nlohmann::json counts_json(bool asked, std::uint64_t visible, std::uint64_t hidden,
                            std::uint64_t undecided) {
   if (!asked) return nullptr;
@@ -182,7 +182,8 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   check_options(options);
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
-  // A grid of points is far finer than what anybody wants to see.
+  // Without --pixel-size, a terrain of points is refused here: its grid is far finer than anybody
+  // wants to see.
   if (is_raster(options.output) && !options.pixel_size) {
     static_cast<void>(own_pixel_size(terrain.store()));
   }

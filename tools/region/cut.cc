@@ -57,7 +57,8 @@ void push(Ring& ring, MapPoint map, LatticePoint lattice) {
 }
 
 Ring ring_of(const Window& w, const StoreFacts& facts) {
-  // A side far outside of the terrain cuts nothing, wherever it is.
+  // A side outside of the terrain cuts nothing, wherever it is: so corners are clamped to near the
+  // terrain.
   const auto lattice = [&](double x, double y) {
     const MapPoint grid = facts.map.to_grid({x, y});
     const GridBox& b = facts.bounds;
@@ -96,7 +97,7 @@ std::vector<Ring> rings_of(const Region& region, const StoreFacts& facts) {
   return rings;
 }
 
-/// True when the segment may meet the box of the terrain.
+/// True when the segment may meet the box of the terrain; false is certain.
 bool near_terrain(const BorderSegment& s, const GridBox& bounds) {
   const LatticePoint low{std::int64_t{bounds.min_x} << 22, std::int64_t{bounds.min_y} << 22};
   const LatticePoint high{std::int64_t{bounds.max_x} << 22, std::int64_t{bounds.max_y} << 22};
@@ -146,8 +147,8 @@ bool is_inside(double x, double y, const std::vector<Ring>& rings) {
   return inside;
 }
 
-/// One answer for each piece of the mesh between borders, asked at the middle of its largest
-/// triangle.
+/// Whether each triangle is inside of the region. All triangles of a piece of the mesh between
+/// borders have one answer, which is asked at the middle of the largest of them.
 std::vector<bool> inside_of(const CutMesh& mesh, const std::vector<Ring>& rings) {
   std::vector<bool> inside(mesh.triangles.size(), false);
   std::vector<bool> seen(mesh.triangles.size(), false);

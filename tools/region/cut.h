@@ -10,7 +10,7 @@
 namespace ptin::tools {
 
 /// The part of `refined` inside `region` (a window or a polygon): its surface triangles, cut at the
-/// region's border.
+/// region's border. Void triangles are left out.
 ///
 /// The border is inserted into the mesh as a chain of edges: triangles are split at the region's
 /// corners, edges where the border crosses them. So neighbours share every cut point, and there is
@@ -19,14 +19,14 @@ namespace ptin::tools {
 /// a side get the same bits there. Heights are interpolated linearly.
 ///
 /// Positions are decided exactly on a lattice of 2^-22 grid units to which corners and cut points
-/// are snapped; the coordinates of the region's corners, and those of cut points across a window's
-/// side, are the caller's own. A cut closer to a vertex than the lattice can tell goes through that
-/// vertex. REQUIRES: `refined` holds every triangle that meets the region.
+/// are snapped. The region's corners keep the caller's own coordinates, and a cut point on a
+/// window's side keeps the coordinate of that side. A cut closer to a vertex than the lattice can
+/// tell goes through that vertex. REQUIRES: `refined` holds every triangle that meets the region.
 /// @throws Error invalid_argument  the region is a point or a segment, or a polygon reaches beyond
 ///                                 2^38 grid units
-/// Cost: linear in the triangles, and for each corner of the region the walk to it from the one
+/// Cost: linear in the triangles, and for each corner of the region the walk to it from the corner
 /// before. A corner outside of the mesh, and a side with both its ends outside, look at every
-/// triangle: corners outside times triangles.
+/// triangle.
 [[nodiscard]] Mesh cut_to_region(const RefinedTin& refined, const StoreFacts& facts,
                                  const Region& region);
 

@@ -52,8 +52,8 @@ CutMesh::Place CutMesh::locate(LatticePoint p) {
     const CutTriangle& triangle = triangles[t];
     TriangleId next = t;
     for (int i = 0; i < 3 && next == t; ++i) {
-      const int side =
-          static_cast<int>((static_cast<std::size_t>(i) + step) % 3);  // no cycles in practice
+      // Each step begins with another side, so that walks do not go in circles in practice.
+      const int side = static_cast<int>((static_cast<std::size_t>(i) + step) % 3);
       if (lattice_orient(at(triangle.v[next_corner(side)]), at(triangle.v[previous_corner(side)]),
                          p) < 0) {
         next = triangle.n[side];
@@ -66,7 +66,7 @@ CutMesh::Place CutMesh::locate(LatticePoint p) {
     if (next == kNone) break;
     t = next;
   }
-  // The walk left the mesh: outside, or behind a concave part of its outline.
+  // The walk left the mesh. The point lies outside, or behind a concave part of the outline.
   for (t = 0; t < triangles.size(); ++t) {
     const Place place = place_in(t, p);
     if (place.triangle != kNone) {
@@ -261,7 +261,8 @@ std::uint32_t CutMesh::cross_edge(TriangleId t, int side, LatticePoint v, Lattic
   const std::uint32_t b = triangles[t].v[previous_corner(side)];
   const CutNode node = crossing(a, b, v, target, segment);
   if (!can_split_edge(t, side, node.at)) {
-    // Closer to an end than the lattice can tell: through that end.
+    // The crossing is closer to an end of the edge than the lattice can tell: the way goes through
+    // that end.
     const double to_a = std::abs(lattice_orient(v, target, at(a)));
     const double to_b = std::abs(lattice_orient(v, target, at(b)));
     return to_a <= to_b ? a : b;
@@ -277,8 +278,8 @@ CutNode CutMesh::crossing(std::uint32_t a, std::uint32_t b, LatticePoint v, Latt
   CutNode node;
   std::uint32_t low = a;
   std::uint32_t high = b;
-  // A piece of an edge of the TIN: go back to the ends of the whole edge, so that every cut is
-  // computed from them.
+  // Where the edge is a piece of an edge of the TIN, the crossing is computed from the ends of the
+  // whole edge, as every other cut of it.
   const CutNode& cut = nodes[a].edge_low != kNone ? nodes[a] : nodes[b];
   const auto on_edge = [&](std::uint32_t id) {
     return id == cut.edge_low || id == cut.edge_high ||

@@ -22,7 +22,7 @@ inline constexpr double kLatticePerGrid = 4194304.0;  // 2^22
 /// Largest coordinate: differences stay below 2^62 and twice an area below 2^125.
 inline constexpr double kLatticeMax = 1152921504606846976.0;  // 2^60
 
-/// Twice the signed area of (a, b, c): its sign exactly, its value rounded to double.
+/// Twice the signed area of (a, b, c): the sign is exact, the value is rounded to double.
 [[nodiscard]] double lattice_orient(LatticePoint a, LatticePoint b, LatticePoint c) noexcept;
 
 /// A vertex of the cut mesh.
@@ -31,7 +31,7 @@ struct CutNode {
   std::array<double, 3> map{};  ///< x, y in map units, height.
   bool has_height = false;
   bool is_tin_vertex = false;
-  /// Of a cut point: the ends of the edge of the TIN on which it lies, in order; kNone elsewhere.
+  /// The ends of the edge of the TIN on which a cut point lies, in order; kNone for other nodes.
   std::uint32_t edge_low = kNone;
   std::uint32_t edge_high = kNone;
   TriangleId triangle = kNone;  ///< One triangle around it.
@@ -40,8 +40,8 @@ struct CutNode {
 struct CutTriangle {
   std::array<std::uint32_t, 3> v{};  ///< Counter-clockwise.
   std::array<TriangleId, 3> n{};     ///< n[i] across the edge opposite to v[i].
-  std::array<bool, 3> border{};  ///< The edge opposite to v[i] is part of the region's border (an
-                                 ///< odd number of times).
+  /// border[i]: the edge opposite to v[i] is part of the region's border, an odd number of times.
+  std::array<bool, 3> border{};
   TriangleClass cls = TriangleClass::kSurface;
 };
 
@@ -59,7 +59,8 @@ class CutMesh {
   std::vector<CutTriangle> triangles;
 
   /// The node at `at`: an existing one, or a new one that splits an edge or a triangle. kNone when
-  /// outside of the mesh.
+  /// `at` lies outside of the mesh.
+  /// @param map  The map coordinates of a new node.
   std::uint32_t insert_point(LatticePoint at, const std::array<double, 2>& map);
   /// Makes the part of a segment inside of the mesh a chain of border edges. `from` and `to` are
   /// the nodes at its ends, or kNone where an end lies outside.
@@ -81,7 +82,7 @@ class CutMesh {
   void toggle_border(std::uint32_t a, std::uint32_t b);
   void trace(std::uint32_t from, LatticePoint target, std::uint32_t to,
              const BorderSegment& segment);
-  /// One step of trace: the next node on the way from `v`, kNone when the way leaves the mesh.
+  /// One step of trace(): the next node on the way from `v`, kNone when the way leaves the mesh.
   std::uint32_t next_on_the_way(std::uint32_t v, LatticePoint target, std::uint32_t to,
                                 const BorderSegment& segment);
   /// The node where the way v -> target crosses the edge opposite to `side` of `t`: new, or an end

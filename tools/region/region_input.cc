@@ -36,7 +36,7 @@ void for_each_polygon(const OGRGeometry& geometry,
   }
 }
 
-/// Its rings by nesting alone: even-odd.
+/// The rings of a geometry's polygons; they are told apart by nesting alone (even-odd).
 Polygon rings_of(const OGRGeometry& geometry) {
   Polygon polygon;
   for_each_polygon(geometry, [&](const OGRPolygon& part) {
@@ -45,7 +45,8 @@ Polygon rings_of(const OGRGeometry& geometry) {
   return polygon;
 }
 
-/// What any feature covers, each by even-odd: that is what GEOS makes of one whose rings cross.
+/// The polygon of all that any feature covers. Each feature counts by even-odd: that is what GEOS
+/// makes of a feature whose rings cross.
 Polygon united(const std::vector<std::unique_ptr<OGRMultiPolygon>>& features,
                const std::string& text) {
   OGRMultiPolygon all;

@@ -10,9 +10,9 @@
 namespace ptin::tools {
 
 /// The polygon in `text`: WKT when it reads "POLYGON..." or "MULTIPOLYGON...", else the name of a
-/// file. A feature's rings are told apart by nesting (even-odd); what any polygon of the
-/// first layer of a vector file covers is inside. A file
-/// with a CRS of its own is transformed into `crs_wkt` when both are known.
+/// file with WKT or of a vector file. The rings of a feature are told apart by nesting (even-odd).
+/// Of a vector file's first layer, all that any of its polygons covers is inside. A file with a CRS
+/// of its own is transformed into `crs_wkt` when both are known.
 /// @throws Error not_found         no such file
 ///               invalid_argument  not a polygon; not a vector file; the CRS cannot be transformed
 [[nodiscard]] Polygon read_polygon(const std::string& text, const std::string& crs_wkt);

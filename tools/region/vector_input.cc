@@ -24,7 +24,7 @@ constexpr std::size_t kLongestWord = 64;
 /// What may follow the word of a geometry, without blanks.
 constexpr std::array kAfterWord = {"(", "Z(", "M(", "ZM(", "EMPTY", "ZEMPTY", "MEMPTY", "ZMEMPTY"};
 
-/// False when nothing is there; a name too long for a file is none.
+/// False when nothing of this name is there. A name too long for a file names none.
 bool exists(const std::string& path) {
   std::error_code fault;
   if (std::filesystem::exists(path, fault)) return true;
@@ -131,7 +131,7 @@ void for_each_geometry(const std::string& path, const std::string& crs_wkt,
 void read_geometries(const std::string& text, std::initializer_list<const char*> words,
                      const std::string& example, const std::string& crs_wkt,
                      const std::function<void(const OGRGeometry&)>& visit) {
-  if (begins_as_wkt(text, words) && !exists(text)) {  // "Polygon (1).gpkg" may be a file
+  if (begins_as_wkt(text, words) && !exists(text)) {  // A file may be named "Polygon (1).gpkg".
     visit(*wkt_or_refuse(text, example, ""));
     return;
   }

@@ -43,7 +43,7 @@ DatasetPtr dataset_of(const Image& image) {
 
 void write_png(const Image& image, const std::string& path, bool overwrite) {
   const DatasetPtr data = dataset_of(image);
-  // By way of memory: the file is then written and renamed as every output is.
+  // The PNG is made in memory, so that its file is written and renamed as every output is.
   std::string name = "/vsimem/ptin_picture_";
   name.append(std::to_string(reinterpret_cast<std::uintptr_t>(&image)));
   const DatasetPtr png(

@@ -21,7 +21,8 @@ void blend(Image& image, int x, int y, const Colour& colour, double opacity) {
   image.at(x, y) = mixed(image.at(x, y), colour, static_cast<float>(opacity));
 }
 
-/// Cuts a -> b to what may be seen, so that far ends cost nothing. False when nothing is left.
+/// Cuts a line to the part that may be seen, so that far ends cost nothing. False when nothing is
+/// left.
 bool clip_to(const Image& image, double& x0, double& y0, double& x1, double& y1) {
   double enter = 0.0;
   double leave = 1.0;
@@ -42,8 +43,8 @@ bool clip_to(const Image& image, double& x0, double& y0, double& x1, double& y1)
   return true;
 }
 
-/// Glyphs of 5 x 7 pixels, a row a number, its bits from left to right; what a legend needs and no
-/// more.
+/// Glyphs of 5 x 7 pixels: a number for each row, whose bits are pixels from left to right. No more
+/// letters than a legend needs.
 struct Glyph {
   char letter;
   std::array<std::uint8_t, 7> rows;

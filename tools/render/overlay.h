@@ -17,20 +17,21 @@ namespace ptin::tools {
 void draw_line(Image& image, double x0, double y0, double x1, double y1, const Colour& colour,
                double opacity);
 
-/// Digits, and the letters of units ("-12.5 km"), 7 pixels high, from the upper left (x, y); others
-/// are blank.
+/// Draws digits and the letters of units ("-12.5 km"), 7 pixels high, from the upper left (x, y).
+/// Other letters are blank.
 void draw_text(Image& image, int x, int y, std::string_view text);
-/// Pixels that it takes.
+/// The width of a text in pixels.
 [[nodiscard]] int text_width(std::string_view text);
 
-/// Every edge of the TIN once. Opacity falls where edges are closer than a few pixels, so that
-/// dense parts stay legible.  @throws Error cancelled
+/// Draws every edge of the TIN once. Opacity falls where edges are shorter than a few pixels, so
+/// that dense parts stay legible.  @throws Error cancelled
 void draw_wireframe(Image& image, const RefinedTin& refined, const StoreFacts& facts,
                     const View& view, const std::stop_token& stop = {});
 
-/// A scale bar and, when colours tell heights, the colours with their lowest and highest height; in
-/// the lower left corner.
-/// @param length_unit, height_unit  Of ground units and of heights: "m", "ft", or "" when unknown.
+/// Draws a scale bar into the lower left corner and, when colours tell heights, the colours with
+/// the lowest and the highest height.
+/// @param length_unit  Of ground units: "m", "ft", or "" when unknown.
+/// @param height_unit  Of heights, likewise.
 void draw_legend(Image& image, const View& view, const ReliefStyle& style,
                  const std::string& length_unit, const std::string& height_unit);
 

@@ -16,7 +16,8 @@ struct Corner {
   double x, y, z;
 };
 
-/// Rows and columns whose pixel centres lie in the half-open interval [low, high).
+/// The first row or column whose pixel centre is not below `low`; so two of them bound the pixels
+/// of a half-open interval.
 int first_centre(double low) { return static_cast<int>(std::ceil(std::max(low, -1.0) - 0.5)); }
 
 /// The place where the line a -> b is at height y of the picture.
@@ -24,8 +25,8 @@ double x_at(const Corner& a, const Corner& b, double y) {
   return a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
 }
 
-/// Calls `fill(row, begin, end)` for each row of pixels whose centres the triangle covers,
-/// half-open.
+/// Calls fill(row, begin, end) for each row of pixels: the triangle covers the centres of the
+/// columns [begin, end).
 template <typename Fill>
 void scan(std::array<Corner, 3> c, int width, int height, const Fill& fill) {
   std::sort(c.begin(), c.end(), [](const Corner& a, const Corner& b) { return a.y < b.y; });

@@ -18,9 +18,10 @@ enum class PixelClass : std::uint8_t { kOutside, kSurface, kVoid };
 struct TerrainRaster {
   int width = 0;
   int height = 0;
-  std::vector<float> heights;  ///< Where kSurface.
+  std::vector<float> heights;  ///< Only where `classes` says kSurface.
   std::vector<PixelClass> classes;
-  std::vector<std::uint32_t> pages;  ///< Filled when the TIN tells the pages of its triangles.
+  /// The page of each pixel's triangle; empty unless the TIN tells the pages of its triangles.
+  std::vector<std::uint32_t> pages;
 
   [[nodiscard]] std::size_t place(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +

@@ -36,8 +36,8 @@ struct Slope {
   double y = 0.0;  ///< Rise to the south.
 };
 
-/// Horn's slope at a pixel: weighted differences of eight pixels around it, `reach` away. One
-/// without a height counts as the pixel.
+/// Horn's slope at a pixel: weighted differences of the eight pixels around it, `reach` away. A
+/// pixel without a height counts as the middle one.
 Slope slope_at(const TerrainRaster& r, int x, int y, double ground_per_pixel, int reach) {
   const float centre = r.heights[r.place(x, y)];
   double z[3][3];
@@ -130,7 +130,7 @@ ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_
   style.high = heights[heights.size() - 1 - heights.size() / 500];
   style.any_below = lowest < style.low;
   style.any_above = highest > style.high;
-  constexpr double kPleasantSlope = 0.38;  // as in the mountains
+  constexpr double kPleasantSlope = 0.38;  // The root mean square of slopes in mountains.
   const double slope = std::sqrt(squares / static_cast<double>(heights.size()));
   style.exaggeration = slope > 0 ? std::clamp(kPleasantSlope / slope, 1.0, 12.0) : 1.0;
   return style;

@@ -13,11 +13,11 @@ namespace ptin::tools {
 
 /// How heights become colours and slopes become shades; chosen from what is visible.
 struct ReliefStyle {
-  float low = 0.0F;   ///< Height of the lowest colour, which all below have too.
-  float high = 1.0F;  ///< Height of the highest colour, which all above have too.
-  bool any_below = false, any_above = false;  ///< There are such.
-  double exaggeration =
-      1.0;  ///< Of heights, for the shading alone; more than 1 where the terrain is flat.
+  float low = 0.0F;   ///< Height of the lowest colour; lower heights have it too.
+  float high = 1.0F;  ///< Height of the highest colour; higher heights have it too.
+  bool any_below = false, any_above = false;  ///< There are lower or higher heights.
+  /// The factor of heights in the shading; more than 1 where the terrain is flat.
+  double exaggeration = 1.0;
   bool by_page = false;  ///< Colours tell the page that a triangle came from.
   /// Slopes are taken over this many pixels of the raster to each side: about the spacing of
   /// samples, so that single facets of a dense TIN do not show. 1 shows every facet.

@@ -12,7 +12,7 @@ struct View {
   Window window{};  ///< Map units; shown whole, centred.
   int width = 0;    ///< Pixels.
   int height = 0;
-  double ground_x = 1.0;  ///< Ground units (those of heights, as far as known) in a map unit.
+  double ground_x = 1.0;  ///< Ground units in a map unit; those of heights, if known.
   double ground_y = 1.0;
   double scale_x = 1.0;  ///< Pixels in a map unit.
   double scale_y = 1.0;

@@ -18,7 +18,8 @@ namespace ptin::tools {
 
 namespace {
 
-/// What the reader of text takes: anything that is not known as LAS, a TIN or a layer.
+/// True for a file that the reader of text takes: anything that is not known as LAS, a TIN or a
+/// layer.
 bool is_text(const std::string& path) {
   return point_format_of(path, {}) == PointFormat::kText ||
          kind_of_input(path, {}) == InputKind::kRaster;
@@ -92,8 +93,8 @@ void PointSamples::read_stream(const std::string& path, const SampleResources& r
   }
 }
 
-/// A chosen step counts from 0, not from the grid's origin: that decides where the points in the
-/// middle between two steps go.
+/// The grid point of a position. A step that was chosen counts from 0, not from the grid's origin:
+/// that decides where a position in the middle between two grid points goes.
 MapPoint PointSamples::grid_point_of(MapPoint p) const {
   const AffineMap& map = facts_.map;
   if (choices_.resolution) {

@@ -61,10 +61,11 @@ class RasterSamples final : public SourceSamples {
 
 double last_place(double v) { return std::nextafter(std::abs(v), HUGE_VAL) - std::abs(v); }
 
-/// Where the middle of the first pixel, and the next, lie on the grid.
+/// Finds where the pixels of a file stand on the grid, and notes a misfit where they do not stand
+/// on it.
 void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   std::array<double, 6> t{0, 1, 0, 0, 0, -1};
-  // One that says nothing, which is what no geotransform reads as, is none.
+  // A geotransform that says nothing counts as none; it is what GDAL gives for none.
   if (file.data->GetGeoTransform(t.data()) != CE_None ||
       t == std::array<double, 6>{0, 1, 0, 0, 0, 1})
     t = {-0.5, 1, 0, file.rows - 0.5, 0, -1};
@@ -82,7 +83,7 @@ void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
       static_cast<double>(file.first_x + std::int64_t{file.x_step} * (file.columns - 1));
   const auto expected_y =
       static_cast<double>(file.first_y + std::int64_t{file.y_step} * (file.rows - 1));
-  // The other two corners, which a skew moves apart.
+  // A skew moves the other two corners away.
   const MapPoint across = grid(file.columns - 1, 0);
   const MapPoint along = grid(0, file.rows - 1);
   const double skew = std::max({std::abs(across.y - first.y), std::abs(across.x - last.x),
@@ -90,7 +91,7 @@ void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   const double off = std::max({skew, std::abs(first.x - static_cast<double>(file.first_x)),
                                std::abs(first.y - static_cast<double>(file.first_y)),
                                std::abs(last.x - expected_x), std::abs(last.y - expected_y)});
-  constexpr double kPlaces = 4;  // that rounding may cost where steps are near to them
+  constexpr double kPlaces = 4;  // Last places that rounding may cost.
   const double coarse =
       std::max(last_place(t[0]) / std::abs(t[1]), last_place(t[3]) / std::abs(t[5]));
   if (off > 0.02 + kPlaces * coarse) {
@@ -124,14 +125,14 @@ void RasterSamples::compare_extent(const GridBox& bounds) {
                ", the terrain " + box(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y));
 }
 
-/// Signed bytes come from GDAL before 3.7 as 0 to 255, and its mask does not know a nodata value
-/// below 0.
+/// True for signed bytes. They come from GDAL before 3.7 as 0 to 255, and its mask does not know a
+/// nodata value below 0.
 bool is_signed_byte(GDALRasterBand& band) {
   const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
   return type != nullptr && EQUAL(type, "SIGNEDBYTE");
 }
 
-/// @param with_nodata  The band's own value masks samples out.
+/// @param with_nodata  Whether the band's own nodata value masks samples out.
 void take_signs(GDALRasterBand& band, bool with_nodata, std::vector<double>& values,
                 std::vector<std::uint8_t>& mask) {
   int has_nodata = 0;

@@ -14,14 +14,15 @@ namespace ptin::tools {
 
 /// Where a grid point lies in relation to a triangle.
 struct Weights {
-  std::array<std::int64_t, 3> w{};  ///< Twice the area of (next corner, previous corner, point);
-                                    ///< their sum is the triangle's.
+  /// w[i]: twice the area of (next corner, previous corner, point) for corner i. Their sum is twice
+  /// the area of the triangle.
+  std::array<std::int64_t, 3> w{};
   [[nodiscard]] bool in_closed() const { return w[0] >= 0 && w[1] >= 0 && w[2] >= 0; }
   [[nodiscard]] bool in_open() const { return w[0] > 0 && w[1] > 0 && w[2] > 0; }
 };
 
-/// The line through two corners as the number `a * x + b * y + c`, > 0 on the inner side. At most
-/// 2^61 on the grid.
+/// The line through two corners, as the number `a * x + b * y + c`, which is > 0 on the inner side.
+/// Its absolute value is at most 2^61 on the grid.
 struct EdgeLine {
   std::int64_t a, b, c;
   EdgeLine(GridPoint p, GridPoint q)
@@ -37,7 +38,8 @@ struct EdgeLine {
   return {{lines[0].at(p.x, p.y), lines[1].at(p.x, p.y), lines[2].at(p.x, p.y)}};
 }
 
-/// The columns of row `y` in the closed triangle, as a closed interval; empty when first > second.
+/// The columns of row `y` in [low, high] that lie in the closed triangle, as a closed interval;
+/// empty when first > second.
 [[nodiscard]] inline std::array<std::int64_t, 2> columns_in(const std::array<EdgeLine, 3>& lines,
                                                             std::int64_t y, std::int64_t low,
                                                             std::int64_t high) {

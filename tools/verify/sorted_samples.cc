@@ -59,7 +59,8 @@ GridPoint SortedSamples::point_of(std::uint64_t key) const {
 
 void SortedSamples::add(GridPoint p, double height) { sorter_->add({key_of(p), height}); }
 
-/// Whole codes, so that sums are exact; heights where the store keeps floats.
+/// A height as it is summed up: as a whole code, so that sums are exact; as it is where the store
+/// keeps floats.
 double SortedSamples::code_of(double height) const {
   const HeightEncoding& heights = facts_.heights;
   return heights.type == HeightType::int32
@@ -109,7 +110,7 @@ void SortedSamples::keep(const Record& record) {
   if (file_ && records_.size() == kBlock) flush();
 }
 
-/// Writes what is held: a block, or the last ones.
+/// Writes the records that are held: a block, or at the end the rest.
 void SortedSamples::flush() {
   if (records_.empty()) return;
   landmarks_.push_back(records_.front().key);
@@ -134,7 +135,8 @@ std::uint64_t SortedSamples::find(std::uint64_t key) const {
     const auto found = std::lower_bound(records_.begin(), records_.end(), key, before);
     return static_cast<std::uint64_t>(found - records_.begin());
   }
-  // In the block before the first one that begins with such a key; keys are unique.
+  // The record is in the block before the first block that begins with `key` or more, or begins
+  // that one: keys are unique.
   const auto block = std::lower_bound(landmarks_.begin(), landmarks_.end(), key);
   if (block == landmarks_.begin()) return 0;
   const std::uint64_t begin = static_cast<std::uint64_t>(block - landmarks_.begin() - 1) * kBlock;

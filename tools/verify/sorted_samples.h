@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Samples at scattered grid points, any number of them: sorted on disk where they do not fit in
-// memory, in an order in which the samples of a window lie together.
+// Samples at scattered grid points, any number of them. They are sorted on disk where they do not
+// fit in memory, in an order in which the samples of a window lie together.
 #pragma once
 
 #include <array>
@@ -16,32 +16,34 @@
 
 namespace ptin::tools {
 
-/// The two halves of a box, cut across its longer side: the lower (or left) one first.
-/// REQUIRES: two grid points or more.
+/// The two halves of a box that is cut across its longer side: the lower (or left) one first.
+/// REQUIRES: the box has two grid points or more.
 [[nodiscard]] std::array<GridBox, 2> halves_of(const GridBox& box);
 
-/// add() all samples, sort() once, then count() and read(). One thread.
+/// Sorted samples: add() all samples, sort() once, then count() and read(). One thread.
 ///
-/// The bounds are halved again and again, as halves_of() does, down to single grid points: 64 times
-/// at most. Which half holds a point is one bit of its key each time, so the samples of a box that
-/// comes from halving the bounds are one run of the sorted ones, and other boxes are some runs.
+/// A key tells where a sample lies: the bounds are halved again and again, as halves_of() does,
+/// down to single grid points, 64 times at most. Which half holds the point is one bit of its key
+/// each time. So the samples of a box that comes from halving the bounds are one run of the sorted
+/// ones; the samples of another box are in several runs.
 class SortedSamples {
  public:
-  /// @param facts   Bounds and heights of the terrain; outlive this.
-  /// @param memory  Half sorts; the other half keeps what was sorted, when it fits there. Its
+  /// @param facts   Bounds and heights of the terrain; borrowed for the life of the object.
+  /// @param memory  Half of it sorts; the other half keeps what was sorted, when it fits there. Its
   ///                folder is written to only when something does not fit.
   SortedSamples(const StoreFacts& facts, const ExternalMemory& memory);
 
-  /// REQUIRES: within the bounds.  @throws Error io_error, resource_exhausted (disk full)
+  /// Adds a sample. REQUIRES: `p` lies within the bounds.
+  /// @throws Error io_error, resource_exhausted (disk full)
   void add(GridPoint p, double height);
-  /// Samples on one grid point become one, at their mean height, rounded as heights are stored, as
-  /// the builder documents.
+  /// Sorts all samples. Samples on one grid point become one, at their mean height, rounded as
+  /// heights are stored; the builder documents the same.
   /// @throws Error as add(); cancelled
   void sort(const std::stop_token& stop);
 
-  /// Samples in the closed box.  Cost: two searches a run.  @throws Error io_error
+  /// The number of samples in the closed box. Cost: two searches a run.  @throws Error io_error
   [[nodiscard]] std::uint64_t count(const GridBox& box) const;
-  /// Those samples, in no order.  Memory: what it returns.  @throws Error io_error
+  /// The samples in the closed box, in no order. Memory: what it returns.  @throws Error io_error
   [[nodiscard]] std::vector<Sample> read(const GridBox& box) const;
 
  private:
@@ -56,10 +58,10 @@ class SortedSamples {
   };
   using Sorter = ExternalSorter<Record, Before>;
 
-  /// Records [begin, end) of the sorted ones: those of a box that comes from halving the bounds.
+  /// The sorted records [begin, end): those of a box that comes from halving the bounds.
   struct Run {
     GridBox box;
-    std::uint64_t key = 0;  ///< Least that a point of the box can have.
+    std::uint64_t key = 0;  ///< The least key that a point of the box can have.
     int depth = 0;          ///< How often the bounds were halved.
     std::uint64_t begin = 0, end = 0;
   };
@@ -71,20 +73,22 @@ class SortedSamples {
   void keep(const Record& record);
   void flush();
   [[nodiscard]] std::vector<Record> load(std::uint64_t begin, std::uint64_t end) const;
-  /// First record with a key of `key` or more.
+  /// The number of the first record whose key is not below `key`.
   [[nodiscard]] std::uint64_t find(std::uint64_t key) const;
-  /// Calls `visit(run, is_inside)` for runs that together hold the box: short ones, which may hold
-  /// samples around it, where `is_inside` is off.
+  /// Calls visit(run, is_inside) for runs that together hold all samples of `box`. Where
+  /// `is_inside` is off, the run is short and may hold samples outside of the box.
   template <typename Visit>
   void visit_runs(const GridBox& box, const Visit& visit) const;
 
   const StoreFacts& facts_;
   ExternalMemory memory_;
   std::unique_ptr<Sorter> sorter_;
-  std::uint64_t size_ = 0;                ///< Of sorted records.
-  std::vector<Record> records_;           ///< All of them, or those not yet written.
-  std::unique_ptr<ScratchFile> file_;     ///< All of them, when they do not fit in memory.
-  std::vector<std::uint64_t> landmarks_;  ///< Key of each block's first record, of those in a file.
+  std::uint64_t size_ = 0;  ///< Of sorted records.
+  /// All sorted records, or those that are not in the file yet.
+  std::vector<Record> records_;
+  std::unique_ptr<ScratchFile> file_;  ///< All records, when memory is too small.
+  /// The key of the first record of each block in the file.
+  std::vector<std::uint64_t> landmarks_;
 };
 
 }  // namespace ptin::tools

@@ -11,7 +11,8 @@ namespace ptin::tools {
 
 namespace {
 
-/// A number; "nan", "inf" and "-inf" are words, since JSON has no numbers for them.
+/// The nodata value in the metadata: a number, or one of the words "nan", "inf" and "-inf", since
+/// JSON has no numbers for these.
 std::optional<double> nodata_of(const nlohmann::json& value) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (value.is_number()) return value.get<double>();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The samples of a source on a terrain's grid, for `verify --against`: read with GDAL and a text
-// reader of its own, so that nothing is shared with the builder that is being verified; only LAS,
-// TINs and layers come through the builder's readers.
+// The samples of a source on a terrain's grid, for `verify --against`. Rasters are read with GDAL
+// and text with a reader of its own, so that nothing is shared with the builder that is verified.
+// Only LAS, TINs and layers come through the builder's readers.
 #pragma once
 
 #include <cstdint>
@@ -27,10 +27,11 @@ namespace ptin::tools {
 struct SampleChoices {
   PointChoice points;
   std::optional<double> nodata;
-  std::optional<double> resolution;  ///< Points: the grid's step, CRS units, where it was chosen.
+  std::optional<double> resolution;  ///< Points: the grid's step in CRS units, if it was chosen.
   std::optional<GridBox> bbox;       ///< Samples outside were left out.
   double void_slope = 0.1;
-  std::optional<double> max_edge;  ///< Points: longer triangles are void; on the ground.
+  /// Points: triangles with an edge that is longer on the ground are void.
+  std::optional<double> max_edge;
 };
 [[nodiscard]] SampleChoices choices_of(const StoreFile& store);
 
@@ -39,7 +40,7 @@ struct Sample {
   std::int32_t y = 0;
   double height = 0.0;  ///< Height's unit.
   bool is_void = false;
-  bool is_lone = false;  ///< Void because it touches no surface triangle, though it has a height.
+  bool is_lone = false;  ///< Has a height, but touches no surface triangle; void.
 };
 
 /// The samples of a box, row-major where they form a full grid.
@@ -49,7 +50,7 @@ struct SampleWindow {
   bool is_grid = false;  ///< One sample at each grid point of `box`, row 0 in the south.
 };
 
-/// What is wrong with a source as a whole.
+/// What does not fit between a source as a whole and a terrain.
 struct Misfits {
   static constexpr std::size_t kKept = 1000;
   std::vector<std::string> first;  ///< In words, at most kKept.
@@ -67,12 +68,13 @@ class SourceSamples {
   SourceSamples& operator=(const SourceSamples&) = delete;
   virtual ~SourceSamples() = default;
 
-  /// Samples in the closed box; grid points outside of every file are void.  @throws Error io_error
-  /// Memory: what it returns.
+  /// The samples in the closed box. Grid points of the box outside of every file are void samples.
+  /// @throws Error io_error
   [[nodiscard]] virtual SampleWindow read(const GridBox& box) = 0;
   /// How many read() would return.  @throws Error io_error
   [[nodiscard]] virtual std::uint64_t count(const GridBox& box) = 0;
-  /// Other grid, other extent, lines that are no points. None when the source fits the store.
+  /// What does not fit: another grid, another extent, lines that are no points. Empty when the
+  /// source fits the store.
   [[nodiscard]] const Misfits& misfits() const noexcept { return misfits_; }
 
  protected:
@@ -85,13 +87,14 @@ struct SampleResources {
   std::stop_token stop;
 };
 
-/// Opens rasters, or points of any kind; points are read here, once.
+/// Opens rasters, or points of any kind. Points are read here, once; rasters are read by read().
 /// @throws Error not_found, invalid_argument, io_error, resource_exhausted (disk full), cancelled
 [[nodiscard]] std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
                                                           const StoreFile& store,
                                                           const SampleResources& resources);
 
-/// The two kinds; open_samples() chooses. A raster is null when GDAL does not know the file as one.
+/// The two kinds of sources; open_samples() chooses. open_raster_samples() returns null when GDAL
+/// does not know one of the files as a raster.
 [[nodiscard]] std::unique_ptr<SourceSamples> open_raster_samples(
     const std::vector<std::string>& paths, const StoreFile& store);
 [[nodiscard]] std::unique_ptr<SourceSamples> open_point_samples(

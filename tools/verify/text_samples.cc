@@ -22,7 +22,7 @@ constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 constexpr const char* kBlanks = " \t\r";
 
-/// In the order in which they are looked for.
+/// The names of the columns x, y and z, in the order in which they are looked for.
 const std::array<std::vector<std::string>, 3>& column_names() {
   static const std::array<std::vector<std::string>, 3> names = {
       {{"x", "easting", "east", "e", "longitude", "lon", "long", "point_x"},
@@ -37,14 +37,14 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-/// None where the field is no number; NaN and infinities are numbers.
+/// The number in a field; none where the field is no number. NaN and infinities are numbers.
 std::optional<double> number_of(std::string_view field) {
   if (field.starts_with('+') && !field.starts_with("+-")) field.remove_prefix(1);
   double value = 0.0;
   const auto [end, status] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (end != field.data() + field.size() || status == std::errc::invalid_argument)
     return std::nullopt;
-  if (status != std::errc()) {  // too large, or nearer to zero than a double can be
+  if (status != std::errc()) {  // Too large, or too near to zero for a double.
     const bool is_tiny =
         field.find("e-") != std::string_view::npos || field.find("E-") != std::string_view::npos;
     return is_tiny ? 0.0 : std::numeric_limits<double>::infinity();
@@ -82,7 +82,7 @@ void TextSamples::fill() {
   begin_ = 0;
   const std::size_t kept = buffer_.size();
   buffer_.resize(kept + kPieceBytes);
-  // No notes about the unpacked size beside a file that is not ours.
+  // GDAL must not write notes about the unpacked size beside a file that is not ours.
   const CPLConfigOptionSetter no_notes("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false);
   CPLErrorReset();
   const std::size_t got = VSIFReadL(buffer_.data() + kept, 1, kPieceBytes, file_->handle);

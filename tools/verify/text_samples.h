@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points as text for `verify --against`: the rules that engine/construct/read/xyz_reader.h states, in
-// code of its own on purpose: what both got wrong together would be found by nobody.
+// Points as text, for `verify --against`. The rules are those that
+// engine/construct/read/xyz_reader.h states. The code is independent of that reader on purpose: a
+// fault that both shared would be found by nobody.
 #pragma once
 
 #include <array>
@@ -16,8 +17,8 @@ namespace ptin::tools {
 
 /// The points of one file of text. The first line that is neither empty nor a comment ('#') decides
 /// the separator (semicolon, else comma, else blanks and tabs), the number of fields, and whether
-/// it is a header. Empty fields between semicolons or commas count. A byte order mark is passed
-/// over; a name that ends in .gz, in any case, is unpacked on the way.
+/// that line is a header. Empty fields between semicolons or commas count. A byte order mark is
+/// passed over. A file whose name ends in .gz, in any case, is unpacked on the way.
 class TextSamples {
  public:
   /// @throws Error not_found, io_error
@@ -32,7 +33,7 @@ class TextSamples {
     std::array<double, 3> point{};
     std::string misfit;  ///< Empty where `point` holds.
   };
-  /// The next one; false at the end.
+  /// Reads the next such line into `line`; false at the end.
   /// @throws Error invalid_argument  the first line names no column for x, y or z, or has too few
   ///                                 fields; a line is longer than 64 KiB
   ///               io_error          the file cannot be read on
@@ -52,9 +53,9 @@ class TextSamples {
   std::string path_;
   std::unique_ptr<File> file_;
   std::string buffer_;
-  std::size_t begin_ = 0;  ///< Of what is left in the buffer.
+  std::size_t begin_ = 0;  ///< Where the part of the buffer begins that is left.
   bool at_end_ = false;
-  std::uint64_t number_ = 0;  ///< Of lines so far.
+  std::uint64_t number_ = 0;  ///< Lines so far.
   char separator_ = '\0';     ///< '\0' before the first line, ' ' for blanks and tabs.
   std::array<std::size_t, 3> columns_{0, 1, 2};
   std::size_t field_count_ = 0;

@@ -20,8 +20,8 @@ namespace {
 
 /// What the triangles of one answer say about one sample.
 struct Finding {
-  double residual = std::numeric_limits<double>::infinity();  ///< Least over the closed surface
-                                                              ///< triangles that hold it.
+  /// The least vertical distance over the closed surface triangles that hold the sample.
+  double residual = std::numeric_limits<double>::infinity();
   bool in_closed_surface = false;
   bool in_open_surface = false;
   bool in_closed_void = false;
@@ -48,7 +48,8 @@ class Verifier {
     for (const auto& tolerance : options.tolerances)
       report_.checks.push_back({.tolerance = tolerance});
     const double height = std::max(std::abs(facts_.min_height), std::abs(facts_.max_height));
-    slack_ = std::isfinite(height) ? 1e-12 * height : 0.0;  // of interpolating in double
+    // Interpolation in doubles rounds by less.
+    slack_ = std::isfinite(height) ? 1e-12 * height : 0.0;
   }
 
   AgainstReport run();
@@ -106,7 +107,7 @@ std::string Verifier::place_text(double x, double y) const {
 }
 
 std::vector<GridBox> Verifier::windows() {
-  // A raster: squares of samples. Points: halves until few enough samples are in each.
+  // A raster is cut into squares of samples; points are halved until few enough are in each window.
   std::vector<GridBox> boxes;
   std::vector<GridBox> open{facts_.bounds};
   const bool is_grid = source_.read(box_of({facts_.bounds.min_x, facts_.bounds.min_y})).is_grid;
@@ -191,14 +192,15 @@ SampleWindow Verifier::read_with_margin(const GridBox& box) const {
 bool Verifier::is_too_long(GridPoint a, GridPoint b) const {
   const GroundSteps steps =
       ground_steps(facts_.map, ground_, (static_cast<double>(a.y) + b.y) / 2.0);
-  constexpr double kFormulas = 0.999;  // lengths of a degree, between two formulas
+  constexpr double kFormulas = 0.999;  // Two formulas for a degree's length differ by less.
   return std::hypot((static_cast<double>(a.x) - b.x) * steps.x,
                     (static_cast<double>(a.y) - b.y) * steps.y) >
          *choices_.max_edge * (ground_.geographic ? kFormulas : 1.0 - 1e-9);
 }
 
-/// Points all of whose triangles in the full TIN are void, each for its long edge, have no surface
-/// to be measured against. The triangles are the file's own; that each is long enough is seen here.
+/// Makes points void whose triangles in the full TIN are all void, each for its long edge: they
+/// have no surface to be measured against. The triangles are the file's own; that each is long
+/// enough is checked here.
 void Verifier::drop_lone_points(SampleWindow& window) const {
   if (window.is_grid || !choices_.max_edge) return;
   const Tin tin = refined_in(window.box, std::nullopt).tin;
@@ -254,7 +256,8 @@ double Verifier::height_in(const Tin& tin, TriangleId t,
                            const std::array<double, 3>& weights) const {
   double sum = 0.0;
   double total = 0.0;
-  // Around the first corner's height, so that a vertex and a flat triangle come out exact.
+  // Heights are taken relative to the first corner's, so that a vertex and a flat triangle come out
+  // exact.
   const double base = facts_.heights.height(tin.vertices[tin.triangles[t].v[0]].height);
   for (std::size_t i = 0; i < 3; ++i) {
     sum += weights[i] * (facts_.heights.height(tin.vertices[tin.triangles[t].v[i]].height) - base);
@@ -294,7 +297,7 @@ std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& wind
       });
       continue;
     }
-    // Points stand by y, then x: the rows of the triangle are one run.
+    // Points are sorted by y, then x: those in the rows of the triangle are one run.
     const std::int32_t low = std::min({corners[0].y, corners[1].y, corners[2].y});
     const std::int32_t high = std::max({corners[0].y, corners[1].y, corners[2].y});
     auto it = std::lower_bound(window.samples.begin(), window.samples.end(), low,
@@ -312,7 +315,7 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
                      const std::vector<Finding>& found, double allowed, ToleranceCheck& check) {
   for (std::size_t i = 0; i < window.samples.size(); ++i) {
     const Sample& sample = window.samples[i];
-    if (!contains(box, GridPoint{sample.x, sample.y})) continue;  // of the margin
+    if (!contains(box, GridPoint{sample.x, sample.y})) continue;  // A sample of the margin.
     const Finding& f = found[i];
     ++(sample.is_void ? check.void_samples : check.samples);
     check.lone_samples += sample.is_lone ? 1 : 0;
@@ -343,7 +346,7 @@ void Verifier::judge_class(const SampleWindow& window, const Sample& sample, dou
     return;
   }
   const GroundSteps steps = ground_steps(facts_.map, ground_, sample.y);
-  constexpr double kFormulas = 1.001;  // lengths of a degree, between two formulas
+  constexpr double kFormulas = 1.001;  // Two formulas for a degree's length differ by less.
   const double limit = choices_.void_slope > 0 ? allowed / choices_.void_slope * kFormulas
                                                : std::numeric_limits<double>::infinity();
   if (std::isfinite(depth_at(window, sample.x, sample.y, steps, limit))) {
@@ -385,7 +388,7 @@ void Verifier::measure_probes(const Tin& tin, std::vector<Probe>& probes,
         const GridPoint q = c[(i + 2) % 3];
         weights[i] = (q.x - p.x) * (it->y - p.y) - (q.y - p.y) * (it->x - p.x);
       }
-      // In the open triangle; a random point on an edge is left out.
+      // Only in the open triangle: a random point on an edge is left out.
       if (weights[0] > 0 && weights[1] > 0 && weights[2] > 0)
         (*it).*height = height_in(tin, t, weights);
     }
@@ -396,7 +399,7 @@ void Verifier::judge_probes(const std::vector<Probe>& probes, const RefinedTin& 
                             ToleranceCheck& check) {
   for (const Probe& probe : probes) {
     const double deviation = std::abs(probe.full - probe.coarse);
-    if (std::isnan(deviation)) continue;  // void in one of them
+    if (std::isnan(deviation)) continue;  // Void in one of the two TINs.
     check.worst_deviation = std::max(check.worst_deviation, deviation);
     if (deviation > refined.certified_deviation + slack_) {
       fault(&check, "at " + place_text(probe.x, probe.y) + " it deviates by " +

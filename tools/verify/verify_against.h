@@ -18,42 +18,47 @@
 
 namespace ptin::tools {
 
-/// What one tolerance came to, over all windows.
+/// What was found at one tolerance, over all windows.
 struct ToleranceCheck {
   std::optional<double> tolerance;  ///< None: the full TIN.
-  double certified_error = 0.0;     ///< Largest that an answer promised.
+  double certified_error = 0.0;     ///< The largest that an answer certified.
   double certified_deviation = 0.0;
-  /// Largest vertical distance at a sample of the right class, less the rounding of the arithmetic
-  /// that measures it (10^-12 of the largest height).
+  /// The largest vertical distance at a sample of the right class, less the rounding of the
+  /// arithmetic that measures it (10^-12 of the largest height).
   double worst_error = 0.0;
-  double worst_deviation = 0.0;  ///< Largest vertical distance to the full TIN at a random point.
-  std::uint64_t samples = 0;     ///< With a height.
+  /// The largest vertical distance to the full TIN at a random point.
+  double worst_deviation = 0.0;
+  std::uint64_t samples = 0;  ///< Samples with a height.
   std::uint64_t void_samples = 0;
-  std::uint64_t lone_samples = 0;  ///< Of the void ones: with a height, but in no surface triangle.
-  std::uint64_t reclassified = 0;  ///< Of the wrong class, and shallow enough for the tolerance.
+  /// Those of void_samples that have a height, but touch no surface triangle of the full TIN.
+  std::uint64_t lone_samples = 0;
+  std::uint64_t reclassified = 0;  ///< Of the wrong class, but shallow enough for `tolerance`.
   std::uint64_t faults = 0;
 };
 
 struct AgainstReport {
   std::vector<ToleranceCheck> checks;
-  std::vector<std::string> faults;  ///< The first ones, in words.
+  std::vector<std::string> faults;  ///< The first `listed_faults` ones, in words.
   std::uint64_t fault_count = 0;
 };
 
 struct AgainstOptions {
   std::vector<std::optional<double>> tolerances;
   std::size_t listed_faults = 20;
-  std::int32_t window_side =
-      512;  ///< Grid units of a raster; windows join because regions refined apart do (P5).
-  std::size_t samples_per_window = 50'000;  ///< Points: windows are halved until they hold no more.
-  unsigned random_points = 64;              ///< In each window, for the deviation.
+  /// The side of a window over a raster, in grid units. Windows join because regions refined apart
+  /// do (P5).
+  std::int32_t window_side = 512;
+  /// Windows over points are halved until they hold no more than this.
+  std::size_t samples_per_window = 50'000;
+  /// Random points in each window, at which the deviation is measured.
+  unsigned random_points = 64;
   std::stop_token stop;
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;
 };
 
-/// Checks every window of the terrain. Memory: one window and a box for each; `source` has its own
-/// (SampleResources).
-/// @throws Error  as refine() and SourceSamples::read
+/// Checks every window of the terrain. Memory: one window, and a box for each window; `source` has
+/// memory of its own (SampleResources).
+/// @throws Error  as Terrain::refine() and SourceSamples::read()
 [[nodiscard]] AgainstReport verify_against(const Terrain& terrain, SourceSamples& source,
                                            const AgainstOptions& options);
 

@@ -28,14 +28,14 @@ double depth_at(const SampleWindow& window, std::int32_t x, std::int32_t y,
   const bool is_void = sample_at(window, x, y).is_void;
   const double smaller = std::min(steps.x, steps.y);
   double nearest = std::numeric_limits<double>::infinity();
-  // Squares of growing radius, until none further out can be nearer.
+  // Looks around squares of growing radius, until no sample further out can be nearer.
   for (std::int64_t r = 1; static_cast<double>(r) * smaller <= std::min(limit, nearest); ++r) {
     const std::int64_t low_x = std::max<std::int64_t>(window.box.min_x, x - r);
     const std::int64_t high_x = std::min<std::int64_t>(window.box.max_x, x + r);
     const std::int64_t low_y = std::max<std::int64_t>(window.box.min_y, y - r);
     const std::int64_t high_y = std::min<std::int64_t>(window.box.max_y, y + r);
     if (low_x > x - r && low_y > y - r && high_x < x + r && high_y < y + r)
-      break;  // outside of the window all round
+      break;  // The square lies around the window.
     const auto look = [&](std::int64_t px, std::int64_t py) {
       if (sample_at(window, px, py).is_void == is_void) return;
       const double dx = static_cast<double>(px - x) * steps.x;
