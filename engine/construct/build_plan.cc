@@ -87,7 +87,7 @@ void plan_threads(BuildPlan& plan, const TileTree& tree, const PlanRequest& requ
   if (share < one && may_refuse) {
     MemoryPlan enough = memory;
     while (enough.for_tiles(present, 1) < one) {
-      enough = plan_memory(enough.limit + kMiB, memory.kind);
+      enough = memory.within(enough.limit + kMiB);
     }
     const std::int64_t side = side_that_fits(share, tree, tile_bytes);
     throw Error(ErrorCode::resource_exhausted,

@@ -86,18 +86,23 @@ std::uint64_t MemoryPlan::for_tiles(std::uint64_t present, int threads) const no
   return limit > other ? limit - other : 0;
 }
 
+MemoryPlan MemoryPlan::within(std::uint64_t other_limit) const noexcept {
+  MemoryPlan plan = *this;
+  plan.limit = other_limit;
+  plan.gdal_cache = std::clamp(other_limit / 16, 8 * kMiB, 64 * kMiB);
+  if (kind == InputKind::kPoints) {
+    plan.sorting = std::clamp(other_limit / 8, kMiB, 256 * kMiB);
+  } else if (kind == InputKind::kTin) {
+    plan.sorting = std::max(other_limit / 2, kMiB);
+  }
+  return plan;
+}
+
 MemoryPlan plan_memory(std::uint64_t asked, InputKind kind) {
   MemoryPlan plan;
   plan.kind = kind;
-  plan.limit = asked != 0 ? asked : default_memory();
   plan.allowed = allowed_memory();
-  plan.gdal_cache = std::clamp(plan.limit / 16, 8 * kMiB, 64 * kMiB);
-  if (kind == InputKind::kPoints) {
-    plan.sorting = std::clamp(plan.limit / 8, kMiB, 256 * kMiB);
-  } else if (kind == InputKind::kTin) {
-    plan.sorting = std::max(plan.limit / 2, kMiB);
-  }
-  return plan;
+  return plan.within(asked != 0 ? asked : default_memory());
 }
 
 GdalCacheLimit::GdalCacheLimit(std::uint64_t bytes) : before_(GDALGetCacheMax64()) {

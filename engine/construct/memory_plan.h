@@ -33,6 +33,8 @@ struct MemoryPlan {
   /// @param present  What the process holds already, bytes.
   /// @param threads  Each needs a little of its own.
   [[nodiscard]] std::uint64_t for_tiles(std::uint64_t present, int threads) const noexcept;
+  /// The plan of the same source within another limit.
+  [[nodiscard]] MemoryPlan within(std::uint64_t other_limit) const noexcept;
 };
 
 /// @param asked  The limit that the caller sets; 0: default_memory().

@@ -40,7 +40,7 @@ class InterruptibleBuild {
   oracle::ScratchFolder source_folder_, folder_;
   std::optional<oracle::WrittenRaster> raster_;
   std::string input_;
-  std::string expected_;
+  const std::string* expected_ = nullptr;  ///< Bytes of a build that was not interrupted.
 };
 
 }  // namespace ptin::test

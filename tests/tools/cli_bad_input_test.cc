@@ -393,8 +393,8 @@ TEST(CliBadInput, FilesLargerThanTheLimitOfTheProcess) {
   const FileSizeLimit limit(2048);
   expect_refusal(spawn_ptin({"refine", store, "-o", folder.file("a.ply")}), 7, "too large");
   expect_refusal(spawn_ptin({"stream", store, "-o", folder.file("a.pts")}), 7, "too large");
-  EXPECT_EQ(spawn_ptin({"build", folder.file("hills.tif"), "-q", "-o", folder.file("b.ptin")}).status,
-            7);
+  EXPECT_EQ(
+      spawn_ptin({"build", folder.file("hills.tif"), "-q", "-o", folder.file("b.ptin")}).status, 7);
   EXPECT_EQ(spawn_ptin({"build", "--discard", "-q", "-o", folder.file("b.ptin")}).status, 0);
   EXPECT_EQ(folder.names(), before);
 }
@@ -505,8 +505,8 @@ TEST(CliSignals, StopABuildTidily) {
   make_raster(folder.file("large.tif"), large);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const Outcome outcome =
-        spawn_ptin({"build", folder.file("large.tif"), "-o", folder.file("large.ptin"), "-q"}, signal,
-                 std::chrono::milliseconds(700));
+        spawn_ptin({"build", folder.file("large.tif"), "-o", folder.file("large.ptin"), "-q"},
+                   signal, std::chrono::milliseconds(700));
     expect_refusal(outcome, 8, "");
     // What is done is kept, and goes when it is told to.
     const auto names = folder.names();

@@ -24,22 +24,23 @@ using testing::TestFolder;
 
 constexpr int kMoments = 20;
 
-/// What is built: takes a second or two.
 enum class Source { kRaster, kPoints };
 
 class KillSlow : public ::testing::TestWithParam<Source> {
  protected:
-  KillSlow() {
+  /// @param side    Samples along a side, of a raster.
+  /// @param points  Of points.
+  void make_input(int side, int points) const {
     if (GetParam() == Source::kRaster) {
       RasterRecipe recipe;
-      recipe.width = recipe.height = 400;
+      recipe.width = recipe.height = side;
       recipe.value = [](int x, int y) { return testing::hills(x, y) + (x * 31 + y * 17) % 23; };
       make_raster(input(), recipe);
       return;
     }
     std::mt19937 random(5);
     std::string text;
-    for (int i = 0; i < 120000; ++i) {
+    for (int i = 0; i < points; ++i) {
       const auto x = random() % 40000, y = random() % 40000;
       text += std::to_string(x) + "." + std::to_string(i % 10) + " " + std::to_string(y) + " " +
               std::to_string((x / 7 + y / 11) % 900) + "\n";
@@ -65,6 +66,7 @@ INSTANTIATE_TEST_SUITE_P(OfEachKind, KillSlow, ::testing::Values(Source::kRaster
                          });
 
 TEST_P(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
+  make_input(240, 45000);  // in about twenty tiles, for some tenths of a second
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_EQ(spawn_ptin(build(folder_.file("plain.ptin"), {})).status, 0);
   const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -97,6 +99,7 @@ TEST_P(KillSlow, AtTwentyRandomMomentsThenResumedGivesTheSameBytes) {
 }
 
 TEST_P(KillSlow, ADiskThatFillsUpLosesNothing) {
+  make_input(400, 120000);  // for long enough that the disk is full before the build ends
   ASSERT_EQ(spawn_ptin(build(folder_.file("plain.ptin"), {})).status, 0);
   const SmallDisk disk(folder_.file("disk"), 40);
   if (!disk.is_mounted()) GTEST_SKIP() << SmallDisk::kNeeded;

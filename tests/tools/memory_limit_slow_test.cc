@@ -69,7 +69,7 @@ TEST_F(MemoryLimitSlow, ABuildKeepsWithinItsMemoryAndAMarginThatTheSystemEnforce
     const DataLimit limit(memory * kMiB + kMargin);
     const auto outcome =
         spawn_ptin({"build", folder.file("dem.tif"), "-o", folder.file("out.ptin"), "--overwrite",
-                  "--threads", "2", "--memory", std::to_string(memory) + "M", "-q"});
+                    "--threads", "2", "--memory", std::to_string(memory) + "M", "-q"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
 }
@@ -111,9 +111,10 @@ TEST_F(MemoryLimitSlow, ATinKeepsWithinItsMemoryToo) {
   const DataLimit limit(kMemory * kMiB + kMargin);
   for (const char* repair : {"--overwrite", "--repair"}) {
     SCOPED_TRACE(repair);
-    const auto outcome = spawn_ptin({"build", folder.file("mesh.ply"), "-o", folder.file("out.ptin"),
-                                   "--overwrite", "--threads", "1", "--tile", "128", "--memory",
-                                   std::to_string(kMemory) + "M", "-q", repair});
+    const auto outcome =
+        spawn_ptin({"build", folder.file("mesh.ply"), "-o", folder.file("out.ptin"), "--overwrite",
+                    "--threads", "1", "--tile", "128", "--memory", std::to_string(kMemory) + "M",
+                    "-q", repair});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
 }
@@ -124,7 +125,7 @@ TEST_F(MemoryLimitSlow, ABuildThatIsGivenMoreThanTheLimitFails) {
   make_hills(folder);
   const DataLimit limit(48 * kMiB);
   const auto outcome = spawn_ptin({"build", folder.file("dem.tif"), "-o", folder.file("out.ptin"),
-                                 "--threads", "2", "--memory", "512M", "-q"});
+                                   "--threads", "2", "--memory", "512M", "-q"});
   EXPECT_NE(outcome.status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder.file("out.ptin")));
 }

@@ -184,8 +184,8 @@ TEST(LocateCommand, KnowsPointXAndRefusesAHeaderThatNamesNoCoordinate) {
   const TestFolder folder;
   const std::string terrain = wall(folder);
   const std::string row = "7," + east(15.5) + "," + south(20) + "\n";
-  const Outcome known =
-      testing::spawn_ptin_reading("id,POINT_X,POINT_Y\n" + row, {"locate", terrain, "--points", "-"});
+  const Outcome known = testing::spawn_ptin_reading("id,POINT_X,POINT_Y\n" + row,
+                                                    {"locate", terrain, "--points", "-"});
   EXPECT_EQ(known.status, 0) << known.err;
   EXPECT_NE(known.out.find("surface,55,55,55"), std::string::npos) << known.out;
   const Outcome refused =

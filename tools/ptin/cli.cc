@@ -7,9 +7,9 @@
 #include <iostream>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
 #include <cpl_error.h>
 #include <gdal.h>
+#include <nlohmann/json.hpp>
 
 #include "tools/error_status.h"
 #include "tools/facts/human.h"

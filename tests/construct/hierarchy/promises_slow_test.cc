@@ -85,7 +85,7 @@ TEST(PromisesOnRealTerrain, HoldForTheTerrainsOfTheTree) {
 
 TEST(PromisesOnRealTerrain, HoldForLargerTerrains) {
   const std::string data = PTIN_SHARED_DATA;
-  if (!std::filesystem::exists(data + "/ned13_portland_nodata.tif")) {
+  if (!std::filesystem::exists(std::filesystem::path(data) / "ned13_portland_nodata.tif")) {
     GTEST_SKIP() << "needs " << data;
   }
   expect_promises(read_window(data + "/ned13_portland_nodata.tif", 100, 200, 120, 120));
