@@ -11,9 +11,9 @@
 #include <benchmark/benchmark.h>
 #include <cpl_vsi.h>
 
-#include "engine/construct/delaunay/delaunay.h"
 #include "engine/construct/delaunay/tile_delaunay.h"
 #include "engine/construct/points/point_buckets.h"
+#include "tests/construct/delaunay_tin.h"
 #include "tests/support/las_file.h"
 
 namespace ptin {

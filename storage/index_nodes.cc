@@ -62,7 +62,7 @@ layout::NodeEntry IndexNodes::descend_to(PageId page) const {
 }
 
 MappedIndexNodes::MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping,
-                                   const Place& place)
+                                   const Root& place)
     : IndexNodes(file, place), mapping_(mapping), verified_(place.shape.total_nodes()) {}
 
 const layout::IndexNode& MappedIndexNodes::node(std::uint32_t level, std::uint64_t number,
@@ -101,7 +101,7 @@ layout::NodeEntry MappedIndexNodes::descriptor(PageId page) const {
   return mapped.entry[index_of(page) % layout::kFanOut];
 }
 
-PreadIndexNodes::PreadIndexNodes(const ReadOnlyFile& file, const Place& place)
+PreadIndexNodes::PreadIndexNodes(const ReadOnlyFile& file, const Root& place)
     : IndexNodes(file, place) {}
 
 const layout::IndexNode& PreadIndexNodes::node(std::uint32_t level, std::uint64_t number,

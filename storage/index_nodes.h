@@ -25,7 +25,7 @@ namespace ptin {
 /// header's checksum stands for the whole file. Threads: const functions may be called at once.
 class IndexNodes {
  public:
-  struct Place {
+  struct Root {
     IndexShape shape;
     std::uint64_t offset = 0;  ///< Of the root in the file.
     std::uint64_t root_checksum = 0;
@@ -64,7 +64,7 @@ class IndexNodes {
   virtual void require_undamaged() const {}
 
  protected:
-  IndexNodes(const ReadOnlyFile& file, const Place& place) : file_(file), place_(place) {}
+  IndexNodes(const ReadOnlyFile& file, const Root& place) : file_(file), place_(place) {}
   void require_page(PageId page) const;
   [[nodiscard]] std::uint64_t offset_of(std::uint64_t position) const noexcept {
     return place_.offset + position * layout::kNodeBytes;
@@ -104,13 +104,13 @@ class IndexNodes {
   [[nodiscard]] layout::NodeEntry descend_to(PageId page) const;
 
   const ReadOnlyFile& file_;
-  Place place_;
+  Root place_;
 };
 
 /// Nodes are read in place, in the mapping. A node is verified when it is first touched.
 class MappedIndexNodes final : public IndexNodes {
  public:
-  MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping, const Place& place);
+  MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping, const Root& place);
   [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
                                               std::uint64_t expected,
                                               layout::IndexNode& scratch) const override;
@@ -127,7 +127,7 @@ class MappedIndexNodes final : public IndexNodes {
 /// Nodes are read by pread. Verified ones are kept in a cache of at most 4 MiB.
 class PreadIndexNodes final : public IndexNodes {
  public:
-  PreadIndexNodes(const ReadOnlyFile& file, const Place& place);
+  PreadIndexNodes(const ReadOnlyFile& file, const Root& place);
   [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
                                               std::uint64_t expected,
                                               layout::IndexNode& scratch) const override;

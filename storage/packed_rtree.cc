@@ -109,8 +109,8 @@ void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& count
 
 /// Calls `take` for each entry that satisfies the predicate.
 template <class Take>
-void PackedRTree::visit(const Place& at, const AttributePredicate& predicate, IoCounters& counters,
-                        const Take& take) const {
+void PackedRTree::visit(const NodePlace& at, const AttributePredicate& predicate,
+                        IoCounters& counters, const Take& take) const {
   layout::IndexNode scratch;  // stays untouched when nodes are mapped
   const layout::IndexNode& node = nodes_.node(at.level, at.number, at.checksum, scratch);
   ++counters.index_nodes;

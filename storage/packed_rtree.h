@@ -47,14 +47,14 @@ class PackedRTree final : public RecordIndex {
   void search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const;
 
  private:
-  struct Place {
+  struct NodePlace {
     std::uint32_t level;
     std::uint64_t number, checksum;
   };
   [[nodiscard]] layout::NodeEntry sound_entry(const layout::IndexNode& node, std::uint32_t level,
                                               std::uint64_t number, std::uint32_t i) const;
   template <class Take>
-  void visit(const Place& at, const AttributePredicate& predicate, IoCounters& counters,
+  void visit(const NodePlace& at, const AttributePredicate& predicate, IoCounters& counters,
              const Take& take) const;
 
   const IndexNodes& nodes_;

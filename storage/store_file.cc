@@ -60,7 +60,7 @@ class StoreFileImpl final : public StoreFile {
 
 StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access)
     : file_(path), front_(read_front(file_)) {
-  const IndexNodes::Place place{front_.index, front_.index_offset, front_.root_checksum};
+  const IndexNodes::Root place{front_.index, front_.index_offset, front_.root_checksum};
   if (access == PageAccess::kMapped) {
     mapping_.emplace(file_);
     nodes_ = std::make_unique<MappedIndexNodes>(file_, *mapping_, place);

@@ -33,7 +33,7 @@ namespace {
 
 constexpr std::size_t kWriteBytes = std::size_t{1} << 20;
 
-constexpr std::uint64_t rounded_up(std::uint64_t bytes, std::uint64_t unit) {
+constexpr std::uint64_t padded_to(std::uint64_t bytes, std::uint64_t unit) {
   return (bytes + unit - 1) / unit * unit;
 }
 
@@ -113,7 +113,7 @@ class Front {
       : bytes_(sizeof(layout::FileHeader) + sections * sizeof(layout::SectionEntry)) {}
 
   void add(layout::SectionKind kind, std::span<const std::byte> content) {
-    bytes_.resize(rounded_up(bytes_.size(), 8));
+    bytes_.resize(padded_to(bytes_.size(), 8));
     table_.push_back(
         {static_cast<std::uint32_t>(kind), 0, bytes_.size(), content.size(), checksum_of(content)});
     bytes_.insert(bytes_.end(), content.begin(), content.end());
@@ -377,10 +377,10 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
   front.add(layout::SectionKind::kT0Vertices, std::as_bytes(std::span(vertices)));
   front.add(layout::SectionKind::kT0Triangles, std::as_bytes(std::span(triangles)));
   front.add(layout::SectionKind::kErrorTable, std::as_bytes(std::span(bins)));
-  const std::uint64_t index_offset = rounded_up(front.size(), layout::kNodeBytes);
+  const std::uint64_t index_offset = padded_to(front.size(), layout::kNodeBytes);
   const std::uint64_t index_end =
       front.add_outside(layout::SectionKind::kIndex, index_offset, shape.total_bytes());
-  const std::uint64_t front_bytes = rounded_up(index_end, options_.page_bytes);
+  const std::uint64_t front_bytes = padded_to(index_end, options_.page_bytes);
   layout::FileHeader header{};
   header.file_bytes = front.add_outside(layout::SectionKind::kPages, front_bytes, written_bytes_);
 

@@ -7,10 +7,10 @@
 #include <random>
 #include <utility>
 
-#include "engine/construct/delaunay/delaunay.h"
 #include "engine/construct/raster/raster_surface.h"
 #include "engine/construct/raster/raster_tin.h"
 #include "engine/construct/tile/part_surface.h"
+#include "tests/construct/delaunay_tin.h"
 
 namespace ptin::bench {
 

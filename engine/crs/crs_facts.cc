@@ -4,6 +4,7 @@
 #include <memory>
 
 #include <cpl_conv.h>
+#include <nlohmann/json.hpp>
 #include <ogr_spatialref.h>
 
 #include "engine/error.h"

@@ -65,11 +65,14 @@ std::string triangles_with_holes() {
 
 namespace {
 
-/// What a build that nobody interrupts writes: the same each time, so it runs once a process.
+/// What a build that nobody interrupts writes. It is the same each time, since the file names its
+/// source without the folder, so it runs once a process; but rasters in memory have names of their
+/// own.
 const std::string& expected_of(SourceKind kind, const std::string& input,
                                const BuildOptions& options) {
-  static std::map<SourceKind, std::string> all;
-  const auto [found, is_new] = all.try_emplace(kind);
+  static std::map<std::string, std::string> all;
+  const auto [found, is_new] = all.try_emplace(
+      kind == SourceKind::kRaster ? input : std::filesystem::path(input).filename().string());
   if (is_new) {
     const oracle::ScratchFolder folder;
     const std::string plain = folder.file("plain.ptin");

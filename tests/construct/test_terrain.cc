@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/construct/delaunay/delaunay.h"
 #include "engine/construct/raster/raster_surface.h"
 #include "engine/construct/raster/raster_tin.h"
 #include "engine/geometry/infinity.h"
+#include "tests/construct/delaunay_tin.h"
 #include "tests/construct/tin_surface.h"
 
 namespace ptin::oracle {

@@ -11,6 +11,7 @@
 
 #include "engine/construct/read/tin_soup.h"
 #include "engine/error.h"
+#include "tests/support/read_soup.h"
 
 namespace ptin::fuzz {
 

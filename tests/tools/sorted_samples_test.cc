@@ -23,9 +23,9 @@ StoreFacts facts_over(const GridBox& bounds) {
   return facts;
 }
 
-std::vector<std::array<double, 3>> sorted(const std::vector<Sample>& samples) {
+std::vector<std::array<double, 3>> sorted(const std::vector<SourceSample>& samples) {
   std::vector<std::array<double, 3>> rows;
-  for (const Sample& s : samples)
+  for (const SourceSample& s : samples)
     rows.push_back({static_cast<double>(s.x), static_cast<double>(s.y), s.height});
   std::sort(rows.begin(), rows.end());
   return rows;
@@ -55,7 +55,7 @@ void expect_like_a_map(const GridBox& bounds, std::uint64_t memory, int samples)
   found.sort({});
   EXPECT_EQ(folder.names().size(), 0U) << "its files have no names";
   const auto expect_same_in = [&](const GridBox& box) {
-    std::vector<Sample> expected;
+    std::vector<SourceSample> expected;
     for (const auto& [place, all] : heights) {
       if (!contains(box, GridPoint{place.first, place.second})) continue;
       double codes = 0.0;

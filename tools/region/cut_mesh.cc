@@ -29,9 +29,9 @@ double lattice_orient(LatticePoint a, LatticePoint b, LatticePoint c) noexcept {
   return static_cast<double>(abx * (Int128{c.y} - a.y) - aby * (Int128{c.x} - a.x));
 }
 
-CutMesh::Place CutMesh::place_in(TriangleId t, LatticePoint p) const noexcept {
+CutMesh::CutPlace CutMesh::place_in(TriangleId t, LatticePoint p) const noexcept {
   const CutTriangle& triangle = triangles[t];
-  Place place;
+  CutPlace place;
   for (int i = 0; i < 3; ++i) {
     const double o =
         lattice_orient(at(triangle.v[next_corner(i)]), at(triangle.v[previous_corner(i)]), p);
@@ -46,7 +46,7 @@ CutMesh::Place CutMesh::place_in(TriangleId t, LatticePoint p) const noexcept {
   return place;
 }
 
-CutMesh::Place CutMesh::locate(LatticePoint p) {
+CutMesh::CutPlace CutMesh::locate(LatticePoint p) {
   TriangleId t = hint_;
   for (std::size_t step = 0; step <= triangles.size(); ++step) {
     const CutTriangle& triangle = triangles[t];
@@ -68,7 +68,7 @@ CutMesh::Place CutMesh::locate(LatticePoint p) {
   }
   // The walk left the mesh. The point lies outside, or behind a concave part of the outline.
   for (t = 0; t < triangles.size(); ++t) {
-    const Place place = place_in(t, p);
+    const CutPlace place = place_in(t, p);
     if (place.triangle != kNone) {
       hint_ = t;
       return place;
@@ -99,7 +99,7 @@ std::vector<TriangleId> CutMesh::star(std::uint32_t v) const {
 }
 
 std::uint32_t CutMesh::insert_point(LatticePoint p, const std::array<double, 2>& map) {
-  const Place place = locate(p);
+  const CutPlace place = locate(p);
   if (place.triangle == kNone) return kNone;
   if (place.corner >= 0) return triangles[place.triangle].v[place.corner];
   const auto corners = triangles[place.triangle].v;

@@ -67,14 +67,14 @@ class CutMesh {
   void insert_segment(const BorderSegment& segment, std::uint32_t from, std::uint32_t to);
 
  private:
-  struct Place {
+  struct CutPlace {
     TriangleId triangle = kNone;
     int corner = -1;  ///< >= 0: at this corner.
     int side = -1;    ///< >= 0: on the edge opposite to this corner.
   };
   [[nodiscard]] LatticePoint at(std::uint32_t node) const noexcept { return nodes[node].at; }
-  [[nodiscard]] Place place_in(TriangleId t, LatticePoint p) const noexcept;
-  [[nodiscard]] Place locate(LatticePoint p);
+  [[nodiscard]] CutPlace place_in(TriangleId t, LatticePoint p) const noexcept;
+  [[nodiscard]] CutPlace locate(LatticePoint p);
   [[nodiscard]] std::vector<TriangleId> star(std::uint32_t v) const;
   void split_triangle(TriangleId t, std::uint32_t node);
   void split_edge(TriangleId t, int side, std::uint32_t node);

@@ -46,7 +46,9 @@ class PointSamples final : public SourceSamples {
     window.box = box;
     window.samples = samples_.read(box);
     std::sort(window.samples.begin(), window.samples.end(),
-              [](const Sample& a, const Sample& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
+              [](const SourceSample& a, const SourceSample& b) {
+                return a.y != b.y ? a.y < b.y : a.x < b.x;
+              });
     return window;
   }
 

@@ -195,8 +195,8 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
           (value == *choices_.nodata ||
            (is_float && static_cast<float>(value) == static_cast<float>(*choices_.nodata)));
       if (mask[from] == 0 || std::isnan(value) || is_nodata) continue;
-      Sample& sample = window.samples[static_cast<std::size_t>(y - box.min_y) * stride +
-                                      static_cast<std::size_t>(x - box.min_x)];
+      SourceSample& sample = window.samples[static_cast<std::size_t>(y - box.min_y) * stride +
+                                            static_cast<std::size_t>(x - box.min_x)];
       sample.height = file.offset + file.scale * value;
       sample.is_void = false;
     }

@@ -178,8 +178,8 @@ std::uint64_t SortedSamples::count(const GridBox& box) const {
   return count;
 }
 
-std::vector<Sample> SortedSamples::read(const GridBox& box) const {
-  std::vector<Sample> samples;
+std::vector<SourceSample> SortedSamples::read(const GridBox& box) const {
+  std::vector<SourceSample> samples;
   visit_runs(box, [&](const Run& run, bool) {
     for (std::uint64_t i = run.begin; i < run.end; i += kBlock) {
       for (const Record& record : load(i, std::min(i + kBlock, run.end))) {

@@ -44,7 +44,7 @@ class SortedSamples {
   /// The number of samples in the closed box. Cost: two searches a run.  @throws Error io_error
   [[nodiscard]] std::uint64_t count(const GridBox& box) const;
   /// The samples in the closed box, in no order. Memory: what it returns.  @throws Error io_error
-  [[nodiscard]] std::vector<Sample> read(const GridBox& box) const;
+  [[nodiscard]] std::vector<SourceSample> read(const GridBox& box) const;
 
  private:
   struct Record {

@@ -35,7 +35,7 @@ struct SampleChoices {
 };
 [[nodiscard]] SampleChoices choices_of(const StoreFile& store);
 
-struct Sample {
+struct SourceSample {
   std::int32_t x = 0;  ///< Grid.
   std::int32_t y = 0;
   double height = 0.0;  ///< Height's unit.
@@ -46,7 +46,7 @@ struct Sample {
 /// The samples of a box, row-major where they form a full grid.
 struct SampleWindow {
   GridBox box;
-  std::vector<Sample> samples;
+  std::vector<SourceSample> samples;
   bool is_grid = false;  ///< One sample at each grid point of `box`, row 0 in the south.
 };
 

@@ -10,9 +10,9 @@
 #include "engine/error.h"
 #include "engine/stop.h"
 #include "tools/facts/human.h"
+#include "tools/verify/brute_depth.h"
 #include "tools/verify/scan_triangle.h"
 #include "tools/verify/sorted_samples.h"
-#include "tools/verify/void_depth.h"
 
 namespace ptin::tools {
 
@@ -64,7 +64,7 @@ class Verifier {
   void drop_lone_points(SampleWindow& window) const;
   void judge(const SampleWindow& window, const GridBox& box, const std::vector<Finding>& found,
              double allowed, ToleranceCheck& check);
-  void judge_class(const SampleWindow& window, const Sample& sample, double allowed,
+  void judge_class(const SampleWindow& window, const SourceSample& sample, double allowed,
                    ToleranceCheck& check);
   void place_probes(const GridBox& box, std::vector<Probe>& probes);
   void measure_probes(const Tin& tin, std::vector<Probe>& probes, double Probe::*height) const;
@@ -178,7 +178,7 @@ SampleWindow Verifier::read_with_margin(const GridBox& box) const {
   };
   SampleWindow inner = source_.read(box);
   const bool has_void = std::any_of(inner.samples.begin(), inner.samples.end(),
-                                    [](const Sample& s) { return s.is_void; });
+                                    [](const SourceSample& s) { return s.is_void; });
   const std::int64_t wide = inner.is_grid && (has_void || largest > 0) ? margin : 2;
   if (!inner.is_grid) return inner;
   SampleWindow window = source_.read({within(box.min_x - wide, all.min_x, all.max_x),
@@ -216,7 +216,7 @@ void Verifier::drop_lone_points(SampleWindow& window) const {
       seen[corner] = is_void && seen[corner] != kSurface ? kLone : kSurface;
     }
   }
-  const auto before = [](const Sample& s, GridPoint p) {
+  const auto before = [](const SourceSample& s, GridPoint p) {
     return s.y != p.y ? s.y < p.y : s.x < p.x;
   };
   for (VertexId v = 0; v < tin.vertices.size(); ++v) {
@@ -301,7 +301,7 @@ std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& wind
     const std::int32_t low = std::min({corners[0].y, corners[1].y, corners[2].y});
     const std::int32_t high = std::max({corners[0].y, corners[1].y, corners[2].y});
     auto it = std::lower_bound(window.samples.begin(), window.samples.end(), low,
-                               [](const Sample& s, std::int32_t y) { return s.y < y; });
+                               [](const SourceSample& s, std::int32_t y) { return s.y < y; });
     for (; it != window.samples.end() && it->y <= high; ++it) {
       const Weights weights = weights_at(lines, {it->x, it->y});
       if (weights.in_closed())
@@ -314,7 +314,7 @@ std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& wind
 void Verifier::judge(const SampleWindow& window, const GridBox& box,
                      const std::vector<Finding>& found, double allowed, ToleranceCheck& check) {
   for (std::size_t i = 0; i < window.samples.size(); ++i) {
-    const Sample& sample = window.samples[i];
+    const SourceSample& sample = window.samples[i];
     if (!contains(box, GridPoint{sample.x, sample.y})) continue;  // A sample of the margin.
     const Finding& f = found[i];
     ++(sample.is_void ? check.void_samples : check.samples);
@@ -336,7 +336,7 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
   }
 }
 
-void Verifier::judge_class(const SampleWindow& window, const Sample& sample, double allowed,
+void Verifier::judge_class(const SampleWindow& window, const SourceSample& sample, double allowed,
                            ToleranceCheck& check) {
   const char* what = sample.is_void ? "void" : "a height";
   if (!window.is_grid) {

@@ -18,8 +18,9 @@ namespace ptin {
 /// whose smallest vertex (by key: the lowest, then leftmost) is one of the tile's own points. In
 /// general a polygon with holes, of several pieces, that may touch itself at a vertex.
 struct DelaunayTile {
-  /// Vertices in the order of their keys, triangles as make_delaunay_tin(). Beyond the border lies
-  /// another tile or the outside.
+  /// Vertices in the order of their keys, triangles start with their smallest id and are in
+  /// ascending order of (first, second) corner. Beyond the border lies another tile or the
+  /// outside.
   Tin tin;
   std::uint64_t own_points = 0;
   std::uint64_t lone_points = 0;   ///< Own points in no surface triangle: they lose their height.
@@ -31,8 +32,15 @@ struct DelaunayTile {
 /// A tile's points are triangulated with what surrounds them: a margin first, then bucket by bucket
 /// what lies in the closed circumdisc of a triangle at one of its own points (or beyond an edge of
 /// the hull so far). A triangle is final when everything inside of its disc has been seen; where
-/// many points lie on a circle the tie is broken by coordinates alone (delaunay/delaunay.h). So
-/// tiles are pieces of exactly the triangulation that make_delaunay_tin() would give.
+/// many points lie on a circle the tie is broken by coordinates alone. So tiles are pieces of exactly
+/// one triangulation, that of all points.
+///
+/// Law: the triangulation depends on the set of points alone, so tiles agree wherever a triangle's
+/// closed circumdisc lies in what each has seen. Where four or more points lie on one circle the
+/// tie is broken by the symbolic perturbation of Devillers and Teillaud (CGAL's): of points on a
+/// circle the last one in the order by x, then y, counts as outside of the circle of the others. So
+/// it is cut off as an ear, then the last of the remaining ones, and so on: a square cell is cut
+/// along its falling diagonal.
 ///
 /// Not thread-safe: each thread needs a tiler of its own; any number of them may share the buckets.
 class DelaunayTiler {

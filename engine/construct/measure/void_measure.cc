@@ -16,7 +16,7 @@ bool is_void(const Tile& tile, const StarSamples& s, std::size_t star_triangle) 
 }
 
 /// Where a sample lies in the fan.
-struct Place {
+struct SamplePlace {
   std::size_t surface = kNone;   ///< A closed surface triangle that holds it; kNone: none does.
   std::size_t any = kNone;       ///< A triangle that holds it; a void one where one does.
   bool in_open_surface = false;  ///< Inside of a surface triangle, on no edge.
@@ -46,9 +46,9 @@ bool on_edge_with_heights(const Tile& tile, const StarSamples& s, const FanFrame
          (on_link && first && second);
 }
 
-Place locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, double x, double y,
-             double z) {
-  Place place;
+SamplePlace locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, double x, double y,
+                   double z) {
+  SamplePlace place;
   const double qx = x - fan.w_x;
   const double qy = y - fan.w_y;
   const double qz = z - fan.w_z;
@@ -86,7 +86,7 @@ void charge(VoidMeasure& measure, double amount) {
 }
 
 /// Charges one sample at its place.
-void measure_sample(const Tile& tile, const Place& place, float depth, VoidMeasure& measure) {
+void measure_sample(const Tile& tile, const SamplePlace& place, float depth, VoidMeasure& measure) {
   if (depth < 0.0F) {
     if (place.in_open_surface) {
       charge(measure, tile.units.charge(depth));
@@ -165,8 +165,8 @@ void measure_block(const Tile& tile, const StarSamples& s, const FanFrame& fan,
   std::size_t first = fan.triangles();
   std::size_t last = 0;
   for (int corner = 0; corner < 4; ++corner) {
-    const Place place = locate(tile, s, fan, corner == 0 || corner == 3 ? b.x0 : b.x1,
-                               corner < 2 ? b.y0 : b.y1, b.z);
+    const SamplePlace place = locate(tile, s, fan, corner == 0 || corner == 3 ? b.x0 : b.x1,
+                                     corner < 2 ? b.y0 : b.y1, b.z);
     measure_sample(tile, place, b.depth, measure);
     first = std::min(first, place.any);
     last = std::max(last, place.any);
@@ -184,7 +184,7 @@ void measure_block(const Tile& tile, const StarSamples& s, const FanFrame& fan,
 void measure_singly(const Tile& tile, const StarSamples& s, const FanFrame& fan, std::size_t begin,
                     std::size_t end, VoidMeasure& measure) {
   for (std::size_t k = begin; k < std::min(end, s.count); ++k) {
-    const Place place = locate(tile, s, fan, s.x[k], s.y[k], s.z[k]);
+    const SamplePlace place = locate(tile, s, fan, s.x[k], s.y[k], s.z[k]);
     if (s.is_void[k] != 0.0) {
       charge(measure, place.in_open_surface ? s.charge[k] : 0.0);
       continue;
@@ -295,7 +295,7 @@ VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, FanFrame&
 
 std::size_t triangle_of_sample(const Tile& tile, const StarSamples& s, const FanFrame& fan,
                                double x, double y, bool has_height) {
-  const Place place = locate(tile, s, fan, x, y, 0.0);
+  const SamplePlace place = locate(tile, s, fan, x, y, 0.0);
   return has_height && place.surface != kNone ? place.surface : place.any;
 }
 

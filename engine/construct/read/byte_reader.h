@@ -37,8 +37,6 @@ class ByteReader {
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }  ///< Of the whole file.
   /// Bytes handed out so far.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
-  /// Lines handed out so far.
-  [[nodiscard]] std::uint64_t line_number() const noexcept { return line_; }
   /// "path:line" of the last line handed out, for errors.
   [[nodiscard]] std::string place() const { return path_ + ":" + std::to_string(line_); }
 

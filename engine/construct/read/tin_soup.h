@@ -44,13 +44,6 @@ struct TinFileFacts {
   std::uint64_t hidden_triangles = 0;  ///< Marked invisible (LandXML): left out.
 };
 
-/// A whole TIN in memory. Indices are in range; nothing else is known of them.
-struct TinSoup {
-  std::vector<SourcePoint> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  TinFileFacts facts;
-};
-
 /// What a reader is told: which surface to read, when to stop, and to whom to report.
 struct TinReading {
   std::string surface;  ///< LandXML: the surface's name; "" where there is only one.
@@ -79,11 +72,5 @@ using TinReader = TinFileFacts(ByteReader& in, const TinReading& reading, SoupSi
 TinReader read_ply, read_obj, read_two_dm, read_land_xml;
 /// The reader for a name's extension.  @throws Error invalid_argument  there is none
 [[nodiscard]] TinReader& tin_reader_of(const std::string& path);
-
-/// Everything that a reader reads, in memory.
-/// @throws Error  as read_tin_file(); invalid_argument  an id that no vertex has, or that two have
-/// Memory: 48 bytes a vertex and 12 a triangle; while it reads, besides, 24 bytes a triangle and a
-/// hash table of the ids. It grows with what is read, never with what a header claims.
-[[nodiscard]] TinSoup read_soup(TinReader& reader, ByteReader& in, const TinReading& reading);
 
 }  // namespace ptin

@@ -194,12 +194,12 @@ void append(std::vector<std::byte>& out, const T& object) {
 /// Sorts splits by falling rank, and within a rank along the Hilbert curve, where the mesh is in
 /// the caches.
 void sort_by_rank(std::span<PendingSplit> splits) {
-  struct Place {
+  struct LevelPlace {
     std::uint64_t curve;
     std::uint32_t index;
     std::uint16_t rank;
   };
-  std::vector<Place> places;
+  std::vector<LevelPlace> places;
   places.reserve(splits.size());
   for (std::uint32_t i = 0; i < splits.size(); ++i) {
     const GridPoint p = point_of(splits[i].u);
@@ -207,12 +207,12 @@ void sort_by_rank(std::span<PendingSplit> splits) {
         {hilbert_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y)), i,
          splits[i].rank});
   }
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+  std::sort(places.begin(), places.end(), [](const LevelPlace& a, const LevelPlace& b) {
     return a.rank != b.rank ? a.rank > b.rank : a.curve < b.curve;
   });
   std::vector<PendingSplit> sorted;
   sorted.reserve(splits.size());
-  for (const Place& p : places) {
+  for (const LevelPlace& p : places) {
     sorted.push_back(splits[p.index]);
   }
   std::copy(sorted.begin(), sorted.end(), splits.begin());

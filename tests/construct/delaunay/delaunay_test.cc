@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/delaunay/delaunay.h"
-
 #include <algorithm>
 #include <array>
 #include <set>
@@ -13,6 +11,7 @@
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/validate.h"
+#include "tests/construct/delaunay_tin.h"
 
 namespace ptin {
 namespace {

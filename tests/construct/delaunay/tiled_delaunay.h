@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/construct/delaunay/delaunay.h"
 #include "engine/construct/delaunay/tile_delaunay.h"
 #include "engine/construct/points/point_buckets.h"
+#include "tests/construct/delaunay_tin.h"
 
 namespace ptin {
 

@@ -10,11 +10,11 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "engine/construct/delaunay/delaunay.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/read/input_kind.h"
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
+#include "tests/construct/delaunay_tin.h"
 #include "tests/construct/memory_file.h"
 
 namespace ptin {

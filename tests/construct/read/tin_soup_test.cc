@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
+#include "tests/support/read_soup.h"
 
 namespace ptin {
 namespace {

@@ -11,13 +11,13 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/construct/delaunay/delaunay.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/tin/void_sweep.h"
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/link.h"
 #include "engine/mesh/validate.h"
+#include "tests/construct/delaunay_tin.h"
 #include "tests/construct/tin/tin_fixture.h"
 
 namespace ptin {

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "engine/construct/build.h"
-#include "engine/construct/delaunay/delaunay.h"
 #include "engine/construct/tin/tin_source.h"
 #include "engine/query/terrain.h"
+#include "tests/construct/delaunay_tin.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/point_sets.h"
 #include "tests/construct/store_promises.h"

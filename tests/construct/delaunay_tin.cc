@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/delaunay/delaunay.h"
+#include "tests/construct/delaunay_tin.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/verify/void_depth.h"
+#include "tools/verify/brute_depth.h"
 
 #include <cmath>
 #include <limits>
@@ -35,9 +35,9 @@ TEST(DepthAt, IsTheLeastDistanceToTheOtherClass) {
     }
     const SampleWindow window = window_of(rows);
     const GroundSteps steps{2.0, 3.0};
-    for (const Sample& s : window.samples) {
+    for (const SourceSample& s : window.samples) {
       double nearest = std::numeric_limits<double>::infinity();
-      for (const Sample& o : window.samples) {
+      for (const SourceSample& o : window.samples) {
         if (o.is_void != s.is_void)
           nearest = std::min(nearest, std::hypot(2.0 * (o.x - s.x), 3.0 * (o.y - s.y)));
       }
@@ -56,7 +56,7 @@ TEST(DropLoneSamples, TakesThoseWithoutASurfaceTriangle) {
   SampleWindow window = window_of({"#....", ".....", "..##.", "..#..", "#...#"});
   drop_lone_samples(window);
   int kept = 0;
-  for (const Sample& s : window.samples) kept += !s.is_void;
+  for (const SourceSample& s : window.samples) kept += !s.is_void;
   EXPECT_EQ(kept, 3);
   EXPECT_TRUE(window.samples[0].is_lone);
 }

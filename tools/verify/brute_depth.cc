@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/verify/void_depth.h"
+#include "tools/verify/brute_depth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace ptin::tools {
 
 namespace {
 
-const Sample& sample_at(const SampleWindow& w, std::int64_t x, std::int64_t y) {
+const SourceSample& sample_at(const SampleWindow& w, std::int64_t x, std::int64_t y) {
   const std::int64_t width = std::int64_t{w.box.max_x} - w.box.min_x + 1;
   return w.samples[static_cast<std::size_t>((y - w.box.min_y) * width + (x - w.box.min_x))];
 }
@@ -65,7 +65,7 @@ void drop_lone_samples(SampleWindow& window) {
   };
   std::vector<std::size_t> lone;
   for (std::size_t i = 0; i < window.samples.size(); ++i) {
-    const Sample& s = window.samples[i];
+    const SourceSample& s = window.samples[i];
     if (s.is_void || is_surface_cell(s.x, s.y) || is_surface_cell(s.x - 1, s.y) ||
         is_surface_cell(s.x, s.y - 1) || is_surface_cell(s.x - 1, s.y - 1)) {
       continue;

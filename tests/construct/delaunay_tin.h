@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The full TIN of points: their Delaunay triangulation.
+// The Delaunay triangulation of points in memory, all at once: what tiles (tile_delaunay.h) are held
+// against, and what small terrains of tests and benchmarks are made of.
 #pragma once
 
 #include <span>
@@ -16,12 +17,7 @@ namespace ptin {
 /// convex hull; points on the hull's edges are border vertices. Every triangle is a surface
 /// triangle.
 ///
-/// Law: the triangulation depends on the set of points alone, so tiles agree wherever a triangle's
-/// closed circumdisc lies in what each has seen. Where four or more points lie on one circle the
-/// tie is broken by the symbolic perturbation of Devillers and Teillaud (CGAL's): of points on a
-/// circle the last one in the order by x, then y, counts as outside of the circle of the others. So
-/// it is cut off as an ear, then the last of the remaining ones, and so on: a square cell is cut
-/// along its falling diagonal.
+/// Ties are broken as DelaunayTiler breaks them (engine/construct/delaunay/tile_delaunay.h).
 ///
 /// @param positions  In strictly ascending order of key_of(): sorted, all distinct, on the grid.
 /// @param heights    Beside `positions`.

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/raster/raster_mosaic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <sys/resource.h>
+
+#include "engine/construct/grid/crs.h"
+#include "engine/error.h"
+#include "engine/geometry/point.h"
+
+namespace ptin {
+namespace {
+
+/// Most files of a mosaic that one source has open at once.
+constexpr std::size_t kMostOpenFiles = 64;
+/// Descriptors left for all else: GDAL keeps up to 100 files of VRTs open, and a build has files of
+/// its own.
+constexpr std::size_t kOtherFiles = 256;
+
+/// How many files each of `sources` sources may have open, so that all of them together stay within
+/// the descriptors of the process (often 1024).
+std::size_t most_open_files(std::size_t sources) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+    return kMostOpenFiles;
+  }
+  const auto all = static_cast<std::size_t>(limit.rlim_cur);
+  const std::size_t ours = std::max(all / 2, all - std::min(all, kOtherFiles));
+  return std::clamp<std::size_t>(ours / sources, 1, kMostOpenFiles);
+}
+
+/// The parts of a step by which the samples of another file and the bounds of `bbox` may miss the
+/// grid.
+constexpr double kFileSlack = 0.01;
+constexpr double kBoundsSlack = 1e-6;
+
+/// Why `b` cannot stand beside `a` in one terrain; empty when it can.
+std::string mismatch(const RasterShape& a, const RasterShape& b, bool compare_crs) {
+  if (!a.georeferenced || !b.georeferenced) {
+    return "several rasters make one terrain only where each has a geotransform";
+  }
+  if (a.type_name != b.type_name || a.scale != b.scale || a.offset != b.offset) {
+    return "its type, scale or offset (" + b.type_name + ") is not that of the first raster (" +
+           a.type_name + "); rewrite it with 'gdal_translate -ot " + a.type_name + "'";
+  }
+  if (compare_crs && !is_same_crs(a.crs, b.crs)) {
+    return "its CRS is not that of the first raster; warp it with 'gdalwarp -t_srs', or name the "
+           "CRS of all by --a-srs";
+  }
+  const auto extent = static_cast<double>(std::max({a.width, a.height, b.width, b.height}));
+  if (std::abs(b.map.step_x / a.map.step_x - 1.0) * extent > kFileSlack ||
+      std::abs(b.map.step_y / a.map.step_y - 1.0) * extent > kFileSlack) {
+    return "its pixel size is not that of the first raster; warp it with 'gdalwarp -tr'";
+  }
+  return "";
+}
+
+/// Whole steps from `a` to `b`. Refuses the file `path`, whose origin is `b`, when their difference
+/// is not near to a whole number of steps.
+std::int64_t steps_between(double a, double b, double step, const std::string& path) {
+  const double steps = (b - a) / step;
+  if (!(std::abs(steps) <= 2.0 * kGridMax)) {
+    refuse("it lies more than 2^30 pixels from the first raster", path);
+  }
+  if (std::abs(steps - std::nearbyint(steps)) > kFileSlack) {
+    refuse(
+        "its samples lie between those of the first raster; warp it onto that grid with "
+        "'gdalwarp -tap' or '-te'",
+        path);
+  }
+  return std::llround(steps);
+}
+
+}  // namespace
+
+RasterMosaic::RasterMosaic(const std::vector<std::string>& paths, const SourceOptions& options) {
+  if (paths.empty()) {
+    refuse("no raster was named", "");
+  }
+  parts_.reserve(paths.size());
+  for (const std::string& path : paths) {
+    parts_.push_back({RasterPart(path, options.nodata)});
+    touch(parts_.back());
+    const std::string problem =
+        parts_.size() == 1 ? ""
+                           : mismatch(first(), parts_.back().part.shape(), options.a_srs.empty());
+    if (!problem.empty()) {
+      refuse(problem, path);
+    }
+  }
+  place();
+}
+
+RasterMosaic::~RasterMosaic() {
+  if (sharers_) {
+    --*sharers_;
+  }
+}
+
+RasterMosaic RasterMosaic::duplicate() {
+  RasterMosaic copy;
+  copy.map_ = map_;
+  copy.width_ = width_;
+  copy.height_ = height_;
+  copy.sharers_ = sharers_;
+  ++*copy.sharers_;
+  for (PlacedPart& p : parts_) {
+    copy.parts_.push_back({p.part.closed_copy(), p.x, p.y});
+    if (parts_.size() > 1) {  // from now on the copies read, mostly
+      p.part.close();
+    }
+  }
+  return copy;
+}
+
+std::string RasterMosaic::context() const {
+  return parts_.size() == 1
+             ? parts_[0].part.path()
+             : parts_[0].part.path() + " and " + std::to_string(parts_.size() - 1) + " more";
+}
+
+/// Gives each part its place on the common grid, whose origin is the south-western corner of all.
+void RasterMosaic::place() {
+  const AffineMap map = parts_[0].part.shape().map;
+  std::int64_t west = 0, south = 0, east = 0, north = 0;
+  for (PlacedPart& p : parts_) {
+    const RasterShape& shape = p.part.shape();
+    p.x = steps_between(map.origin_x, shape.map.origin_x, map.step_x, p.part.path());
+    p.y = steps_between(map.origin_y, shape.map.origin_y, map.step_y, p.part.path());
+    west = std::min(west, p.x);
+    south = std::min(south, p.y);
+    east = std::max(east, p.x + shape.width);
+    north = std::max(north, p.y + shape.height);
+  }
+  for (PlacedPart& p : parts_) {
+    p.x -= west;
+    p.y -= south;
+  }
+  width_ = east - west;
+  height_ = north - south;
+  const MapPoint origin = map.to_map(static_cast<double>(west), static_cast<double>(south));
+  map_ = {origin.x, origin.y, map.step_x, map.step_y};
+}
+
+void RasterMosaic::crop(const SourceOptions::Bounds& b) {
+  const auto range = [&](double low, double high, double origin, double step, std::int64_t count) {
+    if (!(std::isfinite(low) && std::isfinite(high) && low <= high)) {
+      refuse("the bounds must be finite, and each minimum at most its maximum", context());
+    }
+    const double last = static_cast<double>(count - 1);
+    const double first_step = std::ceil((low - origin) / step - kBoundsSlack);
+    const double last_step = std::floor((high - origin) / step + kBoundsSlack);
+    if (first_step > last || last_step < 0 || first_step > last_step) {
+      refuse("no sample lies in the bounds; samples reach from " + std::to_string(origin) + " to " +
+                 std::to_string(origin + step * last),
+             context());
+    }
+    return std::pair{static_cast<std::int64_t>(std::max(first_step, 0.0)),
+                     static_cast<std::int64_t>(std::min(last_step, last))};
+  };
+  const auto [x0, x1] = range(b.min_x, b.max_x, map_.origin_x, map_.step_x, width_);
+  const auto [y0, y1] = range(b.min_y, b.max_y, map_.origin_y, map_.step_y, height_);
+  for (PlacedPart& p : parts_) {
+    p.x -= x0;
+    p.y -= y0;
+  }
+  width_ = x1 - x0 + 1;
+  height_ = y1 - y0 + 1;
+  const MapPoint origin = map_.to_map(static_cast<double>(x0), static_cast<double>(y0));
+  map_.origin_x = origin.x;
+  map_.origin_y = origin.y;
+}
+
+/// Marks a part as used. Where too many parts_ are open, closes those whose last use is longest ago.
+void RasterMosaic::touch(PlacedPart& placed) {
+  placed.last_used = ++clock_;
+  std::vector<PlacedPart*> open;
+  for (PlacedPart& p : parts_) {
+    if (p.part.is_open() && &p != &placed) {
+      open.push_back(&p);
+    }
+  }
+  const std::size_t most_others = most_open_files(sharers_->load()) - 1;
+  if (open.size() <= most_others) {
+    return;
+  }
+  std::sort(open.begin(), open.end(),
+            [](const PlacedPart* a, const PlacedPart* b) { return a->last_used < b->last_used; });
+  open.resize(open.size() - most_others);
+  for (PlacedPart* p : open) {
+    p->part.close();
+  }
+}
+
+/// Reads the part of the window that `placed` covers. Its heights overwrite what is there already;
+/// its voids do not.
+template <class T>
+void RasterMosaic::overlay(PlacedPart& placed, const SampleRange& w, std::span<T> values,
+                           std::span<std::uint8_t> valid) {
+  const RasterShape& shape = placed.part.shape();
+  const std::int64_t x0 = std::max(w.x0, placed.x),
+                     x1 = std::min(w.x0 + w.width, placed.x + shape.width);
+  const std::int64_t y0 = std::max(w.y0, placed.y),
+                     y1 = std::min(w.y0 + w.height, placed.y + shape.height);
+  if (x0 >= x1 || y0 >= y1) {
+    return;
+  }
+  touch(placed);
+  const SampleRange own{x0 - placed.x, y0 - placed.y, x1 - x0, y1 - y0};
+  std::vector<T> own_values(static_cast<std::size_t>(own.width * own.height));
+  std::vector<std::uint8_t> own_valid(own_values.size());
+  placed.part.read<T>(own, own_values, own_valid);
+  std::size_t from = 0;
+  for (std::int64_t y = y0; y < y1; ++y) {
+    auto to = static_cast<std::size_t>((y - w.y0) * w.width + x0 - w.x0);
+    for (std::int64_t x = x0; x < x1; ++x, ++from, ++to) {
+      if (own_valid[from]) {
+        values[to] = own_values[from];
+        valid[to] = 1;
+      }
+    }
+  }
+}
+
+template <class T>
+void RasterMosaic::read(const SampleRange& w, std::span<T> values, std::span<std::uint8_t> valid) {
+  if (parts_.size() == 1) {
+    PlacedPart& only = parts_[0];
+    only.part.read<T>({w.x0 - only.x, w.y0 - only.y, w.width, w.height}, values, valid);
+    return;
+  }
+  std::fill(values.begin(), values.end(), T{});
+  std::fill(valid.begin(), valid.end(), std::uint8_t{0});
+  for (PlacedPart& placed : parts_) {
+    overlay(placed, w, values, valid);
+  }
+}
+
+template void RasterMosaic::read<std::int32_t>(const SampleRange&, std::span<std::int32_t>,
+                                               std::span<std::uint8_t>);
+template void RasterMosaic::read<float>(const SampleRange&, std::span<float>,
+                                        std::span<std::uint8_t>);
+template void RasterMosaic::read<double>(const SampleRange&, std::span<double>,
+                                         std::span<std::uint8_t>);
+
+}  // namespace ptin
