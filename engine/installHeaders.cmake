@@ -26,7 +26,7 @@ set(public_headers
     engine/construct/scratch/manifest.h
     engine/construct/scratch/run_merger.h
     engine/construct/scratch/workspace.h
-    engine/construct/tile/cost.h
+    engine/construct/collapse/cost.h
     engine/construct/tile/tile_tree.h
     engine/crs/crs_facts.h
     engine/crs/ground.h

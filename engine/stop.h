@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The one way in which long loops ask whether they are to stop.
+// How long loops ask whether they are to stop. (A query asks by its QueryContext.)
 #pragma once
 
 #include <cstddef>

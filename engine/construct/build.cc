@@ -41,18 +41,18 @@ void build_raster(Job& job) {
   };
   const std::int64_t side =
       job.options.tile.value_or(TileTree::default_side(source.width(), source.height()));
-  const TiledSource terrain{source.frame(), units, TileTree(source.width(), source.height(), side),
-                            make_starter};
-  const BuildPlan plan = plan_build(terrain.tree, job.plan_request({}));
+  const TiledSource tiled{source.frame(), units, TileTree(source.width(), source.height(), side),
+                          make_starter};
+  const BuildPlan plan = plan_build(tiled.tree, job.plan_request({}));
   job.tell(plan);
   if (job.resources.dry_run) {
     return;
   }
   // Of a source that is no file, this much at least can be compared.
-  began_with["size"] = {source.width(), source.height(), terrain.tree.side()};
+  began_with["size"] = {source.width(), source.height(), tiled.tree.side()};
   began_with["samples"] = source.valid_samples();
   in_workspace(job, began_with,
-               [&](Workspace& workspace) { build_tiles(workspace, job, terrain, plan); });
+               [&](Workspace& workspace) { build_tiles(workspace, job, tiled, plan); });
 }
 
 BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::string& output,

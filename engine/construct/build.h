@@ -19,7 +19,8 @@ namespace ptin {
 /// How the work is done; never changes a byte of the file.
 struct BuildResources {
   bool overwrite = false;
-  /// Hard limit on the anonymous memory of the process, bytes; 0 means default_memory().
+  /// Limit on the anonymous memory of the process, bytes, kept by measured estimates
+  /// (engine/DESIGN.md, section 5.10); 0 means default_memory().
   std::uint64_t memory_bytes = 0;
   int threads = 0;  ///< 0 means one a core. Fewer are used where memory is short.
   std::string tmp;  ///< Folder for temporary files; "" means beside the output.

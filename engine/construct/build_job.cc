@@ -189,14 +189,14 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   }
 }
 
-HierarchyOptions hierarchy_options(const Job& job, const TiledSource& terrain,
+HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
                                    const BuildPlan& plan) {
   HierarchyOptions options;
   options.collapse.cost = job.options.cost;
-  options.collapse.units = terrain.units;
+  options.collapse.units = source.units;
   options.collapse.first_pass =
-      (kFirstPassShare * job.options.max_error - terrain.frame.height_rounding) /
-      terrain.frame.heights.step;
+      (kFirstPassShare * job.options.max_error - source.frame.height_rounding) /
+      source.frame.heights.step;
   options.threads = plan.threads;
   options.memory_for_tiles = plan.memory_for_tiles;
   options.tile_bytes = plan.tile_bytes;
@@ -213,16 +213,15 @@ HierarchyOptions hierarchy_options(const Job& job, const TiledSource& terrain,
   return options;
 }
 
-void build_tiles(Workspace& workspace, Job& job, const TiledSource& terrain,
-                 const BuildPlan& plan) {
+void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan) {
   if (is_published(job, workspace)) {
     report_published(job);
     return;
   }
-  StoreOutput store(job.output, job.options, job.resources.overwrite, terrain.frame,
+  StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame,
                     job.resources.files, workspace.folder());
   const BuiltHierarchy built = build_hierarchy(
-      terrain.make_starter, terrain.tree, hierarchy_options(job, terrain, plan), workspace, store);
+      source.make_starter, source.tree, hierarchy_options(job, source, plan), workspace, store);
   job.report.lone_samples = built.lone_samples;
   job.stage("writing")(0, 1);
   workspace.append({{{"publishing", inode_of(pages_in(workspace)).value_or(0)}}});

@@ -81,11 +81,11 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
                   const std::function<void(Workspace&)>& work);
 
 /// What the tiles are built with.
-[[nodiscard]] HierarchyOptions hierarchy_options(const Job& job, const TiledSource& terrain,
+[[nodiscard]] HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
                                                  const BuildPlan& plan);
 
 /// Collapses, tightens and publishes; or sees that an interrupted build had done all of that.
-void build_tiles(Workspace& workspace, Job& job, const TiledSource& terrain, const BuildPlan& plan);
+void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan);
 
 /// Says what is expected before anything but headers and first lines is read, and refuses what
 /// cannot do. With points that may be left out it is no reason to refuse.

@@ -8,10 +8,11 @@
 
 namespace ptin {
 
-/// To be derived from; each function does nothing by default. What a function throws ends the
-/// build, as a stop does.
+/// To be derived from; each function does nothing by default. A function that throws ends the build
+/// with the error that it throws; one that is no Error is reported as `internal`.
 /// Threads: called by any thread of the build. plan() and progress() never run at once, with
-/// themselves or each other; give_back_memory() may run beside anything.
+/// themselves or each other, so a slow one delays the workers; give_back_memory() may run beside
+/// anything.
 class BuildObserver {
  public:
   BuildObserver() = default;
@@ -19,8 +20,8 @@ class BuildObserver {
   BuildObserver& operator=(const BuildObserver&) = delete;
   virtual ~BuildObserver() = default;
 
-  /// What the build expects to need, before it begins; over points and TINs once more when they
-  /// have been counted.
+  /// What the build expects to need: before it begins, and over points and TINs once more when they
+  /// have been sorted. Of a pipe only the latter, since it cannot be counted before it is read.
   virtual void plan(const BuildPlan& plan);
   /// How far it is; often.
   virtual void progress(const StageProgress& progress);

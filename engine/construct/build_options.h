@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/collapse/cost.h"
 #include "engine/construct/grid/source_options.h"
-#include "engine/construct/tile/cost.h"
 
 namespace ptin {
 
-/// Everything that decides the bytes of the file, and nothing else does.
+/// Every option that decides the bytes of the file; no other does.
 struct BuildOptions {
   CostModel cost = CostModel::kError;
   double max_error = 0.0;  ///< Leave out records with error <= this (height's unit); 0 keeps all.

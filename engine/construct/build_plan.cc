@@ -16,7 +16,8 @@ namespace ptin {
 
 namespace {
 
-// Measured on terrains of 4097 to 16385 samples a side (engine/DECISIONS.md, section 4.8), with some room.
+// Measured on terrains of 4097 to 16385 samples a side, with some room (engine/DECISIONS.md, section
+// 6.2, and bench/results/builds.md).
 constexpr double kOutputBytesOfVertex = 66.0;
 constexpr double kVerticesPerSecond = 150000.0;  ///< A thread's, both halves of the build.
 

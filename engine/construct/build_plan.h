@@ -23,7 +23,7 @@ struct BuildPlan {
   std::uint64_t vertices = 0;
   MemoryPlan memory;
   std::uint64_t memory_expected = 0;   ///< Bytes of anonymous memory, at most, by estimate.
-  std::uint64_t memory_for_tiles = 0;  ///< Of these, for all tiles in work.
+  std::uint64_t memory_for_tiles = 0;  ///< Share of `memory.limit` for all tiles in work.
   TileBytes tile_bytes;                ///< What each kind of work takes of that.
   int threads_wanted = 1;
   int threads = 1;                    ///< As many as fit.

@@ -61,17 +61,17 @@ void report_counts(BuildReport& report, const PointBuckets& points) {
 void build_points_in(Workspace& workspace, Job& job) {
   const PointBuckets points = sorted_points(job, workspace);
   report_counts(job.report, points);
-  TiledSource terrain{points.frame(),
-                      measure_units(points.frame(), job.options.void_slope),
-                      point_tree(points, job.options.tile),
-                      {}};
-  const BuildPlan plan = plan_sorted(job, terrain.tree, PointBuckets::disk_of(points.size()));
-  terrain.make_starter = [&]() -> LeafStarter {
+  TiledSource tiled{points.frame(),
+                    measure_units(points.frame(), job.options.void_slope),
+                    point_tree(points, job.options.tile),
+                    {}};
+  const BuildPlan plan = plan_sorted(job, tiled.tree, PointBuckets::disk_of(points.size()));
+  tiled.make_starter = [&]() -> LeafStarter {
     const auto starter = std::make_shared<PointTileStarter>(
-        points, terrain.tree, terrain.units, job.options.max_edge, job.resources.stop);
+        points, tiled.tree, tiled.units, job.options.max_edge, job.resources.stop);
     return [starter](const SampleRange& window) { return starter->start(window); };
   };
-  build_tiles(workspace, job, terrain, plan);
+  build_tiles(workspace, job, tiled, plan);
 }
 
 }  // namespace

@@ -52,18 +52,18 @@ void build_tin_in(Workspace& workspace, Job& job) {
   const TinTriangles triangles = sorted_triangles(job, workspace);
   job.begins_anew = false;
   report_counts(job.report, triangles);
-  TiledSource terrain{triangles.frame(),
-                      measure_units(triangles.frame(), job.options.void_slope),
-                      tin_tree(triangles, job.options.tile),
-                      {}};
+  TiledSource tiled{triangles.frame(),
+                    measure_units(triangles.frame(), job.options.void_slope),
+                    tin_tree(triangles, job.options.tile),
+                    {}};
   const BuildPlan plan =
-      plan_sorted(job, terrain.tree, TinTriangles::disk_of(triangles.counts().vertices));
-  terrain.make_starter = [&]() -> LeafStarter {
+      plan_sorted(job, tiled.tree, TinTriangles::disk_of(triangles.counts().vertices));
+  tiled.make_starter = [&]() -> LeafStarter {
     return [&](const SampleRange& window) {
-      return start_tin_tile(triangles, terrain.tree, window, terrain.units);
+      return start_tin_tile(triangles, tiled.tree, window, tiled.units);
     };
   };
-  build_tiles(workspace, job, terrain, plan);
+  build_tiles(workspace, job, tiled, plan);
 }
 
 }  // namespace

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 
-#include "engine/construct/read/tin_soup.h"
+#include <cpl_vsi.h>
+
+#include "engine/construct/read/tin_file.h"
 #include "engine/error.h"
-#include "storage/file/file_questions.h"
 
 namespace ptin {
 
@@ -49,7 +50,8 @@ const char* misfit_of(const BuildOptions& options, InputKind kind, const std::st
 /// An input that is not there is told of when it is opened.
 void check_fit(const BuildOptions& options, InputKind kind, const std::string& input) {
   const char* misfit = misfit_of(options, kind, input);
-  if (misfit != nullptr && is_there(input)) {
+  VSIStatBufL status;  // of what only GDAL knows too: archives, servers
+  if (misfit != nullptr && VSIStatL(input.c_str(), &status) == 0) {
     throw Error(ErrorCode::invalid_argument, std::string(misfit).append("; leave it out"), input);
   }
 }

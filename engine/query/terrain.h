@@ -62,7 +62,8 @@ namespace ptin {
 ///
 /// Errors that every question may throw; the header of a question names further ones:
 ///   invalid_argument    a request that means nothing
-///   resource_exhausted  the answer needs more memory than the limit; told before pages are read
+///   resource_exhausted  the answer needs more memory than the limit; what the index tells of is
+///                       told before pages are read, what results take while they grow
 ///   corruption          a page of the file is damaged, or the file changed since it was opened
 ///   io_error            the file cannot be read
 ///   cancelled           a stop was requested

@@ -150,8 +150,8 @@ TEST(HierarchyOptions, AdmitWorkersByWhatThePlanSaysOfTheSource) {
   for (const InputKind kind : {InputKind::kRaster, InputKind::kPoints, InputKind::kTin}) {
     const build_internal::Job job{inputs, output, options, resources, plan_memory(kGiB, kind), {}};
     const BuildPlan plan = plan_build(tree, job.plan_request({}));
-    const build_internal::TiledSource terrain{{}, {}, tree, {}};
-    const HierarchyOptions built = hierarchy_options(job, terrain, plan);
+    const build_internal::TiledSource source{{}, {}, tree, {}};
+    const HierarchyOptions built = hierarchy_options(job, source, plan);
     const std::uint64_t of_leaf = built.tile_bytes.of_replay(tree.side() * tree.side());
     EXPECT_EQ(of_leaf, plan.tile_bytes.of_replay(tree.side() * tree.side()));
     EXPECT_EQ(built.memory_for_tiles, plan.memory_for_tiles);

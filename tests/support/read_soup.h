@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/construct/read/tin_soup.h"
+#include "engine/construct/read/tin_file.h"
 #include "engine/error.h"
 
-namespace ptin {
+namespace ptin::test {
 
 /// A whole TIN in memory. Indices are in range; nothing else is known of them.
 struct TinSoup {
@@ -28,7 +28,7 @@ struct TinSoup {
 
 /// Keeps everything in memory. Triangles keep the ids of their corners until finish() turns them
 /// into indices.
-class SoupCollector final : public SoupSink {
+class SoupCollector final : public TinFileSink {
  public:
   explicit SoupCollector(std::string path) : path_(std::move(path)) {}
 
@@ -82,4 +82,4 @@ class SoupCollector final : public SoupSink {
   return soup.finish(std::move(facts));
 }
 
-}  // namespace ptin
+}  // namespace ptin::test

@@ -327,7 +327,7 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
   app.add_option("--nodata", options.nodata,
                  "This stored value (before scale and offset) means void; overrides the source's")
       ->type_name("V");
-  app.add_option("--resolution", options.resolution, "Points: the grid unit, in CRS units")
+  app.add_option("--resolution", options.resolution, "Points, TINs: the grid unit, in CRS units")
       ->check(CLI::PositiveNumber)
       ->type_name("R");
   app.add_option("--class", options.classes,

@@ -181,8 +181,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   const ExportMemory memory = memory_of(options);
   PartRequest request;
   if (format.make_sink != nullptr) request.region = region_of(options.region, crs.wkt);
-  request.detail.tolerance = options.detail.error;
-  request.detail.vertices = options.detail.vertices;
+  request.detail = detail_of(options.detail);
   request.limits.memory_bytes = memory.part;
   request.limits.stop = context.stop;
   const PartRefiner refiner = terrain.parts(request);

@@ -58,10 +58,8 @@ int run_highest(const HighestOptions& options, const Context& context) {
   }
   request.lowest = options.lowest;
   request.listed = options.listed;
-  request.detail.tolerance = options.detail.error;
-  request.detail.vertices = options.detail.vertices;
-  request.limits.memory_bytes = memory_limit_of(options.memory);
-  request.limits.stop = context.stop;
+  request.detail = detail_of(options.detail);
+  request.limits = limits_of(options.memory, context);
   const HighestResult result = terrain.highest(request);
   if (!context.json) {
     print_text(result, options, !terrain.store().facts().free_of_voids);

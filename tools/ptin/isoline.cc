@@ -115,8 +115,7 @@ RefinedTin refine_for_bands(const IsolineRequest& request, const LevelSet& level
                             const Terrain& terrain) {
   PartRequest part;
   if (request.window) part.region = *request.window;
-  part.detail.tolerance = request.detail.tolerance;
-  part.detail.vertices = request.detail.vertices;
+  part.detail = request.detail;
   part.limits.memory_bytes = request.limits.memory_bytes / 2;
   part.limits.stop = request.limits.stop;
   if (has_straight_border(terrain.store())) part.also = levels.crossing();
@@ -216,8 +215,7 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   if (const auto region = region_of(options.region, crs.wkt)) {
     request.window = std::get<Window>(*region);
   }
-  request.detail.tolerance = options.detail.error;
-  request.detail.vertices = options.detail.vertices;
+  request.detail = detail_of(options.detail);
   request.most_lines = options.max_lines;
   request.limits.memory_bytes = memory_limit_of(options.memory, request.limits.memory_bytes);
   request.temporary_folder = folder_for_temporaries(options);

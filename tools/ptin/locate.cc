@@ -78,10 +78,8 @@ int run_locate(const LocateOptions& options, const Context& context) {
       options.points.empty() ? std::vector<MapPoint>{{options.point[0], options.point[1]}}
                              : read_points(options.points, crs.wkt);
   LocateRequest request;
-  request.detail.tolerance = options.detail.error;
-  request.detail.vertices = options.detail.vertices;
-  request.limits.memory_bytes = memory_limit_of(options.memory);
-  request.limits.stop = context.stop;
+  request.detail = detail_of(options.detail);
+  request.limits = limits_of(options.memory, context);
   const LocateResult result = terrain.locate(points, request);
   if (!context.json) {
     print_rows(points, result);

@@ -251,10 +251,8 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   const std::vector<std::vector<MapPoint>> lines = read_lines(options.line, crs.wkt);
   ProfileRequest request;
-  request.detail.tolerance = options.detail.error;
-  request.detail.vertices = options.detail.vertices;
-  request.limits.memory_bytes = memory_limit_of(options.memory);
-  request.limits.stop = context.stop;
+  request.detail = detail_of(options.detail);
+  request.limits = limits_of(options.memory, context);
   if (const Ground ground = ground_of(crs); ground.geographic) {  // Degrees are no lengths.
     request.ground_distance = [ground](MapPoint a, MapPoint b) {
       return ground.distance(a, b) * ground.metres_per_height;

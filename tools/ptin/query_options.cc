@@ -144,6 +144,12 @@ void add_memory_option(CLI::App& app, std::string& memory) {
       ->type_name("SIZE");
 }
 
+DetailRequest detail_of(const DetailOptions& options) { return {options.error, options.vertices}; }
+
+QueryLimits limits_of(const std::string& memory, const Context& context) {
+  return {memory_limit_of(memory), context.stop};
+}
+
 std::uint64_t memory_limit_of(const std::string& memory, std::uint64_t otherwise) {
   if (!memory.empty()) return parse_bytes(memory);
   return std::min(otherwise, allowed_memory() / 4 * 3);  // as builds do by themselves

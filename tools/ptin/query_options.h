@@ -87,6 +87,11 @@ void add_memory_option(CLI::App& app, std::string& memory);
 [[nodiscard]] std::uint64_t memory_limit_of(const std::string& memory,
                                             std::uint64_t otherwise = std::uint64_t{4} << 30);
 
+/// The level of detail that --error or --vertices asks for.
+[[nodiscard]] DetailRequest detail_of(const DetailOptions& options);
+/// Memory as memory_limit_of(), and the program's stop token.
+[[nodiscard]] QueryLimits limits_of(const std::string& memory, const Context& context);
+
 /// The cost of an answer under the names of tools/API.md, "JSON".
 [[nodiscard]] nlohmann::json cost_json(const QueryCost& cost);
 

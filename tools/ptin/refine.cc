@@ -89,11 +89,9 @@ int run_refine(const RefineOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request;
   request.region = region_of(options.region, crs.wkt);
-  request.detail.tolerance = options.detail.error;
-  request.detail.vertices = options.detail.vertices;
+  request.detail = detail_of(options.detail);
   request.form = options.clip ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
-  request.limits.stop = context.stop;
-  request.limits.memory_bytes = memory_limit_of(options.memory);
+  request.limits = limits_of(options.memory, context);
   const RefinedTin refined = terrain.refine(request);
 
   const StoreFacts& facts = terrain.store().facts();

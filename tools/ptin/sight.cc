@@ -61,8 +61,7 @@ SightRequest request_of(const SightOptions& options, const Ground& ground, const
   if (options.frequency) {
     request.wavelength = kSpeedOfLight / *options.frequency / ground.metres_per_height;
   }
-  request.detail.tolerance = options.detail.error;
-  request.detail.vertices = options.detail.vertices;
+  request.detail = detail_of(options.detail);
   request.limits.memory_bytes = memory_limit_of(options.memory);
   request.budget = options.budget;
   request.verdict_only = options.verdict_only;

@@ -110,8 +110,7 @@ int run_stream(const StreamOptions& options, const Context& context) {
   request.held = held_of(options, store.facts());
   if (options.wanted.splits) request.most_splits = *options.wanted.splits;
   request.metadata = metadata_for(store, options.wanted);
-  request.limits.stop = context.stop;
-  request.limits.memory_bytes = memory_limit_of(options.memory);
+  request.limits = limits_of(options.memory, context);
   const StreamSummary summary = send(options, terrain, request);
   if (context.json) {
     print_json({{"output", options.output},

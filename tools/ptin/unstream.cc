@@ -79,7 +79,7 @@ class Receiver {
     bool begun = false;
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
       begun = true;
-      stop_if_asked(context.stop, "receiving");
+      stop_if_asked(context.stop, "receiving", path);
       for (std::span<const std::byte> rest(buffer.data(), n); !rest.empty();) {
         rest = rest.subspan(isolines_ != nullptr ? reader_.feed_frame(rest) : reader_.feed(rest));
         if (isolines_ != nullptr) isolines_->follow(reader_);

@@ -199,8 +199,7 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   request.ground_per_map_x = per_unit.x;
   request.ground_per_map_y = per_unit.y;
   request.pixel_size = options.pixel_size;
-  request.detail.tolerance = options.detail.error;
-  request.detail.vertices = options.detail.vertices;
+  request.detail = detail_of(options.detail);
   request.limits.stop = context.stop;
   request.limits.memory_bytes = request_memory(options);
   request.radius =

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/construct/tile/cost.h"
+#include "engine/construct/collapse/cost.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/point.h"
 #include "engine/mesh/tin.h"

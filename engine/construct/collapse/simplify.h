@@ -8,7 +8,7 @@
 #include <functional>
 #include <stop_token>
 
-#include "engine/construct/tile/cost.h"
+#include "engine/construct/collapse/cost.h"
 #include "engine/construct/tile/full_surface.h"
 #include "engine/construct/tile/tile.h"
 

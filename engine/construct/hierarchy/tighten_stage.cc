@@ -223,7 +223,7 @@ void TightenStage::take_up(const Batch& batch) {
 }
 
 void TightenStage::report(std::uint64_t samples) {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(report_mutex_);
   samples_done_ += samples;
   ++leaves_done_;
   if (options_.progress) {

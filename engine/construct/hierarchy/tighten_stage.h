@@ -67,8 +67,9 @@ class TightenStage final : public PieceSource {
   std::size_t next_batch_, turn_;  ///< The next to be handed out; the next whose result is taken.
   std::map<std::size_t, Replayed> waiting_;  ///< Results of batches after turn_.
   std::map<TileId, Open> open_;              ///< The segments on one path from the root.
-  std::mutex mutex_;                         ///< Guards what follows.
+  std::mutex mutex_;                         ///< Guards files_.
   std::map<TileId, std::weak_ptr<const SegmentFile>> files_;  ///< Mapped while somebody reads them.
+  std::mutex report_mutex_;  ///< Guards what follows, and calls of options_.progress.
   std::uint64_t samples_done_ = 0, leaves_done_ = 0;
 };
 

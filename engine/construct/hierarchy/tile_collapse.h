@@ -9,9 +9,9 @@
 #include <stop_token>
 #include <vector>
 
+#include "engine/construct/collapse/cost.h"
 #include "engine/construct/hierarchy/segment.h"
 #include "engine/construct/hierarchy/tile_push.h"
-#include "engine/construct/tile/cost.h"
 #include "engine/construct/tile/started_tile.h"
 #include "engine/construct/tile/tile_tree.h"
 

@@ -46,13 +46,12 @@ class TextPoints final : public PointStream {
 
 /// @throws Error invalid_argument  a choice means nothing for the format of the file
 void check_choice(const std::string& path, const PointChoice& choice, PointFormat format) {
-  const bool wants_layer = !choice.layer.empty() || !choice.z_field.empty();
-  if (!choice.classes.empty() && (wants_layer || format != PointFormat::kLas)) {
+  if (!choice.classes.empty() && (wants_layer(choice) || format != PointFormat::kLas)) {
     throw Error(ErrorCode::invalid_argument,
                 "only LAS has classes; leave the choice of classes out, or build LAS files alone",
                 path);
   }
-  if (format == PointFormat::kLas && wants_layer) {
+  if (format == PointFormat::kLas && wants_layer(choice)) {
     throw Error(ErrorCode::invalid_argument,
                 "LAS has no layers and attributes; leave --layer and --z-field out", path);
   }

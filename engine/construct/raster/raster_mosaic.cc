@@ -174,7 +174,7 @@ void RasterMosaic::crop(const SourceOptions::Bounds& b) {
   map_.origin_y = origin.y;
 }
 
-/// Marks a part as used. Where too many parts_ are open, closes those whose last use is longest ago.
+/// Marks a part as used. Where too many parts are open, closes those whose last use is longest ago.
 void RasterMosaic::touch(PlacedPart& placed) {
   placed.last_used = ++clock_;
   std::vector<PlacedPart*> open;

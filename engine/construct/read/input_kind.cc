@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "engine/construct/read/ogr_points.h"
-#include "engine/construct/read/tin_soup.h"
+#include "engine/construct/read/tin_file.h"
 
 namespace ptin {
 namespace {
@@ -33,12 +33,11 @@ bool is_text(const std::string& path) {
          name.ends_with(".tsv");
 }
 
-/// True when the caller wants a layer of OGR's, whatever the file's name says.
-bool wants_layer(const PointChoice& choice) {
+}  // namespace
+
+bool wants_layer(const PointChoice& choice) noexcept {
   return !choice.layer.empty() || !choice.z_field.empty();
 }
-
-}  // namespace
 
 bool is_packed(const std::string& path) { return lower_case(path).ends_with(kPacked); }
 

@@ -30,6 +30,9 @@ enum class PointFormat : std::uint8_t { kLas, kText, kTin, kLayer };
 /// raster; else it is a raster. Cost: opens the file where neither name nor choice tells.
 [[nodiscard]] InputKind kind_of_input(const std::string& path, const PointChoice& choice);
 
+/// True when the caller wants a layer of OGR's or one of its attributes, whatever the name says.
+[[nodiscard]] bool wants_layer(const PointChoice& choice) noexcept;
+
 /// The format in which the points of an input are read, by its name. Files of text are read as
 /// layers where `choice` names a layer or an attribute. A raster too counts as a layer; opening it
 /// as one fails. No file is opened.

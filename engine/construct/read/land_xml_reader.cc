@@ -23,7 +23,7 @@ constexpr std::uint64_t kLongestToken = 1U << 20;  // bytes without an event
 /// Gathers the chosen surface. Errors are kept and thrown outside of expat, which is C.
 class LandXml {
  public:
-  LandXml(ByteReader& in, const TinReading& reading, SoupSink& sink)
+  LandXml(ByteReader& in, const TinReading& reading, TinFileSink& sink)
       : in_(in), reading_(reading), tin_(in, reading, sink), parser_(XML_ParserCreate(nullptr)) {
     if (!parser_) {
       throw Error(ErrorCode::resource_exhausted, "no memory for a parser", in.path());
@@ -249,7 +249,7 @@ class LandXml {
 
 }  // namespace
 
-TinFileFacts read_land_xml(ByteReader& in, const TinReading& reading, SoupSink& sink) {
+TinFileFacts read_land_xml(ByteReader& in, const TinReading& reading, TinFileSink& sink) {
   return LandXml(in, reading, sink).read();
 }
 

@@ -22,7 +22,7 @@ std::int64_t corner_of_word(std::string_view word, std::uint64_t vertices,
 
 }  // namespace
 
-TinFileFacts read_obj(ByteReader& in, const TinReading& reading, SoupSink& sink) {
+TinFileFacts read_obj(ByteReader& in, const TinReading& reading, TinFileSink& sink) {
   TinReceiver tin(in, reading, sink);
   std::string_view line;
   std::vector<std::string_view> words;

@@ -368,7 +368,7 @@ void check_counts(const Header& header, const ByteReader& in) {
 
 }  // namespace
 
-TinFileFacts read_ply(ByteReader& in, const TinReading& reading, SoupSink& sink) {
+TinFileFacts read_ply(ByteReader& in, const TinReading& reading, TinFileSink& sink) {
   const Header header = HeaderReader(in).read();
   check_counts(header, in);
   TinReceiver tin(in, reading, sink);

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/construct/grid/source_point.h"
-#include "engine/construct/read/tin_soup.h"
+#include "engine/construct/read/tin_file.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -21,7 +21,7 @@ constexpr double kBytesOfVertex = 32.0;
 constexpr double kBytesOfTriangle = 5.0;
 
 /// Counts vertices and triangles, and the bytes of the file that each kind takes.
-class CountingSink final : public SoupSink {
+class CountingSink final : public TinFileSink {
  public:
   explicit CountingSink(const ByteReader& in) : in_(in) {}
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/construct/grid/source_point.h"
-#include "engine/construct/read/tin_soup.h"
+#include "engine/construct/read/tin_file.h"
 
 namespace ptin {
 
@@ -33,7 +33,7 @@ void split_words(std::string_view line, std::vector<std::string_view>& words);
 /// it is made of.
 class TinReceiver {
  public:
-  TinReceiver(const ByteReader& in, const TinReading& reading, SoupSink& sink)
+  TinReceiver(const ByteReader& in, const TinReading& reading, TinFileSink& sink)
       : in_(in), reading_(reading), sink_(sink) {}
 
   void expect_vertices(std::uint64_t count) { sink_.expect_vertices(count); }
@@ -69,7 +69,7 @@ class TinReceiver {
 
   const ByteReader& in_;
   const TinReading& reading_;
-  SoupSink& sink_;
+  TinFileSink& sink_;
   TinFileFacts facts_;
   std::uint64_t added_ = 0;
 };

@@ -37,7 +37,7 @@ void read_card(const ByteReader& in, const std::vector<std::string_view>& words,
 
 }  // namespace
 
-TinFileFacts read_two_dm(ByteReader& in, const TinReading& reading, SoupSink& sink) {
+TinFileFacts read_two_dm(ByteReader& in, const TinReading& reading, TinFileSink& sink) {
   TinReceiver tin(in, reading, sink);
   std::string_view line;
   std::vector<std::string_view> words;

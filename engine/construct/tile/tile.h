@@ -8,7 +8,6 @@
 #include <limits>
 #include <vector>
 
-#include "engine/construct/tile/cost.h"
 #include "engine/construct/tile/sample_lists.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/height.h"

@@ -29,7 +29,7 @@ using NameSorter = ExternalSorter<NamedCorner, ByName>;
 using NumberSorter = ExternalSorter<std::uint64_t, std::less<>>;
 
 /// What the reader finds, to be sorted.
-class NameSink final : public SoupSink {
+class NameSink final : public TinFileSink {
  public:
   NameSink(const ExternalMemory& memory, const std::stop_token& stop)
       : vertices(memory, "vertices", stop), corners(memory, "corners", stop) {}

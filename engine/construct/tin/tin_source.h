@@ -51,7 +51,7 @@ class TinTriangles {
  public:
   using Progress = std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)>;
 
-  /// Reads one TIN once. Which formats there are, read/tin_soup.h says.
+  /// Reads one TIN once. Which formats there are, read/tin_file.h says.
   /// @param keep_as  The triangles stay in kept_files(keep_as), which must not exist, so that
   ///                 load() can take them up; "" keeps them in files without names.
   /// @throws Error  as read_tin_file()

@@ -87,7 +87,7 @@ class Search {
   }
 
   HighestResult run() {
-    const Detail detail(request_.detail, terrain_.records(), context_);
+    const Detail detail(request_.detail, terrain_.record_source(), context_);
     HighestResult result;
     result.certified_error = detail.certificate().error;
     result.certified_deviation = detail.certificate().deviation;
@@ -206,8 +206,7 @@ class Search {
     }
     gatherer.reserve_told(keys.size());
     LocateRequest request;
-    request.detail.tolerance = request_.detail.tolerance;
-    request.detail.vertices = request_.detail.vertices;
+    request.detail = request_.detail;
     request.limits.memory_bytes = context_.left_beside(
         gatherer.held_bytes() + best.capacity() * sizeof(HighCandidate) +
         keys.capacity() * sizeof(VertexKey) + points.capacity() * sizeof(MapPoint));

@@ -43,8 +43,8 @@ class Locating {
         facts_(terrain.store().facts()),
         request_(request),
         context_(request.limits, terrain.store().path()),
-        detail_(detail != nullptr ? *detail : Detail(request.detail, terrain.records(), context_)) {
-  }
+        detail_(detail != nullptr ? *detail
+                                  : Detail(request.detail, terrain.record_source(), context_)) {}
 
   LocateResult run(std::span<const MapPoint> points) {
     result_.points.resize(points.size());

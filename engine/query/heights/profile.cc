@@ -183,7 +183,7 @@ class Profiling {
       : terrain_(terrain),
         request_(request),
         context_(request.limits, terrain.store().path()),
-        detail_(request.detail, terrain.records(), context_),
+        detail_(request.detail, terrain.record_source(), context_),
         refinement_(terrain.t0()) {}
 
   ProfileResult run(std::span<const std::span<const MapPoint>> lines) {

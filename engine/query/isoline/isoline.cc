@@ -31,7 +31,7 @@ class IsolineExtraction {
         request_(request),
         levels_(request.levels, store_.facts().heights),
         context_(request.limits, store_.path()),
-        detail_(request.detail, terrain.records(), context_),
+        detail_(request.detail, terrain.record_source(), context_),
         result_(PointStore(request.limits.memory_bytes / 8, request.temporary_folder)) {
     std::vector<PredicatePtr> parts{levels_.crossing()};
     if (request.window) {

@@ -40,9 +40,7 @@ struct IsolineChange {
 class ProgressiveIsolines {
  public:
   /// A context with a limit of 4 GiB and without a stop token.
-  [[nodiscard]] static QueryContext any_context() {
-    return {{.memory_bytes = std::uint64_t{4} << 30}, ""};
-  }
+  [[nodiscard]] static QueryContext any_context() { return {{}, ""}; }
 
   /// Begins with the isolines of `tin` as it is, for example T0. `tin` is not kept.
   /// @param context  Kept. Its limit is for bytes(), asked for before memory is taken; its stop

@@ -21,7 +21,7 @@ namespace {
 
 Detail detail_of(const PartRequest& request, const OpenedTerrain& terrain) {
   QueryContext context(request.limits, terrain.store().path());
-  return Detail(request.detail, terrain.records(), context);
+  return Detail(request.detail, terrain.record_source(), context);
 }
 
 PredicatePtr wanted_by(const PartRequest& request, const Detail& detail, const StoreFacts& facts) {
@@ -118,7 +118,7 @@ std::uint64_t PartRefiner::bytes_for(const GridBox& box) const {
   const StoreFile& store = terrain_.store();
   std::vector<PageId> pages;
   IoCounters counters;
-  store.index().search(*all_of({wanted_, std::make_shared<MeetsBox>(box)}), pages, counters);
+  terrain_.index().search(*all_of({wanted_, std::make_shared<MeetsBox>(box)}), pages, counters);
   return t0_bytes_ + refinement_bytes(most_records(store, pages));
 }
 
@@ -127,14 +127,15 @@ RefinedTin PartRefiner::refine(const GridBox& box) const {
   const StoreFile& store = terrain_.store();
   QueryContext context(request_.limits, store.path());
   const PredicatePtr in_box = all_of({wanted_, std::make_shared<MeetsBox>(box)});
-  std::vector<PendingSplit> splits = retrieve(terrain_.records(), *in_box, t0_bytes_, context);
+  std::vector<PendingSplit> splits =
+      retrieve(terrain_.record_source(), *in_box, t0_bytes_, context);
   detail_.keep(splits);
   Refinement refinement(terrain_.t0());
   refinement.apply(splits, context);
   store.pages().check_unchanged();
   RefinedTin result;
   result.tin = refinement.release_tin();
-  complete(result, terrain_, detail_.certificate(), context, start);
+  fill_in_facts(result, terrain_, detail_.certificate(), context, start);
   return result;
 }
 

@@ -56,7 +56,7 @@ class PartRefiner {
   [[nodiscard]] const PartRequest& request() const noexcept { return request_; }
 
  private:
-  const OpenedTerrain& terrain_;
+  OpenedTerrain terrain_;
   PartRequest request_;
   Detail detail_;
   PredicatePtr wanted_;  ///< Region, tolerance and `also`.

@@ -67,8 +67,8 @@ Selection select(const RefineRequest& request, const RecordSource& source,
 
 }  // namespace
 
-void complete(RefinedTin& result, const OpenedTerrain& terrain, const Certificate& certificate,
-              const QueryContext& context, std::chrono::steady_clock::time_point begin) {
+void fill_in_facts(RefinedTin& result, const OpenedTerrain& terrain, const Certificate& certificate,
+                   const QueryContext& context, std::chrono::steady_clock::time_point begin) {
   result.vertices = result.tin.vertices.size();
   result.triangles = result.tin.triangles.size();
   result.void_vertices = static_cast<std::uint64_t>(
@@ -86,7 +86,8 @@ RefinedTin refine(const OpenedTerrain& terrain, const RefineRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   const StoreFile& store = terrain.store();
   QueryContext context(request.limits, store.path());
-  const Selection selection = select(request, terrain.records(), bytes_of(terrain.t0()), context);
+  const Selection selection =
+      select(request, terrain.record_source(), bytes_of(terrain.t0()), context);
 
   Refinement refinement(terrain.t0(), request.page_of_triangle);
   refinement.apply(selection.splits, context);
@@ -99,7 +100,7 @@ RefinedTin refine(const OpenedTerrain& terrain, const RefineRequest& request) {
   }
   store.pages().check_unchanged();
 
-  complete(result, terrain, selection.certificate, context, start);
+  fill_in_facts(result, terrain, selection.certificate, context, start);
   return result;
 }
 

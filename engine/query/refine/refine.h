@@ -74,7 +74,7 @@ struct RefinedTin {
 /// Completes a result of which only the mesh is there: counts its parts, and fills in certificate
 /// and cost. For callers that refine in another way and answer with the same result.
 /// @param begin  When the question was asked.
-void complete(RefinedTin& result, const OpenedTerrain& terrain, const Certificate& certificate,
-              const QueryContext& context, std::chrono::steady_clock::time_point begin);
+void fill_in_facts(RefinedTin& result, const OpenedTerrain& terrain, const Certificate& certificate,
+                   const QueryContext& context, std::chrono::steady_clock::time_point begin);
 
 }  // namespace ptin

@@ -32,7 +32,7 @@ class OpenedTerrain {
     return index_ ? *index_ : store_->index();
   }
   /// The store and the index in use, borrowed from this object.
-  [[nodiscard]] RecordSource records() const noexcept { return {*store_, index()}; }
+  [[nodiscard]] RecordSource record_source() const noexcept { return {*store_, index()}; }
 
   /// Uses `index` instead of the packed R-tree, for tests and `--index spatialindex`; the answers
   /// are the same. Null: the packed R-tree again. Not thread-safe.

@@ -10,8 +10,9 @@ namespace ptin {
 
 /// How much a question may take, and how it is stopped.
 struct QueryLimits {
-  /// Most bytes that the question may hold: records, mesh and results. The need is known from the
-  /// index before a page is read, and a question that needs more is refused (resource_exhausted).
+  /// Most bytes that the question may hold: records, mesh and results. Records and mesh are known
+  /// from the index before a page is read, results as they grow; a question that needs more is
+  /// refused (resource_exhausted).
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
   std::stop_token stop{};  ///< Looked at in every long loop.
 };

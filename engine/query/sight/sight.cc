@@ -107,7 +107,7 @@ class SightSolver::Impl {
   [[nodiscard]] SightPoint point_at(const SightPair& pair, const SightView& view, double share,
                                     double length) const;
 
-  const OpenedTerrain& terrain_;
+  const OpenedTerrain terrain_;
   SightRequest request_;
   StoreFacts store_facts_;
   SightFacts facts_;
@@ -130,7 +130,7 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   check(request_);
   const StoreFile& store = terrain.store();
   QueryContext context(request_.limits, store.path());
-  detail_ = Detail(request_.detail, terrain.records(), context);
+  detail_ = Detail(request_.detail, terrain.record_source(), context);
   facts_.tolerance = detail_.tolerance();
   facts_.is_level_asked = detail_.is_asked();
   facts_.heights = store_facts_.heights;
@@ -147,7 +147,7 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   step_ =
       std::max(range / 4096,
                store_facts_.heights.type == HeightType::int32 ? store_facts_.heights.step : 0.0);
-  base_.emplace(terrain, detail_);
+  base_.emplace(terrain_, detail_);
   if (base_records > 0) {
     facts_.base_deviation = error_of_first(store, base_records);
     base_->refine(DeviationAbove(facts_.base_deviation, facts_.tolerance), context);
@@ -264,8 +264,7 @@ void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& resul
     return;
   }
   LocateRequest request;  // no level of detail: the ground below ends is always exact
-  request.limits.memory_bytes = request_.limits.memory_bytes;
-  request.limits.stop = request_.limits.stop;
+  request.limits = request_.limits;
   const LocateResult located = locate(terrain_, {&pair.a, 1}, request);
   const LocatedPoint& ground = located.points[0];
   result.cost = located.cost;

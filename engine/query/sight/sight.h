@@ -97,7 +97,7 @@ struct SightResult {
 /// several solvers may work over one terrain.
 class SightSolver {
  public:
-  /// @param terrain       Borrowed for the life of the solver.
+  /// @param terrain       A copy of it is kept, which shares the file.
   /// @param base_records  About how many records the coarse mesh has. More of them decide more
   ///                      lines without reading, but each line walks farther. 0: none, best for one
   ///                      pair.

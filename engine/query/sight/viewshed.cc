@@ -122,7 +122,7 @@ class ViewshedSearch {
       : store_(terrain.store()),
         request_(request),
         context_(request.limits, store_.path()),
-        detail_(request.detail, terrain.records(), context_),
+        detail_(request.detail, terrain.record_source(), context_),
         mesh_(terrain, detail_),
         left_out_(deviation_of_left_out(store_.facts())) {}
 

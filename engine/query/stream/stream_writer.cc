@@ -114,7 +114,7 @@ class Writer {
         store_(terrain.store()),
         request_(request),
         sink_(sink),
-        source_(terrain.records()),
+        source_(terrain.record_source()),
         context_(request.limits, store_.path()),
         code_(store_.facts().heights.type) {}
 

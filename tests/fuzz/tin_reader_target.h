@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "engine/construct/read/tin_soup.h"
+#include "engine/construct/read/tin_file.h"
 #include "engine/error.h"
 #include "tests/support/read_soup.h"
 
@@ -19,7 +19,7 @@ namespace ptin::fuzz {
 inline int fuzz_reader(TinReader& read, const std::uint8_t* data, std::size_t size) {
   ByteReader in("fuzz", std::string(reinterpret_cast<const char*>(data), size));
   try {
-    const TinSoup soup = read_soup(read, in, {});
+    const test::TinSoup soup = test::read_soup(read, in, {});
     for (const auto& t : soup.triangles) {
       for (const std::uint32_t v : t) {
         if (v >= soup.vertices.size()) std::abort();

@@ -19,12 +19,12 @@
 namespace ptin {
 
 /// Takes what a reader finds, in the order of the file.
-class SoupSink {
+class TinFileSink {
  public:
-  SoupSink() = default;
-  SoupSink(const SoupSink&) = delete;
-  SoupSink& operator=(const SoupSink&) = delete;
-  virtual ~SoupSink() = default;
+  TinFileSink() = default;
+  TinFileSink(const TinFileSink&) = delete;
+  TinFileSink& operator=(const TinFileSink&) = delete;
+  virtual ~TinFileSink() = default;
 
   /// The number of vertices that the header of the file announces. Not called for formats that have
   /// no such header.
@@ -65,10 +65,10 @@ struct TinReading {
 ///                cancelled           `reading.stop` fired
 ///                and what the sink throws
 /// Memory: some hundred KiB, whatever the file's size.
-TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink);
+TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, TinFileSink& sink);
 
 // The readers. The source of each says what it reads of its format.
-using TinReader = TinFileFacts(ByteReader& in, const TinReading& reading, SoupSink& sink);
+using TinReader = TinFileFacts(ByteReader& in, const TinReading& reading, TinFileSink& sink);
 TinReader read_ply, read_obj, read_two_dm, read_land_xml;
 /// The reader for a name's extension.  @throws Error invalid_argument  there is none
 [[nodiscard]] TinReader& tin_reader_of(const std::string& path);

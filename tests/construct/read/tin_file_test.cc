@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The readers of PLY, OBJ, 2DM and LandXML: what they take and what they refuse.
-#include "engine/construct/read/tin_soup.h"
+#include "engine/construct/read/tin_file.h"
 
 #include <cstring>
 
@@ -12,6 +12,9 @@
 
 namespace ptin {
 namespace {
+
+using test::read_soup;
+using test::TinSoup;
 
 using Reader = TinReader*;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/read/tin_soup.h"
+#include "engine/construct/read/tin_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -56,7 +56,7 @@ TinReader& tin_reader_of(const std::string& path) {
   return *format->read;
 }
 
-TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, SoupSink& sink) {
+TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, TinFileSink& sink) {
   TinReader& read = tin_reader_of(path);
   ByteReader in(path);
   return read(in, reading, sink);
