@@ -13,24 +13,28 @@ namespace ptin {
 namespace {
 
 const char* misfit_of_raster(const BuildOptions& o) {
-  if (o.resolution) return "--resolution is for points and TINs, and this is a raster";
-  if (!o.classes.empty()) return "--class is for LAS, and this is a raster";
-  if (o.repair) return "--repair is for TINs, and this is a raster";
-  if (o.max_edge) return "--max-edge is for points, and this is a raster";
+  if (o.resolution)
+    return "--resolution is for points and TINs, and this is a raster; leave it out";
+  if (!o.classes.empty()) return "--class is for LAS, and this is a raster; leave it out";
+  if (o.repair) return "--repair is for TINs, and this is a raster; leave it out";
+  if (o.max_edge) return "--max-edge is for points, and this is a raster; leave it out";
   return nullptr;
 }
 
 const char* misfit_of_points(const BuildOptions& o) {
-  return o.repair ? "--repair is for TINs, and these are points" : nullptr;
+  return o.repair ? "--repair is for TINs, and these are points; leave it out" : nullptr;
 }
 
 const char* misfit_of_tin(const BuildOptions& o, const std::string& input) {
-  if (!o.classes.empty()) return "--class is for LAS, and this is a TIN";
-  if (!o.z_field.empty()) return "--z-field is for points, and this is a TIN";
+  if (!o.classes.empty()) return "--class is for LAS, and this is a TIN; leave it out";
+  if (!o.z_field.empty()) return "--z-field is for points, and this is a TIN; leave it out";
   if (!o.layer.empty() && !may_have_surfaces(input))
-    return "--layer is for points and for the surfaces of LandXML, and this is another TIN";
+    return "--layer is for points and for the surfaces of LandXML, and this is another TIN; leave "
+           "it out";
+  if (o.bbox && !o.repair)
+    return "a TIN is not cut by --bbox; build it whole, then refine or export a window";
   if (o.max_edge && !o.repair)
-    return "--max-edge is for points, and for TINs with --repair, and this is a TIN";
+    return "--max-edge is for points, and for TINs with --repair, and this is a TIN; leave it out";
   return nullptr;
 }
 
@@ -52,7 +56,7 @@ void check_fit(const BuildOptions& options, InputKind kind, const std::string& i
   const char* misfit = misfit_of(options, kind, input);
   VSIStatBufL status;  // of what only GDAL knows too: archives, servers
   if (misfit != nullptr && VSIStatL(input.c_str(), &status) == 0) {
-    throw Error(ErrorCode::invalid_argument, std::string(misfit).append("; leave it out"), input);
+    throw Error(ErrorCode::invalid_argument, misfit, input);
   }
 }
 

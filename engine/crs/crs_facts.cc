@@ -37,10 +37,6 @@ void add_vertical(const OGRSpatialReference& srs, CrsFacts& facts) {
 
 }  // namespace
 
-nlohmann::json units_json(const CrsFacts& crs) {
-  return {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}};
-}
-
 CrsFacts crs_facts(const std::string& wkt) {
   CrsFacts facts;
   facts.wkt = wkt;

@@ -28,9 +28,6 @@ struct CrsFacts {
   }
 };
 
-/// The object `units` of every answer: {"horizontal", "height"}.
-[[nodiscard]] nlohmann::json units_json(const CrsFacts& crs);
-
 /// The facts of a WKT text. Of a text that GDAL does not understand: facts that hold the text
 /// alone.
 [[nodiscard]] CrsFacts crs_facts(const std::string& wkt);

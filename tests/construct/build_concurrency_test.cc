@@ -49,7 +49,12 @@ void expect_same_bytes_with_more_threads(const std::string& input, const BuildOp
     std::uint64_t reports = 0;
     oracle::ToldBuild told;
     resources.observer = &told;
-    told.on_stage = [&](const char*, std::uint64_t, std::uint64_t) { ++reports; };
+    std::atomic<bool> is_told{false};
+    told.on_stage = [&](const char*, std::uint64_t, std::uint64_t) {
+      EXPECT_FALSE(is_told.exchange(true)) << "told by two threads at once";
+      ++reports;
+      is_told = false;
+    };
     build({input}, output, options, resources);
     EXPECT_GT(reports, 10U);
     const std::string bytes = oracle::bytes_of(output);

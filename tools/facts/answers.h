@@ -7,12 +7,18 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 
 namespace ptin::tools {
 
 [[nodiscard]] inline nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+/// The object `units` of every answer.
+[[nodiscard]] inline nlohmann::json units_json(const CrsFacts& crs) {
+  return {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}};
 }
 
 [[nodiscard]] constexpr const char* name_of(PointState s) noexcept {

@@ -13,6 +13,7 @@
 #include "tools/error_status.h"
 #include "tools/export/raster_export.h"
 #include "tools/export/tin_sink.h"
+#include "tools/facts/answers.h"
 #include "tools/facts/human.h"
 #include "tools/output/file_name.h"
 #include "tools/output/output_file.h"

@@ -12,6 +12,7 @@
 #include "engine/query/terrain.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
+#include "tools/facts/answers.h"
 #include "tools/facts/counts.h"
 #include "tools/facts/human.h"
 #include "tools/formats/vector_file.h"

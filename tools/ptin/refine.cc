@@ -7,6 +7,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "tools/error_status.h"
+#include "tools/facts/answers.h"
 #include "tools/facts/human.h"
 #include "tools/formats/mesh_writer.h"
 #include "tools/ptin/mesh_crs.h"

@@ -9,6 +9,7 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 #include "tools/error_status.h"
+#include "tools/facts/answers.h"
 #include "tools/facts/counts.h"
 #include "tools/facts/human.h"
 #include "tools/output/output_file.h"

@@ -14,6 +14,7 @@
 #include "engine/query/terrain.h"
 #include "engine/stop.h"
 #include "tools/error_status.h"
+#include "tools/facts/answers.h"
 #include "tools/facts/human.h"
 #include "tools/formats/mesh_writer.h"
 #include "tools/ptin/mesh_crs.h"
