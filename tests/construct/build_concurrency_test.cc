@@ -2,6 +2,7 @@
 //
 // Builds by several workers give the bytes of one worker. Small, so that a thread sanitizer can
 // watch.
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <string>
