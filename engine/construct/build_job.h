@@ -38,18 +38,22 @@ struct Job {
   const BuildResources& resources;
   const MemoryPlan memory;  ///< Made once, with the kind of source that it is for.
   BuildReport report;
-  /// While nothing is done that a resumed build would not do again: an error then leaves no folder.
+  /// True while a resumed build would do all of the work again: an error then leaves no folder
+  /// behind.
   bool begins_anew = false;
 
+  /// The layer that files are written through: the caller's, or the system's.
   [[nodiscard]] FileLayer& files() const;
-  /// What a plan is made for.
+  /// The request for the plan of this job.
+  /// @param disk  What its source takes of the disk.
   [[nodiscard]] PlanRequest plan_request(const SourceDisk& disk) const;
+  /// Hands a plan, or progress, to the observer; does nothing where there is none.
   void tell(const BuildPlan& plan) const;
   void tell(const StageProgress& progress) const;
-  /// A stage of the observer's progress.
+  /// A function that tells the observer how far the stage `name` is. Borrows the job.
   [[nodiscard]] std::function<void(std::uint64_t done, std::uint64_t total)> stage(
       const char* name) const;
-  /// All stages of it, by name.
+  /// The same for stages that are named in each call.
   [[nodiscard]] std::function<void(const char* name, std::uint64_t done, std::uint64_t total)>
   stages() const;
   [[nodiscard]] SourceOptions source_options() const;
@@ -63,20 +67,23 @@ struct TiledSource {
   std::function<LeafStarter()> make_starter;  ///< Called once for each thread.
 };
 
-/// What is being handled, as an Error: what libraries throw, and the caller's own functions.
-/// To be called while an exception is handled.
+/// The exception that is being handled, as an Error: of this library, of others, or of a function of
+/// the caller's. REQUIRES: an exception is being handled.
 [[nodiscard]] Error error_in_flight();
 
-/// The same error, and that the work in `folder` can be gone on with.
+/// The same error, whose message also says that the work in `folder` is kept, and by which option
+/// a build goes on with it.
 [[nodiscard]] Error with_resume_hint(const Error& error, const std::string& folder);
 
-/// What decides the bytes of the output, that its inputs are still the ones it began with, and the
-/// program, whose temporary files another version may not understand. To be taken before anything
-/// is read: a file that is replaced meanwhile is another one then.
+/// What a resumed build must agree with: the options that decide the bytes of the output; names,
+/// sizes and times of the inputs; and the version of the program, since another one may not
+/// understand its temporary files. To be taken before anything is read, so that an input that is
+/// replaced meanwhile is seen to be another one.
 [[nodiscard]] nlohmann::json fingerprint(const Job& job);
 
-/// Opens the job's workspace, works in it, and removes it, or keeps it where there is work to go on
-/// with: the error says so then. @throws Error as Workspace, and what `work` throws
+/// Opens the job's workspace, calls `work` in it, and removes it. After an error the workspace is
+/// kept where a resumed build could go on with it, and the error then says so (with_resume_hint()).
+/// @throws Error as Workspace, and what `work` throws
 void in_workspace(Job& job, const nlohmann::json& fingerprint,
                   const std::function<void(Workspace&)>& work);
 
@@ -84,28 +91,34 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
 [[nodiscard]] HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
                                                  const BuildPlan& plan);
 
-/// Collapses, tightens and publishes; or sees that an interrupted build had done all of that.
+/// Collapses all tiles, tightens them and publishes the file. Where an interrupted build had
+/// published it already, only reports it.
+/// @throws Error as build_hierarchy() and StoreOutput
 void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan);
 
-/// Says what is expected before anything but headers and first lines is read, and refuses what
-/// cannot do. With points that may be left out it is no reason to refuse.
-/// @param disk_of  What the source takes.
+/// Plans a build over points or a TIN from the headers and first lines of its inputs, tells the
+/// observer, and refuses a build that the memory or the disk cannot hold. A source of which any
+/// part may be left out (by class, bounds or nodata) is never refused here, nor is a pipe, which is
+/// not looked into.
+/// @param disk_of  What the source takes of the disk, given how many points it has.
 /// @throws Error as count_points() and plan_build()
 void plan_before_reading(const Job& job,
                          const std::function<SourceDisk(const PointCount&)>& disk_of);
 
-/// Of a source that is sorted on disk: the index that an interrupted build noted under `key`; none
-/// where it had not got so far.
+/// The index of a source that an interrupted build had sorted on disk and noted under `key`; none
+/// where that build had not got so far.
 [[nodiscard]] std::optional<ArrayFileFacts> kept_index(const Workspace& workspace,
                                                        const std::string& key);
-/// Notes it, so that what it speaks of is never read again. @throws Error io_error
+/// Notes the index of a sorted source in the manifest, so that a resumed build does not read and
+/// sort the source again.  @throws Error io_error
 void note_index(Workspace& workspace, const std::string& key, const ArrayFileFacts& index);
-/// Plans the tiles of such a source, and tells the caller. @throws Error as plan_build()
+/// Plans the tiles of a source that has been sorted, and tells the observer.
+/// @throws Error as plan_build()
 [[nodiscard]] BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk);
 
-/// Points, sorted on disk (point_buckets.h); over tiles.
+/// Builds over points, which are sorted on disk first (points/point_buckets.h).
 void build_points(Job& job);
-/// Somebody else's triangles, likewise (tin_source.h).
+/// Builds over somebody's TIN, which is sorted on disk first (tin/tin_source.h).
 void build_tin(Job& job);
 
 }  // namespace ptin::build_internal

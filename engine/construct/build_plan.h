@@ -16,24 +16,25 @@ namespace ptin {
 struct BuildOptions;
 struct BuildResources;
 
+/// Bytes and counts, mostly upper bounds by measurement.
 struct BuildPlan {
-  std::int64_t tile_side = 0;
+  std::int64_t tile_side = 0;  ///< Grid units along a leaf of the tree of tiles.
   std::uint64_t leaves = 0;
-  int levels = 0;
-  std::uint64_t vertices = 0;
+  int levels = 0;              ///< Of the tree of tiles, leaves included.
+  std::uint64_t vertices = 0;  ///< Of the full TIN, at most.
   MemoryPlan memory;
   std::uint64_t memory_expected = 0;   ///< Bytes of anonymous memory, at most, by estimate.
   std::uint64_t memory_for_tiles = 0;  ///< Share of `memory.limit` for all tiles in work.
   TileBytes tile_bytes;                ///< What each kind of work takes of that.
-  int threads_wanted = 1;
-  int threads = 1;                    ///< As many as fit.
-  std::uint64_t temporary_bytes = 0;  ///< Disk, at most, beside the output.
-  std::uint64_t output_bytes = 0;     ///< At most.
-  std::uint64_t temporary_free = 0, output_free = 0;
-  bool same_disk = true;
-  double seconds = 0.0;  ///< Roughly.
-  /// Of `vertices`: points that are not counted yet, as many as their files may hold, or tiles of
-  /// points that are not full.
+  int threads_wanted = 1;              ///< Asked for, or one a core.
+  int threads = 1;                     ///< As many of these as the memory holds tiles for.
+  std::uint64_t temporary_bytes = 0;   ///< Disk, at most, beside the output.
+  std::uint64_t output_bytes = 0;      ///< At most.
+  std::uint64_t temporary_free = 0, output_free = 0;  ///< Free bytes in the two folders.
+  bool same_disk = true;                              ///< Both folders are on one file system.
+  double seconds = 0.0;                               ///< Roughly.
+  /// True when `vertices` is an estimate: points are not counted yet, so as many are taken as their
+  /// files may hold; or tiles of points are taken to be full.
   bool is_estimate = false;
 };
 
