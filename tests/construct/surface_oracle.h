@@ -44,7 +44,10 @@ class EdgeIndex {
   void for_each_near(const GridBox& box, const Visit& visit) const {
     for (auto e = first_from(std::int64_t{box.min_y} - tallest_);
          e != edges_.end() && lowest(*e) <= box.max_y; ++e) {
-      if (meets(box, united(box_of((*e)[0].position), (*e)[1].position))) {
+      const GridPoint a = (*e)[0].position;
+      const GridPoint b = (*e)[1].position;
+      if (std::max(a.x, b.x) >= box.min_x && std::min(a.x, b.x) <= box.max_x &&
+          std::max(a.y, b.y) >= box.min_y) {
         visit(*e);
       }
     }

@@ -26,14 +26,18 @@ MeasureUnits units_of(const HeightEncoding& heights, double slope) {
   return units;
 }
 
-/// Distance to the nearest sample of the other class, by looking at all of them in reach.
+/// Distance to the nearest sample of the other class, by looking at all in reach, nearest rows
+/// first.
 double depth_at(const std::vector<std::uint8_t>& valid, int width, int height, int x, int y) {
   const auto at = [&](int i, int j) { return valid[static_cast<std::size_t>(j * width + i)] != 0; };
   int least = kCutOff * kCutOff + 1;
-  for (int j = std::max(0, y - kCutOff); j < std::min(height, y + kCutOff + 1); ++j) {
-    for (int i = std::max(0, x - kCutOff); i < std::min(width, x + kCutOff + 1); ++i) {
-      if (at(i, j) != at(x, y)) {
-        least = std::min(least, (i - x) * (i - x) + (j - y) * (j - y));
+  for (int dy = 0; dy * dy < least; ++dy) {
+    for (const int j : {y - dy, y + dy}) {
+      for (int dx = 0; j >= 0 && j < height && dx * dx + dy * dy < least; ++dx) {
+        if ((x - dx >= 0 && at(x - dx, j) != at(x, y)) ||
+            (x + dx < width && at(x + dx, j) != at(x, y))) {
+          least = dx * dx + dy * dy;
+        }
       }
     }
   }

@@ -471,8 +471,7 @@ TEST(CliBadInput, FullDisk) {
   const TestFolder folder;
   const SmallDisk disk(folder.file("disk"), 1);
   if (!disk.is_mounted()) GTEST_SKIP() << SmallDisk::kNeeded;
-  const std::string store = folder.file("m.ptin");
-  ASSERT_EQ(run_ptin({"build", test_data("mountains_257.tif"), "-o", store, "-q"}).status, 0);
+  const std::string store = testing::built(folder, "mountains_257.tif");
   expect_refusal(
       run_ptin({"build", test_data("mountains_257.tif"), "-o", disk.path() + "/m.ptin", "-q"}), 7,
       "m.ptin");

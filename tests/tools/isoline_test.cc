@@ -55,11 +55,8 @@ std::vector<Feature> read_layer(const std::string& path, const std::string& name
 }
 
 struct Mountains {
-  Mountains() : file(folder.file("m.ptin")) {
-    EXPECT_EQ(run_ptin({"build", test_data("mountains_257.tif"), "-o", file, "-q"}).status, 0);
-  }
   TestFolder folder;
-  std::string file;
+  std::string file = testing::built(folder, "mountains_257.tif", "m.ptin");
 };
 
 TEST(IsolineProgram, WritesTheSameLinesInEveryFormat) {
@@ -101,10 +98,7 @@ TEST(IsolineProgram, PolygonsAreValidAndCoverTheSurface) {
                                    {"coast_257.tif", {"--interval", "10"}},
                                    {"coast_257.tif", {"--level", "0", "1", "5"}}};
   for (const Case& c : cases) {
-    const std::string file = folder.file(std::string(c.raster) + ".ptin");
-    if (!std::filesystem::exists(file)) {
-      ASSERT_EQ(run_ptin({"build", test_data(c.raster), "-o", file, "-q"}).status, 0);
-    }
+    const std::string file = testing::built(folder, c.raster);
     std::vector<std::string> arguments = {
         "isoline", file, "--polygons", "-o", folder.file("p.gpkg"), "--overwrite", "-q"};
     arguments.insert(arguments.end(), c.options.begin(), c.options.end());

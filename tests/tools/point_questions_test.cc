@@ -256,9 +256,7 @@ TEST(ProfileCommand, TakesExtensionsInCapitalsAndStdout) {
 
 TEST(PointQuestions, AnswerAtTheFirstVertices) {
   const TestFolder folder;
-  const std::string terrain = folder.file("m.ptin");
-  ASSERT_EQ(
-      run_ptin({"build", testing::test_data("mountains_257.tif"), "-o", terrain, "-q"}).status, 0);
+  const std::string terrain = testing::built(folder, "mountains_257.tif");
   const json info = answer_of({"info", terrain, "--json"});
   const double x =
       (info["bounds"]["min_x"].get<double>() + info["bounds"]["max_x"].get<double>()) / 2;

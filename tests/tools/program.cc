@@ -198,7 +198,8 @@ std::string test_data(const std::string& name) {
   return std::string(PTIN_TEST_DATA "/").append(name);
 }
 
-std::string built(const TestFolder& folder, const std::string& name) {
+std::string built(const TestFolder& folder, const std::string& name,
+                  const std::string& store_name) {
   static const TestFolder stores;
   const std::string store = stores.file(name + ".ptin");
   if (!std::filesystem::exists(store)) {
@@ -206,9 +207,13 @@ std::string built(const TestFolder& folder, const std::string& name) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.out + outcome.err, "");
   }
-  const std::string path = folder.file(name + ".ptin");
-  std::filesystem::copy_file(store, path);
+  const std::string path = folder.file(store_name);
+  std::filesystem::copy_file(store, path, std::filesystem::copy_options::overwrite_existing);
   return path;
+}
+
+std::string built(const TestFolder& folder, const std::string& name) {
+  return built(folder, name, name + ".ptin");
 }
 
 nlohmann::json answer_of(const std::vector<std::string>& arguments) {

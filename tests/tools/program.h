@@ -73,6 +73,8 @@ void make_raster(const std::string& path, const RasterRecipe& recipe);
 [[nodiscard]] std::string test_data(const std::string& name);
 /// The same, built into `folder`; returns the store's path. Built once a process, and copied.
 [[nodiscard]] std::string built(const TestFolder& folder, const std::string& name);
+[[nodiscard]] std::string built(const TestFolder& folder, const std::string& name,
+                                const std::string& store_name);
 
 /// Runs ptin and expects success.
 void expect_done(const std::vector<std::string>& arguments);

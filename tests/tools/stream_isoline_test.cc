@@ -18,16 +18,12 @@ using nlohmann::json;
 using testing::Outcome;
 using testing::read_file;
 using testing::run_ptin;
-using testing::test_data;
 using testing::TestFolder;
 using testing::write_file;
 
 class StreamIsolinesCli : public ::testing::Test {
  protected:
-  void build(const std::string& name) {
-    const Outcome outcome = run_ptin({"build", test_data(name), "-o", file("t.ptin"), "-q"});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-  }
+  void build(const std::string& name) { (void)testing::built(folder, name, "t.ptin"); }
   [[nodiscard]] std::string file(const std::string& name) const { return folder.file(name); }
   json answer(std::vector<std::string> arguments, const std::vector<std::string>& more = {}) {
     arguments.insert(arguments.end(), more.begin(), more.end());

@@ -19,16 +19,12 @@ using testing::Outcome;
 using testing::read_file;
 using testing::ReadMesh;
 using testing::run_ptin;
-using testing::test_data;
 using testing::TestFolder;
 using testing::write_file;
 
 class StreamCli : public ::testing::Test {
  protected:
-  void build(const std::string& name) {
-    const Outcome outcome = run_ptin({"build", test_data(name), "-o", file("t.ptin"), "-q"});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-  }
+  void build(const std::string& name) { (void)testing::built(folder, name, "t.ptin"); }
   [[nodiscard]] std::string file(const std::string& name) const { return folder.file(name); }
   json answer(std::vector<std::string> arguments) {
     arguments.emplace_back("--json");

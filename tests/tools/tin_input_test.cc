@@ -26,7 +26,7 @@ using testing::TestFolder;
 /// A surface with voids comes back from its own export, bit for bit, and verifies against it.
 TEST(TinInput, ComesBackFromItsExport) {
   const TestFolder folder;
-  expect_done({"build", test_data("coast_257.tif"), "-o", folder.file("a.ptin"), "-q"});
+  (void)testing::built(folder, "coast_257.tif", "a.ptin");
   expect_done({"export", folder.file("a.ptin"), "--error", "1", "-o", folder.file("a.ply"), "-q"});
   const Outcome built =
       run_ptin({"build", folder.file("a.ply"), "-o", folder.file("b.ptin"), "-q", "--json"});
@@ -64,7 +64,7 @@ TEST(TinInput, IsRefusedWhenBrokenAndRepairedWhenAsked) {
 /// The triangles of the file are those of the terrain, however many tiles they are built in.
 TEST(TinInput, IsTheSameTinInAnyTiles) {
   const TestFolder folder;
-  expect_done({"build", test_data("coast_257.tif"), "-o", folder.file("a.ptin"), "-q"});
+  (void)testing::built(folder, "coast_257.tif", "a.ptin");
   expect_done({"export", folder.file("a.ptin"), "--error", "2", "-o", folder.file("a.ply"), "-q"});
   const auto built = [&](const std::string& name, const std::vector<std::string>& options) {
     std::vector<std::string> all = {"build", folder.file("a.ply"), "-o", folder.file(name), "-q"};
