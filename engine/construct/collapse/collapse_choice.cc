@@ -163,7 +163,7 @@ void CollapseChooser::measure(const Tile& tile, const StarSamples& s, std::size_
         error = std::max(error, straddling_residual(s, fan_));
       }
     } else {
-      const VoidMeasure measured = measure_with_voids(tile, s, fan_, best.error);
+      const VoidMeasure measured = measure_with_voids(tile, s, fan_, full_, best.error);
       if (!measured.allowed) {
         return;
       }
@@ -217,7 +217,8 @@ double CollapseChooser::certified(const Tile& tile, StarSamples& s, const Best& 
   return certified_residual(best.error, s, tile.units);
 }
 
-CollapseChoice CollapseChooser::choose(const Tile& tile, StarSamples& s) {
+CollapseChoice CollapseChooser::choose(const Tile& tile, const FullSurface* full, StarSamples& s) {
+  full_ = full;
   collect(tile, s);
   Best best = best_of(tile, s, false);
   if (best.j == CollapseChoice::kNoNeighbour) {

@@ -10,6 +10,7 @@
 
 #include "engine/construct/measure/fan_measure.h"
 #include "engine/construct/measure/star_samples.h"
+#include "engine/construct/tile/full_surface.h"
 #include "engine/construct/tile/tile.h"
 
 namespace ptin {
@@ -29,12 +30,13 @@ class CollapseChooser {
  public:
   /// Chooses for the centre of `s`. Fills `s.source` where it must decide exactly whether an error
   /// is 0.
-  /// @param s  As gather_star() leaves it.
+  /// @param full  As for measure_with_voids().
+  /// @param s     As gather_star() leaves it.
   /// Cost: the square of the degree for screening, which computes the residual of u alone for each
   /// w; then, for most stars, one pass over all samples for the best w, and a few lanes for one or
   /// two others. Candidates are measured in the order of their screens, and given up once they
   /// exceed the best.
-  [[nodiscard]] CollapseChoice choose(const Tile& tile, StarSamples& s);
+  [[nodiscard]] CollapseChoice choose(const Tile& tile, const FullSurface* full, StarSamples& s);
 
  private:
   struct Candidate {
@@ -62,6 +64,7 @@ class CollapseChooser {
   std::vector<double> x_, y_, z_, crosses_, least_, screens_;
   bool screened_ = false;  ///< Whether the candidates' screens are known.
   FanFrame fan_;
+  const FullSurface* full_ = nullptr;
 };
 
 }  // namespace ptin

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -81,7 +82,13 @@ struct Plane {
 class FirstPass {
  public:
   FirstPass(const Tile& full, const FullSurface& surface, const GridBox& box)
-      : full_(full), surface_(surface), box_(box), samples_(full, box) {}
+      : full_(full), surface_(surface), box_(box), samples_(full, box) {
+    for (const CarriedState& carried : full.carried) {
+      for (const Sample& s : full.samples.samples(carried.samples)) {
+        directed_.emplace(key_of(s.position), s);
+      }
+    }
+  }
 
   Tile run(double tolerance);
 
@@ -92,6 +99,8 @@ class FirstPass {
   [[nodiscard]] double gap_along(TriangleId t, int side) const;
   void collect(TriangleId t);
   [[nodiscard]] Interval codes_of(const Triangle& triangle) const;
+  void record(TriangleId t);
+  void collect_directed(TriangleId t);
   void store(TriangleId t);
 
   const Tile& full_;
@@ -102,6 +111,7 @@ class FirstPass {
   std::vector<VertexId> place_;        ///< The vertex of each sample; kNone for the others.
   Tile tile_;
   std::vector<double> gap_;   ///< Beside the triangles: the largest gap along their edges, codes.
+  std::unordered_multimap<VertexKey, Sample> directed_;  ///< Witnesses of triangles, by vertex.
   std::vector<Sample> list_;  ///< Samples of the triangle at hand.
   double worst_ = 0.0;        ///< The largest residual in list_, codes.
 };
@@ -116,6 +126,10 @@ Tile FirstPass::run(double tolerance) {
   for (TriangleId t = 0; t < tile_.tin.triangles.size(); ++t) {
     collect(t);
     if (!list_.empty() || gap_[t] > 0.0) {
+      record(t);
+    }
+    collect_directed(t);
+    if (!list_.empty()) {
       store(t);
     }
   }
@@ -165,17 +179,12 @@ void FirstPass::link() {
     }
   }
   point_vertices(tin);
-  std::vector<float> depths;
-  depths.reserve(tin.vertices.size());
+  start_tile(tile_, nullptr);
   for (std::size_t v = 0; v < place_.size(); ++v) {
     if (place_[v] != kNone) {
-      depths.push_back(std::abs(full_.vertex_state[v].depth));
-    }
-  }
-  start_tile(tile_, depths);
-  for (std::size_t v = 0; v < place_.size(); ++v) {
-    if (place_[v] != kNone) {
-      tile_.vertex_state[place_[v]].locked = full_.vertex_state[v].locked;
+      VertexState& state = tile_.vertex_state[place_[v]];
+      state.reach = full_.vertex_state[v].reach;
+      state.locked = full_.vertex_state[v].locked;
     }
   }
 }
@@ -216,7 +225,7 @@ void FirstPass::collect(TriangleId t) {
         continue;
       }
       is_free_[v] = 0;
-      list_.push_back({{x, y}, full_.tin.vertices[v].height, full_.vertex_state[v].depth, 0});
+      list_.push_back({{x, y}, full_.tin.vertices[v].height, full_.vertex_state[v].reach});
       const double residual =
           is_void ? 0.0 : plane.residual({x, y}, samples_.codes[v], tile_.units.exact_codes);
       if (residual > worst_) {
@@ -240,8 +249,37 @@ Interval FirstPass::codes_of(const Triangle& triangle) const {
   return codes;
 }
 
-/// Gives the triangle the samples in list_, and a record that says what it leaves out.
-void FirstPass::store(TriangleId t) {
+/// Adds to list_ the witnesses that lie in a triangle. The first pass moves no border: the triangle
+/// is of their class.
+void FirstPass::collect_directed(TriangleId t) {
+  if (directed_.empty()) {
+    return;
+  }
+  const Triangle& triangle = tile_.tin.triangles[t];
+  const bool is_void = tile_.tin.classes[t] == TriangleClass::kVoid;
+  GridBox box;
+  for (const VertexId v : triangle.v) {
+    box = united(box, tile_.tin.position(v));
+  }
+  for (std::int32_t y = box.min_y; y <= box.max_y; ++y) {
+    for (std::int32_t x = box.min_x; x <= box.max_x; ++x) {
+      auto [at, end] = directed_.equal_range(key_of(GridPoint{x, y}));
+      while (at != end) {
+        const Sample& s = at->second;
+        const bool is_own = (s.reach < 0.0F) == is_void;
+        if (is_own && triangle_holds(tile_.tin, triangle, s.position, s.direction)) {
+          list_.push_back(s);
+          at = directed_.erase(at);
+        } else {
+          ++at;
+        }
+      }
+    }
+  }
+}
+
+/// Gives the triangle a record that says what it leaves out: the samples in list_.
+void FirstPass::record(TriangleId t) {
   const HeightEncoding& heights = tile_.units.heights;
   const Triangle& triangle = tile_.tin.triangles[t];
   VertexSplit r;
@@ -258,10 +296,19 @@ void FirstPass::store(TriangleId t) {
   CarriedState& carried = tile_.carried[t];
   carry_record(carried, r, static_cast<std::uint32_t>(tile_.records.size()));
   tile_.records.push_back(r);
-  carried.holds_heights = !list_.empty() && !is_void;
-  carried.holds_voids = !list_.empty() && is_void;
-  const double length = 2.0 * static_cast<double>(half_perimeter(r.roi));
-  join_where_alike(list_, length);
+}
+
+/// Gives the triangle the samples in list_.
+void FirstPass::store(TriangleId t) {
+  CarriedState& carried = tile_.carried[t];
+  const bool is_void = tile_.tin.classes[t] == TriangleClass::kVoid;
+  carried.holds_heights = !is_void;
+  carried.holds_voids = is_void;
+  GridBox box;
+  for (const VertexId v : tile_.tin.triangles[t].v) {
+    box = united(box, tile_.tin.position(v));
+  }
+  join_where_alike(list_, 2.0 * static_cast<double>(half_perimeter(box)));
   carried.samples = tile_.samples.take(static_cast<std::uint32_t>(list_.size()));
   std::copy(list_.begin(), list_.end(), tile_.samples.samples(carried.samples).begin());
 }

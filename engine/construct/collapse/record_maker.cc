@@ -105,7 +105,7 @@ void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {
   }
   prefetch_records(s.star);  // read after the measuring
   gather_sources(tile_, s);
-  const FanError own = measure_fan(tile_, s, fan_, assignment_);
+  const FanError own = measure_fan(tile_, s, fan_, full_, assignment_);
   const CollapseSite site = collapse_site(s.star, j);
   const VertexSplit record = make_record(s, own, site);
   if (full_ == nullptr) {

@@ -24,7 +24,8 @@ void SampleHandOver::run(Tile& tile, const StarSamples& s, const FanFrame& frame
     lists_[i].samples.clear();
   }
   for (std::size_t k = 0; k < s.source.size(); ++k) {
-    if (s.source[k].side_log == 0 && !(drop_center && s.x[k] == 0.0 && s.y[k] == 0.0)) {
+    const bool is_center = s.x[k] == 0.0 && s.y[k] == 0.0 && s.source[k].direction == kNoDirection;
+    if (s.source[k].side_log == 0 && !(drop_center && is_center)) {
       lists_[static_cast<std::size_t>(assignment.triangle[k])].add(s.source[k],
                                                                    assignment.residual[k]);
     }
@@ -48,7 +49,7 @@ void SampleHandOver::add_block(const Tile& tile, const StarSamples& s, const Fan
     if (drop_center_ && holds_center) {
       return;
     }
-    lists_[triangle_of_sample(tile, s, frame, x, y, block.depth >= 0.0F)].add(block, 0.0);
+    lists_[triangle_of_sample(tile, s, frame, x, y, block.reach >= 0.0F)].add(block, 0.0);
     return;
   }
   const std::size_t i = triangle_of_box(frame, x, y, x + reach, y + reach);
@@ -70,10 +71,10 @@ void SampleHandOver::store(Tile& tile, const FanFrame& frame, std::size_t i,
   std::vector<Sample>& list = lists_[i].samples;
   carried.holds_voids =
       tile.has_voids &&
-      std::any_of(list.begin(), list.end(), [](const Sample& a) { return a.depth < 0.0F; });
+      std::any_of(list.begin(), list.end(), [](const Sample& a) { return a.reach < 0.0F; });
   carried.holds_heights =
       !tile.has_voids ||
-      std::any_of(list.begin(), list.end(), [](const Sample& a) { return !(a.depth < 0.0F); });
+      std::any_of(list.begin(), list.end(), [](const Sample& a) { return !(a.reach < 0.0F); });
   const double length = std::abs(frame.spoke_x[i]) + std::abs(frame.spoke_y[i]) +
                         std::abs(frame.spoke_x[i + 1]) + std::abs(frame.spoke_y[i + 1]);
   if (tile.samples_fill_grid) {

@@ -53,6 +53,7 @@ class Simplifier {
   Simplifier(Tile& tile, const FullSurface* full, const SimplifyOptions& options)
       : tile_(tile),
         options_(options),
+        full_(full),
         is_capped_(full == nullptr),
         first_samples_(tile.samples.used()),
         maker_(tile, full),
@@ -83,6 +84,7 @@ class Simplifier {
 
   Tile& tile_;
   const SimplifyOptions& options_;
+  const FullSurface* full_;
   bool is_capped_;             ///< Lists are cut down to witnesses at each compaction: no `full`.
   std::size_t first_samples_;  ///< Samples in all lists at the beginning.
   RecordMaker maker_;
@@ -125,7 +127,7 @@ void Simplifier::check_in() {
 Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
   gather_star(tile_, u, star_);
   Evaluation e;
-  e.choice = chooser_.choose(tile_, star_);
+  e.choice = chooser_.choose(tile_, full_, star_);
   if (e.choice.j == CollapseChoice::kNoNeighbour) {
     return e;
   }

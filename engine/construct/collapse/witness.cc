@@ -39,7 +39,7 @@ class Judge {
     }
     Candidate c{s, 0, false, 0.0};
     c.corner = static_cast<int>(std::max_element(part.begin(), part.end()) - part.begin());
-    const bool has_height = !(s.depth < 0.0F);
+    const bool has_height = !(s.reach < 0.0F);
     if (has_height && !is_void_) {
       const double residual = tile_.units.heights.code(s.height) -
                               (part[0] * code_[0] + part[1] * code_[1] + part[2] * code_[2]);
@@ -47,7 +47,7 @@ class Judge {
       c.weight = std::abs(residual);
     } else {
       c.above = has_height;
-      c.weight = tile_.units.charge(s.depth);
+      c.weight = tile_.units.charge(s.reach);
     }
     return c;
   }

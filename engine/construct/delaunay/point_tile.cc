@@ -2,10 +2,7 @@
 #include "engine/construct/delaunay/point_tile.h"
 
 #include <cmath>
-#include <memory>
 #include <utility>
-
-#include "engine/construct/tile/part_surface.h"
 
 namespace ptin {
 
@@ -16,7 +13,11 @@ PointTileStarter::PointTileStarter(const PointBuckets& buckets, const TileTree& 
       tree_(tree),
       units_(units),
       tiler_(buckets, longest_edge),
-      stop_(std::move(stop)) {}
+      stop_(std::move(stop)) {
+  if (longest_edge) {
+    ground_.emplace(buckets.frame());
+  }
+}
 
 StartedTile PointTileStarter::start(const SampleRange& window) {
   __extension__ using Uint128 = unsigned __int128;
@@ -25,15 +26,9 @@ StartedTile PointTileStarter::start(const SampleRange& window) {
     return static_cast<std::uint64_t>(Uint128{buckets_.size()} * i / tree_.leaves());
   };
   DelaunayTile part = tiler_.make(begin_of(leaf), begin_of(leaf + 1) - begin_of(leaf), stop_);
-  StartedTile started;
-  started.tile.units = units_;
-  started.tile.tin = std::move(part.tin);
+  StartedTile started = start_part(std::move(part.tin), units_, *tree_.hull(),
+                                   ground_ ? &*ground_ : nullptr);
   started.lone_samples = part.lone_points;
-  start_tile(started.tile, {});
-  for (const Vertex& v : started.tile.tin.vertices) {
-    started.box = united(started.box, v.position);
-  }
-  started.full = std::make_unique<PartSurface>(started.tile.tin, units_.heights);
   return started;
 }
 

@@ -32,6 +32,7 @@ class PointTileStarter {
   const TileTree& tree_;
   MeasureUnits units_;
   DelaunayTiler tiler_;
+  std::optional<GroundMetric> ground_;  ///< Where there are voids.
   std::stop_token stop_;
 };
 

@@ -26,7 +26,7 @@ namespace {
 
 /// The depth that a vertex has in a replay. Construction has charged the vertex itself, so it is
 /// not charged again: the depth is (nearly) 0, and its sign tells the class alone.
-float no_depth(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
+float no_reach(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
 
 /// The mesh of one replay: T0, refined around one leaf, with the leaf's samples in its triangles.
 class Replay {
@@ -66,7 +66,7 @@ Replay::Replay(const Tin& t0, StartedTile&& leaf) : full_(std::move(leaf.full)),
   tile_.carried.resize(t0.triangles.size());
   for (VertexId v = 0; v < t0.vertices.size(); ++v) {
     vertices_.emplace(key_of(t0.position(v)), v);
-    tile_.vertex_state.push_back({no_depth(t0.has_height[v] != 0), 0, false});
+    tile_.vertex_state.push_back({no_reach(t0.has_height[v] != 0), 0, false});
   }
   take_samples(std::exchange(leaf.tile, {}));  // the leaf's mesh goes
 }
@@ -110,8 +110,12 @@ void Replay::take_samples(const Tile& leaf) {
   for (VertexId v = 0; v < leaf.tin.vertices.size(); ++v) {
     const Vertex& vertex = leaf.tin.vertices[v];
     if (!vertices_.contains(key_of(vertex.position))) {
-      samples.push_back({vertex.position, vertex.height, leaf.vertex_state[v].depth, 0});
+      samples.push_back({vertex.position, vertex.height, leaf.vertex_state[v].reach});
     }
+  }
+  for (const CarriedState& carried : leaf.carried) {  // witnesses of its triangles
+    const auto own = leaf.samples.samples(carried.samples);
+    samples.insert(samples.end(), own.begin(), own.end());
   }
   if (leaf.samples_fill_grid) {
     join_into_blocks(samples);
@@ -126,7 +130,7 @@ void Replay::take_samples(const Tile& leaf) {
     carried.samples = tile_.samples.take(static_cast<std::uint32_t>(lists[i].size()));
     std::copy(lists[i].begin(), lists[i].end(), tile_.samples.samples(carried.samples).begin());
     for (const Sample& s : lists[i]) {
-      (s.depth < 0.0F ? carried.holds_voids : carried.holds_heights) = true;
+      (s.reach < 0.0F ? carried.holds_voids : carried.holds_heights) = true;
     }
   }
 }
@@ -137,12 +141,15 @@ void Replay::place(Sample sample, std::vector<std::vector<Sample>>& lists) {
   const std::int32_t reach = (std::int32_t{1} << sample.side_log) - 1;
   const GridPoint p = sample.position;
   const auto holds_all = [&](TriangleId t) {
+    if (sample.direction != kNoDirection) {
+      return triangle_holds(tile_.tin, tile_.tin.triangles[t], p, sample.direction);
+    }
     return triangle_holds(tile_.tin, tile_.tin.triangles[t], p) &&
            triangle_holds(tile_.tin, tile_.tin.triangles[t], {p.x + reach, p.y}) &&
            triangle_holds(tile_.tin, tile_.tin.triangles[t], {p.x, p.y + reach}) &&
            triangle_holds(tile_.tin, tile_.tin.triangles[t], {p.x + reach, p.y + reach});
   };
-  const TriangleClass own = sample.depth < 0.0F ? TriangleClass::kVoid : TriangleClass::kSurface;
+  const TriangleClass own = sample.reach < 0.0F ? TriangleClass::kVoid : TriangleClass::kSurface;
   std::size_t chosen = near_.size();
   near_boxes_.visit(
       [&](const GridBox& b) { return contains(b, p); },
@@ -176,7 +183,7 @@ VertexId Replay::add_vertex(const VertexSplit& record) {
   const bool has_height = (record.flags & VertexSplit::kVertexVoid) == 0;
   tile_.tin.vertices.push_back({record.u, record.height, kNone});
   tile_.tin.has_height.push_back(has_height ? 1 : 0);
-  tile_.vertex_state.push_back({no_depth(has_height), 0, false});
+  tile_.vertex_state.push_back({no_reach(has_height), 0, false});
   vertices_.emplace(key_of(record.u), u);
   return u;
 }
@@ -210,10 +217,10 @@ RecordBounds Replay::measure(VertexId w) {
       std::find(star_.star.link.begin(), star_.star.link.end(), w) - star_.star.link.begin());
   PTIN_CHECK(make_fan(star_, j, fan_));
   const double gap = fan_deviation(tile_, star_, fan_, *full_, box_);
-  if (star_.count == 1) {  // u alone: construction has measured it
+  if (star_.count == 1 && star_.surface_triangles) {  // u alone: construction has measured it
     return {0.0F, height_bound(gap, tile_.units.heights)};
   }
-  const FanError own = measure_fan(tile_, star_, fan_, assignment_);
+  const FanError own = measure_fan(tile_, star_, fan_, full_.get(), assignment_);
   hand_to_star();
   return {height_bound(own.error, tile_.units.heights),
           height_bound(std::max(own.deviation, gap), tile_.units.heights)};
@@ -224,6 +231,7 @@ RecordBounds Replay::measure(VertexId w) {
 void Replay::hand_to_star() {
   make_spokes_of_star(star_, spokes_);
   assign_samples(star_, spokes_, assignment_.triangle, assignment_.residual);
+  assign_directed(tile_, star_, spokes_, assignment_);
   if (!star_.surface_only) {
     assign_by_class(tile_, star_, spokes_, assignment_);
   }

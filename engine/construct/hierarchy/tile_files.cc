@@ -24,9 +24,9 @@ struct StoredFlags {
 }  // namespace
 
 void write_pushed(ArrayFileWriter& out, const Tile& tile) {
-  std::vector<float> depths;
+  std::vector<float> reaches;
   for (const VertexState& v : tile.vertex_state) {
-    depths.push_back(v.depth);
+    reaches.push_back(v.reach);
   }
   std::vector<StoredCarried> carried;
   std::vector<Sample> samples;
@@ -41,7 +41,7 @@ void write_pushed(ArrayFileWriter& out, const Tile& tile) {
   out.put(std::span<const StoredFlags>(&flags, 1));
   out.put(tile.tin.vertices);
   out.put(tile.tin.has_height);
-  out.put(depths);
+  out.put(reaches);
   out.put(tile.tin.triangles);
   out.put(tile.tin.classes);
   out.put(carried);
@@ -57,8 +57,8 @@ Tile read_pushed(ArrayFileReader& in, const MeasureUnits& units) {
   tile.has_voids = flags.has_voids != 0;
   tile.tin.vertices = in.take_copy<Vertex>();
   tile.tin.has_height = in.take_copy<std::uint8_t>();
-  for (const float depth : in.take<float>()) {
-    tile.vertex_state.push_back({depth, 0, false});
+  for (const float reach : in.take<float>()) {
+    tile.vertex_state.push_back({reach, 0, false});
   }
   tile.tin.triangles = in.take_copy<Triangle>();
   tile.tin.classes = in.take_copy<TriangleClass>();

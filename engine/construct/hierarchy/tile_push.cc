@@ -25,6 +25,7 @@
 #include "engine/construct/hierarchy/tile_push.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 #include <utility>
 
@@ -92,7 +93,7 @@ void keep_witnesses(const Tile& from, TriangleId t, std::vector<Sample>& scratch
   std::copy(scratch.begin(), scratch.end(), to.samples.samples(state.samples).begin());
   state.holds_heights = state.holds_voids = false;
   for (const Sample& s : scratch) {
-    (s.depth < 0.0F ? state.holds_voids : state.holds_heights) = true;
+    (s.reach < 0.0F ? state.holds_voids : state.holds_heights) = true;
   }
 }
 
@@ -125,6 +126,10 @@ JoinedVertices join_vertices(const std::vector<Tile>& parts, Tile& to) {
       to.tin.vertices.push_back(parts[e.part].tin.vertices[e.vertex]);
       to.tin.has_height.push_back(parts[e.part].tin.has_height[e.vertex]);
       to.vertex_state.push_back(parts[e.part].vertex_state[e.vertex]);
+    } else {  // leaves may know different parts of the border
+      float& reach = to.vertex_state.back().reach;
+      const float other = parts[e.part].vertex_state[e.vertex].reach;
+      reach = std::abs(other) > std::abs(reach) ? other : reach;
     }
     joined.place[e.part][e.vertex] = static_cast<std::uint32_t>(to.tin.vertices.size() - 1);
   }

@@ -10,15 +10,16 @@
 namespace ptin {
 
 FanError measure_fan(const Tile& tile, const StarSamples& s, FanFrame& fan,
-                     FanAssignment& assignment) {
+                     const FullSurface* full, FanAssignment& assignment) {
   assign_samples(s, fan, assignment.triangle, assignment.residual);
+  assign_directed(tile, s, fan, assignment);
   if (s.void_only || s.flat) {
     return {};
   }
   const double bound = residual_bound(s, tile.units);
   if (!s.surface_only) {
     assign_by_class(tile, s, fan, assignment);
-    const VoidMeasure voids = measure_with_voids(tile, s, fan);
+    const VoidMeasure voids = measure_with_voids(tile, s, fan, full);
     return {certified_residual(voids.error, s, tile.units),
             certified_residual(voids.deviation, s, tile.units)};
   }
@@ -46,12 +47,23 @@ void assign_by_class(const Tile& tile, const StarSamples& s, const FanFrame& fra
     return;
   }
   for (std::size_t k = 0; k < s.source.size(); ++k) {
-    const bool has_height = s.source[k].depth >= 0.0F;
+    if (s.source[k].direction != kNoDirection) {
+      continue;
+    }
+    const bool has_height = s.source[k].reach >= 0.0F;
     const TriangleClass own = has_height ? TriangleClass::kSurface : TriangleClass::kVoid;
     if (class_of(static_cast<std::size_t>(assignment.triangle[k])) != own) {
       assignment.triangle[k] =
           static_cast<double>(triangle_of_sample(tile, s, frame, s.x[k], s.y[k], has_height));
     }
+  }
+}
+
+void assign_directed(const Tile& tile, const StarSamples& s, const FanFrame& frame,
+                     FanAssignment& assignment) {
+  for (const DirectedElement& d : s.directed) {
+    assignment.triangle[d.element] =
+        static_cast<double>(triangle_of_directed(tile, s, frame, d));
   }
 }
 

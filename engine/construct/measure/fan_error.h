@@ -7,6 +7,7 @@
 
 #include "engine/construct/measure/fan_measure.h"
 #include "engine/construct/measure/star_samples.h"
+#include "engine/construct/tile/full_surface.h"
 #include "engine/construct/tile/tile.h"
 
 namespace ptin {
@@ -28,10 +29,15 @@ struct FanAssignment {
 /// Measures a fan over every sample of the star, and assigns each sample to a fan triangle. A
 /// sample on a spoke goes to the side of its own class. Blocks are measured but not assigned
 /// (construct/collapse/sample_hand_over.h takes them apart).
-/// @param fan  Its buffer `is_surface` may be overwritten.
+/// @param fan   Its buffer `is_surface` may be overwritten.
+/// @param full  As for measure_with_voids().
 /// REQUIRES: gather_samples() and gather_sources() were called. Cost: samples times degree.
 [[nodiscard]] FanError measure_fan(const Tile& tile, const StarSamples& s, FanFrame& fan,
-                                   FanAssignment& assignment);
+                                   const FullSurface* full, FanAssignment& assignment);
+
+/// Assigns the elements with a direction.
+void assign_directed(const Tile& tile, const StarSamples& s, const FanFrame& frame,
+                     FanAssignment& assignment);
 
 /// Moves elements on a spoke to the side of their own class. Changes `assignment.triangle` alone:
 /// the residual is the same on both sides.

@@ -16,9 +16,14 @@ std::uint64_t quadtree_order(GridPoint p) noexcept {
   return morton_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y));
 }
 
+/// A block is charged its largest reach: members whose reaches are farther apart stay alone.
+constexpr float kAlikeReaches = 1.25F;
+
 bool is_alike(const Sample& a, const Sample& b) noexcept {
-  return a.side_log == b.side_log && std::signbit(a.depth) == std::signbit(b.depth) &&
-         (std::signbit(a.depth) || a.height == b.height);
+  const float larger = std::max(std::abs(a.reach), std::abs(b.reach));
+  const float smaller = std::min(std::abs(a.reach), std::abs(b.reach));
+  return a.side_log == b.side_log && std::signbit(a.reach) == std::signbit(b.reach) &&
+         larger <= kAlikeReaches * smaller && (std::signbit(a.reach) || a.height == b.height);
 }
 
 /// True when the last four of `joined` are the four quarters of one block.
@@ -56,7 +61,12 @@ float farther(float a, float b) noexcept { return std::abs(a) >= std::abs(b) ? a
 void join_into_blocks(std::vector<Sample>& samples) {
   std::vector<std::pair<std::uint64_t, Sample>> sorted;
   sorted.reserve(samples.size());
+  std::vector<Sample> directed;
   for (const Sample& s : samples) {
+    if (s.direction != kNoDirection) {
+      directed.push_back(s);
+      continue;
+    }
     sorted.emplace_back(quadtree_order(s.position), s);
   }
   std::sort(sorted.begin(), sorted.end(),
@@ -65,12 +75,12 @@ void join_into_blocks(std::vector<Sample>& samples) {
   for (const auto& element : sorted) {
     joined.push_back(element);
     while (ends_with_siblings(joined)) {
-      float depth = joined.back().second.depth;
+      float reach = joined.back().second.reach;
       for (int i = 0; i < 3; ++i) {
         joined.pop_back();
-        depth = farther(depth, joined.back().second.depth);
+        reach = farther(reach, joined.back().second.reach);
       }
-      joined.back().second.depth = depth;
+      joined.back().second.reach = reach;
       ++joined.back().second.side_log;
     }
   }
@@ -78,6 +88,7 @@ void join_into_blocks(std::vector<Sample>& samples) {
   for (const auto& [order, sample] : joined) {
     samples.push_back(sample);
   }
+  samples.insert(samples.end(), directed.begin(), directed.end());
 }
 
 void join_where_alike(std::vector<Sample>& samples, double length) {

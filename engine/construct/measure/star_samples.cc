@@ -41,7 +41,7 @@ void gather_link(const Tile& tile, GridPoint origin, double origin_code, StarSam
   out.largest_z = largest_z;
 }
 
-/// Lays samples out one after the other. A sample without a height (its depth is below 0) gets
+/// Lays samples out one after the other. A sample without a height (its reach is below 0) gets
 /// height 0.
 template <HeightType type>
 class Layout {
@@ -55,15 +55,16 @@ class Layout {
         y_(out.y.data()),
         z_(out.z.data()) {
     out.blocks.clear();
+    out.directed.clear();
   }
   void add(const Sample& s) {
-    const double z = s.depth < 0.0F ? 0.0 : code_of<type>(s.height) - origin_code_;
+    const double z = s.reach < 0.0F ? 0.0 : code_of<type>(s.height) - origin_code_;
     x_[n_] = static_cast<double>(s.position.x - origin_.x);
     y_[n_] = static_cast<double>(s.position.y - origin_.y);
     z_[n_] = z;
     largest_ = std::max(largest_, std::abs(z));
-    if (s.side_log != 0) [[unlikely]] {
-      add_block(s);
+    if ((s.side_log | s.direction) != 0) [[unlikely]] {
+      add_special(s);
     }
     ++n_;
   }
@@ -74,15 +75,16 @@ class Layout {
     y_[n_] = static_cast<double>(s.position.y - origin_.y);
     z_[n_] = z;
     largest_ = std::max(largest_, std::abs(z));
-    if (s.side_log != 0) [[unlikely]] {
-      add_block(s);
+    if ((s.side_log | s.direction) != 0) [[unlikely]] {
+      add_special(s);
     }
     ++n_;
   }
   /// As add(), where surface and void meet.
   void add_with_charge(const Sample& s) {
-    out_.charge[n_] = units_.charge(s.depth);
-    out_.is_void[n_] = s.depth < 0.0F ? 1.0 : 0.0;
+    const bool directed = s.direction != kNoDirection;
+    out_.charge[n_] = directed ? 0.0 : units_.charge(s.reach);
+    out_.is_void[n_] = directed || s.reach < 0.0F ? 1.0 : 0.0;
     add(s);
   }
   /// Adds the further corners of blocks, then padding: u itself.
@@ -112,9 +114,13 @@ class Layout {
   [[nodiscard]] double largest() const noexcept { return largest_; }
 
  private:
-  void add_block(const Sample& s) {
+  void add_special(const Sample& s) {
+    if (s.direction != kNoDirection) {
+      out_.directed.push_back({static_cast<std::uint32_t>(n_), s.direction, s.reach});
+      return;
+    }
     const auto reach = static_cast<double>((std::int64_t{1} << s.side_log) - 1);
-    out_.blocks.push_back({x_[n_], y_[n_], x_[n_] + reach, y_[n_] + reach, z_[n_], s.depth,
+    out_.blocks.push_back({x_[n_], y_[n_], x_[n_] + reach, y_[n_] + reach, z_[n_], s.reach,
                            static_cast<std::uint32_t>(n_), 0});
   }
   void put(double x, double y, double z) {
@@ -138,7 +144,7 @@ class Layout {
 template <class Add>
 void for_each_sample(const Tile& tile, const StarSamples& s, const Add& add) {
   const Vertex& u = tile.tin.vertices[s.star.center];
-  add(Sample{u.position, u.height, tile.vertex_state[s.star.center].depth, 0});
+  add(Sample{u.position, u.height, tile.vertex_state[s.star.center].reach});
   for (const TriangleId t : s.star.triangles) {
     if (const SampleSlot slot = tile.carried[t].samples; slot.count != 0) {
       add(*tile.samples.data(slot));
@@ -252,6 +258,7 @@ void gather_shape(const Tile& tile, VertexId u, StarSamples& out) {
   classify(tile, out);
   out.count = 0;
   out.blocks.clear();
+  out.directed.clear();
 }
 
 }  // namespace

@@ -27,9 +27,16 @@ inline constexpr double kExactRadius = 0x1p25;
 /// sample, relative to u, and their common height.
 struct SampleBlock {
   double x0, y0, x1, y1, z;
-  float depth;
+  float reach;
   std::uint32_t source;   ///< Index of its element, which is its south-western sample.
   std::uint32_t corners;  ///< Where its other three corners begin among the samples.
+};
+
+/// An element with a direction (tile/direction.h).
+struct DirectedElement {
+  std::uint32_t element;
+  Direction direction;
+  float reach;  ///< As Sample::reach.
 };
 
 /// The star of u, relative to u: positions as exact doubles, heights as differences of codes. A
@@ -46,6 +53,9 @@ struct StarSamples {
   std::vector<double> charge, is_void;
   std::size_t count = 0;  ///< Of elements; 0 while samples have not been gathered.
   std::vector<SampleBlock> blocks;
+  /// Which elements have a direction: witnesses of triangles, not samples. Where surface_only is
+  /// false they count in the arrays as without a height, at no charge, and are measured apart.
+  std::vector<DirectedElement> directed;
   /// The elements as stored in the tile; filled by gather_sources().
   std::vector<Sample> source;
   double largest_xy = 0.0;   ///< Largest |coordinate| of the link.

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/check.h"
 #include "engine/construct/measure/lanes.h"
 #include "engine/construct/measure/sample_blocks.h"
+#include "engine/mesh/collapse.h"
 
 namespace ptin {
 
@@ -19,7 +21,7 @@ bool is_void(const Tile& tile, const StarSamples& s, std::size_t star_triangle) 
 struct SamplePlace {
   std::size_t surface = kNone;   ///< A closed surface triangle that holds it; kNone: none does.
   std::size_t any = kNone;       ///< A triangle that holds it; a void one where one does.
-  bool in_open_surface = false;  ///< Inside of a surface triangle, on no edge.
+  bool in_void = false;          ///< A closed void triangle holds it.
   double residual = 0.0;         ///< To `surface`; without that, to an edge with heights, or 0.
 };
 
@@ -62,13 +64,13 @@ SamplePlace locate(const Tile& tile, const StarSamples& s, const FanFrame& fan, 
       const double link_side = fan.determinant[i] - b + a;  // 0 on the link edge
       if (is_void(tile, s, fan.star_triangle[i])) {
         place.any = i;
+        place.in_void = true;
         if (on_edge_with_heights(tile, s, fan, i, before == 0, after == 0, link_side == 0.0)) {
           on_edge = std::max(on_edge, residual_to(fan, i, b, a, qz));
         }
       } else {
         place.any = place.any == kNone ? i : place.any;
         place.surface = i;
-        place.in_open_surface = before > 0 && after < 0 && link_side > 0.0;
         place.residual = residual_to(fan, i, b, a, qz);
       }
     }
@@ -86,16 +88,16 @@ void charge(VoidMeasure& measure, double amount) {
 }
 
 /// Charges one sample at its place.
-void measure_sample(const Tile& tile, const SamplePlace& place, float depth, VoidMeasure& measure) {
-  if (depth < 0.0F) {
-    if (place.in_open_surface) {
-      charge(measure, tile.units.charge(depth));
+void measure_sample(const Tile& tile, const SamplePlace& place, float reach, VoidMeasure& measure) {
+  if (reach < 0.0F) {
+    if (!place.in_void) {
+      charge(measure, tile.units.charge(reach));
     }
   } else if (place.surface != kNone) {
     measure.error = std::max(measure.error, place.residual);
     measure.deviation = std::max(measure.deviation, place.residual);
   } else {
-    charge(measure, tile.units.charge(depth));
+    charge(measure, tile.units.charge(reach));
     measure.error = std::max(measure.error, place.residual);
   }
 }
@@ -105,7 +107,7 @@ struct LaneMeasure {
   /// Of a sample with a height: the largest in a surface triangle that holds it; -1 where none
   /// does. 0 of one without a height.
   Lanes residual;
-  Lanes charge;  ///< Of a sample without a height: 0 unless inside of a surface triangle. Else 0.
+  Lanes charge;  ///< Of a sample without a height: 0 where a void triangle holds it. Else 0.
 };
 
 PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,
@@ -115,17 +117,18 @@ PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,
   const Lanes qy = load_lanes(s.y.data() + k) - fan.w_y;
   const Lanes qz = load_lanes(s.z.data() + k) - fan.w_z;
   Lanes residual = none;
-  Lanes inside = {};  // above 0 inside of a surface triangle, on no edge
+  Lanes in_void = none;  // below 0 where no void triangle holds it
   Lanes before = fan.spoke_x[0] * qy - fan.spoke_y[0] * qx;
   for (std::size_t i = 0; i < fan.triangles(); ++i) {
     const Lanes after = fan.spoke_x[i + 1] * qy - fan.spoke_y[i + 1] * qx;
+    const Lanes within = smaller(before, -after);
     if (is_surface[i] != 0) {
-      const Lanes within = smaller(before, -after);
       const Lanes r = magnitude(
           (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
           fan.inverse[i]);
       residual = larger(residual, within < 0.0 ? none : r);
-      inside = larger(inside, smaller(within, fan.determinant[i] - before + after));
+    } else {
+      in_void = larger(in_void, within);
     }
     before = after;
   }
@@ -133,7 +136,7 @@ PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,
   const Lanes charge = load_lanes(s.charge.data() + k);
   LaneMeasure m;
   m.residual = is_void > 0.0 ? Lanes{} : residual;
-  m.charge = is_void > 0.0 ? (inside > 0.0 ? charge : Lanes{}) : Lanes{};
+  m.charge = is_void > 0.0 ? (in_void < 0.0 ? charge : Lanes{}) : Lanes{};
   return m;
 }
 
@@ -167,14 +170,14 @@ void measure_block(const Tile& tile, const StarSamples& s, const FanFrame& fan,
   for (int corner = 0; corner < 4; ++corner) {
     const SamplePlace place = locate(tile, s, fan, corner == 0 || corner == 3 ? b.x0 : b.x1,
                                      corner < 2 ? b.y0 : b.y1, b.z);
-    measure_sample(tile, place, b.depth, measure);
+    measure_sample(tile, place, b.reach, measure);
     first = std::min(first, place.any);
     last = std::max(last, place.any);
   }
   for (std::size_t i = first; i <= last && first != last; ++i) {
-    const bool is_wrong = is_void(tile, s, fan.star_triangle[i]) == (b.depth >= 0.0F);
+    const bool is_wrong = is_void(tile, s, fan.star_triangle[i]) == (b.reach >= 0.0F);
     if (is_wrong) {
-      charge(measure, tile.units.charge(b.depth));
+      charge(measure, tile.units.charge(b.reach));
     }
   }
 }
@@ -186,7 +189,7 @@ void measure_singly(const Tile& tile, const StarSamples& s, const FanFrame& fan,
   for (std::size_t k = begin; k < std::min(end, s.count); ++k) {
     const SamplePlace place = locate(tile, s, fan, s.x[k], s.y[k], s.z[k]);
     if (s.is_void[k] != 0.0) {
-      charge(measure, place.in_open_surface ? s.charge[k] : 0.0);
+      charge(measure, place.in_void ? 0.0 : s.charge[k]);
       continue;
     }
     if (place.surface == kNone) {
@@ -228,7 +231,7 @@ void measure_blocks(const Tile& tile, const StarSamples& s, const FanFrame& fan,
   bool data_blocks = false;
   for (const SampleBlock& b : s.blocks) {
     measure_block(tile, s, fan, b, measure);
-    data_blocks |= b.depth >= 0.0F;
+    data_blocks |= b.reach >= 0.0F;
   }
   if (data_blocks) {
     const double straddling = straddling_residual(s, fan);
@@ -264,10 +267,47 @@ bool keeps_surface(const Tile& tile, const StarSamples& s, const FanFrame& fan, 
   return surface(spoke) || (spoke > 0 && surface(spoke - 1));
 }
 
+/// Charges witnesses of triangles that are no longer in a triangle of their class.
+void measure_directed(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                      VoidMeasure& measure) {
+  for (const DirectedElement& d : s.directed) {
+    const std::size_t i = triangle_of_directed(tile, s, fan, d);
+    if (is_void(tile, s, fan.star_triangle[i]) != (d.reach < 0.0F)) {
+      charge(measure, tile.units.charge(d.reach));
+    }
+  }
+}
+
+/// Charges edges of the fan that come to be on the border between surface and void: spokes between
+/// the two, and the link edges at w where the class on their inner side changes (the class beyond may
+/// be either, here or in another refinement).
+void measure_border(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                    const FullSurface& full, VoidMeasure& measure) {
+  const CollapseSite site = collapse_site(s.star, fan.j);
+  const std::size_t n = fan.triangles();
+  const auto changes = [&](std::size_t spoke) {
+    if (spoke > 0 && spoke < n) {
+      return is_void(tile, s, fan.star_triangle[spoke - 1]) !=
+             is_void(tile, s, fan.star_triangle[spoke]);
+    }
+    const TriangleId vanishing = spoke == 0 ? site.left : site.right;
+    const std::size_t beside = spoke == 0 ? 0 : n - 1;
+    return vanishing != kNone && (tile.tin.classes[vanishing] == TriangleClass::kVoid) !=
+                                     is_void(tile, s, fan.star_triangle[beside]);
+  };
+  const GridPoint w = tile.tin.position(s.star.link[fan.j]);
+  for (std::size_t spoke = 0; spoke <= n; ++spoke) {
+    if (changes(spoke)) {
+      const VertexId end = s.star.link[(fan.j + 1 + spoke) % s.star.degree()];
+      charge(measure, tile.units.charge(full.border_move(w, tile.tin.position(end))));
+    }
+  }
+}
+
 }  // namespace
 
 VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, FanFrame& fan,
-                               double stop_above) {
+                               const FullSurface* full, double stop_above) {
   VoidMeasure measure;
   if (tile.tin.has_height[s.star.link[fan.j]] == 0) {
     for (const std::uint32_t t : fan.star_triangle) {
@@ -282,13 +322,17 @@ VoidMeasure measure_with_voids(const Tile& tile, const StarSamples& s, FanFrame&
       const VertexId v = s.star.link[k];
       if (tile.tin.has_height[v] != 0 && had_surface(tile, s, k) &&
           !keeps_surface(tile, s, fan, k)) {
-        charge(measure, tile.units.charge(tile.vertex_state[v].depth));
+        charge(measure, tile.units.charge(tile.vertex_state[v].reach));
       }
     }
   }
+  measure_directed(tile, s, fan, measure);
   measure_samples(tile, s, fan, stop_above, measure);
   if (measure.error <= stop_above) {
     measure_blocks(tile, s, fan, measure);
+  }
+  if (measure.error <= stop_above && full != nullptr && !s.surface_triangles) {
+    measure_border(tile, s, fan, *full, measure);
   }
   return measure;
 }
@@ -297,6 +341,29 @@ std::size_t triangle_of_sample(const Tile& tile, const StarSamples& s, const Fan
                                double x, double y, bool has_height) {
   const SamplePlace place = locate(tile, s, fan, x, y, 0.0);
   return has_height && place.surface != kNone ? place.surface : place.any;
+}
+
+std::size_t triangle_of_directed(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                                 const DirectedElement& d) {
+  const double qx = s.x[d.element] - fan.w_x;
+  const double qy = s.y[d.element] - fan.w_y;
+  const DirectionStep step = step_of(d.direction);
+  const auto side = [&](std::size_t i) {
+    const std::int64_t exact = cross_exact(fan.spoke_x[i], fan.spoke_y[i], qx, qy);
+    return exact != 0 ? exact : cross_exact(fan.spoke_x[i], fan.spoke_y[i], step.x, step.y);
+  };
+  std::size_t found = kNone;
+  std::int64_t before = side(0);
+  for (std::size_t i = 0; i < fan.triangles(); ++i) {
+    const std::int64_t after = side(i + 1);
+    if (before >= 0 && after <= 0 &&
+        (found == kNone || is_void(tile, s, fan.star_triangle[i]) == (d.reach < 0.0F))) {
+      found = i;
+    }
+    before = after;
+  }
+  PTIN_CHECK(found != kNone);
+  return found;
 }
 
 }  // namespace ptin

@@ -9,6 +9,7 @@
 
 #include "engine/construct/measure/fan_measure.h"
 #include "engine/construct/measure/star_samples.h"
+#include "engine/construct/tile/full_surface.h"
 #include "engine/construct/tile/tile.h"
 
 namespace ptin {
@@ -25,8 +26,9 @@ struct VoidMeasure {
 /// triangle of this star (engine/DESIGN.md, section 3.3).
 ///
 /// - A sample with a height is right in a closed surface triangle; a sample without a height is
-///   right where no open surface triangle holds it. A sample in the wrong class is charged its
-///   depth times the slope.
+///   right in a closed void triangle. A sample in the wrong class is charged its reach times the
+///   slope (tile/border_witnesses.h), and so is an element with a direction.
+/// - An edge that comes to be on the border is charged how far it moves the border.
 /// - A sample on a spoke goes to the side of its own class.
 /// - A sample on the link stays with the fan, even where the triangle beyond is of its class. So a
 ///   sample is always in a triangle that replaced its former one, and in any refinement the record
@@ -43,10 +45,12 @@ struct VoidMeasure {
 ///   residuals are bounded along the spokes.
 ///
 /// @param fan         Its buffer `is_surface` is overwritten.
+/// @param full        The full surface under the tile: how far new edges of the border move it. Null
+///     in a tile of witnesses, where they are not charged.
 /// @param stop_above  Returns early, with the largest so far, once the error exceeds this.
 /// Cost: samples times degree, in lanes; samples that lose their surface one by one.
 [[nodiscard]] VoidMeasure measure_with_voids(
-    const Tile& tile, const StarSamples& s, FanFrame& fan,
+    const Tile& tile, const StarSamples& s, FanFrame& fan, const FullSurface* full,
     double stop_above = std::numeric_limits<double>::infinity());
 
 /// The fan triangle that gets a sample at (x, y), relative to u: one of its own class where it lies
@@ -54,5 +58,10 @@ struct VoidMeasure {
 [[nodiscard]] std::size_t triangle_of_sample(const Tile& tile, const StarSamples& s,
                                              const FanFrame& fan, double x, double y,
                                              bool has_height);
+
+/// The fan triangle that gets an element with a direction: one of its own class where it lies on a
+/// spoke. Cost: the degree.
+[[nodiscard]] std::size_t triangle_of_directed(const Tile& tile, const StarSamples& s,
+                                               const FanFrame& fan, const DirectedElement& d);
 
 }  // namespace ptin

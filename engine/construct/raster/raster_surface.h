@@ -3,10 +3,13 @@
 // The full surface of a raster window, from its samples alone.
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/construct/raster/raster_tin.h"
 #include "engine/construct/tile/full_surface.h"
+#include "engine/construct/tile/part_surface.h"
 
 namespace ptin {
 
@@ -20,6 +23,12 @@ class RasterSurface final : public FullSurface {
                 GridPoint origin);
 
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
+  /// 0 unless set_border() was called.
+  [[nodiscard]] double border_move(GridPoint a, GridPoint b) const override {
+    return border_ == nullptr ? 0.0 : border_->border_move(a, b);
+  }
+  /// Gives the surface the triangles of the window, where surface and void meet in it.
+  void set_border(std::unique_ptr<const PartSurface> border) { border_ = std::move(border); }
 
  private:
   struct Line;
@@ -59,6 +68,7 @@ class RasterSurface final : public FullSurface {
   std::int32_t height_;
   HeightEncoding encoding_;
   GridPoint origin_;
+  std::unique_ptr<const PartSurface> border_;
 };
 
 }  // namespace ptin

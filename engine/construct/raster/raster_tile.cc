@@ -2,21 +2,26 @@
 #include "engine/construct/raster/raster_tile.h"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/raster/raster_surface.h"
 #include "engine/construct/raster/raster_tin.h"
-#include "engine/construct/raster/void_depth.h"
+#include "engine/construct/tile/border_witnesses.h"
+#include "engine/construct/tile/part_surface.h"
 
 namespace ptin {
 
 namespace {
 
-/// Depths need the samples within the cut-off; whether the last of these are lone, the cells around
-/// them tell: hence one more.
-constexpr std::int64_t kMargin = kVoidDepthCutOff + 1;
+/// How far around a window the border between surface and void is looked for, so that what lies
+/// close to the window's seams knows of a border beyond. Whether the last of these samples are lone,
+/// the cells around them tell: hence one more.
+constexpr std::int64_t kMargin = 32 + 1;
 
 SampleRange with_margin(const RasterSource& source, const SampleRange& window) {
   if (source.void_samples() == 0) {
@@ -42,16 +47,107 @@ std::vector<T> cut_out(const std::vector<T>& from, const SampleRange& outer,
   return part;
 }
 
-std::vector<float> depths_of(const RasterSource& source, const std::vector<std::uint8_t>& valid,
-                             const SampleRange& outer, const SampleRange& inner) {
-  std::vector<float> depths(static_cast<std::size_t>(inner.width * inner.height));
-  const GroundMetric metric(source.frame());
-  void_depth(
-      {valid, outer.width, outer.height, inner.x0 - outer.x0, inner.y0 - outer.y0, inner.width,
-       inner.height},
-      [&](std::int64_t y) { return metric.at(static_cast<double>(outer.y0 + y)); },
-      kVoidDepthCutOff, depths);
-  return depths;
+/// A window within another one, and the triangles of make_raster_tin() in both.
+class InnerWindow {
+ public:
+  InnerWindow(const SampleRange& outer, const SampleRange& inner) : outer_(outer), inner_(inner) {}
+
+  /// The place in the outer window of sample `i` of the inner one.
+  [[nodiscard]] std::size_t outer_sample(std::size_t i) const {
+    const auto x = static_cast<std::int64_t>(i) % inner_.width;
+    const auto y = static_cast<std::int64_t>(i) / inner_.width;
+    return static_cast<std::size_t>((inner_.y0 - outer_.y0 + y) * outer_.width +
+                                    (inner_.x0 - outer_.x0) + x);
+  }
+  /// The number in the inner window of a triangle of the outer one; kNone when it is not there.
+  [[nodiscard]] TriangleId inner_triangle(TriangleId t) const {
+    const std::int64_t cell = t / 2;
+    const std::int64_t x = cell % (outer_.width - 1) - (inner_.x0 - outer_.x0);
+    const std::int64_t y = cell / (outer_.width - 1) - (inner_.y0 - outer_.y0);
+    if (x < 0 || y < 0 || x + 1 >= inner_.width || y + 1 >= inner_.height) {
+      return kNone;
+    }
+    return static_cast<TriangleId>(2 * (y * (inner_.width - 1) + x) + t % 2);
+  }
+
+ private:
+  SampleRange outer_, inner_;
+};
+
+/// Tells of an edge on the side of a window whether the raster goes on beyond it.
+std::function<bool(GridPoint, GridPoint)> goes_on_beyond(const RasterSource& source,
+                                                         const SampleRange& window) {
+  const std::int64_t x1 = window.x0 + window.width - 1, y1 = window.y0 + window.height - 1;
+  return [=, width = source.width(), height = source.height()](GridPoint a, GridPoint b) {
+    return (a.x == b.x && ((a.x == window.x0 && a.x > 0) || (a.x == x1 && a.x + 1 < width))) ||
+           (a.y == b.y && ((a.y == window.y0 && a.y > 0) || (a.y == y1 && a.y + 1 < height)));
+  };
+}
+
+/// The witnesses of the inner window, found in the outer one.
+BorderWitnesses witnesses_of(const Tin& outer_tin, const RasterSource& source,
+                             const SampleRange& outer, const SampleRange& window,
+                             GroundStep step) {
+  const InnerWindow inner(outer, window);
+  std::vector<std::uint8_t> is_inner(outer_tin.triangles.size());
+  for (TriangleId t = 0; t < is_inner.size(); ++t) {
+    is_inner[t] = inner.inner_triangle(t) == kNone ? 0 : 1;
+  }
+  BorderWitnesses found = find_border_witnesses(
+      {outer_tin, goes_on_beyond(source, outer), is_inner, step});
+  BorderWitnesses own;
+  const auto samples = static_cast<std::size_t>(window.samples());
+  own.kind.reserve(samples);
+  own.nearest.reserve(samples);
+  own.reach.reserve(samples);
+  own.region.reserve(samples);
+  for (std::size_t i = 0; i < samples; ++i) {
+    const std::size_t from = inner.outer_sample(i);
+    own.kind.push_back(found.kind[from]);
+    own.nearest.push_back(found.nearest[from]);
+    own.reach.push_back(found.reach[from]);
+    own.region.push_back(found.region[from]);
+  }
+  own.corners = std::move(found.corners);
+  for (CornerWitness& w : own.corners) {
+    w.triangle = inner.inner_triangle(w.triangle);
+  }
+  return own;
+}
+
+GridBox box_of_window(const SampleRange& window) {
+  return {static_cast<std::int32_t>(window.x0), static_cast<std::int32_t>(window.y0),
+          static_cast<std::int32_t>(window.x0 + window.width - 1),
+          static_cast<std::int32_t>(window.y0 + window.height - 1)};
+}
+
+Tin tin_of_window(const std::vector<HeightBits>& heights, const std::vector<std::uint8_t>& valid,
+                  const SampleRange& window, const HeightEncoding& encoding) {
+  const GridBox box = box_of_window(window);
+  return make_raster_tin(heights, valid, static_cast<std::int32_t>(window.width),
+                         static_cast<std::int32_t>(window.height), encoding,
+                         {box.min_x, box.min_y});
+}
+
+/// True when some triangles are surface and some are void.
+bool has_border(const Tin& tin) {
+  return std::find(tin.classes.begin(), tin.classes.end(), TriangleClass::kSurface) !=
+             tin.classes.end() &&
+         std::find(tin.classes.begin(), tin.classes.end(), TriangleClass::kVoid) !=
+             tin.classes.end();
+}
+
+/// Turns lone samples into void ones. Returns how many lie in `window`.
+std::uint64_t drop_lone_samples(std::vector<std::uint8_t>& valid, const SampleRange& outer,
+                                const SampleRange& window) {
+  std::uint64_t dropped = 0;
+  for (const std::uint64_t i : find_lone_samples(valid, outer.width, outer.height)) {
+    valid[i] = 0;
+    const std::int64_t x = outer.x0 + static_cast<std::int64_t>(i) % outer.width - window.x0;
+    const std::int64_t y = outer.y0 + static_cast<std::int64_t>(i) / outer.width - window.y0;
+    dropped += x >= 0 && y >= 0 && x < window.width && y < window.height ? 1 : 0;
+  }
+  return dropped;
 }
 
 }  // namespace
@@ -64,29 +160,33 @@ StartedTile start_raster_tile(const RasterSource& source, const SampleRange& win
   std::vector<HeightBits> heights(samples);
   std::vector<std::uint8_t> valid(samples);
   source.read(outer.x0, outer.y0, outer.width, outer.height, heights, valid);
-  std::vector<float> depths;
+  std::optional<BorderWitnesses> witnesses;
+  GroundStep step;
   if (source.void_samples() != 0) {
-    for (const std::uint64_t i : find_lone_samples(valid, outer.width, outer.height)) {
-      valid[i] = 0;
-      const std::int64_t x = outer.x0 + static_cast<std::int64_t>(i) % outer.width - window.x0;
-      const std::int64_t y = outer.y0 + static_cast<std::int64_t>(i) / outer.width - window.y0;
-      started.lone_samples += x >= 0 && y >= 0 && x < window.width && y < window.height ? 1 : 0;
+    started.lone_samples = drop_lone_samples(valid, outer, window);
+    const Tin around = tin_of_window(heights, valid, outer, units.heights);
+    if (has_border(around)) {
+      step = largest_step(GroundMetric(source.frame()), box_of_window(outer));
+      witnesses = witnesses_of(around, source, outer, window, step);
     }
-    depths = depths_of(source, valid, outer, window);
     heights = cut_out(heights, outer, window);
     valid = cut_out(valid, outer, window);
   }
-  const GridPoint origin{static_cast<std::int32_t>(window.x0),
-                         static_cast<std::int32_t>(window.y0)};
-  const auto width = static_cast<std::int32_t>(window.width);
-  const auto height = static_cast<std::int32_t>(window.height);
-  started.box = {origin.x, origin.y, origin.x + width - 1, origin.y + height - 1};
+  started.box = box_of_window(window);
   started.tile.units = units;
   started.tile.samples_fill_grid = true;
-  started.tile.tin = make_raster_tin(heights, valid, width, height, units.heights, origin);
-  start_tile(started.tile, depths);
-  started.full = std::make_unique<RasterSurface>(std::move(heights), std::move(valid), width,
-                                                 height, units.heights, origin);
+  started.tile.tin = tin_of_window(heights, valid, window, units.heights);
+  start_tile(started.tile, witnesses ? &*witnesses : nullptr);
+  auto full = std::make_unique<RasterSurface>(
+      std::move(heights), std::move(valid), static_cast<std::int32_t>(window.width),
+      static_cast<std::int32_t>(window.height), units.heights,
+      GridPoint{started.box.min_x, started.box.min_y});
+  if (witnesses) {
+    full->set_border(std::make_unique<PartSurface>(
+        started.tile.tin, units.heights,
+        PartBorder{std::move(*witnesses), goes_on_beyond(source, window), step}));
+  }
+  started.full = std::move(full);
   return started;
 }
 

@@ -31,6 +31,12 @@ class FullSurface {
   /// triangle on one side at least. Tight up to rounding; 0 where all heights are equal. Cost: the
   /// number of crossings.
   [[nodiscard]] virtual double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const = 0;
+
+  /// How far the border between surface and void moves, in ground units, where the edge a-b comes to
+  /// be a part of it: the most in any triangle of the full TIN that the edge crosses, and the reach of
+  /// any witness that it passes through (tile/border_witnesses.h). An upper bound; 0 along edges of
+  /// the border. Cost: the number of crossings.
+  [[nodiscard]] virtual double border_move(GridPoint a, GridPoint b) const = 0;
 };
 
 /// The largest gap over the crossings of one edge, in height codes, with a bound of its rounding.

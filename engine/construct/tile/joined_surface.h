@@ -34,6 +34,17 @@ class JoinedSurface final : public FullSurface {
     return worst;
   }
 
+  [[nodiscard]] double border_move(GridPoint a, GridPoint b) const override {
+    const GridBox edge = united(box_of(a), b);
+    double worst = 0.0;
+    for (const Leaf& leaf : leaves_) {
+      if (meets(edge, leaf.box)) {
+        worst = std::max(worst, leaf.full->border_move(a, b));
+      }
+    }
+    return worst;
+  }
+
  private:
   struct Leaf {
     std::unique_ptr<const FullSurface> full;

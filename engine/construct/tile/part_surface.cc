@@ -20,10 +20,51 @@ struct PartSurface::Step {
   [[nodiscard]] bool is_end() const noexcept { return vertex == kNone && triangle == kNone; }
 };
 
-/// One edge on its way over the part, piece by piece.
+/// One edge on its way over the part, piece by piece. Tells `visitor` where it goes:
+/// - touch(v): through this vertex;
+/// - cross(t, side): over this side of a triangle;
+/// - through(t): through the inside of this triangle.
+template <class Visitor>
 class PartSurface::Walk {
  public:
-  Walk(const PartSurface& surface, const EdgeEnd& a, const EdgeEnd& b)
+  Walk(const PartSurface& surface, GridPoint a, GridPoint b, Visitor& visitor)
+      : s_(surface), tin_(surface.part_), a_(a), b_(b), visitor_(visitor) {}
+
+  /// Walks from a vertex on the edge.
+  /// @param start  The first of the triangles around it.
+  void from_vertex(VertexId v, TriangleId start) { go(leave_vertex(v, start)); }
+  /// Walks into the part over a side of its border.
+  void from_side(const BorderSide& border) {
+    visitor_.cross(border.triangle, border.side);
+    visitor_.through(border.triangle);
+    go(into(border.triangle, border.side));
+  }
+  void touch(VertexId v) { visitor_.touch(v); }
+
+ private:
+  [[nodiscard]] std::int64_t side_of_edge(VertexId v) const noexcept {
+    return orient(a_, b_, tin_.position(v));
+  }
+  [[nodiscard]] bool is_ahead(VertexId from, VertexId to) const noexcept {
+    const GridPoint o = tin_.position(from), p = tin_.position(to);
+    return (std::int64_t{b_.x} - a_.x) * (std::int64_t{p.x} - o.x) +
+               (std::int64_t{b_.y} - a_.y) * (std::int64_t{p.y} - o.y) >
+           0;  // below 2^61, as orient()
+  }
+  [[nodiscard]] Step leave_vertex(VertexId v, TriangleId start);
+  [[nodiscard]] Step into(TriangleId t, int entry) const;
+  void go(Step step);
+
+  const PartSurface& s_;
+  const Tin& tin_;
+  GridPoint a_, b_;
+  Visitor& visitor_;
+};
+
+/// Takes the largest gap between an edge and the part.
+class PartSurface::GapVisitor {
+ public:
+  GapVisitor(const PartSurface& surface, const EdgeEnd& a, const EdgeEnd& b)
       : s_(surface),
         tin_(surface.part_),
         a_(a),
@@ -33,15 +74,6 @@ class PartSurface::Walk {
         length_y_(static_cast<double>(b.position.y) - a.position.y),
         gap_(a.code) {}
 
-  /// Walks from a vertex on the edge.
-  /// @param start  The first of the triangles around it.
-  void from_vertex(VertexId v, TriangleId start) { go(leave_vertex(v, start)); }
-  /// Walks into the part over a side of its border.
-  void from_side(const BorderSide& border) {
-    cross(border.triangle, border.side);
-    go(into(border.triangle, border.side));
-  }
-  /// Adds the gap at a vertex that the edge passes through.
   void touch(VertexId v) {
     if (tin_.has_height[v] == 0) {
       return;
@@ -52,6 +84,20 @@ class PartSurface::Walk {
                          : (static_cast<double>(p.y) - a_.position.y) / length_y_;
     gap_.add(code(v), code(v), 0.0, rise_ * t);
   }
+  void cross(TriangleId t, int side) {
+    const Triangle& triangle = tin_.triangles[t];
+    if (!is_surface(t) && !is_surface(triangle.n[side])) {
+      return;
+    }
+    const VertexId p = triangle.v[next_corner(side)], q = triangle.v[previous_corner(side)];
+    const GridPoint pp = tin_.position(p), pq = tin_.position(q);
+    const auto sp = static_cast<double>(orient(a_.position, b_.position, pp));
+    const auto sq = static_cast<double>(orient(a_.position, b_.position, pq));
+    const auto ta = static_cast<double>(orient(pp, pq, a_.position));
+    const auto tb = static_cast<double>(orient(pp, pq, b_.position));
+    gap_.add(code(p), code(q), sp / (sp - sq), rise_ * (ta / (ta - tb)));
+  }
+  void through(TriangleId) noexcept {}
   [[nodiscard]] double bound() const noexcept { return gap_.bound(); }
 
  private:
@@ -61,20 +107,6 @@ class PartSurface::Walk {
   [[nodiscard]] bool is_surface(TriangleId t) const noexcept {
     return t != kNone && tin_.classes[t] == TriangleClass::kSurface;
   }
-  [[nodiscard]] std::int64_t side_of_edge(VertexId v) const noexcept {
-    return orient(a_.position, b_.position, tin_.position(v));
-  }
-  [[nodiscard]] bool is_ahead(VertexId from, VertexId to) const noexcept {
-    const GridPoint o = tin_.position(from), p = tin_.position(to);
-    return (std::int64_t{b_.position.x} - a_.position.x) * (std::int64_t{p.x} - o.x) +
-               (std::int64_t{b_.position.y} - a_.position.y) * (std::int64_t{p.y} - o.y) >
-           0;  // below 2^61, as orient()
-  }
-  void cross(TriangleId t, int side);
-  [[nodiscard]] Step leave_vertex(VertexId v, TriangleId start) const;
-  [[nodiscard]] Step into(TriangleId t, int entry) const;
-  void go(Step step);
-
   const PartSurface& s_;
   const Tin& tin_;
   const EdgeEnd &a_, &b_;
@@ -82,23 +114,36 @@ class PartSurface::Walk {
   GapMaximum gap_;
 };
 
-/// Adds the gap where the edge crosses a side.
-void PartSurface::Walk::cross(TriangleId t, int side) {
-  const Triangle& triangle = tin_.triangles[t];
-  if (!is_surface(t) && !is_surface(triangle.n[side])) {
-    return;
+/// Takes how far the border moves where an edge comes to be a part of it.
+class PartSurface::BorderVisitor {
+ public:
+  BorderVisitor(const PartSurface& surface, GridPoint a, GridPoint b)
+      : border_(*surface.void_border_),
+        part_{surface.part_, border_.goes_on, {}, border_.step},
+        a_(a),
+        b_(b) {}
+
+  void touch(VertexId v) {
+    moved_ = std::max(moved_, static_cast<double>(border_.witnesses.reach[v]));
   }
-  const VertexId p = triangle.v[next_corner(side)], q = triangle.v[previous_corner(side)];
-  const GridPoint pp = tin_.position(p), pq = tin_.position(q);
-  const auto sp = static_cast<double>(side_of_edge(p)), sq = static_cast<double>(side_of_edge(q));
-  const auto ta = static_cast<double>(orient(pp, pq, a_.position));
-  const auto tb = static_cast<double>(orient(pp, pq, b_.position));
-  gap_.add(code(p), code(q), sp / (sp - sq), rise_ * (ta / (ta - tb)));
-}
+  void cross(TriangleId, int) noexcept {}
+  void through(TriangleId t) {
+    const WitnessedTriangle triangle = witnessed_triangle(part_, border_.witnesses, t);
+    moved_ = std::max(moved_, border_crossing(triangle, a_, b_, border_.step));
+  }
+  [[nodiscard]] double moved() const noexcept { return moved_; }
+
+ private:
+  const PartBorder& border_;
+  PartOfTerrain part_;
+  GridPoint a_, b_;
+  double moved_ = 0.0;
+};
 
 /// Where the edge goes on from vertex `v`: to a neighbour that it passes through, or into one of
 /// the triangles around `v`, of which `start` is the first.
-PartSurface::Step PartSurface::Walk::leave_vertex(VertexId v, TriangleId start) const {
+template <class Visitor>
+PartSurface::Step PartSurface::Walk<Visitor>::leave_vertex(VertexId v, TriangleId start) {
   TriangleId t = start;
   do {
     const Triangle& triangle = tin_.triangles[t];
@@ -112,6 +157,7 @@ PartSurface::Step PartSurface::Walk::leave_vertex(VertexId v, TriangleId start) 
       return {previous, kNone, 0};
     }
     if (right < 0 && left > 0) {
+      visitor_.through(t);
       return {kNone, t, c};
     }
     t = triangle.n[next_corner(c)];
@@ -120,7 +166,8 @@ PartSurface::Step PartSurface::Walk::leave_vertex(VertexId v, TriangleId start) 
 }
 
 /// Where the edge, which entered triangle `t` over side `entry`, leaves it: a vertex or a side.
-PartSurface::Step PartSurface::Walk::into(TriangleId t, int entry) const {
+template <class Visitor>
+PartSurface::Step PartSurface::Walk<Visitor>::into(TriangleId t, int entry) const {
   const VertexId apex = tin_.triangles[t].v[entry];
   const std::int64_t side = side_of_edge(apex);
   if (side == 0) {
@@ -133,29 +180,35 @@ PartSurface::Step PartSurface::Walk::into(TriangleId t, int entry) const {
 }
 
 /// Goes on to the end of the edge, or to where it leaves the part. A vertex of the border ends the
-/// walk too: largest_gap() begins another walk there.
-void PartSurface::Walk::go(Step step) {
+/// walk too: walk_over() begins another walk there.
+template <class Visitor>
+void PartSurface::Walk<Visitor>::go(Step step) {
   while (!step.is_end()) {
     if (step.vertex != kNone) {
       const VertexId v = step.vertex;
-      if (s_.on_border_[v] != 0 || tin_.position(v) == b_.position) {
+      if (s_.on_border_[v] != 0 || tin_.position(v) == b_) {
         return;
       }
-      touch(v);
+      visitor_.touch(v);
       step = leave_vertex(v, tin_.vertices[v].triangle);
       continue;
     }
-    cross(step.triangle, step.side);
+    visitor_.cross(step.triangle, step.side);
     const TriangleId beyond = tin_.triangles[step.triangle].n[step.side];
     if (beyond == kNone) {
       return;
     }
+    visitor_.through(beyond);
     step = into(beyond, side_of(tin_.triangles[beyond], step.triangle));
   }
 }
 
-PartSurface::PartSurface(const Tin& part, const HeightEncoding& encoding)
-    : part_(part), encoding_(encoding), on_border_(part.vertices.size(), 0) {
+PartSurface::PartSurface(const Tin& part, const HeightEncoding& encoding,
+                         std::optional<PartBorder> border)
+    : part_(part),
+      encoding_(encoding),
+      void_border_(std::move(border)),
+      on_border_(part.vertices.size(), 0) {
   for (TriangleId t = 0; t < part_.triangles.size(); ++t) {
     const Triangle& triangle = part_.triangles[t];
     for (int i = 0; i < 3; ++i) {
@@ -219,22 +272,22 @@ void PartSurface::visit_border(GridPoint a, GridPoint b, const Visit& visit) con
   boxes_.visit(may_meet, [&](std::size_t i) { visit(border_[by_place_[i]]); });
 }
 
-double PartSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
-  Walk walk(*this, a, b);
-  const VertexId begin = vertex_at(a.position);
+template <class Visitor>
+void PartSurface::walk_over(GridPoint a, GridPoint b, Visitor& visitor) const {
+  Walk<Visitor> walk(*this, a, b, visitor);
+  const VertexId begin = vertex_at(a);
   if (begin != kNone && on_border_[begin] == 0) {
     walk.from_vertex(begin, part_.vertices[begin].triangle);
   }
-  visit_border(a.position, b.position, [&](const BorderSide& side) {
+  visit_border(a, b, [&](const BorderSide& side) {
     const GridPoint p = part_.position(side.first), q = part_.position(side.second);
-    if (p == b.position) {
+    if (p == b) {
       return;
     }
-    const std::int64_t at_p = orient(a.position, b.position, p);
+    const std::int64_t at_p = orient(a, b, p);
     if (at_p == 0) {
-      const GridBox around = united(box_of(a.position), b.position);
-      if (contains(around, p)) {
-        if (p != a.position) {
+      if (contains(united(box_of(a), b), p)) {
+        if (p != a) {
           walk.touch(side.first);
         }
         walk.from_vertex(side.first, side.triangle);
@@ -242,12 +295,30 @@ double PartSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
       return;
     }
     // The edge comes in where it crosses the side from its right: then p is on the edge's left.
-    if (at_p > 0 && orient(a.position, b.position, q) < 0 && orient(p, q, a.position) < 0 &&
-        orient(p, q, b.position) > 0) {
+    if (at_p > 0 && orient(a, b, q) < 0 && orient(p, q, a) < 0 && orient(p, q, b) > 0) {
       walk.from_side(side);
     }
   });
-  return walk.bound();
+}
+
+double PartSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
+  GapVisitor gap(*this, a, b);
+  walk_over(a.position, b.position, gap);
+  return gap.bound();
+}
+
+double PartSurface::border_move(GridPoint a, GridPoint b) const {
+  if (!void_border_) {
+    return 0.0;
+  }
+  BorderVisitor border(*this, a, b);
+  for (const GridPoint end : {a, b}) {
+    if (const VertexId v = vertex_at(end); v != kNone) {
+      border.touch(v);
+    }
+  }
+  walk_over(a, b, border);
+  return border.moved();
 }
 
 }  // namespace ptin

@@ -4,13 +4,23 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
+#include "engine/construct/tile/border_witnesses.h"
 #include "engine/construct/tile/full_surface.h"
 #include "engine/geometry/packed_boxes.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin {
+
+/// The border between surface and void in a part.
+struct PartBorder {
+  BorderWitnesses witnesses;  ///< Beside the vertices of the part.
+  std::function<bool(GridPoint, GridPoint)> goes_on;  ///< As PartOfTerrain::goes_on.
+  GroundStep step;
+};
 
 /// The surface of a leaf of points or of a TIN: the triangles of the full TIN that are its own. An
 /// edge may begin and end outside of the part, and enter and leave it more than once.
@@ -18,10 +28,14 @@ class PartSurface final : public FullSurface {
  public:
   /// Keeps a copy of `part`. REQUIRES: its vertices are in the order of their keys, and neighbours
   /// are kNone at its border.
-  PartSurface(const Tin& part, const HeightEncoding& encoding);
+  /// @param border  Where the terrain has voids.
+  PartSurface(const Tin& part, const HeightEncoding& encoding,
+              std::optional<PartBorder> border = std::nullopt);
 
   /// Cost: the crossings, and the logarithm of the length of the border.
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
+  /// 0 without a PartBorder.
+  [[nodiscard]] double border_move(GridPoint a, GridPoint b) const override;
 
  private:
   /// A side of a triangle beyond which the part has no triangle. The walk around its first corner
@@ -32,15 +46,22 @@ class PartSurface final : public FullSurface {
     int side;  ///< Opposite to this corner of `triangle`.
   };
   struct Step;
+  template <class Visitor>
   class Walk;
+  class GapVisitor;
+  class BorderVisitor;
 
   void index_border();
   [[nodiscard]] VertexId vertex_at(GridPoint p) const noexcept;
+  /// Tells `visitor` where the edge from a to b goes within the part.
+  template <class Visitor>
+  void walk_over(GridPoint a, GridPoint b, Visitor& visitor) const;
   template <class Visit>
   void visit_border(GridPoint a, GridPoint b, const Visit& visit) const;
 
   Tin part_;
   HeightEncoding encoding_;
+  std::optional<PartBorder> void_border_;
   std::vector<BorderSide> border_;       ///< By first corner.
   std::vector<std::uint32_t> by_place_;  ///< Indices into border_, along the Hilbert curve.
   PackedBoxes boxes_;                    ///< Of the sides, in that order.

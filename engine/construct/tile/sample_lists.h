@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/construct/tile/direction.h"
 #include "engine/error.h"
 #include "engine/geometry/height.h"
 #include "engine/geometry/point.h"
@@ -23,14 +24,18 @@ namespace ptin {
 /// voids become blocks: a triangle over a million samples lists about as many elements as its
 /// border is long (construct/measure/sample_blocks.h).
 ///
-/// `depth` is the distance to the nearest sample of the other class in ground units, +infinity
-/// beyond the cut-off; negative for samples without a height (engine/DESIGN.md, section 3.2). The
-/// depth of a block is the one farthest from 0.
+/// `reach` is what the sample is charged in the wrong class, a length on the ground
+/// (tile/border_witnesses.h); negative for samples without a height, never 0 there. The reach of a
+/// block is the one farthest from 0.
+///
+/// With a direction it is no sample but the witness of a triangle of the full TIN, which stands
+/// infinitely near a vertex in that direction. One of surface has the vertex's height.
 struct Sample {
   GridPoint position;
   HeightBits height = 0;
-  float depth = 0.0F;
-  std::uint32_t side_log = 0;
+  float reach = 0.0F;
+  std::uint16_t side_log = 0;
+  Direction direction = kNoDirection;
 };
 
 /// Where the list of a triangle lies. The triangle owns the list; only SampleLists can read a slot.

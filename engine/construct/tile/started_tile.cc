@@ -1,7 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/tile/started_tile.h"
 
+#include <algorithm>
+#include <utility>
+
+#include "engine/construct/tile/part_surface.h"
+
 namespace ptin {
+
+GroundStep largest_step(const GroundMetric& ground, const GridBox& rows) {
+  GroundStep largest = ground.at(rows.min_y);
+  if (!ground.is_uniform()) {
+    for (std::int32_t y = rows.min_y; y < rows.max_y; ++y) {
+      const GroundStep step = ground.at(y + 1.0);
+      largest = {std::max(largest.x, step.x), std::max(largest.y, step.y)};
+    }
+  }
+  return largest;
+}
+
+StartedTile start_part(Tin&& part, const MeasureUnits& units, const ConvexHull& hull,
+                       const GroundMetric* ground) {
+  StartedTile started;
+  started.tile.units = units;
+  started.tile.tin = std::move(part);
+  for (const Vertex& v : started.tile.tin.vertices) {
+    started.box = united(started.box, v.position);
+  }
+  std::optional<PartBorder> border;
+  if (ground != nullptr) {
+    border.emplace();
+    border->goes_on = [&hull](GridPoint a, GridPoint b) { return !hull.has_on_border(a, b); };
+    border->step = largest_step(*ground, started.box);
+    border->witnesses = find_border_witnesses({started.tile.tin, border->goes_on, {}, border->step});
+  }
+  start_tile(started.tile, border ? &border->witnesses : nullptr);
+  started.full =
+      std::make_unique<PartSurface>(started.tile.tin, units.heights, std::move(border));
+  return started;
+}
 
 MeasureUnits measure_units(const TerrainFrame& frame, double void_slope) {
   MeasureUnits units;

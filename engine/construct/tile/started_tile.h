@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <memory>
 
+#include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/tile/full_surface.h"
 #include "engine/construct/tile/tile.h"
 #include "engine/geometry/box.h"
+#include "engine/geometry/convex_hull.h"
 
 namespace ptin {
 
@@ -21,8 +23,18 @@ struct StartedTile {
   std::uint64_t lone_samples = 0;  ///< Samples that touch no surface triangle; treated as void.
 };
 
+/// The lengths of grid steps on the ground, at least those of each row of the box.
+/// Cost: the rows, unless all have the same steps.
+[[nodiscard]] GroundStep largest_step(const GroundMetric& ground, const GridBox& rows);
+
+/// Starts a leaf of points or of a TIN: its mesh is `part`, the triangles that are its own.
+/// @param hull    Of the whole terrain.
+/// @param ground  Null: the terrain has no voids.
+[[nodiscard]] StartedTile start_part(Tin&& part, const MeasureUnits& units, const ConvexHull& hull,
+                                     const GroundMetric* ground);
+
 /// Constants of measuring for a terrain.
-/// @param void_slope  Height charged per ground unit of depth.
+/// @param void_slope  Height charged per ground unit that the border moves.
 [[nodiscard]] MeasureUnits measure_units(const TerrainFrame& frame, double void_slope);
 
 }  // namespace ptin

@@ -2,13 +2,36 @@
 #include "engine/construct/tile/tile.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <limits>
 
 #include "engine/large_array.h"
 
 namespace ptin {
 
-void start_tile(Tile& tile, const std::vector<float>& depths) {
+namespace {
+
+/// A void sample is told by the sign of its reach.
+float signed_reach(float reach, bool has_height) {
+  return has_height ? reach : -std::max(reach, FLT_MIN);
+}
+
+void add_corner_witnesses(Tile& tile, const std::vector<CornerWitness>& witnesses) {
+  for (const CornerWitness& w : witnesses) {
+    const VertexId v = tile.tin.triangles[w.triangle].v[w.way.corner];
+    const bool surface = tile.tin.classes[w.triangle] == TriangleClass::kSurface;
+    const Sample sample{tile.tin.position(v), surface ? tile.tin.vertices[v].height : 0,
+                        signed_reach(w.reach, surface), 0, w.way.direction};
+    CarriedState& carried = tile.carried[w.triangle];
+    carried.samples = tile.samples.take(1);
+    tile.samples.samples(carried.samples).front() = sample;
+    (surface ? carried.holds_heights : carried.holds_voids) = true;
+  }
+}
+
+}  // namespace
+
+void start_tile(Tile& tile, const BorderWitnesses* witnesses) {
   const Tin& tin = tile.tin;
   reserve_large(tile.carried, tin.triangles.size());
   tile.carried.assign(tin.triangles.size(), {});
@@ -25,12 +48,16 @@ void start_tile(Tile& tile, const std::vector<float>& depths) {
   tile.has_voids = std::any_of(tin.classes.begin(), tin.classes.end(),
                                [](TriangleClass c) { return c == TriangleClass::kVoid; });
   for (std::size_t v = 0; v < tin.vertices.size(); ++v) {
-    const float depth = depths.empty() ? std::numeric_limits<float>::infinity() : depths[v];
-    tile.vertex_state[v].depth = tin.has_height[v] != 0 ? depth : -depth;
+    const float reach =
+        witnesses == nullptr ? std::numeric_limits<float>::infinity() : witnesses->reach[v];
+    tile.vertex_state[v].reach = signed_reach(reach, tin.has_height[v] != 0);
   }
   // Capacities are powers of two: a third more than the samples.
   tile.samples.reserve(tin.vertices.size() + tin.vertices.size() / 3);
   reserve_large(tile.records, tin.vertices.size());
+  if (witnesses != nullptr) {
+    add_corner_witnesses(tile, witnesses->corners);
+  }
 }
 
 }  // namespace ptin

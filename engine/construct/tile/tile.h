@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/construct/tile/border_witnesses.h"
 #include "engine/construct/tile/sample_lists.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
@@ -40,7 +41,7 @@ inline void carry_record(CarriedState& carried, const VertexSplit& r, std::uint3
 
 /// Per-vertex facts of a tile.
 struct VertexState {
-  float depth = 0.0F;        ///< As Sample::depth.
+  float reach = 0.0F;        ///< As Sample::reach.
   std::uint16_t degree = 0;  ///< Neighbours in the mesh.
   bool locked = false;       ///< On a seam: may be collapsed into, is not collapsed itself.
 };
@@ -49,14 +50,14 @@ struct VertexState {
 struct MeasureUnits {
   HeightEncoding heights;
   double quantum_code = 1.0;     ///< One height quantum, as a difference of codes.
-  double void_slope_code = 0.0;  ///< Height codes charged per ground unit of depth.
+  double void_slope_code = 0.0;  ///< Height codes charged per ground unit that the border moves.
   bool exact_codes = false;      ///< Codes are integers: residuals of small stars have no rounding.
 
-  /// What a sample in the wrong class is charged, in height codes. A depth beyond the cut-off is
-  /// infinite, and so is its charge, whatever the slope.
-  [[nodiscard]] double charge(float depth) const noexcept {
-    return std::isinf(depth) ? std::numeric_limits<double>::infinity()
-                             : static_cast<double>(std::abs(depth)) * void_slope_code;
+  /// What a length on the ground is charged, in height codes. An infinite one is charged infinity,
+  /// whatever the slope.
+  [[nodiscard]] double charge(double reach) const noexcept {
+    return std::isinf(reach) ? std::numeric_limits<double>::infinity()
+                             : std::abs(reach) * void_slope_code;
   }
 };
 
@@ -83,8 +84,9 @@ struct Tile {
 };
 
 /// Sets everything else of a tile that holds the full TIN: `carried`, `vertex_state`, `has_voids`,
-/// and room for samples and records.
-/// @param depths  Beside tin.vertices, without signs. Empty: all are +infinity.
-void start_tile(Tile& tile, const std::vector<float>& depths);
+/// the samples of its CornerWitnesses, and room for samples and records.
+/// @param witnesses  Beside tin.vertices. Null: the terrain has no voids, and all reaches are
+///     +infinity.
+void start_tile(Tile& tile, const BorderWitnesses* witnesses);
 
 }  // namespace ptin

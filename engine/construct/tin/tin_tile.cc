@@ -4,21 +4,16 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/construct/tile/part_surface.h"
-
 namespace ptin {
 
 StartedTile start_tin_tile(const TinTriangles& triangles, const TileTree& tree,
                            const SampleRange& window, const MeasureUnits& units) {
-  StartedTile started;
-  started.tile.units = units;
-  started.tile.tin = triangles.part(tree.leaf_number(window), tree.leaves());
-  start_tile(started.tile, {});
-  for (const Vertex& v : started.tile.tin.vertices) {
-    started.box = united(started.box, v.position);
+  std::optional<GroundMetric> ground;
+  if (triangles.counts().void_triangles != 0) {
+    ground.emplace(triangles.frame());
   }
-  started.full = std::make_unique<PartSurface>(started.tile.tin, units.heights);
-  return started;
+  return start_part(triangles.part(tree.leaf_number(window), tree.leaves()), units, *tree.hull(),
+                    ground ? &*ground : nullptr);
 }
 
 TileTree tin_tree(const TinTriangles& triangles, std::optional<std::int64_t> side) {

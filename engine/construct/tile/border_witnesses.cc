@@ -1,0 +1,535 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// 1. find_nearest() spreads the vertices of the border over the mesh, as Dijkstra's algorithm
+//    spreads distances: each vertex takes over what its neighbours know, and measures it itself. So
+//    a distance is that of some point of the border, thus an upper bound of the depth.
+// 2. Each triangle of the leaf gets its witness, and the witness the depth of the triangle.
+// 3. Forest joins the witnesses of triangles that share a side, by a tree in each connected region:
+//    the deepest witness first, then always the deepest that borders on the tree (Prim's algorithm),
+//    hung below the deepest neighbour in it. From the leaves of the trees on, the border of each
+//    witness's triangles is collected in boxes, whose farthest points give the reach.
+#include "engine/construct/tile/border_witnesses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <queue>
+#include <tuple>
+
+#include "engine/geometry/box.h"
+#include "engine/geometry/infinity.h"
+#include "engine/geometry/orient.h"
+#include "engine/geometry/rounding.h"
+
+namespace ptin {
+
+namespace {
+
+/// A point that need not be a vertex, in grid units.
+struct Place {
+  double x, y;
+};
+
+Place place_of(GridPoint p) noexcept {
+  return {static_cast<double>(p.x), static_cast<double>(p.y)};
+}
+
+double distance(Place a, Place b, GroundStep step) noexcept {
+  return std::hypot((a.x - b.x) * step.x, (a.y - b.y) * step.y);
+}
+
+double distance(GridPoint a, GridPoint b, GroundStep step) noexcept {
+  return distance(place_of(a), place_of(b), step);
+}
+
+/// The distance on the ground from p to the straight edge a-b.
+double distance_to_edge(Place p, Place a, Place b, GroundStep step) noexcept {
+  const double ux = (b.x - a.x) * step.x, uy = (b.y - a.y) * step.y;
+  const double vx = (p.x - a.x) * step.x, vy = (p.y - a.y) * step.y;
+  const double length = ux * ux + uy * uy;
+  const double t = length > 0.0 ? std::clamp((ux * vx + uy * vy) / length, 0.0, 1.0) : 0.0;
+  return std::hypot(vx - t * ux, vy - t * uy);
+}
+
+/// The farthest distance on the ground from `p` to a point of the box.
+double farthest(const GridBox& box, Place p, GroundStep step) noexcept {
+  if (is_empty(box)) {
+    return 0.0;
+  }
+  return std::hypot(std::max(std::abs(p.x - box.min_x), std::abs(p.x - box.max_x)) * step.x,
+                    std::max(std::abs(p.y - box.min_y), std::abs(p.y - box.max_y)) * step.y);
+}
+
+/// A bound of a length that a few roundings made.
+float length_bound(double length) noexcept { return rounded_up(length * (1.0 + 0x1p-48)); }
+
+class Finder {
+ public:
+  explicit Finder(const PartOfTerrain& part)
+      : part_(part), tin_(part.tin), n_(part.tin.vertices.size()) {}
+
+  BorderWitnesses run();
+
+ private:
+  using Kind = BorderWitnesses::Kind;
+  [[nodiscard]] bool is_inner(TriangleId t) const {
+    return part_.inner.empty() || part_.inner[t] != 0;
+  }
+  [[nodiscard]] double depth_of(VertexId v) const {
+    return found_.nearest[v] == BorderWitnesses::kNoBorder
+               ? kInfinity
+               : distance(tin_.position(v), found_.nearest[v], part_.step);
+  }
+  void find_kinds();
+  void list_triangles();
+  void find_nearest();
+  void find_regions();
+  void measure_triangles();
+
+  const PartOfTerrain& part_;
+  const Tin& tin_;
+  std::size_t n_;
+  BorderWitnesses found_;
+  std::vector<std::uint32_t> first_, around_;  ///< Triangles of each vertex.
+
+  // The forest. A node is a vertex, or n_ + a triangle with a witness at a corner.
+  struct Link {
+    std::uint32_t node;
+    Place crossing;  ///< Where the path to that node crosses the side that their triangles share.
+  };
+  [[nodiscard]] Place place_of_node(std::uint32_t node) const;
+  [[nodiscard]] double depth_of_node(std::uint32_t node) const {
+    return node < n_ ? depth_of(node) : 0.0;
+  }
+  void link_nodes();
+  void grow_trees();
+  void find_reaches();
+
+  std::vector<std::uint32_t> witness_;  ///< Node of each triangle; kNone for those of the margin.
+  std::vector<WayIn> ways_;             ///< Beside the triangles; of those with a CornerWitness.
+  std::vector<float> depth_;            ///< Of nodes: greatest depth of their triangles.
+  std::vector<GridBox> border_;         ///< Of nodes: the border that they stand for.
+  std::vector<std::uint32_t> first_link_;
+  std::vector<Link> links_;
+  std::vector<std::uint32_t> order_;  ///< Nodes, parents before their children.
+  std::vector<Link> parent_;          ///< Of nodes; node kNone for roots.
+};
+
+void Finder::find_kinds() {
+  std::vector<std::uint8_t> seen(n_, 0);
+  constexpr std::uint8_t kOpen = 4;
+  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    const Triangle& triangle = tin_.triangles[t];
+    const std::uint8_t own = tin_.classes[t] == TriangleClass::kSurface ? 1 : 2;
+    for (int i = 0; i < 3; ++i) {
+      seen[triangle.v[i]] |= own;
+      const VertexId a = triangle.v[next_corner(i)], b = triangle.v[previous_corner(i)];
+      if (triangle.n[i] == kNone && part_.goes_on(tin_.position(a), tin_.position(b))) {
+        seen[a] |= kOpen;
+        seen[b] |= kOpen;
+      }
+    }
+  }
+  found_.kind.resize(n_);
+  for (std::size_t v = 0; v < n_; ++v) {
+    found_.kind[v] = (seen[v] & 3) == 3      ? Kind::kBorder
+                     : (seen[v] & kOpen) != 0 ? Kind::kUnknown
+                                              : Kind::kInner;
+  }
+}
+
+void Finder::list_triangles() {
+  first_.assign(n_ + 1, 0);
+  for (const Triangle& t : tin_.triangles) {
+    for (const VertexId v : t.v) {
+      ++first_[v + 1];
+    }
+  }
+  for (std::size_t v = 0; v < n_; ++v) {
+    first_[v + 1] += first_[v];
+  }
+  around_.resize(first_[n_]);
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    for (const VertexId v : tin_.triangles[t].v) {
+      around_[next[v]++] = t;
+    }
+  }
+}
+
+void Finder::find_nearest() {
+  found_.nearest.assign(n_, BorderWitnesses::kNoBorder);
+  std::vector<double> best(n_, kInfinity);
+  using Entry = std::tuple<double, VertexKey, VertexId>;  // distance, point of the border, vertex
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  for (VertexId v = 0; v < n_; ++v) {
+    if (found_.kind[v] == Kind::kBorder) {
+      best[v] = 0.0;
+      found_.nearest[v] = tin_.position(v);
+      queue.emplace(0.0, key_of(tin_.position(v)), v);
+    }
+  }
+  if (queue.empty()) {
+    return;
+  }
+  while (!queue.empty()) {
+    const auto [reached, key, v] = queue.top();
+    queue.pop();
+    if (reached != best[v] || key != key_of(found_.nearest[v])) {
+      continue;
+    }
+    const GridPoint source = found_.nearest[v];
+    for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) {
+      for (const VertexId to : tin_.triangles[around_[i]].v) {
+        const double there = distance(tin_.position(to), source, part_.step);
+        if (there < best[to] || (there == best[to] && key < key_of(found_.nearest[to]))) {
+          best[to] = there;
+          found_.nearest[to] = source;
+          queue.emplace(there, key, to);
+        }
+      }
+    }
+  }
+}
+
+/// Regions are connected by sides and by vertices.
+void Finder::find_regions() {
+  std::array<std::vector<VertexId>, 2> leader;
+  for (std::vector<VertexId>& l : leader) {
+    l.resize(n_);
+    std::iota(l.begin(), l.end(), 0U);
+  }
+  const auto find = [](std::vector<VertexId>& l, VertexId v) {
+    while (l[v] != v) {
+      v = l[v] = l[l[v]];
+    }
+    return v;
+  };
+  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    std::vector<VertexId>& l = leader[static_cast<std::size_t>(tin_.classes[t])];
+    const Triangle& triangle = tin_.triangles[t];
+    const VertexId first = find(l, triangle.v[0]);
+    l[find(l, triangle.v[1])] = first;
+    l[find(l, triangle.v[2])] = first;
+  }
+  // Vertices are in the order of their keys.
+  const auto vertex_at = [&](GridPoint p) {
+    const auto at = std::lower_bound(
+        tin_.vertices.begin(), tin_.vertices.end(), key_of(p),
+        [](const Vertex& v, VertexKey key) { return key_of(v.position) < key; });
+    return static_cast<VertexId>(at - tin_.vertices.begin());
+  };
+  found_.region.assign(n_, {kNone, kNone});
+  for (VertexId v = 0; v < n_; ++v) {
+    if (found_.nearest[v] != BorderWitnesses::kNoBorder) {
+      const VertexId source = vertex_at(found_.nearest[v]);
+      found_.region[v] = {find(leader[0], source), find(leader[1], source)};
+    }
+  }
+}
+
+/// The greatest depth within a triangle: by the best of what its corners know. The distance to a
+/// point or an edge is convex, so greatest at a corner.
+double greatest_depth(const WitnessedTriangle& t, std::span<const Place> piece, GroundStep step) {
+  double least = kInfinity;
+  for (int i = 0; i < 3; ++i) {
+    if (t.nearest[i] != BorderWitnesses::kNoBorder) {
+      double most = 0.0;
+      for (const Place p : piece) {
+        most = std::max(most, distance(p, place_of(t.nearest[i]), step));
+      }
+      least = std::min(least, most);
+    }
+    if (t.is_known_side[i]) {
+      double most = 0.0;
+      for (const Place p : piece) {
+        most = std::max(most, distance_to_edge(p, place_of(t.corners[(i + 1) % 3]),
+                                               place_of(t.corners[(i + 2) % 3]), step));
+      }
+      least = std::min(least, most);
+    }
+  }
+  return least;
+}
+
+void Finder::measure_triangles() {
+  witness_.assign(tin_.triangles.size(), kNone);
+  ways_.resize(tin_.triangles.size());
+  depth_.assign(n_ + tin_.triangles.size(), 0.0F);
+  border_.assign(n_ + tin_.triangles.size(), GridBox{});
+  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    if (!is_inner(t)) {
+      continue;
+    }
+    const WitnessedTriangle w = witnessed_triangle(part_, found_, t);
+    const bool at_corner = w.witness == WitnessedTriangle::kCornerWitness;
+    const auto node = at_corner ? static_cast<std::uint32_t>(n_ + t)
+                                : tin_.triangles[t].v[w.witness];
+    witness_[t] = node;
+    if (at_corner) {
+      ways_[t] = way_into(w.corners);
+    }
+    const std::array<Place, 3> whole{place_of(w.corners[0]), place_of(w.corners[1]),
+                                     place_of(w.corners[2])};
+    depth_[node] = std::max(
+        depth_[node], length_bound(std::max(w.gap, greatest_depth(w, whole, part_.step))));
+    for (int i = 0; i < 3; ++i) {
+      if (w.is_border_side[i]) {
+        border_[node] = united(border_[node], w.corners[(i + 1) % 3]);
+        border_[node] = united(border_[node], w.corners[(i + 2) % 3]);
+      }
+    }
+  }
+}
+
+Place Finder::place_of_node(std::uint32_t node) const {
+  if (node < n_) {
+    return place_of(tin_.position(node));
+  }
+  const auto t = static_cast<TriangleId>(node - n_);
+  return place_of(tin_.position(tin_.triangles[t].v[ways_[t].corner]));
+}
+
+/// Links the witnesses of triangles of one class that share a side.
+void Finder::link_nodes() {
+  const auto for_each_link = [&](const auto& visit) {
+    for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+      for (int i = 0; i < 3 && witness_[t] != kNone; ++i) {
+        const TriangleId other = tin_.triangles[t].n[i];
+        if (other == kNone || other < t || witness_[other] == kNone ||
+            witness_[other] == witness_[t] || tin_.classes[t] != tin_.classes[other]) {
+          continue;
+        }
+        const GridPoint a = tin_.position(tin_.triangles[t].v[next_corner(i)]);
+        const GridPoint b = tin_.position(tin_.triangles[t].v[previous_corner(i)]);
+        const Place middle{(static_cast<double>(a.x) + b.x) / 2.0,
+                           (static_cast<double>(a.y) + b.y) / 2.0};
+        visit(witness_[t], Link{witness_[other], middle});
+        visit(witness_[other], Link{witness_[t], middle});
+      }
+    }
+  };
+  const std::size_t nodes = n_ + tin_.triangles.size();
+  first_link_.assign(nodes + 1, 0);
+  for_each_link([&](std::uint32_t from, const Link&) { ++first_link_[from + 1]; });
+  for (std::size_t i = 0; i < nodes; ++i) {
+    first_link_[i + 1] += first_link_[i];
+  }
+  links_.resize(first_link_[nodes]);
+  std::vector<std::uint32_t> next(first_link_.begin(), first_link_.end() - 1);
+  for_each_link([&](std::uint32_t from, const Link& link) { links_[next[from]++] = link; });
+}
+
+void Finder::grow_trees() {
+  struct Deeper {
+    const std::vector<double>& depth;
+    bool operator()(std::uint32_t a, std::uint32_t b) const {
+      return depth[a] != depth[b] ? depth[a] < depth[b] : a > b;
+    }
+  };
+  const std::size_t nodes = n_ + tin_.triangles.size();
+  std::vector<double> depth(nodes, 0.0);
+  std::vector<std::uint8_t> is_node(nodes, 0);
+  for (const std::uint32_t node : witness_) {
+    if (node != kNone && is_node[node] == 0) {
+      is_node[node] = 1;
+      depth[node] = depth_of_node(node);
+    }
+  }
+  std::vector<std::uint32_t> roots;
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    if (is_node[i] != 0) {
+      roots.push_back(i);
+    }
+  }
+  const Deeper deeper{depth};
+  std::sort(roots.begin(), roots.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return deeper(b, a); });
+  std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, Deeper> queue(deeper);
+  std::vector<std::uint8_t> queued(nodes, 0), taken(nodes, 0);
+  parent_.assign(nodes, Link{kNone, {}});
+  for (const std::uint32_t root : roots) {
+    if (queued[root] != 0) {
+      continue;
+    }
+    queued[root] = 1;
+    queue.push(root);
+    while (!queue.empty()) {
+      const std::uint32_t node = queue.top();
+      queue.pop();
+      taken[node] = 1;
+      order_.push_back(node);
+      for (std::uint32_t i = first_link_[node]; i < first_link_[node + 1]; ++i) {
+        const Link& link = links_[i];
+        if (taken[link.node] != 0) {
+          if (parent_[node].node == kNone || deeper(parent_[node].node, link.node)) {
+            parent_[node] = link;
+          }
+        } else if (queued[link.node] == 0) {
+          queued[link.node] = 1;
+          queue.push(link.node);
+        }
+      }
+    }
+  }
+}
+
+void Finder::find_reaches() {
+  found_.reach.assign(n_, 0.0F);
+  for (std::size_t i = order_.size(); i-- > 0;) {
+    const std::uint32_t node = order_[i];
+    const Link& up = parent_[node];
+    float reach = std::numeric_limits<float>::infinity();
+    if (up.node != kNone) {
+      double most = 0.0;
+      for (const Place p : {place_of_node(node), up.crossing, place_of_node(up.node)}) {
+        most = std::max(most, farthest(border_[node], p, part_.step));
+      }
+      reach = std::max(depth_[node], length_bound(most));
+      if (!is_empty(border_[node])) {
+        border_[up.node] = united(border_[up.node], border_[node]);
+      }
+    }
+    if (node < n_) {
+      found_.reach[node] = reach;
+    } else {
+      const auto t = static_cast<TriangleId>(node - n_);
+      found_.corners.push_back({t, ways_[t], reach});
+    }
+  }
+  std::sort(found_.corners.begin(), found_.corners.end(),
+            [](const CornerWitness& a, const CornerWitness& b) { return a.triangle < b.triangle; });
+}
+
+BorderWitnesses Finder::run() {
+  find_kinds();
+  list_triangles();
+  find_nearest();
+  find_regions();
+  measure_triangles();
+  link_nodes();
+  grow_trees();
+  find_reaches();
+  return std::move(found_);
+}
+
+}  // namespace
+
+BorderWitnesses find_border_witnesses(const PartOfTerrain& part) { return Finder(part).run(); }
+
+WitnessedTriangle witnessed_triangle(const PartOfTerrain& part, const BorderWitnesses& witnesses,
+                                     TriangleId t) {
+  const Tin& tin = part.tin;
+  const Triangle& triangle = tin.triangles[t];
+  WitnessedTriangle w;
+  double deepest = -1.0;
+  for (int i = 0; i < 3; ++i) {
+    const VertexId v = triangle.v[i];
+    w.corners[i] = tin.position(v);
+    w.nearest[i] = witnesses.nearest[v];
+    const TriangleId beyond = triangle.n[i];
+    w.is_known_side[i] = beyond != kNone && tin.classes[beyond] != tin.classes[t];
+    w.is_border_side[i] =
+        w.is_known_side[i] ||
+        (beyond == kNone && part.goes_on(tin.position(triangle.v[next_corner(i)]),
+                                         tin.position(triangle.v[previous_corner(i)])));
+    if (witnesses.kind[v] != BorderWitnesses::Kind::kInner) {
+      continue;
+    }
+    const double depth = w.nearest[i] == BorderWitnesses::kNoBorder
+                             ? kInfinity
+                             : distance(w.corners[i], w.nearest[i], part.step);
+    if (depth > deepest ||
+        (depth == deepest && key_of(w.corners[i]) < key_of(w.corners[w.witness]))) {
+      deepest = depth;
+      w.witness = i;
+    }
+  }
+  const std::size_t other = tin.classes[t] == TriangleClass::kSurface ? 1 : 0;
+  for (int i = 0; i < 3; ++i) {
+    const VertexId a = triangle.v[i], b = triangle.v[next_corner(i)];
+    const std::uint32_t of_a = witnesses.region[a][other], of_b = witnesses.region[b][other];
+    if (of_a != kNone && of_b != kNone && of_a != of_b) {
+      w.gap = std::max(w.gap, distance(witnesses.nearest[a], witnesses.nearest[b], part.step));
+    }
+  }
+  if (w.witness != WitnessedTriangle::kCornerWitness && !witnesses.reach.empty()) {
+    w.reach = witnesses.reach[triangle.v[w.witness]];
+  }
+  return w;
+}
+
+namespace {
+
+/// What an edge cuts off a triangle.
+struct CutOff {
+  std::array<Place, 8> piece;  ///< The corners of the piece, in no order.
+  std::size_t corners = 0;
+  std::array<Place, 2> cut;  ///< The ends of the edge's part within the triangle.
+  std::size_t ends = 0;
+};
+
+/// @param side     For each corner: its side of the edge, as a sign.
+/// @param witness  The side of the witness; 0: it is on the edge, and all of the triangle counts.
+CutOff cut_off(const WitnessedTriangle& t, const std::array<std::int64_t, 3>& side, int witness) {
+  CutOff result;
+  for (int i = 0; i < 3; ++i) {
+    const int sign = side[i] > 0 ? 1 : (side[i] < 0 ? -1 : 0);
+    if (sign == 0 && result.ends < 2) {
+      result.cut[result.ends++] = place_of(t.corners[i]);
+    }
+    if (sign == 0 || sign != witness) {
+      result.piece[result.corners++] = place_of(t.corners[i]);
+    }
+    const int k = (i + 1) % 3;
+    if ((side[i] > 0 && side[k] < 0) || (side[i] < 0 && side[k] > 0)) {
+      const double f = static_cast<double>(side[i]) /
+                       (static_cast<double>(side[i]) - static_cast<double>(side[k]));
+      const Place a = place_of(t.corners[i]), b = place_of(t.corners[k]);
+      const Place at{a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f};
+      result.piece[result.corners++] = at;
+      if (result.ends < 2) {
+        result.cut[result.ends++] = at;
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+double border_crossing(const WitnessedTriangle& t, GridPoint a, GridPoint b,
+                       GroundStep step) noexcept {
+  std::array<std::int64_t, 3> side{};
+  for (int i = 0; i < 3; ++i) {
+    side[i] = orient(a, b, t.corners[i]);
+  }
+  std::int64_t of_witness = 0;
+  if (t.witness == WitnessedTriangle::kCornerWitness) {
+    const WayIn way = way_into(t.corners);
+    of_witness = orient_towards(a, b, t.corners[way.corner], way.direction);
+  } else {
+    of_witness = side[t.witness];
+    if (of_witness == 0) {
+      return t.reach;
+    }
+  }
+  const int sign = of_witness > 0 ? 1 : (of_witness < 0 ? -1 : 0);
+  const CutOff off = cut_off(t, side, sign);
+  double moved = std::max(t.gap, greatest_depth(t, {off.piece.data(), off.corners}, step));
+  for (int i = 0; i < 3; ++i) {
+    if (!t.is_border_side[i]) {
+      continue;
+    }
+    for (const int end : {(i + 1) % 3, (i + 2) % 3}) {
+      const bool is_cut_off = side[end] != 0 && (sign == 0 || (side[end] > 0) != (sign > 0));
+      if (is_cut_off) {
+        moved = std::max(moved,
+                         distance_to_edge(place_of(t.corners[end]), off.cut[0], off.cut[1], step));
+      }
+    }
+  }
+  return std::min(moved * (1.0 + 0x1p-40), static_cast<double>(t.reach));
+}
+
+}  // namespace ptin

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What tells when the border between surface and void moves, and how far (engine/DESIGN.md, section
+// 3).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/construct/grid/crs.h"
+#include "engine/construct/tile/direction.h"
+#include "engine/geometry/point.h"
+#include "engine/mesh/tin.h"
+
+namespace ptin {
+
+/// A part of the full TIN.
+struct PartOfTerrain {
+  const Tin& tin;
+  /// True when more of the terrain lies beyond the edge from a to b, which has no triangle beyond
+  /// it in the part.
+  std::function<bool(GridPoint a, GridPoint b)> goes_on;
+  /// Triangles of the leaf itself: 1, others, of a margin around it: 0. Empty: all are of the leaf.
+  std::span<const std::uint8_t> inner;
+  GroundStep step;  ///< Lengths on the ground; at least those of each of its rows.
+};
+
+/// Of a triangle whose corners are all on the border, or of which that is not known: the witness
+/// stands at one of its corners, infinitely near it within the triangle.
+struct CornerWitness {
+  TriangleId triangle;
+  WayIn way;
+  float reach;
+};
+
+/// The **witnesses** of a leaf. Every triangle of the full TIN has one: its deepest corner that has
+/// one class all around, or else a point at one of its corners (CornerWitness). A witness that
+/// changes its class is charged its **reach**, a length on the ground that is at least
+/// - the depth, that is the distance to the border, of any point of the triangles that it stands
+///   for;
+/// - the distance between two regions of the other class that these triangles lie between, so that
+///   the regions stay apart while nothing of that reach changes its class; and
+/// - the distance from any point of the border that it stands for to where the border may be when
+///   this witness has changed its class and the next has not. Each witness but one of a class and
+///   connected region of the leaf has a next one, beside it, towards greater depth; the last has
+///   an infinite reach.
+/// So a collapse that leaves all witnesses of at least a reach in their class, and whose new border
+/// edges cut no more off the triangles that they cross (BorderCrossing), moves no point of the border
+/// by more than that reach, neither way, and changes the class of no point that is deeper.
+struct BorderWitnesses {
+  /// What a vertex is.
+  enum class Kind : std::uint8_t {
+    kInner,    ///< One class all around.
+    kBorder,   ///< Surface and void meet here.
+    kUnknown,  ///< One class in the part, but not all of its triangles are in it.
+  };
+  std::vector<Kind> kind;  ///< Beside tin.vertices, as are the next two.
+  /// The nearest vertex of the border that is known, or one that is not much farther; itself for
+  /// one on the border. kNoBorder where the part has none.
+  std::vector<GridPoint> nearest;
+  std::vector<float> reach;  ///< Ground units; 0 for a vertex that is no witness.
+  /// Of each vertex: which connected region of surface, and which of voids, its nearest vertex of the
+  /// border belongs to; kNone where the part has no border.
+  std::vector<std::array<std::uint32_t, 2>> region;
+  std::vector<CornerWitness> corners;
+
+  static constexpr GridPoint kNoBorder{-1, -1};
+};
+
+/// Cost: n log n.
+[[nodiscard]] BorderWitnesses find_border_witnesses(const PartOfTerrain& part);
+
+/// One triangle of the full TIN, as border edges see that cross it.
+struct WitnessedTriangle {
+  static constexpr int kCornerWitness = 3;
+  std::array<GridPoint, 3> corners;
+  std::array<GridPoint, 3> nearest;   ///< Of the corners.
+  std::array<bool, 3> is_border_side{};  ///< Side i, opposite to corner i, is or may be of the border.
+  std::array<bool, 3> is_known_side{};   ///< Side i is of the border.
+  double gap = 0.0;  ///< Distance of the regions of the other class that it lies between; else 0.
+  int witness = kCornerWitness;  ///< The corner that is its witness; or there is a CornerWitness.
+  float reach = std::numeric_limits<float>::infinity();  ///< Of that corner.
+};
+
+/// The triangle `t` of a part, with its witness.
+[[nodiscard]] WitnessedTriangle witnessed_triangle(const PartOfTerrain& part,
+                                                   const BorderWitnesses& witnesses, TriangleId t);
+
+/// How far the border moves, in ground units, where a new border edge from a to b crosses the inside
+/// of a triangle: the greatest depth in the piece that it cuts off from the witness, and the greatest
+/// distance to it from the border in that piece. An upper bound.
+[[nodiscard]] double border_crossing(const WitnessedTriangle& triangle, GridPoint a, GridPoint b,
+                                     GroundStep step) noexcept;
+
+}  // namespace ptin
