@@ -83,7 +83,7 @@ MadeTerrain terrain_of(const GridPoints& points, const TerrainFrame& frame) {
   Tile& tile = terrain.started.tile;
   tile.units = measure_units(frame, kVoidSlope);
   tile.tin = make_delaunay_tin(points.positions, points.heights);
-  start_tile(tile, {});
+  start_tile(tile, nullptr);
   terrain.started.full = std::make_unique<PartSurface>(tile.tin, frame.heights);
   return terrain;
 }
@@ -137,7 +137,7 @@ MadeTerrain made_raster(std::int32_t side, Relief relief) {
   Tile& tile = terrain.started.tile;
   tile.units = measure_units(terrain.frame, kVoidSlope);
   tile.tin = make_raster_tin(heights, valid, side, side, encoding, {0, 0});
-  start_tile(tile, {});
+  start_tile(tile, nullptr);
   terrain.started.full = std::make_unique<RasterSurface>(std::move(heights), std::move(valid), side,
                                                          side, encoding, GridPoint{0, 0});
   return terrain;

@@ -32,7 +32,7 @@ struct BuildOptions {
   std::string a_srs;  ///< Overrides the source's CRS (anything GDAL understands); "" keeps it.
   std::string vertical_crs;  ///< "" keeps what the source declares, if anything.
   double void_slope =
-      0.1;  ///< Height error charged per ground unit of depth of a sample in the wrong class.
+      1.0;  ///< Height error charged per ground unit that the border of voids moves.
   /// Rasters: grid units along a leaf of the tile hierarchy; none means TileTree::default_side().
   std::optional<std::int64_t> tile;
   std::uint32_t page_bytes = 4096;

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "engine/mesh/split.h"
+#include "tests/construct/border_oracle.h"
 
 namespace ptin::oracle {
 
@@ -136,7 +137,7 @@ std::string at(GridPoint p) { return std::to_string(p.x) + " " + std::to_string(
 
 struct Seen {
   bool in_closed_surface = false;
-  bool in_open_surface = false;
+  bool in_closed_void = false;
   std::string fault;
 };
 
@@ -148,25 +149,25 @@ std::string check_samples(const TestTerrain& terrain, const Tin& tin, double tol
   const SampleIndex index(terrain.samples);
   std::vector<Seen> seen(terrain.samples.size());
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    if (!is_surface(tin, t)) {
+    if (!tin.is_alive(t)) {
       continue;
     }
+    const bool surface = is_surface(tin, t);
     const Corners corners = corners_of(tin, t, heights);
     index.for_each_in(box_of_corners(corners), [&](std::size_t i) {
       const PlainSample& s = terrain.samples[i];
       if (!in_closed(corners, s.position)) {
         return;
       }
-      seen[i].in_closed_surface = true;
-      seen[i].in_open_surface |= in_open(corners, s.position);
-      if (s.has_height && Gap::of_sample(corners, s.position, s.code).exceeds(bound)) {
+      (surface ? seen[i].in_closed_surface : seen[i].in_closed_void) = true;
+      if (surface && s.has_height && Gap::of_sample(corners, s.position, s.code).exceeds(bound)) {
         seen[i].fault = "is further from the surface";
       }
     });
   }
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const PlainSample& s = terrain.samples[i];
-    const bool wrong = s.has_height ? !seen[i].in_closed_surface : seen[i].in_open_surface;
+    const bool wrong = s.has_height ? !seen[i].in_closed_surface : !seen[i].in_closed_void;
     if (wrong && !(s.depth * terrain.slope <= tolerance)) {
       seen[i].fault = s.has_height ? "is deep inside and void" : "is deep outside and surface";
     }
@@ -177,7 +178,7 @@ std::string check_samples(const TestTerrain& terrain, const Tin& tin, double tol
       return message.str();
     }
   }
-  return {};
+  return check_border(terrain, tin, tolerance);
 }
 
 namespace {

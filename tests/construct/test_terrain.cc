@@ -5,17 +5,16 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/construct/raster/raster_surface.h"
+#include "engine/construct/raster/raster_tile.h"
 #include "engine/construct/raster/raster_tin.h"
 #include "engine/geometry/infinity.h"
+#include "tests/construct/border_oracle.h"
 #include "tests/construct/delaunay_tin.h"
 #include "tests/construct/tin_surface.h"
 
 namespace ptin::oracle {
 
 namespace {
-
-constexpr int kCutOff = 64;
 
 MeasureUnits units_of(const HeightEncoding& heights, double slope) {
   MeasureUnits units;
@@ -24,24 +23,6 @@ MeasureUnits units_of(const HeightEncoding& heights, double slope) {
   units.void_slope_code = slope / heights.step;
   units.exact_codes = heights.type == HeightType::int32;
   return units;
-}
-
-/// Distance to the nearest sample of the other class, by looking at all in reach, nearest rows
-/// first.
-double depth_at(const std::vector<std::uint8_t>& valid, int width, int height, int x, int y) {
-  const auto at = [&](int i, int j) { return valid[static_cast<std::size_t>(j * width + i)] != 0; };
-  int least = kCutOff * kCutOff + 1;
-  for (int dy = 0; dy * dy < least; ++dy) {
-    for (const int j : {y - dy, y + dy}) {
-      for (int dx = 0; j >= 0 && j < height && dx * dx + dy * dy < least; ++dx) {
-        if ((x - dx >= 0 && at(x - dx, j) != at(x, y)) ||
-            (x + dx < width && at(x + dx, j) != at(x, y))) {
-          least = dx * dx + dy * dy;
-        }
-      }
-    }
-  }
-  return least > kCutOff * kCutOff ? kInfinity : std::sqrt(least);
 }
 
 /// Samples with heights that no surface triangle touches become void.
@@ -73,19 +54,6 @@ std::vector<PlainSample> samples_of(const Tin& tin, const HeightEncoding& height
   return samples;
 }
 
-void set_depths(TestTerrain& terrain, const std::vector<std::uint8_t>& valid, int width, int height,
-                std::vector<float>& depths) {
-  const bool mixed = std::find(valid.begin(), valid.end(), 0) != valid.end() &&
-                     std::find(valid.begin(), valid.end(), 1) != valid.end();
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const double depth = mixed ? depth_at(valid, width, height, x, y) : kInfinity;
-      depths.push_back(static_cast<float>(depth));
-      terrain.samples[static_cast<std::size_t>(y * width + x)].depth = depths.back();
-    }
-  }
-}
-
 }  // namespace
 
 TestTerrain make_sampled(const std::string& name, int width, int height,
@@ -99,16 +67,12 @@ TestTerrain make_sampled(const std::string& name, int width, int height,
     terrain.full = make_raster_tin(heights, valid, width, height, encoding, origin);
   }
   terrain.samples = samples_of(terrain.full, encoding);
-  std::vector<float> depths;
-  if (std::find(valid.begin(), valid.end(), 0) != valid.end()) {
-    set_depths(terrain, valid, width, height, depths);
-  }
-  terrain.tile.units = units_of(encoding, slope);
-  terrain.tile.samples_fill_grid = true;
-  terrain.tile.tin = terrain.full;
-  start_tile(terrain.tile, depths);
-  terrain.surface =
-      std::make_unique<RasterSurface>(heights, valid, width, height, encoding, origin);
+  measure_depths(terrain);
+  const SampleRange all{origin.x, origin.y, width, height};
+  StartedTile started = start_raster_tile(RasterSamples{all, all, heights, valid, {}}, all,
+                                          units_of(encoding, slope));
+  terrain.tile = std::move(started.tile);
+  terrain.surface = std::move(started.full);
   return terrain;
 }
 
@@ -144,7 +108,7 @@ TestTerrain make_points(const PointSpec& spec) {
   terrain.samples = samples_of(terrain.full, spec.heights);
   terrain.tile.units = units_of(spec.heights, terrain.slope);
   terrain.tile.tin = terrain.full;
-  start_tile(terrain.tile, {});
+  start_tile(terrain.tile, nullptr);
   terrain.surface = std::make_unique<TinSurface>(terrain.full, spec.heights);
   return terrain;
 }

@@ -25,7 +25,7 @@ struct PlainSample {
   GridPoint position;
   double code = 0.0;
   bool has_height = true;
-  double depth = 0.0;  ///< To the nearest sample of the other class, ground units; may be infinite.
+  double depth = 0.0;  ///< Distance to the border between surface and void; may be infinite.
 };
 
 struct TestTerrain {
@@ -34,7 +34,7 @@ struct TestTerrain {
   std::unique_ptr<FullSurface> surface;
   Tin full;
   std::vector<PlainSample> samples;  ///< In the order of their keys, as the vertices of `full`.
-  double slope = 0.1;                ///< Height charged per ground unit of depth.
+  double slope = 0.1;                ///< Height charged per grid step that the border moves.
 };
 
 /// A raster in words: codes and mask as functions of column and row.
@@ -57,7 +57,7 @@ struct PointSpec {
 };
 [[nodiscard]] TestTerrain make_points(const PointSpec& spec);
 
-/// As make_raster(), of given samples. Row 0 in the south; depths by comparing all pairs in reach.
+/// As make_raster(), of given samples. Row 0 in the south.
 [[nodiscard]] TestTerrain make_sampled(const std::string& name, int width, int height,
                                        const std::vector<HeightBits>& heights,
                                        std::vector<std::uint8_t> valid,

@@ -17,6 +17,8 @@ class TinSurface final : public FullSurface {
   TinSurface(const Tin& full, const HeightEncoding& encoding);
 
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
+  /// Of terrains without voids.
+  [[nodiscard]] double border_move(GridPoint, GridPoint) const override { return 0.0; }
 
  private:
   struct Step;

@@ -23,21 +23,10 @@ namespace {
 /// the cells around them tell: hence one more.
 constexpr std::int64_t kMargin = 32 + 1;
 
-SampleRange with_margin(const RasterSource& source, const SampleRange& window) {
-  if (source.void_samples() == 0) {
-    return window;
-  }
-  const std::int64_t x0 = std::max<std::int64_t>(window.x0 - kMargin, 0);
-  const std::int64_t y0 = std::max<std::int64_t>(window.y0 - kMargin, 0);
-  return {x0, y0, std::min(window.x0 + window.width + kMargin, source.width()) - x0,
-          std::min(window.y0 + window.height + kMargin, source.height()) - y0};
-}
-
 template <class T>
-std::vector<T> cut_out(const std::vector<T>& from, const SampleRange& outer,
-                       const SampleRange& inner) {
+std::vector<T> cut_out(std::vector<T>& from, const SampleRange& outer, const SampleRange& inner) {
   if (outer.width == inner.width && outer.height == inner.height) {
-    return from;
+    return std::move(from);
   }
   std::vector<T> part(static_cast<std::size_t>(inner.width * inner.height));
   for (std::int64_t y = 0; y < inner.height; ++y) {
@@ -74,34 +63,41 @@ class InnerWindow {
   SampleRange outer_, inner_;
 };
 
+GridBox box_of_window(const SampleRange& window) {
+  return {static_cast<std::int32_t>(window.x0), static_cast<std::int32_t>(window.y0),
+          static_cast<std::int32_t>(window.x0 + window.width - 1),
+          static_cast<std::int32_t>(window.y0 + window.height - 1)};
+}
+
 /// Tells of an edge on the side of a window whether the raster goes on beyond it.
-std::function<bool(GridPoint, GridPoint)> goes_on_beyond(const RasterSource& source,
+std::function<bool(GridPoint, GridPoint)> goes_on_beyond(const SampleRange& raster,
                                                          const SampleRange& window) {
-  const std::int64_t x1 = window.x0 + window.width - 1, y1 = window.y0 + window.height - 1;
-  return [=, width = source.width(), height = source.height()](GridPoint a, GridPoint b) {
-    return (a.x == b.x && ((a.x == window.x0 && a.x > 0) || (a.x == x1 && a.x + 1 < width))) ||
-           (a.y == b.y && ((a.y == window.y0 && a.y > 0) || (a.y == y1 && a.y + 1 < height)));
+  const GridBox all = box_of_window(raster), part = box_of_window(window);
+  return [=](GridPoint a, GridPoint b) {
+    return (a.x == b.x && ((a.x == part.min_x && a.x > all.min_x) ||
+                           (a.x == part.max_x && a.x < all.max_x))) ||
+           (a.y == b.y && ((a.y == part.min_y && a.y > all.min_y) ||
+                           (a.y == part.max_y && a.y < all.max_y)));
   };
 }
 
 /// The witnesses of the inner window, found in the outer one.
-BorderWitnesses witnesses_of(const Tin& outer_tin, const RasterSource& source,
-                             const SampleRange& outer, const SampleRange& window,
-                             GroundStep step) {
-  const InnerWindow inner(outer, window);
+BorderWitnesses witnesses_of(const Tin& outer_tin, const RasterSamples& samples,
+                             const SampleRange& window) {
+  const InnerWindow inner(samples.range, window);
   std::vector<std::uint8_t> is_inner(outer_tin.triangles.size());
   for (TriangleId t = 0; t < is_inner.size(); ++t) {
     is_inner[t] = inner.inner_triangle(t) == kNone ? 0 : 1;
   }
   BorderWitnesses found = find_border_witnesses(
-      {outer_tin, goes_on_beyond(source, outer), is_inner, step});
+      {outer_tin, goes_on_beyond(samples.raster, samples.range), is_inner, samples.step});
   BorderWitnesses own;
-  const auto samples = static_cast<std::size_t>(window.samples());
-  own.kind.reserve(samples);
-  own.nearest.reserve(samples);
-  own.reach.reserve(samples);
-  own.region.reserve(samples);
-  for (std::size_t i = 0; i < samples; ++i) {
+  const auto n = static_cast<std::size_t>(window.samples());
+  own.kind.reserve(n);
+  own.nearest.reserve(n);
+  own.reach.reserve(n);
+  own.region.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) {
     const std::size_t from = inner.outer_sample(i);
     own.kind.push_back(found.kind[from]);
     own.nearest.push_back(found.nearest[from]);
@@ -113,12 +109,6 @@ BorderWitnesses witnesses_of(const Tin& outer_tin, const RasterSource& source,
     w.triangle = inner.inner_triangle(w.triangle);
   }
   return own;
-}
-
-GridBox box_of_window(const SampleRange& window) {
-  return {static_cast<std::int32_t>(window.x0), static_cast<std::int32_t>(window.y0),
-          static_cast<std::int32_t>(window.x0 + window.width - 1),
-          static_cast<std::int32_t>(window.y0 + window.height - 1)};
 }
 
 Tin tin_of_window(const std::vector<HeightBits>& heights, const std::vector<std::uint8_t>& valid,
@@ -152,26 +142,44 @@ std::uint64_t drop_lone_samples(std::vector<std::uint8_t>& valid, const SampleRa
 
 }  // namespace
 
+SampleRange range_around(const SampleRange& raster, const SampleRange& window) {
+  const std::int64_t x0 = std::max(window.x0 - kMargin, raster.x0);
+  const std::int64_t y0 = std::max(window.y0 - kMargin, raster.y0);
+  return {x0, y0,
+          std::min(window.x0 + window.width + kMargin, raster.x0 + raster.width) - x0,
+          std::min(window.y0 + window.height + kMargin, raster.y0 + raster.height) - y0};
+}
+
 StartedTile start_raster_tile(const RasterSource& source, const SampleRange& window,
                               const MeasureUnits& units) {
-  StartedTile started;
-  const SampleRange outer = with_margin(source, window);
-  const auto samples = static_cast<std::size_t>(outer.width * outer.height);
-  std::vector<HeightBits> heights(samples);
-  std::vector<std::uint8_t> valid(samples);
-  source.read(outer.x0, outer.y0, outer.width, outer.height, heights, valid);
-  std::optional<BorderWitnesses> witnesses;
-  GroundStep step;
+  RasterSamples samples;
+  samples.raster = {0, 0, source.width(), source.height()};
+  samples.range = source.void_samples() == 0 ? window : range_around(samples.raster, window);
+  const auto n = static_cast<std::size_t>(samples.range.samples());
+  samples.heights.resize(n);
+  samples.valid.resize(n);
+  source.read(samples.range.x0, samples.range.y0, samples.range.width, samples.range.height,
+              samples.heights, samples.valid);
   if (source.void_samples() != 0) {
-    started.lone_samples = drop_lone_samples(valid, outer, window);
-    const Tin around = tin_of_window(heights, valid, outer, units.heights);
-    if (has_border(around)) {
-      step = largest_step(GroundMetric(source.frame()), box_of_window(outer));
-      witnesses = witnesses_of(around, source, outer, window, step);
-    }
-    heights = cut_out(heights, outer, window);
-    valid = cut_out(valid, outer, window);
+    samples.step = largest_step(GroundMetric(source.frame()), box_of_window(samples.range));
   }
+  return start_raster_tile(std::move(samples), window, units);
+}
+
+StartedTile start_raster_tile(RasterSamples&& samples, const SampleRange& window,
+                              const MeasureUnits& units) {
+  StartedTile started;
+  started.lone_samples = drop_lone_samples(samples.valid, samples.range, window);
+  std::optional<BorderWitnesses> witnesses;
+  if (std::find(samples.valid.begin(), samples.valid.end(), 0) != samples.valid.end()) {
+    const Tin around =
+        tin_of_window(samples.heights, samples.valid, samples.range, units.heights);
+    if (has_border(around)) {
+      witnesses = witnesses_of(around, samples, window);
+    }
+  }
+  std::vector<HeightBits> heights = cut_out(samples.heights, samples.range, window);
+  std::vector<std::uint8_t> valid = cut_out(samples.valid, samples.range, window);
   started.box = box_of_window(window);
   started.tile.units = units;
   started.tile.samples_fill_grid = true;
@@ -184,7 +192,7 @@ StartedTile start_raster_tile(const RasterSource& source, const SampleRange& win
   if (witnesses) {
     full->set_border(std::make_unique<PartSurface>(
         started.tile.tin, units.heights,
-        PartBorder{std::move(*witnesses), goes_on_beyond(source, window), step}));
+        PartBorder{std::move(*witnesses), goes_on_beyond(samples.raster, window), samples.step}));
   }
   started.full = std::move(full);
   return started;

@@ -3,18 +3,38 @@
 // A tile that starts from a window of a raster.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include "engine/construct/grid/crs.h"
 #include "engine/construct/raster/raster_source.h"
 #include "engine/construct/tile/started_tile.h"
 #include "engine/construct/tile/tile_tree.h"
 
 namespace ptin {
 
-/// Reads `window`, turns lone samples into void ones and triangulates. Where the raster has voids,
-/// a margin of kVoidDepthCutOff + 1 samples is read around the window, as far as the raster
-/// reaches, so that depths and classes in a tile are those in the whole raster.
+/// Samples of a raster: those of a window, and where the raster has voids those of a margin around
+/// it, in which the border between surface and void is looked for.
+struct RasterSamples {
+  SampleRange raster;  ///< All there are.
+  SampleRange range;   ///< Those that are here: range_around() a window, or the window.
+  std::vector<HeightBits> heights;   ///< Row-major, row 0 in the south.
+  std::vector<std::uint8_t> valid;   ///< Beside `heights`; 0 for a sample without a height.
+  GroundStep step;  ///< As PartOfTerrain::step; of no account where all samples have heights.
+};
+
+/// A window with its margin, as far as the raster reaches.
+[[nodiscard]] SampleRange range_around(const SampleRange& raster, const SampleRange& window);
+
+/// Reads `window`, with a margin where the raster has voids, and starts the leaf.
 /// @throws Error as RasterSource::read, resource_exhausted
-/// Cost: linear. Memory: about 200 bytes a sample.
+/// Cost: linear but for the witnesses of the border. Memory: about 200 bytes a sample, 100 more while
+/// it runs where the raster has voids.
 [[nodiscard]] StartedTile start_raster_tile(const RasterSource& source, const SampleRange& window,
+                                            const MeasureUnits& units);
+
+/// Turns lone samples into void ones, triangulates, and finds the witnesses of the border.
+[[nodiscard]] StartedTile start_raster_tile(RasterSamples&& samples, const SampleRange& window,
                                             const MeasureUnits& units);
 
 }  // namespace ptin

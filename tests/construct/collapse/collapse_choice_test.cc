@@ -46,7 +46,7 @@ void expect_best_choices(const Tile& tile) {
   StarSamples s;
   for (VertexId u = 0; u < tile.tin.vertices.size(); ++u) {
     gather_star(tile, u, s);
-    const CollapseChoice choice = chooser.choose(tile, s);
+    const CollapseChoice choice = chooser.choose(tile, nullptr, s);
     oracle::gather_all(tile, u, s);
     std::optional<long double> least;
     for (std::size_t j = 0; j < s.star.degree(); ++j) {
@@ -82,7 +82,7 @@ TEST(CollapseChooser, TakesTheSmallestKeyAmongEquals) {
   StarSamples s;
   for (VertexId u = 0; u < flat.tile.tin.vertices.size(); ++u) {
     gather_star(flat.tile, u, s);
-    const CollapseChoice choice = chooser.choose(flat.tile, s);
+    const CollapseChoice choice = chooser.choose(flat.tile, nullptr, s);
     VertexKey least = kNoVertexKey;
     for (std::size_t j = 0; j < s.star.degree(); ++j) {
       if (can_collapse(flat.tile.tin, s.star, j)) {
@@ -105,14 +105,14 @@ TEST(CollapseChooser, AvoidsCrowdedNeighboursWhileThereAreOthers) {
   std::size_t avoided = 0, taken = 0;
   for (VertexId u = 0; u < tile.tin.vertices.size(); ++u) {
     gather_star(tile, u, s);
-    const CollapseChoice first = chooser.choose(tile, s);
+    const CollapseChoice first = chooser.choose(tile, nullptr, s);
     if (first.j == CollapseChoice::kNoNeighbour) {
       continue;
     }
     VertexState& w = tile.vertex_state[s.star.link[first.j]];
     const std::uint16_t degree = w.degree;
     w.degree = kComfortableDegree + 5;
-    const CollapseChoice second = chooser.choose(tile, s);
+    const CollapseChoice second = chooser.choose(tile, nullptr, s);
     w.degree = degree;
     ASSERT_NE(second.j, CollapseChoice::kNoNeighbour);
     (second.j == first.j ? taken : avoided) += 1;
@@ -135,7 +135,7 @@ TEST(CollapseChooser, TakesACrowdedNeighbourWhenTheOthersAreVoid) {
   std::size_t looked_at = 0;
   for (VertexId u = 0; u < terrain.full.vertices.size(); ++u) {
     gather_star(terrain.tile, u, s);
-    if (chooser.choose(terrain.tile, s).j == CollapseChoice::kNoNeighbour) {
+    if (chooser.choose(terrain.tile, nullptr, s).j == CollapseChoice::kNoNeighbour) {
       continue;
     }
     for (VertexId v = 0; v < terrain.full.vertices.size(); ++v) {
@@ -143,7 +143,7 @@ TEST(CollapseChooser, TakesACrowdedNeighbourWhenTheOthersAreVoid) {
           static_cast<std::uint16_t>(terrain.full.has_height[v] != 0 ? kComfortableDegree + 5 : 3);
     }
     gather_star(terrain.tile, u, s);
-    EXPECT_NE(chooser.choose(terrain.tile, s).j, CollapseChoice::kNoNeighbour)
+    EXPECT_NE(chooser.choose(terrain.tile, nullptr, s).j, CollapseChoice::kNoNeighbour)
         << terrain.full.position(u).x << " " << terrain.full.position(u).y;
     ++looked_at;
   }

@@ -78,6 +78,12 @@ std::string check_lists(const TestTerrain& terrain, const Tile& tile) {
   }
   for (TriangleId t = 0; t < tile.tin.triangles.size(); ++t) {
     for (const Sample& s : tile.samples.samples(tile.carried[t].samples)) {
+      if (s.direction != kNoDirection) {
+        if (!triangle_holds(tile.tin, tile.tin.triangles[t], s.position, s.direction)) {
+          return "a witness is outside of its triangle";
+        }
+        continue;
+      }
       for (std::int32_t y = 0; y < 1 << s.side_log; ++y) {
         for (std::int32_t x = 0; x < 1 << s.side_log; ++x) {
           const GridPoint p{s.position.x + x, s.position.y + y};

@@ -17,6 +17,7 @@
 #include "engine/construct/tile/part_surface.h"
 #include "engine/mesh/validate.h"
 #include "engine/query/terrain.h"
+#include "tests/construct/border_oracle.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/point_sets.h"
 #include "tests/construct/store_promises.h"
@@ -57,8 +58,9 @@ void make_voids(TestTerrain& terrain, double longest) {
       tin.has_height[v] = 0;
       terrain.samples[v].has_height = false;
     }
-    terrain.samples[v].depth = std::numeric_limits<double>::infinity();
   }
+  oracle::measure_depths(terrain);
+  terrain.slope = BuildOptions{}.void_slope;
 }
 
 struct Case {

@@ -17,8 +17,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "engine/construct/raster/raster_surface.h"
-#include "engine/construct/raster/raster_tin.h"
+#include "engine/construct/raster/raster_tile.h"
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
 #include "tests/construct/hierarchy_fixture.h"
@@ -47,29 +46,18 @@ class SampledRaster {
   [[nodiscard]] std::int64_t height() const { return std::int64_t{box_.max_y} - box_.min_y + 1; }
 
   [[nodiscard]] StartedTile start(const SampleRange& w) const {
-    std::vector<HeightBits> heights;
-    std::vector<std::uint8_t> valid;
-    std::vector<float> depths;
-    for (std::int64_t y = w.y0; y < w.y0 + w.height; ++y) {
-      for (std::int64_t x = w.x0; x < w.x0 + w.width; ++x) {
+    RasterSamples samples;
+    samples.raster = {0, 0, width(), height()};
+    samples.range = range_around(samples.raster, w);
+    const SampleRange& r = samples.range;
+    for (std::int64_t y = r.y0; y < r.y0 + r.height; ++y) {
+      for (std::int64_t x = r.x0; x < r.x0 + r.width; ++x) {
         const auto i = static_cast<std::size_t>(y * width() + x);
-        heights.push_back(terrain_.full.vertices[i].height);
-        valid.push_back(terrain_.full.has_height[i]);
-        depths.push_back(static_cast<float>(terrain_.samples[i].depth));
+        samples.heights.push_back(terrain_.full.vertices[i].height);
+        samples.valid.push_back(terrain_.full.has_height[i]);
       }
     }
-    StartedTile started;
-    const HeightEncoding& encoding = terrain_.tile.units.heights;
-    const GridPoint origin{static_cast<std::int32_t>(w.x0), static_cast<std::int32_t>(w.y0)};
-    const auto columns = static_cast<std::int32_t>(w.width);
-    const auto rows = static_cast<std::int32_t>(w.height);
-    started.tile.units = terrain_.tile.units;
-    started.tile.samples_fill_grid = true;
-    started.tile.tin = make_raster_tin(heights, valid, columns, rows, encoding, origin);
-    start_tile(started.tile, depths);
-    started.box = {origin.x, origin.y, origin.x + columns - 1, origin.y + rows - 1};
-    started.full = std::make_unique<RasterSurface>(heights, valid, columns, rows, encoding, origin);
-    return started;
+    return start_raster_tile(std::move(samples), w, terrain_.tile.units);
   }
 
  private:

@@ -33,7 +33,7 @@ std::size_t add_blocks(Tile& tile, VertexId u, bool voids, std::size_t most,
     const oracle::Corners c = oracle::corners_of(tile.tin, t, kInt);
     std::vector<Sample> list;
     for (int attempt = 0; attempt < 60 && added + list.size() < most; ++attempt) {
-      const auto log = static_cast<std::uint32_t>(1 + random() % 5);
+      const auto log = static_cast<std::uint16_t>(1 + random() % 5);
       const std::int32_t side = 1 << log;
       const auto place = [&] { return static_cast<std::int32_t>(random() % 128) / side * side; };
       const GridPoint p{place(), place()};
@@ -41,9 +41,9 @@ std::size_t add_blocks(Tile& tile, VertexId u, bool voids, std::size_t most,
       if (oracle::in_closed(c, p) && oracle::in_closed(c, q) && oracle::in_closed(c, {p.x, q.y}) &&
           oracle::in_closed(c, {q.x, p.y})) {
         const bool is_void = voids && random() % 2 == 0;
-        const auto depth = static_cast<float>(1 + random() % 9);
+        const auto reach = static_cast<float>(1 + random() % 9);
         list.push_back(
-            {p, kInt.bits(static_cast<double>(random() % 50)), is_void ? -depth : depth, log});
+            {p, kInt.bits(static_cast<double>(random() % 50)), is_void ? -reach : reach, log});
       }
     }
     tile.carried[t].samples = tile.samples.take(static_cast<std::uint32_t>(list.size()));
@@ -74,22 +74,24 @@ OneByOne measure_one_by_one(const Tile& tile, const StarSamples& s, const FanFra
   OneByOne found;
   for (const Sample& block : s.source) {
     for_each_sample_of(block, [&](GridPoint p) {
-      bool in_closed = false, in_open = false;
+      bool in_closed = false, in_void = false;
       for (std::size_t i = 0; i < fan.triangles(); ++i) {
         const oracle::Corners c = oracle::fan_corners(tile, s, fan, i);
-        if (!oracle::is_surface(tile.tin, s.star.triangles[fan.star_triangle[i]]) ||
-            !oracle::in_closed(c, p)) {
+        if (!oracle::in_closed(c, p)) {
+          continue;
+        }
+        if (!oracle::is_surface(tile.tin, s.star.triangles[fan.star_triangle[i]])) {
+          in_void = true;
           continue;
         }
         in_closed = true;
-        in_open |= oracle::in_open(c, p);
-        if (block.depth > 0.0F) {
+        if (block.reach > 0.0F) {
           found.residual =
               std::max(found.residual, Gap::of_sample(c, p, kInt.code(block.height)).rough());
         }
       }
-      if (block.depth > 0.0F ? !in_closed : in_open) {
-        found.charge = std::max(found.charge, std::abs(static_cast<double>(block.depth)));
+      if (block.reach > 0.0F ? !in_closed : !in_void) {
+        found.charge = std::max(found.charge, std::abs(static_cast<double>(block.reach)));
       }
     });
   }
@@ -113,7 +115,7 @@ void for_each_star_with_blocks(bool voids, std::size_t most, const Visit& visit)
     StarSamples s;
     for (VertexId u = 0; u < tile.tin.vertices.size(); ++u) {
       blocks += add_blocks(tile, u, voids, most, random);
-      tile.vertex_state[u].depth = 1.0F;
+      tile.vertex_state[u].reach = 1.0F;
       oracle::gather_all(tile, u, s);
       visit(tile, s);
     }
@@ -147,7 +149,7 @@ TEST(SampleBlocks, AreChargedForEachSampleOfTheWrongClass) {
       if (!make_fan(s, j, fan)) {
         continue;
       }
-      const VoidMeasure measure = measure_with_voids(tile, s, fan);
+      const VoidMeasure measure = measure_with_voids(tile, s, fan, nullptr);
       const OneByOne found = measure_one_by_one(tile, s, fan);
       ASSERT_TRUE(measure.allowed);
       EXPECT_GE(measure.error, found.charge);
@@ -158,7 +160,7 @@ TEST(SampleBlocks, AreChargedForEachSampleOfTheWrongClass) {
   EXPECT_GT(charged, 100U);
 }
 
-TEST(JoinIntoBlocks, KeepsEverySampleWithItsHeightAndNoSmallerDepth) {
+TEST(JoinIntoBlocks, KeepsEverySampleWithItsHeightAndNoSmallerReach) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     std::mt19937_64 random(seed);
     std::vector<Sample> samples;
@@ -166,9 +168,9 @@ TEST(JoinIntoBlocks, KeepsEverySampleWithItsHeightAndNoSmallerDepth) {
       for (int x = 0; x < 40; ++x) {
         if (random() % 200 != 0) {
           const bool is_void = x > 20 + y / 8;
-          const float depth = 1.0F + static_cast<float>((x * y) % 7);
+          const float reach = 1.0F + 0.03F * static_cast<float>((x * y) % 7);
           samples.push_back(
-              {{x + 3, y + 5}, is_void ? 0U : kInt.bits(x / 9), is_void ? -depth : depth, 0});
+              {{x + 3, y + 5}, is_void ? 0U : kInt.bits(x / 9), is_void ? -reach : reach, 0});
         }
       }
     }
@@ -181,7 +183,7 @@ TEST(JoinIntoBlocks, KeepsEverySampleWithItsHeightAndNoSmallerDepth) {
       EXPECT_EQ(block.position.x % (1 << block.side_log), 0);
       EXPECT_EQ(block.position.y % (1 << block.side_log), 0);
       for_each_sample_of(block, [&](GridPoint p) {
-        apart.push_back({p, block.height, block.depth, 0});
+        apart.push_back({p, block.height, block.reach, 0});
       });
     }
     ASSERT_EQ(apart.size(), samples.size());
@@ -193,8 +195,8 @@ TEST(JoinIntoBlocks, KeepsEverySampleWithItsHeightAndNoSmallerDepth) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       ASSERT_EQ(apart[i].position, samples[i].position);
       ASSERT_EQ(apart[i].height, samples[i].height);
-      ASSERT_EQ(std::signbit(apart[i].depth), std::signbit(samples[i].depth));
-      ASSERT_GE(std::abs(apart[i].depth), std::abs(samples[i].depth));
+      ASSERT_EQ(std::signbit(apart[i].reach), std::signbit(samples[i].reach));
+      ASSERT_GE(std::abs(apart[i].reach), std::abs(samples[i].reach));
     }
   }
 }

@@ -109,7 +109,7 @@ TEST(MakeFan, SeesTheAreaOfANeedleAcrossTheGrid) {
   Tile tile;
   tile.units.heights = kInt;
   tile.tin = mesh_of(star, "star");
-  start_tile(tile, {});
+  start_tile(tile, nullptr);
   StarSamples s;
   FanFrame fan;
   gather_star(tile, 4, s);

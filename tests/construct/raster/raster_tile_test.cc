@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/raster/raster_tile.h"
 
+#include <cfloat>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -51,7 +52,7 @@ TEST(MeasureUnits, ClaimExactCodesForWholeNumbersAlone) {
   EXPECT_FALSE(started.tile.units.exact_codes);
 }
 
-TEST(StartRasterTile, GivesAWindowTheDepthsAndClassesOfTheWhole) {
+TEST(StartRasterTile, GivesAWindowTheClassesOfTheWhole) {
   const oracle::WrittenRaster raster(masked());
   const RasterSource source = RasterSource::open({raster.path()}, {});
   const MeasureUnits units = measure_units(source.frame(), 0.1);
@@ -69,7 +70,6 @@ TEST(StartRasterTile, GivesAWindowTheDepthsAndClassesOfTheWhole) {
       ASSERT_EQ(whole.tile.tin.position(other), p);
       ASSERT_EQ(tin.has_height[v], whole.tile.tin.has_height[other]);
       ASSERT_EQ(tin.vertices[v].height, whole.tile.tin.vertices[other].height);
-      ASSERT_EQ(part.tile.vertex_state[v].depth, whole.tile.vertex_state[other].depth);
     }
     const auto all = oracle::named_triangles(whole.tile.tin);
     for (const oracle::NamedTriangle& t : oracle::named_triangles(tin)) {
@@ -94,15 +94,15 @@ TEST(StartRasterTile, TurnsSamplesThatTouchNoSurfaceIntoVoids) {
   std::uint64_t with_height = 0;
   for (VertexId v = 0; v < tin.vertices.size(); ++v) {
     ASSERT_EQ(tin.has_height[v], touched[v]);
-    ASSERT_EQ(started.tile.vertex_state[v].depth > 0.0F, touched[v] != 0);
+    ASSERT_EQ(started.tile.vertex_state[v].reach >= 0.0F, touched[v] != 0);
     with_height += tin.has_height[v];
   }
   EXPECT_GT(started.lone_samples, 0U);
   EXPECT_EQ(with_height + started.lone_samples, source.valid_samples());
 }
 
-TEST(StartRasterTile, SignsDepthsByClassAndMeasuresThemOnTheGround) {
-  oracle::RasterFile file;
+TEST(StartRasterTile, SignsReachesByClassAndMeasuresThemOnTheGround) {
+  oracle::RasterFile file;  // samples are 10 apart
   file.nodata = -1;
   file.value = [](int x, int) { return x < 5 ? -1.0 : 3.0; };
   const oracle::WrittenRaster raster(file);
@@ -110,9 +110,14 @@ TEST(StartRasterTile, SignsDepthsByClassAndMeasuresThemOnTheGround) {
   const StartedTile started =
       start_raster_tile(source, {0, 0, 20, 20}, measure_units(source.frame(), 0.1));
   for (VertexId v = 0; v < started.tile.tin.vertices.size(); ++v) {
-    const int x = started.tile.tin.position(v).x;
-    EXPECT_EQ(started.tile.vertex_state[v].depth,
-              10.0F * static_cast<float>(x < 5 ? x - 5 : x - 4));
+    const int x = started.tile.tin.position(v).x;  // the border lies along column 5
+    const float reach = started.tile.vertex_state[v].reach;
+    ASSERT_EQ(std::signbit(reach), x < 5);
+    if (x == 5) {
+      ASSERT_EQ(reach, 0.0F);
+    } else if (std::abs(reach) > FLT_MIN) {  // else its neighbours are the witnesses
+      ASSERT_GE(std::abs(reach), 10.0F * static_cast<float>(std::abs(x - 5)));
+    }
   }
 }
 

@@ -11,6 +11,7 @@
 #include "engine/construct/build.h"
 #include "engine/construct/tin/tin_source.h"
 #include "engine/query/terrain.h"
+#include "tests/construct/border_oracle.h"
 #include "tests/construct/delaunay_tin.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/point_sets.h"
@@ -71,9 +72,10 @@ TestTerrain terrain_in(const std::string& path, const std::string& folder) {
   terrain.full = triangles.part(0, 1);
   terrain.tile.units.heights = triangles.frame().heights;
   for (const Vertex& v : terrain.full.vertices) {
-    terrain.samples.push_back({v.position, triangles.frame().heights.code(v.height), true,
-                               std::numeric_limits<double>::infinity()});
+    terrain.samples.push_back({v.position, triangles.frame().heights.code(v.height), true});
   }
+  oracle::measure_depths(terrain);
+  terrain.slope = BuildOptions{}.void_slope;
   return terrain;
 }
 
