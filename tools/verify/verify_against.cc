@@ -10,7 +10,7 @@
 #include "engine/error.h"
 #include "engine/stop.h"
 #include "tools/facts/human.h"
-#include "tools/verify/brute_depth.h"
+#include "tools/verify/border_lines.h"
 #include "tools/verify/scan_triangle.h"
 #include "tools/verify/sorted_samples.h"
 
@@ -23,7 +23,6 @@ struct Finding {
   /// The least vertical distance over the closed surface triangles that hold the sample.
   double residual = std::numeric_limits<double>::infinity();
   bool in_closed_surface = false;
-  bool in_open_surface = false;
   bool in_closed_void = false;
   bool covered = false;
   std::uint8_t open_triangles = 0;
@@ -64,11 +63,18 @@ class Verifier {
   void drop_lone_points(SampleWindow& window) const;
   void judge(const SampleWindow& window, const GridBox& box, const std::vector<Finding>& found,
              double allowed, ToleranceCheck& check);
-  void judge_class(const SampleWindow& window, const SourceSample& sample, double allowed,
-                   ToleranceCheck& check);
+  [[nodiscard]] std::int64_t margin_of(const GridBox& box) const;
+  [[nodiscard]] GridBox widened(const GridBox& box, std::int64_t margin) const;
+  [[nodiscard]] GroundSteps least_steps(const GridBox& box) const;
+  [[nodiscard]] double border_moves(double allowed) const;
+  [[nodiscard]] BorderLines source_border(const SampleWindow& window, const GridBox& box) const;
+  void judge_class(const SourceSample& sample, double allowed, ToleranceCheck& check);
+  void judge_border(const GridBox& box, double allowed, ToleranceCheck& check);
+  void judge_lines(const BorderLines& from, const BorderLines& to, const GridBox& box,
+                   double allowed, const char* what, ToleranceCheck& check);
   void place_probes(const GridBox& box, std::vector<Probe>& probes);
   void measure_probes(const Tin& tin, std::vector<Probe>& probes, double Probe::*height) const;
-  void judge_probes(const std::vector<Probe>& probes, const RefinedTin& refined,
+  void judge_probes(const std::vector<Probe>& probes, const RefinedTin& refined, double allowed,
                     ToleranceCheck& check);
   void fault(ToleranceCheck* check, std::string what);
   [[nodiscard]] std::string place_text(double x, double y) const;
@@ -83,7 +89,9 @@ class Verifier {
   SampleChoices choices_;
   Ground ground_;
   double slack_ = 0.0;
+  bool is_grid_ = false;  ///< The source is a raster.
   AgainstReport report_;
+  std::optional<BorderLines> border_;  ///< Of the source, in and around the window at hand.
   std::mt19937_64 random_{20260101};
 };
 
@@ -110,7 +118,7 @@ std::vector<GridBox> Verifier::windows() {
   // A raster is cut into squares of samples; points are halved until few enough are in each window.
   std::vector<GridBox> boxes;
   std::vector<GridBox> open{facts_.bounds};
-  const bool is_grid = source_.read(box_of({facts_.bounds.min_x, facts_.bounds.min_y})).is_grid;
+  is_grid_ = source_.read(box_of({facts_.bounds.min_x, facts_.bounds.min_y})).is_grid;
   while (!open.empty()) {
     stop_if_asked(options_.stop, "verification");
     const GridBox box = open.back();
@@ -118,7 +126,7 @@ std::vector<GridBox> Verifier::windows() {
     const std::int64_t width = std::int64_t{box.max_x} - box.min_x;
     const std::int64_t height = std::int64_t{box.max_y} - box.min_y;
     const bool small =
-        is_grid ? std::max(width, height) < options_.window_side
+        is_grid_ ? std::max(width, height) < options_.window_side
                 : std::max(width, height) < 2 || source_.count(box) <= options_.samples_per_window;
     if (small) {
       boxes.push_back(box);
@@ -163,30 +171,62 @@ RefinedTin Verifier::refined_in(const GridBox& box, const std::optional<double>&
   return terrain_.refine(request);
 }
 
-SampleWindow Verifier::read_with_margin(const GridBox& box) const {
+/// How far the border may have moved where an answer is off by `allowed`, in ground units.
+double Verifier::border_moves(double allowed) const {
+  constexpr double kFormulas = 1.001;  // Two formulas for a degree's length differ by less.
+  // What is no raster is held against the file's own finest TIN, which may be off by the base error.
+  const double base = is_grid_ ? 0.0 : facts_.base_error;
+  return choices_.void_slope > 0
+             ? (allowed + base) / choices_.void_slope * kFormulas + 1e-9 * least_steps(facts_.bounds).y
+             : std::numeric_limits<double>::infinity();
+}
+
+/// The least steps of the rows of a box: distances come out too small rather than too large.
+GroundSteps Verifier::least_steps(const GridBox& box) const {
+  const GroundSteps low = ground_steps(facts_.map, ground_, box.min_y);
+  const GroundSteps high = ground_steps(facts_.map, ground_, box.max_y);
+  return {std::min(low.x, high.x), std::min(low.y, high.y)};
+}
+
+/// How far around a window the border is looked for, in grid units: as far as it may have moved at the
+/// largest tolerance, within reason.
+std::int64_t Verifier::margin_of(const GridBox& box) const {
   double largest = 0.0;
   for (const auto& tolerance : options_.tolerances)
     largest = std::max(largest, tolerance.value_or(0.0));
-  const GroundSteps steps = ground_steps(facts_.map, ground_, (box.min_y + box.max_y) / 2.0);
-  constexpr double kMargin = 1024.0;
-  const double depth =
-      choices_.void_slope > 0 ? largest / choices_.void_slope / std::min(steps.x, steps.y) : 0.0;
-  const auto margin = static_cast<std::int64_t>(std::min(kMargin, std::ceil(depth))) + 2;
+  const GroundSteps steps = least_steps(box);
+  const double moved = border_moves(std::max(largest, facts_.base_error));
+  const double sides = 2.0 * std::max(options_.window_side, box.max_x - box.min_x);
+  return static_cast<std::int64_t>(
+             std::min(sides, std::ceil(moved / std::min(steps.x, steps.y)))) +
+         2;
+}
+
+GridBox Verifier::widened(const GridBox& box, std::int64_t margin) const {
   const GridBox& all = facts_.bounds;
   const auto within = [](std::int64_t v, std::int32_t low, std::int32_t high) {
     return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, low, high));
   };
+  return {within(box.min_x - margin, all.min_x, all.max_x),
+          within(box.min_y - margin, all.min_y, all.max_y),
+          within(box.max_x + margin, all.min_x, all.max_x),
+          within(box.max_y + margin, all.min_y, all.max_y)};
+}
+
+SampleWindow Verifier::read_with_margin(const GridBox& box) const {
   SampleWindow inner = source_.read(box);
-  const bool has_void = std::any_of(inner.samples.begin(), inner.samples.end(),
-                                    [](const SourceSample& s) { return s.is_void; });
-  const std::int64_t wide = inner.is_grid && (has_void || largest > 0) ? margin : 2;
-  if (!inner.is_grid) return inner;
-  SampleWindow window = source_.read({within(box.min_x - wide, all.min_x, all.max_x),
-                                      within(box.min_y - wide, all.min_y, all.max_y),
-                                      within(box.max_x + wide, all.min_x, all.max_x),
-                                      within(box.max_y + wide, all.min_y, all.max_y)});
+  if (!is_grid_) return inner;
+  SampleWindow window = source_.read(widened(box, !facts_.free_of_voids ? margin_of(box) : 2));
   drop_lone_samples(window);
   return window;
+}
+
+/// The border of the source in and around a window: by the mask of a raster, by the file's own finest
+/// triangles elsewhere (whose corners and classes are checked one by one).
+BorderLines Verifier::source_border(const SampleWindow& window, const GridBox& box) const {
+  const GroundSteps steps = least_steps(widened(box, margin_of(box)));
+  if (window.is_grid) return {border_of_mask(window), steps};
+  return {border_of_tin(refined_in(widened(box, margin_of(box)), std::nullopt).tin), steps};
 }
 
 bool Verifier::is_too_long(GridPoint a, GridPoint b) const {
@@ -231,6 +271,8 @@ void Verifier::drop_lone_points(SampleWindow& window) const {
 void Verifier::check_window(const GridBox& box) {
   SampleWindow window = read_with_margin(box);
   drop_lone_points(window);
+  border_.reset();
+  if (!facts_.free_of_voids) border_.emplace(source_border(window, box));
   std::vector<Probe> probes;
   place_probes(box, probes);
   if (!probes.empty()) measure_probes(refined_in(box, std::nullopt).tin, probes, &Probe::full);
@@ -243,11 +285,12 @@ void Verifier::check_window(const GridBox& box) {
       fault(&check, "the answer certifies only " + short_number(refined.certified_error) +
                         " near " + place_text(box.min_x, box.min_y));
     }
-    judge(window, box, findings(refined.tin, window), std::min(asked, refined.certified_error),
-          check);
+    const double allowed = std::min(asked, refined.certified_error);
+    judge(window, box, findings(refined.tin, window), allowed, check);
+    if (border_) judge_border(box, allowed, check);
     if (check.tolerance) {
       measure_probes(refined.tin, probes, &Probe::coarse);
-      judge_probes(probes, refined, check);
+      judge_probes(probes, refined, allowed, check);
     }
   }
 }
@@ -282,7 +325,6 @@ std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& wind
       f.in_closed_void = f.in_closed_void || !is_surface;
       if (!is_surface) return;
       f.in_closed_surface = true;
-      f.in_open_surface = f.in_open_surface || weights.in_open();
       const double height =
           height_in(tin, t,
                     {static_cast<double>(weights.w[0]), static_cast<double>(weights.w[1]),
@@ -322,8 +364,8 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
     if (!f.covered || f.open_triangles > 1) {
       fault(&check, std::string(f.covered ? "two triangles overlap at " : "no triangle covers ") +
                         place_text(sample.x, sample.y));
-    } else if (sample.is_void ? f.in_open_surface : !f.in_closed_surface) {
-      judge_class(window, sample, allowed, check);
+    } else if (sample.is_void ? !f.in_closed_void : !f.in_closed_surface) {
+      judge_class(sample, allowed, check);
     } else if (!sample.is_void) {
       check.worst_error = std::max(check.worst_error, f.residual);
       if (f.residual > allowed) {
@@ -336,25 +378,50 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
   }
 }
 
-void Verifier::judge_class(const SampleWindow& window, const SourceSample& sample, double allowed,
-                           ToleranceCheck& check) {
-  const char* what = sample.is_void ? "void" : "a height";
-  if (!window.is_grid) {
-    fault(&check, "the point at " + place_text(sample.x, sample.y) +
-                      (sample.is_void ? " is lone in the full TIN and lies in a surface triangle"
-                                      : " lies in no surface triangle"));
-    return;
-  }
-  const GroundSteps steps = ground_steps(facts_.map, ground_, sample.y);
-  constexpr double kFormulas = 1.001;  // Two formulas for a degree's length differ by less.
-  const double limit = choices_.void_slope > 0 ? allowed / choices_.void_slope * kFormulas
-                                               : std::numeric_limits<double>::infinity();
-  if (std::isfinite(depth_at(window, sample.x, sample.y, steps, limit))) {
+void Verifier::judge_class(const SourceSample& sample, double allowed, ToleranceCheck& check) {
+  const double moved = border_moves(allowed);
+  if (border_ && std::isfinite(border_->distance(sample.x, sample.y, moved))) {
     ++check.reclassified;
     return;
   }
-  fault(&check, std::string("the sample at ") + place_text(sample.x, sample.y) + " has " + what +
-                    " and the TIN says otherwise, though it lies deeper than the tolerance allows");
+  fault(&check, std::string("the sample at ") + place_text(sample.x, sample.y) + " has " +
+                    (sample.is_void ? "no height" : "a height") +
+                    " and the TIN says otherwise, though it is farther than " +
+                    short_number(moved) + " from the border of its void");
+}
+
+/// Whether the border of the TIN at a tolerance is near that of the source, and the other way round.
+void Verifier::judge_border(const GridBox& box, double allowed, ToleranceCheck& check) {
+  const GridBox around = widened(box, margin_of(box));
+  const BorderLines coarse(border_of_tin(refined_in(around, check.tolerance).tin),
+                           least_steps(around));
+  judge_lines(*border_, coarse, box, allowed, "the border of the source", check);
+  judge_lines(coarse, *border_, box, allowed, "the border of the TIN", check);
+}
+
+void Verifier::judge_lines(const BorderLines& from, const BorderLines& to, const GridBox& box,
+                           double allowed, const char* what, ToleranceCheck& check) {
+  const double moved = border_moves(allowed);
+  const GroundSteps steps = least_steps(box);
+  if (moved > static_cast<double>(margin_of(box)) * std::min(steps.x, steps.y)) {
+    return;  // what lies so far away is in no window
+  }
+  constexpr int kPoints = 8;
+  for (const auto& [a, b] : from.lines()) {
+    for (int i = 0; i <= kPoints; ++i) {
+      const double t = static_cast<double>(i) / kPoints;
+      const double x = a.x + (static_cast<double>(b.x) - a.x) * t;
+      const double y = a.y + (static_cast<double>(b.y) - a.y) * t;
+      if (x < box.min_x || x > box.max_x || y < box.min_y || y > box.max_y) continue;
+      const double distance = to.distance(x, y, moved);
+      if (std::isfinite(distance)) {
+        check.worst_border_move = std::max(check.worst_border_move, distance);
+        continue;
+      }
+      fault(&check, std::string(what) + " at " + place_text(x, y) + " is farther than " +
+                        short_number(moved) + " from that of the other");
+    }
+  }
 }
 
 void Verifier::place_probes(const GridBox& box, std::vector<Probe>& probes) {
@@ -396,8 +463,14 @@ void Verifier::measure_probes(const Tin& tin, std::vector<Probe>& probes,
 }
 
 void Verifier::judge_probes(const std::vector<Probe>& probes, const RefinedTin& refined,
-                            ToleranceCheck& check) {
+                            double allowed, ToleranceCheck& check) {
+  const double moved = border_moves(allowed);
   for (const Probe& probe : probes) {
+    if (std::isnan(probe.full) != std::isnan(probe.coarse) && border_ &&
+        !std::isfinite(border_->distance(probe.x, probe.y, moved))) {
+      fault(&check, "at " + place_text(probe.x, probe.y) + " surface and void are exchanged, " +
+                        "farther than " + short_number(moved) + " from the border");
+    }
     const double deviation = std::abs(probe.full - probe.coarse);
     if (std::isnan(deviation)) continue;  // Void in one of the two TINs.
     check.worst_deviation = std::max(check.worst_deviation, deviation);

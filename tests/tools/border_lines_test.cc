@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/verify/brute_depth.h"
+#include "tools/verify/border_lines.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -26,30 +27,45 @@ SampleWindow window_of(const std::vector<std::string>& rows) {  // row 0 in the 
   return window;
 }
 
-TEST(DepthAt, IsTheLeastDistanceToTheOtherClass) {
+TEST(BorderLines, MeasureTheDistanceToTheNearestOfThem) {
   std::mt19937 random(5);
   for (int i = 0; i < 50; ++i) {
-    std::vector<std::string> rows(9, std::string(11, '#'));
-    for (auto& row : rows) {
-      for (char& c : row) c = random() % 12 == 0 ? '.' : '#';
+    std::vector<BorderLine> lines;
+    for (int k = 0; k < 1 + i * 3; ++k) {
+      const auto at = [&] { return static_cast<std::int32_t>(random() % 200); };
+      const GridPoint a{at(), at()};
+      lines.push_back({a, GridPoint{a.x + 1 + at() % 30, a.y + at() % 30}});
     }
-    const SampleWindow window = window_of(rows);
     const GroundSteps steps{2.0, 3.0};
-    for (const SourceSample& s : window.samples) {
+    const BorderLines border(lines, steps);
+    for (int k = 0; k < 40; ++k) {
+      const double x = static_cast<double>(random() % 3000) / 10 - 40;
+      const double y = static_cast<double>(random() % 3000) / 10 - 40;
       double nearest = std::numeric_limits<double>::infinity();
-      for (const SourceSample& o : window.samples) {
-        if (o.is_void != s.is_void)
-          nearest = std::min(nearest, std::hypot(2.0 * (o.x - s.x), 3.0 * (o.y - s.y)));
+      for (const auto& [a, b] : lines) {  // by steps along the line
+        for (int f = 0; f <= 20000; ++f) {
+          const double t = f / 20000.0;
+          nearest = std::min(nearest, std::hypot(2.0 * (a.x + (b.x - a.x) * t - x),
+                                                 3.0 * (a.y + (b.y - a.y) * t - y)));
+        }
       }
-      EXPECT_NEAR(depth_at(window, s.x, s.y, steps, 1e9), nearest, 1e-12);
-      const double limited = depth_at(window, s.x, s.y, steps, 4.5);
-      if (nearest <= 4.5) {
-        EXPECT_NEAR(limited, nearest, 1e-12);
-      } else {
-        EXPECT_TRUE(std::isinf(limited));
-      }
+      EXPECT_NEAR(border.distance(x, y, 1e9), nearest, 1e-4);
+      EXPECT_EQ(std::isinf(border.distance(x, y, nearest / 2)), nearest > 1e-3);
     }
   }
+}
+
+TEST(BorderLines, OfAMaskLieBetweenSurfaceAndVoid) {
+  // A cell with three heights is half surface; one with fewer is void.
+  const SampleWindow window = window_of({"####", "####", "##..", "#..#"});
+  std::vector<BorderLine> lines = border_of_mask(window);
+  std::sort(lines.begin(), lines.end(), [](const BorderLine& a, const BorderLine& b) {
+    return std::pair(key_of(a[0]), key_of(a[1])) < std::pair(key_of(b[0]), key_of(b[1]));
+  });
+  const std::vector<BorderLine> expected = {{GridPoint{2, 1}, GridPoint{1, 2}},
+                                            {GridPoint{2, 1}, GridPoint{3, 1}},
+                                            {GridPoint{1, 2}, GridPoint{0, 3}}};
+  EXPECT_EQ(lines, expected);
 }
 
 TEST(DropLoneSamples, TakesThoseWithoutASurfaceTriangle) {
