@@ -20,7 +20,10 @@ set(public_headers
     engine/construct/points/open_points.h
     engine/construct/read/column_names.h
     engine/construct/read/input_kind.h
+    engine/construct/read/layer_choice.h
     engine/construct/read/point_stream.h
+    engine/construct/read/text_rows.h
+    engine/construct/read/text_table.h
     engine/construct/scratch/external_memory.h
     engine/construct/scratch/external_sorter.h
     engine/construct/scratch/manifest.h

@@ -25,6 +25,7 @@ struct BuildOptions {
   /// Points, repaired TINs: triangles with a longer edge are void; CRS units, or metres where those
   /// are degrees.
   std::optional<double> max_edge;
+  std::vector<std::string> columns;  ///< Text: as PointChoice::columns.
   std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
   bool repair = false;  ///< TINs: triangulate the vertices anew instead of taking the triangles.
   std::optional<std::array<double, 4>>
@@ -38,6 +39,8 @@ struct BuildOptions {
   std::uint32_t page_bytes = 4096;
 };
 
+/// Which points of its inputs a build wants.
+[[nodiscard]] PointChoice point_choice_of(const BuildOptions& options);
 /// The options that say what is read from a source.
 [[nodiscard]] SourceOptions source_options_of(const BuildOptions& options);
 

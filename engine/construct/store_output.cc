@@ -87,6 +87,9 @@ nlohmann::json options_json(const BuildOptions& o) {
   if (!o.layer.empty()) {
     json["layer"] = o.layer;
   }
+  if (!o.columns.empty()) {
+    json["columns"] = o.columns;
+  }
   if (!o.z_field.empty()) {
     json["z_field"] = o.z_field;
   }

@@ -56,6 +56,52 @@ TEST(PointBuild, TakesTheClassesOfLasThatAreAskedFor) {
   EXPECT_NE(none.err.find("class"), std::string::npos) << none.err;
 }
 
+// Point, northing, easting, height, code: what surveyors' programs write.
+TEST(PointBuild, ReadsTheColumnsThatAreNamed) {
+  const TestFolder folder;
+  std::string text, plain;
+  for (int i = 0; i < 60; ++i) {
+    const std::string x = std::to_string(2254 + i % 8) + ".230";
+    const std::string y = std::to_string(5026 + i / 8) + ".873";
+    const std::string z = std::to_string(95 + i * i % 13) + ".643";
+    text += std::to_string(i + 1) + "," + y + "," + x + "," + z + ",\"GND, " + "wet\"\n";
+    plain += x + " " + y + " " + z + "\n";
+  }
+  write_file(folder.file("pnezd.txt"), text);
+  write_file(folder.file("plain.xyz"), plain);
+  const auto refused =
+      run_ptin({"build", folder.file("pnezd.txt"), "-o", folder.file("out.ptin"), "-q"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("--columns"), std::string::npos) << refused.err;
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"plain.xyz", "pnezd.txt"}));
+
+  const auto built =
+      built_points(folder, {folder.file("pnezd.txt"), "--columns", "id", "y", "x", "z", "code"});
+  EXPECT_EQ(built["samples"], 60);
+  expect_verified(folder, "pnezd.txt");
+  const auto bounds = [&] {
+    return testing::answer_of({"info", folder.file("out.ptin"), "--json"}).at("bounds");
+  };
+  const nlohmann::json named = bounds();
+  built_points(folder, {folder.file("plain.xyz")});
+  EXPECT_EQ(bounds(), named);
+  built_points(folder, {folder.file("pnezd.txt"), "--columns", "P,N,E,Z,D"});
+  EXPECT_EQ(bounds(), named);
+
+  write_file(folder.file("a.las"), las());
+  for (const char* input : {"a.las", "mountains_257.tif"}) {
+    const std::string path =
+        std::string(input) == "a.las" ? folder.file(input) : testing::test_data(input);
+    const auto none = run_ptin({"build", path, "-o", folder.file("no.ptin"), "--columns", "x,y,z"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("--columns is for points as text"), std::string::npos) << none.err;
+  }
+  const auto without_z = run_ptin({"build", folder.file("pnezd.txt"), "-o", folder.file("no.ptin"),
+                                   "--columns", "id", "y", "x"});
+  EXPECT_EQ(without_z.status, 2);
+  EXPECT_NE(without_z.err.find("no column for z"), std::string::npos) << without_z.err;
+}
+
 /// Two layers of points in one file.
 std::string two_layers() {
   return R"(<?xml version="1.0"?><gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">

@@ -59,7 +59,7 @@ TEST(LocateCommand, ReadsManyPointsAndKeepsTheirOrder) {
   const TestFolder folder;
   const std::string terrain = wall(folder);
   write_file(folder.file("p.csv"),
-             "x,y\n" + east(15.5) + "," + south(20) + "\n0 0\n" + east(3) + ";" + south(3) + "\n");
+             "x,y\n" + east(15.5) + "," + south(20) + "\n0, 0\n" + east(3) + "," + south(3) + "\n");
   const Outcome outcome = run_ptin({"locate", terrain, "--points", folder.file("p.csv")});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(lines_in(outcome.out), 4u);
@@ -127,7 +127,7 @@ TEST(LocateCommand, NamesTheLineThatIsNoPoint) {
   write_file(folder.file("p.csv"), "x,y\n1,2\nhere\n");
   const Outcome outcome = run_ptin({"locate", terrain, "--points", folder.file("p.csv")});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("line 3"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("p.csv:3: "), std::string::npos) << outcome.err;
   EXPECT_EQ(run_ptin({"locate", terrain}).status, 2);
   EXPECT_EQ(run_ptin({"locate", terrain, "--points", folder.file("none.csv")}).status, 3);
 }
@@ -143,13 +143,13 @@ TEST(LocateCommand, LosesNoFirstRow) {
   };
   EXPECT_EQ(count("\xEF\xBB\xBF" + row + "\r\n" + row + "\r\n"), 2u);
   EXPECT_EQ(count("\xEF\xBB\xBFx,y\n" + row + "\n"), 1u);
-  EXPECT_EQ(
-      count("\n  " + east(3) + " , \t" + south(3) + " ,,,name\n" + east(3) + "   " + south(3)), 2u);
+  EXPECT_EQ(count("\n  " + east(3) + " , \t" + south(3) + " ,,,name\n" + row + ",,,\n"), 2u);
+  EXPECT_EQ(count(east(3) + "   " + south(3) + "\n\n" + east(3) + "\t" + south(3)), 2u);
   for (const char* first : {"380000m 3802000m", "here,380000,3802000"}) {
     write_file(points, first + ("\n" + row + "\n"));
     const Outcome outcome = run_ptin({"locate", terrain, "--points", points});
     EXPECT_EQ(outcome.status, 2) << first;
-    EXPECT_NE(outcome.err.find("line 1"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("p.csv:1: "), std::string::npos) << outcome.err;
   }
 }
 
@@ -162,8 +162,80 @@ TEST(LocateCommand, ShiftsNoColumnWhereANumberIsMissing) {
     write_file(points, "x,y\n1,2\n" + std::string(bad) + "\n");
     const Outcome outcome = run_ptin({"locate", terrain, "--points", points});
     EXPECT_EQ(outcome.status, 2) << bad;
-    EXPECT_NE(outcome.err.find("line 3"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("p.csv:3: "), std::string::npos) << outcome.err;
   }
+}
+
+// Where each line has separators of its own, a comma is what anybody takes it for.
+TEST(PointQuestions, KeepToTheSeparatorOfTheFirstLine) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const auto refused = [&](const char* command, const char* option, const std::string& text) {
+    write_file(folder.file("p.csv"), text);
+    const Outcome outcome = run_ptin({command, terrain, option, folder.file("p.csv")});
+    EXPECT_EQ(outcome.status, 2) << text;
+    EXPECT_EQ(outcome.out, "") << text;
+    EXPECT_EQ(lines_in(outcome.err), 1u) << outcome.err;
+    return outcome.err;
+  };
+  const auto expect_comma_named = [](const std::string& message, const std::string& place) {
+    EXPECT_NE(message.find(place), std::string::npos) << message;
+    EXPECT_NE(message.find("decimal comma; write it with a point, 7.25"), std::string::npos)
+        << message;
+  };
+  expect_comma_named(refused("locate", "--points", "7,25;43,75\n"), "p.csv:1: ");
+  expect_comma_named(refused("locate", "--points", "x;y\n1;2\n7,25;43,75\n"), "p.csv:3: ");
+  expect_comma_named(refused("locate", "--points", "x y\n7,25 43,75\n"), "p.csv:2: ");
+  expect_comma_named(refused("sight", "--pairs", "7,25;43,75;2;9;4;2\n"), "p.csv:1: ");
+  EXPECT_NE(refused("sight", "--pairs", "1 2 3 4 5 6\n1 2 3 4 5,5 6 7\n").find("7 fields"),
+            std::string::npos);
+  EXPECT_NE(refused("locate", "--points", "x,y\n7,25,43,75\n").find("4 fields where"),
+            std::string::npos);
+  EXPECT_NE(refused("locate", "--points", "1;2\n3,4\n").find("p.csv:2: "), std::string::npos);
+  EXPECT_NE(refused("locate", "--points", "1 2\nnan 2\n").find("'nan', is not finite"),
+            std::string::npos);
+}
+
+TEST(PointQuestions, TakeTheColumnsThatAreNamed) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string points = folder.file("p.txt");
+  std::string rows;
+  for (int i = 1; i < 5; ++i) {
+    rows += std::to_string(i) + ",\"A, b\"," + south(20) + "," + east(15.5) + "\n";
+  }
+  write_file(points, rows);
+  const Outcome named =
+      run_ptin({"locate", terrain, "--points", points, "--columns", "n", "name", "y", "x"});
+  EXPECT_EQ(named.status, 2) << "n is a northing, and so is y";
+  EXPECT_NE(named.err.find("two columns for y"), std::string::npos) << named.err;
+  const json answer =
+      answer_of({"locate", terrain, "--points", points, "--columns", "number,name,y,x", "--json"});
+  ASSERT_EQ(answer.at("points").size(), 4u);
+  EXPECT_EQ(answer.at("points").at(3).at("height"), 55.0);
+
+  std::string numbered;
+  for (int i = 1; i < 5; ++i) numbered += std::to_string(i) + " " + east(i) + " " + south(i) + "\n";
+  write_file(points, numbered);
+  const Outcome refused = run_ptin({"locate", terrain, "--points", points});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("--columns id x y"), std::string::npos) << refused.err;
+
+  const std::string pair =
+      "7," + south(20) + "," + east(4) + ",5," + south(20) + "," + east(28) + ",5\n";
+  write_file(points, "id,lat1,lon1,h1,lat2,lon2,h2\n" + pair);
+  const auto verdict = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"sight", terrain, "--pairs", points, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return answer_of(arguments).at("pairs").at(0).at("verdict");
+  };
+  EXPECT_EQ(verdict({}), "hidden");
+  write_file(points, pair);
+  EXPECT_EQ(verdict({"--columns", "id,y1,x1,h1,y2,x2,h2"}), "hidden");
+  write_file(points, "from,to,a,b,c,d\n1,2,3,4,5,6\n");
+  const Outcome unnamed = run_ptin({"sight", terrain, "--pairs", points});
+  EXPECT_EQ(unnamed.status, 2);
+  EXPECT_NE(unnamed.err.find("no column for x1"), std::string::npos) << unnamed.err;
 }
 
 TEST(LocateCommand, SaysWhenItCannotReadThePoints) {

@@ -337,6 +337,12 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
       ->type_name("N");
   app.add_option("--layer", options.layer, "Points of this layer, where a file holds several")
       ->type_name("NAME");
+  app.add_option("--columns", options.columns,
+                 "Text: the names of its columns from the left; x, y, z or as a header may name\n"
+                 "them, by any other name columns that are passed over (default: a header's, else "
+                 "x y z)")
+      ->delimiter(',')
+      ->type_name("NAME...");
   app.add_option("--z-field", options.z_field,
                  "The attribute that holds the height of a layer's points (default: their z)")
       ->type_name("NAME");

@@ -26,6 +26,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin build dem.tif -o dem.ptin\n"
      "  ptin build north.vrt -o north.ptin --max-error 5 --vertical-crs EPSG:5773\n"
      "  ptin build points.csv -o points.ptin --a-srs EPSG:2154 --resolution 0.01\n"
+     "  ptin build survey.txt -o survey.ptin --columns id n e z code\n"
      "  ptin build scan_*.las --class 2 -o ground.ptin\n"
      "  ptin build survey.gpkg --layer spots --z-field height -o survey.ptin\n",
      declare_build},
@@ -113,7 +114,8 @@ constexpr auto kCommands = std::to_array<Command>({
      "Three answers, told apart: a height (surface), void, outside. None is an error.\n\n"
      "Examples:\n"
      "  ptin locate dem.ptin 387500 3792500 --json\n"
-     "  ptin locate dem.ptin --points wells.gpkg --error 5\n"
+     "  ptin locate dem.ptin --points survey.txt --columns id y x z code\n"
+     "  ptin locate dem.ptin --points tour.gpx --layer waypoints --error 5\n"
      "  ptin locate dem.ptin --points wells.gpkg --vertices 20000\n"
      "  cut -d, -f2,3 track.csv | ptin locate dem.ptin --points - > heights.csv\n",
      declare_locate},

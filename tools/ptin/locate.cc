@@ -11,7 +11,7 @@
 #include "tools/facts/answers.h"
 #include "tools/formats/number_text.h"
 #include "tools/output/standard_output.h"
-#include "tools/ptin/number_rows.h"
+#include "tools/ptin/point_input.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -22,6 +22,7 @@ struct LocateOptions {
   TerrainOptions terrain;
   std::vector<double> point;
   std::string points;
+  InputChoice choice;
   DetailOptions detail;
   std::string memory;
 };
@@ -74,9 +75,10 @@ int run_locate(const LocateOptions& options, const Context& context) {
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const std::vector<MapPoint> points =
-      options.points.empty() ? std::vector<MapPoint>{{options.point[0], options.point[1]}}
-                             : read_points(options.points, crs.wkt);
+  const Asked<MapPoint> asked = options.points.empty()
+                                    ? Asked<MapPoint>{{{options.point[0], options.point[1]}}, {}}
+                                    : read_points(options.points, options.choice, crs.wkt);
+  const std::vector<MapPoint>& points = asked.all;
   LocateRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
@@ -104,10 +106,12 @@ Action declare_locate(CLI::App& app, Context& context) {
   const auto options = std::make_shared<LocateOptions>();
   add_terrain_options(app, options->terrain, true);
   app.add_option("X_Y", options->point, "A point in map units")->expected(2)->type_name("X Y");
-  app.add_option("--points", options->points,
-                 "Points: text with x and y in the first columns, or in those that a header names "
-                 "so (- reads standard input), or a vector file (transformed to the terrain's CRS)")
-      ->type_name("FILE");
+  auto* points = app.add_option(
+      "--points", options->points,
+      "Points: text with x and y in the first columns, or in those that a header names so (- "
+      "reads standard input), or a vector file (transformed to the terrain's CRS)");
+  points->type_name("FILE");
+  add_input_options(app, options->choice, points, "x, y");
   add_detail_options(app, options->detail, "; heights come with intervals",
                      "Ask the TIN of the terrain's N most important vertices; heights come with "
                      "intervals");

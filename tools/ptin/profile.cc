@@ -23,7 +23,7 @@
 #include "tools/output/file_name.h"
 #include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
-#include "tools/ptin/number_rows.h"
+#include "tools/ptin/point_input.h"
 #include "tools/ptin/query_options.h"
 #include "tools/render/overlay.h"
 
@@ -34,6 +34,7 @@ namespace {
 struct ProfileOptions {
   TerrainOptions terrain;
   std::string line;
+  InputChoice choice;
   DetailOptions detail;
   std::string memory;
   std::string output;
@@ -249,7 +250,8 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const std::vector<std::vector<MapPoint>> lines = read_lines(options.line, crs.wkt);
+  const Asked<std::vector<MapPoint>> asked = read_lines(options.line, options.choice, crs.wkt);
+  const std::vector<std::vector<MapPoint>>& lines = asked.all;
   ProfileRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
@@ -277,11 +279,12 @@ int run_profile(const ProfileOptions& options, const Context& context) {
 Action declare_profile(CLI::App& app, Context& context) {
   const auto options = std::make_shared<ProfileOptions>();
   add_terrain_options(app, options->terrain, true);
-  app.add_option("--line", options->line,
-                 "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector file "
-                 "(transformed to the terrain's CRS)")
-      ->type_name("WKT_OR_FILE")
-      ->required();
+  auto* line =
+      app.add_option("--line", options->line,
+                     "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector "
+                     "file (transformed to the terrain's CRS)");
+  line->type_name("WKT_OR_FILE")->required();
+  add_input_options(app, options->choice, line, "");
   add_detail_options(app, options->detail, "",
                      "Ask the TIN of the terrain's N most important vertices");
   add_memory_option(app, options->memory);

@@ -14,7 +14,7 @@
 #include "tools/facts/counts.h"
 #include "tools/formats/number_text.h"
 #include "tools/output/standard_output.h"
-#include "tools/ptin/number_rows.h"
+#include "tools/ptin/point_input.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -28,6 +28,7 @@ struct SightOptions {
   TerrainOptions terrain;
   std::vector<double> pair;
   std::string pairs;
+  InputChoice choice;
   bool absolute = false;
   bool verdict_only = false;
   double curvature = Curvature{}.coefficient;
@@ -37,17 +38,10 @@ struct SightOptions {
   std::string memory;
 };
 
-std::vector<SightPair> pairs_of(const SightOptions& options) {
-  if (options.pair.empty() == options.pairs.empty()) {
-    throw Error(ErrorCode::invalid_argument, "give either X1 Y1 H1 X2 Y2 H2 or --pairs FILE");
-  }
-  const std::vector<double> rows =
-      options.pairs.empty() ? options.pair : read_rows(options.pairs, 6);
-  std::vector<SightPair> pairs;
-  for (std::size_t i = 0; i + 5 < rows.size(); i += 6) {
-    pairs.push_back({{rows[i], rows[i + 1]}, rows[i + 2], {rows[i + 3], rows[i + 4]}, rows[i + 5]});
-  }
-  return pairs;
+Asked<SightPair> pairs_of(const SightOptions& options, const std::string& crs_wkt) {
+  if (!options.pairs.empty()) return read_pairs(options.pairs, options.choice, crs_wkt);
+  const std::vector<double>& n = options.pair;
+  return {{{{n[0], n[1]}, n[2], {n[3], n[4]}, n[5]}}, {}};
 }
 
 SightRequest request_of(const SightOptions& options, const Ground& ground, const Context& context) {
@@ -118,11 +112,15 @@ void append_row(std::string& text, const SightResult& r) {
 }
 
 int run_sight(const SightOptions& options, const Context& context) {
+  if (options.pair.empty() == options.pairs.empty()) {
+    throw Error(ErrorCode::invalid_argument, "give either X1 Y1 H1 X2 Y2 H2 or --pairs FILE");
+  }
   check_detail(options.detail);
-  const std::vector<SightPair> pairs = pairs_of(options);
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
+  const Asked<SightPair> asked = pairs_of(options, crs.wkt);
+  const std::vector<SightPair>& pairs = asked.all;
   const SightRequest request = request_of(options, ground_of(crs), context);
   SightSolver solver =
       terrain.sight_lines(request, pairs.size() < kFewPairs ? 0 : std::uint64_t{1} << 15);
@@ -165,9 +163,12 @@ Action declare_sight(CLI::App& app, Context& context) {
                  "The two ends in map units, each with its height above ground")
       ->expected(6)
       ->type_name("X1 Y1 H1 X2 Y2 H2");
-  app.add_option("--pairs", options->pairs,
-                 "Text with such six numbers in each row (- reads standard input)")
-      ->type_name("FILE");
+  auto* pairs = app.add_option(
+      "--pairs", options->pairs,
+      "Text with such six numbers in each row, or with a header that names x1 y1 h1 x2 y2 h2 (- "
+      "reads\nstandard input), or a vector file of lines with heights at their ends");
+  pairs->type_name("FILE");
+  add_input_options(app, options->choice, pairs, "x1, y1, h1, x2, y2, h2");
   app.add_flag("--absolute", options->absolute, "Heights of the ends are absolute");
   auto* verdict =
       app.add_flag("--verdict", options->verdict_only,

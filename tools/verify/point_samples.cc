@@ -66,7 +66,7 @@ class PointSamples final : public SourceSamples {
 
 void PointSamples::read_text(const std::string& path, const std::stop_token& stop) {
   constexpr std::uint64_t kLinesBetweenLooks = 4096;
-  TextSamples text(path);
+  TextSamples text(path, choices_.points.columns);
   TextSamples::Line line;
   std::uint64_t lines = 0;
   while (text.next(line)) {

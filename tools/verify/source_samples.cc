@@ -52,6 +52,11 @@ SampleChoices choices_of(const StoreFile& store) {
     const auto found = options.find(name);
     return found != options.end() && found->is_string() ? found->get<std::string>() : "";
   };
+  if (const auto names = options.find("columns"); names != options.end() && names->is_array()) {
+    for (const auto& name : *names) {
+      if (name.is_string()) choices.points.columns.push_back(name.get<std::string>());
+    }
+  }
   choices.points.layer = text("layer");
   choices.points.z_field = text("z_field");
   if (const auto bbox = options.find("bbox");

@@ -15,6 +15,9 @@ struct PointChoice {
   std::vector<int> classes;  ///< LAS: keep these classes (0 .. 255); empty keeps all.
   std::string layer;         ///< OGR: the layer; "" where there is only one.
   std::string z_field;       ///< OGR: the attribute that holds the height; "" for the geometry's z.
+  /// Text: the names of its columns from the left (read/column_names.h); empty: those of a header,
+  /// else x, y and z come first.
+  std::vector<std::string> columns;
 };
 
 /// Which height stands for points that fall together on one grid position.
