@@ -96,6 +96,10 @@ TEST(PointBuild, ReadsTheColumnsThatAreNamed) {
     EXPECT_EQ(none.status, 2);
     EXPECT_NE(none.err.find("--columns is for points as text"), std::string::npos) << none.err;
   }
+  const auto without_input =
+      run_ptin({"build", "-o", folder.file("no.ptin"), "--columns", "x", "y", "z", "pnezd.txt"});
+  EXPECT_EQ(without_input.status, 2);
+  EXPECT_NE(without_input.err.find("put INPUT before it"), std::string::npos) << without_input.err;
   const auto without_z = run_ptin({"build", folder.file("pnezd.txt"), "-o", folder.file("no.ptin"),
                                    "--columns", "id", "y", "x"});
   EXPECT_EQ(without_z.status, 2);

@@ -15,6 +15,7 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
+#include "engine/error.h"
 #include "storage/file/file_questions.h"
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
@@ -51,6 +52,10 @@ CostModel cost_of(const std::string& name) {
 /// Puts the options together and looks at the output; what their values may be is build()'s matter.
 void check_command(BuildCommand& command) {
   BuildOptions& options = command.options;
+  if (command.inputs.empty() && !options.columns.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "no input; all that follows --columns names columns, so put INPUT before it");
+  }
   options.cost = cost_of(command.cost);
   if (!command.bbox.empty())
     options.bbox = {command.bbox[0], command.bbox[1], command.bbox[2], command.bbox[3]};
@@ -342,7 +347,7 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
                  "them, by any other name columns that are passed over (default: a header's, else "
                  "x y z)")
       ->delimiter(',')
-      ->type_name("NAME...");
+      ->type_name("NAME");
   app.add_option("--z-field", options.z_field,
                  "The attribute that holds the height of a layer's points (default: their z)")
       ->type_name("NAME");

@@ -48,11 +48,9 @@ std::optional<double> number_of(std::string_view field) {
 }
 
 double number_in(const TextRows& rows, std::size_t role) {
-  const std::string_view field = rows.field(role);
-  const std::optional<double> value = number_of(field);
-  if (!value) rows.refuse_field(role, ", " + shown_field(field) + ", " + why_no_number(field));
-  if (!std::isfinite(*value))
-    rows.refuse_field(role, ", " + shown_field(field) + ", is not finite");
+  const std::optional<double> value = number_of(rows.field(role));
+  if (!value) rows.refuse_no_number(role);
+  if (!std::isfinite(*value)) rows.refuse_field(role, "is not finite");
   return *value;
 }
 
@@ -214,7 +212,7 @@ void add_input_options(CLI::App& app, InputChoice& choice, CLI::Option* source,
                    "Text: the names of its columns from the left, " + columns +
                        " and any other name for one that is passed over")
         ->delimiter(',')
-        ->type_name("NAME...")
+        ->type_name("NAME")
         ->needs(source);
   }
   app.add_option("--layer", choice.layer, "The layer, where several of a file would do")

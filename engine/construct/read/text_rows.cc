@@ -73,7 +73,8 @@ void TextRows::begin() {
     table_.refuse("there are " + std::to_string(count) + " fields in the first line, where " +
                   listed(roles_) + " are expected");
   }
-  may_be_numbers_ = header.empty() && count > roles_.size();
+  is_guess_ = header.empty() && count > roles_.size();
+  may_be_numbers_ = is_guess_;
 }
 
 bool TextRows::choose_id(const std::string& name) {
@@ -137,7 +138,16 @@ bool TextRows::next() {
 
 void TextRows::refuse_field(std::size_t role, const std::string& what) const {
   table_.refuse("the " + name_of(roles_[role]) +
-                (roles_[role].end == 0 ? " of this point" : " of this pair") + what);
+                (roles_[role].end == 0 ? " of this point, " : " of this pair, ") +
+                shown_field(field(role)) + ", " + what);
+}
+
+void TextRows::refuse_no_number(std::size_t role) const {
+  refuse_field(role,
+               why_no_number(field(role)) +
+                   (is_guess_ ? "; if the columns are others, name them with --columns, as in " +
+                                    example_of(roles_)
+                              : ""));
 }
 
 }  // namespace ptin

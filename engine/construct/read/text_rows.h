@@ -44,8 +44,10 @@ class TextRows {
   [[nodiscard]] std::string_view field(std::size_t role) const { return fields_[columns_[role]]; }
   /// The field that tells the row apart. REQUIRES: choose_id() returned true.
   [[nodiscard]] std::string_view id() const { return fields_[id_]; }
-  /// Refuses the row for what is wrong with the field of a role: "the x of this row, '7,25', ...".
+  /// Refuses the row for what is wrong with the field of a role: "the x of this point " and `what`.
   [[noreturn]] void refuse_field(std::size_t role, const std::string& what) const;
+  /// Refuses the row since the field of a role is no number.
+  [[noreturn]] void refuse_no_number(std::size_t role) const;
 
  private:
   void begin();
@@ -64,6 +66,8 @@ class TextRows {
   std::span<const std::string_view> fields_;
   bool begun_ = false;
 
+  /// Nobody named the columns, and there are more of them than roles.
+  bool is_guess_ = false;
   bool may_be_numbers_ = false;  ///< The first column may number the rows, as far as was read.
   bool by_one_ = true;           ///< It rose by one from each row to the next.
   bool has_decimals_ = false;    ///< The second column has.

@@ -12,21 +12,20 @@ XyzReader::XyzReader(std::string name, std::string text, std::vector<std::string
     : table_(std::move(name), std::move(text)), rows_(table_, point_roles(), std::move(columns)) {}
 
 Decimal XyzReader::number(std::size_t role) const {
-  const std::string_view field = rows_.field(role);
   Decimal value;
-  switch (parse_number(field, value)) {
+  switch (parse_number(rows_.field(role), value)) {
     case NumberKind::kNumber:
       return value;
     case NumberKind::kNotANumber:
-      rows_.refuse_field(role, " is NaN; leave points without a height out");
+      rows_.refuse_field(role, "is NaN; leave points without a height out");
     case NumberKind::kInfinite:
-      rows_.refuse_field(role, " is infinite");
+      rows_.refuse_field(role, "is infinite");
     case NumberKind::kTooLarge:
-      rows_.refuse_field(role, ", " + shown_field(field) + ", is 10^18 or more");
+      rows_.refuse_field(role, "is 10^18 or more");
     case NumberKind::kNoNumber:
       break;
   }
-  rows_.refuse_field(role, ", " + shown_field(field) + ", " + why_no_number(field));
+  rows_.refuse_no_number(role);
 }
 
 bool XyzReader::next(XyzPoint& point) {

@@ -184,14 +184,15 @@ TEST(XyzReader, NamesTheLineOfAFault) {
   expect_line_refused("1 2 3\n4 5\n", "2", "2 fields where the first line has 3");
   expect_line_refused("1 2 3\n\n#\n4 5 6 7\n", "4", "4 fields");
   expect_line_refused("1 2\n", "1", "x, y and z are expected");
-  expect_line_refused("1 2 3\n1 nan 3\n", "2", "y of this point is NaN");
-  expect_line_refused("nan 2 3\n", "1", "x of this point is NaN");
-  expect_line_refused("1 2 3\n1 2 -inf\n", "2", "z of this point is infinite");
+  expect_line_refused("1 2 3\n1 nan 3\n", "2", "y of this point, 'nan', is NaN");
+  expect_line_refused("nan 2 3\n", "1", "x of this point, 'nan', is NaN");
+  expect_line_refused("1 2 3\n1 2 -inf\n", "2", "z of this point, '-inf', is infinite");
   expect_line_refused("1 2 3\n1 2 1e40\n", "2", "10^18");
   expect_line_refused("1 2 3\n1 2 high\n", "2", "'high'");
   expect_line_refused("1;2;3\n1,5;2,5;3,5\n", "2", "decimal comma; write it with a point, 1.5");
   expect_line_refused("1,2,3\n1,,3\n", "2", "is empty");
   expect_line_refused("a,1,2,3\n", "1", "the x of this point, 'a', is no number");
+  expect_line_refused("a,1,2,3\n", "1", "as in --columns id x y z");
 }
 
 TEST(XyzReader, SaysWhichColumnAHeaderLacks) {
