@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -56,14 +57,28 @@ std::unique_ptr<OGRSpatialReference> reference_of(const std::string& wkt) {
 
 OGRFieldType ogr_type(VectorFile::FieldType type) {
   if (type == VectorFile::FieldType::kReal) return OFTReal;
-  return type == VectorFile::FieldType::kFlag ? OFTInteger : OFTInteger64;
+  if (type == VectorFile::FieldType::kText) return OFTString;
+  return type == VectorFile::FieldType::kInteger ? OFTInteger64 : OFTInteger;
+}
+
+void set_field(OGRFeature& feature, int field, const VectorFile::Value& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    feature.SetField(field, static_cast<GIntBig>(*integer));
+  } else if (const auto* text = std::get_if<std::string>(&value)) {
+    feature.SetField(field, text->c_str());
+  } else if (const double number = std::get<double>(value); std::isfinite(number)) {
+    feature.SetField(field, number);
+  } else {
+    feature.SetFieldNull(field);
+  }
 }
 
 void create_fields(OGRLayer& layer, const VectorFile::Layer& wanted, const std::string& path) {
   for (const VectorFile::Field& f : wanted.fields) {
     OGRFieldDefn field(f.name, ogr_type(f.type));
-    if (f.type != VectorFile::FieldType::kReal)
-      field.SetWidth(f.type == VectorFile::FieldType::kFlag ? 1 : 18);
+    if (f.type == VectorFile::FieldType::kInteger) field.SetWidth(18);
+    if (f.type == VectorFile::FieldType::kFlag) field.SetWidth(1);
+    if (f.type == VectorFile::FieldType::kBoolean) field.SetSubType(OFSTBoolean);
     if (layer.CreateField(&field) != OGRERR_NONE) {
       throw gdal_failure(std::string("cannot create the field ") + f.name, path);
     }
@@ -189,12 +204,7 @@ VectorFile::~VectorFile() {
 void VectorFile::add(std::unique_ptr<OGRGeometry> geometry, std::span<const Value> values) {
   OGRFeature feature(layer_->GetLayerDefn());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const int field = static_cast<int>(i);
-    if (const auto* integer = std::get_if<std::int64_t>(&values[i])) {
-      feature.SetField(field, static_cast<GIntBig>(*integer));
-    } else {
-      feature.SetField(field, std::get<double>(values[i]));
-    }
+    set_field(feature, static_cast<int>(i), values[i]);
   }
   feature.SetGeometryDirectly(geometry.release());
   if (layer_->CreateFeature(&feature) != OGRERR_NONE) {

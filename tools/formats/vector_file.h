@@ -38,8 +38,8 @@ struct VectorFormat {
 class VectorFile {
  public:
   /// kInteger has 64 bits, but in a shapefile, which keeps digits, 18 digits and a sign. kFlag is 0
-  /// or 1.
-  enum class FieldType { kInteger, kFlag, kReal };
+  /// or 1, kBoolean true or false where the format knows them.
+  enum class FieldType { kInteger, kFlag, kReal, kText, kBoolean };
   struct Field {
     const char* name;
     FieldType type;
@@ -50,7 +50,8 @@ class VectorFile {
     std::vector<Field> fields;
     std::string crs_wkt;  ///< Empty: unknown.
   };
-  using Value = std::variant<std::int64_t, double>;
+  /// A number that is infinite or unknown leaves its field null.
+  using Value = std::variant<std::int64_t, double, std::string>;
 
   /// @throws Error as check_output; io_error when GDAL cannot create the file
   VectorFile(std::string path, bool overwrite, const Layer& layer);
