@@ -191,6 +191,8 @@ TEST(PointQuestions, KeepToTheSeparatorOfTheFirstLine) {
   expect_comma_named(refused("locate", "--points", "x;y\n1;2\n7,25;43,75\n"), "p.csv:3: ");
   expect_comma_named(refused("locate", "--points", "x y\n7,25 43,75\n"), "p.csv:2: ");
   expect_comma_named(refused("sight", "--pairs", "7,25;43,75;2;9;4;2\n"), "p.csv:1: ");
+  EXPECT_NE(refused("locate", "--points", "7,25 43,75\n").find("'25 43', holds two numbers"),
+            std::string::npos);
   EXPECT_NE(refused("sight", "--pairs", "1 2 3 4 5 6\n1 2 3 4 5,5 6 7\n").find("7 fields"),
             std::string::npos);
   EXPECT_NE(refused("locate", "--points", "x,y\n7,25,43,75\n").find("4 fields where"),

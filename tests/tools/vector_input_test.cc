@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <memory>
 
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <ogr_spatialref.h>
+#include <ogrsf_frmts.h>
 
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
@@ -201,6 +203,39 @@ TEST(Layers, OfAFittingTypeAreTakenByThemselves) {
   EXPECT_NEAR(lines({"--layer", "routes"}).at("length").get<double>(), 240.0, 1e-3);
   EXPECT_EQ(run_ptin({"profile", terrain, "--line", "LINESTRING(0 0, 1 1)", "--layer", "a"}).status,
             2);
+}
+
+TEST(Layers, OfPolygonsAreFoundBehindOthers) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  const std::string file = folder.file("areas.gpkg");
+  const GDALDatasetUniquePtr data(GetGDALDriverManager()->GetDriverByName("GPKG")->Create(
+      file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+  const auto add = [&](const char* name, OGRwkbGeometryType type, const std::string& wkt) {
+    OGRSpatialReference crs;
+    crs.importFromEPSG(32611);
+    OGRLayer& layer = *data->CreateLayer(name, &crs, type);
+    OGRFeature feature(layer.GetLayerDefn());
+    OGRGeometry* geometry = nullptr;
+    OGRGeometryFactory::createFromWkt(wkt.c_str(), nullptr, &geometry);
+    feature.SetGeometryDirectly(geometry);
+    EXPECT_EQ(layer.CreateFeature(&feature), OGRERR_NONE);
+    data->FlushCache();
+  };
+  const auto refined = [&] {
+    return run_ptin({"refine", terrain, "--polygon", file, "--cut", "-o", folder.file("cut.ply"),
+                     "--overwrite", "-q"});
+  };
+  const std::string area = "POLYGON((" + sample(2, 2) + "," + sample(9, 2) + "," + sample(9, 9) +
+                           "," + sample(2, 2) + "))";
+  add("corners", wkbPoint, "POINT(" + sample(2, 2) + ")");
+  EXPECT_NE(refined().err.find("holds Point, not polygons"), std::string::npos) << refined().err;
+  add("parish", wkbPolygon, area);
+  EXPECT_EQ(refined().status, 0) << refined().err;
+  add("farm", wkbMultiPolygon, "MULTIPOLYGON(" + area.substr(7) + ")");
+  EXPECT_EQ(refined().status, 2);
+  EXPECT_NE(refined().err.find("'parish' (Polygon), 'farm' (Multi Polygon)"), std::string::npos)
+      << refined().err;
 }
 
 TEST(Layers, OfLinesArePairsForSight) {

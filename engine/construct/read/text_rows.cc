@@ -103,7 +103,7 @@ void TextRows::note_numbering() {
   const auto [end, fault] = std::from_chars(field.data(), field.data() + field.size(), number);
   may_be_numbers_ = fault == std::errc() && end == field.data() + field.size() && number >= 0 &&
                     (rows_ == 0 || number > last_number_);
-  by_one_ = by_one_ && (rows_ == 0 || number == last_number_ + 1);
+  by_one_ = by_one_ && (rows_ == 0 || number - 1 == last_number_);
   has_decimals_ = has_decimals_ || fields_[1].find('.') != std::string_view::npos;
   last_number_ = number;
 }

@@ -50,20 +50,24 @@ bool begins_as_number(std::string_view field) {
          (digit != std::string_view::npos && field[digit] >= '0' && field[digit] <= '9');
 }
 
-/// True where blanks separate numbers in the row though it has tabs too: some of what stands between
-/// tabs holds two.
-bool has_numbers_between_tabs(std::string_view row) {
+/// True when two words of a text, set apart by blanks, begin as numbers do.
+bool has_two_numbers(std::string_view text) {
   int numbers = 0;
-  for (std::size_t i = 0; i < row.size();) {
-    std::size_t end = i;
-    while (end < row.size() && kBlanks.find(row[end]) == std::string_view::npos) {
-      ++end;
-    }
-    numbers += begins_as_number(row.substr(i, end - i)) ? 1 : 0;
-    if (numbers > 1) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(kBlanks, i), text.size());
+    numbers += begins_as_number(text.substr(i, end - i)) ? 1 : 0;
+    i = end + 1;
+  }
+  return numbers > 1;
+}
+
+/// True where blanks separate numbers in the row though it has tabs too.
+bool has_numbers_between_tabs(std::string_view row) {
+  for (std::size_t i = 0; i <= row.size();) {
+    const std::size_t end = std::min(row.find('\t', i), row.size());
+    if (has_two_numbers(row.substr(i, end - i))) {
       return true;
     }
-    numbers = end < row.size() && row[end] == '\t' ? 0 : numbers;
     i = end + 1;
   }
   return false;
@@ -395,6 +399,11 @@ std::string why_no_number(std::string_view field) {
     if (parse_number(with_point, ignored) != NumberKind::kNoNumber) {
       return "has a decimal comma; write it with a point, " + with_point;
     }
+  }
+  if (has_two_numbers(field)) {
+    return "holds two numbers; a comma or a semicolon in the first line separates the fields of "
+           "all "
+           "lines, and numbers have a decimal point";
   }
   return "is no number; numbers are written with a decimal point, as in -12.5";
 }
