@@ -129,7 +129,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Heights are above ground, or with --absolute absolute.\n\n"
      "Examples:\n"
      "  ptin sight dem.ptin 385000 3790000 2 390000 3795000 10 --json\n"
-     "  ptin sight dem.ptin --pairs links.csv --frequency 5.8e9 > links_seen.csv\n"
+     "  ptin sight dem.ptin --pairs links.csv --frequency 5.8GHz > links_seen.csv\n"
      "  ptin sight dem.ptin --pairs - --verdict --curvature 0 < pairs.txt\n",
      declare_sight},
     {"viewshed", "Find what one observer sees",
