@@ -69,6 +69,26 @@ TEST(CliBadUse, IsStatus2WithOneSentence) {
   expect_refusal(run_ptin({"refine", "a.ptin", "--clip", "--cut", "-o", "x.ply"}), 2, "--cut");
 }
 
+/// And not an option that took what followed the one at fault.
+TEST(CliBadUse, NamesTheOptionAtFault) {
+  expect_refusal(run_ptin({"export", "a.ptin", "-of", "GTiff", "-o", "x.tif"}), 2,
+                 "ptin: -of has one hyphen; the option is --of; see ptin export --help");
+  expect_refusal(run_ptin({"export", "a.ptin", "-o", "x.tif", "-co=COMPRESS=NONE"}), 2, "-co has");
+  expect_refusal(run_ptin({"refine", "a.ptin", "-error", "5", "-o", "x.ply"}), 2, "is --error");
+  expect_refusal(run_ptin({"locate", "a.ptin", "--bogus", "val"}), 2,
+                 "ptin: there is no option --bogus; see ptin locate --help");
+  expect_refusal(run_ptin({"locate", "a.ptin", "1", "2", "-x", "val"}), 2, "no option -x;");
+  expect_refusal(run_ptin({"sight", "a.ptin", "1", "2", "3", "-4", "-5.5", "--bogus=val"}), 2,
+                 "no option --bogus;");
+  expect_refusal(run_ptin({"build", "a.tif", "-o", "a.ptin", "-tr", "30", "30"}), 2,
+                 "no option -tr;");
+  expect_refusal(run_ptin({"--bogus", "info", "a.ptin"}), 2, "no option --bogus; see ptin --help");
+  // Numbers below 0 and a hyphen for standard input or output are values.
+  expect_refusal(run_ptin({"export", "none.ptin", "--nodata", "-9999", "-o", "x.tif"}), 3, "none");
+  expect_refusal(run_ptin({"highest", "none.ptin", "--window", "-3", "-2", "-1", "-0.5"}), 3,
+                 "none");
+}
+
 TEST(CliBadUse, IsJsonWhenAskedFor) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"info", "none.ptin", "--json"},
