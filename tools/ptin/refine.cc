@@ -89,7 +89,7 @@ int run_refine(const RefineOptions& options, const Context& context) {
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request;
-  request.region = region_of(options.region, crs.wkt);
+  request.region = region_of(options.region, terrain.store().facts(), crs.wkt);
   request.detail = detail_of(options.detail);
   request.form = options.clip ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
   request.limits = limits_of(options.memory, context);

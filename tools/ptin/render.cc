@@ -136,7 +136,7 @@ int run_render(const RenderOptions& options, const Context& context) {
   warn_of_base_error(terrain.store(), options.error, context);
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
-  const std::optional<Region> region = region_of(options.region, crs.wkt);
+  const std::optional<Region> region = region_of(options.region, store.facts(), crs.wkt);
   const Window whole = whole_window(store.facts());
   const Window window = region ? std::get<Window>(*region) : whole;
   const View view = view_of(options, window, crs);
@@ -157,7 +157,7 @@ int run_render(const RenderOptions& options, const Context& context) {
     draw_legend(image, view, style, short_unit(unit_of_ground(crs)), short_unit(crs.vertical_unit));
   write_png(image, options.output, options.overwrite);
   if (refined.triangles == 0 && !context.quiet) {
-    std::fprintf(stderr, "ptin: warning: the window lies beside the terrain; %s shows nothing\n",
+    std::fprintf(stderr, "ptin: warning: no triangle meets the window; %s shows nothing\n",
                  options.output.c_str());
   }
 

@@ -21,8 +21,9 @@
 #include "tools/output/gdal_output.h"
 #include "tools/output/output_file.h"
 #include "tools/output/pending_file.h"
-#include "tools/ptin/own_pixel_size.h"
+#include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
+#include "tools/region/on_terrain.h"
 
 namespace ptin::tools {
 
@@ -191,6 +192,7 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   ViewshedRequest request;
   request.eye = {options.x, options.y};
+  check_on_terrain(request.eye, terrain.store().facts(), "X Y");
   request.eye_height = options.height;
   request.absolute = options.absolute;
   request.target_height = options.target_height;
