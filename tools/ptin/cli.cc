@@ -46,12 +46,13 @@ constexpr auto kCommands = std::to_array<Command>({
      "Without a region the whole terrain is refined. With a region the result covers the whole "
      "terrain, coarse outside\n"
      "of the region; --clip keeps the triangles that meet it, --cut cuts them at its border.\n"
-     "Without --error and --vertices the result is exact: every triangle of the full TIN in the "
-     "region.\n\n"
+     "Without --error, --vertices and --triangles the result is exact: every triangle of the full "
+     "TIN in the region.\n\n"
      "Examples:\n"
      "  ptin refine dem.ptin --window 385000 3790000 390000 3795000 --clip -o valley.ply\n"
      "  ptin refine dem.ptin --polygon parish.geojson --cut --error 2 -o parish.glb\n"
      "  ptin refine dem.ptin --vertices 50000 -o small.obj --stats\n"
+     "  ptin refine dem.ptin --triangles 20000 -o game.glb\n"
      "  ptin refine dem.ptin --point 387500 3792500 --clip -o triangle.2dm\n",
      declare_refine},
     {"isoline", "Write isolines (contours) as lines, or as polygons between them",
