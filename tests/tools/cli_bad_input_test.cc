@@ -149,7 +149,10 @@ TEST(CliBadInput, RastersThatAreNoTerrain) {
   make_raster(folder.file("infinite.tif"), infinite);
   expect_no_build(folder, folder.file("infinite.tif"), 2, "infinite.tif");
   make_raster(folder.file("hills.tif"), {});
-  expect_no_build(folder, folder.file("hills.tif"), 2, "bounds", {"--bbox", "1", "1", "2", "2"});
+  const std::string places = "x from 500015.000000 to 500975.000000, y from 3999025.000000 to";
+  expect_no_build(folder, folder.file("hills.tif"), 2, places, {"--bbox", "1", "1", "2", "2"});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "give x before y",
+                  {"--bbox", "3999100", "500100", "3999500", "500500"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "--max-error", {"--max-error", "-1"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "--void-slope", {"--void-slope", "-1"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "--resolution", {"--resolution", "0"});
