@@ -43,6 +43,18 @@ std::string unit_of_ground(const CrsFacts& crs) {
   return crs.geographic ? "metre" : crs.horizontal_unit;
 }
 
+std::optional<MapPoint> metres_per_map_unit(const CrsFacts& crs, MapPoint at) {
+  OGRSpatialReference srs;
+  if (crs.wkt.empty() || srs.importFromWkt(crs.wkt.c_str()) != OGRERR_NONE) {
+    const std::optional<double> metres = metres_in(height_unit_named(crs.horizontal_unit));
+    return metres ? std::optional<MapPoint>({*metres, *metres}) : std::nullopt;
+  }
+  if (srs.IsGeographic() != 0) return on_ellipsoid(srs, 1.0)(at);
+  if (crs.horizontal_unit == "unknown") return std::nullopt;
+  const double metres = srs.GetLinearUnits();
+  return MapPoint{metres, metres};
+}
+
 Ground ground_of(const CrsFacts& crs) {
   Ground ground;
   OGRSpatialReference srs;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "engine/crs/crs_facts.h"
@@ -27,6 +28,11 @@ struct Ground {
 /// The name of the unit of lengths over ground. It is the unit of the heights. Where nothing tells
 /// that unit, it is the unit of the plane, or "metre" where the plane is in degrees.
 [[nodiscard]] std::string unit_of_ground(const CrsFacts& crs);
+
+/// Metres over ground of one map unit along x and of one along y, at a position: in a geographic CRS
+/// on the ellipsoid. None where nobody knows the map unit; an unknown one is never taken for a
+/// metre here.
+[[nodiscard]] std::optional<MapPoint> metres_per_map_unit(const CrsFacts& crs, MapPoint at);
 
 /// @param crs  Without WKT, or with one that GDAL does not understand: a plane in metres, with
 ///             heights in metres. Heights of no known unit are taken to be in the unit of the

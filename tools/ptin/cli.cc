@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <iostream>
+#include <span>
 #include <string_view>
 
 #include <cpl_error.h>
@@ -46,12 +47,13 @@ constexpr auto kCommands = std::to_array<Command>({
      "Without a region the whole terrain is refined. With a region the result covers the whole "
      "terrain, coarse outside\n"
      "of the region; --clip keeps the triangles that meet it, --cut cuts them at its border.\n"
-     "Without --error and --vertices the result is exact: every triangle of the full TIN in the "
-     "region.\n\n"
+     "Without --error, --vertices and --triangles the result is exact: every triangle of the full "
+     "TIN in the region.\n\n"
      "Examples:\n"
      "  ptin refine dem.ptin --window 385000 3790000 390000 3795000 --clip -o valley.ply\n"
      "  ptin refine dem.ptin --polygon parish.geojson --cut --error 2 -o parish.glb\n"
      "  ptin refine dem.ptin --vertices 50000 -o small.obj --stats\n"
+     "  ptin refine dem.ptin --triangles 20000 -o game.glb\n"
      "  ptin refine dem.ptin --point 387500 3792500 --clip -o triangle.2dm\n",
      declare_refine},
     {"isoline", "Write isolines (contours) as lines, or as polygons between them",
@@ -78,7 +80,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin export dem.ptin -o dem.ply\n"
      "  ptin export dem.ptin --error 2 --memory 256M -o dem_2m.gpkg\n"
-     "  ptin export dem.ptin --error 5 --pixel-size 90 -o coarse.tif\n"
+     "  ptin export dem.ptin --error 5 --pixel-size 90m -o coarse.tif\n"
      "  ptin export dem.ptin --window 385000 3790000 390000 3795000 --format COG -o valley.tif\n",
      declare_export},
     {"stream", "Send a terrain progressively, the most important first",
@@ -131,7 +133,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Heights are above ground, or with --absolute absolute.\n\n"
      "Examples:\n"
      "  ptin sight dem.ptin 385000 3790000 2 390000 3795000 10 --json\n"
-     "  ptin sight dem.ptin --pairs links.csv --frequency 5.8e9 > links_seen.csv\n"
+     "  ptin sight dem.ptin --pairs links.csv --frequency 5.8GHz > links_seen.csv\n"
      "  ptin sight dem.ptin --pairs - --verdict --curvature 0 < pairs.txt\n",
      declare_sight},
     {"viewshed", "Find what one observer sees",
@@ -164,27 +166,68 @@ constexpr const char* kExitStatuses =
     "fault of ours.\n";
 
 /// The first word of the command line, where it is no option and names no subcommand; else empty.
-std::string unknown_subcommand(int argc, const char* const* argv) {
-  if (argc < 2 || argv[1][0] == '-') return {};
-  const std::string word = argv[1];
+std::string unknown_subcommand(std::span<const char* const> words) {
+  if (words.empty() || words[0][0] == '-') return {};
+  const std::string word = words[0];
   const bool known = std::any_of(kCommands.begin(), kCommands.end(),
                                  [&](const Command& command) { return word == command.name; });
   return known ? std::string() : word;
 }
 
-/// Writes what CLI11 says about wrong use, and how to get help.
-int report_wrong_use(const CLI::App& app, const CLI::ParseError& error, const std::string& unknown,
-                     bool json) {
-  std::string name;
-  for (const CLI::App* sub : app.get_subcommands()) name = sub->get_name();
-  std::string message = unknown.empty() ? std::string(error.what())
-                                        : std::string("there is no subcommand ").append(unknown);
+/// The app that reads the options: that of the subcommand which the first word names, if it does.
+const CLI::App& app_of(const CLI::App& program, std::span<const char* const> words) {
+  const bool is_named = !words.empty() && words[0][0] != '-' && unknown_subcommand(words).empty();
+  return is_named ? *program.get_subcommand(words[0]) : program;
+}
+
+bool has_option(const CLI::App& app, const std::string& name) {
+  return app.get_option_no_throw(name) != nullptr;
+}
+
+/// "-of" where --of is an option, as GDAL's tools write it; else empty. It would be read as `-o f`.
+std::string one_hyphen_too_few(const CLI::App& app, std::span<const char* const> words) {
+  for (const std::string word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name.size() > 2 && name[0] == '-' && name[1] != '-' && has_option(app, "-" + name))
+      return name;
+  }
+  return {};
+}
+
+/// The first word that can only be meant as an option and is none; else empty. A number below 0 and
+/// a single hyphen are values.
+std::string unknown_option(const CLI::App& app, std::span<const char* const> words) {
+  for (const std::string word : words) {
+    if (word == "--") break;
+    const bool is_number = word.size() > 1 && word[1] >= '0' && word[1] <= '9';
+    if (word.size() < 2 || word[0] != '-' || is_number) continue;
+    const bool is_long = word[1] == '-';
+    const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
+    if (!has_option(app, name)) return is_long ? name : word;
+  }
+  return {};
+}
+
+/// Writes a sentence about wrong use, and how to get help.
+/// @returns the exit status
+int report_wrong_use(const CLI::App& app, std::string message, bool json) {
   for (char& c : message) {
     if (c == '\n') c = ' ';
   }
-  message.append("; see ptin ").append(name).append(name.empty() ? "--help" : " --help");
-  report_error({ErrorCode::invalid_argument, message}, json);
+  const std::string name = app.get_parent() == nullptr ? "" : app.get_name() + " ";
+  report_error({ErrorCode::invalid_argument, message + "; see ptin " + name + "--help"}, json);
   return status_of(ErrorCode::invalid_argument).exit;
+}
+
+/// What is wrong with words that do not parse. CLI11 takes an option that it does not know, and
+/// what follows it, for further values of other options: so those are looked for first.
+std::string fault_of(const CLI::App& app, std::span<const char* const> words,
+                     const CLI::ParseError& error) {
+  if (const std::string word = unknown_subcommand(words); !word.empty())
+    return "there is no subcommand " + word;
+  if (const std::string word = unknown_option(app, words); !word.empty())
+    return "there is no option " + word;
+  return error.what();
 }
 
 }  // namespace
@@ -220,6 +263,11 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
   for (int i = 1; i < argc; ++i)
     context.json = context.json || std::string_view(argv[i]) == "--json";
   const bool json = context.json;
+  const std::span<const char* const> words(argv + 1,
+                                           static_cast<std::size_t>(std::max(argc, 1) - 1));
+  const CLI::App& app = app_of(*line.app, words);
+  if (const std::string word = one_hyphen_too_few(app, words); !word.empty())
+    return report_wrong_use(app, word + " has one hyphen; the option is -" + word, json);
   try {
     line.app->parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
@@ -227,7 +275,7 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
     finish_stdout();
     return status;
   } catch (const CLI::ParseError& error) {
-    return report_wrong_use(*line.app, error, unknown_subcommand(argc, argv), json);
+    return report_wrong_use(app, fault_of(app, words, error), json);
   }
   for (std::size_t i = 0; i < kCommands.size(); ++i) {
     if (!line.app->got_subcommand(kCommands[i].name)) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin sight: is one point seen from another.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -20,7 +21,10 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/counts.h"
+#include "tools/facts/human.h"
+#include "tools/facts/quantity.h"
 #include "tools/formats/csv_text.h"
+#include "tools/formats/number_text.h"
 #include "tools/formats/vector_file.h"
 #include "tools/ptin/answer_output.h"
 #include "tools/ptin/point_input.h"
@@ -41,7 +45,7 @@ struct SightOptions {
   bool absolute = false;
   bool verdict_only = false;
   double curvature = Curvature{}.coefficient;
-  std::optional<double> frequency;
+  std::optional<std::string> frequency;
   DetailOptions detail;
   std::optional<std::uint64_t> budget;
   std::string memory;
@@ -54,16 +58,43 @@ Asked<SightPair> pairs_of(const SightOptions& options, const std::string& crs_wk
   return {{{{n[0], n[1]}, n[2], {n[3], n[4]}, n[5]}}, {}};
 }
 
-SightRequest request_of(const SightOptions& options, const Ground& ground, const Context& context) {
-  if (options.frequency && !(*options.frequency > 0 && std::isfinite(*options.frequency))) {
-    throw Error(ErrorCode::invalid_argument, "--frequency must be a number > 0, in hertz");
+/// The frequency in hertz that a text names, as 5.8GHz, 5800MHz or 5.8e9; large and small letters
+/// are the same.
+/// @throws Error invalid_argument  no number, another unit; below 1 MHz, where a number without its
+///                                 unit is what was meant
+double hertz_of(const std::string& text) {
+  constexpr const char* kOption = "--frequency";
+  constexpr std::array<std::pair<const char*, double>, 5> kUnits = {
+      {{"", 1.0}, {"hz", 1.0}, {"khz", 1e3}, {"mhz", 1e6}, {"ghz", 1e9}}};
+  const std::optional<Quantity> quantity = quantity_of(text);
+  const std::string unit = quantity ? lower_case(quantity->unit) : std::string();
+  const auto* const known =
+      std::find_if(kUnits.begin(), kUnits.end(), [&](const auto& u) { return unit == u.first; });
+  if (!quantity || known == kUnits.end()) {
+    throw Error(
+        ErrorCode::invalid_argument,
+        "\"" + text + "\" is no frequency; expected one as 5.8GHz, 5800MHz or 5.8e9 (hertz)",
+        kOption);
   }
+  const double hertz = quantity->number * known->second;
+  constexpr double kLeast = 1e6;
+  if (hertz < kLeast || !std::isfinite(hertz)) {
+    throw Error(ErrorCode::invalid_argument,
+                exact_number(hertz) +
+                    " hertz is no radio link's frequency, which is 1 MHz at least; give the unit, "
+                    "as 5.8GHz or 5800MHz",
+                kOption);
+  }
+  return hertz;
+}
+
+SightRequest request_of(const SightOptions& options, const Ground& ground, const Context& context) {
   SightRequest request;
   request.absolute = options.absolute;
   request.curvature = {options.curvature, ground.earth_diameter};
   request.ground_distance = ground.distance;
   if (options.frequency) {
-    request.wavelength = kSpeedOfLight / *options.frequency / ground.metres_per_height;
+    request.wavelength = kSpeedOfLight / hertz_of(*options.frequency) / ground.metres_per_height;
   }
   request.detail = detail_of(options.detail);
   request.limits.memory_bytes = memory_limit_of(options.memory);
@@ -188,6 +219,7 @@ int run_sight(const SightOptions& options, const Context& context) {
   }
   check_detail(options.detail);
   std::ignore = form_of(options.answer, context.json);  // before the work
+  if (options.frequency) std::ignore = hertz_of(*options.frequency);
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
@@ -234,9 +266,10 @@ Action declare_sight(CLI::App& app, Context& context) {
                    "Only the verdict: faster; obstruction is then any point below ground");
   add_curvature_option(app, options->curvature);
   app.add_option("--frequency", options->frequency,
-                 "Measure the first Fresnel zone at this frequency, in hertz")
+                 "Measure the first Fresnel zone at this frequency, as 5.8GHz, 5800MHz or 5.8e9 "
+                 "(hertz); 1 MHz at least")
       ->excludes(verdict)
-      ->type_name("HZ");
+      ->type_name("F");
   add_detail_options(app, options->detail, ": finer records are left out; may answer undecided",
                      "Leave out what is not among the terrain's N most important vertices; may "
                      "answer undecided");
