@@ -9,6 +9,7 @@
 
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
+#include "tools/ptin/command.h"
 
 namespace ptin::tools {
 namespace {
@@ -16,6 +17,7 @@ namespace {
 using nlohmann::json;
 using testing::answer_of;
 using testing::built;
+using testing::expect_done;
 using testing::Outcome;
 using testing::read_file;
 using testing::ReadMesh;
@@ -32,6 +34,39 @@ TEST(Cli, HelpAndVersionAreNoErrors) {
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos)
         << command << " --help ends with examples";
+  }
+}
+
+TEST(Cli, EverySubcommandTakesTheCommonOptions) {
+  for (const Command& command : commands()) {
+    const std::string help = run_ptin({command.name, "--help"}).out;
+    EXPECT_NE(help.find("-q,--quiet"), std::string::npos) << command.name;
+    EXPECT_NE(help.find("--json"), std::string::npos) << command.name;
+  }
+}
+
+TEST(Cli, QuestionsAreAnsweredQuietlyToo) {
+  const TestFolder folder;
+  const std::string coarse = folder.file("coarse.ptin");
+  expect_done({"build", test_data("mountains_257.tif"), "-o", coarse, "-q", "--max-error", "20"});
+  const json b = answer_of({"info", coarse, "--json", "-q"}).at("bounds");
+  const std::string x = b.at("min_x").dump(), y = b.at("min_y").dump();
+  const std::string line = "MULTILINESTRING((" + x + " " + y + "," + b.at("max_x").dump() + " " +
+                           b.at("max_y").dump() + "),(" + x + " " + y + "," + x + " " + y + "))";
+  const std::vector<std::vector<std::string>> questions = {
+      {"info", coarse},
+      {"locate", coarse, x, y, "--error", "1"},
+      {"profile", coarse, "--line", line, "--error", "1"},
+      {"highest", coarse, "--error", "1"},
+      {"sight", coarse, x, y, "2", b.at("max_x").dump(), y, "2", "--error", "1"}};
+  for (std::vector<std::string> question : questions) {
+    const Outcome told = run_ptin(question);
+    question.emplace_back("-q");
+    const Outcome quiet = run_ptin(question);
+    EXPECT_EQ(quiet.status, 0) << question[0];
+    EXPECT_EQ(quiet.out, told.out) << question[0];
+    EXPECT_EQ(quiet.err, "") << question[0];
+    EXPECT_EQ(told.err.empty(), question[0] == "info") << question[0];
   }
 }
 

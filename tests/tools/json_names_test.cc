@@ -170,6 +170,7 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   ask({"unstream", file("a.pts"), "--interval", "20", "--steps", "-o", file("steps.geojson")});
   tools::testing::write_file(file("pairs.txt"), "500100 3999900 2 500700 3999300 2\n");
   ask({"sight", store, "--pairs", file("pairs.txt")});
+  ask({"completion", "bash"});
 
   std::map<std::string, Names> lists = documented_names();
   ASSERT_GT(lists.size(), 12u);

@@ -411,7 +411,6 @@ Action declare_build(CLI::App& app, Context& context) {
       ->capture_default_str();
   add_work_options(app, *command);
   app.add_flag("--overwrite", command->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [command, &context] { return run_build(*command, context); };
 }
 

@@ -170,6 +170,13 @@ std::string unknown_subcommand(int argc, const char* const* argv) {
   return known ? std::string() : word;
 }
 
+/// Declares what holds for every subcommand; last, so that --help ends with it.
+void add_common_options(CLI::App& app, Context& context) {
+  app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
+  app.add_flag("-q,--quiet", context.quiet,
+               "No progress, report or warning: on stderr errors alone");
+}
+
 /// Writes what CLI11 says about wrong use, and how to get help.
 int report_wrong_use(const CLI::App& app, const CLI::ParseError& error, const std::string& unknown,
                      bool json) {
@@ -191,11 +198,6 @@ std::span<const Command> commands() noexcept { return kCommands; }
 
 const char* exit_statuses() noexcept { return kExitStatuses; }
 
-void add_common_options(CLI::App& app, Context& context, bool has_quiet) {
-  app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
-  if (has_quiet) app.add_flag("-q,--quiet", context.quiet, "No progress and no report");
-}
-
 CommandLine make_command_line(Context& context) {
   CommandLine line;
   line.app = std::make_unique<CLI::App>(
@@ -209,6 +211,7 @@ CommandLine make_command_line(Context& context) {
     CLI::App* sub = line.app->add_subcommand(command.name, command.summary);
     sub->footer(command.examples);
     line.actions.push_back(command.declare(*sub, context));
+    add_common_options(*sub, context);
   }
   return line;
 }

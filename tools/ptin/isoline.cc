@@ -262,7 +262,6 @@ Action declare_isoline(CLI::App& app, Context& context) {
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_isoline(*options, context); };
 }
 

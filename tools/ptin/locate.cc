@@ -112,7 +112,6 @@ Action declare_locate(CLI::App& app, Context& context) {
                      "Ask the TIN of the terrain's N most important vertices; heights come with "
                      "intervals");
   add_memory_option(app, options->memory);
-  add_common_options(app, context, false);
   return [options, &context] { return run_locate(*options, context); };
 }
 

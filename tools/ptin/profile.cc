@@ -259,7 +259,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
     };
   }
   const ProfileResult result = terrain.profile(lines, request);
-  if (result.skipped_lines > 0 && !context.json) {
+  if (result.skipped_lines > 0 && !context.json && !context.quiet) {
     std::fprintf(stderr, "%s of %s: no length, skipped\n", grouped(result.skipped_lines).c_str(),
                  counted(lines.size(), "line").c_str());
   }
@@ -291,7 +291,6 @@ Action declare_profile(CLI::App& app, Context& context) {
                  "CSV to stdout")
       ->type_name("OUT");
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, false);
   return [options, &context] { return run_profile(*options, context); };
 }
 

@@ -185,7 +185,6 @@ Action declare_sight(CLI::App& app, Context& context) {
       ->type_name("RECORDS")
       ->check(counts());
   add_memory_option(app, options->memory);
-  add_common_options(app, context, false);
   return [options, &context] { return run_sight(*options, context); };
 }
 

@@ -237,7 +237,6 @@ Action declare_verify(CLI::App& app, Context& context) {
   app.add_option("--faults", command->faults, "List at most this many faults")
       ->capture_default_str()
       ->type_name("N");
-  add_common_options(app, context, true);
   return [command, &context] {
     const Findings findings = verify(*command, context);
     if (context.json) {
