@@ -81,6 +81,15 @@ nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
 
+/// Commands that can be pasted.
+void print_next(const BuildCommand& command) {
+  const std::string out = shell_word(command.output);
+  std::string verify = "ptin verify " + out + " --against";
+  for (const std::string& input : command.inputs) verify.append(" ").append(shell_word(input));
+  std::printf("next: ptin info %s\n      ptin render %s -o picture.png\n      %s\n", out.c_str(),
+              out.c_str(), verify.c_str());
+}
+
 void print_report(const BuildCommand& command, const BuildReport& r) {
   const char* out = command.output.c_str();
   std::printf("%s: %s\n", out, human_bytes(r.file_bytes).c_str());
@@ -118,8 +127,7 @@ void print_report(const BuildCommand& command, const BuildReport& r) {
               grouped(static_cast<std::uint64_t>(ratio(static_cast<double>(r.vertices), r.seconds)))
                   .c_str(),
               r.seconds);
-  std::printf("next: ptin info %s\n      ptin render %s -o picture.png\n", out, out);
-  std::printf("      ptin verify %s --against %s\n", out, command.inputs.front().c_str());
+  print_next(command);
 }
 
 nlohmann::json plan_json(const BuildPlan& p) {
