@@ -15,7 +15,8 @@ SourceOptions source_options_of(const BuildOptions& options) {
     source.bbox = {(*options.bbox)[0], (*options.bbox)[1], (*options.bbox)[2], (*options.bbox)[3]};
   }
   source.a_srs = options.a_srs;
-  source.points = {options.classes, options.layer, options.z_field};
+  source.merge = options.duplicates.value_or(PointMerge::kMean);
+  source.points = {options.classes, options.returns, options.layer, options.z_field};
   source.vertical_crs = options.vertical_crs;
   return source;
 }

@@ -34,6 +34,7 @@ struct BuildCommand {
   std::vector<std::string> inputs;
   std::string output;
   std::string cost = "error";
+  std::string duplicates, returns;
   std::vector<double> bbox;
   BuildOptions options;
   bool overwrite = false;
@@ -48,16 +49,52 @@ CostModel cost_of(const std::string& name) {
   return name == "elevation" ? CostModel::kElevation : CostModel::kError;
 }
 
+std::optional<PointMerge> merge_of(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  if (name == "min") return PointMerge::kLowest;
+  if (name == "max") return PointMerge::kHighest;
+  return name == "first" ? PointMerge::kFirst : PointMerge::kMean;
+}
+
+ReturnChoice returns_of(const std::string& name) {
+  if (name == "first") return ReturnChoice::kFirst;
+  return name == "last" ? ReturnChoice::kLast : ReturnChoice::kAll;
+}
+
 /// Puts the options together and looks at the output; what their values may be is build()'s matter.
 void check_command(BuildCommand& command) {
   BuildOptions& options = command.options;
   options.cost = cost_of(command.cost);
+  options.duplicates = merge_of(command.duplicates);
+  options.returns = returns_of(command.returns);
   if (!command.bbox.empty())
     options.bbox = {command.bbox[0], command.bbox[1], command.bbox[2], command.bbox[3]};
   // An interrupted build may have been killed when its output had just got its name.
   const bool is_resumed =
       command.resume && is_there(Workspace::folder_of(output_target(command.output)));
   check_output(command.output, command.overwrite || is_resumed);
+}
+
+double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
+
+/// How far merging moved a height, in steps between heights.
+double height_steps(const BuildReport& r) {
+  return ratio(r.largest_shift_height, r.height_quantum);
+}
+
+/// Points with heights far apart are hardly repeated ones: a mean of them may lie where no ground
+/// is. Whoever named the rule knows that.
+void warn_of_merging(const BuildCommand& command, const BuildReport& r, const Context& context) {
+  constexpr double kManySteps = 100.0;
+  if (command.options.duplicates || height_steps(r) <= kManySteps || context.json || context.quiet)
+    return;
+  std::fprintf(stderr,
+               "ptin: warning: %s fell together with others, at heights up to %s (%s steps of %s) "
+               "away from the mean that was taken; --duplicates min, max or first takes one of "
+               "them, and of LAS --returns last leaves what lies near the ground\n",
+               counted(r.merged_points, "point").c_str(),
+               short_number(r.largest_shift_height).c_str(), short_number(height_steps(r)).c_str(),
+               short_number(r.height_quantum).c_str());
 }
 
 nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
@@ -69,7 +106,10 @@ nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
           {"left_out_triangles", r.left_out_triangles},
           {"void_triangles", r.void_triangles},
           {"merged_points", r.merged_points},
-          {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
+          {"largest_shift",
+           {{"plan", r.largest_shift_plan},
+            {"height", r.largest_shift_height},
+            {"height_steps", height_steps(r)}}},
           {"height_rounding", r.height_rounding},
           {"vertices", r.vertices},
           {"records", r.records},
@@ -78,8 +118,6 @@ nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
           {"bytes", r.file_bytes},
           {"seconds", r.seconds}};
 }
-
-double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
 
 /// Commands that can be pasted.
 void print_next(const BuildCommand& command) {
@@ -316,6 +354,7 @@ int run_build(BuildCommand& command, const Context& context) {
                  report.left_behind.c_str());
   }
   if (command.dry_run) return kExitDone;
+  warn_of_merging(command, report, context);
   if (context.json) {
     print_json(report_json(command, report));
   } else if (!context.quiet) {
@@ -343,6 +382,17 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("N");
+  app.add_option("--returns", command.returns,
+                 "LAS: keep the last return of each pulse (near the ground), the first, or all\n"
+                 "(default)")
+      ->check(CLI::IsMember({"all", "first", "last"}))
+      ->type_name("WHICH");
+  app.add_option("--duplicates", command.duplicates,
+                 "Points, --repair: the height of those that fall together: mean (default), min, "
+                 "max, or\n"
+                 "first (of the first input that has one)")
+      ->check(CLI::IsMember({"mean", "min", "max", "first"}))
+      ->type_name("RULE");
   app.add_option("--layer", options.layer, "Points of this layer, where a file holds several")
       ->type_name("NAME");
   app.add_option("--z-field", options.z_field,

@@ -29,7 +29,9 @@ class PointSamples final : public SourceSamples {
  public:
   PointSamples(const std::vector<std::string>& paths, const StoreFile& store,
                const SampleResources& resources)
-      : facts_(store.facts()), choices_(choices_of(store)), samples_(facts_, resources.memory) {
+      : facts_(store.facts()),
+        choices_(choices_of(store)),
+        samples_(facts_, resources.memory, choices_.duplicates) {
     for (const std::string& path : paths) {
       if (is_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
         read_text(path, resources.stop);
@@ -37,9 +39,9 @@ class PointSamples final : public SourceSamples {
         read_stream(path, resources);
       }
     }
+    check_extent(extent_, paths, facts_, choices_);
     samples_.sort(resources.stop);
   }
-    check_extent(extent_, paths, facts_, choices_);
 
   [[nodiscard]] std::uint64_t count(const GridBox& box) override { return samples_.count(box); }
   [[nodiscard]] SampleWindow read(const GridBox& box) override {
@@ -61,9 +63,9 @@ class PointSamples final : public SourceSamples {
 
   const StoreFacts& facts_;
   SampleChoices choices_;
+  SourceExtent extent_;
   SortedSamples samples_;
 };
-  SourceExtent extent_;
 
 void PointSamples::read_text(const std::string& path, const std::stop_token& stop) {
   constexpr std::uint64_t kLinesBetweenLooks = 4096;

@@ -53,6 +53,12 @@ SampleChoices choices_of(const StoreFile& store) {
     const auto found = options.find(name);
     return found != options.end() && found->is_string() ? found->get<std::string>() : "";
   };
+  const std::string returns = text("returns"), duplicates = text("duplicates");
+  if (returns == "first") choices.points.returns = ReturnChoice::kFirst;
+  if (returns == "last") choices.points.returns = ReturnChoice::kLast;
+  if (duplicates == "min") choices.duplicates = PointMerge::kLowest;
+  if (duplicates == "max") choices.duplicates = PointMerge::kHighest;
+  if (duplicates == "first") choices.duplicates = PointMerge::kFirst;
   choices.points.layer = text("layer");
   choices.points.z_field = text("z_field");
   if (const auto bbox = options.find("bbox");
@@ -62,12 +68,6 @@ SampleChoices choices_of(const StoreFile& store) {
   return choices;
 }
 
-std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
-                                            const StoreFile& store,
-                                            const SampleResources& resources) {
-  for (const std::string& path : paths) {
-    if (path.rfind("/vsi", 0) != 0 && !is_there(path)) {
-      throw Error(ErrorCode::not_found, "no such file", path);
 std::string inputs_text(const std::vector<std::string>& paths) {
   if (paths.size() == 1) return paths.front();
   return paths.front() + " and " + counted(paths.size() - 1, "more input");
@@ -99,6 +99,12 @@ void check_extent(const SourceExtent& extent, const std::vector<std::string>& pa
               inputs_text(paths));
 }
 
+std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
+                                            const StoreFile& store,
+                                            const SampleResources& resources) {
+  for (const std::string& path : paths) {
+    if (path.rfind("/vsi", 0) != 0 && !is_there(path)) {
+      throw Error(ErrorCode::not_found, "no such file", path);
     }
   }
   std::unique_ptr<SourceSamples> samples = open_raster_samples(paths, store);

@@ -28,6 +28,7 @@ namespace ptin::tools {
 /// Choices of the build that decide which samples there are; from the metadata of the store.
 struct SampleChoices {
   PointChoice points;
+  PointMerge duplicates = PointMerge::kMean;  ///< Of points that fall together.
   std::optional<double> nodata;
   std::optional<double> resolution;  ///< Points: the grid's step in CRS units, if it was chosen.
   std::optional<GridBox> bbox;       ///< Samples outside were left out.
