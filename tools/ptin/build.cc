@@ -426,9 +426,10 @@ void add_work_options(CLI::App& app, BuildCommand& command) {
                  "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less\n"
                  "where a cgroup or a resource limit allows less)")
       ->type_name("SIZE");
-  app.add_option("--threads", command.threads,
-                 "Threads (default: one a core); fewer are used where memory is short. The output\n"
-                 "is the same for any number")
+  app.add_option(
+         "--threads", command.threads,
+         "Threads (default: one a processor that affinity and cgroups leave this process);\n"
+         "fewer are used where memory is short. The output is the same for any number")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   app.add_option("--tmp", command.tmp, "Folder for temporary files (default: beside the output)")
