@@ -28,8 +28,8 @@ struct Ground {
 /// that unit, it is the unit of the plane, or "metre" where the plane is in degrees.
 [[nodiscard]] std::string unit_of_ground(const CrsFacts& crs);
 
-/// @param crs  Without WKT, or with one that GDAL does not understand: a plane in metres, with
-///             heights in metres. Heights of no known unit are taken to be in the unit of the
+/// @param crs  Without WKT, or with one that GDAL does not understand: a plane in the unit that
+///             `crs` names, or in metres with heights in metres where it names none. Heights of no known unit are taken to be in the unit of the
 ///             plane, or in metres where the plane is in degrees.
 [[nodiscard]] Ground ground_of(const CrsFacts& crs);
 

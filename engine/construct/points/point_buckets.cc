@@ -189,6 +189,7 @@ PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const Sou
   set_crs(buckets.frame_,
           resolve_crs(reading.crs, options.a_srs,
                       options.vertical_crs.empty() ? reading.vertical_crs : options.vertical_crs));
+  set_units(buckets.frame_, reading.units, options.a_srs.empty(), context);
   buckets.frame_.map = reading.grid.map();
   require_resolvable(buckets.frame_.map, reading.grid.east - reading.grid.west,
                      reading.grid.north - reading.grid.south, "give a coarser --resolution",
