@@ -4,6 +4,8 @@
 // terrain.
 #include "storage/verify.h"
 
+#include <filesystem>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -241,6 +243,24 @@ TEST(Verify, ChecksPointsToo) {
   testing::write_file(folder.file("other.csv"), text);
   const Outcome outcome = verified(folder.file("p.ptin"), folder.file("other.csv"));
   EXPECT_EQ(outcome.status, 1) << outcome.out;
+}
+
+// The system refuses to read the beginning of a process's memory.
+TEST(Verify, SaysThatAnUnreadableSourceCannotBeRead) {
+  const TestFolder folder;
+  const std::string store = built_raster(folder, hills_with_voids());
+  for (const char* name : {"a.tif", "a.xyz"}) {
+    std::filesystem::create_symlink("/proc/self/mem", folder.file(name));
+    const std::string source = folder.file(name);
+    const std::vector<std::vector<std::string>> commands = {
+        {"verify", store, "--against", source, "-q"},
+        {"build", source, "-o", folder.file("none.ptin"), "-q"}};
+    for (const std::vector<std::string>& command : commands) {
+      const Outcome outcome = run_ptin(command);
+      EXPECT_EQ(outcome.status, 6) << command[0] << " " << name;
+      EXPECT_NE(outcome.err.find(source + ": cannot read"), std::string::npos) << outcome.err;
+    }
+  }
 }
 
 TEST(Verify, SaysNotFoundForAMissingSource) {

@@ -15,6 +15,7 @@
 #include "tools/facts/human.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/kept_inputs.h"
+#include "tools/refused_memory.h"
 
 namespace ptin::tools {
 
@@ -217,10 +218,12 @@ CommandLine make_command_line(Context& context) {
 }
 
 int run_command_line(int argc, const char* const* argv, Context& context) {
-  const CommandLine line = make_command_line(context);
-  for (int i = 1; i < argc; ++i)
-    context.json = context.json || std::string_view(argv[i]) == "--json";
+  // Before parsing, which may fail.
+  context.json =
+      std::any_of(argv + 1, argv + argc, [](std::string_view word) { return word == "--json"; });
   const bool json = context.json;
+  tell_refused_memory_as_json(json);
+  const CommandLine line = make_command_line(context);
   try {
     line.app->parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
@@ -240,15 +243,20 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
   return status_of(ErrorCode::internal).exit;
 }
 
+int report_current_error(bool json) noexcept {
+  const Error error = current_error();
+  report_error(error, json);
+  return status_of(error.code()).exit;
+}
+
 int run_program(int argc, const char* const* argv, Context& context) {
+  prepare_for_refused_memory();
   try {
     CPLSetErrorHandler(CPLQuietErrorHandler);
     GDALAllRegister();
     return run_command_line(argc, argv, context);
   } catch (...) {
-    const Error error = current_error();
-    report_error(error, context.json);
-    return status_of(error.code()).exit;
+    return report_current_error(context.json);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <gdal_priv.h>
 
 #include "engine/error.h"
+#include "storage/file/file_questions.h"
 #include "tools/facts/human.h"
 #include "tools/verify/source_samples.h"
 
@@ -196,6 +197,7 @@ std::unique_ptr<SourceSamples> open_raster_samples(const std::vector<std::string
     file.path = path;
     file.data.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr,
                                       nullptr, nullptr));
+    if (!file.data) require_readable(path);
     // GDAL's XYZ driver reads some point files as rasters; text is left to the reader of points.
     if (!file.data || file.data->GetRasterCount() < 1 || EQUAL(file.data->GetDriverName(), "XYZ"))
       return nullptr;

@@ -122,7 +122,7 @@ struct SampleResources {
                                                           const SampleResources& resources);
 
 /// The two kinds of sources; open_samples() chooses. open_raster_samples() returns null when GDAL
-/// does not know one of the files as a raster.
+/// does not know one of the files as a raster; a file that cannot be read is an error.
 [[nodiscard]] std::unique_ptr<SourceSamples> open_raster_samples(
     const std::vector<std::string>& paths, const StoreFile& store);
 [[nodiscard]] std::unique_ptr<SourceSamples> open_point_samples(

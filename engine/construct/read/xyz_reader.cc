@@ -101,6 +101,11 @@ void XyzReader::fill() {
                 path_);
   }
   at_end_ = got == 0;
+  if (at_end_ && !file_->packed && VSIFEofL(file_->handle) == 0) {  // GDAL raises no failure
+    throw Error(ErrorCode::io_error,
+                "cannot read on behind line " + std::to_string(line_) + ": the system refuses",
+                path_);
+  }
 }
 
 bool XyzReader::next_line(std::string_view& line) {
