@@ -189,6 +189,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   Workspace workspace(job.files(), job.output, job.resources.tmp, job.resources.unfinished,
                       fingerprint);
   job.report.resumed = !workspace.lines().empty();
+  job.report.source_bytes = bytes_in(fingerprint.at("inputs"));
   try {
     work(workspace);
   } catch (...) {

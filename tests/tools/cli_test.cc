@@ -2,6 +2,8 @@
 //
 // The program end to end, on small real terrains.
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -107,6 +109,42 @@ TEST(Cli, BuildSaysWhatToDoNext) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.out.find("next: ptin info"), std::string::npos);
   EXPECT_NE(outcome.err.find("100 - done."), std::string::npos);
+}
+
+TEST(Cli, BuildSaysHowFlatPartsWouldTakeLess) {
+  const TestFolder folder;
+  testing::RasterRecipe coast;  // three quarters are sea
+  coast.width = coast.height = 65;
+  coast.type = "Int16";
+  coast.value = [](int x, int y) { return x < 48 ? 0.0 : std::floor(10 * testing::hills(x, y)); };
+  testing::make_raster(folder.file("coast.tif"), coast);
+  const std::string store = folder.file("c.ptin");
+  const Outcome told = run_ptin({"build", folder.file("coast.tif"), "-o", store});
+  ASSERT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find("times the source's"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("built with --max-error 0.0"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("no sample differs"), std::string::npos) << told.out;
+  const json report =
+      answer_of({"build", folder.file("coast.tif"), "-o", store, "--overwrite", "--json", "-q"});
+  EXPECT_EQ(report["source_bytes"], std::filesystem::file_size(folder.file("coast.tif")));
+  EXPECT_GT(report["flat"]["records"], report["records"].get<int>() / 2);
+  EXPECT_LT(report["flat"]["bytes"], report["bytes"]);
+  const std::string small = folder.file("s.ptin");
+  const double max_error = report["flat"]["max_error"];
+  EXPECT_LE(max_error, 0.001);
+  const json lean = answer_of({"build", folder.file("coast.tif"), "-o", small, "--json", "-q",
+                               "--max-error", report["flat"]["max_error"].dump()});
+  EXPECT_LE(lean["records"].get<int>(),
+            report["records"].get<int>() - report["flat"]["records"].get<int>() + 200);
+  EXPECT_EQ(lean["flat"]["records"], 0);
+  EXPECT_EQ(lean["flat"]["max_error"], nullptr);
+  const json verified = answer_of(
+      {"verify", small, "--against", folder.file("coast.tif"), "--json", "-q", "--tolerance", "0"});
+  for (const json& check : verified["against"]["checks"])
+    EXPECT_LE(check["worst_error"], max_error);
+  const Outcome again = run_ptin(
+      {"build", folder.file("coast.tif"), "-o", small, "--overwrite", "--max-error", "0.0001"});
+  EXPECT_EQ(again.out.find("--max-error"), std::string::npos) << again.out;
 }
 
 TEST(Cli, BuildIsDeterministic) {

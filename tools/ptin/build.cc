@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -15,6 +17,7 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
+#include "engine/error.h"
 #include "storage/file/file_questions.h"
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
@@ -23,6 +26,7 @@
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
 #include "tools/progress_fd.h"
+#include "tools/ptin/error_stats.h"
 #include "tools/ptin/query_options.h"
 #include "tools/thread_count.h"
 
@@ -97,7 +101,11 @@ void warn_of_merging(const BuildCommand& command, const BuildReport& r, const Co
                short_number(r.height_quantum).c_str());
 }
 
-nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
+/// Where flat parts are this much of a file, it says how to leave them out.
+constexpr double kMuchFlat = 0.2;
+
+nlohmann::json report_json(const BuildCommand& command, const BuildReport& r,
+                           const FlatRecords& flat) {
   return {{"output", command.output},
           {"samples", r.source_samples},
           {"void_samples", r.void_samples},
@@ -116,6 +124,11 @@ nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
           {"t0_vertices", r.t0_vertices},
           {"rank", r.max_rank},
           {"bytes", r.file_bytes},
+          {"source_bytes", r.source_bytes > 0 ? nlohmann::json(r.source_bytes) : nlohmann::json()},
+          {"flat",
+           {{"records", flat.records},
+            {"bytes", flat.bytes},
+            {"max_error", flat.max_error ? nlohmann::json(*flat.max_error) : nlohmann::json()}}},
           {"seconds", r.seconds}};
 }
 
@@ -128,7 +141,29 @@ void print_next(const BuildCommand& command) {
               out.c_str(), verify.c_str());
 }
 
-void print_report(const BuildCommand& command, const BuildReport& r) {
+/// The last lines: how large the file is, and how it would be smaller.
+void print_size(const BuildCommand& command, const BuildReport& r, const FlatRecords& flat) {
+  const auto bytes = static_cast<double>(r.file_bytes);
+  std::printf("  size       %s, %.1f bytes a vertex", human_bytes(r.file_bytes).c_str(),
+              ratio(bytes, static_cast<double>(r.t0_vertices + r.records)));
+  if (r.source_bytes > 0) {
+    std::printf(
+        "; %s times the source's %s",
+        short_number(std::round(ratio(bytes, static_cast<double>(r.source_bytes)) * 100) / 100)
+            .c_str(),
+        human_bytes(r.source_bytes).c_str());
+  }
+  std::printf("\n");
+  const double share = ratio(static_cast<double>(flat.records), static_cast<double>(r.records));
+  if (share < kMuchFlat || command.options.max_error > 0) return;
+  std::printf(
+      "  flat       %s of the records (%.0f %%, about %s) have error 0: built with --max-error %s\n"
+      "             the file lacks them, and no sample differs\n",
+      grouped(flat.records).c_str(), 100 * share, human_bytes(flat.bytes).c_str(),
+      exact_number(*flat.max_error).c_str());
+}
+
+void print_report(const BuildCommand& command, const BuildReport& r, const FlatRecords& flat) {
   const char* out = command.output.c_str();
   std::printf("%s: %s\n", out, human_bytes(r.file_bytes).c_str());
   std::printf("  samples    %s with a height, %s void\n", grouped(r.source_samples).c_str(),
@@ -158,13 +193,11 @@ void print_report(const BuildCommand& command, const BuildReport& r) {
               grouped(r.vertices).c_str(), grouped(r.t0_vertices).c_str(),
               grouped(r.records).c_str());
   std::printf("  rank       %u\n", unsigned{r.max_rank});
-  std::printf(
-      "  size       %.1f bytes a vertex\n",
-      ratio(static_cast<double>(r.file_bytes), static_cast<double>(r.t0_vertices + r.records)));
   std::printf("  speed      %s vertices/s, %.2f s\n",
               grouped(static_cast<std::uint64_t>(ratio(static_cast<double>(r.vertices), r.seconds)))
                   .c_str(),
               r.seconds);
+  print_size(command, r, flat);
   print_next(command);
 }
 
@@ -329,6 +362,19 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
   return resources;
 }
 
+/// The report, in text or JSON.
+void tell(const BuildCommand& command, const BuildReport& report, const Context& context) {
+  warn_of_merging(command, report, context);
+  if (!context.json && context.quiet) return;
+  const FlatRecords flat =
+      flat_records(*StoreFile::open(output_target(command.output), PageAccess::kPread));
+  if (context.json) {
+    print_json(report_json(command, report, flat));
+  } else {
+    print_report(command, report, flat);
+  }
+}
+
 int run_build(BuildCommand& command, const Context& context) {
   if (command.discard && command.inputs.empty()) {
     const bool found = Workspace::discard(FileLayer::system(), output_target(command.output));
@@ -354,11 +400,12 @@ int run_build(BuildCommand& command, const Context& context) {
                  report.left_behind.c_str());
   }
   if (command.dry_run) return kExitDone;
-  warn_of_merging(command, report, context);
-  if (context.json) {
-    print_json(report_json(command, report));
-  } else if (!context.quiet) {
-    print_report(command, report);
+  try {
+    tell(command, report, context);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::resource_exhausted,
+                "the file is complete, but the system gives no memory for the report of it",
+                command.output);
   }
   return kExitDone;
 }
