@@ -73,9 +73,8 @@ void plan_threads(BuildPlan& plan, const TileTree& tree, const PlanRequest& requ
   const std::uint64_t one = bytes_of_largest(samples, tree, tile_bytes);
   plan.memory = memory;
   plan.tile_bytes = tile_bytes;
-  plan.threads_wanted = request.resources.threads > 0
-                            ? request.resources.threads
-                            : allowed_threads();
+  plan.threads_wanted =
+      request.resources.threads > 0 ? request.resources.threads : allowed_threads();
   plan.threads = plan.threads_wanted;
   std::uint64_t share = memory.for_tiles(present, plan.threads);
   const std::uint64_t batch = std::max(tile_bytes.of_batch(samples), tile_bytes.of_replay(samples));
