@@ -18,6 +18,7 @@ set(public_headers
     engine/construct/hierarchy/tile_bytes.h
     engine/construct/memory_plan.h
     engine/construct/points/open_points.h
+    engine/construct/process_limits.h
     engine/construct/read/column_names.h
     engine/construct/read/input_kind.h
     engine/construct/read/layer_choice.h

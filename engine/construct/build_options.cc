@@ -10,7 +10,7 @@
 namespace ptin {
 
 PointChoice point_choice_of(const BuildOptions& options) {
-  return {options.classes, options.layer, options.z_field, options.columns};
+  return {options.classes, options.returns, options.layer, options.z_field, options.columns};
 }
 
 SourceOptions source_options_of(const BuildOptions& options) {
@@ -21,6 +21,7 @@ SourceOptions source_options_of(const BuildOptions& options) {
     source.bbox = {(*options.bbox)[0], (*options.bbox)[1], (*options.bbox)[2], (*options.bbox)[3]};
   }
   source.a_srs = options.a_srs;
+  source.merge = options.duplicates.value_or(PointMerge::kMean);
   source.points = point_choice_of(options);
   source.vertical_crs = options.vertical_crs;
   return source;

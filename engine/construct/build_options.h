@@ -20,8 +20,11 @@ struct BuildOptions {
   double max_error = 0.0;  ///< Leave out records with error <= this (height's unit); 0 keeps all.
   std::optional<double> nodata;      ///< Overrides the source's.
   std::optional<double> resolution;  ///< Points: grid unit in CRS units.
-  std::vector<int> classes;          ///< LAS: keep these classes; empty keeps all.
-  std::string layer;                 ///< OGR: the layer of points; "" where there is only one.
+  /// Points, repaired TINs: which height stands for those that fall together; none: their mean.
+  std::optional<PointMerge> duplicates;
+  std::vector<int> classes;                   ///< LAS: keep these classes; empty keeps all.
+  ReturnChoice returns = ReturnChoice::kAll;  ///< LAS: keep these echoes.
+  std::string layer;  ///< OGR: the layer of points; "" where there is only one.
   /// Points, repaired TINs: triangles with a longer edge are void; CRS units, or metres where those
   /// are degrees.
   std::optional<double> max_edge;

@@ -18,6 +18,9 @@ const char* misfit_of_raster(const BuildOptions& o) {
   if (!o.classes.empty()) return "--class is for LAS, and this is a raster; leave it out";
   if (!o.columns.empty())
     return "--columns is for points as text, and this is a raster; leave it out";
+  if (o.returns != ReturnChoice::kAll)
+    return "--returns is for LAS, and this is a raster; leave it out";
+  if (o.duplicates) return "--duplicates is for points, and this is a raster; leave it out";
   if (o.repair) return "--repair is for TINs, and this is a raster; leave it out";
   if (o.max_edge) return "--max-edge is for points, and this is a raster; leave it out";
   return nullptr;
@@ -30,6 +33,11 @@ const char* misfit_of_points(const BuildOptions& o) {
 const char* misfit_of_tin(const BuildOptions& o, const std::string& input) {
   if (!o.classes.empty()) return "--class is for LAS, and this is a TIN; leave it out";
   if (!o.columns.empty()) return "--columns is for points as text, and this is a TIN; leave it out";
+  if (o.returns != ReturnChoice::kAll)
+    return "--returns is for LAS, and this is a TIN; leave it out";
+  if (o.duplicates && !o.repair)
+    return "--duplicates is for points, and for TINs with --repair, and this is a TIN; leave it "
+           "out";
   if (!o.z_field.empty()) return "--z-field is for points, and this is a TIN; leave it out";
   if (!o.layer.empty() && !may_have_surfaces(input))
     return "--layer is for points and for the surfaces of LandXML, and this is another TIN; leave "

@@ -27,6 +27,20 @@ const char* name_of(CostModel cost) {
   return "error";
 }
 
+const char* name_of(PointMerge rule) {
+  switch (rule) {
+    case PointMerge::kMean:
+      return "mean";
+    case PointMerge::kLowest:
+      return "min";
+    case PointMerge::kHighest:
+      return "max";
+    case PointMerge::kFirst:
+      return "first";
+  }
+  return "mean";
+}
+
 GridBox bounds_of(const Tin& tin) {
   GridBox bounds;
   for (const Vertex& v : tin.vertices) {
@@ -80,6 +94,12 @@ nlohmann::json options_json(const BuildOptions& o) {
   }
   if (!o.classes.empty()) {
     json["classes"] = o.classes;
+  }
+  if (o.returns != ReturnChoice::kAll) {
+    json["returns"] = o.returns == ReturnChoice::kFirst ? "first" : "last";
+  }
+  if (o.duplicates) {
+    json["duplicates"] = name_of(*o.duplicates);
   }
   if (o.max_edge) {
     json["max_edge"] = *o.max_edge;

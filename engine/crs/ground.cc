@@ -79,7 +79,13 @@ Ground ground_of(const CrsFacts& crs) {
     ground.geographic = true;
     return ground;
   }
-  const double scale = (known ? srs.GetLinearUnits() : 1.0) / ground.metres_per_height;
+  double metres_per_map_unit = known ? srs.GetLinearUnits() : 1.0;
+  if (const auto told = metres_in(crs.horizontal_unit); !known && told) {
+    metres_per_map_unit = *told;  // by the source, without a CRS
+    ground.metres_per_height = metres_in(crs.vertical_unit).value_or(*told);
+    ground.earth_diameter /= ground.metres_per_height;
+  }
+  const double scale = metres_per_map_unit / ground.metres_per_height;
   ground.distance = [scale](MapPoint a, MapPoint b) {
     const double dx = b.x - a.x;
     const double dy = b.y - a.y;

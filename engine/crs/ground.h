@@ -34,9 +34,10 @@ struct Ground {
 /// metre here.
 [[nodiscard]] std::optional<MapPoint> metres_per_map_unit(const CrsFacts& crs, MapPoint at);
 
-/// @param crs  Without WKT, or with one that GDAL does not understand: a plane in metres, with
-///             heights in metres. Heights of no known unit are taken to be in the unit of the
-///             plane, or in metres where the plane is in degrees.
+/// @param crs  Without WKT, or with one that GDAL does not understand: a plane in the unit that `crs`
+///             names, or in metres with heights in metres where it names none. Heights of no known
+///             unit are taken to be in the unit of the plane, or in metres where the plane is in
+///             degrees.
 [[nodiscard]] Ground ground_of(const CrsFacts& crs);
 
 }  // namespace ptin

@@ -175,6 +175,7 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   tools::testing::write_file(file("points.txt"), "id x y\nA 500100 3999900\n");
   ask({"locate", store, "--points", file("points.txt"), "-o", file("points.geojson")});
   ask({"profile", store, "--line", file("seen.geojson"), "--id", "id"});
+  ask({"completion", "bash"});
 
   std::map<std::string, Names> lists = documented_names();
   ASSERT_GT(lists.size(), 12u);

@@ -4,6 +4,8 @@
 // terrain.
 #include "storage/verify.h"
 
+#include <filesystem>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -153,30 +155,79 @@ TEST(Verify, FindsVoidsThatAreCheaperThanTheyMayBe) {
 TEST(Verify, FindsAnotherSource) {
   const TestFolder folder;
   const std::string store = built_raster(folder, hills_with_voids());
-  const struct {
-    const char* what;
-    double east, north, up;
-    const char* words;
-  } cases[] = {{"half a pixel to the east", 15, 0, 0, "do not stand on the grid"},
-               {"a pixel to the north", 0, 30, 0, "the source covers grid points"},
-               {"a tenth of a unit higher", 0, 0, 0.1, "is off by"}};
-  for (const auto& c : cases) {
-    RasterRecipe recipe = hills_with_voids();
-    recipe.west += c.east;
-    recipe.north += c.north;
-    recipe.value = [value = recipe.value, up = c.up](int x, int y) {
-      const double height = value(x, y);
-      return height < 0 ? height : height + up;
-    };
-    make_raster(folder.file("other.tif"), recipe);
-    const Outcome outcome = verified(store, folder.file("other.tif"));
-    EXPECT_EQ(outcome.status, 1) << c.what;
-    EXPECT_NE(outcome.out.find(c.words), std::string::npos) << c.what << ": " << outcome.out;
-  }
+  RasterRecipe higher = hills_with_voids();
+  higher.value = [value = higher.value](int x, int y) {
+    const double height = value(x, y);
+    return height < 0 ? height : height + 0.1;
+  };
+  make_raster(folder.file("higher.tif"), higher);
+  const Outcome outcome = verified(store, folder.file("higher.tif"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("is off by"), std::string::npos) << outcome.out;
   RasterRecipe filled = hills_with_voids();
   filled.value = [](int x, int y) { return testing::hills(x, y); };
   make_raster(folder.file("filled.tif"), filled);
   EXPECT_EQ(verified(store, folder.file("filled.tif")).status, 1);
+}
+
+void expect_not_the_source(const Outcome& outcome, const std::string& words) {
+  EXPECT_EQ(outcome.status, 2) << outcome.out;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(testing::lines_in(outcome.err), 1U) << outcome.err;
+  EXPECT_NE(outcome.err.find("not the source of this file"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+}
+
+TEST(Verify, RefusesARasterThatLiesElsewhere) {
+  const TestFolder folder;
+  const std::string store = built_raster(folder, hills_with_voids());
+  const struct {
+    double east, north, pixel;
+    const char* words;
+  } cases[] = {{15, 0, 30, "stand on another grid, up to 0.5 grid units"},
+               {0, 30, 30,
+                "reach from 500015 3998545 to 502085 4000015, the terrain's from 500015 3998515 to "
+                "502085 3999985"},
+               {0, 0, 10, "stand on another grid"}};
+  for (const auto& c : cases) {
+    RasterRecipe recipe = hills_with_voids();
+    recipe.west += c.east;
+    recipe.north += c.north;
+    recipe.pixel = c.pixel;
+    make_raster(folder.file("other.tif"), recipe);
+    expect_not_the_source(verified(store, folder.file("other.tif")), c.words);
+  }
+}
+
+// A part of what a terrain was built from is no source of it, and the command that the build prints
+// names all parts.
+TEST(Verify, WantsEveryInputOfTheBuild) {
+  const TestFolder folder;
+  testing::write_file(folder.file("west half.csv"), "0,0,1\n0,9,2\n4,5,3\n");
+  testing::write_file(folder.file("east.csv"), "9,0,1\n9,9,2\n5,4,3\n");
+  const std::string store = folder.file("p.ptin"), west = folder.file("west half.csv"),
+                    east = folder.file("east.csv");
+  const Outcome made = run_ptin({"build", west, east, "-o", store});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("ptin verify " + store + " --against '" + west + "' " + east + "\n"),
+            std::string::npos)
+      << made.out;
+  expect_not_the_source(verified(store, west),
+                        "reach from 0 0 to 4 9, the terrain's from 0 0 to 9 9");
+  const Outcome whole = run_ptin({"verify", store, "--against", west, east});
+  EXPECT_EQ(whole.status, 0) << whole.out << whole.err;
+  EXPECT_NE(whole.out.find(west + " and 1 more input: 6 samples"), std::string::npos) << whole.out;
+}
+
+TEST(Verify, TakesASourceThatReachesFartherThanTheBuildsBox) {
+  const TestFolder folder;
+  testing::write_file(folder.file("a.csv"), "0,0,1\n0,9,2\n4,5,3\n9,0,1\n9,9,2\n5,4,3\n20,20,7\n");
+  const std::string store = folder.file("p.ptin");
+  testing::expect_done(
+      {"build", folder.file("a.csv"), "-o", store, "-q", "--bbox", "0", "0", "10", "10"});
+  EXPECT_EQ(verified(store, folder.file("a.csv")).status, 0);
+  testing::write_file(folder.file("b.csv"), "0,0,1\n0,9,2\n4,5,3\n");
+  expect_not_the_source(verified(store, folder.file("b.csv")), "reach from 0 0 to 4 9");
 }
 
 TEST(Verify, ChecksPointsToo) {
@@ -192,6 +243,24 @@ TEST(Verify, ChecksPointsToo) {
   testing::write_file(folder.file("other.csv"), text);
   const Outcome outcome = verified(folder.file("p.ptin"), folder.file("other.csv"));
   EXPECT_EQ(outcome.status, 1) << outcome.out;
+}
+
+// The system refuses to read the beginning of a process's memory.
+TEST(Verify, SaysThatAnUnreadableSourceCannotBeRead) {
+  const TestFolder folder;
+  const std::string store = built_raster(folder, hills_with_voids());
+  for (const char* name : {"a.tif", "a.xyz"}) {
+    std::filesystem::create_symlink("/proc/self/mem", folder.file(name));
+    const std::string source = folder.file(name);
+    const std::vector<std::vector<std::string>> commands = {
+        {"verify", store, "--against", source, "-q"},
+        {"build", source, "-o", folder.file("none.ptin"), "-q"}};
+    for (const std::vector<std::string>& command : commands) {
+      const Outcome outcome = run_ptin(command);
+      EXPECT_EQ(outcome.status, 6) << command[0] << " " << name;
+      EXPECT_NE(outcome.err.find(source + ": cannot read"), std::string::npos) << outcome.err;
+    }
+  }
 }
 
 TEST(Verify, SaysNotFoundForAMissingSource) {

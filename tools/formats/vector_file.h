@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -12,6 +13,7 @@
 #include <ogr_feature.h>
 
 #include "engine/geometry/affine.h"
+#include "tools/output/temporary_path.h"
 
 class GDALDataset;
 class OGRLayer;
@@ -70,7 +72,8 @@ class VectorFile {
   void close();
 
   std::string path_, target_;  ///< `path_` as given, for messages; `target_` where it leads.
-  std::string folder_;         ///< For the work, temporary; empty on stdout.
+  /// For the work; none on stdout.
+  std::optional<TemporaryPath> folder_;
   bool overwrite_;
   std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> dataset_;
   OGRLayer* layer_ = nullptr;

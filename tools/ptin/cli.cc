@@ -16,6 +16,7 @@
 #include "tools/facts/human.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/kept_inputs.h"
+#include "tools/refused_memory.h"
 
 namespace ptin::tools {
 
@@ -174,6 +175,13 @@ std::string unknown_subcommand(std::span<const char* const> words) {
   return known ? std::string() : word;
 }
 
+/// Declares what holds for every subcommand; last, so that --help ends with it.
+void add_common_options(CLI::App& app, Context& context) {
+  app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
+  app.add_flag("-q,--quiet", context.quiet,
+               "No progress, report or warning: on stderr errors alone");
+}
+
 /// The app that reads the options: that of the subcommand which the first word names, if it does.
 const CLI::App& app_of(const CLI::App& program, std::span<const char* const> words) {
   const bool is_named = !words.empty() && words[0][0] != '-' && unknown_subcommand(words).empty();
@@ -236,11 +244,6 @@ std::span<const Command> commands() noexcept { return kCommands; }
 
 const char* exit_statuses() noexcept { return kExitStatuses; }
 
-void add_common_options(CLI::App& app, Context& context, bool has_quiet) {
-  app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
-  if (has_quiet) app.add_flag("-q,--quiet", context.quiet, "No progress and no report");
-}
-
 CommandLine make_command_line(Context& context) {
   CommandLine line;
   line.app = std::make_unique<CLI::App>(
@@ -254,15 +257,18 @@ CommandLine make_command_line(Context& context) {
     CLI::App* sub = line.app->add_subcommand(command.name, command.summary);
     sub->footer(command.examples);
     line.actions.push_back(command.declare(*sub, context));
+    add_common_options(*sub, context);
   }
   return line;
 }
 
 int run_command_line(int argc, const char* const* argv, Context& context) {
-  const CommandLine line = make_command_line(context);
-  for (int i = 1; i < argc; ++i)
-    context.json = context.json || std::string_view(argv[i]) == "--json";
+  // Before parsing, which may fail.
+  context.json =
+      std::any_of(argv + 1, argv + argc, [](std::string_view word) { return word == "--json"; });
   const bool json = context.json;
+  tell_refused_memory_as_json(json);
+  const CommandLine line = make_command_line(context);
   const std::span<const char* const> words(argv + 1,
                                            static_cast<std::size_t>(std::max(argc, 1) - 1));
   const CLI::App& app = app_of(*line.app, words);
@@ -287,15 +293,20 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
   return status_of(ErrorCode::internal).exit;
 }
 
+int report_current_error(bool json) noexcept {
+  const Error error = current_error();
+  report_error(error, json);
+  return status_of(error.code()).exit;
+}
+
 int run_program(int argc, const char* const* argv, Context& context) {
+  prepare_for_refused_memory();
   try {
     CPLSetErrorHandler(CPLQuietErrorHandler);
     GDALAllRegister();
     return run_command_line(argc, argv, context);
   } catch (...) {
-    const Error error = current_error();
-    report_error(error, context.json);
-    return status_of(error.code()).exit;
+    return report_current_error(context.json);
   }
 }
 

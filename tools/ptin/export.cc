@@ -308,7 +308,6 @@ Action declare_export(CLI::App& app, Context& context) {
   app.add_option("--memory", options->memory, "Memory to work in, as 512M or 2G (default 1G)")
       ->type_name("SIZE");
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_export(*options, context); };
 }
 

@@ -101,7 +101,6 @@ Action declare_highest(CLI::App& app, Context& context) {
       "The highest of the TIN of the terrain's N most important vertices; its height "
       "comes with an interval");
   add_memory_option(app, options->memory);
-  add_common_options(app, context, false);
   return [options, &context] { return run_highest(*options, context); };
 }
 

@@ -151,7 +151,6 @@ Action declare_locate(CLI::App& app, Context& context) {
                      "intervals");
   add_memory_option(app, options->memory);
   add_answer_options(app, options->answer);
-  add_common_options(app, context, false);
   return [options, &context] { return run_locate(*options, context); };
 }
 

@@ -238,7 +238,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
     };
   }
   const ProfileResult result = terrain.profile(lines, request);
-  if (result.skipped_lines > 0 && !context.json) {
+  if (result.skipped_lines > 0 && !context.json && !context.quiet) {
     std::fprintf(stderr, "%s of %s: no length, skipped\n", grouped(result.skipped_lines).c_str(),
                  counted(lines.size(), "line").c_str());
   }
@@ -262,7 +262,6 @@ Action declare_profile(CLI::App& app, Context& context) {
                      "Ask the TIN of the terrain's N most important vertices");
   add_memory_option(app, options->memory);
   add_answer_options(app, options->answer, ", .png (a plot)");
-  add_common_options(app, context, false);
   return [options, &context] { return run_profile(*options, context); };
 }
 

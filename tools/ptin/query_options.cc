@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/construct/memory_plan.h"
+#include "engine/construct/process_limits.h"
 #include "engine/error.h"
 #include "engine/query/terrain.h"
 #include "storage/file/sigbus_guard.h"

@@ -184,7 +184,6 @@ Action declare_refine(CLI::App& app, Context& context) {
   app.add_flag("--stats", options->stats, "Print what is certified and what it cost, too");
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_refine(*options, context); };
 }
 

@@ -206,7 +206,6 @@ Action declare_render(CLI::App& app, Context& context) {
       ->required();
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_render(*options, context); };
 }
 

@@ -279,7 +279,6 @@ Action declare_sight(CLI::App& app, Context& context) {
       ->check(counts());
   add_memory_option(app, options->memory);
   add_answer_options(app, options->answer);
-  add_common_options(app, context, false);
   return [options, &context] { return run_sight(*options, context); };
 }
 

@@ -167,7 +167,6 @@ Action declare_stream(CLI::App& app, Context& context) {
   app.add_flag("--stats", options->stats, "Print, on stderr, what was sent and what it cost");
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_stream(*options, context); };
 }
 

@@ -127,7 +127,7 @@ void verify_source(const VerifyCommand& command, const Terrain& terrain, const C
   findings.against = verify_against(terrain, *source, options);
   findings.fault_count += findings.against->fault_count - findings.against->faults.size();
   for (const std::string& what : findings.against->faults)
-    findings.faults.push_back({what, command.against.front()});
+    findings.faults.push_back({what, inputs_text(command.against)});
 }
 
 Findings verify(const VerifyCommand& command, const Context& context) {
@@ -200,7 +200,7 @@ void print_findings(const VerifyCommand& command, const Findings& f) {
               counted(f.store.index_nodes, "index node").c_str(),
               counted(f.windows, "window").c_str());
   if (f.against && !f.against->checks.empty()) {
-    std::printf("against %s: %s with a height, %s void\n", command.against.front().c_str(),
+    std::printf("against %s: %s with a height, %s void\n", inputs_text(command.against).c_str(),
                 counted(f.against->checks.front().samples, "sample").c_str(),
                 grouped(f.against->checks.front().void_samples).c_str());
     print_checks(*f.against);
@@ -219,9 +219,12 @@ void print_findings(const VerifyCommand& command, const Findings& f) {
 Action declare_verify(CLI::App& app, Context& context) {
   const auto command = std::make_shared<VerifyCommand>();
   add_terrain_options(app, command->terrain, false);
-  auto* against = app.add_option("--against", command->against,
-                                 "The source: certified errors are checked at each of its samples")
-                      ->type_name("INPUT");
+  auto* against =
+      app.add_option(
+             "--against", command->against,
+             "The source, every input of the build: certified errors are checked at each of its\n"
+             "samples")
+          ->type_name("INPUT...");
   app.add_option("--tolerance", command->tolerances,
                  "Tolerances to check against the source (default: 0 and four more)")
       ->needs(against)
@@ -237,7 +240,6 @@ Action declare_verify(CLI::App& app, Context& context) {
   app.add_option("--faults", command->faults, "List at most this many faults")
       ->capture_default_str()
       ->type_name("N");
-  add_common_options(app, context, true);
   return [command, &context] {
     const Findings findings = verify(*command, context);
     if (context.json) {

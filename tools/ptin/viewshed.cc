@@ -287,7 +287,6 @@ Action declare_viewshed(CLI::App& app, Context& context) {
   app.add_option("--memory", options->memory, "Memory for the answer, as 512M or 2G (default 4G)")
       ->type_name("SIZE");
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_viewshed(*options, context); };
 }
 

@@ -170,6 +170,11 @@ void TextSamples::fill() {
                 path_);
   }
   at_end_ = got == 0;
+  if (at_end_ && !is_packed(path_) && VSIFEofL(file_->handle) == 0) {  // GDAL tells nothing
+    throw Error(ErrorCode::io_error,
+                "cannot read on behind line " + std::to_string(number_) + ": the system refuses",
+                path_);
+  }
 }
 
 bool TextSamples::next_line(std::string_view& line) {

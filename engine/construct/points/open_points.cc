@@ -55,6 +55,12 @@ void check_choice(const std::string& path, const PointChoice& choice, PointForma
     throw Error(ErrorCode::invalid_argument,
                 "--columns is for points as text, not for LAS and layers; leave it out", path);
   }
+  if (choice.returns != ReturnChoice::kAll &&
+      (wants_layer(choice) || format != PointFormat::kLas)) {
+    throw Error(ErrorCode::invalid_argument,
+                "only LAS has returns; leave the choice of returns out, or build LAS files alone",
+                path);
+  }
   if (format == PointFormat::kLas && wants_layer(choice)) {
     throw Error(ErrorCode::invalid_argument,
                 "LAS has no layers and attributes; leave --layer and --z-field out", path);
