@@ -44,7 +44,7 @@ StoreContent flat_square(std::int32_t side, HeightType type) {
     c.facts.heights = {HeightType::int32, 0.25, 100.0};
   }
   c.facts.bounds = {0, 0, side, side};
-  c.facts.min_height = -10.0;
+  c.facts.min_height = -100.0;
   c.facts.max_height = 4000.0;
   c.facts.source_samples = 4;
   const HeightBits height = c.facts.heights.bits(12.0);

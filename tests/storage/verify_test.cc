@@ -268,6 +268,44 @@ TEST_F(Verify, FindsHeightsOutOfTheHeaderAndOutOfTheirIntervals) {
       own));
 }
 
+TEST_F(Verify, FindsIntervalsOfHeightsOutOfTheHeader) {
+  const auto told = [&](double low, double high) {
+    StoreContent content = random_content({.segments = 1, .records = 100});
+    content.facts.min_height = low;
+    content.facts.max_height = high;
+    VertexSplit& r = content.segments[0][42];
+    r.height_lo = content.facts.heights.bits(-60.0);
+    r.height_hi = content.facts.heights.bits(3500.0);
+    write(content);
+    const VerifyReport report = verify_store(path_);
+    EXPECT_LE(report.faults.size(), 1U);
+    for (const VerifyFault& fault : report.faults) {
+      EXPECT_EQ(fault.where.substr(0, 5), "page ") << fault.where;
+    }
+    return tells(report, "reaches out of the least and largest");
+  };
+  EXPECT_FALSE(told(-60.0, 3500.0));
+  EXPECT_TRUE(told(-59.0, 3500.0));
+  EXPECT_TRUE(told(-60.0, 3499.0));
+}
+
+TEST_F(Verify, FindsHeightsOfTheHeaderThatNoSampleHas) {
+  const auto told = [&](double low, double high, std::uint64_t samples, bool free_of_voids) {
+    StoreContent content = flat_square(10);
+    content.facts.min_height = low;
+    content.facts.max_height = high;
+    content.facts.source_samples = samples;
+    content.facts.free_of_voids = free_of_voids;
+    write(content);
+    return tells(verify_store(path_), "are not those of the vertices");
+  };
+  EXPECT_FALSE(told(12.0, 12.0, 4, true));
+  EXPECT_TRUE(told(11.0, 12.0, 4, true));
+  EXPECT_TRUE(told(12.0, 13.0, 4, true));
+  EXPECT_FALSE(told(11.0, 13.0, 5, true)) << "a sample was left out";
+  EXPECT_FALSE(told(11.0, 13.0, 4, false)) << "a sample may be lone";
+}
+
 TEST_F(Verify, FindsARegionOfInfluenceThatReachesOutOfTheBounds) {
   constexpr std::int32_t kSide = 1000;
   const auto told = [&](const std::function<void(GridBox&)>& change) {
