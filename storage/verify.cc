@@ -373,8 +373,9 @@ void Verifier::compare_totals() {
   }
 }
 
-// Compares the least and largest height in the header with those of the vertices: they may lie
-// farther apart, since samples that were left out count too, but not where every sample is there.
+// Compares the least and largest height in the header with those of the vertices. They are those of
+// all samples: the same where every sample with a height is a vertex with one; otherwise farther
+// apart by at most the base error, unless samples fell into voids.
 void Verifier::compare_heights() {
   for (const CoarsestTin::V& v : front_.t0.vertices) {
     if (v.has_height != 0) {
@@ -385,11 +386,20 @@ void Verifier::compare_heights() {
   if (heights_.lo < facts.min_height || heights_.hi > facts.max_height) {
     report("the heights of the vertices reach out of the least and largest in the header",
            "header");
-  } else if (facts.free_of_voids && vertices_with_height_ == facts.source_samples &&
-             (heights_.lo > facts.min_height || heights_.hi < facts.max_height)) {
+    return;
+  }
+  const bool all_are_vertices = vertices_with_height_ == facts.source_samples;
+  if (vertices_with_height_ == 0 || !(all_are_vertices || facts.free_of_voids)) {
+    return;
+  }
+  constexpr double kRounding = 1e-9;  // of doubles, generously
+  const double most = all_are_vertices ? 0.0 : facts.base_error;
+  const double slack =
+      most + (most > 0 ? kRounding * (most + std::max(-heights_.lo, heights_.hi)) : 0.0);
+  if (heights_.lo - facts.min_height > slack || facts.max_height - heights_.hi > slack) {
     report(
-        "the least and largest height in the header are not those of the vertices, although "
-        "every sample is one",
+        "the least and largest height in the header are farther from those of the vertices than "
+        "what was left out of the file can be",
         "header");
   }
 }

@@ -290,20 +290,30 @@ TEST_F(Verify, FindsIntervalsOfHeightsOutOfTheHeader) {
 }
 
 TEST_F(Verify, FindsHeightsOfTheHeaderThatNoSampleHas) {
-  const auto told = [&](double low, double high, std::uint64_t samples, bool free_of_voids) {
-    StoreContent content = flat_square(10);
-    content.facts.min_height = low;
-    content.facts.max_height = high;
-    content.facts.source_samples = samples;
-    content.facts.free_of_voids = free_of_voids;
-    write(content);
-    return tells(verify_store(path_), "are not those of the vertices");
+  struct Facts {
+    double low, high, base_error;
+    std::uint64_t samples;
+    bool free_of_voids;
   };
-  EXPECT_FALSE(told(12.0, 12.0, 4, true));
-  EXPECT_TRUE(told(11.0, 12.0, 4, true));
-  EXPECT_TRUE(told(12.0, 13.0, 4, true));
-  EXPECT_FALSE(told(11.0, 13.0, 5, true)) << "a sample was left out";
-  EXPECT_FALSE(told(11.0, 13.0, 4, false)) << "a sample may be lone";
+  const auto told = [&](const Facts& facts) {
+    StoreContent content = flat_square(10);  // four vertices of height 12
+    content.facts.min_height = facts.low;
+    content.facts.max_height = facts.high;
+    content.facts.base_error = facts.base_error;
+    content.facts.source_samples = facts.samples;
+    content.facts.free_of_voids = facts.free_of_voids;
+    write(content);
+    return tells(verify_store(path_), "farther from those of the vertices");
+  };
+  for (const bool free_of_voids : {true, false}) {
+    EXPECT_FALSE(told({12, 12, 0, 4, free_of_voids}));
+    EXPECT_TRUE(told({11, 12, 0, 4, free_of_voids}));
+    EXPECT_TRUE(told({12, 13, 5, 4, free_of_voids}));
+  }
+  EXPECT_FALSE(told({11, 13, 1, 5, true})) << "a sample was left out";
+  EXPECT_TRUE(told({11, 13, 0.9, 5, true}));
+  EXPECT_TRUE(told({10.5, 12, 1, 5, true}));
+  EXPECT_FALSE(told({1, 99, 0, 5, false})) << "a sample may have become void";
 }
 
 TEST_F(Verify, FindsARegionOfInfluenceThatReachesOutOfTheBounds) {
