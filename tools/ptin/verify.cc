@@ -10,6 +10,10 @@
 #include <memory>
 #include <optional>
 
+#include <cpl_conv.h>
+#include <ogr_spatialref.h>
+
+#include "engine/crs/crs_facts.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
@@ -43,6 +47,20 @@ struct Findings {
   std::optional<AgainstReport> against;
 };
 
+/// The CRS must be one that outputs can name.
+void verify_crs(const Terrain& terrain, Findings& findings) {
+  const std::string wkt = crs_facts(terrain.store()).wkt;
+  if (wkt.empty()) return;
+  OGRSpatialReference srs;
+  char* text = nullptr;
+  const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+  const bool is_known = srs.importFromWkt(wkt.c_str()) == OGRERR_NONE &&
+                        srs.exportToWkt(&text, options) == OGRERR_NONE;
+  CPLFree(text);
+  if (!is_known)
+    findings.faults.push_back({"its CRS is no WKT that outputs can name", "section \"metadata\""});
+}
+
 constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;  ///< Unless --memory says otherwise.
 
 /// The terrain, unless there are faults; one more is a T0 that no mesh can begin with.
@@ -71,7 +89,7 @@ void verify_hierarchy(const VerifyCommand& command, const Terrain& terrain, cons
   const HierarchyReport report = terrain.check_hierarchy(request);
   findings.cells = report.cells;
   findings.stopped_early = report.stopped_early;
-  findings.faults = report.faults;
+  findings.faults.insert(findings.faults.end(), report.faults.begin(), report.faults.end());
 }
 
 /// The tolerances that are checked: those given, else tolerance 0 and four round ones, whose
@@ -132,6 +150,7 @@ Findings verify(const VerifyCommand& command, const Context& context) {
   findings.stopped_early = findings.store.stopped_early;
   // A damaged file answers no questions.
   if (const auto terrain = open_if_sound(command, findings)) {
+    verify_crs(*terrain, findings);
     verify_hierarchy(command, *terrain, context, progress, findings);
     if (findings.faults.empty() && !command.against.empty())
       verify_source(command, *terrain, context, progress, findings);
