@@ -63,6 +63,8 @@ set(public_headers
     engine/query/isoline/isoline_trace.h
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
+    engine/query/refine/grid_cell.h
+    engine/query/refine/hierarchy_check.h
     engine/query/refine/moving_window.h
     engine/query/refine/page_cache.h
     engine/query/refine/part_refiner.h

@@ -5,6 +5,10 @@
 #include "storage/verify.h"
 
 #include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -47,8 +51,7 @@ Outcome verified(const std::string& store, const std::string& source) {
   return run_ptin({"verify", store, "--against", source, "-q"});
 }
 
-/// Writes `store` again with every record changed by `change`: sound in form, wrong in what it
-/// says.
+/// Writes `store` again with every record changed by `change`: whole, but wrong in what it says.
 void plant(const std::string& store, const std::string& planted,
            const std::function<void(VertexSplit&, std::size_t)>& change) {
   const auto from = StoreFile::open(store);
@@ -60,7 +63,7 @@ void plant(const std::string& store, const std::string& planted,
   const auto writer = StoreWriter::create(planted, {});
   writer->add_segment(records, from->facts().heights);
   writer->publish(from->facts(), from->t0(), std::string(from->metadata_json()));
-  ASSERT_TRUE(verify_store(planted).is_sound()) << "the plant must be found by --against alone";
+  ASSERT_TRUE(verify_store(planted).is_sound()) << "no rule of the format is broken";
 }
 
 TEST(Verify, FindsAGoodFileGood) {
@@ -130,7 +133,8 @@ TEST(Verify, FindsOneWrongHeight) {
   plant(store, folder.file("planted.ptin"), [&](VertexSplit& r, std::size_t) {
     const double low = heights.code(r.height_lo);
     if (done || (r.flags & VertexSplit::kVertexVoid) != 0 || heights.code(r.height) <= low) return;
-    r.height = r.height_lo;  // within its interval, so no rule of the format is broken
+    if (r.rank != 0) return;  // no record that needs it has the height in its interval
+    r.height = r.height_lo;   // within its interval, so no rule of the format is broken
     done = true;
   });
   ASSERT_TRUE(done);
@@ -150,6 +154,114 @@ TEST(Verify, FindsVoidsThatAreCheaperThanTheyMayBe) {
   const Outcome outcome = verified(folder.file("planted.ptin"), folder.file("source.tif"));
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.out.find("the TIN says otherwise"), std::string::npos) << outcome.out;
+}
+
+/// A store of hills, and how one of its records is changed.
+class VerifyRecords : public ::testing::Test {
+ protected:
+  /// Changes the first record for which `change` is true, and expects that verify names it or one
+  /// that needs it, by page and vertex, with these words.
+  void expect_found(const std::function<bool(VertexSplit&)>& change, const std::string& words) {
+    const std::string planted = folder_.file("planted.ptin");
+    std::filesystem::remove(planted);
+    bool done = false;
+    plant(store_, planted,
+          [&](VertexSplit& r, std::size_t) { done = done || (r.rank >= 2 && change(r)); });
+    ASSERT_TRUE(done) << words;
+    const Outcome outcome = run_ptin({"verify", planted, "-q", "--json"});
+    EXPECT_EQ(outcome.status, 1) << words << outcome.out << outcome.err;
+    const auto answer = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(answer.at("sound"), false);
+    const std::string where = answer.at("faults").at(0).at("where");
+    EXPECT_EQ(where.substr(0, 5), "page ") << where;
+    EXPECT_NE(where.find(", record of vertex ("), std::string::npos) << where;
+    EXPECT_NE(answer.at("faults").dump().find(words), std::string::npos) << words << outcome.out;
+    // What the file itself tells needs no source.
+    EXPECT_FALSE(answer.contains("against"));
+  }
+
+  TestFolder folder_;
+  std::string store_ = built_raster(folder_, hills_with_voids());
+  StoreFacts facts_ = StoreFile::open(store_)->facts();
+};
+
+TEST_F(VerifyRecords, FindsRegionsOfInfluenceThatAreNotSaturated) {
+  expect_found(
+      [](VertexSplit& r) {
+        const GridBox own = united(united(united(box_of(r.u), r.w), r.vl), r.vr);
+        return !(std::exchange(r.roi, own) == own);
+      },
+      "region of influence");
+  expect_found(
+      [&](VertexSplit& r) { return half_perimeter(r.roi) < 30 && (r.roi = facts_.bounds, true); },
+      "does not hold its own");
+}
+
+TEST_F(VerifyRecords, FindsHeightsThatAreNotSaturated) {
+  const auto is_surface = [](const VertexSplit& r) {
+    return (r.flags & VertexSplit::kAnyVoid) == 0 && r.height_lo != r.height_hi;
+  };
+  expect_found(
+      [&](VertexSplit& r) {
+        if (!is_surface(r)) return false;
+        r.height_lo = r.height_hi = r.height;
+        return true;
+      },
+      "hold");
+  expect_found(
+      [&](VertexSplit& r) {
+        if (!is_surface(r) || half_perimeter(r.roi) > 30) return false;
+        r.height_lo = facts_.heights.bits(facts_.min_height);  // float32: the code is the height
+        r.height_hi = facts_.heights.bits(facts_.max_height);
+        return true;
+      },
+      "do not hold its own");
+}
+
+TEST_F(VerifyRecords, FindsErrorsDeviationsAndRanksThatAreNotSaturated) {
+  expect_found([](VertexSplit& r) { return std::exchange(r.error, 0.0F) > 0; },
+               "whose error, 0, is below its own");
+  expect_found([](VertexSplit& r) { return std::exchange(r.deviation, 0.0F) > 0; },
+               "whose deviation, 0, is below its own");
+  expect_found([](VertexSplit& r) { return (r.rank = 0, true); }, "by falling rank");
+}
+
+TEST_F(VerifyRecords, FindsSplitsThatDoNotFindTheirFan) {
+  expect_found([](VertexSplit& r) { return (std::swap(r.vl, r.vr), true); }, "its fan");
+  expect_found([](VertexSplit& r) { return (std::swap(r.w, r.vl), true); }, "its fan");
+}
+
+TEST(Verify, FindsStoresOfEveryKindOfSourceSound) {
+  const TestFolder folder;
+  make_raster(folder.file("voids.tif"), hills_with_voids());
+  ASSERT_EQ(
+      run_ptin({"build", folder.file("voids.tif"), "-o", folder.file("mesh.ptin"), "-q"}).status,
+      0);
+  ASSERT_EQ(run_ptin({"export", folder.file("mesh.ptin"), "--error", "2", "-o",
+                      folder.file("mesh.ply"), "-q"})
+                .status,
+            0);
+  const std::vector<std::vector<std::string>> sources = {
+      {folder.file("voids.tif")},
+      {testing::test_data("ground_points.csv"), "--max-edge", "9"},
+      {folder.file("mesh.ply")}};
+  const std::vector<std::vector<std::string>> ways = {
+      {}, {"--tile", "16"}, {"--max-error", "1"}, {"--tile", "16", "--max-error", "1"}};
+  for (const auto& source : sources) {
+    for (const auto& way : ways) {
+      std::vector<std::string> arguments = {"build", "-q", "--overwrite", "-o",
+                                            folder.file("s.ptin")};
+      arguments.insert(arguments.end(), source.begin(), source.end());
+      arguments.insert(arguments.end(), way.begin(), way.end());
+      const Outcome built = run_ptin(arguments);
+      ASSERT_EQ(built.status, 0) << built.err;
+      for (const std::string memory : {"1G", "1M"}) {
+        const Outcome outcome = run_ptin({"verify", folder.file("s.ptin"), "--memory", memory});
+        EXPECT_EQ(outcome.status, 0) << source[0] << memory << outcome.out << outcome.err;
+        EXPECT_NE(outcome.out.find("; splits applied in "), std::string::npos) << outcome.out;
+      }
+    }
+  }
 }
 
 TEST(Verify, FindsAnotherSource) {

@@ -37,8 +37,11 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin info dem.ptin\n"
      "  ptin info dem.ptin --json | jq .vertices_at_tolerance\n",
      declare_info},
-    {"verify", "Check a .ptin file: checksums, structure, and its errors against the source",
-     "Exit status 0 when everything holds, 1 with the first faults listed when not.\n\n"
+    {"verify",
+     "Check a .ptin file: checksums, structure, records, and its errors against the source",
+     "Every checksum and rule of the format is looked at, and every split applied: it must find\n"
+     "its triangles, and the records that it needs must contain its own. Exit status 0 when\n"
+     "everything holds, 1 with the first faults listed when not.\n\n"
      "Examples:\n"
      "  ptin verify dem.ptin\n"
      "  ptin verify dem.ptin --against dem.tif\n"
