@@ -18,9 +18,13 @@ set(public_headers
     engine/construct/hierarchy/tile_bytes.h
     engine/construct/memory_plan.h
     engine/construct/points/open_points.h
+    engine/construct/process_limits.h
     engine/construct/read/column_names.h
     engine/construct/read/input_kind.h
+    engine/construct/read/layer_choice.h
     engine/construct/read/point_stream.h
+    engine/construct/read/text_rows.h
+    engine/construct/read/text_table.h
     engine/construct/scratch/external_memory.h
     engine/construct/scratch/external_sorter.h
     engine/construct/scratch/manifest.h
@@ -59,6 +63,8 @@ set(public_headers
     engine/query/isoline/isoline_trace.h
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
+    engine/query/refine/grid_cell.h
+    engine/query/refine/hierarchy_check.h
     engine/query/refine/moving_window.h
     engine/query/refine/page_cache.h
     engine/query/refine/part_refiner.h

@@ -2,8 +2,49 @@
 #include "storage/facts.h"
 
 #include <cmath>
+#include <limits>
+
+#include "engine/geometry/affine_rounding.h"
 
 namespace ptin {
+
+namespace {
+
+/// One axis of the map from grid to coordinates.
+struct Axis {
+  double origin, step;
+  std::int32_t min, max;
+};
+
+/// True when coordinates as doubles tell the positions of the axis apart: those of its ends are
+/// finite and lead back to them. A reader would find no other place of the terrain.
+bool is_invertible(const Axis& axis) {
+  for (const double grid : {static_cast<double>(axis.min), static_cast<double>(axis.max)}) {
+    // False for NaN and infinity too. Twice what is allowed to a build.
+    if (!(rounding_to_grid(axis.origin + axis.step * grid, axis.origin, axis.step, grid) < 1.0)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// True when squares of lengths along the axis neither vanish nor overflow, so that distances can
+/// be computed.
+bool has_lengths(const Axis& axis) {
+  const double longest = axis.step * (static_cast<double>(axis.max) - axis.min);
+  return axis.step * axis.step >= std::numeric_limits<double>::min() &&
+         std::isfinite(4 * longest * longest);
+}
+
+/// True when the encoding reaches as far as `height`.
+bool is_code(const HeightEncoding& heights, double height) {
+  const double farthest = heights.type == HeightType::int32
+                              ? -static_cast<double>(INT32_MIN)
+                              : static_cast<double>(std::numeric_limits<float>::max());
+  return heights.height_of_code(-farthest) <= height && height <= heights.height_of_code(farthest);
+}
+
+}  // namespace
 
 void put_facts(const StoreFacts& facts, layout::FileHeader& h) noexcept {
   h.height_type = static_cast<std::uint32_t>(facts.heights.type);
@@ -58,8 +99,23 @@ const char* fault_in(const StoreFacts& f) noexcept {
       f.bounds.max_y > kGridMax) {
     return "the bounds must lie on the grid and not be empty";
   }
+  for (const Axis& axis : {Axis{f.map.origin_x, f.map.step_x, f.bounds.min_x, f.bounds.max_x},
+                           Axis{f.map.origin_y, f.map.step_y, f.bounds.min_y, f.bounds.max_y}}) {
+    if (!is_invertible(axis)) {
+      return "the map from grid to coordinates must tell the places of the terrain apart: its "
+             "origin is too far away for its steps, or a corner of the bounds has no finite "
+             "coordinates";
+    }
+    if (!has_lengths(axis)) {
+      return "the map from grid to coordinates has steps of which no distance can be computed";
+    }
+  }
   if (std::isnan(f.min_height) || std::isnan(f.max_height)) {
     return "the smallest and the largest height must be numbers";
+  }
+  if (f.min_height <= f.max_height &&
+      !(is_code(f.heights, f.min_height) && is_code(f.heights, f.max_height))) {
+    return "the smallest and the largest height must be such as the encoding of heights holds";
   }
   if (!(f.base_error >= 0.0) || !(f.base_deviation >= 0.0)) {
     return "base error and base deviation must not be negative";

@@ -19,6 +19,9 @@ static_assert(std::endian::native == std::endian::little,
 /// As in PNG: the first byte has its high bit set, and CR LF and Ctrl-Z follow the name, so that a
 /// transfer as text is noticed at once.
 inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'T', 'I', 'N', 0x0D, 0x0A, 0x1A};
+/// What a stream begins with (engine/query/stream/stream_format.h): no store, and told so.
+inline constexpr std::array<std::uint8_t, 8> kStreamMagic = {0x89, 'P',  'T',  'S',
+                                                             0x0D, 0x0A, 0x1A, 0x0A};
 inline constexpr std::uint16_t kMajorVersion = 1;
 inline constexpr std::uint16_t kMinorVersion = 0;
 

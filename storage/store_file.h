@@ -84,7 +84,7 @@ class StoreFile {
   /// they are first visited, or by verify(). Cost: a few reads at the front of the file; O(|T0|),
   /// whatever the number of records.
   /// @throws Error not_found, io_error, corruption, unsupported_version; invalid_argument when it
-  ///               is no regular file
+  ///               is no regular file, or a stream
   static std::shared_ptr<const StoreFile> open(const std::string& path,
                                                PageAccess access = PageAccess::kMapped);
   StoreFile(const StoreFile&) = delete;

@@ -2,6 +2,7 @@
 #include "storage/store_front.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <span>
@@ -30,9 +31,20 @@ void require(bool condition, const std::string& path, const char* message) {
   }
 }
 
+/// Refuses a file that is a stream: nothing is damaged then, the wrong file was named.
+void refuse_stream(const ReadOnlyFile& file) {
+  std::array<std::uint8_t, layout::kStreamMagic.size()> magic{};
+  if (file.bytes() < magic.size()) return;
+  file.read_at(std::as_writable_bytes(std::span(magic)), 0);
+  if (magic != layout::kStreamMagic) return;
+  throw Error(ErrorCode::invalid_argument,
+              "this is a stream, not a store; `ptin unstream` makes a mesh of it", file.path());
+}
+
 FileHeader read_header(const ReadOnlyFile& file) {
   const std::string& path = file.path();
   FileHeader h;
+  refuse_stream(file);
   require(file.bytes() >= sizeof h, path,
           "the file is shorter than the header of a .ptin file; it is none, or cut short");
   file.read_at(std::as_writable_bytes(std::span(&h, 1)), 0);

@@ -49,9 +49,10 @@ class Verifier {
                      const std::string& where);
   std::optional<layout::NodeEntry> look_at_page(PageId id, const layout::NodeEntry& descriptor);
   bool read_page(PageId id, const layout::NodeEntry& descriptor);
-  void count(const std::vector<VertexSplit>& records);
+  void count(PageId id);
   void count_height(HeightBits bits);
-  void look_at_height(const VertexSplit& r);
+  const char* look_at_heights(const VertexSplit& r);
+  void compare_heights();
   void compare_totals();
   bool same(const layout::NodeEntry& a, const layout::NodeEntry& b) const;
 
@@ -69,7 +70,8 @@ class Verifier {
   std::uint32_t max_rank_ = 0;
   bool makes_void_ = false;
   Interval heights_{kInfinity, -kInfinity};  // of the vertices that have one
-  bool all_seen_ = true;                     // no page was left out because of damage
+  std::uint64_t vertices_with_height_ = 0;
+  bool all_seen_ = true;  // no page was left out because of damage
   std::vector<std::byte> page_;
   std::vector<VertexSplit> records_;
 };
@@ -250,7 +252,7 @@ std::optional<layout::NodeEntry> Verifier::look_at_page(PageId id,
     return std::nullopt;
   }
   ++report_.pages;
-  count(records_);
+  count(id);
   Descriptor all(front_.facts.heights);
   for (const VertexSplit& r : records_) {
     all.add(r);
@@ -289,16 +291,22 @@ bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
   return true;
 }
 
-void Verifier::count(const std::vector<VertexSplit>& records) {
-  report_.records += records.size();
-  for (const VertexSplit& r : records) {
+// Counts the records of a page, which are in `records_`, and looks at each.
+void Verifier::count(PageId id) {
+  report_.records += records_.size();
+  for (const VertexSplit& r : records_) {
+    const auto where = [&] {
+      return page_name(id) + ", record of vertex (" + std::to_string(r.u.x) + ", " +
+             std::to_string(r.u.y) + ")";
+    };
     errors_.add(r);
     makes_void_ = makes_void_ || (r.flags & VertexSplit::kAnyVoid) != 0;
     max_rank_ = std::max<std::uint32_t>(max_rank_, r.rank);
-    look_at_height(r);
+    if (const char* fault = look_at_heights(r)) {
+      report(fault, where());
+    }
     if (!contains(front_.facts.bounds, r.roi)) {
-      report("a region of influence reaches out of the bounds",
-             "record of (" + std::to_string(r.u.x) + ", " + std::to_string(r.u.y) + ")");
+      report("a region of influence reaches out of the bounds", where());
     }
   }
 }
@@ -306,24 +314,29 @@ void Verifier::count(const std::vector<VertexSplit>& records) {
 void Verifier::count_height(HeightBits bits) {
   const double height = front_.facts.heights.height(bits);
   heights_ = {std::min(heights_.lo, height), std::max(heights_.hi, height)};
+  ++vertices_with_height_;
 }
 
-// Checks the height of u against the record's interval of heights. The interval covers the surface
-// triangles of u, and so the height of u when u has one. Of the triangles of u the record tells the
-// classes of only the two that it makes: so the height is checked where one of these is surface.
-void Verifier::look_at_height(const VertexSplit& r) {
+// Checks the record's interval of heights against the header's, and the height of u against the
+// interval. That covers the surface triangles of u, and so the height of u when u has one. Of the
+// triangles of u the record tells the classes of only the two that it makes: so the height is
+// checked where one of these is surface. Returns a fault as a sentence, or null.
+const char* Verifier::look_at_heights(const VertexSplit& r) {
+  const StoreFacts& facts = front_.facts;
+  const Interval codes = attributes_of(r, facts.heights).heights;
+  if (!is_empty(codes) && (facts.heights.height_of_code(codes.lo) < facts.min_height ||
+                           facts.heights.height_of_code(codes.hi) > facts.max_height)) {
+    return "an interval of heights reaches out of the least and largest in the header";
+  }
   if ((r.flags & VertexSplit::kVertexVoid) != 0) {
-    return;
+    return nullptr;
   }
   count_height(r.height);
   const bool is_surface = (r.flags & (VertexSplit::kNoLeft | VertexSplit::kLeftVoid)) == 0 ||
                           (r.flags & (VertexSplit::kNoRight | VertexSplit::kRightVoid)) == 0;
-  const HeightEncoding& heights = front_.facts.heights;
-  if (is_surface &&
-      !contains(attributes_of(r, heights).heights, static_cast<double>(heights.code(r.height)))) {
-    report("a height lies out of the record's own interval of heights",
-           "record of (" + std::to_string(r.u.x) + ", " + std::to_string(r.u.y) + ")");
-  }
+  return is_surface && !contains(codes, static_cast<double>(facts.heights.code(r.height)))
+             ? "a height lies out of the record's own interval of heights"
+             : nullptr;
 }
 
 void Verifier::compare_totals() {
@@ -344,15 +357,7 @@ void Verifier::compare_totals() {
                ", it is " + std::to_string(max_rank_),
            "header");
   }
-  for (const CoarsestTin::V& v : front_.t0.vertices) {
-    if (v.has_height != 0) {
-      count_height(v.height);
-    }
-  }
-  if (heights_.lo < front_.facts.min_height || heights_.hi > front_.facts.max_height) {
-    report("the heights of the vertices reach out of the least and largest in the header",
-           "header");
-  }
+  compare_heights();
   if (front_.facts.free_of_voids && (makes_void_ || has_void(front_.t0))) {
     report("the header says that there are no voids, but there are", "header");
   }
@@ -365,6 +370,37 @@ void Verifier::compare_totals() {
                                 });
   if (!equal) {
     report("the table is not that of the records", "section \"error table\"");
+  }
+}
+
+// Compares the least and largest height in the header with those of the vertices. They are those of
+// all samples: the same where every sample with a height is a vertex with one; otherwise farther
+// apart by at most the base error, unless samples fell into voids.
+void Verifier::compare_heights() {
+  for (const CoarsestTin::V& v : front_.t0.vertices) {
+    if (v.has_height != 0) {
+      count_height(v.height);
+    }
+  }
+  const StoreFacts& facts = front_.facts;
+  if (heights_.lo < facts.min_height || heights_.hi > facts.max_height) {
+    report("the heights of the vertices reach out of the least and largest in the header",
+           "header");
+    return;
+  }
+  const bool all_are_vertices = vertices_with_height_ == facts.source_samples;
+  if (vertices_with_height_ == 0 || !(all_are_vertices || facts.free_of_voids)) {
+    return;
+  }
+  constexpr double kRounding = 1e-9;  // of doubles, generously
+  const double most = all_are_vertices ? 0.0 : facts.base_error;
+  const double slack =
+      most + (most > 0 ? kRounding * (most + std::max(-heights_.lo, heights_.hi)) : 0.0);
+  if (heights_.lo - facts.min_height > slack || facts.max_height - heights_.hi > slack) {
+    report(
+        "the least and largest height in the header are farther from those of the vertices than "
+        "what was left out of the file can be",
+        "header");
   }
 }
 

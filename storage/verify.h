@@ -46,11 +46,12 @@ using VerifyProgress = std::function<void(std::uint64_t done, std::uint64_t tota
 /// - every record with what a record can be;
 /// - every page descriptor with the union over its records, and every index entry with the union
 ///   over what it describes;
-/// - the number of records, the largest rank, the least and largest height, the flag of voids and
-///   the table of errors with the records;
+/// - the number of records, the largest rank, the least and largest height (over the records'
+///   intervals too), the flag of voids and the table of errors with the records;
 /// - all vertices with each other: no vertex comes twice.
 ///
-/// Splits are not applied: whether each finds its fan, only a refinement of everything tells.
+/// Bytes, never triangles: whether each split finds its fan, and each record is contained in those
+/// that it needs, check_hierarchy() tells (engine/query/refine/hierarchy_check.h).
 ///
 /// Vertex keys are compared exactly: by one bit for each position of the bounds where that fits the
 /// memory, otherwise by sorting, one part of the keys in each pass over the pages.

@@ -3,7 +3,10 @@
 
 #include <exception>
 #include <new>
+#include <string>
 #include <system_error>
+
+#include "tools/refused_memory.h"
 
 namespace ptin::tools {
 
@@ -29,15 +32,15 @@ ErrorStatus status_of(ErrorCode code) noexcept {
   return {70, 500};
 }
 
-Error current_error() noexcept {
+namespace {
+
+Error error_at_hand() {
   try {
     throw;
   } catch (const Error& error) {
     return error;
   } catch (const std::bad_alloc&) {
-    return {ErrorCode::resource_exhausted,
-            "the system gives no more memory; ask for less (a window, a larger --error) or close "
-            "other programs"};
+    return {ErrorCode::resource_exhausted, refused_memory_sentence()};
   } catch (const std::system_error& error) {  // Only starting a thread throws this.
     if (error.code() == std::errc::resource_unavailable_try_again) {
       return {ErrorCode::resource_exhausted,
@@ -50,6 +53,18 @@ Error current_error() noexcept {
   } catch (...) {
     return {ErrorCode::internal, "a fault of this program: an unknown exception"};
   }
+}
+
+}  // namespace
+
+Error current_error() {
+  Error error = error_at_hand();
+  const bool blames_another =
+      error.code() == ErrorCode::io_error || error.code() == ErrorCode::internal;
+  if (!blames_another || !memory_was_refused()) return error;
+  return {ErrorCode::resource_exhausted,
+          std::string(refused_memory_sentence()).append(" (").append(error.message()).append(")"),
+          error.context()};
 }
 
 }  // namespace ptin::tools

@@ -3,14 +3,13 @@
 // What --threads means.
 #pragma once
 
-#include <algorithm>
-#include <thread>
+#include "engine/construct/process_limits.h"
 
 namespace ptin::tools {
 
-/// Threads to work on: those wanted, or one a core when `wanted` is 0.
+/// Threads to work on: those wanted, or allowed_threads() when `wanted` is 0.
 [[nodiscard]] inline int thread_count(int wanted) {
-  return wanted > 0 ? wanted : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return wanted > 0 ? wanted : allowed_threads();
 }
 
 }  // namespace ptin::tools

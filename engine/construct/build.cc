@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "engine/construct/build_job.h"
 #include "engine/construct/grid/source_options.h"
@@ -77,7 +78,7 @@ BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::str
   }
   job.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return job.report;
+  return std::move(job.report);
 }
 
 }  // namespace

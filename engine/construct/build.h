@@ -22,7 +22,7 @@ struct BuildResources {
   /// Limit on the anonymous memory of the process, bytes, kept by measured estimates
   /// (engine/DESIGN.md, section 5.10); 0 means default_memory().
   std::uint64_t memory_bytes = 0;
-  int threads = 0;  ///< 0 means one a core. Fewer are used where memory is short.
+  int threads = 0;  ///< 0 means allowed_threads(). Fewer are used where memory is short.
   std::string tmp;  ///< Folder for temporary files; "" means beside the output.
   Unfinished unfinished = Unfinished::kRefuse;          ///< What to do with an interrupted build.
   bool dry_run = false;                                 ///< Stop when the plan is made.
@@ -43,12 +43,14 @@ struct BuildReport {
   std::uint64_t merged_points = 0;       ///< Points less the positions that they fell on.
   double largest_shift_plan = 0.0;       ///< By which snapping moved one, CRS units.
   double largest_shift_height = 0.0;     ///< By which merging moved one, height's unit.
+  double height_quantum = 0.0;           ///< Points: the smallest step between heights.
   double height_rounding = 0.0;          ///< Bound of what storing moved one by, height's unit.
   std::uint64_t vertices = 0;            ///< Of the full TIN.
   std::uint64_t records = 0;             ///< Written.
   std::uint64_t t0_vertices = 0;
   std::uint16_t max_rank = 0;  ///< Chains of splits are at most one longer.
   std::uint64_t file_bytes = 0;
+  std::uint64_t source_bytes = 0;  ///< Of all files of all inputs; 0 where nothing tells them.
   double seconds = 0.0;
   bool resumed = false;  ///< An interrupted build was taken up.
   /// Why temporary files could not be removed after the output was complete; "" when they were.

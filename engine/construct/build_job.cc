@@ -33,9 +33,12 @@ std::optional<std::uint64_t> inode_of(const std::string& path) {
 
 std::string pages_in(const Workspace& workspace) { return workspace.folder() + "/pages"; }
 
-/// True when an interrupted build had got as far as giving the output its name. Its pages may still
-/// have theirs, too (FileLayer::rename).
+/// True when this build, or the interrupted one that it goes on with, had got as far as giving the
+/// output its name. Its pages may still have theirs, too (FileLayer::rename).
 bool is_published(const Job& job, const Workspace& workspace) {
+  if (job.inode_of_output) {
+    return inode_of(job.output) == job.inode_of_output;
+  }
   const std::vector<nlohmann::json> lines = workspace.lines();
   if (lines.empty() || !lines.back().contains("publishing")) {
     return false;
@@ -68,6 +71,19 @@ bool is_kept(const Workspace& workspace, const Job& job, ErrorCode code) {
     left = "; and " + folder + " could not be removed: " + e.message();
   }
   throw Error(error.code(), error.message() + left, error.context());
+}
+
+/// Removes what a complete build needs no more. The output is complete whatever becomes of that.
+void remove_done(Workspace& workspace, Job& job) {
+  try {
+    try {
+      workspace.remove_all();
+    } catch (const std::bad_alloc&) {
+      workspace.remove_all();  // by now the build's own memory is free
+    }
+  } catch (...) {
+    job.report.left_behind = error_in_flight().what();
+  }
 }
 
 Error no_threads_or(bool no_threads, const std::string& what) {
@@ -173,20 +189,22 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   Workspace workspace(job.files(), job.output, job.resources.tmp, job.resources.unfinished,
                       fingerprint);
   job.report.resumed = !workspace.lines().empty();
+  job.report.source_bytes = bytes_in(fingerprint.at("inputs"));
   try {
     work(workspace);
   } catch (...) {
     const Error e = error_in_flight();
+    if (e.code() == ErrorCode::resource_exhausted && is_published(job, workspace)) {
+      report_published(job);  // only telling of it failed
+      remove_done(workspace, job);
+      return;
+    }
     if (is_kept(workspace, job, e.code())) {
       throw with_resume_hint(e, workspace.folder());
     }
     give_up(workspace, e);
   }
-  try {
-    workspace.remove_all();
-  } catch (const Error& e) {  // the output is complete all the same
-    job.report.left_behind = std::string(e.what());
-  }
+  remove_done(workspace, job);
 }
 
 HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
@@ -224,7 +242,9 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
       source.make_starter, source.tree, hierarchy_options(job, source, plan), workspace, store);
   job.report.lone_samples = built.lone_samples;
   job.stage("writing")(0, 1);
-  workspace.append({{{"publishing", inode_of(pages_in(workspace)).value_or(0)}}});
+  const std::uint64_t inode = inode_of(pages_in(workspace)).value_or(0);
+  workspace.append({{{"publishing", inode}}});
+  job.inode_of_output = inode;
   store.publish(built.t0, job.inputs, job.report);
   job.stage("writing")(1, 1);
 }

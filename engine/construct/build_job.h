@@ -38,6 +38,8 @@ struct Job {
   const BuildResources& resources;
   const MemoryPlan memory;  ///< Made once, with the kind of source that it is for.
   BuildReport report;
+  /// Of the finished pages, from when they are about to get the output's name.
+  std::optional<std::uint64_t> inode_of_output{};
   /// True while a resumed build would do all of the work again: an error then leaves no folder
   /// behind.
   bool begins_anew = false;

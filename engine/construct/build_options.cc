@@ -2,10 +2,16 @@
 #include "engine/construct/build_options.h"
 
 #include <cmath>
+#include <tuple>
 
+#include "engine/construct/read/column_names.h"
 #include "engine/error.h"
 
 namespace ptin {
+
+PointChoice point_choice_of(const BuildOptions& options) {
+  return {options.classes, options.returns, options.layer, options.z_field, options.columns};
+}
 
 SourceOptions source_options_of(const BuildOptions& options) {
   SourceOptions source;
@@ -15,7 +21,8 @@ SourceOptions source_options_of(const BuildOptions& options) {
     source.bbox = {(*options.bbox)[0], (*options.bbox)[1], (*options.bbox)[2], (*options.bbox)[3]};
   }
   source.a_srs = options.a_srs;
-  source.points = {options.classes, options.layer, options.z_field};
+  source.merge = options.duplicates.value_or(PointMerge::kMean);
+  source.points = point_choice_of(options);
   source.vertical_crs = options.vertical_crs;
   return source;
 }
@@ -35,6 +42,9 @@ void check_options(const BuildOptions& o) {
           "the longest edge must be a finite number > 0");
   require(!o.bbox || ((*o.bbox)[0] < (*o.bbox)[2] && (*o.bbox)[1] < (*o.bbox)[3]),
           "the bbox is inverted or empty; its order is xmin ymin xmax ymax");
+  if (!o.columns.empty()) {
+    std::ignore = columns_of(o.columns, point_roles());
+  }
   require(!o.tile || (*o.tile >= 2 && *o.tile <= (std::int64_t{1} << 20)),
           "a tile must be 2 to 1,048,576 grid units along a side");
 }

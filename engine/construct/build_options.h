@@ -20,11 +20,15 @@ struct BuildOptions {
   double max_error = 0.0;  ///< Leave out records with error <= this (height's unit); 0 keeps all.
   std::optional<double> nodata;      ///< Overrides the source's.
   std::optional<double> resolution;  ///< Points: grid unit in CRS units.
-  std::vector<int> classes;          ///< LAS: keep these classes; empty keeps all.
-  std::string layer;                 ///< OGR: the layer of points; "" where there is only one.
+  /// Points, repaired TINs: which height stands for those that fall together; none: their mean.
+  std::optional<PointMerge> duplicates;
+  std::vector<int> classes;                   ///< LAS: keep these classes; empty keeps all.
+  ReturnChoice returns = ReturnChoice::kAll;  ///< LAS: keep these echoes.
+  std::string layer;  ///< OGR: the layer of points; "" where there is only one.
   /// Points, repaired TINs: triangles with a longer edge are void; CRS units, or metres where those
   /// are degrees.
   std::optional<double> max_edge;
+  std::vector<std::string> columns;  ///< Text: as PointChoice::columns.
   std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
   bool repair = false;  ///< TINs: triangulate the vertices anew instead of taking the triangles.
   std::optional<std::array<double, 4>>
@@ -38,6 +42,8 @@ struct BuildOptions {
   std::uint32_t page_bytes = 4096;
 };
 
+/// Which points of its inputs a build wants.
+[[nodiscard]] PointChoice point_choice_of(const BuildOptions& options);
 /// The options that say what is read from a source.
 [[nodiscard]] SourceOptions source_options_of(const BuildOptions& options);
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <thread>
 
 #include <sys/stat.h>
 
 #include "engine/construct/build.h"
 #include "engine/construct/memory_plan.h"
+#include "engine/construct/process_limits.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
 
@@ -73,9 +73,8 @@ void plan_threads(BuildPlan& plan, const TileTree& tree, const PlanRequest& requ
   const std::uint64_t one = bytes_of_largest(samples, tree, tile_bytes);
   plan.memory = memory;
   plan.tile_bytes = tile_bytes;
-  plan.threads_wanted = request.resources.threads > 0
-                            ? request.resources.threads
-                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  plan.threads_wanted =
+      request.resources.threads > 0 ? request.resources.threads : allowed_threads();
   plan.threads = plan.threads_wanted;
   std::uint64_t share = memory.for_tiles(present, plan.threads);
   const std::uint64_t batch = std::max(tile_bytes.of_batch(samples), tile_bytes.of_replay(samples));

@@ -26,7 +26,7 @@ struct BuildPlan {
   std::uint64_t memory_expected = 0;   ///< Bytes of anonymous memory, at most, by estimate.
   std::uint64_t memory_for_tiles = 0;  ///< Share of `memory.limit` for all tiles in work.
   TileBytes tile_bytes;                ///< What each kind of work takes of that.
-  int threads_wanted = 1;              ///< Asked for, or one a core.
+  int threads_wanted = 1;              ///< Asked for, or allowed_threads().
   int threads = 1;                     ///< As many of these as the memory holds tiles for.
   std::uint64_t temporary_bytes = 0;   ///< Disk, at most, beside the output.
   std::uint64_t output_bytes = 0;      ///< At most.

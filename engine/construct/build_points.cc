@@ -25,7 +25,7 @@ ExternalMemory memory_for_sorting(const Job& job, const Workspace& workspace) {
 
 /// Vertices of TINs are sorted before they are points.
 SourceDisk disk_of(const Job& job, const PointCount& count) {
-  SourceDisk disk = PointBuckets::disk_of(count.points);
+  SourceDisk disk = PointBuckets::disk_of(count.points, job.source_options().merge);
   disk.while_reading =
       std::max(disk.while_reading,
                disk.spooled + count.of_largest_tin *
@@ -55,6 +55,7 @@ void report_counts(BuildReport& report, const PointBuckets& points) {
   report.merged_points = points.counts().merged_points;
   report.largest_shift_plan = points.counts().largest_shift_plan;
   report.largest_shift_height = points.counts().largest_shift_height;
+  report.height_quantum = points.frame().height_quantum;
   report.height_rounding = points.frame().height_rounding;
 }
 

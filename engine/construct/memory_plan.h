@@ -10,10 +10,6 @@
 
 namespace ptin {
 
-/// What the smallest of this process's cgroups and resource limits allows, all of it; the largest
-/// number when none limits it.
-[[nodiscard]] std::uint64_t allowed_memory();
-
 /// Memory that this process may take without being asked: 1 GiB, or three quarters of what its
 /// cgroup or resource limits allow where that is less.
 [[nodiscard]] std::uint64_t default_memory();

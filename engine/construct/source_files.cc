@@ -2,6 +2,7 @@
 #include "engine/construct/source_files.h"
 
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include <cpl_vsi.h>
@@ -81,6 +82,20 @@ nlohmann::json input_fingerprint(const std::vector<std::string>& inputs) {
       files.push_back(facts_of(file));
     }
     all.push_back({full_name(input), files});
+  }
+  return all;
+}
+
+std::uint64_t bytes_in(const nlohmann::json& input_fingerprint) {
+  std::map<std::string, std::uint64_t> bytes;
+  for (const nlohmann::json& input : input_fingerprint) {
+    for (const nlohmann::json& file : input.at(1)) {
+      bytes[file.at(0).get<std::string>()] = file.at(1).get<std::uint64_t>();
+    }
+  }
+  std::uint64_t all = 0;
+  for (const auto& [name, size] : bytes) {
+    all += size;
   }
   return all;
 }

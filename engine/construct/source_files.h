@@ -3,6 +3,7 @@
 // Which files an input is made of, and whether they are still the same.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,8 @@ namespace ptin {
 /// Names, sizes and times of change of all files of all inputs: another value means that an input
 /// has changed, or that one of its files was added or removed.
 [[nodiscard]] nlohmann::json input_fingerprint(const std::vector<std::string>& inputs);
+
+/// The bytes of all files in a fingerprint, each counted once; 0 where no system tells them.
+[[nodiscard]] std::uint64_t bytes_in(const nlohmann::json& input_fingerprint);
 
 }  // namespace ptin

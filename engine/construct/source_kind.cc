@@ -16,6 +16,11 @@ const char* misfit_of_raster(const BuildOptions& o) {
   if (o.resolution)
     return "--resolution is for points and TINs, and this is a raster; leave it out";
   if (!o.classes.empty()) return "--class is for LAS, and this is a raster; leave it out";
+  if (!o.columns.empty())
+    return "--columns is for points as text, and this is a raster; leave it out";
+  if (o.returns != ReturnChoice::kAll)
+    return "--returns is for LAS, and this is a raster; leave it out";
+  if (o.duplicates) return "--duplicates is for points, and this is a raster; leave it out";
   if (o.repair) return "--repair is for TINs, and this is a raster; leave it out";
   if (o.max_edge) return "--max-edge is for points, and this is a raster; leave it out";
   return nullptr;
@@ -27,6 +32,12 @@ const char* misfit_of_points(const BuildOptions& o) {
 
 const char* misfit_of_tin(const BuildOptions& o, const std::string& input) {
   if (!o.classes.empty()) return "--class is for LAS, and this is a TIN; leave it out";
+  if (!o.columns.empty()) return "--columns is for points as text, and this is a TIN; leave it out";
+  if (o.returns != ReturnChoice::kAll)
+    return "--returns is for LAS, and this is a TIN; leave it out";
+  if (o.duplicates && !o.repair)
+    return "--duplicates is for points, and for TINs with --repair, and this is a TIN; leave it "
+           "out";
   if (!o.z_field.empty()) return "--z-field is for points, and this is a TIN; leave it out";
   if (!o.layer.empty() && !may_have_surfaces(input))
     return "--layer is for points and for the surfaces of LandXML, and this is another TIN; leave "
@@ -69,7 +80,7 @@ InputKind source_kind(const std::vector<std::string>& inputs, const BuildOptions
         "no input; name a raster that GDAL reads, or points as LAS, text or a layer that OGR "
         "reads, or a TIN");
   }
-  const PointChoice choice{options.classes, options.layer, options.z_field};
+  const PointChoice choice = point_choice_of(options);
   std::vector<InputKind> kinds;
   for (const std::string& input : inputs) {
     const InputKind kind = kind_of_input(input, choice);

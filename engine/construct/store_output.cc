@@ -27,6 +27,20 @@ const char* name_of(CostModel cost) {
   return "error";
 }
 
+const char* name_of(PointMerge rule) {
+  switch (rule) {
+    case PointMerge::kMean:
+      return "mean";
+    case PointMerge::kLowest:
+      return "min";
+    case PointMerge::kHighest:
+      return "max";
+    case PointMerge::kFirst:
+      return "first";
+  }
+  return "mean";
+}
+
 GridBox bounds_of(const Tin& tin) {
   GridBox bounds;
   for (const Vertex& v : tin.vertices) {
@@ -81,11 +95,20 @@ nlohmann::json options_json(const BuildOptions& o) {
   if (!o.classes.empty()) {
     json["classes"] = o.classes;
   }
+  if (o.returns != ReturnChoice::kAll) {
+    json["returns"] = o.returns == ReturnChoice::kFirst ? "first" : "last";
+  }
+  if (o.duplicates) {
+    json["duplicates"] = name_of(*o.duplicates);
+  }
   if (o.max_edge) {
     json["max_edge"] = *o.max_edge;
   }
   if (!o.layer.empty()) {
     json["layer"] = o.layer;
+  }
+  if (!o.columns.empty()) {
+    json["columns"] = o.columns;
   }
   if (!o.z_field.empty()) {
     json["z_field"] = o.z_field;

@@ -43,6 +43,18 @@ std::string unit_of_ground(const CrsFacts& crs) {
   return crs.geographic ? "metre" : crs.horizontal_unit;
 }
 
+std::optional<MapPoint> metres_per_map_unit(const CrsFacts& crs, MapPoint at) {
+  OGRSpatialReference srs;
+  if (crs.wkt.empty() || srs.importFromWkt(crs.wkt.c_str()) != OGRERR_NONE) {
+    const std::optional<double> metres = metres_in(height_unit_named(crs.horizontal_unit));
+    return metres ? std::optional<MapPoint>({*metres, *metres}) : std::nullopt;
+  }
+  if (srs.IsGeographic() != 0) return on_ellipsoid(srs, 1.0)(at);
+  if (crs.horizontal_unit == "unknown") return std::nullopt;
+  const double metres = srs.GetLinearUnits();
+  return MapPoint{metres, metres};
+}
+
 Ground ground_of(const CrsFacts& crs) {
   Ground ground;
   OGRSpatialReference srs;
@@ -67,7 +79,13 @@ Ground ground_of(const CrsFacts& crs) {
     ground.geographic = true;
     return ground;
   }
-  const double scale = (known ? srs.GetLinearUnits() : 1.0) / ground.metres_per_height;
+  double metres_per_map_unit = known ? srs.GetLinearUnits() : 1.0;
+  if (const auto told = metres_in(crs.horizontal_unit); !known && told) {
+    metres_per_map_unit = *told;  // by the source, without a CRS
+    ground.metres_per_height = metres_in(crs.vertical_unit).value_or(*told);
+    ground.earth_diameter /= ground.metres_per_height;
+  }
+  const double scale = metres_per_map_unit / ground.metres_per_height;
   ground.distance = [scale](MapPoint a, MapPoint b) {
     const double dx = b.x - a.x;
     const double dy = b.y - a.y;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "engine/crs/crs_facts.h"
@@ -28,9 +29,15 @@ struct Ground {
 /// that unit, it is the unit of the plane, or "metre" where the plane is in degrees.
 [[nodiscard]] std::string unit_of_ground(const CrsFacts& crs);
 
-/// @param crs  Without WKT, or with one that GDAL does not understand: a plane in metres, with
-///             heights in metres. Heights of no known unit are taken to be in the unit of the
-///             plane, or in metres where the plane is in degrees.
+/// Metres over ground of one map unit along x and of one along y, at a position: in a geographic CRS
+/// on the ellipsoid. None where nobody knows the map unit; an unknown one is never taken for a
+/// metre here.
+[[nodiscard]] std::optional<MapPoint> metres_per_map_unit(const CrsFacts& crs, MapPoint at);
+
+/// @param crs  Without WKT, or with one that GDAL does not understand: a plane in the unit that `crs`
+///             names, or in metres with heights in metres where it names none. Heights of no known
+///             unit are taken to be in the unit of the plane, or in metres where the plane is in
+///             degrees.
 [[nodiscard]] Ground ground_of(const CrsFacts& crs);
 
 }  // namespace ptin

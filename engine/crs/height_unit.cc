@@ -11,22 +11,24 @@ namespace {
 struct Unit {
   std::string_view name;
   double metres;
-  std::array<std::string_view, 8> aliases;  ///< In small letters.
+  std::array<std::string_view, 9> aliases;  ///< In small letters.
 };
 
-constexpr std::array<Unit, 9> kUnits = {{
+constexpr std::array<Unit, 11> kUnits = {{
     {"metre", 1.0, {"metre", "m", "meter", "meters", "metres", "mtr", "metri"}},
     {"foot", 0.3048, {"foot", "ft", "feet", "international foot", "international feet", "ift"}},
     {"US survey foot",
      1200.0 / 3937.0,
      {"us survey foot", "us-ft", "ftus", "us survey feet", "us_survey_foot", "foot_us", "us ft",
-      "sft"}},
+      "sft", "ussurveyfoot"}},
     {"kilometre", 1000.0, {"kilometre", "km", "kilometer", "kilometers", "kilometres"}},
     {"decimetre", 0.1, {"decimetre", "dm", "decimeter", "decimeters", "decimetres"}},
     {"centimetre", 0.01, {"centimetre", "cm", "centimeter", "centimeters", "centimetres"}},
     {"millimetre", 0.001, {"millimetre", "mm", "millimeter", "millimeters", "millimetres"}},
     {"yard", 0.9144, {"yard", "yd", "yards"}},
     {"fathom", 1.8288, {"fathom", "fathoms", "ftm"}},
+    {"inch", 0.0254, {"inch", "in", "inches"}},
+    {"Statute mile", 1609.344, {"statute mile", "mile", "miles", "mi"}},
 }};
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Units of height by name: what bands call them, and how long they are.
+// Units of length by name: what bands and LandXML call them, and how long they are.
 #pragma once
 
 #include <optional>

@@ -55,4 +55,8 @@ StreamSummary Terrain::stream(const StreamRequest& request, const ByteSink& sink
   return write_stream(*this, request, sink);
 }
 
+HierarchyReport Terrain::check_hierarchy(const HierarchyRequest& request) const {
+  return ptin::check_hierarchy(*this, request);
+}
+
 }  // namespace ptin

@@ -3,19 +3,20 @@
 // Terrain: the one face of engine/query. All questions that can be asked of a file, for the
 // program, a service and bindings: plain requests in, plain results out.
 //
-// | question                       | function      | request             | header                 |
-// |--------------------------------|---------------|---------------------|------------------------|
-// | mesh at a level of detail      | refine        | RefineRequest       | refine/refine.h        |
-// | the same in parts, of any size | parts         | PartRequest         | refine/part_refiner.h  |
-// | mesh that follows a region     | moving_window | MovingWindowOptions | refine/moving_window.h |
-// | heights at points              | locate        | LocateRequest       | heights/locate.h       |
-// | heights along lines            | profile       | ProfileRequest      | heights/profile.h      |
-// | highest or lowest point        | highest       | HighestRequest      | heights/highest.h      |
-// | do two points see each other   | sight         | SightRequest        | sight/sight.h          |
-// | the same of many pairs         | sight_lines   | SightRequest        | sight/sight.h          |
-// | what an observer sees          | viewshed      | ViewshedRequest     | sight/viewshed.h       |
-// | contours                       | isolines      | IsolineRequest      | isoline/isoline.h      |
-// | the file, coarse to fine       | stream        | StreamRequest       | stream/stream_writer.h |
+// | question                   | function        | request             | header                   |
+// |----------------------------|-----------------|---------------------|--------------------------|
+// | mesh at a level of detail  | refine          | RefineRequest       | refine/refine.h          |
+// | the same, in parts         | parts           | PartRequest         | refine/part_refiner.h    |
+// | mesh that follows a region | moving_window   | MovingWindowOptions | refine/moving_window.h   |
+// | heights at points          | locate          | LocateRequest       | heights/locate.h         |
+// | heights along lines        | profile         | ProfileRequest      | heights/profile.h        |
+// | highest or lowest point    | highest         | HighestRequest      | heights/highest.h        |
+// | is a line of sight free    | sight           | SightRequest        | sight/sight.h            |
+// | the same of many pairs     | sight_lines     | SightRequest        | sight/sight.h            |
+// | what an observer sees      | viewshed        | ViewshedRequest     | sight/viewshed.h         |
+// | contours                   | isolines        | IsolineRequest      | isoline/isoline.h        |
+// | the file, coarse to fine   | stream          | StreamRequest       | stream/stream_writer.h   |
+// | do the records fit         | check_hierarchy | HierarchyRequest    | refine/hierarchy_check.h |
 //
 // A request holds a DetailRequest (which TIN: the full one, one within an error, or the most
 // important vertices; select/detail.h) and QueryLimits (memory and stop token;
@@ -42,6 +43,7 @@
 #include "engine/query/isoline/isoline_bands.h"
 #include "engine/query/isoline/isoline_clip.h"
 #include "engine/query/isoline/isoline_progressive.h"
+#include "engine/query/refine/hierarchy_check.h"
 #include "engine/query/refine/moving_window.h"
 #include "engine/query/refine/part_refiner.h"
 #include "engine/query/refine/refine.h"
@@ -113,6 +115,10 @@ class Terrain : public OpenedTerrain {
   /// Sends T0 and then splits, the most important ones first. StreamReader (stream/stream_reader.h)
   /// receives them.
   StreamSummary stream(const StreamRequest& request, const ByteSink& sink) const;
+
+  /// Whether the records are closed and saturated, which every question stands on: what verify
+  /// looks at beside verify_store().
+  [[nodiscard]] HierarchyReport check_hierarchy(const HierarchyRequest& request = {}) const;
 };
 
 }  // namespace ptin

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "storage/file/file_questions.h"
 
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "engine/error.h"
 
@@ -30,6 +35,24 @@ bool is_there(const std::string& path) {
   const bool result = fs::exists(path, failure);
   require(failure, "cannot look whether there is a file", path);
   return result;
+}
+
+void require_readable(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) {
+    return;
+  }
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) {
+    throw system_error(errno, "cannot open", path);
+  }
+  char first = 0;
+  const bool is_refused = ::read(fd, &first, 1) < 0;
+  const int failure = errno;
+  ::close(fd);
+  if (is_refused) {
+    throw system_error(failure, "cannot read", path);
+  }
 }
 
 std::uint64_t bytes_of_file(const std::string& path) {

@@ -18,6 +18,12 @@ namespace ptin {
 ///                         look
 [[nodiscard]] bool is_there(const std::string& path);
 
+/// Reads the first byte of a file, so that a file that cannot be read is not taken for one of no
+/// known format. Does nothing where `path` is no file of the system's: a folder, an archive, a
+/// server.
+/// @throws Error io_error  the system refuses to open or to read it
+void require_readable(const std::string& path);
+
 /// The length of a file. @throws Error not_found, io_error (also: it is a folder)
 [[nodiscard]] std::uint64_t bytes_of_file(const std::string& path);
 

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <random>
@@ -166,12 +167,13 @@ class AllocationFaults : public ::testing::Test {
     const std::optional<std::string> fault = fault_of(Unfinished::kRefuse, nth);
     const std::string now = oracle::bytes_of(output_);
     const bool is_kept = folder_.names().size() > 1;
-    EXPECT_TRUE(now == expected_ || (fault && now == "old"));
+    EXPECT_TRUE(fault ? now == "old" : now == expected_) << fault.value_or("");
     if (fault) {
       EXPECT_EQ(fault->find("--resume") != std::string::npos, is_kept) << *fault;
     }
     if (is_kept) {
       EXPECT_TRUE(fault);
+      EXPECT_GT(std::filesystem::file_size(folder_.file(".out.ptin.ptin-build/manifest")), 0U);
       EXPECT_EQ(folder_.names(), (std::vector<std::string>{".out.ptin.ptin-build", "out.ptin"}));
       expect_known(nth % 2 == 0, now);
     }

@@ -25,10 +25,10 @@ struct Entry {
 };
 
 /// Fills positions, merged heights (returned) and counts. Sorting by height too makes the sums, and
-/// so the means, independent of the order of the source.
+/// so the means, independent of the order of the source, which the rule kFirst keeps.
 std::vector<double> merge(std::vector<Entry>& entries, PointMerge rule, bool whole, PointSet& set) {
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.key != b.key ? a.key < b.key : a.height < b.height;
+  std::stable_sort(entries.begin(), entries.end(), [rule](const Entry& a, const Entry& b) {
+    return a.key != b.key ? a.key < b.key : rule != PointMerge::kFirst && a.height < b.height;
   });
   std::vector<double> heights;
   const Entry* const end = entries.data() + entries.size();

@@ -52,18 +52,19 @@ TEST_F(SourceKindOf, InputsIsTheOneOfAllOfThem) {
 }
 
 TEST_F(SourceKindOf, InputsRefusesOptionsThatWouldBeIgnored) {
-  BuildOptions resolution, classes, repair, max_edge, z_field, layer;
+  BuildOptions resolution, classes, repair, max_edge, z_field, layer, columns;
   resolution.resolution = 1.0;
   classes.classes = {2};
   repair.repair = true;
   max_edge.max_edge = 5.0;
   z_field.z_field = "height";
   layer.layer = "spots";
-  for (const BuildOptions& options : {resolution, classes, repair, max_edge}) {
+  columns.columns = {"x", "y", "z"};
+  for (const BuildOptions& options : {resolution, classes, repair, max_edge, columns}) {
     EXPECT_NE(refusal({raster_}, options).find("leave it out"), std::string::npos);
   }
   EXPECT_NE(refusal({points_}, repair).find("--repair is for TINs"), std::string::npos);
-  for (const BuildOptions& options : {classes, z_field, layer, max_edge}) {
+  for (const BuildOptions& options : {classes, z_field, layer, max_edge, columns}) {
     EXPECT_NE(refusal({tin_}, options).find("leave it out"), std::string::npos);
   }
   // One that is not there is told of when it is opened.

@@ -44,9 +44,9 @@ StoreContent flat_square(std::int32_t side, HeightType type) {
     c.facts.heights = {HeightType::int32, 0.25, 100.0};
   }
   c.facts.bounds = {0, 0, side, side};
-  c.facts.min_height = -10.0;
+  c.facts.min_height = -100.0;
   c.facts.max_height = 4000.0;
-  c.facts.source_samples = 4;
+  c.facts.source_samples = 5;  // one was left out: the range of heights is not the vertices'
   const HeightBits height = c.facts.heights.bits(12.0);
   c.t0.vertices = {{{0, 0}, height, 1},
                    {{side, 0}, height, 1},
@@ -136,7 +136,7 @@ StoreContent random_content(const RandomRecords& options) {
       segment.push_back(maker.make());
     }
   }
-  c.facts.source_samples = 4 + options.segments * options.records;
+  c.facts.source_samples = 5 + options.segments * options.records;
   return c;
 }
 

@@ -235,8 +235,12 @@ TEST_F(StoreOpen, RejectsHeadersThatNoProgramWrote) {
   expect_header_rejected("bounds off the grid", [](FileHeader& h) { h.bounds[0] = -1; });
   expect_header_rejected("bounds off the grid", [](FileHeader& h) { h.bounds[2] = kGridMax + 1; });
   expect_header_rejected("empty bounds", [](FileHeader& h) { h.bounds[1] = h.bounds[3] + 1; });
-  expect_header_rejected("min height", [=](FileHeader& h) { h.min_height = layout::to_bits(nan); });
-  expect_header_rejected("max height", [=](FileHeader& h) { h.max_height = layout::to_bits(nan); });
+  for (const double v : {nan, -infinity, -1e300}) {
+    expect_header_rejected("min height", [=](FileHeader& h) { h.min_height = layout::to_bits(v); });
+  }
+  for (const double v : {nan, infinity, 1e300}) {
+    expect_header_rejected("max height", [=](FileHeader& h) { h.max_height = layout::to_bits(v); });
+  }
   for (const double v : {-1.0, nan}) {
     expect_header_rejected("base error", [=](FileHeader& h) { h.base_error = layout::to_bits(v); });
     expect_header_rejected("base deviation",
@@ -244,6 +248,31 @@ TEST_F(StoreOpen, RejectsHeadersThatNoProgramWrote) {
   }
   expect_header_rejected("reserved", [](FileHeader& h) { h.reserved[67] = 1; });
   expect_header_rejected("reserved", [](FileHeader& h) { h.flags = 2; });
+}
+
+// Else the damage shows as a region or a pixel size of the caller's that cannot be.
+TEST_F(StoreOpen, RejectsMapsThatLeadToNoPlaceOfTheTerrain) {
+  for (const double v : {1e300, -1e300, 1e18, -1e18, std::numeric_limits<double>::max()}) {
+    expect_header_rejected("origin x", [=](FileHeader& h) { h.origin_x = layout::to_bits(v); });
+    expect_header_rejected("origin y", [=](FileHeader& h) { h.origin_y = layout::to_bits(v); });
+  }
+  for (const double v : {1e-300, 1e-12, 1e150, 1e305, std::numeric_limits<double>::denorm_min()}) {
+    expect_header_rejected("step x", [=](FileHeader& h) { h.step_x = layout::to_bits(v); });
+    expect_header_rejected("step y", [=](FileHeader& h) { h.step_y = layout::to_bits(v); });
+  }
+  const double tiny = 1e-200;  // Each place has coordinates of its own, but no two a distance.
+  expect_header_rejected("step x", [=](FileHeader& h) {
+    h.step_x = layout::to_bits(tiny);
+    h.origin_x = layout::to_bits(0.0);
+  });
+  // As far from 0 as a build puts a terrain.
+  Bytes bytes = bytes_;
+  FileHeader header = header_of(bytes);
+  const double step = layout::to_double(header.step_x);
+  header.origin_x = layout::to_bits(step * 0x1p49);
+  set_header(bytes, header);
+  seal(bytes);
+  EXPECT_EQ(code_of(bytes), std::nullopt);
 }
 
 TEST_F(StoreOpen, RejectsSectionTablesThatNoProgramWrote) {

@@ -268,6 +268,54 @@ TEST_F(Verify, FindsHeightsOutOfTheHeaderAndOutOfTheirIntervals) {
       own));
 }
 
+TEST_F(Verify, FindsIntervalsOfHeightsOutOfTheHeader) {
+  const auto told = [&](double low, double high) {
+    StoreContent content = random_content({.segments = 1, .records = 100});
+    content.facts.min_height = low;
+    content.facts.max_height = high;
+    VertexSplit& r = content.segments[0][42];
+    r.height_lo = content.facts.heights.bits(-60.0);
+    r.height_hi = content.facts.heights.bits(3500.0);
+    write(content);
+    const VerifyReport report = verify_store(path_);
+    EXPECT_LE(report.faults.size(), 1U);
+    for (const VerifyFault& fault : report.faults) {
+      EXPECT_EQ(fault.where.substr(0, 5), "page ") << fault.where;
+    }
+    return tells(report, "reaches out of the least and largest");
+  };
+  EXPECT_FALSE(told(-60.0, 3500.0));
+  EXPECT_TRUE(told(-59.0, 3500.0));
+  EXPECT_TRUE(told(-60.0, 3499.0));
+}
+
+TEST_F(Verify, FindsHeightsOfTheHeaderThatNoSampleHas) {
+  struct Facts {
+    double low, high, base_error;
+    std::uint64_t samples;
+    bool free_of_voids;
+  };
+  const auto told = [&](const Facts& facts) {
+    StoreContent content = flat_square(10);  // four vertices of height 12
+    content.facts.min_height = facts.low;
+    content.facts.max_height = facts.high;
+    content.facts.base_error = facts.base_error;
+    content.facts.source_samples = facts.samples;
+    content.facts.free_of_voids = facts.free_of_voids;
+    write(content);
+    return tells(verify_store(path_), "farther from those of the vertices");
+  };
+  for (const bool free_of_voids : {true, false}) {
+    EXPECT_FALSE(told({12, 12, 0, 4, free_of_voids}));
+    EXPECT_TRUE(told({11, 12, 0, 4, free_of_voids}));
+    EXPECT_TRUE(told({12, 13, 5, 4, free_of_voids}));
+  }
+  EXPECT_FALSE(told({11, 13, 1, 5, true})) << "a sample was left out";
+  EXPECT_TRUE(told({11, 13, 0.9, 5, true}));
+  EXPECT_TRUE(told({10.5, 12, 1, 5, true}));
+  EXPECT_FALSE(told({1, 99, 0, 5, false})) << "a sample may have become void";
+}
+
 TEST_F(Verify, FindsARegionOfInfluenceThatReachesOutOfTheBounds) {
   constexpr std::int32_t kSide = 1000;
   const auto told = [&](const std::function<void(GridBox&)>& change) {

@@ -15,6 +15,7 @@ struct LasPoint {
   std::int32_t x = 0, y = 0, z = 0;
   int cls = 2;
   bool withheld = false;
+  int number = 1, returns = 1;  ///< The how manyth echo of its pulse, and how many that has.
 };
 
 struct LasRecord {
@@ -92,8 +93,10 @@ struct LasFileMaker {
     put(record, 4, p.y);
     put(record, 8, p.z);
     if (format < 6) {
+      record[14] = static_cast<char>(p.number | p.returns << 3 | 0xc0);
       record[15] = static_cast<char>(p.cls | (p.withheld ? 0x80 : 0) | 0x40);
     } else {
+      record[14] = static_cast<char>(p.number | p.returns << 4);
       record[15] = static_cast<char>(p.withheld ? 0x0c : 0x08);
       record[16] = static_cast<char>(p.cls);
     }

@@ -29,6 +29,9 @@ class AskedAllocations {
 [[maybe_unused]] inline void* allocate_if_asked(std::size_t bytes, std::size_t alignment) {
   bool (*const fails)() = allocation_fails.load(std::memory_order_relaxed);
   if (fails != nullptr && fails()) {
+    if (const std::new_handler handler = std::get_new_handler()) {
+      handler();  // as the library's operator new; it may throw
+    }
     throw std::bad_alloc();
   }
   bytes = std::max<std::size_t>(bytes, 1);

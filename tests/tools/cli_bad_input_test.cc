@@ -69,6 +69,26 @@ TEST(CliBadUse, IsStatus2WithOneSentence) {
   expect_refusal(run_ptin({"refine", "a.ptin", "--clip", "--cut", "-o", "x.ply"}), 2, "--cut");
 }
 
+/// And not an option that took what followed the one at fault.
+TEST(CliBadUse, NamesTheOptionAtFault) {
+  expect_refusal(run_ptin({"export", "a.ptin", "-of", "GTiff", "-o", "x.tif"}), 2,
+                 "ptin: -of has one hyphen; the option is --of; see ptin export --help");
+  expect_refusal(run_ptin({"export", "a.ptin", "-o", "x.tif", "-co=COMPRESS=NONE"}), 2, "-co has");
+  expect_refusal(run_ptin({"refine", "a.ptin", "-error", "5", "-o", "x.ply"}), 2, "is --error");
+  expect_refusal(run_ptin({"locate", "a.ptin", "--bogus", "val"}), 2,
+                 "ptin: there is no option --bogus; see ptin locate --help");
+  expect_refusal(run_ptin({"locate", "a.ptin", "1", "2", "-x", "val"}), 2, "no option -x;");
+  expect_refusal(run_ptin({"sight", "a.ptin", "1", "2", "3", "-4", "-5.5", "--bogus=val"}), 2,
+                 "no option --bogus;");
+  expect_refusal(run_ptin({"build", "a.tif", "-o", "a.ptin", "-tr", "30", "30"}), 2,
+                 "no option -tr;");
+  expect_refusal(run_ptin({"--bogus", "info", "a.ptin"}), 2, "no option --bogus; see ptin --help");
+  // Numbers below 0 and a hyphen for standard input or output are values.
+  expect_refusal(run_ptin({"export", "none.ptin", "--nodata", "-9999", "-o", "x.tif"}), 3, "none");
+  expect_refusal(run_ptin({"highest", "none.ptin", "--window", "-3", "-2", "-1", "-0.5"}), 3,
+                 "none");
+}
+
 TEST(CliBadUse, IsJsonWhenAskedFor) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"info", "none.ptin", "--json"},
@@ -129,7 +149,10 @@ TEST(CliBadInput, RastersThatAreNoTerrain) {
   make_raster(folder.file("infinite.tif"), infinite);
   expect_no_build(folder, folder.file("infinite.tif"), 2, "infinite.tif");
   make_raster(folder.file("hills.tif"), {});
-  expect_no_build(folder, folder.file("hills.tif"), 2, "bounds", {"--bbox", "1", "1", "2", "2"});
+  const std::string places = "x from 500015.000000 to 500975.000000, y from 3999025.000000 to";
+  expect_no_build(folder, folder.file("hills.tif"), 2, places, {"--bbox", "1", "1", "2", "2"});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "give x before y",
+                  {"--bbox", "3999100", "500100", "3999500", "500500"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "--max-error", {"--max-error", "-1"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "--void-slope", {"--void-slope", "-1"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "--resolution", {"--resolution", "0"});
@@ -239,20 +262,77 @@ TEST(CliBadInput, QuestionsOutOfContract) {
                  "none.wkt");
   expect_refusal(run_ptin({"refine", store, "--memory", "4K", "-o", out}), 7, "limit");
   expect_refusal(run_ptin({"refine", store, "--memory", "much", "-o", out}), 2, "512M");
-  expect_refusal(
-      run_ptin({"render", store, "--window", "1", "1", "1", "5", "-o", folder.file("a.png")}), 2,
-      "area");
+  expect_refusal(run_ptin({"render", store, "--window", "500100", "3999100", "500100", "3999500",
+                           "-o", folder.file("a.png")}),
+                 2, "area");
   const std::vector<std::string> left = {"hills.ptin", "hills.tif"};
   EXPECT_EQ(folder.names(), left);
 }
 
-TEST(CliBadInput, WindowBesideTheTerrainGivesAnEmptyMeshAndAWarning) {
+/// Every question that takes a region, without its region, and the option that gives it a window.
+std::vector<std::pair<std::vector<std::string>, std::string>> questions_with_windows(
+    const TestFolder& folder, const std::string& store) {
+  return {
+      {{"refine", store, "-o", folder.file("a.ply")}, "--window"},
+      {{"refine", store, "--clip", "-o", folder.file("a.ply")}, "--window"},
+      {{"export", store, "-o", folder.file("a.ply")}, "--window"},
+      {{"export", store, "-o", folder.file("a.tif")}, "--window"},
+      {{"isoline", store, "-i", "10", "-o", folder.file("a.gpkg")}, "--window"},
+      {{"isoline", store, "-i", "10", "-p", "-o", folder.file("a.gpkg")}, "--window"},
+      {{"highest", store}, "--window"},
+      {{"render", store, "-o", folder.file("a.png")}, "--window"},
+      {{"stream", store, "-o", folder.file("b.pts")}, "--window"},
+      {{"stream", store, "-o", folder.file("b.pts")}, "--have-window"},
+      {{"unstream", folder.file("a.pts"), "-i", "10", "-o", folder.file("a.gpkg")}, "--window"}};
+}
+
+TEST(CliBadInput, RegionsThatMissTheTerrainAreRefusedWithItsBounds) {
   const TestFolder folder;
   const std::string store = small_store(folder);
-  const Outcome outcome = run_ptin(
-      {"refine", store, "--window", "1", "1", "2", "2", "--clip", "-o", folder.file("a.ply")});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_NE(outcome.err.find("warning"), std::string::npos);
+  testing::expect_done({"stream", store, "-o", folder.file("a.pts")});
+  const auto before = folder.names();
+  const auto refuse = [&](std::vector<std::string> arguments,
+                          const std::vector<std::string>& region, const std::string& words) {
+    arguments.insert(arguments.end(), region.begin(), region.end());
+    const std::string option = region[0].starts_with('-') ? region[0] : "X Y";
+    expect_refusal(run_ptin(arguments), 2, "ptin: " + option + ": this misses the terrain");
+    expect_refusal(run_ptin(arguments), 2, words);
+    EXPECT_EQ(folder.names(), before) << arguments[0];
+  };
+  const std::string bounds = "x from 500015 to 500975, y from 3999025 to 3999985";
+  const std::string hint = bounds + "; with x and y exchanged it would not: give x before y\n";
+  for (const auto& [question, option] : questions_with_windows(folder, store)) {
+    refuse(question, {option, "1", "2", "3", "4"}, bounds + "\n");
+    refuse(question, {option, "3999100", "500100", "3999500", "500500"}, hint);
+  }
+  for (const std::vector<std::string>& question :
+       {std::vector<std::string>{"refine", store, "-o", folder.file("a.ply")},
+        {"export", store, "-o", folder.file("a.ply")}}) {
+    refuse(question, {"--polygon", "POLYGON((1 1, 9 1, 5 9))"}, bounds + "\n");
+    // Around the terrain, and not over it.
+    refuse(question,
+           {"--polygon",
+            "POLYGON((0 0, 9e6 0, 9e6 9e6, 0 9e6), (4e5 3e6, 6e5 3e6, 6e5 5e6, 4e5 5e6))"},
+           bounds);
+    refuse(question, {"--polygon", "POLYGON((3999100 500100, 3999500 500200, 3999300 500500))"},
+           hint);
+  }
+  refuse({"refine", store, "-o", folder.file("a.ply")}, {"--point", "3999100", "500100"}, hint);
+  refuse({"viewshed", store, "-o", folder.file("a.tif"), "--radius", "500"},
+         {"3999100", "500100", "2"}, hint);
+  refuse({"stream", store, "-o", folder.file("b.pts")}, {"--have", R"([{"window":[1,2,3,4]}])"},
+         bounds + "\n");
+}
+
+TEST(CliBadInput, RegionsThatTouchTheTerrainAreAnswered) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  for (auto [question, option] : questions_with_windows(folder, store)) {
+    if (question[0] != "refine" && question[0] != "highest" && question[0] != "stream") continue;
+    question.insert(question.end(), {option, "400000", "3000000", "500015", "3999025", "--json"});
+    if (question[0] != "highest") question.emplace_back("--overwrite");
+    EXPECT_EQ(run_ptin(question).status, 0) << question[0] << " " << option;
+  }
 }
 
 TEST(CliBadInput, DamagedStores) {
@@ -338,7 +418,7 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
         {"sight", "0", "0", "1", "1", "1", "1"},
         {"highest"},
         {"isoline", "-i", "10", "-o", gpkg},
-        {"viewshed", "0", "0", "1", "--radius", "9", "-o", tif}}) {
+        {"viewshed", "500100", "3999900", "1", "--radius", "9", "-o", tif}}) {
     const auto with = [&](const std::vector<std::string>& more) {
       std::vector<std::string> arguments = question;
       arguments.insert(arguments.end(), more.begin(), more.end());

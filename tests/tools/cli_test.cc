@@ -2,6 +2,8 @@
 //
 // The program end to end, on small real terrains.
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -9,6 +11,7 @@
 
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
+#include "tools/ptin/command.h"
 
 namespace ptin::tools {
 namespace {
@@ -16,6 +19,7 @@ namespace {
 using nlohmann::json;
 using testing::answer_of;
 using testing::built;
+using testing::expect_done;
 using testing::Outcome;
 using testing::read_file;
 using testing::ReadMesh;
@@ -32,6 +36,39 @@ TEST(Cli, HelpAndVersionAreNoErrors) {
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos)
         << command << " --help ends with examples";
+  }
+}
+
+TEST(Cli, EverySubcommandTakesTheCommonOptions) {
+  for (const Command& command : commands()) {
+    const std::string help = run_ptin({command.name, "--help"}).out;
+    EXPECT_NE(help.find("-q,--quiet"), std::string::npos) << command.name;
+    EXPECT_NE(help.find("--json"), std::string::npos) << command.name;
+  }
+}
+
+TEST(Cli, QuestionsAreAnsweredQuietlyToo) {
+  const TestFolder folder;
+  const std::string coarse = folder.file("coarse.ptin");
+  expect_done({"build", test_data("mountains_257.tif"), "-o", coarse, "-q", "--max-error", "20"});
+  const json b = answer_of({"info", coarse, "--json", "-q"}).at("bounds");
+  const std::string x = b.at("min_x").dump(), y = b.at("min_y").dump();
+  const std::string line = "MULTILINESTRING((" + x + " " + y + "," + b.at("max_x").dump() + " " +
+                           b.at("max_y").dump() + "),(" + x + " " + y + "," + x + " " + y + "))";
+  const std::vector<std::vector<std::string>> questions = {
+      {"info", coarse},
+      {"locate", coarse, x, y, "--error", "1"},
+      {"profile", coarse, "--line", line, "--error", "1"},
+      {"highest", coarse, "--error", "1"},
+      {"sight", coarse, x, y, "2", b.at("max_x").dump(), y, "2", "--error", "1"}};
+  for (std::vector<std::string> question : questions) {
+    const Outcome told = run_ptin(question);
+    question.emplace_back("-q");
+    const Outcome quiet = run_ptin(question);
+    EXPECT_EQ(quiet.status, 0) << question[0];
+    EXPECT_EQ(quiet.out, told.out) << question[0];
+    EXPECT_EQ(quiet.err, "") << question[0];
+    EXPECT_EQ(told.err.empty(), question[0] == "info") << question[0];
   }
 }
 
@@ -72,6 +109,42 @@ TEST(Cli, BuildSaysWhatToDoNext) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.out.find("next: ptin info"), std::string::npos);
   EXPECT_NE(outcome.err.find("100 - done."), std::string::npos);
+}
+
+TEST(Cli, BuildSaysHowFlatPartsWouldTakeLess) {
+  const TestFolder folder;
+  testing::RasterRecipe coast;  // three quarters are sea
+  coast.width = coast.height = 65;
+  coast.type = "Int16";
+  coast.value = [](int x, int y) { return x < 48 ? 0.0 : std::floor(10 * testing::hills(x, y)); };
+  testing::make_raster(folder.file("coast.tif"), coast);
+  const std::string store = folder.file("c.ptin");
+  const Outcome told = run_ptin({"build", folder.file("coast.tif"), "-o", store});
+  ASSERT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find("times the source's"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("built with --max-error 0.0"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("no sample differs"), std::string::npos) << told.out;
+  const json report =
+      answer_of({"build", folder.file("coast.tif"), "-o", store, "--overwrite", "--json", "-q"});
+  EXPECT_EQ(report["source_bytes"], std::filesystem::file_size(folder.file("coast.tif")));
+  EXPECT_GT(report["flat"]["records"], report["records"].get<int>() / 2);
+  EXPECT_LT(report["flat"]["bytes"], report["bytes"]);
+  const std::string small = folder.file("s.ptin");
+  const double max_error = report["flat"]["max_error"];
+  EXPECT_LE(max_error, 0.001);
+  const json lean = answer_of({"build", folder.file("coast.tif"), "-o", small, "--json", "-q",
+                               "--max-error", report["flat"]["max_error"].dump()});
+  EXPECT_LE(lean["records"].get<int>(),
+            report["records"].get<int>() - report["flat"]["records"].get<int>() + 200);
+  EXPECT_EQ(lean["flat"]["records"], 0);
+  EXPECT_EQ(lean["flat"]["max_error"], nullptr);
+  const json verified = answer_of(
+      {"verify", small, "--against", folder.file("coast.tif"), "--json", "-q", "--tolerance", "0"});
+  for (const json& check : verified["against"]["checks"])
+    EXPECT_LE(check["worst_error"], max_error);
+  const Outcome again = run_ptin(
+      {"build", folder.file("coast.tif"), "-o", small, "--overwrite", "--max-error", "0.0001"});
+  EXPECT_EQ(again.out.find("--max-error"), std::string::npos) << again.out;
 }
 
 TEST(Cli, BuildIsDeterministic) {

@@ -93,6 +93,20 @@ TEST_F(DamagedMetadata, OfAStoreIsFoundByVerify) {
   }
 }
 
+TEST_F(DamagedMetadata, WithACrsThatNoOutputCanNameIsFoundByVerify) {
+  const std::string sound(StoreFile::open(folder_.file("t.ptin"))->metadata_json());
+  const std::string code = R"(,ID[\"EPSG\",)";
+  ASSERT_NE(sound.find(code), std::string::npos) << sound;
+  for (const bool is_damaged : {false, true}) {
+    std::string metadata = sound;
+    if (is_damaged) metadata[metadata.find(code) + 3] = ':';  // in the place of a bracket
+    write_store(metadata);
+    const Outcome outcome = run_ptin({"verify", bad_, "-q"});
+    EXPECT_EQ(outcome.status, is_damaged ? 1 : 0) << outcome.out << outcome.err;
+    EXPECT_EQ(outcome.out.find("CRS") != std::string::npos, is_damaged) << outcome.out;
+  }
+}
+
 TEST_F(DamagedMetadata, OfAStoreNestedDeepIsACorruption) {
   for (const std::string& metadata : {deep_list(), deep_crs()}) {
     write_store(metadata);

@@ -436,6 +436,66 @@ TEST(Export, RastersOfWindowsAreCutsOfTheWhole) {
   }
 }
 
+/// A terrain in degrees, at 59.984 degrees north; 0.032 degrees wide and high.
+std::string terrain_in_degrees(const TestFolder& folder) {
+  testing::RasterRecipe recipe;
+  recipe.epsg = 4326;
+  recipe.west = 9.0;
+  recipe.north = 60.0005;
+  recipe.pixel = 0.001;
+  testing::make_raster(folder.file("degrees.tif"), recipe);
+  expect_done({"build", folder.file("degrees.tif"), "-o", folder.file("degrees.ptin"), "-q"});
+  return folder.file("degrees.ptin");
+}
+
+TEST(Export, TakesPixelSizesOverGround) {
+  const TestFolder folder;
+  const auto size = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "export", file, "--json", "--overwrite", "-o", folder.file("a.tif"), "--pixel-size"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto answer = testing::answer_of(arguments);
+    const ReadRaster raster = read_raster(folder.file("a.tif"));
+    EXPECT_EQ(answer.at("pixel_size").at(0), raster.transform[1]);
+    EXPECT_EQ(answer.at("pixel_size").at(1), -raster.transform[5]);
+    return std::array<double, 2>{raster.transform[1], -raster.transform[5]};
+  };
+  // A degree of latitude has 111 412 m there; one of longitude has 55 824 m, and 55 800 m at 60
+  // degrees.
+  const std::string degrees = terrain_in_degrees(folder);
+  for (const char* text : {"90m", "90 m", "0.09km", "295.27559055118110ft"}) {
+    EXPECT_NEAR(size(degrees, {text})[0], 90 / 55826.0, 5e-8) << text;
+    EXPECT_NEAR(size(degrees, {text})[1], 90 / 111412.0, 5e-8) << text;
+  }
+  EXPECT_EQ(size(degrees, {"0.002", "90m"})[0], 0.002);
+  const std::vector<std::string> north = {"90m", "--window", "9", "59.999", "10", "60.001"};
+  EXPECT_NEAR(size(degrees, north)[0], 90 / 55800.0, 2e-8);
+  EXPECT_GT(size(degrees, north)[0], size(degrees, {"90m"})[0]);
+  EXPECT_EQ(size(built(folder, "mountains_257.tif"), {"90m"}), (std::array<double, 2>{90, 90}));
+}
+
+TEST(Export, RefusesPixelsThatDoNotFit) {
+  const TestFolder folder;
+  const auto refuse = [&](const std::string& file, const std::vector<std::string>& more,
+                          const std::string& words) {
+    std::vector<std::string> arguments = {"export",      file, "-q", "-o", folder.file("a.tif"),
+                                          "--pixel-size"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_ptin(arguments);
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_NE(outcome.err.find("ptin: --pixel-size: " + words), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("a.tif")));
+  };
+  const std::string degrees = terrain_in_degrees(folder);
+  refuse(degrees, {"90"}, "1 x 1 pixels of 90 x 90 map units fit the window of 0.032 x 0.032");
+  refuse(degrees, {"0.001", "0.04"}, "33 x 1 pixels");
+  refuse(degrees, {"0.01", "--window", "9.003", "59.97", "9.004", "60"}, "0 x 3 pixels");
+  for (const char* text : {"90x", "m", "-3m", "0km", "nan", "1e999", "90 90", "90m2"}) {
+    refuse(degrees, {text}, std::string("\"") + text + "\" is no size");
+  }
+  refuse(built(folder, "ground_points.csv"), {"9m"}, "the unit of the terrain's map is unknown");
+}
+
 TEST(Export, RefusesWhatMeansNothing) {
   const TestFolder folder;
   const std::string points = built(folder, "ground_points.csv");

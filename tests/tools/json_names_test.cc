@@ -168,8 +168,14 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
        "--level", "90", "--splits", "40", "-o", file("d.pts")});
   ask({"unstream", file("d.pts")});
   ask({"unstream", file("a.pts"), "--interval", "20", "--steps", "-o", file("steps.geojson")});
-  tools::testing::write_file(file("pairs.txt"), "500100 3999900 2 500700 3999300 2\n");
-  ask({"sight", store, "--pairs", file("pairs.txt")});
+  tools::testing::write_file(file("pairs.txt"),
+                             "id x1 y1 h1 x2 y2 h2\n"
+                             "A 500100 3999900 2 500700 3999300 2\n");
+  ask({"sight", store, "--pairs", file("pairs.txt"), "-o", file("seen.geojson")});
+  tools::testing::write_file(file("points.txt"), "id x y\nA 500100 3999900\n");
+  ask({"locate", store, "--points", file("points.txt"), "-o", file("points.geojson")});
+  ask({"profile", store, "--line", file("seen.geojson"), "--id", "id"});
+  ask({"completion", "bash"});
 
   std::map<std::string, Names> lists = documented_names();
   ASSERT_GT(lists.size(), 12u);

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sched.h>
 #include <sys/inotify.h>
 #include <unistd.h>
 
@@ -247,6 +249,30 @@ class Watch {
  private:
   int descriptor_;
 };
+
+using BuildThreads = Options;
+
+TEST_F(BuildThreads, AreThoseOfTheAffinity) {
+  testing::RasterRecipe recipe;
+  testing::make_raster(file("hills.tif"), recipe);
+  int alone = 0, asked = 0;
+  std::thread([&] {  // the affinity is a thread's own
+    cpu_set_t given, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof given, &given), 0);
+    int processor = 0;
+    while (CPU_ISSET(processor, &given) == 0) ++processor;
+    CPU_ZERO(&one);
+    CPU_SET(processor, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    const Arguments plan = {"build",        file("hills.tif"), "-o",
+                            file("t.ptin"), "--dry-run",       "--json"};
+    alone = answer_of(plan).at("threads");
+    asked = answer_of(together(plan, {"--threads", "2"})).at("threads");
+  })
+      .join();
+  EXPECT_EQ(alone, 1);
+  EXPECT_EQ(asked, 2);
+}
 
 using BuildTmp = Options;
 

@@ -56,6 +56,154 @@ TEST(PointBuild, TakesTheClassesOfLasThatAreAskedFor) {
   EXPECT_NE(none.err.find("class"), std::string::npos) << none.err;
 }
 
+// Point, northing, easting, height, code: what surveyors' programs write.
+TEST(PointBuild, ReadsTheColumnsThatAreNamed) {
+  const TestFolder folder;
+  std::string text, plain;
+  for (int i = 0; i < 60; ++i) {
+    const std::string x = std::to_string(2254 + i % 8) + ".230";
+    const std::string y = std::to_string(5026 + i / 8) + ".873";
+    const std::string z = std::to_string(95 + i * i % 13) + ".643";
+    text += std::to_string(i + 1) + "," + y + "," + x + "," + z + ",\"GND, " + "wet\"\n";
+    plain += x + " " + y + " " + z + "\n";
+  }
+  write_file(folder.file("pnezd.txt"), text);
+  write_file(folder.file("plain.xyz"), plain);
+  const auto refused =
+      run_ptin({"build", folder.file("pnezd.txt"), "-o", folder.file("out.ptin"), "-q"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("--columns"), std::string::npos) << refused.err;
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"plain.xyz", "pnezd.txt"}));
+
+  const auto built =
+      built_points(folder, {folder.file("pnezd.txt"), "--columns", "id", "y", "x", "z", "code"});
+  EXPECT_EQ(built["samples"], 60);
+  expect_verified(folder, "pnezd.txt");
+  const auto bounds = [&] {
+    return testing::answer_of({"info", folder.file("out.ptin"), "--json"}).at("bounds");
+  };
+  const nlohmann::json named = bounds();
+  built_points(folder, {folder.file("plain.xyz")});
+  EXPECT_EQ(bounds(), named);
+  built_points(folder, {folder.file("pnezd.txt"), "--columns", "P,N,E,Z,D"});
+  EXPECT_EQ(bounds(), named);
+
+  write_file(folder.file("a.las"), las());
+  for (const char* input : {"a.las", "mountains_257.tif"}) {
+    const std::string path =
+        std::string(input) == "a.las" ? folder.file(input) : testing::test_data(input);
+    const auto none = run_ptin({"build", path, "-o", folder.file("no.ptin"), "--columns", "x,y,z"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("--columns is for points as text"), std::string::npos) << none.err;
+  }
+  const auto without_input =
+      run_ptin({"build", "-o", folder.file("no.ptin"), "--columns", "x", "y", "z", "pnezd.txt"});
+  EXPECT_EQ(without_input.status, 2);
+  EXPECT_NE(without_input.err.find("put INPUT before it"), std::string::npos) << without_input.err;
+  const auto without_z = run_ptin({"build", folder.file("pnezd.txt"), "-o", folder.file("no.ptin"),
+                                   "--columns", "id", "y", "x"});
+  EXPECT_EQ(without_z.status, 2);
+  EXPECT_NE(without_z.err.find("no column for z"), std::string::npos) << without_z.err;
+}
+
+/// Two inputs that share four positions; at the origin heights are 30 and 10, then 20.
+std::vector<std::string> points_that_fall_together(const TestFolder& folder) {
+  write_file(folder.file("a.xyz"), "0 0 30\n9 0 1\n0 9 2\n9 9 3\n5 4 7\n0 0 10\n");
+  write_file(folder.file("b.xyz"), "0 0 20\n9 0 1\n0 9 2\n9 9 3\n");
+  return {folder.file("a.xyz"), folder.file("b.xyz")};
+}
+
+double height_at_origin(const TestFolder& folder) {
+  return testing::answer_of(
+      {"locate", folder.file("out.ptin"), "0", "0", "--json"})["points"][0]["height"];
+}
+
+TEST(PointBuild, MergesPointsThatFallTogetherByTheRule) {
+  const TestFolder folder;
+  const std::vector<std::string> inputs = points_that_fall_together(folder);
+  const struct {
+    const char* rule;
+    double height, shift;
+  } cases[] = {{"mean", 20, 10}, {"min", 10, 20}, {"max", 30, 20}, {"first", 30, 20}};
+  for (const auto& c : cases) {
+    const auto report = built_points(folder, {inputs[0], inputs[1], "--duplicates", c.rule});
+    EXPECT_EQ(report["merged_points"], 5) << c.rule;
+    EXPECT_EQ(report["largest_shift"]["height"], c.shift) << c.rule;
+    EXPECT_EQ(report["largest_shift"]["height_steps"], c.shift) << c.rule;
+    EXPECT_EQ(height_at_origin(folder), c.height) << c.rule;
+    const auto verified =
+        run_ptin({"verify", folder.file("out.ptin"), "--against", inputs[0], inputs[1], "-q"});
+    EXPECT_EQ(verified.status, 0) << c.rule << verified.out << verified.err;
+  }
+  built_points(folder, {inputs[1], inputs[0], "--duplicates", "first"});
+  EXPECT_EQ(height_at_origin(folder), 20);
+  built_points(folder, inputs);
+  EXPECT_EQ(height_at_origin(folder), 20) << "the mean";
+}
+
+TEST(PointBuild, WarnsWhereMergingMovedAHeightFar) {
+  const TestFolder folder;
+  write_file(folder.file("near.xyz"), "0 0 1\n9 0 1\n0 9 2\n0 0 201\n");
+  write_file(folder.file("far.xyz"), "0 0 1\n9 0 1\n0 9 2\n0 0 203\n");
+  const auto warning = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.begin(),
+                {"build", folder.file(name), "-o", folder.file("out.ptin"), "--overwrite"});
+    const std::string err = run_ptin(more).err;
+    const std::size_t at = err.find("ptin: warning: ");
+    return at == err.npos ? "" : err.substr(at, err.find('\n', at) - at);
+  };
+  EXPECT_EQ(warning("near.xyz", {}), "") << "a hundred steps";
+  const std::string told = warning("far.xyz", {});
+  EXPECT_NE(told.find("at heights up to 101 (101 steps of 1) away"), std::string::npos) << told;
+  EXPECT_NE(told.find("--duplicates"), std::string::npos) << told;
+  EXPECT_EQ(warning("far.xyz", {"-q"}), "");
+  EXPECT_EQ(warning("far.xyz", {"--duplicates", "mean"}), "") << "who chose a rule knows";
+}
+
+TEST(PointBuild, TakesTheReturnsOfLasThatAreAskedFor) {
+  const TestFolder folder;
+  LasFileMaker file;
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      file.points.push_back({100 * x, 100 * y, 3000, 5, false, 1, 2});
+      file.points.push_back({100 * x, 100 * y, 10 * x + y, 2, false, 2, 2});
+    }
+  }
+  write_file(folder.file("a.las"), file.bytes());
+  const auto last = built_points(folder, {folder.file("a.las"), "--returns", "last"});
+  EXPECT_EQ(last["left_out_points"], 25);
+  EXPECT_EQ(last["merged_points"], 0);
+  EXPECT_EQ(height_at_origin(folder), 0);
+  expect_verified(folder, "a.las");
+  built_points(folder, {folder.file("a.las"), "--returns", "first"});
+  EXPECT_EQ(height_at_origin(folder), 30);
+  built_points(folder, {folder.file("a.las"), "--returns", "all", "--duplicates", "min"});
+  EXPECT_EQ(height_at_origin(folder), 0);
+  expect_verified(folder, "a.las");
+}
+
+TEST(PointBuild, RefusesChoicesThatMeanNothing) {
+  const TestFolder folder;
+  write_file(folder.file("a.xyz"), "0 0 1\n9 0 1\n0 9 2\n");
+  write_file(folder.file("a.obj"), "v 0 0 1\nv 9 0 1\nv 0 9 2\nf 1 2 3\n");
+  const struct {
+    std::string input;
+    std::vector<std::string> options;
+  } cases[] = {{folder.file("a.xyz"), {"--returns", "last"}},
+               {folder.file("a.obj"), {"--returns", "first"}},
+               {folder.file("a.obj"), {"--duplicates", "min"}},
+               {testing::test_data("coast_257.tif"), {"--returns", "last"}},
+               {testing::test_data("coast_257.tif"), {"--duplicates", "mean"}}};
+  for (const auto& c : cases) {
+    const auto refused = run_ptin(
+        {"build", c.input, "-o", folder.file("none.ptin"), "-q", c.options[0], c.options[1]});
+    EXPECT_EQ(refused.status, 2) << c.input << c.options[0];
+    EXPECT_NE(refused.err.find(c.options[0] == "--returns" ? "returns" : "--duplicates"),
+              std::string::npos)
+        << refused.err;
+  }
+}
+
 /// Two layers of points in one file.
 std::string two_layers() {
   return R"(<?xml version="1.0"?><gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">

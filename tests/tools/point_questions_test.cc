@@ -2,9 +2,13 @@
 //
 // ptin locate, profile and sight, end to end.
 #include <cmath>
+#include <map>
+#include <memory>
 
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <ogrsf_frmts.h>
 
 #include "tests/tools/program.h"
 
@@ -59,7 +63,7 @@ TEST(LocateCommand, ReadsManyPointsAndKeepsTheirOrder) {
   const TestFolder folder;
   const std::string terrain = wall(folder);
   write_file(folder.file("p.csv"),
-             "x,y\n" + east(15.5) + "," + south(20) + "\n0 0\n" + east(3) + ";" + south(3) + "\n");
+             "x,y\n" + east(15.5) + "," + south(20) + "\n0, 0\n" + east(3) + "," + south(3) + "\n");
   const Outcome outcome = run_ptin({"locate", terrain, "--points", folder.file("p.csv")});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(lines_in(outcome.out), 4u);
@@ -127,7 +131,7 @@ TEST(LocateCommand, NamesTheLineThatIsNoPoint) {
   write_file(folder.file("p.csv"), "x,y\n1,2\nhere\n");
   const Outcome outcome = run_ptin({"locate", terrain, "--points", folder.file("p.csv")});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("line 3"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("p.csv:3: "), std::string::npos) << outcome.err;
   EXPECT_EQ(run_ptin({"locate", terrain}).status, 2);
   EXPECT_EQ(run_ptin({"locate", terrain, "--points", folder.file("none.csv")}).status, 3);
 }
@@ -143,13 +147,13 @@ TEST(LocateCommand, LosesNoFirstRow) {
   };
   EXPECT_EQ(count("\xEF\xBB\xBF" + row + "\r\n" + row + "\r\n"), 2u);
   EXPECT_EQ(count("\xEF\xBB\xBFx,y\n" + row + "\n"), 1u);
-  EXPECT_EQ(
-      count("\n  " + east(3) + " , \t" + south(3) + " ,,,name\n" + east(3) + "   " + south(3)), 2u);
+  EXPECT_EQ(count("\n  " + east(3) + " , \t" + south(3) + " ,,,name\n" + row + ",,,\n"), 2u);
+  EXPECT_EQ(count(east(3) + "   " + south(3) + "\n\n" + east(3) + "\t" + south(3)), 2u);
   for (const char* first : {"380000m 3802000m", "here,380000,3802000"}) {
     write_file(points, first + ("\n" + row + "\n"));
     const Outcome outcome = run_ptin({"locate", terrain, "--points", points});
     EXPECT_EQ(outcome.status, 2) << first;
-    EXPECT_NE(outcome.err.find("line 1"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("p.csv:1: "), std::string::npos) << outcome.err;
   }
 }
 
@@ -162,8 +166,82 @@ TEST(LocateCommand, ShiftsNoColumnWhereANumberIsMissing) {
     write_file(points, "x,y\n1,2\n" + std::string(bad) + "\n");
     const Outcome outcome = run_ptin({"locate", terrain, "--points", points});
     EXPECT_EQ(outcome.status, 2) << bad;
-    EXPECT_NE(outcome.err.find("line 3"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("p.csv:3: "), std::string::npos) << outcome.err;
   }
+}
+
+// Where each line has separators of its own, a comma is what anybody takes it for.
+TEST(PointQuestions, KeepToTheSeparatorOfTheFirstLine) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const auto refused = [&](const char* command, const char* option, const std::string& text) {
+    write_file(folder.file("p.csv"), text);
+    const Outcome outcome = run_ptin({command, terrain, option, folder.file("p.csv")});
+    EXPECT_EQ(outcome.status, 2) << text;
+    EXPECT_EQ(outcome.out, "") << text;
+    EXPECT_EQ(lines_in(outcome.err), 1u) << outcome.err;
+    return outcome.err;
+  };
+  const auto expect_comma_named = [](const std::string& message, const std::string& place) {
+    EXPECT_NE(message.find(place), std::string::npos) << message;
+    EXPECT_NE(message.find("decimal comma; write it with a point, 7.25"), std::string::npos)
+        << message;
+  };
+  expect_comma_named(refused("locate", "--points", "7,25;43,75\n"), "p.csv:1: ");
+  expect_comma_named(refused("locate", "--points", "x;y\n1;2\n7,25;43,75\n"), "p.csv:3: ");
+  expect_comma_named(refused("locate", "--points", "x y\n7,25 43,75\n"), "p.csv:2: ");
+  expect_comma_named(refused("sight", "--pairs", "7,25;43,75;2;9;4;2\n"), "p.csv:1: ");
+  EXPECT_NE(refused("locate", "--points", "7,25 43,75\n").find("'25 43', holds two numbers"),
+            std::string::npos);
+  EXPECT_NE(refused("sight", "--pairs", "1 2 3 4 5 6\n1 2 3 4 5,5 6 7\n").find("7 fields"),
+            std::string::npos);
+  EXPECT_NE(refused("locate", "--points", "x,y\n7,25,43,75\n").find("4 fields where"),
+            std::string::npos);
+  EXPECT_NE(refused("locate", "--points", "1;2\n3,4\n").find("p.csv:2: "), std::string::npos);
+  EXPECT_NE(refused("locate", "--points", "1 2\nnan 2\n").find("'nan', is not finite"),
+            std::string::npos);
+}
+
+TEST(PointQuestions, TakeTheColumnsThatAreNamed) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string points = folder.file("p.txt");
+  std::string rows;
+  for (int i = 1; i < 5; ++i) {
+    rows += std::to_string(i) + ",\"A, b\"," + south(20) + "," + east(15.5) + "\n";
+  }
+  write_file(points, rows);
+  const Outcome named =
+      run_ptin({"locate", terrain, "--points", points, "--columns", "n", "name", "y", "x"});
+  EXPECT_EQ(named.status, 2) << "n is a northing, and so is y";
+  EXPECT_NE(named.err.find("two columns for y"), std::string::npos) << named.err;
+  const json answer =
+      answer_of({"locate", terrain, "--points", points, "--columns", "number,name,y,x", "--json"});
+  ASSERT_EQ(answer.at("points").size(), 4u);
+  EXPECT_EQ(answer.at("points").at(3).at("height"), 55.0);
+
+  std::string numbered;
+  for (int i = 1; i < 5; ++i) numbered += std::to_string(i) + " " + east(i) + " " + south(i) + "\n";
+  write_file(points, numbered);
+  const Outcome refused = run_ptin({"locate", terrain, "--points", points});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("--columns id x y"), std::string::npos) << refused.err;
+
+  const std::string pair =
+      "7," + south(20) + "," + east(4) + ",5," + south(20) + "," + east(28) + ",5\n";
+  write_file(points, "id,lat1,lon1,h1,lat2,lon2,h2\n" + pair);
+  const auto verdict = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"sight", terrain, "--pairs", points, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return answer_of(arguments).at("pairs").at(0).at("verdict");
+  };
+  EXPECT_EQ(verdict({}), "hidden");
+  write_file(points, pair);
+  EXPECT_EQ(verdict({"--columns", "id,y1,x1,h1,y2,x2,h2"}), "hidden");
+  write_file(points, "from,to,a,b,c,d\n1,2,3,4,5,6\n");
+  const Outcome unnamed = run_ptin({"sight", terrain, "--pairs", points});
+  EXPECT_EQ(unnamed.status, 2);
+  EXPECT_NE(unnamed.err.find("no column for x1"), std::string::npos) << unnamed.err;
 }
 
 TEST(LocateCommand, SaysWhenItCannotReadThePoints) {
@@ -363,6 +441,150 @@ TEST(SightCommand, AnswersPairsInTheirOrder) {
   for (std::size_t i = 0; i < 20; ++i) {
     EXPECT_EQ(answers.at("pairs").at(i).at("verdict"), i % 2 == 0 ? "hidden" : "visible");
   }
+}
+
+/// What a layer holds: its name, its CRS, and of each feature the attributes and the geometry.
+struct ReadLayer {
+  std::string name, crs;
+  std::vector<std::map<std::string, std::string>> features;  ///< null attributes left out
+  std::vector<std::string> geometries;
+};
+
+ReadLayer layer_in(const std::string& path) {
+  const GDALDatasetUniquePtr data(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR));
+  ReadLayer read;
+  if (data == nullptr || data->GetLayerCount() != 1) {
+    ADD_FAILURE() << path;
+    return read;
+  }
+  OGRLayer& layer = *data->GetLayer(0);
+  read.name = layer.GetName();
+  if (layer.GetSpatialRef() != nullptr) read.crs = layer.GetSpatialRef()->GetAuthorityCode(nullptr);
+  for (const auto& feature : layer) {
+    auto& attributes = read.features.emplace_back();
+    for (int i = 0; i < feature->GetFieldCount(); ++i) {
+      if (feature->IsFieldSetAndNotNull(i) != 0)
+        attributes[feature->GetFieldDefnRef(i)->GetNameRef()] = feature->GetFieldAsString(i);
+    }
+    read.geometries.push_back(feature->GetGeometryRef()->exportToWkt());
+  }
+  return read;
+}
+
+TEST(Ids, TravelToTheAnswerOfLocate) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string points = folder.file("wells.csv");
+  write_file(points, "x,y,well,code\n" + east(15.5) + "," + south(20) + ",\"A, \"\"b\"\"\",7\n" +
+                         east(31) + "," + south(1) + ",,8\n0,0,C,9\n");
+  const std::vector<std::string> question = {"locate", terrain, "--points", points};
+  const auto asked = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = question;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_ptin(arguments);
+  };
+  const std::string table = asked({}).out;
+  EXPECT_EQ(table.substr(0, table.find('\n')), "x,y,state,height,height_min,height_max,id");
+  EXPECT_NE(table.find("surface,55,55,55,\"A, \"\"b\"\"\"\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("void,,,,\n0,0,outside,,,,C\n"), std::string::npos) << table;
+  const json answer = json::parse(asked({"--json", "--id", "CODE"}).out);
+  EXPECT_EQ(answer.at("points").at(2).at("id"), "9");
+  EXPECT_TRUE(answer.at("output").is_null());
+  for (const char* output : {"a.gpkg", "a.geojson", "a.fgb"}) {
+    EXPECT_EQ(asked({"-o", folder.file(output)}).out, "") << output;
+    const ReadLayer layer = layer_in(folder.file(output));
+    EXPECT_EQ(layer.crs, "32611");
+    ASSERT_EQ(layer.features.size(), 3u) << output;
+    std::size_t surface = 0;
+    while (layer.features.at(surface).at("state") != "surface") ++surface;  // FlatGeobuf sorts
+    EXPECT_EQ(layer.features[surface].at("id"), "A, \"b\"");
+    EXPECT_EQ(layer.features[surface].at("height"), "55");
+    EXPECT_EQ(layer.geometries[surface].substr(0, 12), "POINT (50048");
+    for (const auto& feature : layer.features) {
+      EXPECT_EQ(feature.count("height"), feature.at("state") == "surface" ? 1u : 0u);
+    }
+  }
+  EXPECT_EQ(asked({"-o", folder.file("a.csv")}).out, "");
+  EXPECT_EQ(testing::read_file(folder.file("a.csv")), table);
+  EXPECT_EQ(asked({"-o", folder.file("a.csv")}).status, 2) << "it is there";
+  EXPECT_EQ(asked({"-o", points, "--overwrite"}).status, 2) << "an input";
+  EXPECT_EQ(asked({"-o", folder.file("a.doc")}).status, 2);
+  EXPECT_EQ(asked({"-o", "-", "--json"}).status, 2);
+  EXPECT_EQ(json::parse(asked({"-o", "-"}).out).at("features").size(), 3u);
+  const Outcome none = asked({"--id", "depth"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("no column 'depth'; there are 'x', 'y', 'well', 'code'"),
+            std::string::npos)
+      << none.err;
+}
+
+TEST(Ids, TravelToTheAnswersOfSightAndProfile) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const auto link = [](double row, const std::string& height) {
+    return east(4) + "," + south(row) + "," + height + "," + east(28) + "," + south(row) + "," +
+           height + "\n";
+  };
+  const std::string pairs = folder.file("links.csv"), links = folder.file("links.gpkg");
+  write_file(pairs,
+             "link,x1,y1,h1,x2,y2,h2\nA1," + link(20, "5") + "\"B \"\"2\"\"\"," + link(22, "200"));
+  const Outcome table = run_ptin({"sight", terrain, "--pairs", pairs});
+  EXPECT_EQ(table.out.find("verdict,length,"), 0u) << table.err;
+  EXPECT_NE(table.out.find(",A1\n"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find(",\"B \"\"2\"\"\"\n"), std::string::npos) << table.out;
+  const json answer = answer_of({"sight", terrain, "--pairs", pairs, "-o", links, "--json"});
+  EXPECT_EQ(answer.at("pairs").at(1).at("id"), "B \"2\"");
+  EXPECT_EQ(answer.at("output"), links);
+  const ReadLayer seen = layer_in(links);
+  ASSERT_EQ(seen.features.size(), 2u);
+  EXPECT_EQ(seen.features[0].at("verdict"), "hidden");
+  EXPECT_EQ(seen.features[0].at("id"), "A1");
+  EXPECT_EQ(seen.features[1].at("verdict"), "visible");
+  EXPECT_EQ(seen.features[1].count("obstruction_x"), 0u);
+  EXPECT_EQ(seen.geometries[0].find("LINESTRING (500135"), 0u) << seen.geometries[0];
+  testing::expect_done({"sight", terrain, "--pairs", pairs, "-o", folder.file("seen.csv")});
+  EXPECT_EQ(testing::read_file(folder.file("seen.csv")), table.out);
+
+  const std::vector<std::string> question = {"profile", terrain, "--line", links};
+  const auto profiled = [&](const std::string& output) {
+    std::vector<std::string> arguments = question;
+    arguments.insert(arguments.end(), {"--id", "id", "-o", folder.file(output)});
+    testing::expect_done(arguments);
+    return folder.file(output);
+  };
+  const std::string heights = testing::read_file(profiled("p.csv"));
+  EXPECT_NE(heights.find(",id\n"), std::string::npos) << heights;
+  EXPECT_NE(heights.find(",0,10,10,A1\n"), std::string::npos) << heights;
+  EXPECT_NE(heights.find(",1,10,10,\"B \"\"2\"\"\"\n"), std::string::npos) << heights;
+  for (const char* output : {"p.gpkg", "p.geojson"}) {
+    const ReadLayer layer = layer_in(profiled(output));
+    ASSERT_EQ(layer.features.size(), 2u) << output;
+    EXPECT_EQ(layer.features[1].at("id"), "B \"2\"");
+    EXPECT_EQ(layer.features[1].at("length"), "720");
+    EXPECT_NE(layer.geometries[1].find(" 100,"), std::string::npos) << "the wall's height";
+  }
+  const json by_default = answer_of({"profile", terrain, "--line", links, "--json"});
+  EXPECT_EQ(by_default.at("ids"), json({"hidden", "visible"})) << "the first text";
+  const Outcome none = run_ptin({"profile", terrain, "--line", links, "--id", "road"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("no attribute 'road'"), std::string::npos) << none.err;
+}
+
+TEST(Ids, AreNeverTimesOrMeasuresByThemselves) {
+  const TestFolder folder;
+  const std::string terrain = testing::built(folder, "coast_257.tif");
+  const std::string tour = folder.file("tour.gpx");
+  write_file(tour, R"(<?xml version="1.0"?><gpx version="1.1" creator="test" )"
+                   R"(xmlns="http://www.topografix.com/GPX/1/1"><wpt lat="48.46" lon="-124.2">)"
+                   R"(<ele>5</ele><time>2026-01-01T00:00:00Z</time><name>Camp</name></wpt></gpx>)");
+  const auto id = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"locate", terrain, "--points", tour, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return answer_of(arguments).at("points").at(0).at("id");
+  };
+  EXPECT_EQ(id({}), "Camp");
+  EXPECT_EQ(id({"--id", "ele"}), "5");
+  EXPECT_EQ(id({"--id", "FID"}), "0");
 }
 
 }  // namespace

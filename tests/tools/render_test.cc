@@ -48,6 +48,24 @@ TEST(MakeView, RefusesWhatHasNoArea) {
   EXPECT_THROW(static_cast<void>(make_view({0, 0, 1, 1}, kUnits, 0, 500)), Error);
 }
 
+TEST(MakeView, RefusesWhatHasNoSizeOverGround) {
+  const double nan = std::nan("");
+  EXPECT_THROW(static_cast<void>(make_view({0, 0, 1, 1}, {nan, nan}, 0, 0)), Error);
+  EXPECT_THROW(static_cast<void>(make_view({0, 0, 1, 1}, {0, 0}, 100, 100)), Error);
+  EXPECT_THROW(static_cast<void>(make_view({0, 0, 1e300, 1e300}, {1e9, 1e9}, 0, 0)), Error);
+  EXPECT_THROW(static_cast<void>(make_view({0, 0, 1e-310, 1e-310}, kUnits, 0, 0)), Error);
+}
+
+/// A distance that no int holds was doubled beyond all ints.
+TEST(PixelsBetweenSamples, AreAFewWhateverTheGridIs) {
+  View view;
+  EXPECT_EQ(pixels_between_samples({0, 0, 3, 2}, view), 3);
+  EXPECT_EQ(pixels_between_samples({0, 0, 1e-9, 1e-9}, view), 1);
+  for (const double step : {1e10, 1e300, HUGE_VAL, std::nan("")}) {
+    EXPECT_EQ(pixels_between_samples({0, 0, step, step}, view), 12) << step;
+  }
+}
+
 /// One square of two triangles on a slope that rises to the east; the eastern one void when asked.
 RefinedTin slope(StoreFacts& facts, bool half_void) {
   facts.map = {0, 0, 1, 1};
@@ -63,6 +81,16 @@ RefinedTin slope(StoreFacts& facts, bool half_void) {
   tin.classes = {half_void ? TriangleClass::kVoid : TriangleClass::kSurface,
                  TriangleClass::kSurface};
   return refined;
+}
+
+TEST(Rasterize, TakesTrianglesFarBeyondThePicture) {
+  StoreFacts facts;
+  const RefinedTin refined = slope(facts, false);
+  for (const double far : {1e12, -1e12}) {
+    const TerrainRaster raster =
+        rasterize(refined, facts, make_view({far, far, far + 1, far + 1}, kUnits, 40, 40));
+    for (const PixelClass c : raster.classes) ASSERT_EQ(c, PixelClass::kOutside);
+  }
 }
 
 TEST(Rasterize, FillsEveryPixelOnceWithTheHeightOfItsMiddle) {
@@ -127,6 +155,18 @@ TEST(Render, KnowsItsMemoryAndCanBeStopped) {
                    draw_relief(rasterize(refined, facts, view), view, 1, {}, stop.get_token())),
                Error);
   EXPECT_THROW(draw_wireframe(image, refined, facts, view, stop.get_token()), Error);
+}
+
+TEST(RenderProgram, DrawsHeightsAtTheEndsOfInt32) {
+  const testing::TestFolder folder;
+  testing::RasterRecipe recipe;
+  recipe.type = "Int32";
+  recipe.value = [](int column, int row) {
+    return (column + row) % 2 == 0 ? 2147483647.0 : -2147483647.0;
+  };
+  testing::make_raster(folder.file("ends.tif"), recipe);
+  testing::expect_done({"build", folder.file("ends.tif"), "-o", folder.file("ends.ptin"), "-q"});
+  testing::expect_done({"render", folder.file("ends.ptin"), "-q", "-o", folder.file("a.png")});
 }
 
 TEST(DrawLine, IsOnePixelWideInSum) {

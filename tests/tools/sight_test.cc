@@ -69,6 +69,32 @@ TEST_F(SightNumbers, FresnelRatioIsTheClearanceOverTheRadiusOfTheZone) {
   EXPECT_EQ(asked(10, 28, "140", {}).count("fresnel"), 0U) << "not asked for";
 }
 
+TEST_F(SightNumbers, FrequenciesHaveUnits) {
+  const json plain = asked(10, 28, "140", {"--frequency", "5.8e9"}).at("fresnel");
+  for (const char* text : {"5.8GHz", "5800MHz", "5.8 ghz", "5800000kHz", "5800000000Hz"}) {
+    const json given = asked(10, 28, "140", {"--frequency", text}).at("fresnel");
+    EXPECT_NEAR(given.at("ratio").get<double>(), plain.at("ratio").get<double>(), 1e-12) << text;
+  }
+}
+
+TEST_F(SightNumbers, FrequenciesThatNobodyMeansAreRefused) {
+  const auto refuse = [&](const char* text, const std::string& words) {
+    const auto outcome = testing::run_ptin(
+        {"sight", file_, x_of(10), kRowY, "9", x_of(28), kRowY, "9", "--frequency", text});
+    EXPECT_EQ(outcome.status, 2) << text;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find("ptin: --frequency: " + words), std::string::npos) << outcome.err;
+  };
+  refuse("5.8", "5.8 hertz is no radio link's frequency, which is 1 MHz at least; give the unit");
+  refuse("5800", "5800 hertz");
+  refuse("999kHz", "999000 hertz");
+  refuse("0", "0 hertz");
+  refuse("-5.8GHz", "-5.8e+09 hertz");
+  for (const char* text : {"", "fast", "5.8GH", "nan", "inf", "1e400", "5,8GHz"}) {
+    refuse(text, std::string("\"") + text + "\" is no frequency");
+  }
+}
+
 TEST_F(SightNumbers, FresnelRatioOfAHiddenLineIsBelowZero) {
   // 40 above ground is 50 below the wall's top.
   const json low = asked(10, 28, "40", {"--frequency", "1e9", "--curvature", "0"});

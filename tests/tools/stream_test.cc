@@ -187,7 +187,13 @@ TEST_F(StreamCli, SaysWhatIsWrong) {
   refused({"stream", t, "--have", "[{\"windows\":1}]", "-o", file("x.pts")}, 2, "windows");
   refused({"stream", t, "--memory", "100K", "-o", file("x.pts")}, 7, "limit");
   refused({"unstream", file("nothing.pts")}, 3, "nothing.pts");
-  refused({"unstream", t}, 4, "no stream");
+  refused({"unstream", t}, 2, "t.ptin: this is a store, not a stream");
+  refused({"unstream", file("s.pts"), t}, 2, "this is a store, not a stream");
+  for (const char* command : {"info", "verify", "highest"}) {
+    refused({command, file("s.pts")}, 2, "s.pts: this is a stream, not a store");
+  }
+  write_file(file("prose.pts"), "It was a dark and stormy night.");
+  refused({"unstream", file("prose.pts")}, 4, "the first bytes are others\n");
   refused({"unstream", file("delta.pts")}, 4, "goes on from another");
   refused({"unstream", file("s.pts"), file("s.pts")}, 4, "begins anew");
   refused({"unstream", file("s.pts"), file("delta.pts")}, 4, "another mesh");

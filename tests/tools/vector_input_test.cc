@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <memory>
 
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <ogr_spatialref.h>
+#include <ogrsf_frmts.h>
 
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
@@ -147,6 +149,126 @@ TEST(VectorInput, SkipsLinesWithoutLengthAmongOthersAndSaysHowMany) {
   refused("MULTILINESTRING(" + line + ",(1e30 0, 0 0))", "line 2 of 2");
 }
 
+/// A recording of a tour: a GPX has five layers, of which three are points and two are lines.
+std::string gpx(const std::string& more) {
+  const auto at = [](const char* element, double column, double row) {
+    const json degrees = degrees_at(column, row);
+    return std::string("<") + element + " lat=\"" + degrees[1].dump() + "\" lon=\"" +
+           degrees[0].dump() + "\"><name>" + element + std::to_string(static_cast<int>(column)) +
+           "</name></" + element + ">";
+  };
+  return R"(<?xml version="1.0"?><gpx version="1.1" creator="test" )"
+         R"(xmlns="http://www.topografix.com/GPX/1/1">)" +
+         (more == "waypoints" ? at("wpt", 7, 20) + at("wpt", 9, 3) : "") +
+         (more == "route" ? "<rte><name>R</name>" + at("rtept", 1, 1) + at("rtept", 1, 9) + "</rte>"
+                          : "") +
+         "<trk><name>T</name><trkseg>" + at("trkpt", 2, 2) + at("trkpt", 8, 2) + at("trkpt", 8, 4) +
+         "</trkseg></trk></gpx>";
+}
+
+TEST(Layers, OfAFittingTypeAreTakenByThemselves) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  const std::string file = folder.file("a.gpx");
+  const auto lines = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"profile", terrain, "--line", file, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return answer_of(arguments);
+  };
+  const auto points = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"locate", terrain, "--points", file, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return answer_of(arguments).at("points");
+  };
+  write_file(file, gpx(""));
+  EXPECT_NEAR(lines({}).at("length").get<double>(), 240.0, 1e-3) << "of the track";
+  EXPECT_EQ(points({}).size(), 3u) << "of the track";
+  const Outcome wrong = run_ptin({"profile", terrain, "--line", file, "--layer", "waypoints"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("not lines"), std::string::npos) << wrong.err;
+  EXPECT_EQ(run_ptin({"profile", terrain, "--line", file, "--layer", "nothing"}).status, 2);
+
+  write_file(file, gpx("waypoints"));
+  const Outcome unclear = run_ptin({"locate", terrain, "--points", file});
+  EXPECT_EQ(unclear.status, 2);
+  EXPECT_EQ(unclear.out, "");
+  EXPECT_NE(unclear.err.find("'waypoints' (Point), 'track_points' (Point); name one with --layer"),
+            std::string::npos)
+      << unclear.err;
+  EXPECT_EQ(points({"--layer", "waypoints"}).size(), 2u);
+  EXPECT_NEAR(points({"--layer", "waypoints"}).at(0).at("height").get<double>(), 207.0, 1e-4);
+
+  write_file(file, gpx("route"));
+  EXPECT_EQ(run_ptin({"profile", terrain, "--line", file}).status, 2);
+  EXPECT_NEAR(lines({"--layer", "routes"}).at("length").get<double>(), 240.0, 1e-3);
+  EXPECT_EQ(run_ptin({"profile", terrain, "--line", "LINESTRING(0 0, 1 1)", "--layer", "a"}).status,
+            2);
+}
+
+TEST(Layers, OfPolygonsAreFoundBehindOthers) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  const std::string file = folder.file("areas.gpkg");
+  const GDALDatasetUniquePtr data(GetGDALDriverManager()->GetDriverByName("GPKG")->Create(
+      file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+  const auto add = [&](const char* name, OGRwkbGeometryType type, const std::string& wkt) {
+    OGRSpatialReference crs;
+    crs.importFromEPSG(32611);
+    OGRLayer& layer = *data->CreateLayer(name, &crs, type);
+    OGRFeature feature(layer.GetLayerDefn());
+    OGRGeometry* geometry = nullptr;
+    OGRGeometryFactory::createFromWkt(wkt.c_str(), nullptr, &geometry);
+    feature.SetGeometryDirectly(geometry);
+    EXPECT_EQ(layer.CreateFeature(&feature), OGRERR_NONE);
+    data->FlushCache();
+  };
+  const auto refined = [&] {
+    return run_ptin({"refine", terrain, "--polygon", file, "--cut", "-o", folder.file("cut.ply"),
+                     "--overwrite", "-q"});
+  };
+  const std::string area = "POLYGON((" + sample(2, 2) + "," + sample(9, 2) + "," + sample(9, 9) +
+                           "," + sample(2, 2) + "))";
+  add("corners", wkbPoint, "POINT(" + sample(2, 2) + ")");
+  EXPECT_NE(refined().err.find("holds Point, not polygons"), std::string::npos) << refined().err;
+  add("parish", wkbPolygon, area);
+  EXPECT_EQ(refined().status, 0) << refined().err;
+  add("farm", wkbMultiPolygon, "MULTIPOLYGON(" + area.substr(7) + ")");
+  EXPECT_EQ(refined().status, 2);
+  EXPECT_NE(refined().err.find("'parish' (Polygon), 'farm' (Multi Polygon)"), std::string::npos)
+      << refined().err;
+}
+
+TEST(Layers, OfLinesArePairsForSight) {
+  const TestFolder folder;
+  const std::string terrain = plane(folder);
+  const std::string file = folder.file("links.geojson");
+  const auto end = [](double column, double row, double height) {
+    json place = degrees_at(column, row);
+    if (height > 0) place.push_back(height);
+    return place;
+  };
+  const auto asked = [&] { return run_ptin({"sight", terrain, "--pairs", file, "--json"}); };
+  write_file(file, geojson("LineString", json::array({end(5, 20, 30), end(25, 4, 40)})));
+  const json of_layer = answer_of({"sight", terrain, "--pairs", file, "--json"}).at("pairs").at(0);
+  write_file(folder.file("links.txt"), "500165 3999385 30 500765 3999865 40\n");
+  const json of_text = answer_of({"sight", terrain, "--pairs", folder.file("links.txt"), "--json"})
+                           .at("pairs")
+                           .at(0);
+  EXPECT_EQ(of_layer.at("verdict"), "visible");
+  EXPECT_NEAR(of_layer.at("clearance").at("min").get<double>(),
+              of_text.at("clearance").at("min").get<double>(), 1e-3);
+  write_file(file, geojson("LineString", json::array({end(5, 20, 0), end(25, 4, 0)})));
+  EXPECT_NE(asked().err.find("has no heights"), std::string::npos) << asked().err;
+  json with_attributes = json::parse(testing::read_file(file));
+  with_attributes["features"][0]["properties"] = {{"h1", 30}, {"h2", 40}};
+  write_file(file, with_attributes.dump());
+  EXPECT_EQ(json::parse(asked().out).at("pairs").at(0).at("clearance"), of_layer.at("clearance"));
+  write_file(file,
+             geojson("LineString", json::array({end(5, 20, 3), end(9, 9, 3), end(25, 4, 3)})));
+  EXPECT_EQ(asked().status, 2);
+  EXPECT_NE(asked().err.find("no line of two points"), std::string::npos) << asked().err;
+}
+
 class PolygonLayer : public ::testing::Test {
  protected:
   PolygonLayer() {
@@ -223,7 +345,7 @@ TEST(VectorInput, SaysWhatIsNoLine) {
   EXPECT_EQ(status(folder.file("none.gpkg"), "no such file"), 3);
   EXPECT_EQ(status(folder.path().string(), "vector file"), 2);
   write_file(folder.file("p.geojson"), geojson("Point", degrees_at(7, 20)));
-  EXPECT_EQ(status(folder.file("p.geojson"), "holds no line"), 2);
+  EXPECT_EQ(status(folder.file("p.geojson"), "holds Point, not lines"), 2);
 }
 
 }  // namespace

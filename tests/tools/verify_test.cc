@@ -4,6 +4,12 @@
 // terrain.
 #include "storage/verify.h"
 
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -45,8 +51,7 @@ Outcome verified(const std::string& store, const std::string& source) {
   return run_ptin({"verify", store, "--against", source, "-q"});
 }
 
-/// Writes `store` again with every record changed by `change`: sound in form, wrong in what it
-/// says.
+/// Writes `store` again with every record changed by `change`: whole, but wrong in what it says.
 void plant(const std::string& store, const std::string& planted,
            const std::function<void(VertexSplit&, std::size_t)>& change) {
   const auto from = StoreFile::open(store);
@@ -58,7 +63,7 @@ void plant(const std::string& store, const std::string& planted,
   const auto writer = StoreWriter::create(planted, {});
   writer->add_segment(records, from->facts().heights);
   writer->publish(from->facts(), from->t0(), std::string(from->metadata_json()));
-  ASSERT_TRUE(verify_store(planted).is_sound()) << "the plant must be found by --against alone";
+  ASSERT_TRUE(verify_store(planted).is_sound()) << "no rule of the format is broken";
 }
 
 TEST(Verify, FindsAGoodFileGood) {
@@ -128,7 +133,8 @@ TEST(Verify, FindsOneWrongHeight) {
   plant(store, folder.file("planted.ptin"), [&](VertexSplit& r, std::size_t) {
     const double low = heights.code(r.height_lo);
     if (done || (r.flags & VertexSplit::kVertexVoid) != 0 || heights.code(r.height) <= low) return;
-    r.height = r.height_lo;  // within its interval, so no rule of the format is broken
+    if (r.rank != 0) return;  // no record that needs it has the height in its interval
+    r.height = r.height_lo;   // within its interval, so no rule of the format is broken
     done = true;
   });
   ASSERT_TRUE(done);
@@ -150,33 +156,190 @@ TEST(Verify, FindsVoidsThatAreCheaperThanTheyMayBe) {
   EXPECT_NE(outcome.out.find("the TIN says otherwise"), std::string::npos) << outcome.out;
 }
 
+/// A store of hills, and how one of its records is changed.
+class VerifyRecords : public ::testing::Test {
+ protected:
+  /// Changes the first record for which `change` is true, and expects that verify names it or one
+  /// that needs it, by page and vertex, with these words.
+  void expect_found(const std::function<bool(VertexSplit&)>& change, const std::string& words) {
+    const std::string planted = folder_.file("planted.ptin");
+    std::filesystem::remove(planted);
+    bool done = false;
+    plant(store_, planted,
+          [&](VertexSplit& r, std::size_t) { done = done || (r.rank >= 2 && change(r)); });
+    ASSERT_TRUE(done) << words;
+    const Outcome outcome = run_ptin({"verify", planted, "-q", "--json"});
+    EXPECT_EQ(outcome.status, 1) << words << outcome.out << outcome.err;
+    const auto answer = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(answer.at("sound"), false);
+    const std::string where = answer.at("faults").at(0).at("where");
+    EXPECT_EQ(where.substr(0, 5), "page ") << where;
+    EXPECT_NE(where.find(", record of vertex ("), std::string::npos) << where;
+    EXPECT_NE(answer.at("faults").dump().find(words), std::string::npos) << words << outcome.out;
+    // What the file itself tells needs no source.
+    EXPECT_FALSE(answer.contains("against"));
+  }
+
+  TestFolder folder_;
+  std::string store_ = built_raster(folder_, hills_with_voids());
+  StoreFacts facts_ = StoreFile::open(store_)->facts();
+};
+
+TEST_F(VerifyRecords, FindsRegionsOfInfluenceThatAreNotSaturated) {
+  expect_found(
+      [](VertexSplit& r) {
+        const GridBox own = united(united(united(box_of(r.u), r.w), r.vl), r.vr);
+        return !(std::exchange(r.roi, own) == own);
+      },
+      "region of influence");
+  expect_found(
+      [&](VertexSplit& r) { return half_perimeter(r.roi) < 30 && (r.roi = facts_.bounds, true); },
+      "does not hold its own");
+}
+
+TEST_F(VerifyRecords, FindsHeightsThatAreNotSaturated) {
+  const auto is_surface = [](const VertexSplit& r) {
+    return (r.flags & VertexSplit::kAnyVoid) == 0 && r.height_lo != r.height_hi;
+  };
+  expect_found(
+      [&](VertexSplit& r) {
+        if (!is_surface(r)) return false;
+        r.height_lo = r.height_hi = r.height;
+        return true;
+      },
+      "hold");
+  expect_found(
+      [&](VertexSplit& r) {
+        if (!is_surface(r) || half_perimeter(r.roi) > 30) return false;
+        r.height_lo = facts_.heights.bits(facts_.min_height);  // float32: the code is the height
+        r.height_hi = facts_.heights.bits(facts_.max_height);
+        return true;
+      },
+      "do not hold its own");
+}
+
+TEST_F(VerifyRecords, FindsErrorsDeviationsAndRanksThatAreNotSaturated) {
+  expect_found([](VertexSplit& r) { return std::exchange(r.error, 0.0F) > 0; },
+               "whose error, 0, is below its own");
+  expect_found([](VertexSplit& r) { return std::exchange(r.deviation, 0.0F) > 0; },
+               "whose deviation, 0, is below its own");
+  expect_found([](VertexSplit& r) { return (r.rank = 0, true); }, "by falling rank");
+}
+
+TEST_F(VerifyRecords, FindsSplitsThatDoNotFindTheirFan) {
+  expect_found([](VertexSplit& r) { return (std::swap(r.vl, r.vr), true); }, "its fan");
+  expect_found([](VertexSplit& r) { return (std::swap(r.w, r.vl), true); }, "its fan");
+}
+
+TEST(Verify, FindsStoresOfEveryKindOfSourceSound) {
+  const TestFolder folder;
+  make_raster(folder.file("voids.tif"), hills_with_voids());
+  ASSERT_EQ(
+      run_ptin({"build", folder.file("voids.tif"), "-o", folder.file("mesh.ptin"), "-q"}).status,
+      0);
+  ASSERT_EQ(run_ptin({"export", folder.file("mesh.ptin"), "--error", "2", "-o",
+                      folder.file("mesh.ply"), "-q"})
+                .status,
+            0);
+  const std::vector<std::vector<std::string>> sources = {
+      {folder.file("voids.tif")},
+      {testing::test_data("ground_points.csv"), "--max-edge", "9"},
+      {folder.file("mesh.ply")}};
+  const std::vector<std::vector<std::string>> ways = {
+      {}, {"--tile", "16"}, {"--max-error", "1"}, {"--tile", "16", "--max-error", "1"}};
+  for (const auto& source : sources) {
+    for (const auto& way : ways) {
+      std::vector<std::string> arguments = {"build", "-q", "--overwrite", "-o",
+                                            folder.file("s.ptin")};
+      arguments.insert(arguments.end(), source.begin(), source.end());
+      arguments.insert(arguments.end(), way.begin(), way.end());
+      const Outcome built = run_ptin(arguments);
+      ASSERT_EQ(built.status, 0) << built.err;
+      for (const std::string memory : {"1G", "1M"}) {
+        const Outcome outcome = run_ptin({"verify", folder.file("s.ptin"), "--memory", memory});
+        EXPECT_EQ(outcome.status, 0) << source[0] << memory << outcome.out << outcome.err;
+        EXPECT_NE(outcome.out.find("; splits applied in "), std::string::npos) << outcome.out;
+      }
+    }
+  }
+}
+
 TEST(Verify, FindsAnotherSource) {
   const TestFolder folder;
   const std::string store = built_raster(folder, hills_with_voids());
-  const struct {
-    const char* what;
-    double east, north, up;
-    const char* words;
-  } cases[] = {{"half a pixel to the east", 15, 0, 0, "do not stand on the grid"},
-               {"a pixel to the north", 0, 30, 0, "the source covers grid points"},
-               {"a tenth of a unit higher", 0, 0, 0.1, "is off by"}};
-  for (const auto& c : cases) {
-    RasterRecipe recipe = hills_with_voids();
-    recipe.west += c.east;
-    recipe.north += c.north;
-    recipe.value = [value = recipe.value, up = c.up](int x, int y) {
-      const double height = value(x, y);
-      return height < 0 ? height : height + up;
-    };
-    make_raster(folder.file("other.tif"), recipe);
-    const Outcome outcome = verified(store, folder.file("other.tif"));
-    EXPECT_EQ(outcome.status, 1) << c.what;
-    EXPECT_NE(outcome.out.find(c.words), std::string::npos) << c.what << ": " << outcome.out;
-  }
+  RasterRecipe higher = hills_with_voids();
+  higher.value = [value = higher.value](int x, int y) {
+    const double height = value(x, y);
+    return height < 0 ? height : height + 0.1;
+  };
+  make_raster(folder.file("higher.tif"), higher);
+  const Outcome outcome = verified(store, folder.file("higher.tif"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("is off by"), std::string::npos) << outcome.out;
   RasterRecipe filled = hills_with_voids();
   filled.value = [](int x, int y) { return testing::hills(x, y); };
   make_raster(folder.file("filled.tif"), filled);
   EXPECT_EQ(verified(store, folder.file("filled.tif")).status, 1);
+}
+
+void expect_not_the_source(const Outcome& outcome, const std::string& words) {
+  EXPECT_EQ(outcome.status, 2) << outcome.out;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(testing::lines_in(outcome.err), 1U) << outcome.err;
+  EXPECT_NE(outcome.err.find("not the source of this file"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+}
+
+TEST(Verify, RefusesARasterThatLiesElsewhere) {
+  const TestFolder folder;
+  const std::string store = built_raster(folder, hills_with_voids());
+  const struct {
+    double east, north, pixel;
+    const char* words;
+  } cases[] = {{15, 0, 30, "stand on another grid, up to 0.5 grid units"},
+               {0, 30, 30,
+                "reach from 500015 3998545 to 502085 4000015, the terrain's from 500015 3998515 to "
+                "502085 3999985"},
+               {0, 0, 10, "stand on another grid"}};
+  for (const auto& c : cases) {
+    RasterRecipe recipe = hills_with_voids();
+    recipe.west += c.east;
+    recipe.north += c.north;
+    recipe.pixel = c.pixel;
+    make_raster(folder.file("other.tif"), recipe);
+    expect_not_the_source(verified(store, folder.file("other.tif")), c.words);
+  }
+}
+
+// A part of what a terrain was built from is no source of it, and the command that the build prints
+// names all parts.
+TEST(Verify, WantsEveryInputOfTheBuild) {
+  const TestFolder folder;
+  testing::write_file(folder.file("west half.csv"), "0,0,1\n0,9,2\n4,5,3\n");
+  testing::write_file(folder.file("east.csv"), "9,0,1\n9,9,2\n5,4,3\n");
+  const std::string store = folder.file("p.ptin"), west = folder.file("west half.csv"),
+                    east = folder.file("east.csv");
+  const Outcome made = run_ptin({"build", west, east, "-o", store});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("ptin verify " + store + " --against '" + west + "' " + east + "\n"),
+            std::string::npos)
+      << made.out;
+  expect_not_the_source(verified(store, west),
+                        "reach from 0 0 to 4 9, the terrain's from 0 0 to 9 9");
+  const Outcome whole = run_ptin({"verify", store, "--against", west, east});
+  EXPECT_EQ(whole.status, 0) << whole.out << whole.err;
+  EXPECT_NE(whole.out.find(west + " and 1 more input: 6 samples"), std::string::npos) << whole.out;
+}
+
+TEST(Verify, TakesASourceThatReachesFartherThanTheBuildsBox) {
+  const TestFolder folder;
+  testing::write_file(folder.file("a.csv"), "0,0,1\n0,9,2\n4,5,3\n9,0,1\n9,9,2\n5,4,3\n20,20,7\n");
+  const std::string store = folder.file("p.ptin");
+  testing::expect_done(
+      {"build", folder.file("a.csv"), "-o", store, "-q", "--bbox", "0", "0", "10", "10"});
+  EXPECT_EQ(verified(store, folder.file("a.csv")).status, 0);
+  testing::write_file(folder.file("b.csv"), "0,0,1\n0,9,2\n4,5,3\n");
+  expect_not_the_source(verified(store, folder.file("b.csv")), "reach from 0 0 to 4 9");
 }
 
 TEST(Verify, ChecksPointsToo) {
@@ -192,6 +355,24 @@ TEST(Verify, ChecksPointsToo) {
   testing::write_file(folder.file("other.csv"), text);
   const Outcome outcome = verified(folder.file("p.ptin"), folder.file("other.csv"));
   EXPECT_EQ(outcome.status, 1) << outcome.out;
+}
+
+// The system refuses to read the beginning of a process's memory.
+TEST(Verify, SaysThatAnUnreadableSourceCannotBeRead) {
+  const TestFolder folder;
+  const std::string store = built_raster(folder, hills_with_voids());
+  for (const char* name : {"a.tif", "a.xyz"}) {
+    std::filesystem::create_symlink("/proc/self/mem", folder.file(name));
+    const std::string source = folder.file(name);
+    const std::vector<std::vector<std::string>> commands = {
+        {"verify", store, "--against", source, "-q"},
+        {"build", source, "-o", folder.file("none.ptin"), "-q"}};
+    for (const std::vector<std::string>& command : commands) {
+      const Outcome outcome = run_ptin(command);
+      EXPECT_EQ(outcome.status, 6) << command[0] << " " << name;
+      EXPECT_NE(outcome.err.find(source + ": cannot read"), std::string::npos) << outcome.err;
+    }
+  }
 }
 
 TEST(Verify, SaysNotFoundForAMissingSource) {

@@ -98,6 +98,23 @@ TEST_F(VerifyText, HasOneSeparatorAFile) {
                }));
 }
 
+TEST_F(VerifyText, ReadsQuotesAndTabs) {
+  expect_sound("a.csv",
+               lines_of("\"a\nname\",x,y,z\n", [](const auto& x, const auto& y, const auto& z) {
+                 return "\"An \"\"old\"\" tree,\n# with, three lines\n\" , \"" + x + "\"," + y +
+                        ",\"" + z + "\" ";
+               }));
+  expect_sound("b.tsv", lines_of("id\tx\ty\tz\n", [](const auto& x, const auto& y, const auto& z) {
+                 return "\t" + x + " \t" + y + "\t" + z + "\r";
+               }));
+  expect_sound("c.txt", lines_of("", [](const auto& x, const auto& y, const auto& z) {
+                 return x + " " + y + " " + z + " \"big tree\" 5\"";
+               }));
+  expect_sound("d.csv", lines_of("x,y,z,2020\n", [](const auto& x, const auto& y, const auto& z) {
+                 return x_y_z(x, y, z) + ",5\"";
+               }));
+}
+
 TEST_F(VerifyText, PassesOverAByteOrderMark) {
   expect_sound("a.csv", lines_of("\xEF\xBB\xBFheight,x,y,z\n",
                                  [](const auto& x, const auto& y, const auto& z) {

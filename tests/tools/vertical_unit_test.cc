@@ -109,5 +109,71 @@ TEST_F(MeshWithVerticalCrs, IsRepairedWithoutLosingItNorTheDigitsLeftOut) {
   EXPECT_EQ(repaired.at("largest_shift"), whole.at("largest_shift"));
 }
 
+/// A square of 10 units a side whose file names its units, and perhaps a CRS.
+class LandXmlWithUnits : public ::testing::Test {
+ protected:
+  json built(const std::string& units, const std::string& more,
+             const std::vector<std::string>& options) {
+    write(units, more);
+    std::vector<std::string> all = {"build", file_, "-o", store_, "-q", "--overwrite"};
+    all.insert(all.end(), options.begin(), options.end());
+    expect_done(all);
+    return answer_of({"info", store_, "--json"}).at("units");
+  }
+  void write(const std::string& units, const std::string& more) const {
+    write_file(file_, "<LandXML>" + more + "<Units>" + units +
+                          "</Units><Surfaces><Surface name=\"s\"><Definition surfType=\"TIN\">"
+                          "<Pnts><P id=\"1\">0 0 1</P><P id=\"2\">0 10 2</P><P id=\"3\">10 10 3</P>"
+                          "<P id=\"4\">10 0 4</P></Pnts><Faces><F>1 2 3</F><F>1 3 4</F></Faces>"
+                          "</Definition></Surface></Surfaces></LandXML>");
+  }
+  /// Metres in a unit of x, y (up) and height, as a GLB has them.
+  json scale() const {
+    const std::string glb = folder_.file("m.glb");
+    expect_done({"refine", store_, "-o", glb, "--overwrite"});
+    const std::string bytes = testing::read_file(glb);
+    const std::size_t begin = bytes.find('{');
+    const std::size_t end = bytes.find("BIN") - 4;  // before the chunk's length
+    const json scene = json::parse(bytes.substr(begin, end - begin));
+    return scene.at("nodes").at(0).at("extras").at("scale");
+  }
+  TestFolder folder_;
+  std::string file_ = folder_.file("s.xml"), store_ = folder_.file("s.ptin");
+};
+
+TEST_F(LandXmlWithUnits, KeepsThemWithoutACrs) {
+  EXPECT_EQ(built(R"(<Imperial linearUnit="foot"/>)", "", {}),
+            (json{{"horizontal", "foot"}, {"height", "foot"}}));
+  EXPECT_EQ(scale(), (json{0.3048, 0.3048, 0.3048}));
+  for (const char* repair : {"--repair", "--overwrite"}) {
+    EXPECT_EQ(built(R"(<Imperial linearUnit="USSurveyFoot" elevationUnit="meter"/>)", "", {repair}),
+              (json{{"horizontal", "US survey foot"}, {"height", "metre"}}));
+    const json told = scale();
+    EXPECT_DOUBLE_EQ(told.at(0).get<double>(), 1200.0 / 3937.0);
+    EXPECT_EQ(told.at(2), 1.0);
+  }
+}
+
+TEST_F(LandXmlWithUnits, KeepsThoseOfTheHeightsBesideACrs) {
+  const std::string feet = R"(<Imperial linearUnit="USSurveyFoot"/>)";
+  EXPECT_EQ(built(feet, "<CoordinateSystem epsgCode=\"2226\"/>", {}),
+            (json{{"horizontal", "US survey foot"}, {"height", "US survey foot"}}));
+  EXPECT_EQ(built(R"(<Imperial linearUnit="foot"/>)", "<CoordinateSystem epsgCode=\"2226\"/>", {}),
+            (json{{"horizontal", "US survey foot"}, {"height", "foot"}}))
+      << "the two feet are confused too often to refuse them";
+  EXPECT_EQ(built(feet, "", {"--a-srs", "EPSG:2226+5703"}).at("height"), "metre");
+}
+
+TEST_F(LandXmlWithUnits, RefusesACrsOfOtherUnits) {
+  write(R"(<Imperial linearUnit="foot"/>)", "<CoordinateSystem epsgCode=\"32610\"/>");
+  const testing::Outcome refused = testing::run_ptin({"build", file_, "-o", store_, "-q"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("units of 'foot', but the unit of the CRS that it names is 'metre'"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(built(R"(<Imperial linearUnit="foot"/>)", "", {"--a-srs", "EPSG:32610"}),
+            (json{{"horizontal", "metre"}, {"height", "foot"}}));
+}
+
 }  // namespace
 }  // namespace ptin::tools

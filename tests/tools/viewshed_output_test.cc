@@ -181,6 +181,33 @@ TEST_F(ViewshedOutput, PixelsOfAnotherSizeHaveTheEyeInTheirMiddle) {
   EXPECT_EQ(raster.at(15 + 9, 15), 0);    // 360 m east: the foot of the other
 }
 
+TEST_F(ViewshedOutput, PixelsHaveSizesOverGround) {
+  testing::RasterRecipe recipe;
+  recipe.epsg = 4326;
+  recipe.west = 9.0;
+  recipe.north = 60.0005;
+  recipe.pixel = 0.001;
+  testing::make_raster(folder_.file("degrees.tif"), recipe);
+  const std::string file = folder_.file("degrees.ptin");
+  testing::expect_done({"build", folder_.file("degrees.tif"), "-o", file, "-q"});
+  const auto run = [&](const char* size) {
+    return run_ptin({"viewshed", file, "9.016", "59.985", "9", "--radius", "500", "--pixel-size",
+                     size, "-o", folder_.file("seen.tif"), "--overwrite"});
+  };
+  EXPECT_EQ(run("90m").status, 0);
+  const SeenRaster raster(folder_.file("seen.tif"));
+  EXPECT_EQ(raster.width, 2 * 5 + 1);
+  EXPECT_EQ(raster.height, 2 * 5 + 1);
+  EXPECT_NEAR(raster.place[1], 90 / 55826.0, 5e-8);
+  EXPECT_NEAR(-raster.place[5], 90 / 111412.0, 5e-8);
+  for (const char* size : {"90", "600m", "0.6km"}) {
+    const auto outcome = run(size);
+    EXPECT_EQ(outcome.status, 2) << size;
+    EXPECT_NE(outcome.err.find("are larger than the radius"), std::string::npos) << outcome.err;
+  }
+  EXPECT_NE(run("90x").err.find("ptin: --pixel-size: \"90x\" is no size"), std::string::npos);
+}
+
 TEST_F(ViewshedOutput, LayerHasTheVerticesWithWhatIsSeenOfThem) {
   build(wall_and_pond);
   for (const char* name : {"seen.gpkg", "seen.fgb"}) {

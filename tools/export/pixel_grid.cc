@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
@@ -17,21 +18,35 @@ constexpr int kLatticeBits = 20;
 constexpr double kLattice = 1048576.0;  // 2^20
 constexpr std::int64_t kMostPixels = INT32_MAX;
 
-/// Whole multiples of `size` from `origin` in [low, high], as the first and their number.
+/// Whole multiples of `size` from `origin` in [low, high], as the first and their number; the number
+/// may be 0.
 std::array<std::int64_t, 2> multiples_in(double origin, double size, double low, double high) {
   // The window's own rounding must not lose a centre that lies on its border.
   const double slack = 1e-9;
   const double first = std::ceil((low - origin) / size - slack);
   const double last = std::floor((high - origin) / size + slack);
-  if (!(last >= first)) {
-    throw Error(ErrorCode::invalid_argument,
-                "no pixel centre lies in the window; give a larger one or a smaller --pixel-size");
-  }
+  if (!(last >= first)) return {0, 0};
   if (last - first >= static_cast<double>(kMostPixels) || std::abs(first) > 0x1p53) {
     throw Error(ErrorCode::invalid_argument,
                 "the raster would have more than 2^31 columns or rows; give a larger --pixel-size");
   }
   return {static_cast<std::int64_t>(first), static_cast<std::int64_t>(last - first) + 1};
+}
+
+/// Refuses what nobody means by a raster: pixels so large that one of them covers the window, as of
+/// metres where the map unit is the degree.
+void check_pixels(std::int64_t columns, std::int64_t rows, std::array<double, 2> size,
+                  const Window& window) {
+  if (columns >= 2 && rows >= 2) return;
+  std::array<char, 256> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "%lld x %lld pixels of %.10g x %.10g map units fit the window of %.10g x %.10g, and "
+      "a raster has 2 x 2 at least; give a smaller size (over ground as 90m), or a larger "
+      "window",
+      static_cast<long long>(columns), static_cast<long long>(rows), size[0], size[1],
+      window.max_x - window.min_x, window.max_y - window.min_y);
+  throw Error(ErrorCode::invalid_argument, text.data(), "--pixel-size");
 }
 
 /// A place on the lattice.
@@ -162,6 +177,7 @@ PixelGrid::PixelGrid(const StoreFacts& facts, std::array<double, 2> size,
   columns_ = across[1];
   first_row_ = up[0];
   rows_ = up[1];
+  check_pixels(columns_, rows_, size_, w);
 }
 
 std::array<double, 6> PixelGrid::geotransform() const noexcept {

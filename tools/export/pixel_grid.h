@@ -31,8 +31,8 @@ class PixelGrid {
   /// @param size    Width and height of a pixel, in map units, > 0.
   /// @param window  Only pixels with their centres in this closed window; none means the terrain's
   ///                box.
-  /// @throws Error invalid_argument  no centre lies in the window; more than 2^31 - 1 columns or
-  ///                                 rows
+  /// @throws Error invalid_argument  fewer than two columns or rows of centres lie in the window;
+  ///                                 more than 2^31 - 1 do
   PixelGrid(const StoreFacts& facts, std::array<double, 2> size,
             const std::optional<Window>& window);
 

@@ -22,6 +22,9 @@ namespace ptin::tools {
 /// The text with question marks in the place of control characters: what a file says must not steer
 /// the terminal.
 [[nodiscard]] std::string printable(std::string text);
+/// A file's name as a word of a shell's command: in quotes where it holds anything but letters,
+/// digits and the signs that no shell minds.
+[[nodiscard]] std::string shell_word(const std::string& name);
 /// The fewest digits that read back as the same number.
 [[nodiscard]] std::string exact_number(double value);
 /// A size in bytes from "512M", "2G", "4096": suffixes K, M, G, T are powers of 1024.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -12,6 +13,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 #include <ogrsf_frmts.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/error.h"
@@ -19,6 +21,7 @@
 #include "tools/output/file_name.h"
 #include "tools/output/gdal_output.h"
 #include "tools/output/output_file.h"
+#include "tools/refused_memory.h"
 
 namespace ptin::tools {
 
@@ -56,14 +59,28 @@ std::unique_ptr<OGRSpatialReference> reference_of(const std::string& wkt) {
 
 OGRFieldType ogr_type(VectorFile::FieldType type) {
   if (type == VectorFile::FieldType::kReal) return OFTReal;
-  return type == VectorFile::FieldType::kFlag ? OFTInteger : OFTInteger64;
+  if (type == VectorFile::FieldType::kText) return OFTString;
+  return type == VectorFile::FieldType::kInteger ? OFTInteger64 : OFTInteger;
+}
+
+void set_field(OGRFeature& feature, int field, const VectorFile::Value& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    feature.SetField(field, static_cast<GIntBig>(*integer));
+  } else if (const auto* text = std::get_if<std::string>(&value)) {
+    feature.SetField(field, text->c_str());
+  } else if (const double number = std::get<double>(value); std::isfinite(number)) {
+    feature.SetField(field, number);
+  } else {
+    feature.SetFieldNull(field);
+  }
 }
 
 void create_fields(OGRLayer& layer, const VectorFile::Layer& wanted, const std::string& path) {
   for (const VectorFile::Field& f : wanted.fields) {
     OGRFieldDefn field(f.name, ogr_type(f.type));
-    if (f.type != VectorFile::FieldType::kReal)
-      field.SetWidth(f.type == VectorFile::FieldType::kFlag ? 1 : 18);
+    if (f.type == VectorFile::FieldType::kInteger) field.SetWidth(18);
+    if (f.type == VectorFile::FieldType::kFlag) field.SetWidth(1);
+    if (f.type == VectorFile::FieldType::kBoolean) field.SetSubType(OFSTBoolean);
     if (layer.CreateField(&field) != OGRERR_NONE) {
       throw gdal_failure(std::string("cannot create the field ") + f.name, path);
     }
@@ -144,14 +161,15 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
                   "is a link, and a shapefile is several files; give the name it leads to", path_);
     }
     const fs::path wanted(target_);
-    folder_ = (wanted.parent_path() /
-               ("." + wanted.filename().string() + ".tmp" + std::to_string(getpid())))
-                  .string();
-    std::error_code failed;
-    if (!fs::create_directory(folder_, failed)) {
-      throw system_error(failed ? failed.value() : EEXIST, "cannot create the output", path_);
+    folder_.emplace((wanted.parent_path() /
+                     ("." + wanted.filename().string() + ".tmp" + std::to_string(getpid())))
+                        .string());
+    if (::mkdir(folder_->path().c_str(), 0777) != 0) {
+      const int failure = errno;
+      folder_->keep();  // what is there is not ours
+      throw system_error(failure, "cannot create the output", path_);
     }
-    target = (fs::path(folder_) / fs::path(path_).filename()).string();
+    target = (fs::path(folder_->path()) / fs::path(path_).filename()).string();
   }
   try {
     GDALDriver& driver = driver_named(format.driver);
@@ -169,32 +187,17 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
       throw gdal_failure("cannot begin to write the output", path_);
     }
   } catch (...) {
-    dataset_.reset();
-    if (!folder_.empty()) {
-      std::error_code ignored;
-      fs::remove_all(folder_, ignored);
-    }
+    dataset_.reset();  // before its folder goes
     throw;
   }
 }
 
-VectorFile::~VectorFile() {
-  dataset_.reset();
-  if (!folder_.empty()) {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-}
+VectorFile::~VectorFile() { dataset_.reset(); }
 
 void VectorFile::add(std::unique_ptr<OGRGeometry> geometry, std::span<const Value> values) {
   OGRFeature feature(layer_->GetLayerDefn());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const int field = static_cast<int>(i);
-    if (const auto* integer = std::get_if<std::int64_t>(&values[i])) {
-      feature.SetField(field, static_cast<GIntBig>(*integer));
-    } else {
-      feature.SetField(field, std::get<double>(values[i]));
-    }
+    set_field(feature, static_cast<int>(i), values[i]);
   }
   feature.SetGeometryDirectly(geometry.release());
   if (layer_->CreateFeature(&feature) != OGRERR_NONE) {
@@ -213,20 +216,21 @@ void VectorFile::close() {
   }
   dataset_.reset();
   if (CPLGetLastErrorType() == CE_Failure) throw gdal_failure("cannot write the output", path_);
-  if (!folder_.empty() && &vector_format_of(path_) == &kGeoJson &&
-      !ends_as_geojson((fs::path(folder_) / fs::path(path_).filename()).string())) {
+  if (folder_ && &vector_format_of(path_) == &kGeoJson &&
+      !ends_as_geojson((fs::path(folder_->path()) / fs::path(path_).filename()).string())) {
     throw gdal_failure("cannot write the output", path_);
   }
 }
 
 void VectorFile::publish() {
   close();
-  if (folder_.empty()) return;
+  require_memory_given(path_);
+  if (!folder_) return;
   // A shapefile is several files. The one that was asked for gets its name last, so that what is
   // there is complete.
   const fs::path target(target_);
   std::vector<std::pair<std::string, fs::path>> files;  // by the names that they get
-  for (const auto& entry : fs::directory_iterator(folder_)) {
+  for (const auto& entry : fs::directory_iterator(folder_->path())) {
     const bool is_itself = entry.path().filename() == fs::path(path_).filename();
     files.emplace_back(
         is_itself ? target.filename().string() : published_name(entry.path(), target),

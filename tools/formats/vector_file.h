@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -12,6 +13,7 @@
 #include <ogr_feature.h>
 
 #include "engine/geometry/affine.h"
+#include "tools/output/temporary_path.h"
 
 class GDALDataset;
 class OGRLayer;
@@ -38,8 +40,8 @@ struct VectorFormat {
 class VectorFile {
  public:
   /// kInteger has 64 bits, but in a shapefile, which keeps digits, 18 digits and a sign. kFlag is 0
-  /// or 1.
-  enum class FieldType { kInteger, kFlag, kReal };
+  /// or 1, kBoolean true or false where the format knows them.
+  enum class FieldType { kInteger, kFlag, kReal, kText, kBoolean };
   struct Field {
     const char* name;
     FieldType type;
@@ -50,7 +52,8 @@ class VectorFile {
     std::vector<Field> fields;
     std::string crs_wkt;  ///< Empty: unknown.
   };
-  using Value = std::variant<std::int64_t, double>;
+  /// A number that is infinite or unknown leaves its field null.
+  using Value = std::variant<std::int64_t, double, std::string>;
 
   /// @throws Error as check_output; io_error when GDAL cannot create the file
   VectorFile(std::string path, bool overwrite, const Layer& layer);
@@ -69,7 +72,8 @@ class VectorFile {
   void close();
 
   std::string path_, target_;  ///< `path_` as given, for messages; `target_` where it leads.
-  std::string folder_;         ///< For the work, temporary; empty on stdout.
+  /// For the work; none on stdout.
+  std::optional<TemporaryPath> folder_;
   bool overwrite_;
   std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> dataset_;
   OGRLayer* layer_ = nullptr;

@@ -111,19 +111,28 @@ void check_output(const std::string& path, bool overwrite) {
   }
 }
 
+std::string target_of(const std::string& path, bool overwrite) {
+  check_output(path, overwrite);
+  return output_target(path);
+}
+
 OutputFile::OutputFile(std::string path, bool overwrite, FileLayer& files)
-    : files_(files), path_(std::move(path)), overwrite_(overwrite) {
-  check_output(path_, overwrite_);
-  target_ = output_target(path_);
-  temporary_ = target_ + ".tmp" + std::to_string(getpid());
-  fd_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (fd_ < 0) throw system_error(errno, "cannot create the output", path_);
+    : files_(files),
+      path_(std::move(path)),
+      target_(target_of(path_, overwrite)),
+      temporary_(target_ + ".tmp" + std::to_string(getpid())),
+      overwrite_(overwrite) {
   buffer_.reserve(kBufferBytes);
+  fd_ = open(temporary_.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (fd_ < 0) {
+    const int failure = errno;
+    temporary_.keep();  // what is there is not ours
+    throw system_error(failure, "cannot create the output", path_);
+  }
 }
 
 OutputFile::~OutputFile() {
   if (fd_ >= 0) close(fd_);
-  if (!temporary_.empty()) unlink(temporary_.c_str());
 }
 
 void OutputFile::write(const void* data, std::size_t bytes) {
@@ -167,8 +176,8 @@ void OutputFile::publish() {
   fd_ = -1;
   if (closed != 0) throw system_error(errno, "cannot close", path_);
   if (overwrite_) remove_companions(target_);
-  rename_into_place(files_, temporary_, target_, overwrite_);
-  temporary_.clear();
+  rename_into_place(files_, temporary_.path(), target_, overwrite_);
+  temporary_.keep();
 }
 
 void move_into_place(const std::string& from, const std::string& to, bool overwrite,

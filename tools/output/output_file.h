@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "storage/file/file_layer.h"
+#include "tools/output/temporary_path.h"
 
 namespace ptin::tools {
 
@@ -26,6 +27,9 @@ namespace ptin::tools {
 ///                is no regular file, or is "-" (standard output); not_found when its folder does
 ///                not exist
 void check_output(const std::string& path, bool overwrite);
+
+/// The target of an output that can be put there.  @throws Error as check_output()
+[[nodiscard]] std::string target_of(const std::string& path, bool overwrite);
 
 /// Syncs the finished file `from`, then gives it the name `to` in one step.
 /// REQUIRES: both names are in one file system.
@@ -69,7 +73,7 @@ class OutputFile {
 
   FileLayer& files_;
   std::string path_, target_;  ///< `path_` as given, for messages; `target_` where it leads.
-  std::string temporary_;
+  TemporaryPath temporary_;
   bool overwrite_;
   int fd_ = -1;
   std::vector<char> buffer_;

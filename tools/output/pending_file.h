@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "tools/output/temporary_path.h"
+
 namespace ptin::tools {
 
 /// A name beside the target, with the same extension, that becomes the target or disappears.
@@ -14,11 +16,9 @@ class PendingFile {
   PendingFile(std::string path, bool overwrite);
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
-  /// Removes the temporary file, and the side files that GDAL and SQLite keep beside it.
-  ~PendingFile();
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  [[nodiscard]] const std::string& temporary() const noexcept { return temporary_; }
+  [[nodiscard]] const std::string& temporary() const noexcept { return temporary_.path(); }
 
   /// Syncs the temporary file, renames it, syncs the folder, and removes the side files. With
   /// `overwrite` the companions of the file that it replaces are removed first.
@@ -28,10 +28,8 @@ class PendingFile {
   void publish();
 
  private:
-  void remove_side_files() const noexcept;
-
   std::string path_, target_;  ///< `path_` as given, for messages; `target_` where it leads.
-  std::string temporary_;
+  TemporaryPath temporary_;    ///< With the side files that GDAL and SQLite keep beside it.
   bool overwrite_;
 };
 

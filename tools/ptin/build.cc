@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -15,6 +17,7 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
+#include "engine/error.h"
 #include "storage/file/file_questions.h"
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
@@ -23,6 +26,7 @@
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
 #include "tools/progress_fd.h"
+#include "tools/ptin/error_stats.h"
 #include "tools/ptin/query_options.h"
 #include "tools/thread_count.h"
 
@@ -34,6 +38,7 @@ struct BuildCommand {
   std::vector<std::string> inputs;
   std::string output;
   std::string cost = "error";
+  std::string duplicates, returns;
   std::vector<double> bbox;
   BuildOptions options;
   bool overwrite = false;
@@ -48,10 +53,28 @@ CostModel cost_of(const std::string& name) {
   return name == "elevation" ? CostModel::kElevation : CostModel::kError;
 }
 
+std::optional<PointMerge> merge_of(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  if (name == "min") return PointMerge::kLowest;
+  if (name == "max") return PointMerge::kHighest;
+  return name == "first" ? PointMerge::kFirst : PointMerge::kMean;
+}
+
+ReturnChoice returns_of(const std::string& name) {
+  if (name == "first") return ReturnChoice::kFirst;
+  return name == "last" ? ReturnChoice::kLast : ReturnChoice::kAll;
+}
+
 /// Puts the options together and looks at the output; what their values may be is build()'s matter.
 void check_command(BuildCommand& command) {
   BuildOptions& options = command.options;
+  if (command.inputs.empty() && !options.columns.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "no input; all that follows --columns names columns, so put INPUT before it");
+  }
   options.cost = cost_of(command.cost);
+  options.duplicates = merge_of(command.duplicates);
+  options.returns = returns_of(command.returns);
   if (!command.bbox.empty())
     options.bbox = {command.bbox[0], command.bbox[1], command.bbox[2], command.bbox[3]};
   // An interrupted build may have been killed when its output had just got its name.
@@ -60,7 +83,33 @@ void check_command(BuildCommand& command) {
   check_output(command.output, command.overwrite || is_resumed);
 }
 
-nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
+double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
+
+/// How far merging moved a height, in steps between heights.
+double height_steps(const BuildReport& r) {
+  return ratio(r.largest_shift_height, r.height_quantum);
+}
+
+/// Points with heights far apart are hardly repeated ones: a mean of them may lie where no ground
+/// is. Whoever named the rule knows that.
+void warn_of_merging(const BuildCommand& command, const BuildReport& r, const Context& context) {
+  constexpr double kManySteps = 100.0;
+  if (command.options.duplicates || height_steps(r) <= kManySteps || context.json || context.quiet)
+    return;
+  std::fprintf(stderr,
+               "ptin: warning: %s fell together with others, at heights up to %s (%s steps of %s) "
+               "away from the mean that was taken; --duplicates min, max or first takes one of "
+               "them, and of LAS --returns last leaves what lies near the ground\n",
+               counted(r.merged_points, "point").c_str(),
+               short_number(r.largest_shift_height).c_str(), short_number(height_steps(r)).c_str(),
+               short_number(r.height_quantum).c_str());
+}
+
+/// Where flat parts are this much of a file, it says how to leave them out.
+constexpr double kMuchFlat = 0.2;
+
+nlohmann::json report_json(const BuildCommand& command, const BuildReport& r,
+                           const FlatRecords& flat) {
   return {{"output", command.output},
           {"samples", r.source_samples},
           {"void_samples", r.void_samples},
@@ -69,19 +118,56 @@ nlohmann::json report_json(const BuildCommand& command, const BuildReport& r) {
           {"left_out_triangles", r.left_out_triangles},
           {"void_triangles", r.void_triangles},
           {"merged_points", r.merged_points},
-          {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
+          {"largest_shift",
+           {{"plan", r.largest_shift_plan},
+            {"height", r.largest_shift_height},
+            {"height_steps", height_steps(r)}}},
           {"height_rounding", r.height_rounding},
           {"vertices", r.vertices},
           {"records", r.records},
           {"t0_vertices", r.t0_vertices},
           {"rank", r.max_rank},
           {"bytes", r.file_bytes},
+          {"source_bytes", r.source_bytes > 0 ? nlohmann::json(r.source_bytes) : nlohmann::json()},
+          {"flat",
+           {{"records", flat.records},
+            {"bytes", flat.bytes},
+            {"max_error", flat.max_error ? nlohmann::json(*flat.max_error) : nlohmann::json()}}},
           {"seconds", r.seconds}};
 }
 
-double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
+/// Commands that can be pasted.
+void print_next(const BuildCommand& command) {
+  const std::string out = shell_word(command.output);
+  std::string verify = "ptin verify " + out + " --against";
+  for (const std::string& input : command.inputs) verify.append(" ").append(shell_word(input));
+  std::printf("next: ptin info %s\n      ptin render %s -o picture.png\n      %s\n", out.c_str(),
+              out.c_str(), verify.c_str());
+}
 
-void print_report(const BuildCommand& command, const BuildReport& r) {
+/// The last lines: how large the file is, and how it would be smaller.
+void print_size(const BuildCommand& command, const BuildReport& r, const FlatRecords& flat) {
+  const auto bytes = static_cast<double>(r.file_bytes);
+  std::printf("  size       %s, %.1f bytes a vertex", human_bytes(r.file_bytes).c_str(),
+              ratio(bytes, static_cast<double>(r.t0_vertices + r.records)));
+  if (r.source_bytes > 0) {
+    std::printf(
+        "; %s times the source's %s",
+        short_number(std::round(ratio(bytes, static_cast<double>(r.source_bytes)) * 100) / 100)
+            .c_str(),
+        human_bytes(r.source_bytes).c_str());
+  }
+  std::printf("\n");
+  const double share = ratio(static_cast<double>(flat.records), static_cast<double>(r.records));
+  if (share < kMuchFlat || command.options.max_error > 0) return;
+  std::printf(
+      "  flat       %s of the records (%.0f %%, about %s) have error 0: built with --max-error %s\n"
+      "             the file lacks them, and no sample differs\n",
+      grouped(flat.records).c_str(), 100 * share, human_bytes(flat.bytes).c_str(),
+      exact_number(*flat.max_error).c_str());
+}
+
+void print_report(const BuildCommand& command, const BuildReport& r, const FlatRecords& flat) {
   const char* out = command.output.c_str();
   std::printf("%s: %s\n", out, human_bytes(r.file_bytes).c_str());
   std::printf("  samples    %s with a height, %s void\n", grouped(r.source_samples).c_str(),
@@ -111,15 +197,12 @@ void print_report(const BuildCommand& command, const BuildReport& r) {
               grouped(r.vertices).c_str(), grouped(r.t0_vertices).c_str(),
               grouped(r.records).c_str());
   std::printf("  rank       %u\n", unsigned{r.max_rank});
-  std::printf(
-      "  size       %.1f bytes a vertex\n",
-      ratio(static_cast<double>(r.file_bytes), static_cast<double>(r.t0_vertices + r.records)));
   std::printf("  speed      %s vertices/s, %.2f s\n",
               grouped(static_cast<std::uint64_t>(ratio(static_cast<double>(r.vertices), r.seconds)))
                   .c_str(),
               r.seconds);
-  std::printf("next: ptin info %s\n      ptin render %s -o picture.png\n", out, out);
-  std::printf("      ptin verify %s --against %s\n", out, command.inputs.front().c_str());
+  print_size(command, r, flat);
+  print_next(command);
 }
 
 nlohmann::json plan_json(const BuildPlan& p) {
@@ -283,6 +366,19 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
   return resources;
 }
 
+/// The report, in text or JSON.
+void tell(const BuildCommand& command, const BuildReport& report, const Context& context) {
+  warn_of_merging(command, report, context);
+  if (!context.json && context.quiet) return;
+  const FlatRecords flat =
+      flat_records(*StoreFile::open(output_target(command.output), PageAccess::kPread));
+  if (context.json) {
+    print_json(report_json(command, report, flat));
+  } else {
+    print_report(command, report, flat);
+  }
+}
+
 int run_build(BuildCommand& command, const Context& context) {
   if (command.discard && command.inputs.empty()) {
     const bool found = Workspace::discard(FileLayer::system(), output_target(command.output));
@@ -308,10 +404,12 @@ int run_build(BuildCommand& command, const Context& context) {
                  report.left_behind.c_str());
   }
   if (command.dry_run) return kExitDone;
-  if (context.json) {
-    print_json(report_json(command, report));
-  } else if (!context.quiet) {
-    print_report(command, report);
+  try {
+    tell(command, report, context);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::resource_exhausted,
+                "the file is complete, but the system gives no memory for the report of it",
+                command.output);
   }
   return kExitDone;
 }
@@ -335,7 +433,24 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("N");
+  app.add_option("--returns", command.returns,
+                 "LAS: keep the last return of each pulse (near the ground), the first, or all\n"
+                 "(default)")
+      ->check(CLI::IsMember({"all", "first", "last"}))
+      ->type_name("WHICH");
+  app.add_option("--duplicates", command.duplicates,
+                 "Points, --repair: the height of those that fall together: mean (default), min, "
+                 "max, or\n"
+                 "first (of the first input that has one)")
+      ->check(CLI::IsMember({"mean", "min", "max", "first"}))
+      ->type_name("RULE");
   app.add_option("--layer", options.layer, "Points of this layer, where a file holds several")
+      ->type_name("NAME");
+  app.add_option("--columns", options.columns,
+                 "Text: the names of its columns from the left; x, y, z or as a header may name\n"
+                 "them, by any other name columns that are passed over (default: a header's, else "
+                 "x y z)")
+      ->delimiter(',')
       ->type_name("NAME");
   app.add_option("--z-field", options.z_field,
                  "The attribute that holds the height of a layer's points (default: their z)")
@@ -368,9 +483,10 @@ void add_work_options(CLI::App& app, BuildCommand& command) {
                  "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less\n"
                  "where a cgroup or a resource limit allows less)")
       ->type_name("SIZE");
-  app.add_option("--threads", command.threads,
-                 "Threads (default: one a core); fewer are used where memory is short. The output\n"
-                 "is the same for any number")
+  app.add_option(
+         "--threads", command.threads,
+         "Threads (default: one a processor that affinity and cgroups leave this process);\n"
+         "fewer are used where memory is short. The output is the same for any number")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   app.add_option("--tmp", command.tmp, "Folder for temporary files (default: beside the output)")
@@ -411,7 +527,6 @@ Action declare_build(CLI::App& app, Context& context) {
       ->capture_default_str();
   add_work_options(app, *command);
   app.add_flag("--overwrite", command->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [command, &context] { return run_build(*command, context); };
 }
 

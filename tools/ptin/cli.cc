@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <iostream>
+#include <span>
 #include <string_view>
 
 #include <cpl_error.h>
@@ -15,6 +16,7 @@
 #include "tools/facts/human.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/kept_inputs.h"
+#include "tools/refused_memory.h"
 
 namespace ptin::tools {
 
@@ -26,6 +28,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin build dem.tif -o dem.ptin\n"
      "  ptin build north.vrt -o north.ptin --max-error 5 --vertical-crs EPSG:5773\n"
      "  ptin build points.csv -o points.ptin --a-srs EPSG:2154 --resolution 0.01\n"
+     "  ptin build survey.txt -o survey.ptin --columns id n e z code\n"
      "  ptin build scan_*.las --class 2 -o ground.ptin\n"
      "  ptin build survey.gpkg --layer spots --z-field height -o survey.ptin\n",
      declare_build},
@@ -34,8 +37,11 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin info dem.ptin\n"
      "  ptin info dem.ptin --json | jq .vertices_at_tolerance\n",
      declare_info},
-    {"verify", "Check a .ptin file: checksums, structure, and its errors against the source",
-     "Exit status 0 when everything holds, 1 with the first faults listed when not.\n\n"
+    {"verify",
+     "Check a .ptin file: checksums, structure, records, and its errors against the source",
+     "Every checksum and rule of the format is looked at, and every split applied: it must find\n"
+     "its triangles, and the records that it needs must contain its own. Exit status 0 when\n"
+     "everything holds, 1 with the first faults listed when not.\n\n"
      "Examples:\n"
      "  ptin verify dem.ptin\n"
      "  ptin verify dem.ptin --against dem.tif\n"
@@ -45,12 +51,13 @@ constexpr auto kCommands = std::to_array<Command>({
      "Without a region the whole terrain is refined. With a region the result covers the whole "
      "terrain, coarse outside\n"
      "of the region; --clip keeps the triangles that meet it, --cut cuts them at its border.\n"
-     "Without --error and --vertices the result is exact: every triangle of the full TIN in the "
-     "region.\n\n"
+     "Without --error, --vertices and --triangles the result is exact: every triangle of the full "
+     "TIN in the region.\n\n"
      "Examples:\n"
      "  ptin refine dem.ptin --window 385000 3790000 390000 3795000 --clip -o valley.ply\n"
      "  ptin refine dem.ptin --polygon parish.geojson --cut --error 2 -o parish.glb\n"
      "  ptin refine dem.ptin --vertices 50000 -o small.obj --stats\n"
+     "  ptin refine dem.ptin --triangles 20000 -o game.glb\n"
      "  ptin refine dem.ptin --point 387500 3792500 --clip -o triangle.2dm\n",
      declare_refine},
     {"isoline", "Write isolines (contours) as lines, or as polygons between them",
@@ -77,7 +84,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin export dem.ptin -o dem.ply\n"
      "  ptin export dem.ptin --error 2 --memory 256M -o dem_2m.gpkg\n"
-     "  ptin export dem.ptin --error 5 --pixel-size 90 -o coarse.tif\n"
+     "  ptin export dem.ptin --error 5 --pixel-size 90m -o coarse.tif\n"
      "  ptin export dem.ptin --window 385000 3790000 390000 3795000 --format COG -o valley.tif\n",
      declare_export},
     {"stream", "Send a terrain progressively, the most important first",
@@ -113,7 +120,8 @@ constexpr auto kCommands = std::to_array<Command>({
      "Three answers, told apart: a height (surface), void, outside. None is an error.\n\n"
      "Examples:\n"
      "  ptin locate dem.ptin 387500 3792500 --json\n"
-     "  ptin locate dem.ptin --points wells.gpkg --error 5\n"
+     "  ptin locate dem.ptin --points survey.txt --columns id y x z code\n"
+     "  ptin locate dem.ptin --points tour.gpx --layer waypoints --error 5\n"
      "  ptin locate dem.ptin --points wells.gpkg --vertices 20000\n"
      "  cut -d, -f2,3 track.csv | ptin locate dem.ptin --points - > heights.csv\n",
      declare_locate},
@@ -129,7 +137,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Heights are above ground, or with --absolute absolute.\n\n"
      "Examples:\n"
      "  ptin sight dem.ptin 385000 3790000 2 390000 3795000 10 --json\n"
-     "  ptin sight dem.ptin --pairs links.csv --frequency 5.8e9 > links_seen.csv\n"
+     "  ptin sight dem.ptin --pairs links.csv --frequency 5.8GHz > links_seen.csv\n"
      "  ptin sight dem.ptin --pairs - --verdict --curvature 0 < pairs.txt\n",
      declare_sight},
     {"viewshed", "Find what one observer sees",
@@ -162,27 +170,75 @@ constexpr const char* kExitStatuses =
     "fault of ours.\n";
 
 /// The first word of the command line, where it is no option and names no subcommand; else empty.
-std::string unknown_subcommand(int argc, const char* const* argv) {
-  if (argc < 2 || argv[1][0] == '-') return {};
-  const std::string word = argv[1];
+std::string unknown_subcommand(std::span<const char* const> words) {
+  if (words.empty() || words[0][0] == '-') return {};
+  const std::string word = words[0];
   const bool known = std::any_of(kCommands.begin(), kCommands.end(),
                                  [&](const Command& command) { return word == command.name; });
   return known ? std::string() : word;
 }
 
-/// Writes what CLI11 says about wrong use, and how to get help.
-int report_wrong_use(const CLI::App& app, const CLI::ParseError& error, const std::string& unknown,
-                     bool json) {
-  std::string name;
-  for (const CLI::App* sub : app.get_subcommands()) name = sub->get_name();
-  std::string message = unknown.empty() ? std::string(error.what())
-                                        : std::string("there is no subcommand ").append(unknown);
+/// Declares what holds for every subcommand; last, so that --help ends with it.
+void add_common_options(CLI::App& app, Context& context) {
+  app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
+  app.add_flag("-q,--quiet", context.quiet,
+               "No progress, report or warning: on stderr errors alone");
+}
+
+/// The app that reads the options: that of the subcommand which the first word names, if it does.
+const CLI::App& app_of(const CLI::App& program, std::span<const char* const> words) {
+  const bool is_named = !words.empty() && words[0][0] != '-' && unknown_subcommand(words).empty();
+  return is_named ? *program.get_subcommand(words[0]) : program;
+}
+
+bool has_option(const CLI::App& app, const std::string& name) {
+  return app.get_option_no_throw(name) != nullptr;
+}
+
+/// "-of" where --of is an option, as GDAL's tools write it; else empty. It would be read as `-o f`.
+std::string one_hyphen_too_few(const CLI::App& app, std::span<const char* const> words) {
+  for (const std::string word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name.size() > 2 && name[0] == '-' && name[1] != '-' && has_option(app, "-" + name))
+      return name;
+  }
+  return {};
+}
+
+/// The first word that can only be meant as an option and is none; else empty. A number below 0 and
+/// a single hyphen are values.
+std::string unknown_option(const CLI::App& app, std::span<const char* const> words) {
+  for (const std::string word : words) {
+    if (word == "--") break;
+    const bool is_number = word.size() > 1 && word[1] >= '0' && word[1] <= '9';
+    if (word.size() < 2 || word[0] != '-' || is_number) continue;
+    const bool is_long = word[1] == '-';
+    const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
+    if (!has_option(app, name)) return is_long ? name : word;
+  }
+  return {};
+}
+
+/// Writes a sentence about wrong use, and how to get help.
+/// @returns the exit status
+int report_wrong_use(const CLI::App& app, std::string message, bool json) {
   for (char& c : message) {
     if (c == '\n') c = ' ';
   }
-  message.append("; see ptin ").append(name).append(name.empty() ? "--help" : " --help");
-  report_error({ErrorCode::invalid_argument, message}, json);
+  const std::string name = app.get_parent() == nullptr ? "" : app.get_name() + " ";
+  report_error({ErrorCode::invalid_argument, message + "; see ptin " + name + "--help"}, json);
   return status_of(ErrorCode::invalid_argument).exit;
+}
+
+/// What is wrong with words that do not parse. CLI11 takes an option that it does not know, and
+/// what follows it, for further values of other options: so those are looked for first.
+std::string fault_of(const CLI::App& app, std::span<const char* const> words,
+                     const CLI::ParseError& error) {
+  if (const std::string word = unknown_subcommand(words); !word.empty())
+    return "there is no subcommand " + word;
+  if (const std::string word = unknown_option(app, words); !word.empty())
+    return "there is no option " + word;
+  return error.what();
 }
 
 }  // namespace
@@ -190,11 +246,6 @@ int report_wrong_use(const CLI::App& app, const CLI::ParseError& error, const st
 std::span<const Command> commands() noexcept { return kCommands; }
 
 const char* exit_statuses() noexcept { return kExitStatuses; }
-
-void add_common_options(CLI::App& app, Context& context, bool has_quiet) {
-  app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
-  if (has_quiet) app.add_flag("-q,--quiet", context.quiet, "No progress and no report");
-}
 
 CommandLine make_command_line(Context& context) {
   CommandLine line;
@@ -209,15 +260,23 @@ CommandLine make_command_line(Context& context) {
     CLI::App* sub = line.app->add_subcommand(command.name, command.summary);
     sub->footer(command.examples);
     line.actions.push_back(command.declare(*sub, context));
+    add_common_options(*sub, context);
   }
   return line;
 }
 
 int run_command_line(int argc, const char* const* argv, Context& context) {
-  const CommandLine line = make_command_line(context);
-  for (int i = 1; i < argc; ++i)
-    context.json = context.json || std::string_view(argv[i]) == "--json";
+  // Before parsing, which may fail.
+  context.json =
+      std::any_of(argv + 1, argv + argc, [](std::string_view word) { return word == "--json"; });
   const bool json = context.json;
+  tell_refused_memory_as_json(json);
+  const CommandLine line = make_command_line(context);
+  const std::span<const char* const> words(argv + 1,
+                                           static_cast<std::size_t>(std::max(argc, 1) - 1));
+  const CLI::App& app = app_of(*line.app, words);
+  if (const std::string word = one_hyphen_too_few(app, words); !word.empty())
+    return report_wrong_use(app, word + " has one hyphen; the option is -" + word, json);
   try {
     line.app->parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
@@ -225,7 +284,7 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
     finish_stdout();
     return status;
   } catch (const CLI::ParseError& error) {
-    return report_wrong_use(*line.app, error, unknown_subcommand(argc, argv), json);
+    return report_wrong_use(app, fault_of(app, words, error), json);
   }
   for (std::size_t i = 0; i < kCommands.size(); ++i) {
     if (!line.app->got_subcommand(kCommands[i].name)) continue;
@@ -237,15 +296,20 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
   return status_of(ErrorCode::internal).exit;
 }
 
+int report_current_error(bool json) noexcept {
+  const Error error = current_error();
+  report_error(error, json);
+  return status_of(error.code()).exit;
+}
+
 int run_program(int argc, const char* const* argv, Context& context) {
+  prepare_for_refused_memory();
   try {
     CPLSetErrorHandler(CPLQuietErrorHandler);
     GDALAllRegister();
     return run_command_line(argc, argv, context);
   } catch (...) {
-    const Error error = current_error();
-    report_error(error, context.json);
-    return status_of(error.code()).exit;
+    return report_current_error(context.json);
   }
 }
 

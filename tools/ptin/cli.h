@@ -25,6 +25,10 @@ struct CommandLine {
 /// @throws Error  what the subcommand throws
 int run_command_line(int argc, const char* const* argv, Context& context);
 
+/// Reports the exception being handled; returns its exit status. Without memory for that it ends
+/// the process as tools/refused_memory.h says. REQUIRES: called inside a catch block.
+int report_current_error(bool json) noexcept;
+
 /// The whole program but for its signals: registers GDAL's drivers, runs the command line, and
 /// reports what it throws. What GDAL says travels in our own errors, and not to stderr.
 /// @returns the exit status

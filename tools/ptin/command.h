@@ -16,7 +16,7 @@ namespace ptin::tools {
 struct Context {
   std::stop_token stop;  ///< Fires on SIGINT and SIGTERM.
   bool json = false;     ///< --json: the answer on stdout and an error on stderr as JSON.
-  bool quiet = false;    ///< -q: no progress, no report.
+  bool quiet = false;    ///< -q: no progress, report or warning; what was asked for is printed.
 };
 
 /// Runs a parsed subcommand; returns the exit status.  @throws Error
@@ -26,7 +26,8 @@ struct Command {
   const char* name;
   const char* summary;   ///< One line.
   const char* examples;  ///< Ends --help.
-  /// Declares options on `app` and returns what to run after parsing. `context` outlives both.
+  /// Declares options on `app`, but for those of Context, which every subcommand has, and returns
+  /// what to run after parsing. `context` outlives both.
   Action (*declare)(CLI::App& app, Context& context);
 };
 
@@ -48,8 +49,5 @@ Action declare_isoline(CLI::App& app, Context& context);
 Action declare_highest(CLI::App& app, Context& context);
 Action declare_viewshed(CLI::App& app, Context& context);
 Action declare_completion(CLI::App& app, Context& context);
-
-/// Declares --json (and -q where there is something to silence).
-void add_common_options(CLI::App& app, Context& context, bool has_quiet);
 
 }  // namespace ptin::tools

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin completion: a bash script made from the same table as parsing and help.
-#include <cstdio>
 #include <memory>
 
 #include "tools/error_status.h"
+#include "tools/output/standard_output.h"
 #include "tools/ptin/cli.h"
 #include "tools/ptin/man_page.h"
+#include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
 
@@ -49,14 +50,14 @@ std::string bash_script() {
 
 }  // namespace
 
-Action declare_completion(CLI::App& app, Context& /*context*/) {
+Action declare_completion(CLI::App& app, Context& context) {
   const auto shell = std::make_shared<std::string>();
   app.add_option("SHELL", *shell, "bash; or man for the manual page")
       ->required()
       ->check(CLI::IsMember({"bash", "man"}));
-  return [shell] {
-    const std::string script = *shell == "man" ? man_page() : bash_script();
-    std::fwrite(script.data(), 1, script.size(), stdout);
+  return [shell, &context] {
+    const std::string text = *shell == "man" ? man_page() : bash_script();
+    context.json ? print_json({{"text", text}}) : write_to_stdout(text);
     return kExitDone;
   };
 }

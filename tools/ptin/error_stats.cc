@@ -6,6 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include <nlohmann/json.hpp>
+
+#include "engine/crs/crs_facts.h"
+
 namespace ptin::tools {
 
 std::uint64_t vertices_at(const StoreFile& store, double tolerance) {
@@ -24,6 +28,26 @@ double error_quantile(const StoreFile& store, double share) {
     if (bin.records > 0 && below >= wanted) return bin.upper;
   }
   return 0.0;
+}
+
+FlatRecords flat_records(const StoreFile& store) {
+  constexpr double kFarBelow = 1e-3;
+  FlatRecords flat;
+  double smallest = metadata_of(store).value("height_quantum", 1.0) * kFarBelow;
+  for (const ErrorBin& bin : store.error_bins()) {
+    if (bin.upper == 0) {
+      flat.records += bin.records;
+    } else if (bin.records > 0) {
+      smallest = std::min(smallest, static_cast<double>(bin.upper) / 2);  // below where it begins
+    }
+  }
+  if (flat.records == 0) return flat;
+  const double share =
+      static_cast<double>(flat.records) / static_cast<double>(store.record_count());
+  flat.bytes = static_cast<std::uint64_t>(share * static_cast<double>(store.file_bytes()));
+  const double decade = std::floor(std::log10(smallest) + 1e-9);
+  flat.max_error = decade < 0 ? 1 / std::pow(10.0, -decade) : std::pow(10.0, decade);
+  return flat;
 }
 
 double largest_finite_error(const StoreFile& store) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "storage/store_file.h"
@@ -19,6 +20,17 @@ namespace ptin::tools {
 /// The error that `share` (0 to 1) of the records do not exceed, rounded up to the end of its bin;
 /// may be +infinity.
 [[nodiscard]] double error_quantile(const StoreFile& store, double share);
+
+/// Records of error 0: without them no sample differs. Most of them lie in flat parts.
+struct FlatRecords {
+  std::uint64_t records = 0;
+  std::uint64_t bytes = 0;  ///< Of the file: their share of it.
+  /// What to give as --max-error so that a build leaves them out, and little else: a power of ten
+  /// below every other error, and far below a step between heights. None where there are none.
+  std::optional<double> max_error;
+};
+/// @throws Error corruption as metadata_of()
+[[nodiscard]] FlatRecords flat_records(const StoreFile& store);
 
 /// The largest finite upper end of a bin that has records; 0 when there is none.
 [[nodiscard]] double largest_finite_error(const StoreFile& store);

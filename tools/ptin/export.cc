@@ -18,7 +18,7 @@
 #include "tools/output/file_name.h"
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
-#include "tools/ptin/own_pixel_size.h"
+#include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -29,7 +29,7 @@ struct ExportOptions {
   TerrainOptions terrain;
   RegionOptions region;
   DetailOptions detail;
-  std::vector<double> pixel_size;
+  std::vector<std::string> pixel_size;
   std::optional<double> nodata;
   std::vector<std::string> creation_options;
   std::string format;
@@ -92,10 +92,7 @@ ExportMemory memory_of(const ExportOptions& options) {
 
 void check_options(const ExportOptions& options, const ExportFormat& format) {
   check_detail(options.detail);
-  for (const double size : options.pixel_size) {
-    if (!(size > 0 && std::isfinite(size)))
-      throw Error(ErrorCode::invalid_argument, "--pixel-size must be a number > 0, in map units");
-  }
+  static_cast<void>(pixel_sides_of(options.pixel_size));
   const bool is_raster = format.make_sink == nullptr;
   if (!is_raster &&
       (!options.pixel_size.empty() || options.nodata || !options.creation_options.empty())) {
@@ -114,12 +111,6 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
   check_output(options.output, options.overwrite);
 }
 
-/// The pixel size that was asked for, else that of the source's raster.
-std::array<double, 2> pixel_size_of(const ExportOptions& options, const StoreFile& store) {
-  if (!options.pixel_size.empty()) return {options.pixel_size.front(), options.pixel_size.back()};
-  return own_pixel_size(store);
-}
-
 /// The sum of two bounds, rounded up.
 double sum_above(double a, double b) {
   return a == 0 || b == 0 ? a + b : std::nextafter(a + b, HUGE_VAL);
@@ -129,6 +120,7 @@ double sum_above(double a, double b) {
 struct Exported {
   std::uint64_t vertices = 0, triangles = 0, cells = 0;
   std::int64_t columns = 0, rows = 0;
+  std::array<double, 2> pixel_size{};  ///< Map units.
   Certificate certificate;
   double rounding = 0.0;  ///< Of heights to pixels; rasters only.
 };
@@ -152,17 +144,26 @@ Exported export_triangles(const PartRefiner& refiner, const ExportFormat& format
   return made;
 }
 
-Exported export_pixels(const PartRefiner& refiner, const ExportOptions& options,
-                       const RasterTarget& target, const Report& report) {
-  const StoreFile& store = refiner.terrain().store();
+/// The pixels that were asked for.
+PixelGrid grid_of(const ExportOptions& options, const StoreFile& store, const CrsFacts& crs) {
   std::optional<Window> window;
-  if (const auto region = region_of(options.region, target.crs.wkt))
+  if (const auto region = region_of(options.region, store.facts(), crs.wkt))
     window = std::get<Window>(*region);
-  const PixelGrid grid(store.facts(), pixel_size_of(options, store), window);
+  const std::array<double, 2> size = options.pixel_size.empty()
+                                         ? own_pixel_size(store)
+                                         : pixel_size_of(pixel_sides_of(options.pixel_size), crs,
+                                                         middle_of(window, store.facts()));
+  return {store.facts(), size, window};
+}
+
+Exported export_pixels(const PartRefiner& refiner, const PixelGrid& grid,
+                       const RasterTarget& target, const Report& report) {
   Exported made;
   made.rounding = export_raster(refiner, grid, target, report);
   made.columns = grid.columns();
   made.rows = grid.rows();
+  const std::array<double, 6> transform = grid.geotransform();
+  made.pixel_size = {transform[1], -transform[5]};
   return made;
 }
 
@@ -181,10 +182,13 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   const CrsFacts crs = crs_facts(terrain.store());
   const ExportMemory memory = memory_of(options);
   PartRequest request;
-  if (format.make_sink != nullptr) request.region = region_of(options.region, crs.wkt);
+  if (format.make_sink != nullptr)
+    request.region = region_of(options.region, terrain.store().facts(), crs.wkt);
   request.detail = detail_of(options.detail);
   request.limits.memory_bytes = memory.part;
   request.limits.stop = context.stop;
+  std::optional<PixelGrid> grid;
+  if (format.make_sink == nullptr) grid.emplace(grid_of(options, terrain.store(), crs));
   const PartRefiner refiner = terrain.parts(request);
 
   Progress progress(Progress::style_for(context.quiet, stderr));
@@ -213,7 +217,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
                               crs,
                               memory.buffers,
                               memory.index};
-    made = export_pixels(refiner, options, target, report);
+    made = export_pixels(refiner, *grid, target, report);
   }
   progress.finish();
   made.certificate = refiner.detail().certificate();
@@ -248,6 +252,7 @@ int run_export(const ExportOptions& options, const Context& context) {
     if (is_raster) {
       answer["width"] = made.columns;
       answer["height"] = made.rows;
+      answer["pixel_size"] = made.pixel_size;
     } else {
       answer["vertices"] = made.vertices;
       answer["triangles"] = made.triangles;
@@ -257,7 +262,8 @@ int run_export(const ExportOptions& options, const Context& context) {
   } else if (!context.quiet) {
     const std::string size =
         is_raster ? grouped(static_cast<std::uint64_t>(made.columns)) + " x " +
-                        grouped(static_cast<std::uint64_t>(made.rows)) + " pixels"
+                        grouped(static_cast<std::uint64_t>(made.rows)) + " pixels of " +
+                        short_number(made.pixel_size[0]) + " x " + short_number(made.pixel_size[1])
                   : counted(made.vertices, "vertex", "vertices") + ", " +
                         counted(made.triangles, "triangle") + " in " + counted(made.cells, "cell");
     const bool may_change_class = !facts.free_of_voids && !certificate.complete;
@@ -287,8 +293,9 @@ Action declare_export(CLI::App& app, Context& context) {
                  "The format: PLY, GPKG, FlatGeobuf, GTiff, COG (default: by the extension)")
       ->type_name("NAME");
   app.add_option("--pixel-size", options->pixel_size,
-                 "Rasters: the size of a pixel in map units, one number or two (default: the\n"
-                 "source raster's)")
+                 "Rasters: the size of a pixel, one number or two, in map units, or over ground as "
+                 "90m, 0.1km or 300ft, converted at the middle of the window (default: the source "
+                 "raster's)")
       ->expected(1, 2)
       ->type_name("SIZE");
   app.add_option("--nodata", options->nodata,
@@ -301,7 +308,6 @@ Action declare_export(CLI::App& app, Context& context) {
   app.add_option("--memory", options->memory, "Memory to work in, as 512M or 2G (default 1G)")
       ->type_name("SIZE");
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_export(*options, context); };
 }
 

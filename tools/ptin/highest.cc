@@ -53,7 +53,7 @@ int run_highest(const HighestOptions& options, const Context& context) {
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   HighestRequest request;
-  if (const auto region = region_of(options.region, crs.wkt)) {
+  if (const auto region = region_of(options.region, terrain.store().facts(), crs.wkt)) {
     request.window = std::get<Window>(*region);
   }
   request.lowest = options.lowest;
@@ -101,7 +101,6 @@ Action declare_highest(CLI::App& app, Context& context) {
       "The highest of the TIN of the terrain's N most important vertices; its height "
       "comes with an interval");
   add_memory_option(app, options->memory);
-  add_common_options(app, context, false);
   return [options, &context] { return run_highest(*options, context); };
 }
 

@@ -201,7 +201,6 @@ void print_info(const StoreFile& store, const CrsFacts& crs) {
 Action declare_info(CLI::App& app, Context& context) {
   const auto options = std::make_shared<TerrainOptions>();
   add_terrain_options(app, *options, false);
-  add_common_options(app, context, false);
   return [options, &context] {
     const auto store =
         StoreFile::open(options->file, options->no_mmap ? PageAccess::kPread : PageAccess::kMapped);

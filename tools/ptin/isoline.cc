@@ -213,7 +213,7 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   IsolineRequest request;
   request.levels = levels_of(options.levels, terrain.store().facts(), options.terrain.file);
-  if (const auto region = region_of(options.region, crs.wkt)) {
+  if (const auto region = region_of(options.region, terrain.store().facts(), crs.wkt)) {
     request.window = std::get<Window>(*region);
   }
   request.detail = detail_of(options.detail);
@@ -257,12 +257,13 @@ Action declare_isoline(CLI::App& app, Context& context) {
                  "Memory for the extraction, as 512M or 2G (default 4G); what does not fit goes to "
                  "--tmp")
       ->type_name("SIZE");
-  app.add_option("--threads", options->threads,
-                 "Threads (default: all of the machine); the lines are the same for any number")
+  app.add_option(
+         "--threads", options->threads,
+         "Threads (default: one a processor that affinity and cgroups leave this process);\n"
+         "the lines are the same for any number")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_isoline(*options, context); };
 }
 

@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin locate: triangle and height at points.
-#include <cmath>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "engine/query/terrain.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
+#include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
-#include "tools/output/standard_output.h"
-#include "tools/ptin/number_rows.h"
+#include "tools/formats/vector_file.h"
+#include "tools/ptin/answer_output.h"
+#include "tools/ptin/point_input.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -22,8 +28,10 @@ struct LocateOptions {
   TerrainOptions terrain;
   std::vector<double> point;
   std::string points;
+  InputChoice choice;
   DetailOptions detail;
   std::string memory;
+  AnswerOptions answer;
 };
 
 nlohmann::json point_json(const MapPoint& at, const LocatedPoint& p, const StoreFacts& facts) {
@@ -44,26 +52,62 @@ nlohmann::json point_json(const MapPoint& at, const LocatedPoint& p, const Store
   return json;
 }
 
-/// Prints one row for each point, in the order of the request; what is unknown is left empty.
-void print_rows(const std::vector<MapPoint>& points, const LocateResult& result) {
-  std::string text = "x,y,state,height,height_min,height_max\n";
-  for (std::size_t i = 0; i < points.size(); ++i) {
+/// One row for each point, in the order of the request; what is unknown is left empty.
+std::string csv_of(const Asked<MapPoint>& asked, const LocateResult& result) {
+  std::string text = "x,y,state,height,height_min,height_max";
+  text += asked.ids.empty() ? "\n" : ",id\n";
+  for (std::size_t i = 0; i < asked.all.size(); ++i) {
     const LocatedPoint& p = result.points[i];
-    append_number(text, points[i].x);
+    append_number(text, asked.all[i].x);
     text += ',';
-    append_number(text, points[i].y);
+    append_number(text, asked.all[i].y);
     text.append(",").append(name_of(p.state));
-    for (const double value : {p.height, p.height_min, p.height_max}) {
-      text += ',';
-      if (std::isfinite(value)) append_number(text, value);
-    }
+    for (const double value : {p.height, p.height_min, p.height_max})
+      append_csv_number(text, value);
+    if (!asked.ids.empty()) append_csv_field(text += ',', asked.ids[i]);
     text += '\n';
-    if (text.size() > 65536) {
-      write_to_stdout(text);
-      text.clear();
-    }
   }
-  write_to_stdout(text);
+  return text;
+}
+
+/// The same as a layer of points.
+void write_layer(const AnswerOptions& options, const Asked<MapPoint>& asked,
+                 const LocateResult& result, const CrsFacts& crs) {
+  using Type = VectorFile::FieldType;
+  VectorFile::Layer layer{"points",
+                          wkbPoint,
+                          {{"state", Type::kText},
+                           {"height", Type::kReal},
+                           {"height_min", Type::kReal},
+                           {"height_max", Type::kReal}},
+                          crs.wkt};
+  if (!asked.ids.empty()) layer.fields.push_back({"id", Type::kText});
+  VectorFile file(options.output, options.overwrite, layer);
+  for (std::size_t i = 0; i < asked.all.size(); ++i) {
+    const LocatedPoint& p = result.points[i];
+    std::vector<VectorFile::Value> values = {std::string(name_of(p.state)), p.height, p.height_min,
+                                             p.height_max};
+    if (!asked.ids.empty()) values.emplace_back(asked.ids[i]);
+    file.add(std::make_unique<OGRPoint>(asked.all[i].x, asked.all[i].y), values);
+  }
+  file.publish();
+}
+
+nlohmann::json answer_of(const LocateOptions& options, const Asked<MapPoint>& asked,
+                         const LocateResult& result, const StoreFile& store) {
+  nlohmann::json answer = {{"output", output_json(options.answer)},
+                           {"certified_error", result.certified_error},
+                           {"certified_deviation", result.certified_deviation},
+                           {"exact", result.exact},
+                           {"units", units_json(crs_facts(store))},
+                           {"cost", cost_json(result.cost)},
+                           {"points", nlohmann::json::array()}};
+  for (std::size_t i = 0; i < asked.all.size(); ++i) {
+    nlohmann::json point = point_json(asked.all[i], result.points[i], store.facts());
+    if (!asked.ids.empty()) point["id"] = asked.ids[i];
+    answer["points"].push_back(std::move(point));
+  }
+  return answer;
 }
 
 int run_locate(const LocateOptions& options, const Context& context) {
@@ -71,30 +115,22 @@ int run_locate(const LocateOptions& options, const Context& context) {
     throw Error(ErrorCode::invalid_argument, "give either X Y or --points FILE");
   }
   check_detail(options.detail);
+  const AnswerForm form = form_of(options.answer, context.json);
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const std::vector<MapPoint> points =
-      options.points.empty() ? std::vector<MapPoint>{{options.point[0], options.point[1]}}
-                             : read_points(options.points, crs.wkt);
+  const Asked<MapPoint> asked = options.points.empty()
+                                    ? Asked<MapPoint>{{{options.point[0], options.point[1]}}, {}}
+                                    : read_points(options.points, options.choice, crs.wkt);
   LocateRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
-  const LocateResult result = terrain.locate(points, request);
-  if (!context.json) {
-    print_rows(points, result);
-    return kExitDone;
+  const LocateResult result = terrain.locate(asked.all, request);
+  if (form == AnswerForm::kLayer) write_layer(options.answer, asked, result, crs);
+  if (form == AnswerForm::kCsv || !context.json) {
+    write_csv(options.answer, form, context.json, csv_of(asked, result));
   }
-  nlohmann::json answer = {{"certified_error", result.certified_error},
-                           {"certified_deviation", result.certified_deviation},
-                           {"exact", result.exact},
-                           {"units", units_json(crs)},
-                           {"cost", cost_json(result.cost)},
-                           {"points", nlohmann::json::array()}};
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    answer["points"].push_back(point_json(points[i], result.points[i], terrain.store().facts()));
-  }
-  print_json(answer);
+  if (context.json) print_json(answer_of(options, asked, result, terrain.store()));
   return kExitDone;
 }
 
@@ -104,15 +140,17 @@ Action declare_locate(CLI::App& app, Context& context) {
   const auto options = std::make_shared<LocateOptions>();
   add_terrain_options(app, options->terrain, true);
   app.add_option("X_Y", options->point, "A point in map units")->expected(2)->type_name("X Y");
-  app.add_option("--points", options->points,
-                 "Points: text with x and y in the first columns, or in those that a header names "
-                 "so (- reads standard input), or a vector file (transformed to the terrain's CRS)")
-      ->type_name("FILE");
+  auto* points = app.add_option(
+      "--points", options->points,
+      "Points: text with x and y in the first columns, or in those that a header names so (- "
+      "reads standard input), or a vector file (transformed to the terrain's CRS)");
+  points->type_name("FILE");
+  add_input_options(app, options->choice, points, "x, y");
   add_detail_options(app, options->detail, "; heights come with intervals",
                      "Ask the TIN of the terrain's N most important vertices; heights come with "
                      "intervals");
   add_memory_option(app, options->memory);
-  add_common_options(app, context, false);
+  add_answer_options(app, options->answer);
   return [options, &context] { return run_locate(*options, context); };
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// ptin profile: heights along a line, as CSV, GeoJSON or a picture.
+// ptin profile: heights along a line, as CSV, a layer or a picture.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <ogr_geometry.h>
+
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
@@ -19,11 +21,11 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
+#include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
-#include "tools/output/file_name.h"
-#include "tools/output/output_file.h"
-#include "tools/output/standard_output.h"
-#include "tools/ptin/number_rows.h"
+#include "tools/formats/vector_file.h"
+#include "tools/ptin/answer_output.h"
+#include "tools/ptin/point_input.h"
 #include "tools/ptin/query_options.h"
 #include "tools/render/overlay.h"
 
@@ -34,10 +36,10 @@ namespace {
 struct ProfileOptions {
   TerrainOptions terrain;
   std::string line;
+  InputChoice choice;
   DetailOptions detail;
   std::string memory;
-  std::string output;
-  bool overwrite = false;
+  AnswerOptions answer;
 };
 
 /// The unit of distances along the lines.
@@ -65,8 +67,9 @@ double length_of(const ProfileResult& profile) {
 }
 
 /// The profile as CSV: heights, with the interval that the certificate guarantees.
-std::string csv_of(const ProfileResult& profile) {
-  std::string text = "distance,x,y,height,state,line,height_min,height_max\n";
+std::string csv_of(const ProfileResult& profile, const std::vector<std::string>& ids) {
+  std::string text = "distance,x,y,height,state,line,height_min,height_max";
+  text += ids.empty() ? "\n" : ",id\n";
   for (const ProfilePoint& p : profile.points) {
     for (const double value : {p.distance, p.position.x, p.position.y}) {
       append_number(text, value);
@@ -75,58 +78,55 @@ std::string csv_of(const ProfileResult& profile) {
     if (std::isfinite(p.height)) append_number(text, p.height);
     text.append(",").append(name_of(p.state)).append(",").append(std::to_string(p.line));
     for (const double off : {-profile.certified_deviation, profile.certified_deviation}) {
-      text += ',';
-      if (std::isfinite(p.height + off)) append_number(text, p.height + off);
+      append_csv_number(text, p.height + off);
     }
+    if (!ids.empty()) append_csv_field(text += ',', ids[p.line]);
     text += '\n';
   }
   return text;
 }
 
-/// Adds the member `crs` of GeoJSON 2008, as GDAL does, where the CRS has a code and is not WGS 84
-/// (which GeoJSON means without it).
-void add_crs(const CrsFacts& crs, nlohmann::json& collection) {
-  const std::size_t colon = crs.code.find(':');
-  if (colon == std::string::npos || crs.code == "EPSG:4326") return;
-  const std::string name =
-      "urn:ogc:def:crs:" + crs.code.substr(0, colon) + "::" + crs.code.substr(colon + 1);
-  collection["crs"] = {{"type", "name"}, {"properties", {{"name", name}}}};
-}
-
-/// The coordinates of a MultiLineString: the stretches of one line that have heights.
-nlohmann::json stretches_of(std::span<const ProfilePoint> points) {
-  nlohmann::json lines = nlohmann::json::array();
-  nlohmann::json line = nlohmann::json::array();
-  const auto end_line = [&] {
-    if (line.size() > 1) lines.push_back(std::move(line));
-    line = nlohmann::json::array();
+/// The stretches of one line that have heights.
+std::unique_ptr<OGRGeometry> stretches_of(std::span<const ProfilePoint> points) {
+  auto stretches = std::make_unique<OGRMultiLineString>();
+  auto stretch = std::make_unique<OGRLineString>();
+  const auto end_stretch = [&] {
+    if (stretch->getNumPoints() > 1) stretches->addGeometryDirectly(stretch.release());
+    stretch = std::make_unique<OGRLineString>();
   };
   for (const ProfilePoint& p : points) {
     const bool ground = std::isfinite(p.height);
-    if (ground) line.push_back({p.position.x, p.position.y, p.height});
-    if (!ground || p.state != PointState::kSurface) end_line();
+    if (ground) stretch->addPoint(p.position.x, p.position.y, p.height);
+    if (!ground || p.state != PointState::kSurface) end_stretch();
   }
-  end_line();
-  return lines;
+  end_stretch();
+  stretches->set3D(TRUE);
+  return stretches;
 }
 
-/// The profile as GeoJSON, a feature for each line.
-nlohmann::json geojson_of(const ProfileResult& profile, const CrsFacts& crs) {
-  nlohmann::json features = nlohmann::json::array();
+/// Writes the profile as a layer, a feature for each line.
+void write_layer(const AnswerOptions& options, const ProfileResult& profile,
+                 const std::vector<std::string>& ids, const CrsFacts& crs) {
+  using Type = VectorFile::FieldType;
+  VectorFile::Layer layer{"profile",
+                          wkbMultiLineString25D,
+                          {{"line", Type::kInteger},
+                           {"length", Type::kReal},
+                           {"certified_error", Type::kReal},
+                           {"certified_deviation", Type::kReal},
+                           {"exact", Type::kBoolean}},
+                          crs.wkt};
+  if (!ids.empty()) layer.fields.push_back({"id", Type::kText});
+  VectorFile file(options.output, options.overwrite, layer);
   for (const std::span<const ProfilePoint> line : lines_of(profile)) {
-    const nlohmann::json properties = {{"line", line.front().line},
-                                       {"length", line.back().distance},
-                                       {"certified_error", profile.certified_error},
-                                       {"certified_deviation", profile.certified_deviation},
-                                       {"exact", profile.exact}};
-    features.push_back(
-        {{"type", "Feature"},
-         {"properties", properties},
-         {"geometry", {{"type", "MultiLineString"}, {"coordinates", stretches_of(line)}}}});
+    const auto number = static_cast<std::int64_t>(line.front().line);
+    std::vector<VectorFile::Value> values = {number, line.back().distance, profile.certified_error,
+                                             profile.certified_deviation,
+                                             std::int64_t{profile.exact ? 1 : 0}};
+    if (!ids.empty()) values.emplace_back(ids[line.front().line]);
+    file.add(stretches_of(line), values);
   }
-  nlohmann::json collection = {{"type", "FeatureCollection"}, {"features", features}};
-  add_crs(crs, collection);
-  return collection;
+  file.publish();
 }
 
 /// A number for a plot, with its unit where that has a short name.
@@ -182,56 +182,34 @@ Image plot_of(const ProfileResult& profile, const CrsFacts& crs) {
   return image;
 }
 
-/// Writes the profile into a file, or with "-" to stdout as GeoJSON.
-void write_profile(const ProfileOptions& options, const ProfileResult& profile,
+/// Puts the profile where it is asked for.
+void write_profile(const AnswerOptions& options, AnswerForm form, bool json,
+                   const ProfileResult& profile, const std::vector<std::string>& ids,
                    const CrsFacts& crs) {
-  if (options.output == "-") {
-    write_to_stdout(geojson_of(profile, crs).dump() + "\n");
-    return;
-  }
-  const std::string extension = lower_extension(options.output);
-  if (extension == ".png") {
+  if (form == AnswerForm::kLayer) {
+    write_layer(options, profile, ids, crs);
+  } else if (form == AnswerForm::kOther) {
     write_png(plot_of(profile, crs), options.output, options.overwrite);
-    return;
+  } else if (form == AnswerForm::kCsv || !json) {
+    write_csv(options, form, json, csv_of(profile, ids));
   }
-  OutputFile out(options.output, options.overwrite);
-  out.write(extension == ".csv" ? csv_of(profile) : geojson_of(profile, crs).dump() + "\n");
-  out.publish();
-}
-
-void check_output_name(const ProfileOptions& options, bool json) {
-  if (options.output.empty()) return;
-  if (options.output == "-") {
-    if (!json) return;
-    throw Error(ErrorCode::invalid_argument,
-                "--json and -o - both write to stdout; give the profile a file name");
-  }
-  const std::string extension = lower_extension(options.output);
-  if (extension != ".png" && extension != ".csv" && extension != ".geojson" &&
-      extension != ".json") {
-    throw Error(ErrorCode::invalid_argument,
-                "unknown format; end the name in .csv, .geojson or .png, or write - for GeoJSON on "
-                "stdout",
-                options.output);
-  }
-  check_output(options.output, options.overwrite);
 }
 
 nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& result,
-                         const CrsFacts& crs) {
+                         const std::vector<std::string>& ids, const CrsFacts& crs) {
   nlohmann::json units = units_json(crs);
   units["length"] = unit_of_lengths(crs);
-  nlohmann::json answer = {
-      {"output", options.output.empty() ? nlohmann::json() : nlohmann::json(options.output)},
-      {"lines", lines_of(result).size()},
-      {"skipped_lines", result.skipped_lines},
-      {"length", length_of(result)},
-      {"certified_error", result.certified_error},
-      {"certified_deviation", result.certified_deviation},
-      {"exact", result.exact},
-      {"units", units},
-      {"cost", cost_json(result.cost)},
-      {"points", nlohmann::json::array()}};
+  nlohmann::json answer = {{"output", output_json(options.answer)},
+                           {"lines", lines_of(result).size()},
+                           {"skipped_lines", result.skipped_lines},
+                           {"length", length_of(result)},
+                           {"certified_error", result.certified_error},
+                           {"certified_deviation", result.certified_deviation},
+                           {"exact", result.exact},
+                           {"units", units},
+                           {"cost", cost_json(result.cost)},
+                           {"points", nlohmann::json::array()}};
+  if (!ids.empty()) answer["ids"] = ids;
   for (const ProfilePoint& p : result.points) {
     answer["points"].push_back({{"line", p.line},
                                 {"distance", p.distance},
@@ -244,12 +222,13 @@ nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& res
 }
 
 int run_profile(const ProfileOptions& options, const Context& context) {
-  check_output_name(options, context.json);
+  const AnswerForm form = form_of(options.answer, context.json, ".png");
   check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const std::vector<std::vector<MapPoint>> lines = read_lines(options.line, crs.wkt);
+  const Asked<std::vector<MapPoint>> asked = read_lines(options.line, options.choice, crs.wkt);
+  const std::vector<std::vector<MapPoint>>& lines = asked.all;
   ProfileRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
@@ -259,16 +238,12 @@ int run_profile(const ProfileOptions& options, const Context& context) {
     };
   }
   const ProfileResult result = terrain.profile(lines, request);
-  if (result.skipped_lines > 0 && !context.json) {
+  if (result.skipped_lines > 0 && !context.json && !context.quiet) {
     std::fprintf(stderr, "%s of %s: no length, skipped\n", grouped(result.skipped_lines).c_str(),
                  counted(lines.size(), "line").c_str());
   }
-  if (!options.output.empty()) write_profile(options, result, crs);
-  if (context.json) {
-    print_json(answer_of(options, result, crs));
-  } else if (options.output.empty()) {
-    write_to_stdout(csv_of(result));
-  }
+  write_profile(options.answer, form, context.json, result, asked.ids, crs);
+  if (context.json) print_json(answer_of(options, result, asked.ids, crs));
   return kExitDone;
 }
 
@@ -277,21 +252,16 @@ int run_profile(const ProfileOptions& options, const Context& context) {
 Action declare_profile(CLI::App& app, Context& context) {
   const auto options = std::make_shared<ProfileOptions>();
   add_terrain_options(app, options->terrain, true);
-  app.add_option("--line", options->line,
-                 "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector file "
-                 "(transformed to the terrain's CRS)")
-      ->type_name("WKT_OR_FILE")
-      ->required();
+  auto* line =
+      app.add_option("--line", options->line,
+                     "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector "
+                     "file (transformed to the terrain's CRS)");
+  line->type_name("WKT_OR_FILE")->required();
+  add_input_options(app, options->choice, line, "");
   add_detail_options(app, options->detail, "",
                      "Ask the TIN of the terrain's N most important vertices");
   add_memory_option(app, options->memory);
-  app.add_option("-o,--output", options->output,
-                 "Write .csv, .geojson (with heights) or .png (a plot), or - for GeoJSON on "
-                 "stdout; default: "
-                 "CSV to stdout")
-      ->type_name("OUT");
-  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, false);
+  add_answer_options(app, options->answer, ", .png (a plot)");
   return [options, &context] { return run_profile(*options, context); };
 }
 

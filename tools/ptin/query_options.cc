@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/construct/memory_plan.h"
+#include "engine/construct/process_limits.h"
 #include "engine/error.h"
 #include "engine/query/terrain.h"
 #include "storage/file/sigbus_guard.h"
@@ -13,6 +13,7 @@
 #include "tools/facts/counts.h"
 #include "tools/facts/human.h"
 #include "tools/output/standard_output.h"
+#include "tools/region/on_terrain.h"
 #include "tools/region/region_input.h"
 
 namespace ptin::tools {
@@ -43,6 +44,18 @@ Terrain open_terrain(const TerrainOptions& options) {
   return terrain;
 }
 
+namespace {
+
+void check_finite(const std::vector<double>& numbers, const std::string& option) {
+  for (const double n : numbers) {
+    if (std::isfinite(n)) continue;
+    throw Error(ErrorCode::invalid_argument, "a region's coordinates must be finite numbers",
+                option);
+  }
+}
+
+}  // namespace
+
 void add_region_options(CLI::App& app, RegionOptions& options, bool window_only) {
   auto* window =
       app.add_option("--window", options.window, "A window in map units: xmin ymin xmax ymax")
@@ -60,26 +73,33 @@ void add_region_options(CLI::App& app, RegionOptions& options, bool window_only)
       ->excludes(polygon);
 }
 
-std::optional<Region> region_of(const RegionOptions& options, const std::string& crs_wkt) {
-  for (const std::vector<double>* numbers : {&options.window, &options.point}) {
-    for (const double n : *numbers) {
-      if (!std::isfinite(n))
-        throw Error(ErrorCode::invalid_argument, "a region's coordinates must be finite numbers");
-    }
+Window window_of(const std::vector<double>& numbers, const std::string& option) {
+  check_finite(numbers, option);
+  if (numbers[0] > numbers[2] || numbers[1] > numbers[3]) {
+    throw Error(ErrorCode::invalid_argument,
+                "the window is inverted; its order is XMIN YMIN XMAX YMAX with XMIN <= XMAX and "
+                "YMIN <= YMAX",
+                option);
   }
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+std::optional<Region> region_of(const RegionOptions& options, const StoreFacts& facts,
+                                const std::string& crs_wkt) {
+  std::optional<Region> region;
+  const char* option = "--window";
   if (!options.window.empty()) {
-    const auto& w = options.window;
-    if (w[0] > w[2] || w[1] > w[3]) {
-      throw Error(ErrorCode::invalid_argument,
-                  "the window is inverted; its order is XMIN YMIN XMAX YMAX with XMIN <= XMAX and "
-                  "YMIN <= YMAX",
-                  "--window");
-    }
-    return Window{w[0], w[1], w[2], w[3]};
+    region = window_of(options.window, option);
+  } else if (!options.polygon.empty()) {
+    option = "--polygon";
+    region = read_polygon(options.polygon, crs_wkt);
+  } else if (!options.point.empty()) {
+    option = "--point";
+    check_finite(options.point, option);
+    region = MapPoint{options.point[0], options.point[1]};
   }
-  if (!options.polygon.empty()) return read_polygon(options.polygon, crs_wkt);
-  if (!options.point.empty()) return MapPoint{options.point[0], options.point[1]};
-  return std::nullopt;
+  if (region) check_on_terrain(*region, facts, option);
+  return region;
 }
 
 void add_curvature_option(CLI::App& app, double& coefficient) {

@@ -37,9 +37,13 @@ struct RegionOptions {
   [[nodiscard]] bool given() const { return !window.empty() || !polygon.empty() || !point.empty(); }
 };
 void add_region_options(CLI::App& app, RegionOptions& options, bool window_only = false);
-/// @throws Error as read_polygon; invalid_argument when a number is not finite or the window is
-/// inverted
-[[nodiscard]] std::optional<Region> region_of(const RegionOptions& options,
+/// The window of four numbers.
+/// @param option  Gave the numbers; named in errors.
+/// @throws Error invalid_argument  a number is not finite, or the window is inverted
+[[nodiscard]] Window window_of(const std::vector<double>& numbers, const std::string& option);
+/// The region that was asked for, which meets the box of the terrain's samples.
+/// @throws Error as window_of, read_polygon and check_on_terrain
+[[nodiscard]] std::optional<Region> region_of(const RegionOptions& options, const StoreFacts& facts,
                                               const std::string& crs_wkt);
 
 /// Declares --curvature, of subcommands that look over the ground (engine/query/sight/curvature.h).

@@ -8,6 +8,7 @@
 #include "engine/crs/crs_facts.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
+#include "tools/facts/counts.h"
 #include "tools/facts/human.h"
 #include "tools/formats/mesh_writer.h"
 #include "tools/ptin/mesh_crs.h"
@@ -23,6 +24,7 @@ struct RefineOptions {
   TerrainOptions terrain;
   RegionOptions region;
   DetailOptions detail;
+  std::optional<std::uint64_t> triangles;
   bool clip = false;
   bool cut = false;
   std::string memory;
@@ -60,11 +62,47 @@ nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined
           {"cost", cost_json(refined.cost)}};
 }
 
-void print_stats(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh) {
-  const QueryCost& cost = refined.cost;
+/// Why so many vertices or triangles are written and not as many as were asked for; empty where as
+/// many are, or where no number was asked for.
+/// @param vertices  Of the terrain.
+std::string difference_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
+                          std::uint64_t vertices) {
+  const bool by_vertices = options.detail.vertices.has_value();
+  if (!by_vertices && !options.triangles) return {};
+  const std::uint64_t asked = by_vertices ? *options.detail.vertices : *options.triangles;
+  const std::uint64_t found = by_vertices ? refined.vertices : refined.triangles;
+  const std::uint64_t written = by_vertices ? mesh.vertices.size() : mesh.triangles.size();
+  if (written == asked) return {};
+  const std::string what =
+      by_vertices ? counted(asked, "vertex", "vertices") : "at most " + counted(asked, "triangle");
+  if (options.clip || options.cut) return what + "; the region's part of that mesh is written";
+  std::string why;
+  if (found < asked) {
+    const bool is_whole = refined.vertices == vertices;
+    const bool next_adds_two = !by_vertices && !is_whole && found + 1 == asked;
+    why = next_adds_two ? "; the next vertex adds two"
+                        : std::string("; the ") + (is_whole ? "terrain" : "region") + " has " +
+                              grouped(found);
+  }
+  if (written < found) {
+    why += "; " + grouped(found - written) +
+           (by_vertices ? " in void triangles alone are left out" : " void ones are left out");
+  }
+  return what + why;
+}
+
+void print_written(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
+                   const StoreFile& store) {
   std::printf("%s: %s, %s written\n", options.output.c_str(),
               counted(mesh.vertices.size(), "vertex", "vertices").c_str(),
               counted(mesh.triangles.size(), "triangle").c_str());
+  const std::uint64_t vertices = store.t0().vertices.size() + store.record_count();
+  const std::string difference = difference_of(options, refined, mesh, vertices);
+  if (!difference.empty()) std::printf("  asked for  %s\n", difference.c_str());
+}
+
+void print_stats(const RefineOptions& options, const RefinedTin& refined) {
+  const QueryCost& cost = refined.cost;
   std::printf("  mesh       %s (%s without a height), %s; T0 has %s\n",
               counted(refined.vertices, "vertex", "vertices").c_str(),
               grouped(refined.void_vertices).c_str(),
@@ -89,8 +127,9 @@ int run_refine(const RefineOptions& options, const Context& context) {
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request;
-  request.region = region_of(options.region, crs.wkt);
+  request.region = region_of(options.region, terrain.store().facts(), crs.wkt);
   request.detail = detail_of(options.detail);
+  request.triangles = options.triangles;
   request.form = options.clip ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
   request.limits = limits_of(options.memory, context);
   const RefinedTin refined = terrain.refine(request);
@@ -106,8 +145,9 @@ int run_refine(const RefineOptions& options, const Context& context) {
   }
   if (context.json) {
     print_json(answer_of(options, refined, mesh, crs));
-  } else if (options.stats) {
-    print_stats(options, refined, mesh);
+  } else if (!context.quiet) {
+    print_written(options, refined, mesh, terrain.store());
+    if (options.stats) print_stats(options, refined);
   }
   return kExitDone;
 }
@@ -120,8 +160,15 @@ Action declare_refine(CLI::App& app, Context& context) {
   add_region_options(app, options->region);
   add_detail_options(
       app, options->detail, "",
-      "Exactly this many vertices, the most important ones of the region; --clip and\n"
-      "--cut leave some of them out");
+      "A mesh of exactly this many vertices, the most important ones of the region; not written\n"
+      "are those in void triangles alone, and what --clip and --cut leave out");
+  app.add_option("--triangles", options->triangles,
+                 "The mesh of the most important vertices that has at most this many triangles, "
+                 "void ones included; --clip and --cut leave some of them out")
+      ->type_name("N")
+      ->check(counts())
+      ->excludes(app.get_option("--error"))
+      ->excludes(app.get_option("--vertices"));
   auto* clip =
       app.add_flag("--clip", options->clip, "Keep only the triangles that meet the region, whole");
   app.add_flag("--cut", options->cut, "Cut the triangles at the border of the region")
@@ -134,10 +181,9 @@ Action declare_refine(CLI::App& app, Context& context) {
                  "The mesh to write; its extension chooses the format: " + formats)
       ->type_name("OUT")
       ->required();
-  app.add_flag("--stats", options->stats, "Print what the answer is and what it cost");
+  app.add_flag("--stats", options->stats, "Print what is certified and what it cost, too");
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_refine(*options, context); };
 }
 

@@ -113,18 +113,12 @@ Window visible_window(const View& view) {
   return {w.min_x - beside, w.min_y - above, w.max_x + beside, w.max_y + above};
 }
 
-/// The number of pixels between samples, as far as the grid tells.
-int reach_for(const StoreFacts& facts, const View& view) {
-  const double spacing = std::max(facts.map.step_x * view.scale_x, facts.map.step_y * view.scale_y);
-  return static_cast<int>(std::clamp(std::round(spacing), 1.0, 12.0));
-}
-
 Image draw(const RenderOptions& options, const RefinedTin& refined, const StoreFacts& facts,
            const View& view, const std::stop_token& stop, ReliefStyle& style) {
   const TerrainRaster raster = rasterize(refined, facts, supersampled(view, kSupersampling), stop);
   const bool shows_facets = options.wireframe || options.pages;
   style = choose_style(raster, view, options.pages,
-                       shows_facets ? 1 : reach_for(facts, view) * kSupersampling);
+                       shows_facets ? 1 : pixels_between_samples(facts.map, view) * kSupersampling);
   Image image = draw_relief(raster, view, kSupersampling, style, stop);
   if (options.wireframe) draw_wireframe(image, refined, facts, view, stop);
   return image;
@@ -136,7 +130,7 @@ int run_render(const RenderOptions& options, const Context& context) {
   warn_of_base_error(terrain.store(), options.error, context);
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
-  const std::optional<Region> region = region_of(options.region, crs.wkt);
+  const std::optional<Region> region = region_of(options.region, store.facts(), crs.wkt);
   const Window whole = whole_window(store.facts());
   const Window window = region ? std::get<Window>(*region) : whole;
   const View view = view_of(options, window, crs);
@@ -157,7 +151,7 @@ int run_render(const RenderOptions& options, const Context& context) {
     draw_legend(image, view, style, short_unit(unit_of_ground(crs)), short_unit(crs.vertical_unit));
   write_png(image, options.output, options.overwrite);
   if (refined.triangles == 0 && !context.quiet) {
-    std::fprintf(stderr, "ptin: warning: the window lies beside the terrain; %s shows nothing\n",
+    std::fprintf(stderr, "ptin: warning: no triangle meets the window; %s shows nothing\n",
                  options.output.c_str());
   }
 
@@ -212,7 +206,6 @@ Action declare_render(CLI::App& app, Context& context) {
       ->required();
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_render(*options, context); };
 }
 

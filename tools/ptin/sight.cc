@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin sight: is one point seen from another.
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
+#include <limits>
 #include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
@@ -12,9 +21,13 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/counts.h"
+#include "tools/facts/human.h"
+#include "tools/facts/quantity.h"
+#include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
-#include "tools/output/standard_output.h"
-#include "tools/ptin/number_rows.h"
+#include "tools/formats/vector_file.h"
+#include "tools/ptin/answer_output.h"
+#include "tools/ptin/point_input.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -28,38 +41,60 @@ struct SightOptions {
   TerrainOptions terrain;
   std::vector<double> pair;
   std::string pairs;
+  InputChoice choice;
   bool absolute = false;
   bool verdict_only = false;
   double curvature = Curvature{}.coefficient;
-  std::optional<double> frequency;
+  std::optional<std::string> frequency;
   DetailOptions detail;
   std::optional<std::uint64_t> budget;
   std::string memory;
+  AnswerOptions answer;
 };
 
-std::vector<SightPair> pairs_of(const SightOptions& options) {
-  if (options.pair.empty() == options.pairs.empty()) {
-    throw Error(ErrorCode::invalid_argument, "give either X1 Y1 H1 X2 Y2 H2 or --pairs FILE");
+Asked<SightPair> pairs_of(const SightOptions& options, const std::string& crs_wkt) {
+  if (!options.pairs.empty()) return read_pairs(options.pairs, options.choice, crs_wkt);
+  const std::vector<double>& n = options.pair;
+  return {{{{n[0], n[1]}, n[2], {n[3], n[4]}, n[5]}}, {}};
+}
+
+/// The frequency in hertz that a text names, as 5.8GHz, 5800MHz or 5.8e9; large and small letters
+/// are the same.
+/// @throws Error invalid_argument  no number, another unit; below 1 MHz, where a number without its
+///                                 unit is what was meant
+double hertz_of(const std::string& text) {
+  constexpr const char* kOption = "--frequency";
+  constexpr std::array<std::pair<const char*, double>, 5> kUnits = {
+      {{"", 1.0}, {"hz", 1.0}, {"khz", 1e3}, {"mhz", 1e6}, {"ghz", 1e9}}};
+  const std::optional<Quantity> quantity = quantity_of(text);
+  const std::string unit = quantity ? lower_case(quantity->unit) : std::string();
+  const auto* const known =
+      std::find_if(kUnits.begin(), kUnits.end(), [&](const auto& u) { return unit == u.first; });
+  if (!quantity || known == kUnits.end()) {
+    throw Error(
+        ErrorCode::invalid_argument,
+        "\"" + text + "\" is no frequency; expected one as 5.8GHz, 5800MHz or 5.8e9 (hertz)",
+        kOption);
   }
-  const std::vector<double> rows =
-      options.pairs.empty() ? options.pair : read_rows(options.pairs, 6);
-  std::vector<SightPair> pairs;
-  for (std::size_t i = 0; i + 5 < rows.size(); i += 6) {
-    pairs.push_back({{rows[i], rows[i + 1]}, rows[i + 2], {rows[i + 3], rows[i + 4]}, rows[i + 5]});
+  const double hertz = quantity->number * known->second;
+  constexpr double kLeast = 1e6;
+  if (hertz < kLeast || !std::isfinite(hertz)) {
+    throw Error(ErrorCode::invalid_argument,
+                exact_number(hertz) +
+                    " hertz is no radio link's frequency, which is 1 MHz at least; give the unit, "
+                    "as 5.8GHz or 5800MHz",
+                kOption);
   }
-  return pairs;
+  return hertz;
 }
 
 SightRequest request_of(const SightOptions& options, const Ground& ground, const Context& context) {
-  if (options.frequency && !(*options.frequency > 0 && std::isfinite(*options.frequency))) {
-    throw Error(ErrorCode::invalid_argument, "--frequency must be a number > 0, in hertz");
-  }
   SightRequest request;
   request.absolute = options.absolute;
   request.curvature = {options.curvature, ground.earth_diameter};
   request.ground_distance = ground.distance;
   if (options.frequency) {
-    request.wavelength = kSpeedOfLight / *options.frequency / ground.metres_per_height;
+    request.wavelength = kSpeedOfLight / hertz_of(*options.frequency) / ground.metres_per_height;
   }
   request.detail = detail_of(options.detail);
   request.limits.memory_bytes = memory_limit_of(options.memory);
@@ -98,61 +133,115 @@ nlohmann::json json_of(const SightResult& r) {
   return json;
 }
 
-void append_if_finite(std::string& text, double value) {
-  text += ',';
-  if (std::isfinite(value)) append_number(text, value);
-}
-
-void append_row(std::string& text, const SightResult& r) {
+/// The numbers of an answer, as columns of CSV and attributes of a layer, in the order of kNumbers.
+constexpr std::array kNumbers = {
+    "length",        "obstruction_x",      "obstruction_y", "obstruction_distance", "clearance_min",
+    "clearance_max", "clearance_distance", "void_length",   "fresnel_ratio"};
+std::array<double, kNumbers.size()> numbers_of(const SightResult& r) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  text += name_of(r.verdict);
-  append_if_finite(text, r.length);
   const SightPoint none{{kNone, kNone}, kNone, kNone, kNone};
   const SightPoint& at = r.obstruction ? *r.obstruction : none;
-  for (const double value : {at.position.x, at.position.y, at.distance, r.clearance_min,
-                             r.clearance_max, r.clearance_at ? r.clearance_at->distance : kNone,
-                             r.void_length, r.fresnel_ratio.value_or(kNone)}) {
-    append_if_finite(text, value);
-  }
-  text += '\n';
+  return {r.length,
+          at.position.x,
+          at.position.y,
+          at.distance,
+          r.clearance_min,
+          r.clearance_max,
+          r.clearance_at ? r.clearance_at->distance : kNone,
+          r.void_length,
+          r.fresnel_ratio.value_or(kNone)};
 }
 
+/// Takes the answers one by one, and puts them where they are asked for.
+class SightAnswers {
+ public:
+  SightAnswers(const SightOptions& options, const Asked<SightPair>& asked, const Context& context,
+               const CrsFacts& crs)
+      : options_(options),
+        asked_(asked),
+        is_json_(context.json),
+        form_(form_of(options.answer, context.json)) {
+    csv_ = "verdict";
+    for (const char* name : kNumbers) csv_.append(",").append(name);
+    csv_ += asked.ids.empty() ? "\n" : ",id\n";
+    if (form_ != AnswerForm::kLayer) return;
+    using Type = VectorFile::FieldType;
+    VectorFile::Layer layer{"lines_of_sight", wkbLineString, {{"verdict", Type::kText}}, crs.wkt};
+    for (const char* name : kNumbers) layer.fields.push_back({name, Type::kReal});
+    if (!asked.ids.empty()) layer.fields.push_back({"id", Type::kText});
+    layer_.emplace(options.answer.output, options.answer.overwrite, layer);
+  }
+
+  void add(const SightResult& result) {
+    const std::size_t i = count_++;
+    if (is_json_) {
+      json_.push_back(json_of(result));
+      if (!asked_.ids.empty()) json_.back()["id"] = asked_.ids[i];
+    }
+    if (layer_) add_feature(i, result);
+    if (form_ == AnswerForm::kCsv || (form_ == AnswerForm::kStdout && !is_json_)) {
+      csv_ += name_of(result.verdict);
+      for (const double number : numbers_of(result)) append_csv_number(csv_, number);
+      if (!asked_.ids.empty()) append_csv_field(csv_ += ',', asked_.ids[i]);
+      csv_ += '\n';
+    }
+  }
+
+  /// Completes what is written. Returns the answers as JSON, where that is asked for.
+  nlohmann::json finish() {
+    if (layer_) layer_->publish();
+    write_csv(options_.answer, form_, is_json_, csv_);
+    return std::move(json_);
+  }
+
+ private:
+  void add_feature(std::size_t i, const SightResult& result) {
+    const std::array<MapPoint, 2> ends = {asked_.all[i].a, asked_.all[i].b};
+    std::vector<VectorFile::Value> values = {std::string(name_of(result.verdict))};
+    for (const double number : numbers_of(result)) values.emplace_back(number);
+    if (!asked_.ids.empty()) values.emplace_back(asked_.ids[i]);
+    layer_->add(line_geometry(ends, nullptr), values);
+  }
+
+  const SightOptions& options_;
+  const Asked<SightPair>& asked_;
+  bool is_json_;
+  AnswerForm form_;
+  std::string csv_;
+  std::optional<VectorFile> layer_;
+  nlohmann::json json_ = nlohmann::json::array();
+  std::size_t count_ = 0;
+};
+
 int run_sight(const SightOptions& options, const Context& context) {
+  if (options.pair.empty() == options.pairs.empty()) {
+    throw Error(ErrorCode::invalid_argument, "give either X1 Y1 H1 X2 Y2 H2 or --pairs FILE");
+  }
   check_detail(options.detail);
-  const std::vector<SightPair> pairs = pairs_of(options);
+  std::ignore = form_of(options.answer, context.json);  // before the work
+  if (options.frequency) std::ignore = hertz_of(*options.frequency);
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
+  const Asked<SightPair> asked = pairs_of(options, crs.wkt);
   const SightRequest request = request_of(options, ground_of(crs), context);
+  SightAnswers answers(options, asked, context, crs);
   SightSolver solver =
-      terrain.sight_lines(request, pairs.size() < kFewPairs ? 0 : std::uint64_t{1} << 15);
-  nlohmann::json answers = nlohmann::json::array();
-  std::string text =
-      "verdict,length,obstruction_x,obstruction_y,obstruction_distance,clearance_min,"
-      "clearance_max,clearance_distance,void_length,fresnel_ratio\n";
-  for (const SightPair& pair : pairs) {
+      terrain.sight_lines(request, asked.all.size() < kFewPairs ? 0 : std::uint64_t{1} << 15);
+  for (const SightPair& pair : asked.all) {
     SightResult result = solver.solve(pair);
     if (options.pairs.empty()) result.cost.add_counts(solver.base_cost());
-    if (context.json) {
-      answers.push_back(json_of(result));
-    } else {
-      append_row(text, result);
-    }
+    answers.add(result);
   }
-  if (!context.json) {
-    write_to_stdout(text);
-    return kExitDone;
-  }
+  const nlohmann::json all = answers.finish();
+  if (!context.json) return kExitDone;
   nlohmann::json units = units_json(crs);
   units["length"] = unit_of_ground(crs);
-  if (options.pairs.empty()) {
-    nlohmann::json answer = answers.at(0);
-    answer["units"] = units;
-    print_json(answer);
-  } else {
-    print_json(
-        {{"units", units}, {"base_cost", cost_json(solver.base_cost())}, {"pairs", answers}});
-  }
+  nlohmann::json answer = {{"base_cost", cost_json(solver.base_cost())}, {"pairs", all}};
+  if (options.pairs.empty()) answer = all.at(0);
+  answer["output"] = output_json(options.answer);
+  answer["units"] = units;
+  print_json(answer);
   return kExitDone;
 }
 
@@ -165,18 +254,22 @@ Action declare_sight(CLI::App& app, Context& context) {
                  "The two ends in map units, each with its height above ground")
       ->expected(6)
       ->type_name("X1 Y1 H1 X2 Y2 H2");
-  app.add_option("--pairs", options->pairs,
-                 "Text with such six numbers in each row (- reads standard input)")
-      ->type_name("FILE");
+  auto* pairs = app.add_option(
+      "--pairs", options->pairs,
+      "Text with such six numbers in each row, or with a header that names x1 y1 h1 x2 y2 h2 (- "
+      "reads\nstandard input), or a vector file of lines with heights at their ends");
+  pairs->type_name("FILE");
+  add_input_options(app, options->choice, pairs, "x1, y1, h1, x2, y2, h2");
   app.add_flag("--absolute", options->absolute, "Heights of the ends are absolute");
   auto* verdict =
       app.add_flag("--verdict", options->verdict_only,
                    "Only the verdict: faster; obstruction is then any point below ground");
   add_curvature_option(app, options->curvature);
   app.add_option("--frequency", options->frequency,
-                 "Measure the first Fresnel zone at this frequency, in hertz")
+                 "Measure the first Fresnel zone at this frequency, as 5.8GHz, 5800MHz or 5.8e9 "
+                 "(hertz); 1 MHz at least")
       ->excludes(verdict)
-      ->type_name("HZ");
+      ->type_name("F");
   add_detail_options(app, options->detail, ": finer records are left out; may answer undecided",
                      "Leave out what is not among the terrain's N most important vertices; may "
                      "answer undecided");
@@ -185,7 +278,7 @@ Action declare_sight(CLI::App& app, Context& context) {
       ->type_name("RECORDS")
       ->check(counts());
   add_memory_option(app, options->memory);
-  add_common_options(app, context, false);
+  add_answer_options(app, options->answer);
   return [options, &context] { return run_sight(*options, context); };
 }
 

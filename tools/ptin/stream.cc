@@ -57,13 +57,14 @@ std::string metadata_for(const StoreFile& store, const Serving& wanted) {
 }
 
 std::vector<StreamHeld> held_of(const StreamOptions& options, const StoreFacts& facts) {
-  std::vector<Serving> servings;
-  if (!options.have.empty()) servings = servings_of(options.have);
-  if (options.had.given()) servings.push_back(options.had);
   std::vector<StreamHeld> held;
-  for (const Serving& s : servings) {
-    held.push_back({predicate_of(s, facts), s.splits.value_or(StreamHeld{}.splits)});
+  const auto add = [&](const Serving& s, const char* option) {
+    held.push_back({predicate_of(s, facts, option), s.splits.value_or(StreamHeld{}.splits)});
+  };
+  if (!options.have.empty()) {
+    for (const Serving& s : servings_of(options.have)) add(s, "--have");
   }
+  if (options.had.given()) add(options.had, "--have-window");
   return held;
 }
 
@@ -106,7 +107,7 @@ int run_stream(const StreamOptions& options, const Context& context) {
   const StoreFile& store = terrain.store();
   warn_of_base_error(store, options.wanted.error, context);
   StreamRequest request;
-  request.wanted = predicate_of(options.wanted, store.facts());
+  request.wanted = predicate_of(options.wanted, store.facts(), "--window");
   request.tolerance = options.wanted.error;
   request.held = held_of(options, store.facts());
   if (options.wanted.splits) request.most_splits = *options.wanted.splits;
@@ -166,7 +167,6 @@ Action declare_stream(CLI::App& app, Context& context) {
   app.add_flag("--stats", options->stats, "Print, on stderr, what was sent and what it cost");
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_stream(*options, context); };
 }
 

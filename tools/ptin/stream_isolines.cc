@@ -5,6 +5,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
+#include "tools/region/on_terrain.h"
 
 namespace ptin::tools {
 
@@ -27,10 +28,8 @@ StreamIsolines::StreamIsolines(const StreamIsolineOptions& options, std::string 
       overwrite_(overwrite),
       stop_(limits.stop),
       context_(std::move(limits), output_) {
-  RegionOptions region;
-  region.window = options.window;
-  if (const auto window = region_of(region, "")) {
-    window_ = std::get<Window>(*window);
+  if (!options.window.empty()) {
+    window_ = window_of(options.window, "--window");
   }
 }
 
@@ -60,6 +59,9 @@ void StreamIsolines::follow(const StreamReader& reader) {
 
 void StreamIsolines::begin(const StreamReader& reader) {
   const StoreFacts& facts = reader.facts();
+  if (window_) {
+    check_on_terrain(*window_, facts, "--window");
+  }
   const std::vector<double> levels = levels_of(options_.levels, facts, {});
   isolines_.emplace(reader.tin(), LevelSet(levels, facts.heights), facts.heights, facts.map,
                     context_);

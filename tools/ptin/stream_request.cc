@@ -7,6 +7,7 @@
 #include "engine/error.h"
 #include "engine/query/terrain.h"
 #include "tools/ptin/query_options.h"
+#include "tools/region/on_terrain.h"
 
 namespace ptin::tools {
 
@@ -49,11 +50,14 @@ Serving serving_of(const nlohmann::json& json) {
 
 }  // namespace
 
-PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts) {
+PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts,
+                          const std::string& option) {
   std::vector<PredicatePtr> parts;
-  RegionOptions region;
-  region.window = serving.window;
-  if (const auto window = region_of(region, "")) parts.push_back(meets_region(*window, facts.map));
+  if (!serving.window.empty()) {
+    const Window window = window_of(serving.window, option);
+    check_on_terrain(window, facts, option);
+    parts.push_back(meets_region(window, facts.map));
+  }
   if (serving.error) parts.push_back(error_above(*serving.error));
   if (!serving.levels.empty()) {
     // By the rule of isolines, by which 254.97 is the stored height 25497 x 0.01.

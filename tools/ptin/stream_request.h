@@ -36,9 +36,11 @@ struct Serving {
 [[nodiscard]] bool covers(const std::vector<Serving>& served, const Serving& asked);
 
 /// The predicate of the window, error and levels of a serving; `splits` is no part of it.
-/// @throws Error invalid_argument  an inverted window, a negative error, a number that is not
-///                                 finite
-[[nodiscard]] PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts);
+/// @param option  Gave the window; named in errors.
+/// @throws Error invalid_argument  a window that is inverted or misses the terrain, a negative
+///                                 error, a number that is not finite
+[[nodiscard]] PredicatePtr predicate_of(const Serving& serving, const StoreFacts& facts,
+                                        const std::string& option);
 
 /// {"window": [4 numbers], "error": E, "levels": [H...], "splits": N}; what is not given is left
 /// out.

@@ -302,7 +302,6 @@ Action declare_unstream(CLI::App& app, Context& context) {
   add_stream_isoline_options(app, options->isolines);
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_unstream(*options, context); };
 }
 

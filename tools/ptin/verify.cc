@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// ptin verify: every checksum and rule of the file, every triangle of the full TIN, and with
-// --against every sample of the source. Damage is an answer (exit status 1), not an error.
+// ptin verify: every checksum and rule of the file, every split with the records that it needs, and
+// with --against every sample of the source. Damage is an answer (exit status 1), not an error.
 #include "storage/verify.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
-#include "engine/mesh/validate.h"
+#include <cpl_conv.h>
+#include <ogr_spatialref.h>
+
+#include "engine/crs/crs_facts.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
@@ -33,56 +37,59 @@ struct VerifyCommand {
   std::size_t faults = 20;
 };
 
-/// What was found. `faults` holds those of all three parts: file, refinement and source.
+/// What was found. `faults` holds those of all three parts: file, splits and source.
 struct Findings {
   VerifyReport store;
-  std::uint64_t windows = 0;  ///< Windows that were refined and validated.
+  bool stopped_early = false;  ///< There may be more faults in the file.
+  std::uint64_t cells = 0;     ///< Parts of the terrain in which the splits were applied.
   std::vector<VerifyFault> faults;
   std::uint64_t fault_count = 0;
   std::optional<AgainstReport> against;
 };
 
-/// Squares that cover the terrain, with about a million records each.
-std::vector<Window> squares_of(const StoreFile& store) {
-  constexpr double kRecords = 1e6;
-  const auto side =
-      static_cast<int>(std::ceil(std::sqrt(static_cast<double>(store.record_count()) / kRecords)));
-  const int n = std::max(1, side);
-  const GridBox& b = store.facts().bounds;
-  std::vector<Window> squares;
-  const auto share = [n](std::int32_t low, std::int32_t high, int i) {
-    return low + (static_cast<double>(high) - low) * i / n;
-  };
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const MapPoint low =
-          store.facts().map.to_map(share(b.min_x, b.max_x, i), share(b.min_y, b.max_y, j));
-      const MapPoint high =
-          store.facts().map.to_map(share(b.min_x, b.max_x, i + 1), share(b.min_y, b.max_y, j + 1));
-      squares.push_back({low.x, low.y, high.x, high.y});
-    }
-  }
-  return squares;
+/// The CRS must be one that outputs can name.
+void verify_crs(const Terrain& terrain, Findings& findings) {
+  const std::string wkt = crs_facts(terrain.store()).wkt;
+  if (wkt.empty()) return;
+  OGRSpatialReference srs;
+  char* text = nullptr;
+  const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+  const bool is_known = srs.importFromWkt(wkt.c_str()) == OGRERR_NONE &&
+                        srs.exportToWkt(&text, options) == OGRERR_NONE;
+  CPLFree(text);
+  if (!is_known)
+    findings.faults.push_back({"its CRS is no WKT that outputs can name", "section \"metadata\""});
 }
 
-/// Applies every record, square by square, and validates what comes out.
-void verify_refinement(const Terrain& terrain, const Context& context, Progress& progress,
-                       Findings& findings) {
-  const std::vector<Window> squares = squares_of(terrain.store());
-  for (const Window& square : squares) {
-    progress.report("refinement", findings.windows++, squares.size());
-    RefineRequest request;
-    if (squares.size() > 1) request.region = square;
-    request.limits.stop = context.stop;
-    try {
-      const std::string broken = validate(terrain.refine(request).tin);
-      if (broken.empty()) continue;
-      findings.faults.push_back({broken, "the full TIN"});
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::corruption) throw;
-      findings.faults.push_back({error.message(), error.context()});
-    }
+constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;  ///< Unless --memory says otherwise.
+
+/// The terrain, unless there are faults; one more is a T0 that no mesh can begin with.
+std::optional<Terrain> open_if_sound(const VerifyCommand& command, Findings& findings) {
+  if (!findings.faults.empty()) return std::nullopt;
+  try {
+    return open_terrain(command.terrain);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corruption) throw;
+    findings.faults.push_back({error.message(), error.context()});
+    return std::nullopt;
   }
+}
+
+/// Holds every record against those that it needs, and validates the full TIN.
+void verify_hierarchy(const VerifyCommand& command, const Terrain& terrain, const Context& context,
+                      Progress& progress, Findings& findings) {
+  HierarchyRequest request;
+  request.limits = {memory_limit_of(command.memory, kMemory), context.stop};
+  request.max_faults = std::max<std::size_t>(1, command.faults);
+  request.progress = [&progress](double done) {
+    constexpr double kWhole = 1000;
+    progress.report("splits", static_cast<std::uint64_t>(done * kWhole),
+                    static_cast<std::uint64_t>(kWhole));
+  };
+  const HierarchyReport report = terrain.check_hierarchy(request);
+  findings.cells = report.cells;
+  findings.stopped_early = report.stopped_early;
+  findings.faults.insert(findings.faults.end(), report.faults.begin(), report.faults.end());
 }
 
 /// The tolerances that are checked: those given, else tolerance 0 and four round ones, whose
@@ -111,7 +118,6 @@ std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
 
 void verify_source(const VerifyCommand& command, const Terrain& terrain, const Context& context,
                    Progress& progress, Findings& findings) {
-  constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
   const ExternalMemory memory{FileLayer::system(),
                               command.tmp.empty() ? folder_of(command.terrain.file) : command.tmp,
                               memory_limit_of(command.memory, kMemory)};
@@ -127,22 +133,27 @@ void verify_source(const VerifyCommand& command, const Terrain& terrain, const C
   findings.against = verify_against(terrain, *source, options);
   findings.fault_count += findings.against->fault_count - findings.against->faults.size();
   for (const std::string& what : findings.against->faults)
-    findings.faults.push_back({what, command.against.front()});
+    findings.faults.push_back({what, inputs_text(command.against)});
 }
 
 Findings verify(const VerifyCommand& command, const Context& context) {
   Findings findings;
   Progress progress(Progress::style_for(context.quiet, stderr));
   VerifyOptions options;
+  options.memory_bytes =
+      std::min(options.memory_bytes, memory_limit_of(command.memory, options.memory_bytes));
   options.max_faults = std::max<std::size_t>(1, command.faults);
   findings.store = verify_store(
       command.terrain.file, options, context.stop,
       [&](std::uint64_t done, std::uint64_t total) { progress.report("pages", done, total); });
   findings.faults = findings.store.faults;
-  if (findings.store.is_sound()) {  // A damaged file answers no questions.
-    const Terrain terrain = open_terrain(command.terrain);
-    verify_refinement(terrain, context, progress, findings);
-    if (!command.against.empty()) verify_source(command, terrain, context, progress, findings);
+  findings.stopped_early = findings.store.stopped_early;
+  // A damaged file answers no questions.
+  if (const auto terrain = open_if_sound(command, findings)) {
+    verify_crs(*terrain, findings);
+    verify_hierarchy(command, *terrain, context, progress, findings);
+    if (findings.faults.empty() && !command.against.empty())
+      verify_source(command, *terrain, context, progress, findings);
   }
   findings.fault_count += findings.faults.size();
   progress.finish();
@@ -156,7 +167,7 @@ nlohmann::json findings_json(const VerifyCommand& command, const Findings& f) {
   nlohmann::json json = {{"file", command.terrain.file},
                          {"sound", f.fault_count == 0},
                          {"fault_count", f.fault_count},
-                         {"stopped_early", f.store.stopped_early},
+                         {"stopped_early", f.stopped_early},
                          {"faults", faults},
                          {"pages", f.store.pages},
                          {"records", f.store.records},
@@ -195,19 +206,20 @@ void print_checks(const AgainstReport& report) {
 void print_findings(const VerifyCommand& command, const Findings& f) {
   std::printf("%s: %s\n", command.terrain.file.c_str(),
               f.fault_count == 0 ? "sound" : "DAMAGED or wrong");
-  std::printf("  %s, %s, %s; %s of the full TIN valid\n", counted(f.store.pages, "page").c_str(),
+  std::printf("  %s, %s, %s", counted(f.store.pages, "page").c_str(),
               counted(f.store.records, "record").c_str(),
-              counted(f.store.index_nodes, "index node").c_str(),
-              counted(f.windows, "window").c_str());
+              counted(f.store.index_nodes, "index node").c_str());
+  if (f.cells > 0) std::printf("; splits applied in %s", counted(f.cells, "cell").c_str());
+  std::printf("\n");
   if (f.against && !f.against->checks.empty()) {
-    std::printf("against %s: %s with a height, %s void\n", command.against.front().c_str(),
+    std::printf("against %s: %s with a height, %s void\n", inputs_text(command.against).c_str(),
                 counted(f.against->checks.front().samples, "sample").c_str(),
                 grouped(f.against->checks.front().void_samples).c_str());
     print_checks(*f.against);
   }
   if (f.fault_count == 0) return;
   std::printf("%s%s; the first:\n", counted(f.fault_count, "fault").c_str(),
-              f.store.stopped_early ? " or more" : "");
+              f.stopped_early ? " or more" : "");
   for (const VerifyFault& fault : f.faults) {
     std::printf("  %s%s%s\n", fault.where.c_str(), fault.where.empty() ? "" : ": ",
                 fault.what.c_str());
@@ -219,16 +231,20 @@ void print_findings(const VerifyCommand& command, const Findings& f) {
 Action declare_verify(CLI::App& app, Context& context) {
   const auto command = std::make_shared<VerifyCommand>();
   add_terrain_options(app, command->terrain, false);
-  auto* against = app.add_option("--against", command->against,
-                                 "The source: certified errors are checked at each of its samples")
-                      ->type_name("INPUT");
+  auto* against =
+      app.add_option(
+             "--against", command->against,
+             "The source, every input of the build: certified errors are checked at each of its\n"
+             "samples")
+          ->type_name("INPUT...");
   app.add_option("--tolerance", command->tolerances,
                  "Tolerances to check against the source (default: 0 and four more)")
       ->needs(against)
       ->check(not_negative())
       ->type_name("E");
   app.add_option("--memory", command->memory,
-                 "Memory to sort the points of the source in, as 512M or 2G (default 1G)")
+                 "Memory to check the splits in, and to sort the points of the source in, as "
+                 "512M or 2G (default 1G)")
       ->type_name("SIZE");
   app.add_option("--tmp", command->tmp,
                  "Folder for temporary files of points that do not fit (default: beside FILE)")
@@ -237,7 +253,6 @@ Action declare_verify(CLI::App& app, Context& context) {
   app.add_option("--faults", command->faults, "List at most this many faults")
       ->capture_default_str()
       ->type_name("N");
-  add_common_options(app, context, true);
   return [command, &context] {
     const Findings findings = verify(*command, context);
     if (context.json) {

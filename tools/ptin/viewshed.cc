@@ -2,8 +2,12 @@
 //
 // ptin viewshed: what one observer sees, as a raster or as points.
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <gdal_priv.h>
 #include <ogr_geometry.h>
@@ -21,8 +25,9 @@
 #include "tools/output/gdal_output.h"
 #include "tools/output/output_file.h"
 #include "tools/output/pending_file.h"
-#include "tools/ptin/own_pixel_size.h"
+#include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
+#include "tools/region/on_terrain.h"
 
 namespace ptin::tools {
 
@@ -34,7 +39,7 @@ struct ViewshedOptions {
   double target_height = 0, radius = 0;
   double curvature = Curvature{}.coefficient;
   bool absolute = false;
-  std::optional<double> pixel_size;
+  std::optional<std::string> pixel_size;
   DetailOptions detail;
   std::string memory, output;
   bool overwrite = false;
@@ -52,6 +57,32 @@ bool is_raster(const std::string& path) {
   return extension == ".tif" || extension == ".tiff";
 }
 
+/// The side of a pixel that was asked for; none: none was.
+std::vector<PixelSide> sides_of(const ViewshedOptions& options) {
+  if (!options.pixel_size) return {};
+  return pixel_sides_of({*options.pixel_size});
+}
+
+/// The pixels that were asked for, in map units; none: those of the terrain's raster. As in an
+/// export a raster has 2 x 2 at least.
+std::optional<std::array<double, 2>> pixel_size_of(const ViewshedOptions& options,
+                                                   const CrsFacts& crs,
+                                                   const ViewshedRequest& request) {
+  const std::vector<PixelSide> sides = sides_of(options);
+  if (sides.empty()) return std::nullopt;
+  const std::array<double, 2> size = pixel_size_of(sides, crs, request.eye);
+  const bool is_wider = size[0] * request.ground_per_map_x > request.radius;
+  const bool is_higher = size[1] * request.ground_per_map_y > request.radius;
+  if (request.radius > 0 && (is_wider || is_higher)) {
+    throw Error(ErrorCode::invalid_argument,
+                "pixels of " + short_number(size[0]) + " x " + short_number(size[1]) +
+                    " map units are larger than the radius, so the raster would be one pixel wide "
+                    "or high; give a smaller size (over ground as 90m), or a larger --radius",
+                "--pixel-size");
+  }
+  return size;
+}
+
 void check_options(const ViewshedOptions& options) {
   check_detail(options.detail);
   if (options.output == "-") {
@@ -64,6 +95,7 @@ void check_options(const ViewshedOptions& options) {
                     known_vector_extensions() + " for vertices",
                 options.output);
   }
+  static_cast<void>(sides_of(options));
   if (!is_raster(options.output) && options.pixel_size) {
     throw Error(ErrorCode::invalid_argument, "--pixel-size is for rasters (.tif); leave it out",
                 options.output);
@@ -191,6 +223,7 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   ViewshedRequest request;
   request.eye = {options.x, options.y};
+  check_on_terrain(request.eye, terrain.store().facts(), "X Y");
   request.eye_height = options.height;
   request.absolute = options.absolute;
   request.target_height = options.target_height;
@@ -199,12 +232,12 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   const MapPoint per_unit = ground.per_map_unit(request.eye);
   request.ground_per_map_x = per_unit.x;
   request.ground_per_map_y = per_unit.y;
-  request.pixel_size = options.pixel_size;
   request.detail = detail_of(options.detail);
   request.limits.stop = context.stop;
   request.limits.memory_bytes = request_memory(options);
   request.radius =
       ground.geographic ? options.radius / ground.metres_per_height : options.radius * per_unit.x;
+  request.pixel_size = pixel_size_of(options, crs, request);
   request.pixels = is_raster(options.output);
   request.list_vertices = !request.pixels;
   const Viewshed seen = terrain.viewshed(request);
@@ -233,8 +266,10 @@ Action declare_viewshed(CLI::App& app, Context& context) {
   app.add_option("--target-height", options->target_height, "Height of targets above the surface")
       ->type_name("T");
   add_curvature_option(app, options->curvature);
-  app.add_option("--pixel-size", options->pixel_size,
-                 "Side of a pixel, map units (default: that of the raster it was built from)")
+  app.add_option(
+         "--pixel-size", options->pixel_size,
+         "Side of a pixel, in map units, or over ground as 90m, 0.1km or 300ft, converted at "
+         "the observer (default: that of the raster it was built from)")
       ->type_name("S");
   add_detail_options(
       app, options->detail,
@@ -252,7 +287,6 @@ Action declare_viewshed(CLI::App& app, Context& context) {
   app.add_option("--memory", options->memory, "Memory for the answer, as 512M or 2G (default 4G)")
       ->type_name("SIZE");
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  add_common_options(app, context, true);
   return [options, &context] { return run_viewshed(*options, context); };
 }
 

@@ -67,13 +67,16 @@ Polygon united(const std::vector<std::unique_ptr<OGRMultiPolygon>>& features,
 
 Polygon read_polygon(const std::string& text, const std::string& crs_wkt) {
   std::vector<std::unique_ptr<OGRMultiPolygon>> features;
-  read_geometries(text, {"POLYGON", "MULTIPOLYGON"}, "POLYGON((x y, x y, x y, x y))", crs_wkt,
-                  [&](const OGRGeometry& geometry) {
-                    auto feature = std::make_unique<OGRMultiPolygon>();
-                    for_each_polygon(geometry,
-                                     [&](const OGRPolygon& p) { feature->addGeometry(&p); });
-                    if (!feature->IsEmpty()) features.push_back(std::move(feature));
-                  });
+  const GeometrySource source{
+      text,
+      {"POLYGON", "MULTIPOLYGON"},
+      "POLYGON((x y, x y, x y, x y))",
+      {LayerKind::kAreas, "", "take one out by 'ogr2ogr ONE.gpkg FILE LAYER'"}};
+  read_geometries(source, crs_wkt, [&](const OGRGeometry& geometry, const OGRFeature*) {
+    auto feature = std::make_unique<OGRMultiPolygon>();
+    for_each_polygon(geometry, [&](const OGRPolygon& p) { feature->addGeometry(&p); });
+    if (!feature->IsEmpty()) features.push_back(std::move(feature));
+  });
   Polygon polygon;
   if (features.size() == 1) {
     polygon = rings_of(*features.front());

@@ -84,7 +84,7 @@ std::unique_ptr<OGRGeometry> geometry_of_wkt(const std::string& text) {
   return geometry;
 }
 
-bool begins_as_wkt(const std::string& text, std::initializer_list<const char*> words) {
+bool begins_as_wkt(const std::string& text, const std::vector<std::string>& words) {
   std::string start;
   for (const char c : text.substr(0, kLongestWord)) {
     const auto byte = static_cast<unsigned char>(c);
@@ -99,20 +99,20 @@ bool begins_as_wkt(const std::string& text, std::initializer_list<const char*> w
   return std::any_of(words.begin(), words.end(), opens);
 }
 
-void for_each_geometry(const std::string& path, const std::string& crs_wkt,
-                       const std::function<void(long long, const OGRGeometry*)>& visit) {
+void for_each_feature(const std::string& path, const LayerWish& wish, const std::string& crs_wkt,
+                      const std::function<void(const OGRFeature&)>& visit) {
   if (!exists(path)) throw Error(ErrorCode::not_found, "no such file", path);
   const std::unique_ptr<GDALDataset> data(GDALDataset::Open(
       path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
-  OGRLayer* layer = data ? data->GetLayer(0) : nullptr;
-  if (layer == nullptr) {
+  if (!data || data->GetLayerCount() == 0) {
     throw Error(ErrorCode::invalid_argument,
                 "neither text that is understood here nor a vector file that GDAL reads", path);
   }
-  const Transformation transform = transformation(*layer, crs_wkt, path);
+  OGRLayer& layer = choose_layer(*data, wish, path);
+  const Transformation transform = transformation(layer, crs_wkt, path);
   CPLErrorReset();
-  layer->ResetReading();
-  while (const std::unique_ptr<OGRFeature> feature{layer->GetNextFeature()}) {
+  layer.ResetReading();
+  while (const std::unique_ptr<OGRFeature> feature{layer.GetNextFeature()}) {
     OGRGeometry* geometry = feature->GetGeometryRef();
     if (geometry != nullptr && transform && geometry->transform(transform.get()) != OGRERR_NONE) {
       throw Error(ErrorCode::invalid_argument,
@@ -120,7 +120,7 @@ void for_each_geometry(const std::string& path, const std::string& crs_wkt,
                       " cannot be transformed to the terrain's CRS; give it in that CRS",
                   path);
     }
-    visit(feature->GetFID(), geometry);
+    visit(*feature);
   }
   if (CPLGetLastErrorType() >= CE_Failure) {
     throw Error(ErrorCode::invalid_argument,
@@ -128,30 +128,30 @@ void for_each_geometry(const std::string& path, const std::string& crs_wkt,
   }
 }
 
-void read_geometries(const std::string& text, std::initializer_list<const char*> words,
-                     const std::string& example, const std::string& crs_wkt,
-                     const std::function<void(const OGRGeometry&)>& visit) {
-  if (begins_as_wkt(text, words) && !exists(text)) {  // A file may be named "Polygon (1).gpkg".
-    visit(*wkt_or_refuse(text, example, ""));
+void read_geometries(const GeometrySource& source, const std::string& crs_wkt,
+                     const std::function<void(const OGRGeometry&, const OGRFeature*)>& visit) {
+  const std::string& text = source.text;
+  if (begins_as_wkt(text, source.words) && !exists(text)) {  // A file may be "Polygon (1).gpkg".
+    visit(*wkt_or_refuse(text, source.example, ""), nullptr);
     return;
   }
   if (!exists(text)) {
-    throw Error(
-        ErrorCode::not_found,
-        "no such file, and not the WKT that is expected here; write " + example + " or name a file",
-        text);
+    throw Error(ErrorCode::not_found,
+                "no such file, and not the WKT that is expected here; write " + source.example +
+                    " or name a file",
+                text);
   }
   errno = 0;
   std::ifstream in(text);
   if (!in) throw system_error(errno, "cannot open", text);
   std::string start = first_bytes(in);
-  if (begins_as_wkt(start, words)) {
+  if (begins_as_wkt(start, source.words)) {
     start.append(std::istreambuf_iterator<char>(in), {});
-    visit(*wkt_or_refuse(start, example, text));
+    visit(*wkt_or_refuse(start, source.example, text), nullptr);
     return;
   }
-  for_each_geometry(text, crs_wkt, [&](long long, const OGRGeometry* geometry) {
-    if (geometry != nullptr) visit(*geometry);
+  for_each_feature(text, source.layer, crs_wkt, [&](const OGRFeature& feature) {
+    if (feature.GetGeometryRef() != nullptr) visit(*feature.GetGeometryRef(), &feature);
   });
 }
 

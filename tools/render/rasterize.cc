@@ -18,7 +18,10 @@ struct Corner {
 
 /// The first row or column whose pixel centre is not below `low`; so two of them bound the pixels
 /// of a half-open interval.
-int first_centre(double low) { return static_cast<int>(std::ceil(std::max(low, -1.0) - 0.5)); }
+int first_centre(double low) {
+  constexpr double kBeyond = 1e9;  // More pixels than a picture has, and still an int.
+  return static_cast<int>(std::ceil((low > -1.0 ? std::min(low, kBeyond) : -1.0) - 0.5));
+}
 
 /// The place where the line a -> b is at height y of the picture.
 double x_at(const Corner& a, const Corner& b, double y) {

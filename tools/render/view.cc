@@ -8,6 +8,16 @@
 
 namespace ptin::tools {
 
+namespace {
+
+/// The pixels of a side whose length may be anything, no number too.
+int sides_pixels(double length) {
+  constexpr int kLeast = 64;
+  return length > kLeast && std::isfinite(length) ? static_cast<int>(std::lround(length)) : kLeast;
+}
+
+}  // namespace
+
 View make_view(const Window& window, const MapPoint& ground_per_unit, int width, int height) {
   View view;
   view.window = window;
@@ -24,9 +34,9 @@ View make_view(const Window& window, const MapPoint& ground_per_unit, int width,
   const double ground_height = map_height * view.ground_y;
   if (width == 0 && height == 0) {
     constexpr double kLongerSide = 1200.0;
-    const double pixels = kLongerSide / std::max(ground_width, ground_height);
-    width = std::max(64, static_cast<int>(std::lround(ground_width * pixels)));
-    height = std::max(64, static_cast<int>(std::lround(ground_height * pixels)));
+    const double longer = std::max(ground_width, ground_height);
+    width = sides_pixels(ground_width / longer * kLongerSide);
+    height = sides_pixels(ground_height / longer * kLongerSide);
   }
   if (width < 1 || height < 1 || width > 32768 || height > 32768) {
     throw Error(ErrorCode::invalid_argument, "the picture's sides must be from 1 to 32768 pixels",
@@ -37,9 +47,20 @@ View make_view(const Window& window, const MapPoint& ground_per_unit, int width,
   const double pixels = std::min(width / ground_width, height / ground_height);
   view.scale_x = pixels * view.ground_x;
   view.scale_y = pixels * view.ground_y;
+  const auto is_scale = [](double scale) { return scale > 0 && std::isfinite(scale); };
+  if (!is_scale(view.scale_x) || !is_scale(view.scale_y)) {
+    throw Error(ErrorCode::invalid_argument,
+                "the window to draw is of no size over ground; give one where the CRS has ground");
+  }
   view.left = (width - ground_width * pixels) / 2;
   view.top = (height - ground_height * pixels) / 2;
   return view;
+}
+
+int pixels_between_samples(const AffineMap& map, const View& view) {
+  constexpr double kMost = 12.0;
+  const double spacing = std::round(std::max(map.step_x * view.scale_x, map.step_y * view.scale_y));
+  return spacing < kMost ? static_cast<int>(std::max(spacing, 1.0)) : static_cast<int>(kMost);
 }
 
 View supersampled(const View& view, int factor) {

@@ -32,10 +32,13 @@ struct View {
 /// A view of `window`. Width and height 0: the longer side has 1200 pixels and the picture the
 /// window's own aspect.
 /// @param ground_per_unit  Ground units in a map unit along x and y, at the middle of the window.
-/// @throws Error invalid_argument  the window has no area; one side alone is 0, or one is negative
-///                                 or above 32768
+/// @throws Error invalid_argument  the window has no area, or none over ground that doubles hold;
+///                                 one side alone is 0, or one is negative or above 32768
 [[nodiscard]] View make_view(const Window& window, const MapPoint& ground_per_unit, int width,
                              int height);
+
+/// The number of pixels between samples that stand on the steps of the grid, 1 to 12.
+[[nodiscard]] int pixels_between_samples(const AffineMap& map, const View& view);
 
 /// The same view with `factor` times the pixels in each direction.
 [[nodiscard]] View supersampled(const View& view, int factor);

@@ -29,7 +29,9 @@ class PointSamples final : public SourceSamples {
  public:
   PointSamples(const std::vector<std::string>& paths, const StoreFile& store,
                const SampleResources& resources)
-      : facts_(store.facts()), choices_(choices_of(store)), samples_(facts_, resources.memory) {
+      : facts_(store.facts()),
+        choices_(choices_of(store)),
+        samples_(facts_, resources.memory, choices_.duplicates) {
     for (const std::string& path : paths) {
       if (is_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
         read_text(path, resources.stop);
@@ -37,6 +39,7 @@ class PointSamples final : public SourceSamples {
         read_stream(path, resources);
       }
     }
+    check_extent(extent_, paths, facts_, choices_);
     samples_.sort(resources.stop);
   }
 
@@ -56,23 +59,23 @@ class PointSamples final : public SourceSamples {
   void read_text(const std::string& path, const std::stop_token& stop);
   void read_stream(const std::string& path, const SampleResources& resources);
   [[nodiscard]] MapPoint grid_point_of(MapPoint p) const;
-  void add(const std::array<double, 3>& p, const std::string& path, const char* what,
-           std::uint64_t number);
+  void add(const std::array<double, 3>& p);
 
   const StoreFacts& facts_;
   SampleChoices choices_;
+  SourceExtent extent_;
   SortedSamples samples_;
 };
 
 void PointSamples::read_text(const std::string& path, const std::stop_token& stop) {
   constexpr std::uint64_t kLinesBetweenLooks = 4096;
-  TextSamples text(path);
+  TextSamples text(path, choices_.points.columns);
   TextSamples::Line line;
   std::uint64_t lines = 0;
   while (text.next(line)) {
     if (lines++ % kLinesBetweenLooks == 0) stop_if_asked(stop, "verification");
     if (line.misfit.empty()) {
-      add(line.point, path, ":", line.number);
+      add(line.point);
     } else {
       misfits_.add(path + ":" + std::to_string(line.number) + ": " + line.misfit);
     }
@@ -87,11 +90,9 @@ void PointSamples::read_stream(const std::string& path, const SampleResources& r
   const auto stream = open_point_stream(path, choices_.points, choices_.nodata,
                                         {&resources.memory, resources.stop, {}});
   std::vector<SourcePoint> batch;
-  std::uint64_t number = 0;
   while (stream->next(batch)) {
     stop_if_asked(resources.stop, "verification");
-    for (const SourcePoint& p : batch)
-      add({to_double(p.x), to_double(p.y), to_double(p.z)}, path, ": point ", ++number);
+    for (const SourcePoint& p : batch) add({to_double(p.x), to_double(p.y), to_double(p.z)});
   }
 }
 
@@ -108,18 +109,13 @@ MapPoint PointSamples::grid_point_of(MapPoint p) const {
   return {std::round(grid.x), std::round(grid.y)};
 }
 
-void PointSamples::add(const std::array<double, 3>& p, const std::string& path, const char* what,
-                       std::uint64_t number) {
+void PointSamples::add(const std::array<double, 3>& p) {
   if (choices_.nodata && p[2] == *choices_.nodata) return;
   const MapPoint grid = grid_point_of({p[0], p[1]});
-  const double x = grid.x;
-  const double y = grid.y;
+  extent_.add(grid.x, grid.y);
   const GridBox& b = facts_.bounds;
-  if (x >= b.min_x && x <= b.max_x && y >= b.min_y && y <= b.max_y) {
-    samples_.add({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)}, p[2]);
-  } else if (!choices_.bbox) {
-    misfits_.add(path + what + std::to_string(number) + ": this point lies outside of the terrain");
-  }
+  if (grid.x < b.min_x || grid.x > b.max_x || grid.y < b.min_y || grid.y > b.max_y) return;
+  samples_.add({static_cast<std::int32_t>(grid.x), static_cast<std::int32_t>(grid.y)}, p[2]);
 }
 
 }  // namespace

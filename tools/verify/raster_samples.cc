@@ -9,6 +9,7 @@
 #include <gdal_priv.h>
 
 #include "engine/error.h"
+#include "storage/file/file_questions.h"
 #include "tools/facts/human.h"
 #include "tools/verify/source_samples.h"
 
@@ -40,8 +41,15 @@ class RasterSamples final : public SourceSamples {
  public:
   RasterSamples(std::vector<RasterFile> files, const StoreFile& store)
       : files_(std::move(files)), choices_(choices_of(store)) {
-    for (RasterFile& file : files_) place(file, store.facts());
-    compare_extent(store.facts().bounds);
+    SourceExtent extent;
+    std::vector<std::string> paths;
+    for (RasterFile& file : files_) {
+      place(file, store.facts());
+      extent.add(static_cast<double>(file.low_x()), static_cast<double>(file.low_y()));
+      extent.add(static_cast<double>(file.high_x()), static_cast<double>(file.high_y()));
+      paths.push_back(file.path);
+    }
+    check_extent(extent, paths, store.facts(), choices_);
   }
 
   [[nodiscard]] SampleWindow read(const GridBox& box) override;
@@ -51,8 +59,7 @@ class RasterSamples final : public SourceSamples {
   }
 
  private:
-  void place(RasterFile& file, const StoreFacts& facts);
-  void compare_extent(const GridBox& bounds);
+  static void place(RasterFile& file, const StoreFacts& facts);
   void read_file(RasterFile& file, SampleWindow& window) const;
 
   std::vector<RasterFile> files_;
@@ -61,7 +68,7 @@ class RasterSamples final : public SourceSamples {
 
 double last_place(double v) { return std::nextafter(std::abs(v), HUGE_VAL) - std::abs(v); }
 
-/// Finds where the pixels of a file stand on the grid, and notes a misfit where they do not stand
+/// Finds where the pixels of a file stand on the grid, and refuses a file where they do not stand
 /// on it.
 void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   std::array<double, 6> t{0, 1, 0, 0, 0, -1};
@@ -95,34 +102,11 @@ void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   const double coarse =
       std::max(last_place(t[0]) / std::abs(t[1]), last_place(t[3]) / std::abs(t[5]));
   if (off > 0.02 + kPlaces * coarse) {
-    misfits_.add(file.path +
-                 ": its samples do not stand on the grid of the terrain; they are off by up to " +
-                 short_number(off) + " grid units");
+    throw Error(ErrorCode::invalid_argument,
+                "not the source of this file: its samples stand on another grid, up to " +
+                    short_number(off) + " grid units beside the terrain's",
+                file.path);
   }
-}
-
-void RasterSamples::compare_extent(const GridBox& bounds) {
-  std::int64_t low_x = INT64_MAX;
-  std::int64_t low_y = INT64_MAX;
-  std::int64_t high_x = INT64_MIN;
-  std::int64_t high_y = INT64_MIN;
-  for (const RasterFile& file : files_) {
-    low_x = std::min(low_x, file.low_x());
-    low_y = std::min(low_y, file.low_y());
-    high_x = std::max(high_x, file.high_x());
-    high_y = std::max(high_y, file.high_y());
-  }
-  const bool same = low_x == bounds.min_x && low_y == bounds.min_y && high_x == bounds.max_x &&
-                    high_y == bounds.max_y;
-  const bool covers = low_x <= bounds.min_x && low_y <= bounds.min_y && high_x >= bounds.max_x &&
-                      high_y >= bounds.max_y;
-  if (same || (choices_.bbox && covers)) return;
-  const auto box = [](std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t d) {
-    return std::to_string(a) + " " + std::to_string(b) + " to " + std::to_string(c) + " " +
-           std::to_string(d);
-  };
-  misfits_.add("the source covers grid points " + box(low_x, low_y, high_x, high_y) +
-               ", the terrain " + box(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y));
 }
 
 /// True for signed bytes. They come from GDAL before 3.7 as 0 to 255, and its mask does not know a
@@ -213,6 +197,7 @@ std::unique_ptr<SourceSamples> open_raster_samples(const std::vector<std::string
     file.path = path;
     file.data.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr,
                                       nullptr, nullptr));
+    if (!file.data) require_readable(path);
     // GDAL's XYZ driver reads some point files as rasters; text is left to the reader of points.
     if (!file.data || file.data->GetRasterCount() < 1 || EQUAL(file.data->GetDriverName(), "XYZ"))
       return nullptr;

@@ -33,8 +33,8 @@ std::array<GridBox, 2> halves_of(const GridBox& box) {
   return {low, high};
 }
 
-SortedSamples::SortedSamples(const StoreFacts& facts, const ExternalMemory& memory)
-    : facts_(facts), memory_(memory) {
+SortedSamples::SortedSamples(const StoreFacts& facts, const ExternalMemory& memory, PointMerge rule)
+    : facts_(facts), memory_(memory), rule_(rule) {
   memory_.bytes /= 2;
   sorter_ = std::make_unique<Sorter>(memory_, "samples");
 }
@@ -57,7 +57,9 @@ GridPoint SortedSamples::point_of(std::uint64_t key) const {
   return {box.min_x, box.min_y};
 }
 
-void SortedSamples::add(GridPoint p, double height) { sorter_->add({key_of(p), height}); }
+void SortedSamples::add(GridPoint p, double height) {
+  sorter_->add({key_of(p), height, rule_ == PointMerge::kFirst ? sorter_->size() : 0});
+}
 
 /// A height as it is summed up: as a whole code, so that sums are exact; as it is where the store
 /// keeps floats.
@@ -75,27 +77,39 @@ double SortedSamples::mean_of(double sum, std::uint64_t count) const {
              : mean;
 }
 
+double SortedSamples::merged(const Together& samples) const {
+  switch (rule_) {
+    case PointMerge::kLowest:
+      return samples.lowest;
+    case PointMerge::kHighest:
+      return samples.highest;
+    case PointMerge::kFirst:
+      return samples.first.height;
+    case PointMerge::kMean:
+      break;
+  }
+  return samples.lowest == samples.highest ? samples.lowest : mean_of(samples.sum, samples.count);
+}
+
 void SortedSamples::sort(const std::stop_token& stop) {
   const bool fits = sorter_->size() <= memory_.bytes / sizeof(Record);
   if (!fits) file_ = std::make_unique<ScratchFile>(memory_.files, memory_.folder, "samples", true);
   records_.reserve(static_cast<std::size_t>(fits ? sorter_->size() : kBlock));
-  Record first{};
-  double sum = 0.0;
-  std::uint64_t count = 0;
+  Together together;
   const auto keep_merged = [&] {
-    if (count > 0) keep(count == 1 ? first : Record{first.key, mean_of(sum, count)});
+    if (together.count > 0) keep({together.first.key, merged(together)});
   };
   sorter_->merge(
-      [&](std::span<const Record> batch) {
-        for (const Record& record : batch) {
-          if (count == 0 || record.key != first.key) {
+      [&](std::span<const NumberedRecord> batch) {
+        for (const NumberedRecord& record : batch) {
+          if (together.count == 0 || record.key != together.first.key) {
             keep_merged();
-            first = record;
-            sum = 0.0;
-            count = 0;
+            together = {record, record.height, record.height, 0.0, 0};
           }
-          sum += code_of(record.height);
-          ++count;
+          together.lowest = std::min(together.lowest, record.height);
+          together.highest = std::max(together.highest, record.height);
+          together.sum += code_of(record.height);
+          ++together.count;
         }
       },
       stop);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <stop_token>
+#include <tuple>
 #include <vector>
 
 #include "engine/construct/scratch/external_sorter.h"
@@ -31,13 +32,15 @@ class SortedSamples {
   /// @param facts   Bounds and heights of the terrain; borrowed for the life of the object.
   /// @param memory  Half of it sorts; the other half keeps what was sorted, when it fits there. Its
   ///                folder is written to only when something does not fit.
-  SortedSamples(const StoreFacts& facts, const ExternalMemory& memory);
+  /// @param rule    Which height stands for samples on one grid point.
+  SortedSamples(const StoreFacts& facts, const ExternalMemory& memory,
+                PointMerge rule = PointMerge::kMean);
 
   /// Adds a sample. REQUIRES: `p` lies within the bounds.
   /// @throws Error io_error, resource_exhausted (disk full)
   void add(GridPoint p, double height);
-  /// Sorts all samples. Samples on one grid point become one, at their mean height, rounded as
-  /// heights are stored; the builder documents the same.
+  /// Sorts all samples. Samples on one grid point become one by the rule; a mean is rounded as
+  /// heights are stored. The builder documents the same.
   /// @throws Error as add(); cancelled
   void sort(const std::stop_token& stop);
 
@@ -51,12 +54,25 @@ class SortedSamples {
     std::uint64_t key;
     double height;
   };
+  struct NumberedRecord {
+    std::uint64_t key;
+    double height;
+    std::uint64_t number;  ///< For PointMerge::kFirst how many were added before it; else 0.
+  };
   struct Before {
-    bool operator()(const Record& a, const Record& b) const {
-      return a.key != b.key ? a.key < b.key : a.height < b.height;
+    bool operator()(const NumberedRecord& a, const NumberedRecord& b) const {
+      return std::tie(a.key, a.number, a.height) < std::tie(b.key, b.number, b.height);
     }
   };
-  using Sorter = ExternalSorter<Record, Before>;
+  using Sorter = ExternalSorter<NumberedRecord, Before>;
+
+  /// The samples of one grid point.
+  struct Together {
+    NumberedRecord first{};
+    double lowest = 0.0, highest = 0.0;
+    double sum = 0.0;  ///< Of code_of().
+    std::uint64_t count = 0;
+  };
 
   /// The sorted records [begin, end): those of a box that comes from halving the bounds.
   struct Run {
@@ -69,6 +85,7 @@ class SortedSamples {
   [[nodiscard]] std::uint64_t key_of(GridPoint p) const;
   [[nodiscard]] GridPoint point_of(std::uint64_t key) const;
   [[nodiscard]] double mean_of(double sum, std::uint64_t count) const;
+  [[nodiscard]] double merged(const Together& samples) const;
   [[nodiscard]] double code_of(double height) const;
   void keep(const Record& record);
   void flush();
@@ -82,6 +99,7 @@ class SortedSamples {
 
   const StoreFacts& facts_;
   ExternalMemory memory_;
+  PointMerge rule_;
   std::unique_ptr<Sorter> sorter_;
   std::uint64_t size_ = 0;  ///< Of sorted records.
   /// All sorted records, or those that are not in the file yet.

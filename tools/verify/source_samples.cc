@@ -6,6 +6,7 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
+#include "tools/facts/human.h"
 
 namespace ptin::tools {
 
@@ -52,6 +53,17 @@ SampleChoices choices_of(const StoreFile& store) {
     const auto found = options.find(name);
     return found != options.end() && found->is_string() ? found->get<std::string>() : "";
   };
+  if (const auto names = options.find("columns"); names != options.end() && names->is_array()) {
+    for (const auto& name : *names) {
+      if (name.is_string()) choices.points.columns.push_back(name.get<std::string>());
+    }
+  }
+  const std::string returns = text("returns"), duplicates = text("duplicates");
+  if (returns == "first") choices.points.returns = ReturnChoice::kFirst;
+  if (returns == "last") choices.points.returns = ReturnChoice::kLast;
+  if (duplicates == "min") choices.duplicates = PointMerge::kLowest;
+  if (duplicates == "max") choices.duplicates = PointMerge::kHighest;
+  if (duplicates == "first") choices.duplicates = PointMerge::kFirst;
   choices.points.layer = text("layer");
   choices.points.z_field = text("z_field");
   if (const auto bbox = options.find("bbox");
@@ -59,6 +71,37 @@ SampleChoices choices_of(const StoreFile& store) {
     choices.bbox = store.facts().bounds;
   }
   return choices;
+}
+
+std::string inputs_text(const std::vector<std::string>& paths) {
+  if (paths.size() == 1) return paths.front();
+  return paths.front() + " and " + counted(paths.size() - 1, "more input");
+}
+
+void check_extent(const SourceExtent& extent, const std::vector<std::string>& paths,
+                  const StoreFacts& facts, const SampleChoices& choices) {
+  const GridBox& b = facts.bounds;
+  const bool same = extent.min_x == b.min_x && extent.min_y == b.min_y && extent.max_x == b.max_x &&
+                    extent.max_y == b.max_y;
+  const bool covers = extent.min_x <= b.min_x && extent.min_y <= b.min_y &&
+                      extent.max_x >= b.max_x && extent.max_y >= b.max_y;
+  if (same || (choices.bbox && covers)) return;
+  const auto text = [&](double min_x, double min_y, double max_x, double max_y) {
+    const MapPoint low = facts.map.to_map(min_x, min_y);
+    const MapPoint high = facts.map.to_map(max_x, max_y);
+    return exact_number(low.x) + " " + exact_number(low.y) + " to " + exact_number(high.x) + " " +
+           exact_number(high.y);
+  };
+  const std::string what = extent.min_x <= extent.max_x
+                               ? "its samples reach from " +
+                                     text(extent.min_x, extent.min_y, extent.max_x, extent.max_y) +
+                                     ", the terrain's from " +
+                                     text(b.min_x, b.min_y, b.max_x, b.max_y)
+                               : "it holds no sample";
+  throw Error(ErrorCode::invalid_argument,
+              "not the source of this file: " + what +
+                  "; name every input of the build behind --against, and no other",
+              inputs_text(paths));
 }
 
 std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,

@@ -5,7 +5,9 @@
 // Only LAS, TINs and layers come through the builder's readers.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -26,6 +28,7 @@ namespace ptin::tools {
 /// Choices of the build that decide which samples there are; from the metadata of the store.
 struct SampleChoices {
   PointChoice points;
+  PointMerge duplicates = PointMerge::kMean;  ///< Of points that fall together.
   std::optional<double> nodata;
   std::optional<double> resolution;  ///< Points: the grid's step in CRS units, if it was chosen.
   std::optional<GridBox> bbox;       ///< Samples outside were left out.
@@ -50,7 +53,31 @@ struct SampleWindow {
   bool is_grid = false;  ///< One sample at each grid point of `box`, row 0 in the south.
 };
 
-/// What does not fit between a source as a whole and a terrain.
+/// The box of a source's outermost samples, in grid units of a terrain that may be another one.
+struct SourceExtent {
+  double min_x = std::numeric_limits<double>::infinity();
+  double min_y = std::numeric_limits<double>::infinity();
+  double max_x = -std::numeric_limits<double>::infinity();
+  double max_y = -std::numeric_limits<double>::infinity();
+
+  void add(double x, double y) {
+    min_x = std::min(min_x, x);
+    min_y = std::min(min_y, y);
+    max_x = std::max(max_x, x);
+    max_y = std::max(max_y, y);
+  }
+};
+
+/// Refuses a source whose samples do not reach as far as the terrain's, or farther. Where the build
+/// left out what lies outside of a box, a source may reach farther.
+/// @param paths  The inputs, which the sentence names.
+/// @throws Error invalid_argument  not the source of this file; both boxes, in map units
+void check_extent(const SourceExtent& extent, const std::vector<std::string>& paths,
+                  const StoreFacts& facts, const SampleChoices& choices);
+/// Several inputs in a few words: the first one, and how many more there are.
+[[nodiscard]] std::string inputs_text(const std::vector<std::string>& paths);
+
+/// Lines of text that are no points.
 struct Misfits {
   static constexpr std::size_t kKept = 1000;
   std::vector<std::string> first;  ///< In words, at most kKept.
@@ -73,8 +100,7 @@ class SourceSamples {
   [[nodiscard]] virtual SampleWindow read(const GridBox& box) = 0;
   /// How many read() would return.  @throws Error io_error
   [[nodiscard]] virtual std::uint64_t count(const GridBox& box) = 0;
-  /// What does not fit: another grid, another extent, lines that are no points. Empty when the
-  /// source fits the store.
+  /// Lines of text that are no points.
   [[nodiscard]] const Misfits& misfits() const noexcept { return misfits_; }
 
  protected:
@@ -88,13 +114,15 @@ struct SampleResources {
 };
 
 /// Opens rasters, or points of any kind. Points are read here, once; rasters are read by read().
-/// @throws Error not_found, invalid_argument, io_error, resource_exhausted (disk full), cancelled
+/// @throws Error not_found, io_error, resource_exhausted (disk full), cancelled; invalid_argument
+///               (neither a raster nor points; another grid or another extent than the terrain's,
+///               which is no source of it)
 [[nodiscard]] std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
                                                           const StoreFile& store,
                                                           const SampleResources& resources);
 
 /// The two kinds of sources; open_samples() chooses. open_raster_samples() returns null when GDAL
-/// does not know one of the files as a raster.
+/// does not know one of the files as a raster; a file that cannot be read is an error.
 [[nodiscard]] std::unique_ptr<SourceSamples> open_raster_samples(
     const std::vector<std::string>& paths, const StoreFile& store);
 [[nodiscard]] std::unique_ptr<SourceSamples> open_point_samples(

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
+#include <sstream>
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
@@ -27,15 +29,61 @@ const std::array<std::vector<std::string>, 3>& column_names() {
   static const std::array<std::vector<std::string>, 3> names = {
       {{"x", "easting", "east", "e", "longitude", "lon", "long", "point_x"},
        {"y", "northing", "north", "n", "latitude", "lat", "point_y"},
-       {"z", "height", "h", "elevation", "elev", "altitude", "alt", "point_z"}}};
+       {"z", "height", "h", "elevation", "elev", "ele", "altitude", "alt", "point_z"}}};
   return names;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
+std::string_view trimmed(std::string_view text, const char* blanks = kBlanks) {
+  const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
+
+bool is_any_of(char c, std::string_view all) { return all.find(c) != std::string_view::npos; }
+
+/// What may stand around a field without being of it.
+const char* blanks_beside(char separator) { return separator == '\t' ? " \r" : kBlanks; }
+
+/// For each character whether it is outside of quotes; nothing where the text ends within them.
+/// Quotes open at the begin of a field alone. Before the separator is known ('\0') a field begins
+/// behind anything that may be one.
+std::vector<bool> outside_of_quotes(std::string_view text, char separator) {
+  std::vector<bool> outside(text.size() + 1, true);
+  bool within = false, at_begin = true;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (within) {
+      outside[i] = false;
+      within = c != '"';
+      if (!within && i + 1 < text.size() && text[i + 1] == '"') {  // two quotes are one
+        outside[++i] = false;
+        within = true;
+      }
+    } else if (c == '"' && at_begin) {
+      outside[i] = false;
+      within = true;
+      at_begin = false;
+    } else {
+      const bool separates = separator == '\0'  ? is_any_of(c, ";, \t\r")
+                             : separator == ' ' ? is_any_of(c, kBlanks)
+                                                : c == separator;
+      at_begin = separates || (at_begin && is_any_of(c, blanks_beside(separator)));
+    }
+  }
+  return within ? std::vector<bool>() : outside;
+}
+
+std::string unquoted(std::string_view field) {
+  if (field.size() < 2 || field.front() != '"' || field.back() != '"') return std::string(field);
+  std::string text;
+  for (std::size_t i = 1; i + 1 < field.size(); ++i) {
+    text += field[i];
+    i += field[i] == '"' ? 1 : 0;
+  }
+  return text;
+}
+
+std::string as_name(const std::string& field) { return lower_case(std::string(trimmed(field))); }
 
 /// The number in a field; none where the field is no number. NaN and infinities are numbers.
 std::optional<double> number_of(std::string_view field) {
@@ -52,6 +100,34 @@ std::optional<double> number_of(std::string_view field) {
   return value;
 }
 
+bool begins_as_number(const std::string& field) {
+  const std::size_t first = field.find_first_not_of("'+-.");
+  return number_of(field).has_value() ||
+         (first != std::string::npos && is_any_of(field[first], "0123456789"));
+}
+
+/// True when two words between two tabs begin as numbers: then tabs separate as blanks do.
+bool has_numbers_between_tabs(const std::string& text) {
+  std::istringstream columns(text);
+  for (std::string column; std::getline(columns, column, '\t');) {
+    std::istringstream words(column);
+    if (std::count_if(std::istream_iterator<std::string>(words), {}, begins_as_number) > 1)
+      return true;
+  }
+  return false;
+}
+
+char separator_of(const std::string& text) {
+  const std::vector<bool> outside = outside_of_quotes(text, '\0');
+  for (const char candidate : {';', ',', '\t'}) {
+    if (candidate == '\t' && has_numbers_between_tabs(text)) break;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (outside[i] && text[i] == candidate) return candidate;
+    }
+  }
+  return ' ';
+}
+
 }  // namespace
 
 struct TextSamples::File {
@@ -64,8 +140,8 @@ struct TextSamples::File {
   }
 };
 
-TextSamples::TextSamples(std::string path)
-    : path_(std::move(path)), file_(std::make_unique<File>()) {
+TextSamples::TextSamples(std::string path, const std::vector<std::string>& columns)
+    : path_(std::move(path)), file_(std::make_unique<File>()), given_(columns) {
   file_->handle = VSIFOpenL(((is_packed(path_) ? "/vsigzip/" : "") + path_).c_str(), "rb");
   if (file_->handle == nullptr) throw Error(ErrorCode::io_error, "cannot be read", path_);
 }
@@ -94,9 +170,14 @@ void TextSamples::fill() {
                 path_);
   }
   at_end_ = got == 0;
+  if (at_end_ && !is_packed(path_) && VSIFEofL(file_->handle) == 0) {  // GDAL tells nothing
+    throw Error(ErrorCode::io_error,
+                "cannot read on behind line " + std::to_string(number_) + ": the system refuses",
+                path_);
+  }
 }
 
-bool TextSamples::next_text(std::string_view& text) {
+bool TextSamples::next_line(std::string_view& line) {
   std::size_t end = buffer_.find('\n', begin_);
   while (end == std::string::npos && !at_end_ && buffer_.size() - begin_ <= kLongestLine) {
     fill();
@@ -107,44 +188,75 @@ bool TextSamples::next_text(std::string_view& text) {
   ++number_;
   if (end - begin_ > kLongestLine)
     refuse("a line is longer than 64 KiB; this does not look like points as text");
-  text = std::string_view(buffer_).substr(begin_, end - begin_);
+  line = std::string_view(buffer_).substr(begin_, end - begin_);
   begin_ = std::min(end + 1, buffer_.size());
   return true;
 }
 
+bool TextSamples::next_text(std::string& text) {
+  std::string_view line;
+  do {
+    if (!next_line(line)) return false;
+    if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+  } while (trimmed(line).empty() || trimmed(line).front() == '#');
+  first_ = number_;
+  text = line;
+  if (text.find('"') == std::string::npos) return true;
+  while (outside_of_quotes(text, separator_).empty()) {
+    if (text.size() > kLongestLine || !next_line(line)) {
+      number_ = first_;
+      refuse("the quotes of a field that begins in this line do not end");
+    }
+    text.append(1, '\n').append(line);
+  }
+  return true;
+}
+
 void TextSamples::split(std::string_view text) {
-  fields_.clear();
+  const bool has_quotes = text.find('"') != std::string_view::npos;
+  const std::vector<bool> outside =
+      has_quotes ? outside_of_quotes(text, separator_) : std::vector<bool>();
   const bool by_blanks = separator_ == ' ';
-  while (by_blanks ? !text.empty() : true) {
-    const std::size_t end = by_blanks ? text.find_first_of(kBlanks) : text.find(separator_);
-    fields_.push_back(trimmed(text.substr(0, end)));
-    if (end == std::string_view::npos) return;
-    text.remove_prefix(end + 1);
-    if (by_blanks) text = trimmed(text);
+  const auto separates = [&](std::size_t i) {
+    return (!has_quotes || outside[i]) &&
+           (by_blanks ? is_any_of(text[i], kBlanks) : text[i] == separator_);
+  };
+  fields_.clear();
+  for (std::size_t begin = 0; begin <= text.size();) {
+    std::size_t end = begin;
+    while (end < text.size() && !separates(end)) ++end;
+    if (end > begin || !by_blanks) {
+      fields_.push_back(
+          unquoted(trimmed(text.substr(begin, end - begin), blanks_beside(separator_))));
+    }
+    begin = end + 1;
   }
 }
 
 bool TextSamples::begin(std::string_view text) {
-  separator_ = text.find(';') != std::string_view::npos   ? ';'
-               : text.find(',') != std::string_view::npos ? ','
-                                                          : ' ';
   split(text);
   field_count_ = fields_.size();
-  if (!number_of(fields_[0])) {
-    choose_columns();
-    return true;
+  const auto names = [&](std::size_t axis) {
+    return std::any_of(fields_.begin(), fields_.end(), [&](const std::string& field) {
+      const auto& known = column_names()[axis];
+      return std::find(known.begin(), known.end(), as_name(field)) != known.end();
+    });
+  };
+  const bool is_header =
+      std::none_of(fields_.begin(), fields_.end(), begins_as_number) || (names(0) && names(1));
+  if (!given_.empty()) {
+    choose_columns(given_);
+  } else if (is_header) {
+    choose_columns(fields_);
+  } else if (field_count_ < 3) {
+    refuse("the first line has fewer than three fields, so no x, y and z");
   }
-  if (field_count_ < 3) refuse("the first line has fewer than three fields, so no x, y and z");
-  return false;
+  return is_header;
 }
 
-void TextSamples::choose_columns() {
+void TextSamples::choose_columns(const std::vector<std::string>& names) {
   std::vector<std::string> header;
-  for (std::string_view field : fields_) {
-    if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
-      field = trimmed(field.substr(1, field.size() - 2));
-    header.push_back(lower_case(std::string(field)));
-  }
+  for (const std::string& name : names) header.push_back(as_name(name));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     columns_[axis] = header.size();
     for (const std::string& name : column_names()[axis]) {
@@ -153,9 +265,9 @@ void TextSamples::choose_columns() {
       columns_[axis] = static_cast<std::size_t>(found - header.begin());
       break;
     }
-    if (columns_[axis] == header.size()) {
-      refuse(std::string("neither a raster that GDAL reads nor points as text: the first line "
-                         "holds no number first and names no column for ") +
+    if (columns_[axis] >= field_count_) {
+      refuse(std::string("neither a raster that GDAL reads nor points as text: the first "
+                         "line, or --columns of the build, names no column for ") +
              "xyz"[axis]);
     }
   }
@@ -178,17 +290,15 @@ void TextSamples::read_numbers(Line& line) const {
 }
 
 bool TextSamples::next(Line& line) {
-  std::string_view text;
+  std::string text;
   while (next_text(text)) {
-    if (number_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    text = trimmed(text);
-    if (text.empty() || text.front() == '#') continue;
-    if (separator_ == '\0') {
+    if (field_count_ == 0) {
+      separator_ = separator_of(text);
       if (begin(text)) continue;
     } else {
       split(text);
     }
-    line = {number_, {}, {}};
+    line = {first_, {}, {}};
     read_numbers(line);
     return true;
   }

@@ -16,13 +16,15 @@
 namespace ptin::tools {
 
 /// The points of one file of text. The first line that is neither empty nor a comment ('#') decides
-/// the separator (semicolon, else comma, else blanks and tabs), the number of fields, and whether
-/// that line is a header. Empty fields between semicolons or commas count. A byte order mark is
-/// passed over. A file whose name ends in .gz, in any case, is unpacked on the way.
+/// the separator (semicolon, else comma, else tab, else blanks), the number of fields, and whether
+/// that line is a header: no field of it begins as a number, or it names columns for x and y. Empty
+/// fields between semicolons, commas or tabs count, and fields may be quoted as in RFC 4180. A byte
+/// order mark is passed over. A file whose name ends in .gz, in any case, is unpacked on the way.
 class TextSamples {
  public:
+  /// @param columns  The names of the columns that the build was given; empty: none.
   /// @throws Error not_found, io_error
-  explicit TextSamples(std::string path);
+  TextSamples(std::string path, const std::vector<std::string>& columns);
   TextSamples(const TextSamples&) = delete;
   TextSamples& operator=(const TextSamples&) = delete;
   ~TextSamples();
@@ -35,18 +37,20 @@ class TextSamples {
   };
   /// Reads the next such line into `line`; false at the end.
   /// @throws Error invalid_argument  the first line names no column for x, y or z, or has too few
-  ///                                 fields; a line is longer than 64 KiB
+  ///                                 fields; a line is longer than 64 KiB, or its quotes do not end
   ///               io_error          the file cannot be read on
   [[nodiscard]] bool next(Line& line);
 
  private:
   struct File;
-  [[nodiscard]] bool next_text(std::string_view& text);
+  /// The next line, with those that a quoted field of it goes on in.
+  [[nodiscard]] bool next_text(std::string& text);
+  [[nodiscard]] bool next_line(std::string_view& line);
   void fill();
   void split(std::string_view text);
   /// Looks at the first line; true when it is a header.
   [[nodiscard]] bool begin(std::string_view text);
-  void choose_columns();
+  void choose_columns(const std::vector<std::string>& names);
   void read_numbers(Line& line) const;
   [[noreturn]] void refuse(const std::string& sentence) const;
 
@@ -55,11 +59,13 @@ class TextSamples {
   std::string buffer_;
   std::size_t begin_ = 0;  ///< Where the part of the buffer begins that is left.
   bool at_end_ = false;
-  std::uint64_t number_ = 0;  ///< Lines so far.
-  char separator_ = '\0';     ///< '\0' before the first line, ' ' for blanks and tabs.
+  std::uint64_t number_ = 0;        ///< Lines so far.
+  std::uint64_t first_ = 0;         ///< The line that the text of next_text() begins in.
+  std::vector<std::string> given_;  ///< Names of columns.
+  char separator_ = '\0';           ///< '\0' before the first line, ' ' for blanks and tabs.
   std::array<std::size_t, 3> columns_{0, 1, 2};
   std::size_t field_count_ = 0;
-  std::vector<std::string_view> fields_;
+  std::vector<std::string> fields_;
 };
 
 }  // namespace ptin::tools

@@ -3,11 +3,13 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include <cpl_conv.h>
 #include <ogr_spatialref.h>
 
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -168,6 +170,31 @@ void set_crs(TerrainFrame& frame, const Crs& crs) {
   frame.geographic = crs.geographic;
   frame.horizontal_unit = crs.horizontal_unit;
   frame.vertical_unit = crs.vertical_unit;
+}
+
+void set_units(TerrainFrame& frame, const DeclaredUnits& units, bool is_own,
+               const std::string& context) {
+  if (frame.crs_wkt.empty()) {
+    if (!units.plane.empty()) {
+      frame.horizontal_unit = units.plane;
+    }
+  } else if (is_own) {
+    // The two feet are confused so often, and differ so little, that the CRS is believed.
+    constexpr double kAlike = 1e-5;
+    const std::optional<double> said = metres_in(units.plane);
+    const std::optional<double> meant = metres_in(height_unit_named(frame.horizontal_unit));
+    const bool is_alike = said && meant && std::abs(*said / *meant - 1.0) < kAlike;
+    if (said && !is_alike && (meant || frame.geographic)) {
+      throw Error(ErrorCode::invalid_argument,
+                  "the file says that its coordinates are in units of '" + units.plane +
+                      "', but the unit of the CRS that it names is '" + frame.horizontal_unit +
+                      "'; say with --a-srs in which CRS they are",
+                  context);
+    }
+  }
+  if (frame.vertical_unit == "unknown" && !units.heights.empty()) {
+    frame.vertical_unit = units.heights;
+  }
 }
 
 void require_latitudes(const TerrainFrame& frame, std::int64_t rows, const std::string& context) {

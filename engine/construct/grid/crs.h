@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/terrain_frame.h"
 
 namespace ptin {
@@ -41,6 +42,14 @@ struct Crs {
 
 /// Sets those fields of `frame` that describe the CRS.
 void set_crs(TerrainFrame& frame, const Crs& crs);
+
+/// Adds what a source says of its units beside a CRS: the plane's where there is no CRS, the
+/// heights' where no vertical part names theirs.
+/// @param is_own    The CRS is the source's own, and not one that the caller put in its place.
+/// @param context   The path of the source, for the error.
+/// @throws Error invalid_argument  the source's own CRS is in another unit than the source says
+void set_units(TerrainFrame& frame, const DeclaredUnits& units, bool is_own,
+               const std::string& context);
 
 /// Refuses a CRS in degrees for coordinates that are no latitudes: y below -91 or above 91. Most
 /// likely the coordinates are metres.

@@ -12,14 +12,15 @@
 
 namespace ptin {
 
-/// Merges the heights of points that share a position. Heights are given in ascending order, so
-/// that their sum does not depend on the order of the source.
+/// Merges the heights of points that share a position. For the rule kFirst they are given in the
+/// order of the source; else in ascending order, so that their sum does not depend on that.
 class MergedHeight {
  public:
-  explicit MergedHeight(double lowest) noexcept : low_(lowest), high_(lowest), sum_(lowest) {}
-  /// REQUIRES: `height` is not below the heights before.
+  explicit MergedHeight(double first) noexcept
+      : first_(first), low_(first), high_(first), sum_(first) {}
   void add(double height) noexcept {
-    high_ = height;
+    low_ = std::min(low_, height);
+    high_ = std::max(high_, height);
     sum_ += height;
     ++count_;
   }
@@ -27,6 +28,9 @@ class MergedHeight {
   /// The merged height.
   /// @param whole  Heights are codes: the mean is rounded to a code, ties to even.
   [[nodiscard]] double height(PointMerge rule, bool whole) const noexcept {
+    if (rule == PointMerge::kFirst) {
+      return first_;
+    }
     if (rule != PointMerge::kMean || low_ == high_) {
       return rule == PointMerge::kHighest ? high_ : low_;
     }
@@ -39,7 +43,7 @@ class MergedHeight {
   }
 
  private:
-  double low_, high_, sum_;
+  double first_, low_, high_, sum_;
   std::uint64_t count_ = 1;
 };
 

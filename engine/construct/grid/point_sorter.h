@@ -22,6 +22,20 @@ struct ByKeyThenHeight {
   }
 };
 
+/// A point that knows its place in the source: those that fall together are sorted by it.
+struct NumberedHeight {
+  std::uint64_t key = 0;
+  double height = 0.0;
+  std::uint64_t number = 0;  ///< How many points of the source come before it.
+};
+
+struct ByKeyThenNumber {
+  bool operator()(const NumberedHeight& a, const NumberedHeight& b) const noexcept {
+    return a.key != b.key ? a.key < b.key : a.number < b.number;
+  }
+};
+
 using PointSorter = ExternalSorter<KeyedHeight, ByKeyThenHeight>;
+using NumberedPointSorter = ExternalSorter<NumberedHeight, ByKeyThenNumber>;
 
 }  // namespace ptin

@@ -10,15 +10,28 @@
 
 namespace ptin {
 
+/// Which echoes of a laser pulse are wanted. The last one reaches the ground, or comes nearest to
+/// it. An echo without a number counts as the only one of its pulse.
+enum class ReturnChoice : std::uint8_t { kAll, kFirst, kLast };
+
 /// Which points of a source are wanted.
 struct PointChoice {
   std::vector<int> classes;  ///< LAS: keep these classes (0 .. 255); empty keeps all.
-  std::string layer;         ///< OGR: the layer; "" where there is only one.
-  std::string z_field;       ///< OGR: the attribute that holds the height; "" for the geometry's z.
+  ReturnChoice returns = ReturnChoice::kAll;  ///< LAS.
+  std::string layer;                          ///< OGR: the layer; "" where there is only one.
+  std::string z_field;  ///< OGR: the attribute that holds the height; "" for the geometry's z.
+  /// Text: the names of its columns from the left (read/column_names.h); empty: those of a header,
+  /// else x, y and z come first.
+  std::vector<std::string> columns;
 };
 
 /// Which height stands for points that fall together on one grid position.
-enum class PointMerge : std::uint8_t { kMean, kLowest, kHighest };
+enum class PointMerge : std::uint8_t {
+  kMean,
+  kLowest,
+  kHighest,
+  kFirst,  ///< That of the point which comes first in the first of the sources.
+};
 
 /// Choices that decide what is read from a source.
 struct SourceOptions {

@@ -15,6 +15,13 @@ struct SourcePoint {
   Decimal x, y, z;
 };
 
+/// Units that a source names itself, as LandXML does: as height_unit_named() (engine/crs) has them;
+/// "" where it is silent.
+struct DeclaredUnits {
+  std::string plane, heights;
+  friend bool operator==(const DeclaredUnits&, const DeclaredUnits&) = default;
+};
+
 /// A grid that a source brings along: LAS coordinates are whole steps from an offset.
 struct SourceLattice {
   double unit = 0.0;                      ///< CRS units, > 0.
@@ -25,6 +32,7 @@ struct SourceLattice {
 struct PointStreamFacts {
   std::string crs;           ///< Anything GDAL understands; "" when the source does not say.
   std::string vertical_crs;  ///< Likewise, where the source names it apart from `crs`.
+  DeclaredUnits units;       ///< What the source says of them beside a CRS.
   /// Digits after the point that coordinates and heights are declared to have: at least so many are
   /// kept.
   int plan_decimals = 0;

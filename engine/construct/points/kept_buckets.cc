@@ -22,10 +22,12 @@ struct PointBuckets::Kept {
   std::uint64_t codes_are_whole;
 };
 
-SourceDisk PointBuckets::disk_of(std::uint64_t points) noexcept {
+SourceDisk PointBuckets::disk_of(std::uint64_t points, PointMerge rule) noexcept {
+  const std::uint64_t sorted =
+      rule == PointMerge::kFirst ? sizeof(NumberedHeight) : sizeof(KeyedHeight);
   // Tiles of points have longer borders than squares, and push up more: their files took 42 bytes a
   // point for 3 million points, and 67 for 1 million.
-  return {.while_reading = points * (PointSpool::kRecordBytes + sizeof(KeyedHeight)),
+  return {.while_reading = points * (PointSpool::kRecordBytes + sorted),
           .spooled = points * PointSpool::kRecordBytes,
           .kept = points * kMostPackedBytes,
           .tiles_of_vertex = 72.0};

@@ -19,7 +19,7 @@ constexpr std::size_t kBatchPoints = 4096;
 /// Text, in batches.
 class TextPoints final : public PointStream {
  public:
-  explicit TextPoints(const std::string& path) : reader_(path) {
+  TextPoints(const std::string& path, const PointChoice& choice) : reader_(path, choice.columns) {
     const GdalSession session;
     VSIStatBufL status;
     if (!is_packed(path) && VSIStatL(path.c_str(), &status) == 0) {
@@ -51,6 +51,16 @@ void check_choice(const std::string& path, const PointChoice& choice, PointForma
                 "only LAS has classes; leave the choice of classes out, or build LAS files alone",
                 path);
   }
+  if (!choice.columns.empty() && format != PointFormat::kText) {
+    throw Error(ErrorCode::invalid_argument,
+                "--columns is for points as text, not for LAS and layers; leave it out", path);
+  }
+  if (choice.returns != ReturnChoice::kAll &&
+      (wants_layer(choice) || format != PointFormat::kLas)) {
+    throw Error(ErrorCode::invalid_argument,
+                "only LAS has returns; leave the choice of returns out, or build LAS files alone",
+                path);
+  }
   if (format == PointFormat::kLas && wants_layer(choice)) {
     throw Error(ErrorCode::invalid_argument,
                 "LAS has no layers and attributes; leave --layer and --z-field out", path);
@@ -70,7 +80,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::string& path, const Po
     case PointFormat::kLas:
       return std::make_unique<LasReader>(path, choice);
     case PointFormat::kText:
-      return std::make_unique<TextPoints>(path);
+      return std::make_unique<TextPoints>(path, choice);
     case PointFormat::kLayer:
       break;
   }

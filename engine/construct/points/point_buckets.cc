@@ -2,6 +2,7 @@
 #include "engine/construct/points/point_buckets.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "engine/construct/grid/crs.h"
@@ -46,14 +47,14 @@ class PointBuckets::Writer {
         rule_(rule),
         heights_(grid.whole, grid.heights.unit()) {}
 
-  void add(const KeyedHeight& p) {
-    if (merged_ && p.key == key_) {
-      merged_->add(p.height);
+  void add(std::uint64_t key, double height) {
+    if (merged_ && key == key_) {
+      merged_->add(height);
       return;
     }
     put();
-    key_ = p.key;
-    merged_.emplace(p.height);
+    key_ = key;
+    merged_.emplace(height);
   }
 
   void finish() {
@@ -116,9 +117,10 @@ class PointBuckets::Writer {
   std::optional<MergedHeight> merged_;
 };
 
-void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rule,
-                        const ExternalMemory& memory, const std::stop_token& stop,
-                        const Progress& progress, const std::string& keep_as) {
+template <class Sorter>
+void PointBuckets::sort_by(PointSpool& spool, const PointGrid& grid, PointMerge rule,
+                           const ExternalMemory& memory, const std::stop_token& stop,
+                           const Progress& progress, const std::string& keep_as) {
   const std::uint64_t total = spool.size();
   std::uint64_t done = 0;
   const auto report = [&](std::size_t points) {
@@ -129,11 +131,15 @@ void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rul
     }
   };
   const PointOrder order(grid.largest());
-  PointSorter sorter(memory, "points", stop);
+  Sorter sorter(memory, "points", stop);
   std::vector<SourcePoint> batch;
   while (spool.take(batch)) {
     for (const SourcePoint& p : batch) {
-      sorter.add({order.key(grid.position(p)), grid.height(p.z)});
+      if constexpr (std::is_same_v<Sorter, NumberedPointSorter>) {
+        sorter.add({order.key(grid.position(p)), grid.height(p.z), sorter.size()});
+      } else {
+        sorter.add({order.key(grid.position(p)), grid.height(p.z)});
+      }
       counts_.largest_shift_plan = std::max(counts_.largest_shift_plan, grid.shift(p));
     }
     report(batch.size());
@@ -146,14 +152,24 @@ void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rul
               : std::make_unique<ScratchFile>(memory.files, keep_as, ScratchFile::Kept::kNew);
   Writer writer(*this, grid, order, rule);
   sorter.merge(
-      [&](std::span<const KeyedHeight> points) {
-        for (const KeyedHeight& p : points) {
-          writer.add(p);
+      [&](const auto& points) {
+        for (const auto& p : points) {
+          writer.add(p.key, p.height);
         }
         report(points.size());
       },
       stop);
   writer.finish();
+}
+
+void PointBuckets::sort(PointSpool& spool, const PointGrid& grid, PointMerge rule,
+                        const ExternalMemory& memory, const std::stop_token& stop,
+                        const Progress& progress, const std::string& keep_as) {
+  if (rule == PointMerge::kFirst) {
+    sort_by<NumberedPointSorter>(spool, grid, rule, memory, stop, progress, keep_as);
+  } else {
+    sort_by<PointSorter>(spool, grid, rule, memory, stop, progress, keep_as);
+  }
 }
 
 PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const SourceOptions& options,
@@ -173,6 +189,7 @@ PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const Sou
   set_crs(buckets.frame_,
           resolve_crs(reading.crs, options.a_srs,
                       options.vertical_crs.empty() ? reading.vertical_crs : options.vertical_crs));
+  set_units(buckets.frame_, reading.units, options.a_srs.empty(), context);
   buckets.frame_.map = reading.grid.map();
   require_resolvable(buckets.frame_.map, reading.grid.east - reading.grid.west,
                      reading.grid.north - reading.grid.south, "give a coarser --resolution",

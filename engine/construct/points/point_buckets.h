@@ -62,9 +62,10 @@ class PointBuckets {
   /// CRS: `options.a_srs`, else the CRS that all files declare.
   ///
   /// The result depends on the set of points alone, not on their order or the files that they come
-  /// from.
+  /// from; but for PointMerge::kFirst, which goes by both.
   ///
-  /// Disk, in memory.folder: 27 bytes a point while points are read, 43 while they are sorted, then
+  /// Disk, in memory.folder: 27 bytes a point while points are read, 43 (for kFirst 51) while they
+  /// are sorted, then
   /// at most 16, mostly half of that (points/packed_bucket.h). Memory: memory.bytes, and 24 bytes
   /// for each of at most 2^20 buckets.
   /// @param keep_as  A file that must not exist: the buckets stay in it, so that load() can take
@@ -79,7 +80,8 @@ class PointBuckets {
                            const ExternalMemory& memory, const std::stop_token& stop = {},
                            const Progress& progress = {}, const std::string& keep_as = "");
   /// What read() takes of the disk for so many points.
-  [[nodiscard]] static SourceDisk disk_of(std::uint64_t points) noexcept;
+  [[nodiscard]] static SourceDisk disk_of(std::uint64_t points,
+                                          PointMerge rule = PointMerge::kMean) noexcept;
 
   /// Writes all but the points to the file `index`, and makes both files durable.
   /// @return  What load() needs to know of `index`.
@@ -121,6 +123,10 @@ class PointBuckets {
   void sort(class PointSpool& spool, const struct PointGrid& grid, PointMerge rule,
             const ExternalMemory& memory, const std::stop_token& stop, const Progress& progress,
             const std::string& keep_as);
+  template <class Sorter>
+  void sort_by(class PointSpool& spool, const struct PointGrid& grid, PointMerge rule,
+               const ExternalMemory& memory, const std::stop_token& stop, const Progress& progress,
+               const std::string& keep_as);
   void add_to_checksum(std::span<const std::byte> bucket);
   void check_points(const std::string& path, std::uint64_t expected, const std::stop_token& stop,
                     const std::function<void(std::uint64_t, std::uint64_t)>& progress);

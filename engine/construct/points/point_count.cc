@@ -90,7 +90,9 @@ PointCount count_points(const std::vector<std::string>& inputs, const SourceOpti
     count.points += format == PointFormat::kText ? points_of_text(input, *stream) : stream->total();
   }
   count.points = std::max<std::uint64_t>(count.points, 3);
-  count.may_be_less = !options.points.classes.empty() || options.bbox || options.nodata;
+  count.may_be_less = !options.points.classes.empty() ||
+                      options.points.returns != ReturnChoice::kAll || options.bbox ||
+                      options.nodata;
   return count;
 }
 

@@ -20,7 +20,7 @@ struct PointCount {
   std::uint64_t points = 0;
   std::uint64_t of_largest_tin = 0;  ///< Vertices of the largest: TINs are sorted one at a time.
   bool is_known = true;      ///< false: an input is no file (a pipe), and can be read only once.
-  bool may_be_less = false;  ///< Classes, bounds or nodata may leave out any part of the points.
+  bool may_be_less = false;  ///< Classes, returns, bounds or nodata may leave out any part.
 };
 
 /// Looks at headers, and at the first points of text and TINs. Cost: opens each input.

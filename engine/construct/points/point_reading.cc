@@ -54,6 +54,13 @@ PointReading read_sources(const std::vector<std::string>& paths, const SourceOpt
       vertical_crs.add(stream->facts().vertical_crs, path);
     }
     scan.add_source(stream->facts());
+    if (path == paths.front()) {
+      reading.units = stream->facts().units;
+    } else if (reading.units != stream->facts().units) {
+      refuse("this file has other units than '" + paths.front() +
+                 "', or one of them names none; bring them to one unit first",
+             path);
+    }
     while (stream->next(batch)) {
       stop_if_asked(stop, "reading", path);
       if (progress) {

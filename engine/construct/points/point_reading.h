@@ -23,6 +23,7 @@ struct PointReading {
   PointGrid grid;
   std::string crs;             ///< The CRS that all files declare; "" where a_srs replaces it.
   std::string vertical_crs;    ///< Likewise; "" also where options.vertical_crs replaces it.
+  DeclaredUnits units;         ///< Those of all files.
   double largest_shift = 0.0;  ///< The largest PointStream::largest_shift(), CRS units.
   std::uint64_t points = 0;
   std::uint64_t left_out = 0;

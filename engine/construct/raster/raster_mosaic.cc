@@ -145,6 +145,20 @@ void RasterMosaic::place() {
   map_ = {origin.x, origin.y, map.step_x, map.step_y};
 }
 
+/// Says where the samples are, and whether the bounds would hold some with x and y exchanged.
+void RasterMosaic::refuse_bounds(const SourceOptions::Bounds& b) const {
+  const MapPoint low{map_.origin_x, map_.origin_y};
+  const MapPoint high =
+      map_.to_map(static_cast<double>(width_ - 1), static_cast<double>(height_ - 1));
+  const bool exchanged =
+      b.min_y <= high.x && b.max_y >= low.x && b.min_x <= high.y && b.max_x >= low.y;
+  refuse("no sample lies in the bounds; samples have x from " + std::to_string(low.x) + " to " +
+             std::to_string(high.x) + ", y from " + std::to_string(low.y) + " to " +
+             std::to_string(high.y) +
+             (exchanged ? "; with x and y exchanged the bounds hold some: give x before y" : ""),
+         context());
+}
+
 void RasterMosaic::crop(const SourceOptions::Bounds& b) {
   const auto range = [&](double low, double high, double origin, double step, std::int64_t count) {
     if (!(std::isfinite(low) && std::isfinite(high) && low <= high)) {
@@ -153,11 +167,7 @@ void RasterMosaic::crop(const SourceOptions::Bounds& b) {
     const double last = static_cast<double>(count - 1);
     const double first_step = std::ceil((low - origin) / step - kBoundsSlack);
     const double last_step = std::floor((high - origin) / step + kBoundsSlack);
-    if (first_step > last || last_step < 0 || first_step > last_step) {
-      refuse("no sample lies in the bounds; samples reach from " + std::to_string(origin) + " to " +
-                 std::to_string(origin + step * last),
-             context());
-    }
+    if (first_step > last || last_step < 0 || first_step > last_step) refuse_bounds(b);
     return std::pair{static_cast<std::int64_t>(std::max(first_step, 0.0)),
                      static_cast<std::int64_t>(std::min(last_step, last))};
   };

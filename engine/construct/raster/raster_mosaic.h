@@ -68,6 +68,7 @@ class RasterMosaic {
 
   RasterMosaic() = default;
   void place();
+  [[noreturn]] void refuse_bounds(const SourceOptions::Bounds& bounds) const;
   void touch(PlacedPart& placed);
   template <class T>
   void overlay(PlacedPart& placed, const SampleRange& window, std::span<T> values,

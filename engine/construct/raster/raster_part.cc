@@ -2,7 +2,6 @@
 #include "engine/construct/raster/raster_part.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cfloat>
 #include <cmath>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/error.h"
 #include "engine/geometry/point.h"
+#include "storage/file/file_questions.h"
 
 namespace ptin {
 namespace {
@@ -30,16 +30,7 @@ GDALDatasetUniquePtr open_dataset(const std::string& path) {
   if (VSIStatL(path.c_str(), &status) != 0) {
     throw Error(ErrorCode::not_found, session.explain("there is no such raster"), path);
   }
-  if (VSI_ISREG(status.st_mode)) {
-    errno = 0;
-    VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
-    if (file == nullptr && errno != 0) {
-      throw system_error(errno, "cannot open", path);
-    }
-    if (file != nullptr) {
-      VSIFCloseL(file);
-    }
-  }
+  require_readable(path);
   refuse(session.explain("this is neither a raster nor a layer that GDAL reads; LAS, text and "
                          "TINs are known by their names: .las, .csv, .xyz, .txt, .ply, .obj, .2dm, "
                          ".xml"),

@@ -5,6 +5,8 @@
 #include <array>
 #include <cctype>
 
+#include "engine/error.h"
+
 namespace ptin {
 namespace {
 
@@ -12,8 +14,10 @@ constexpr std::array<std::string_view, 8> kNamesOfX = {"x",         "easting", "
                                                        "longitude", "lon",     "long", "point_x"};
 constexpr std::array<std::string_view, 7> kNamesOfY = {"y",        "northing", "north",  "n",
                                                        "latitude", "lat",      "point_y"};
-constexpr std::array<std::string_view, 8> kNamesOfZ = {"z",    "height",   "h",   "elevation",
-                                                       "elev", "altitude", "alt", "point_z"};
+constexpr std::array<std::string_view, 9> kNamesOfZ = {
+    "z", "height", "h", "elevation", "elev", "ele", "altitude", "alt", "point_z"};
+constexpr std::array<ColumnRole, 3> kPointRoles = {
+    {{Coordinate::kX}, {Coordinate::kY}, {Coordinate::kZ}}};
 
 std::span<const std::string_view> names_of(Coordinate which) {
   if (which == Coordinate::kX) {
@@ -22,15 +26,22 @@ std::span<const std::string_view> names_of(Coordinate which) {
   return which == Coordinate::kY ? std::span<const std::string_view>(kNamesOfY) : kNamesOfZ;
 }
 
-std::string_view unquoted(std::string_view field) {
-  constexpr std::string_view kAround = " \t\r";
-  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
-    field = field.substr(1, field.size() - 2);
-    field.remove_prefix(std::min(field.find_first_not_of(kAround), field.size()));
-    field = field.substr(0, field.find_last_not_of(kAround) + 1);
+/// The name without the number of an end behind it; empty where another number or none is there.
+std::string_view without_end(std::string_view name, int end) {
+  if (end == 0) {
+    return name;
   }
-  return field;
+  if (name.empty() || name.back() != static_cast<char>('0' + end)) {
+    return {};
+  }
+  name.remove_suffix(1);
+  if (name.ends_with('_') || name.ends_with(' ')) {
+    name.remove_suffix(1);
+  }
+  return name;
 }
+
+}  // namespace
 
 bool equal_in_any_case(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
@@ -38,18 +49,64 @@ bool equal_in_any_case(std::string_view a, std::string_view b) {
   });
 }
 
-}  // namespace
+std::string name_of(ColumnRole role) {
+  if (role.end == 0) {
+    return {"xyz"[static_cast<std::size_t>(role.coordinate)]};
+  }
+  return "xyh"[static_cast<std::size_t>(role.coordinate)] + std::to_string(role.end);
+}
 
-std::size_t find_column(std::span<const std::string_view> fields, Coordinate which) {
-  for (const std::string_view name : names_of(which)) {
-    const auto found = std::find_if(fields.begin(), fields.end(), [&](std::string_view field) {
-      return equal_in_any_case(unquoted(field), name);
+std::size_t find_column(std::span<const std::string> names, ColumnRole role) {
+  for (const std::string_view known : names_of(role.coordinate)) {
+    const auto found = std::find_if(names.begin(), names.end(), [&](std::string_view name) {
+      return equal_in_any_case(without_end(name, role.end), known);
     });
-    if (found != fields.end()) {
-      return static_cast<std::size_t>(found - fields.begin());
+    if (found != names.end()) {
+      return static_cast<std::size_t>(found - names.begin());
     }
   }
-  return fields.size();
+  return names.size();
 }
+
+bool is_coordinate_name(std::string_view name) {
+  const std::array<std::string, 1> names = {std::string(name)};
+  for (const ColumnRole role : kPointRoles) {
+    for (const int end : {0, 1, 2}) {
+      if (find_column(names, {role.coordinate, end}) == 0) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+std::vector<std::size_t> columns_of(std::span<const std::string> names,
+                                    std::span<const ColumnRole> roles) {
+  const auto refuse = [](const std::string& what) {
+    throw Error(ErrorCode::invalid_argument,
+                what +
+                    "; name the columns from the left, the coordinates x, y, z (or as a header "
+                    "may name them) and those to be skipped by any other name",
+                "--columns");
+  };
+  std::vector<std::size_t> columns;
+  for (const ColumnRole role : roles) {
+    const std::size_t column = find_column(names, role);
+    if (column == names.size()) {
+      refuse("there is no column for " + name_of(role));
+    }
+    const auto is_it = [&](const std::string& name) {
+      const std::array<std::string, 1> alone = {name};
+      return find_column(alone, role) == 0;
+    };
+    if (std::count_if(names.begin(), names.end(), is_it) > 1) {
+      refuse("there are two columns for " + name_of(role));
+    }
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+std::span<const ColumnRole> point_roles() noexcept { return kPointRoles; }
 
 }  // namespace ptin

@@ -1,22 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The names that columns of points bear in headers of text.
+// The names that columns of points bear: in headers of text, in --columns, as attributes of layers.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace ptin {
 
-enum class Coordinate { kX, kY, kZ };
+enum class Coordinate : std::uint8_t { kX, kY, kZ };
 
-/// Which of the fields of a header names a coordinate. These names are known, in any case, quoted
-/// or not; where several fields bear one of them, the name that stands first here decides:
+/// What a column holds: a coordinate of a point, or of one of the two ends of a line.
+struct ColumnRole {
+  Coordinate coordinate = Coordinate::kX;
+  int end = 0;  ///< 1 or 2: of the first or second end; 0: of a point.
+};
+
+/// How a role is told: "x", "y", "z", of ends "x1", "h1", "y2".
+[[nodiscard]] std::string name_of(ColumnRole role);
+
+/// Which of the names tells a role. These are known, in any case; where several of them are there,
+/// the one that stands first here decides:
 ///   x: x, easting, east, e, longitude, lon, long, point_x
 ///   y: y, northing, north, n, latitude, lat, point_y
-///   z: z, height, h, elevation, elev, altitude, alt, point_z
-/// @return  An index into `fields`; fields.size() where no field names the coordinate.
-[[nodiscard]] std::size_t find_column(std::span<const std::string_view> fields, Coordinate which);
+///   z: z, height, h, elevation, elev, ele, altitude, alt, point_z
+/// Those of an end have its number behind them, as x1, lat_2.
+/// @return  An index into `names`; names.size() where none of them tells the role.
+[[nodiscard]] std::size_t find_column(std::span<const std::string> names, ColumnRole role);
+
+/// True for the names that find_column() knows, of points and of ends.
+[[nodiscard]] bool is_coordinate_name(std::string_view name);
+
+/// The columns of the roles among `names`, which the caller gave (`build --columns`).
+/// @throws Error  invalid_argument  they tell a role twice, or not at all
+[[nodiscard]] std::vector<std::size_t> columns_of(std::span<const std::string> names,
+                                                  std::span<const ColumnRole> roles);
+
+/// The roles of points that a terrain is built from: x, y and z.
+[[nodiscard]] std::span<const ColumnRole> point_roles() noexcept;
+
+[[nodiscard]] bool equal_in_any_case(std::string_view a, std::string_view b);
 
 }  // namespace ptin

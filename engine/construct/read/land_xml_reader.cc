@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // LandXML 1.0 to 1.2: Surfaces/Surface/Definition with Pnts/P (northing easting height) and Faces/F
-// (three ids; i="1" is hidden). Read as a stream by expat. A document type declaration is refused,
+// (three ids; i="1" is hidden); Units/Metric or Units/Imperial. Read as a stream by expat. A document type declaration is refused,
 // and with it every entity that a file could define.
 #include <cctype>
 #include <memory>
@@ -10,6 +10,7 @@
 #include <expat.h>
 
 #include "engine/construct/read/tin_reader.h"
+#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -18,6 +19,7 @@ namespace {
 
 constexpr std::size_t kLongestText = 1024;         // of a P or an F
 constexpr int kDeepest = 64;                       // elements inside of elements
+constexpr int kUnitsDepth = 3;                     // LandXML/Units/Metric
 constexpr std::uint64_t kLongestToken = 1U << 20;  // bytes without an event
 
 /// Gathers the chosen surface. Errors are kept and thrown outside of expat, which is C.
@@ -131,6 +133,8 @@ class LandXml {
     }
     if (name == "CoordinateSystem") {
       read_crs(attributes);
+    } else if (depth_ == kUnitsDepth && (name == "Metric" || name == "Imperial")) {
+      read_units(attributes);
     } else if (name == "Surface") {
       start_surface(attributes);
     } else if (in_surface_ && name == "Definition") {
@@ -189,6 +193,21 @@ class LandXml {
     if (is_number && code != "0") {
       tin_.set_crs("EPSG:" + code);
     }
+  }
+
+  /// Heights are coordinates and so in the linear unit, unless the file names another one for them.
+  /// Its "feet" are those of the linear unit, where that is a foot.
+  void read_units(const XML_Char** attributes) {
+    const auto unit = [&](const char* name) {
+      const std::string text(attribute(attributes, name));
+      return text.empty() ? text : height_unit_named(text);
+    };
+    DeclaredUnits units{unit("linearUnit"), unit("elevationUnit")};
+    const bool is_same_foot = units.heights == "foot" && units.plane == "US survey foot";
+    if (units.heights.empty() || is_same_foot) {
+      units.heights = units.plane;
+    }
+    tin_.set_units(std::move(units));
   }
 
   void split_text(std::size_t wanted, const char* what) {

@@ -71,7 +71,8 @@ void LasReader::set_lattice() {
   facts_.height_decimals = axes_[2].decimals;
 }
 
-LasReader::LasReader(std::string path, const PointChoice& choice) : path_(std::move(path)) {
+LasReader::LasReader(std::string path, const PointChoice& choice)
+    : path_(std::move(path)), returns_(choice.returns) {
   file_ = std::make_unique<File>(path_);
   header_ = read_las_header(*file_);
   facts_.crs = read_las_crs(*file_);
@@ -90,9 +91,29 @@ LasReader::LasReader(std::string path, const PointChoice& choice) : path_(std::m
 
 LasReader::~LasReader() = default;
 
-/// True when a point is not withheld and of a class that is kept. Formats 0 to 5 hold flags and
-/// class in one byte, formats 6 to 10 in two.
+/// True for an echo that is wanted. Formats 0 to 5 hold its number and how many its pulse has in
+/// three bits each, formats 6 to 10 in four; numbers count from 1, and 0 says nothing.
+bool LasReader::is_wanted_return(const unsigned char* record) const {
+  const bool is_old = header_.point_format < 6;
+  const int number = record[14] & (is_old ? 0x07 : 0x0f);
+  const int count = is_old ? (record[14] >> 3) & 0x07 : record[14] >> 4;
+  switch (returns_) {
+    case ReturnChoice::kAll:
+      return true;
+    case ReturnChoice::kFirst:
+      return number <= 1;
+    case ReturnChoice::kLast:
+      break;
+  }
+  return number == 0 || number >= count;
+}
+
+/// True when a point is not withheld, and of a class and a return that are kept. Formats 0 to 5
+/// hold flags and class in one byte, formats 6 to 10 in two.
 bool LasReader::wanted(const unsigned char* record) const {
+  if (!is_wanted_return(record)) {
+    return false;
+  }
   if (header_.point_format < 6) {
     return (record[15] & 0x80) == 0 && classes_.test(record[15] & 0x1f);
   }

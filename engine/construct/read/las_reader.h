@@ -30,7 +30,7 @@ struct LasHeader {
 };
 
 /// A LAS file as a stream of points. Left out are points that are marked as withheld, and points of
-/// classes that were not chosen.
+/// classes and returns that were not chosen.
 ///
 /// LAS coordinates are whole numbers of steps (`scale`) from an offset. Where the steps of x and y
 /// are powers of ten, and their offsets whole numbers of steps, points are exact decimals and
@@ -71,6 +71,7 @@ class LasReader final : public PointStream {
   };
   [[nodiscard]] Axis make_axis(std::size_t i, bool powers_of_ten_only) const;
   void set_lattice();
+  [[nodiscard]] bool is_wanted_return(const unsigned char* record) const;
   [[nodiscard]] bool wanted(const unsigned char* record) const;
 
   std::string path_;
@@ -79,6 +80,7 @@ class LasReader final : public PointStream {
   PointStreamFacts facts_;
   std::array<Axis, 3> axes_;
   std::bitset<256> classes_;  ///< Those that are kept.
+  ReturnChoice returns_ = ReturnChoice::kAll;
   std::vector<unsigned char> buffer_;
   std::uint64_t read_ = 0;
   std::uint64_t left_out_ = 0;

@@ -12,6 +12,7 @@
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/layer_choice.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -19,15 +20,6 @@ namespace ptin {
 namespace {
 
 constexpr std::size_t kBatchPoints = 4096;
-
-std::string layer_names(GDALDataset& data) {
-  std::string names;
-  const int count = data.GetLayerCount();
-  for (int i = 0; i < count && i < 10; ++i) {
-    names += (i == 0 ? "'" : ", '") + std::string(data.GetLayer(i)->GetName()) + "'";
-  }
-  return names + (count > 10 ? ", ..." : "");
-}
 
 bool is_numeric(OGRFieldType type) {
   return type == OFTReal || type == OFTInteger || type == OFTInteger64;
@@ -41,7 +33,6 @@ struct OgrPoints::Layer {
   int z_field = -1;
 
   void open(const std::string& path, const PointChoice& choice);
-  void choose_layer(const std::string& path, const std::string& name);
   void choose_height(const std::string& path, const std::string& field);
 };
 
@@ -57,34 +48,8 @@ void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice) 
     throw Error(ErrorCode::invalid_argument,
                 session.explain("this is no vector data that OGR reads"), path);
   }
-  choose_layer(path, choice.layer);
+  layer = &choose_layer(*data, {LayerKind::kPoints, choice.layer}, path);
   choose_height(path, choice.z_field);
-}
-
-void OgrPoints::Layer::choose_layer(const std::string& path, const std::string& name) {
-  const auto refuse = [&](const std::string& sentence) {
-    throw Error(ErrorCode::invalid_argument, sentence, path);
-  };
-  if (data->GetLayerCount() == 0) {
-    refuse("there is no layer in this file");
-  }
-  if (!name.empty()) {
-    layer = data->GetLayerByName(name.c_str());
-    if (layer == nullptr) {
-      refuse("there is no layer '" + name + "'; there is " + layer_names(*data));
-    }
-  } else if (data->GetLayerCount() > 1) {
-    refuse("there are several layers, " + layer_names(*data) + "; name one with --layer");
-  } else {
-    layer = data->GetLayer(0);
-  }
-  const OGRwkbGeometryType type = wkbFlatten(layer->GetGeomType());
-  if (type != wkbPoint && type != wkbMultiPoint && type != wkbUnknown &&
-      type != wkbGeometryCollection) {
-    refuse("the layer '" + std::string(layer->GetName()) + "' holds " +
-           (type == wkbNone ? "no geometry" : OGRGeometryTypeToName(layer->GetGeomType())) +
-           ", not points");
-  }
 }
 
 void OgrPoints::Layer::choose_height(const std::string& path, const std::string& field) {

@@ -22,9 +22,8 @@ namespace ptin {
 class OgrPoints final : public PointStream {
  public:
   /// @throws Error  not_found         there is no such file
-  ///                invalid_argument  OGR does not read it; it has no layer, or several and none is
-  ///                                  chosen; no such layer or attribute; a layer without heights;
-  ///                                  a layer of lines or areas
+  ///                invalid_argument  OGR does not read it; as choose_layer(); no such attribute; a
+  ///                                  layer without heights
   OgrPoints(std::string path, const PointChoice& choice);
   ~OgrPoints() override;
 

@@ -40,6 +40,7 @@ class TinFileSink {
 struct TinFileFacts {
   std::string crs;           ///< Anything GDAL understands; "" when the file is silent.
   std::string vertical_crs;  ///< Likewise.
+  DeclaredUnits units;
   std::uint64_t vertices = 0, triangles = 0;
   std::uint64_t hidden_triangles = 0;  ///< Marked invisible (LandXML): left out.
 };

@@ -138,14 +138,14 @@ class Workspace::Lock {
  public:
   /// Null when the folder is not there, or was removed while we waited for it.
   static std::unique_ptr<Lock> of(const std::string& folder) {
-    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    std::unique_ptr<Lock> lock(new Lock());
+    const int fd = lock->fd_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (fd < 0 && errno == ENOENT) {
       return nullptr;
     }
     if (fd < 0) {
       throw system_error(errno, "cannot open the folder of temporary files", folder);
     }
-    std::unique_ptr<Lock> lock(new Lock(fd));
     if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
       throw Error(ErrorCode::invalid_argument, "another process is building this output right now",
                   folder);
@@ -157,13 +157,17 @@ class Workspace::Lock {
                          ours.st_dev == named.st_dev && ours.st_ino == named.st_ino;
     return is_same ? std::move(lock) : nullptr;
   }
-  ~Lock() { ::close(fd_); }
+  ~Lock() {
+    if (fd_ >= 0) {
+      ::close(fd_);
+    }
+  }
   Lock(const Lock&) = delete;
   Lock& operator=(const Lock&) = delete;
 
  private:
-  explicit Lock(int fd) : fd_(fd) {}
-  int fd_;
+  Lock() = default;
+  int fd_ = -1;
 };
 
 std::string Workspace::folder_of(const std::string& output) {
@@ -214,6 +218,39 @@ void Workspace::lock_folder() {
   }
 }
 
+/// Locks the folder and opens its manifest.
+/// @param tmp  A folder that is there, for the one in it; "" for none.
+void Workspace::open_manifest(const std::string& output, const std::string& tmp) {
+  const std::string manifest = manifest_in(folder_);
+  lock_folder();
+  if (!is_there(manifest)) {
+    require_ours(paths_in(folder_).empty(), folder_);
+  }
+  manifest_ = std::make_unique<Manifest>(files_, manifest);
+  if (!tmp.empty()) {
+    tmp_ = folder_in_tmp(output, tmp);
+  }
+  if (manifest_->entries().empty()) {
+    require_ours(is_empty_but_for(folder_, manifest), folder_);
+  }
+}
+
+/// Removes the folder where nothing was begun in it: it holds nothing, or an empty manifest.
+void Workspace::drop_unbegun() const {
+  const int fd = lock_ ? -1 : ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ || (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0)) {
+    const std::string manifest = manifest_in(folder_);
+    struct stat status {};
+    if (::stat(manifest.c_str(), &status) == 0 && status.st_size == 0) {
+      ::unlink(manifest.c_str());
+    }
+    ::rmdir(folder_.c_str());  // stays where it is not empty
+  }
+  if (fd >= 0) {
+    ::close(fd);
+  }
+}
+
 namespace {
 
 Error unfinished_is_here(const std::string& output) {
@@ -238,16 +275,13 @@ Workspace::Workspace(FileLayer& files, const std::string& output, const std::str
   if (unfinished == Unfinished::kDiscard) {
     discard(files, output);
   }
-  lock_folder();
-  if (!is_there(manifest_in(folder_))) {
-    require_ours(paths_in(folder_).empty(), folder_);
-  }
-  manifest_ = std::make_unique<Manifest>(files_, manifest_in(folder_));
-  if (!tmp.empty()) {
-    tmp_ = folder_in_tmp(output, tmp);
+  try {
+    open_manifest(output, tmp);
+  } catch (...) {
+    drop_unbegun();
+    throw;
   }
   if (manifest_->entries().empty()) {
-    require_ours(is_empty_but_for(folder_, manifest_in(folder_)), folder_);
     begin(fingerprint);
     return;
   }

@@ -79,6 +79,8 @@ class Workspace {
  private:
   class Lock;
   void lock_folder();
+  void open_manifest(const std::string& output, const std::string& tmp);
+  void drop_unbegun() const;
   void begin(const nlohmann::json& fingerprint);
   void take_up(const nlohmann::json& fingerprint);
   void take_tmp(std::uint64_t owner);

@@ -232,6 +232,7 @@ TinOnGrid GridReader::read() {
   named_.emplace(read_named_tin(path_, reading_, memory_));
   tin_.crs = named_->facts.crs;
   tin_.vertical_crs = named_->facts.vertical_crs;
+  tin_.units = named_->facts.units;
   tin_.left_out_triangles = named_->facts.hidden_triangles + named_->left_out_triangles;
   tin_.unused_vertices = named_->unused_vertices;
   report(1);

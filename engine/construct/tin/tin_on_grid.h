@@ -69,6 +69,7 @@ struct OrientationFaults {
 struct TinOnGrid {
   PointGrid grid;
   std::string crs, vertical_crs;
+  DeclaredUnits units;
   HeightFit heights;
   std::unique_ptr<TriangleSorter> triangles;  ///< The way round that they have in the file.
   /// Distinct positions of the vertices of triangles, along the curve.

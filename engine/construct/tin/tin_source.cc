@@ -216,6 +216,7 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   const bool keeps_vertical = options.a_srs.empty() && options.vertical_crs.empty();
   set_crs(to.frame_, resolve_crs(tin.crs, options.a_srs,
                                  keeps_vertical ? tin.vertical_crs : options.vertical_crs));
+  set_units(to.frame_, tin.units, options.a_srs.empty(), path);
   to.frame_.map = tin.grid.map();
   require_resolvable(to.frame_.map, tin.grid.east - tin.grid.west, tin.grid.north - tin.grid.south,
                      "give a coarser --resolution", path);

@@ -49,6 +49,7 @@ TinVertices::TinVertices(const std::string& path, const PointChoice& choice,
   NamedTin tin = read_named_tin(path, {options, memory, resources.stop, progress}, memory);
   facts_.crs = tin.facts.crs;
   facts_.vertical_crs = tin.facts.vertical_crs;
+  facts_.units = tin.facts.units;
   left_out_ = tin.unused_vertices;
   vertices_ = std::make_unique<const Vertices>(std::move(tin.vertices));
   TinDigits digits;

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/refine/part_refiner.h"
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <chrono>
 #include <utility>
 #include <vector>
 
-#include "engine/error.h"
-#include "engine/geometry/hilbert.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/predicate.h"
 #include "engine/query/select/retrieval.h"
@@ -39,70 +34,6 @@ std::uint64_t records_above(const StoreFile& store, double tolerance) {
   }
   return records;
 }
-
-/// The walk over the quadtree of cells.
-class Walk {
- public:
-  using Visit = std::function<void(const GridCell&, RefinedTin&, double)>;
-  Walk(const PartRefiner& refiner, const Visit& visit) : refiner_(refiner), visit_(visit) {
-    const GridBox& b = refiner.terrain().store().facts().bounds;
-    domain_ = b;
-    area_ = area_in(b);
-  }
-
-  void run() {
-    const auto differing = static_cast<std::uint32_t>(domain_.min_x ^ domain_.max_x) |
-                           static_cast<std::uint32_t>(domain_.min_y ^ domain_.max_y);
-    const int level = std::bit_width(differing);
-    const auto x = static_cast<std::uint32_t>(domain_.min_x) >> level << level;
-    const auto y = static_cast<std::uint32_t>(domain_.min_y) >> level << level;
-    visit({x, y, level}, refiner_.records());
-  }
-
- private:
-  /// @param expected  Records of the cell if they were spread evenly.
-  void visit(const GridCell& cell, std::uint64_t expected) {
-    const GridBox box = cell.box();
-    if (!meets(box, domain_)) return;
-    stop_if_asked(refiner_.request().limits.stop, "the walk over the terrain",
-                  refiner_.terrain().store().path());
-    // A search of the index lists all pages: not worth it for cells that are far too large anyway.
-    const bool is_hopeless =
-        refinement_bytes(expected) / 16 > refiner_.request().limits.memory_bytes;
-    if (cell.level > 0 && (is_hopeless || !refiner_.fits(box))) {
-      for (const GridCell& child : children(cell)) visit(child, expected / 4);
-      return;
-    }
-    RefinedTin refined = refiner_.refine(box);  // refuses what does not fit
-    done_ += area_in(box);
-    visit_(cell, refined, area_ > 0 ? std::min(1.0, done_ / area_) : 1.0);
-  }
-
-  [[nodiscard]] double area_in(const GridBox& box) const {
-    const double width = std::min(box.max_x, domain_.max_x) - std::max(box.min_x, domain_.min_x);
-    const double height = std::min(box.max_y, domain_.max_y) - std::max(box.min_y, domain_.min_y);
-    return (width + 1.0) * (height + 1.0);
-  }
-
-  static std::array<GridCell, 4> children(const GridCell& cell) {
-    const int level = cell.level - 1;
-    const std::uint32_t side = 1U << level;
-    std::array<GridCell, 4> cells = {{{cell.x, cell.y, level},
-                                      {cell.x + side, cell.y, level},
-                                      {cell.x, cell.y + side, level},
-                                      {cell.x + side, cell.y + side, level}}};
-    std::sort(cells.begin(), cells.end(), [](const GridCell& a, const GridCell& b) {
-      return hilbert_position(a.x, a.y) < hilbert_position(b.x, b.y);
-    });
-    return cells;
-  }
-
-  const PartRefiner& refiner_;
-  const Visit& visit_;
-  GridBox domain_;
-  double area_ = 0.0;
-  double done_ = 0.0;
-};
 
 }  // namespace
 
@@ -139,18 +70,23 @@ RefinedTin PartRefiner::refine(const GridBox& box) const {
   return result;
 }
 
-GridBox GridCell::box() const noexcept {
-  const auto last = [this](std::uint32_t first) {
-    const std::uint64_t end = std::uint64_t{first} + (std::uint64_t{1} << level) - 1;
-    return static_cast<std::int32_t>(std::min<std::uint64_t>(end, kGridMax));
-  };
-  return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), last(x), last(y)};
-}
-
 void walk_cells(
     const PartRefiner& refiner,
     const std::function<void(const GridCell& cell, RefinedTin& refined, double done)>& visit) {
-  Walk(refiner, visit).run();
+  const QueryLimits& limits = refiner.request().limits;
+  const StoreFile& store = refiner.terrain().store();
+  const auto fits = [&](const GridCell& cell, double share) {
+    stop_if_asked(limits.stop, "the walk over the terrain", store.path());
+    // A search of the index lists all pages: not worth it for cells that are far too large anyway.
+    const auto expected =
+        static_cast<std::uint64_t>(static_cast<double>(refiner.records()) * share);
+    const bool is_hopeless = refinement_bytes(expected) / 16 > limits.memory_bytes;
+    return !is_hopeless && refiner.fits(cell.box());
+  };
+  walk_fitting_cells(store.facts().bounds, fits, [&](const GridCell& cell, double done) {
+    RefinedTin refined = refiner.refine(cell.box());  // refuses what does not fit
+    visit(cell, refined, done);
+  });
 }
 
 }  // namespace ptin

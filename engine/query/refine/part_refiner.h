@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/geometry/box.h"
+#include "engine/query/refine/grid_cell.h"
 #include "engine/query/refine/refine.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
@@ -62,20 +63,6 @@ class PartRefiner {
   PredicatePtr wanted_;  ///< Region, tolerance and `also`.
   std::uint64_t t0_bytes_;
   std::uint64_t records_ = 0;
-};
-
-/// A square of 2^level x 2^level grid positions, its corner a multiple of 2^level. Its positions
-/// follow one another along the Hilbert curve.
-struct GridCell {
-  std::uint32_t x = 0, y = 0;  ///< Lower left corner, a multiple of 2^level.
-  int level = 0;
-
-  /// Its positions, clipped to the grid.
-  [[nodiscard]] GridBox box() const noexcept;
-  [[nodiscard]] bool holds(GridPoint p) const noexcept {
-    return (static_cast<std::uint32_t>(p.x) >> level) == (x >> level) &&
-           (static_cast<std::uint32_t>(p.y) >> level) == (y >> level);
-  }
 };
 
 /// Cuts the domain into cells that fit the memory limit and hands each, refined, to `visit` in the

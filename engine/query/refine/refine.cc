@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <utility>
 
 #include "engine/error.h"
@@ -23,7 +24,7 @@ struct Selection {
   Certificate certificate;
 };
 
-/// The predicate of a request, without its number of vertices.
+/// The predicate of a request, without its number of vertices or triangles.
 PredicatePtr predicate_of(const RefineRequest& request, const StoreFacts& facts) {
   std::vector<PredicatePtr> parts;
   if (request.detail.tolerance) {
@@ -38,12 +39,26 @@ PredicatePtr predicate_of(const RefineRequest& request, const StoreFacts& facts)
   return all_of(std::move(parts));
 }
 
-std::uint64_t records_wanted(const RefineRequest& request, const StoreFile& store) {
-  if (request.detail.tolerance) {
+/// What the request's number of vertices or triangles leaves for records; none: it has none.
+std::optional<Growth> growth_of(const RefineRequest& request, const StoreFile& store) {
+  const DetailRequest& detail = request.detail;
+  if ((detail.tolerance ? 1 : 0) + (detail.vertices ? 1 : 0) + (request.triangles ? 1 : 0) > 1) {
     throw Error(ErrorCode::invalid_argument,
-                "both a tolerance and a number of vertices are given: give one of them");
+                "of a tolerance, a number of vertices and a number of triangles more than one is "
+                "given: give one of them");
   }
-  return records_of_first(*request.detail.vertices, store);
+  if (detail.vertices) return Growth{records_of_first(*detail.vertices, store)};
+  if (!request.triangles) return std::nullopt;
+  const std::uint64_t t0 = store.t0().triangles.size();
+  if (*request.triangles < t0) {
+    throw Error(ErrorCode::invalid_argument,
+                std::to_string(*request.triangles) +
+                    " triangles are asked for, but the coarsest TIN has " + std::to_string(t0) +
+                    ": ask for at least that many",
+                store.path());
+  }
+  return Growth{std::min(*request.triangles - t0, 2 * store.record_count()),
+                Growth::Of::kTriangles};
 }
 
 Selection select(const RefineRequest& request, const RecordSource& source,
@@ -51,9 +66,8 @@ Selection select(const RefineRequest& request, const RecordSource& source,
   const PredicatePtr predicate = predicate_of(request, source.store.facts());
   Selection selection;
   double left = request.detail.tolerance.value_or(-1.0);
-  if (request.detail.vertices) {
-    FirstRecords first = first_records(source, *predicate, records_wanted(request, source.store),
-                                       fixed_bytes, context);
+  if (const std::optional<Growth> growth = growth_of(request, source.store)) {
+    FirstRecords first = first_records(source, *predicate, *growth, fixed_bytes, context);
     selection.splits = std::move(first.splits);
     left = first.largest_error_left;
   } else {

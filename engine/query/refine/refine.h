@@ -32,6 +32,11 @@ struct RefineRequest {
   /// all there are gives all of them. Vertices are counted before kMeetingRegion drops the
   /// triangles outside of the region.
   DetailRequest detail;
+  /// The TIN of the most important vertices that has at most this many triangles, T0's and void ones
+  /// included, counted as vertices are. It has as many, or one less where the next vertex adds two;
+  /// fewer only where there are no more. At least as many as T0 has. Excludes tolerance and number
+  /// of vertices.
+  std::optional<std::uint64_t> triangles;
   /// A further monotone predicate, intersected with region and tolerance; null: none. Borrowed for
   /// the call.
   const AttributePredicate* also = nullptr;
@@ -62,8 +67,8 @@ struct RefinedTin {
 /// Refines T0: retrieves the records for which the request's predicate is true, orders them
 /// (refine/apply_order.h) and applies them. Exact (P1), certified (P2), valid (P3), closed and lean
 /// (P4), joined (P5).
-/// @throws Error invalid_argument    tolerance negative or NaN; `vertices` below |T0|; both given;
-///                                   region not finite
+/// @throws Error invalid_argument    tolerance negative or NaN; `vertices` or `triangles` below those
+///                                   of T0; two of the three given; region not finite
 ///               resource_exhausted  the index says that the answer exceeds the memory limit; names
 ///                                   `export`
 ///               corruption, io_error, cancelled

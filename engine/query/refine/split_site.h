@@ -39,13 +39,6 @@ class RankOrder {
   std::vector<std::uint32_t> next_;  ///< For each rank the next place.
 };
 
-/// How many triangles a split adds: one at a border, otherwise two. None only for a damaged record,
-/// which split() refuses.
-[[nodiscard]] inline std::uint32_t triangles_of(std::uint32_t flags) noexcept {
-  return ((flags & VertexSplit::kNoLeft) == 0 ? 1 : 0) +
-         ((flags & VertexSplit::kNoRight) == 0 ? 1 : 0);
-}
-
 /// A record's split in local indices.
 [[nodiscard]] inline SplitSite site_of(VertexId u, VertexId w, VertexId vl, VertexId vr,
                                        std::uint32_t flags) noexcept {

@@ -36,6 +36,13 @@ static_assert(sizeof(PendingSplit) == 64);
           r.roi,        static_cast<std::uint32_t>(index_of(page))};
 }
 
+/// How many triangles a split adds: one at a border, otherwise two. None only for a damaged record,
+/// which split() refuses.
+[[nodiscard]] constexpr std::uint32_t triangles_of(std::uint32_t flags) noexcept {
+  return ((flags & VertexSplit::kNoLeft) == 0 ? 1 : 0) +
+         ((flags & VertexSplit::kNoRight) == 0 ? 1 : 0);
+}
+
 /// Bytes that reading and applying `records` records take at most: records, mesh and key table.
 [[nodiscard]] std::uint64_t refinement_bytes(std::uint64_t records) noexcept;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "engine/query/select/predicate.h"
@@ -37,11 +38,11 @@ struct RankedPage {
 /// given up.
 class Search {
  public:
-  Search(const RecordSource& source, const AttributePredicate& predicate, std::uint64_t count,
+  Search(const RecordSource& source, const AttributePredicate& predicate, Growth growth,
          std::uint64_t fixed_bytes, QueryContext& context)
       : source_(source),
         predicate_(predicate),
-        count_(count),
+        growth_(growth),
         fixed_bytes_(fixed_bytes),
         context_(context) {}
 
@@ -57,13 +58,19 @@ class Search {
     return is_done(left_);
   }
 
-  FirstRecords result() && { return {std::move(found_), std::max(left_, dropped_)}; }
+  FirstRecords result() && {
+    if (is_one_too_many_) {
+      std::erase_if(found_, [this](const PendingSplit& s) { return s.u == last_.u; });
+      dropped_ = std::max<double>(dropped_, last_.error);
+    }
+    return {std::move(found_), std::max(left_, dropped_)};
+  }
 
  private:
-  [[nodiscard]] bool is_full() const noexcept { return found_.size() >= count_; }
+  [[nodiscard]] bool is_full() const noexcept { return grown_ >= growth_.most; }
   /// True when no record with at most this error can be among the first any more.
   [[nodiscard]] bool is_done(double error) const noexcept {
-    return count_ == 0 || (is_full() && smallest_ > error);
+    return growth_.most == 0 || (is_full() && last_.error > error);
   }
 
   std::vector<RankedPage> unread_pages(double bound) {
@@ -87,7 +94,8 @@ class Search {
   /// Reads the next pages. While records are missing: as many pages as could hold the missing ones.
   /// Once there are enough records: an eighth of the pages read so far, 16 at least.
   std::size_t read_some(const std::vector<RankedPage>& pages, std::size_t next) {
-    const std::uint64_t missing = count_ - std::min<std::uint64_t>(count_, found_.size());
+    const std::uint64_t room = growth_.most - std::min(growth_.most, grown_);
+    const std::uint64_t missing = room / growth_.by_one() + room % growth_.by_one();
     const std::size_t least = next + std::max(kLeastPages, read_.size() / 8);
     std::vector<PageId> ids;
     std::uint64_t records = 0;
@@ -98,47 +106,67 @@ class Search {
     }
     context_.admit(fixed_bytes_ + refinement_bytes(found_.size() + records));
     std::sort(ids.begin(), ids.end());
+    const auto before = static_cast<std::ptrdiff_t>(found_.size());
     read_pages(source_.store, ids, predicate_, context_, found_);
+    std::for_each(found_.begin() + before, found_.end(),
+                  [this](const PendingSplit& s) { grown_ += growth_.by(s); });
     const auto middle = static_cast<std::ptrdiff_t>(read_.size());
     read_.insert(read_.end(), ids.begin(), ids.end());
     std::inplace_merge(read_.begin(), read_.begin() + middle, read_.end());
-    prune();
+    if (is_full()) prune();
     return next;
   }
 
-  /// Keeps the first `count` of the records found, in the order in which they were read.
+  /// Keeps the first of the records found, in the order in which they were read. Where they leave
+  /// room that the next one exceeds, that one is kept too: it says where the prefix ends, however
+  /// many records are found yet.
   void prune() {
-    if (!is_full()) {
-      return;
-    }
     order_ = found_;
-    const auto last = order_.begin() + static_cast<std::ptrdiff_t>(count_ - 1);
-    std::nth_element(order_.begin(), last, order_.end(), is_before);
-    smallest_ = last->error;
-    std::for_each(last + 1, order_.end(), [this](const PendingSplit& s) {
+    const auto end = order_.end();
+    auto next = order_.begin();
+    std::uint64_t room = growth_.most;
+    while (room > 0 && next != end) {
+      // So many fit whatever they add; of what is less, one record alone may fit.
+      const std::uint64_t fit = std::max<std::uint64_t>(room / growth_.by_one(), 1);
+      const auto taken = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(fit), end - next);
+      std::nth_element(next, next + (taken - 1), end, is_before);
+      const auto first = next;
+      next += taken;
+      const std::uint64_t added = std::accumulate(
+          first, next, std::uint64_t{0},
+          [this](std::uint64_t sum, const PendingSplit& s) { return sum + growth_.by(s); });
+      is_one_too_many_ = added > room;
+      room -= std::min(added, room);
+    }
+    last_ = place_of(*(next - 1));
+    std::for_each(next, end, [this](const PendingSplit& s) {
       dropped_ = std::max<double>(dropped_, s.error);
     });
-    std::erase_if(found_, [last](const PendingSplit& s) { return is_before(*last, s); });
+    std::erase_if(found_, [this](const PendingSplit& s) { return last_ < place_of(s); });
+    grown_ = growth_.most - room + (is_one_too_many_ ? 1 : 0);
   }
 
   const RecordSource& source_;
   const AttributePredicate& predicate_;
-  std::uint64_t count_;
+  Growth growth_;
   std::uint64_t fixed_bytes_;
   QueryContext& context_;
   std::vector<PendingSplit> found_, order_;
-  std::vector<PageId> read_;  ///< Ascending.
-  double smallest_ = 0.0;     ///< Error of the last of the first `count`.
-  double dropped_ = -1.0;     ///< Largest error of a record found and given up.
-  double left_ = -1.0;        ///< No record in an unread page has a larger error.
+  std::vector<PageId> read_;      ///< Ascending.
+  std::uint64_t grown_ = 0;       ///< By all of found_.
+  RecordPlace last_{};            ///< Of found_, once it is full.
+  bool is_one_too_many_ = false;  ///< The last of found_ exceeds the growth.
+  double dropped_ = -1.0;         ///< Largest error of a record found and given up.
+  double left_ = -1.0;            ///< No record in an unread page has a larger error.
 };
 
 }  // namespace
 
 FirstRecords first_records(const RecordSource& source, const AttributePredicate& predicate,
-                           std::uint64_t count, std::uint64_t fixed_bytes, QueryContext& context) {
-  Search search(source, predicate, count, fixed_bytes, context);
-  for (std::uint64_t target = count;; target *= 4) {
+                           Growth growth, std::uint64_t fixed_bytes, QueryContext& context) {
+  Search search(source, predicate, growth, fixed_bytes, context);
+  const std::uint64_t fewest = std::max<std::uint64_t>(growth.most / growth.by_one(), 1);
+  for (std::uint64_t target = fewest;; target *= 4) {
     const bool all = target >= source.store.record_count();
     const double bound = all ? -1.0 : bound_exceeded_by(source.store.error_bins(), target);
     if (search.round(bound) || bound < 0) {

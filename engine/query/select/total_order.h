@@ -34,6 +34,22 @@ struct RecordPlace {
   return place_of(a) < place_of(b);
 }
 
+/// How much the first records may add to a mesh: so many vertices, one a record, or so many
+/// triangles, one a record at the border and two elsewhere (those that are void too).
+struct Growth {
+  enum class Of : std::uint8_t { kVertices, kTriangles };
+  std::uint64_t most = 0;
+  Of of = Of::kVertices;
+
+  [[nodiscard]] constexpr std::uint64_t by(const PendingSplit& s) const noexcept {
+    return of == Of::kVertices ? 1 : triangles_of(s.flags);
+  }
+  /// What a record adds at most.
+  [[nodiscard]] constexpr std::uint64_t by_one() const noexcept {
+    return of == Of::kVertices ? 1 : 2;
+  }
+};
+
 /// The first records of the total order among those for which a predicate is true.
 struct FirstRecords {
   std::vector<PendingSplit> splits;
@@ -42,17 +58,18 @@ struct FirstRecords {
   double largest_error_left = -1.0;
 };
 
-/// Finds the first `count` records for which `predicate` is true, or all there are. Pages are read
-/// in the order of falling largest error. A page whose largest error is below the smallest error
+/// Finds the longest prefix of the total order of the records for which `predicate` is true that
+/// adds no more than `growth` says: of vertices exactly as many, unless there are fewer; of
+/// triangles as many or one less. Pages are read in the order of falling largest error. A page whose largest error is below the smallest error
 /// taken is not read, but for an eighth more pages (16 at least) that are read ahead. The file's
 /// table of errors says where to begin; it only saves work, and may be wrong.
 /// @param fixed_bytes  What the query holds besides its records (T0).
 /// @throws Error resource_exhausted (before the pages concerned are read), corruption, io_error,
 ///               cancelled
-/// Cost: O(t) records read and compared, t = `count`, times the logarithm of 1 / (the share of the
+/// Cost: O(t) records read and compared, t those that are found, times the logarithm of 1 / (the share of the
 /// terrain that the predicate leaves).
 [[nodiscard]] FirstRecords first_records(const RecordSource& source,
-                                         const AttributePredicate& predicate, std::uint64_t count,
+                                         const AttributePredicate& predicate, Growth growth,
                                          std::uint64_t fixed_bytes, QueryContext& context);
 
 }  // namespace ptin

@@ -2,6 +2,7 @@
 #include "engine/query/sight/viewshed.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -28,8 +29,10 @@ void check(const ViewshedRequest& r) {
   if (!(r.target_height >= 0) || !std::isfinite(r.target_height)) {
     refuse("the target's height must be a number >= 0");
   }
-  if (r.pixel_size && !(*r.pixel_size > 0 && std::isfinite(*r.pixel_size))) {
-    refuse("the pixel size must be a number > 0");
+  for (const double side : r.pixel_size.value_or(std::array{1.0, 1.0})) {
+    if (!(side > 0) || !std::isfinite(side)) {
+      refuse("the pixel size must be a number > 0");
+    }
   }
   check(r.curvature);
   if (!(r.ground_per_map_x > 0) || !(r.ground_per_map_y > 0)) {

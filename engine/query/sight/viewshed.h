@@ -3,6 +3,7 @@
 // What one observer sees of a terrain: its vertices, and a raster.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -29,9 +30,9 @@ struct ViewshedRequest {
   /// lowered ends: the middle of an edge of length L is drop_at(L) / 4 too low, about a tenth of a
   /// metre at 2.5 km.
   Curvature curvature;
-  /// Side of a pixel, map units, with pixels centred on the eye. None: the steps of the grid, with
-  /// pixels centred on the grid points.
-  std::optional<double> pixel_size;
+  /// Width and height of a pixel, map units, with pixels centred on the eye. None: the steps of the
+  /// grid, with pixels centred on the grid points.
+  std::optional<std::array<double, 2>> pixel_size;
   bool pixels = true;         ///< Fill the raster.
   bool list_vertices = true;  ///< List the vertices.
   /// At a level of detail the TIN that is swept is finer towards the eye: it also has the records

@@ -147,8 +147,8 @@ void Viewer::place_vertices() {
 }
 
 void Viewer::place_pixels() {
-  pixel_x_ = request_.pixel_size ? *request_.pixel_size / facts_.map.step_x : 1.0;
-  pixel_y_ = request_.pixel_size ? *request_.pixel_size / facts_.map.step_y : 1.0;
+  pixel_x_ = request_.pixel_size ? (*request_.pixel_size)[0] / facts_.map.step_x : 1.0;
+  pixel_y_ = request_.pixel_size ? (*request_.pixel_size)[1] / facts_.map.step_y : 1.0;
   pixels_on_grid_ = !request_.pixel_size;
   const double reach_x = std::floor(request_.radius / (ground_x_ * pixel_x_));
   const double reach_y = std::floor(request_.radius / (ground_y_ * pixel_y_));

@@ -13,7 +13,7 @@
 
 namespace ptin::stream {
 
-inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'T', 'S', 0x0D, 0x0A, 0x1A, 0x0A};
+inline constexpr std::array<std::uint8_t, 8> kMagic = layout::kStreamMagic;
 inline constexpr std::uint16_t kMajorVersion = 1;
 inline constexpr std::uint16_t kMinorVersion = 0;
 

@@ -2,6 +2,7 @@
 #include "engine/query/stream/stream_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -66,8 +67,8 @@ std::string StreamReader::place() const {
 }
 
 void StreamReader::reject(const std::string& why) const {
-  throw Error(ErrorCode::corruption, why + "; what came before it is sound and can be kept",
-              place());
+  const char* const before = has_mesh() ? "; what came before it is sound and can be kept" : "";
+  throw Error(ErrorCode::corruption, why + before, place());
 }
 
 void StreamReader::check_stop() const { stop_if_asked(options_.limits.stop, "receiving", name_); }
@@ -158,12 +159,19 @@ void StreamReader::take(std::span<const std::byte> bytes) {
 /// Checks as much of the magic as has arrived: so a few bytes of something else are not taken for a
 /// stream that was cut.
 void StreamReader::check_magic() const {
-  const std::size_t bytes = std::min(waiting_.size(), stream::kMagic.size());
-  if (!std::equal(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(bytes),
-                  stream::kMagic.begin(),
-                  [](std::byte a, std::uint8_t b) { return a == std::byte{b}; })) {
-    reject("this is no stream of ptin; the first bytes are others");
+  const auto begins_like = [this](const std::array<std::uint8_t, 8>& magic) {
+    const std::size_t bytes = std::min(waiting_.size(), magic.size());
+    return std::equal(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(bytes),
+                      magic.begin(), [](std::byte a, std::uint8_t b) { return a == std::byte{b}; });
+  };
+  if (begins_like(stream::kMagic)) return;
+  if (begins_like(layout::kMagic)) {
+    throw Error(ErrorCode::invalid_argument,
+                "this is a store, not a stream; `ptin refine` makes a mesh of it, `ptin stream` a "
+                "stream",
+                name_);
   }
+  reject("this is no stream of ptin; the first bytes are others");
 }
 
 void StreamReader::take_head(std::span<const std::byte> bytes) {

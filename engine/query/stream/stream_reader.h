@@ -36,7 +36,8 @@ class StreamReader {
   /// Takes the next bytes, however they were cut, and applies every frame that is whole by now.
   /// @return Number of bytes taken: all, unless the stream ends before. Bytes behind the end of a
   /// stream belong to another stream, which goes on from there: feed them again.
-  /// @throws Error corruption           bytes that no program wrote (storage/FORMAT.md, "A reader
+  /// @throws Error invalid_argument     a store, not a stream
+  ///               corruption           bytes that no program wrote (storage/FORMAT.md, "A reader
   ///                                    of streams must reject"), a stream that does not go on from
   ///                                    this mesh; names frame and byte. The mesh stays valid, its
   ///                                    certificate that of the last whole frame; nothing more can

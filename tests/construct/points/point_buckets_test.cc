@@ -56,9 +56,11 @@ TEST(PointBuckets, HoldThePointsOfTheSource) {
       SCOPED_TRACE(name_of(kind));
       expect_same(file.path(), options, memory);
     }
-    options.merge = PointMerge::kLowest;
     options.resolution = 7.0;
-    expect_same(file.path(), options, 1 << 18);
+    for (const PointMerge rule : {PointMerge::kLowest, PointMerge::kHighest, PointMerge::kFirst}) {
+      options.merge = rule;
+      expect_same(file.path(), options, 1 << 18);
+    }
   }
 }
 

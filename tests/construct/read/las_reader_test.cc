@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -86,6 +87,33 @@ TEST(LasReader, KeepsTheChosenClasses) {
   EXPECT_EQ(points_of(las.bytes(), {31, 2}).size(), 2U);
   EXPECT_THROW(std::ignore = points_of(las.bytes(), {256}), Error);
   EXPECT_THROW(std::ignore = points_of(las.bytes(), {-1}), Error);
+}
+
+TEST(LasReader, KeepsTheChosenReturns) {
+  // Of pulses with one echo, two and five; of one whose echoes are not numbered.
+  LasFileMaker las;
+  for (const auto& [number, returns] :
+       {std::pair{1, 1}, {1, 2}, {2, 2}, {1, 5}, {3, 5}, {5, 5}, {0, 0}}) {
+    las.points.push_back({0, 0, 10 * number + returns, 2, false, number, returns});
+  }
+  const std::vector<std::int64_t> first = {11, 12, 15, 0}, last = {11, 22, 55, 0};
+  for (const int format : {0, 3, 5, 6, 10}) {
+    las.minor = 4;
+    las.format = format;
+    const MemoryFile file("made.las", las.bytes());
+    for (const auto& [returns, expected] :
+         {std::pair{ReturnChoice::kFirst, first}, {ReturnChoice::kLast, last}}) {
+      PointChoice choice;
+      choice.returns = returns;
+      LasReader reader(file.path(), choice);
+      std::vector<SourcePoint> batch;
+      ASSERT_TRUE(reader.next(batch));
+      std::vector<std::int64_t> heights;
+      for (const SourcePoint& p : batch) heights.push_back(p.z.mantissa);
+      EXPECT_EQ(heights, expected) << format;
+      EXPECT_EQ(reader.left_out(), 3U);
+    }
+  }
 }
 
 TEST(LasReader, AddsTheOffsetExactly) {

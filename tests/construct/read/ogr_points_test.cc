@@ -95,6 +95,38 @@ TEST(OgrPoints, RefusesLayersThatHoldNoPointsWithHeights) {
   expect_layer_refused({feature(point("0,0,1"))}, "only LAS has classes", choice);
 }
 
+// A GPX has five layers, whatever was recorded.
+TEST(OgrPoints, TakesTheOnlyLayerThatHasPoints) {
+  const auto points = [](const std::string& content) {
+    const MemoryFile file("a.gpx", R"(<?xml version="1.0"?><gpx version="1.1" creator="test" )"
+                                   R"(xmlns="http://www.topografix.com/GPX/1/1">)" +
+                                       content + "</gpx>");
+    SourceOptions options;
+    options.points.z_field = "ele";
+    return read_points({file.path()}, options).source_points;
+  };
+  const auto point = [](const std::string& element, const std::string& place) {
+    return "<" + element + " " + place + "><ele>5</ele></" + element + ">";
+  };
+  std::string waypoints, track;
+  for (const char* place :
+       {R"(lat="46.5" lon="7")", R"(lat="46" lon="7.5")", R"(lat="46" lon="7")"}) {
+    waypoints += point("wpt", place);
+    track += point("trkpt", place);
+  }
+  track = "<trk><trkseg>" + track + "</trkseg></trk>";
+  EXPECT_EQ(points(waypoints), 3U);
+  EXPECT_EQ(points(track), 3U);
+  try {
+    points(waypoints + track);
+    FAIL() << "took one of two";
+  } catch (const Error& e) {
+    EXPECT_NE(e.message().find("'waypoints' (Point), 'track_points' (Point); name one"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
 TEST(OgrPoints, IsKnownByItsContent) {
   const MemoryFile file("points.geojson", collection({feature(point("0,0,1"))}));
   const MemoryFile other("points.bin", "rubbish");

@@ -119,6 +119,29 @@ TEST(TinSoup, KnowsTinsByTheirNames) {
   for (const char* name : {"a.tif", "ply", "a.ply.gz", "a.csv"}) EXPECT_FALSE(is_tin_file(name));
 }
 
+TEST(LandXml, NamesItsUnits) {
+  const struct {
+    const char* units;
+    DeclaredUnits expected;
+  } cases[] = {
+      {R"(<Metric linearUnit="meter" areaUnit="squareMeter"/>)", {"metre", "metre"}},
+      {R"(<Metric linearUnit="millimeter" elevationUnit="meter"/>)", {"millimetre", "metre"}},
+      {R"(<Imperial linearUnit="foot" elevationUnit="feet"/>)", {"foot", "foot"}},
+      {R"(<Imperial linearUnit="USSurveyFoot"/>)", {"US survey foot", "US survey foot"}},
+      {R"(<Imperial linearUnit="USSurveyFoot" elevationUnit="feet"/>)",
+       {"US survey foot", "US survey foot"}},
+      {R"(<Imperial linearUnit="mile" elevationUnit="meter"/>)", {"Statute mile", "metre"}},
+      {R"(<Imperial areaUnit="acre"/>)", {"", ""}}};
+  for (const auto& c : cases) {
+    const std::string text = land_xml(kSurface);
+    const std::size_t at = text.find("<CoordinateSystem");
+    const std::string with =
+        text.substr(0, at) + "<Units>" + c.units + "</Units>" + text.substr(at);
+    EXPECT_EQ(parse(read_land_xml, with).facts.units, c.expected) << c.units;
+  }
+  EXPECT_EQ(parse(read_land_xml, land_xml(kSurface)).facts.units, DeclaredUnits());
+}
+
 /// A file cut anywhere is refused, or lacks nothing that matters.
 TEST(TinSoup, RefusesFilesThatAreCutShort) {
   for (const std::string& whole : {binary_ply(false), binary_ply(true)}) {

@@ -29,9 +29,10 @@ NumberKind kind(const std::string& text) {
 
 using Row = std::vector<double>;
 
-std::vector<Row> read(const std::string& text, const std::string& name = "points.xyz") {
+std::vector<Row> read(const std::string& text, const std::string& name = "points.xyz",
+                      const std::vector<std::string>& columns = {}) {
   const MemoryFile file(name, text);
-  XyzReader reader(file.path());
+  XyzReader reader(file.path(), columns);
   std::vector<Row> rows;
   XyzPoint p;
   while (reader.next(p)) {
@@ -131,6 +132,48 @@ TEST(XyzReader, FindsTheColumnsThatAHeaderNames) {
   EXPECT_EQ(read("\xEF\xBB\xBFX Y Z\n1 2 3\n"), expected);
 }
 
+TEST(XyzReader, TakesTheColumnsThatTheCallerNames) {
+  const std::vector<Row> expected{{1, 2, 3}};
+  EXPECT_EQ(read("9,2,1,3,GND\n", "p.csv", {"id", "y", "x", "z", "code"}), expected);
+  EXPECT_EQ(read("P9,2,1,3,GND\n", "p.csv", {"P", "N", "E", "Z"}), expected) << "the rest has none";
+  EXPECT_EQ(read("id;a;b;c\n9;3;1;2\n", "p.csv", {"-", "h", "lon", "lat"}), expected);
+  const auto refusal = [](const std::string& text, const std::vector<std::string>& columns) {
+    try {
+      read(text, "p.csv", columns);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refusal("1,2,3\n", {"id", "x", "y"}).find("no column for z"), std::string::npos);
+  EXPECT_NE(refusal("1,2,3\n", {"x", "x", "y", "z"}).find("two columns for x"), std::string::npos);
+  EXPECT_NE(refusal("1,2,3\n", {"x", "e", "y", "z"}).find("two columns for x"), std::string::npos);
+  EXPECT_NE(refusal("1,2,3\n", {"x", "y", "z", "t"}).find("4 columns, and the first line has 3"),
+            std::string::npos);
+}
+
+// It would be taken for x.
+TEST(XyzReader, RefusesAFirstColumnThatNumbersTheRows) {
+  const auto points = [](const std::string& header, const std::vector<int>& numbers,
+                         const std::string& north) {
+    std::string text = header;
+    for (const int n : numbers) {
+      text += std::to_string(n) + ",50" + std::to_string(n * n % 7) + north + ",22,9.5,GND\n";
+    }
+    return text;
+  };
+  expect_line_refused(points("", {1, 2, 3, 4}, ""), "4", "--columns id x y z");
+  expect_line_refused(points("# a comment\n", {101, 102, 103}, ".25"), "4", "numbers the lines");
+  expect_line_refused(points("", {1, 2, 5, 6, 9}, ".25"), "5", "rising to 9");
+  EXPECT_EQ(read(points("", {1, 2}, ".25")).size(), 2U) << "by chance";
+  EXPECT_EQ(read(points("", {1, 2, 3, 3}, ".25")).size(), 4U) << "a row of a grid";
+  EXPECT_EQ(read(points("", {1, 2, 5}, "")).size(), 3U) << "whole as its neighbours are";
+  EXPECT_EQ(read(points("x,y,z,w,code\n", {1, 2, 3}, ".25")).size(), 3U);
+  EXPECT_EQ(read(points("", {1, 2, 3}, ".25"), "p.csv", {"x", "y", "z"}).size(), 3U);
+  EXPECT_EQ(read("1 2.5 3\n2 2.5 3\n3 2.5 4\n").size(), 3U) << "no column is left over";
+}
+
 TEST(XyzReader, FindsNoPointInAnEmptyFile) {
   EXPECT_TRUE(read("").empty());
   EXPECT_TRUE(read("\n# nothing\n").empty());
@@ -141,13 +184,15 @@ TEST(XyzReader, NamesTheLineOfAFault) {
   expect_line_refused("1 2 3\n4 5\n", "2", "2 fields where the first line has 3");
   expect_line_refused("1 2 3\n\n#\n4 5 6 7\n", "4", "4 fields");
   expect_line_refused("1 2\n", "1", "x, y and z are expected");
-  expect_line_refused("1 2 3\n1 nan 3\n", "2", "y of this point is NaN");
-  expect_line_refused("nan 2 3\n", "1", "x of this point is NaN");
-  expect_line_refused("1 2 3\n1 2 -inf\n", "2", "z of this point is infinite");
+  expect_line_refused("1 2 3\n1 nan 3\n", "2", "y of this point, 'nan', is NaN");
+  expect_line_refused("nan 2 3\n", "1", "x of this point, 'nan', is NaN");
+  expect_line_refused("1 2 3\n1 2 -inf\n", "2", "z of this point, '-inf', is infinite");
   expect_line_refused("1 2 3\n1 2 1e40\n", "2", "10^18");
   expect_line_refused("1 2 3\n1 2 high\n", "2", "'high'");
-  expect_line_refused("1;2;3\n1,5;2,5;3,5\n", "2", "decimal point");
-  expect_line_refused("1,2,3\n1,,3\n", "2", "''");
+  expect_line_refused("1;2;3\n1,5;2,5;3,5\n", "2", "decimal comma; write it with a point, 1.5");
+  expect_line_refused("1,2,3\n1,,3\n", "2", "is empty");
+  expect_line_refused("a,1,2,3\n", "1", "the x of this point, 'a', is no number");
+  expect_line_refused("a,1,2,3\n", "1", "as in --columns id x y z");
 }
 
 TEST(XyzReader, SaysWhichColumnAHeaderLacks) {

@@ -116,7 +116,7 @@ RC_GTEST_PROP(ProgressiveIsolines, OfAStreamAreThoseOfTheTerrainInTheEnd, (std::
   StreamRequest request;
   request.wanted = asked.levels.crossing();
   std::optional<double> tolerance;
-  if (asked.random() % 2 == 0) {
+  if (asked.random() % 2 == 0 && !asked.hierarchy.records.empty()) {
     tolerance = asked.hierarchy.records[asked.random() % asked.hierarchy.records.size()].error;
     request.wanted = all_of({request.wanted, error_above(*tolerance)});
     request.tolerance = tolerance;

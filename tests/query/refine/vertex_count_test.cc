@@ -44,6 +44,16 @@ std::set<VertexKey> keys_beyond_t0(const RefinedTin& result) {
   return keys;
 }
 
+/// Of the records that are not among those taken; 0 where all are.
+double largest_error_left(const std::vector<VertexSplit>& records,
+                          const std::set<VertexKey>& taken) {
+  double left = 0.0;
+  for (const VertexSplit& r : records) {
+    if (!taken.contains(key_of(r.u))) left = std::max<double>(left, r.error);
+  }
+  return left;
+}
+
 TEST(RefineToVertexCount, GivesExactlyThatManyForEveryCount) {
   for (std::uint64_t seed = 10; seed < 22; ++seed) {
     const reference::Hierarchy h = reference::random_hierarchy(seed);
@@ -58,12 +68,7 @@ TEST(RefineToVertexCount, GivesExactlyThatManyForEveryCount) {
       ASSERT_EQ(validate(result.tin), "") << "seed " << seed << ", " << n << " vertices";
       const std::set<VertexKey> taken = keys_beyond_t0(result);
       ASSERT_EQ(taken, first_by_sorting(h.records, n - t0)) << "seed " << seed;
-      double left = 0.0;
-      for (const VertexSplit& r : h.records) {
-        if (!taken.contains(key_of(r.u))) {
-          left = std::max<double>(left, r.error);
-        }
-      }
+      const double left = largest_error_left(h.records, taken);
       ASSERT_GE(result.certified_error, left) << "seed " << seed << ", " << n << " vertices";
       ASSERT_LE(result.certified_error, left * 1.125)
           << "seed " << seed << ", " << n << " vertices";
@@ -80,6 +85,87 @@ TEST(RefineToVertexCount, AboveAllThereAreGivesTheFullTin) {
   EXPECT_TRUE(result.exact);
   EXPECT_EQ(result.vertices, h.full.vertices.size());
   EXPECT_EQ(result.certified_error, 0.0);
+}
+
+TEST(RefineToTriangleCount, GivesAsManyOrOneLessForEveryCount) {
+  for (std::uint64_t seed = 10; seed < 18; ++seed) {
+    const reference::Hierarchy h = reference::random_hierarchy(seed);
+    const reference::TemporaryStore file(h);
+    const Terrain tin(file.open());
+    const std::size_t all = h.full.triangles.size();
+    std::uint64_t vertices = h.t0.vertices.size();
+    for (std::size_t n = h.t0.triangles.size(); n <= all + 3; ++n) {
+      RefineRequest request;
+      request.triangles = n;
+      const RefinedTin result = tin.refine(request);
+      ASSERT_EQ(validate(result.tin), "") << "seed " << seed << ", " << n << " triangles";
+      ASSERT_LE(result.triangles, n) << "seed " << seed;
+      ASSERT_GE(result.triangles + 1, std::min(n, all)) << "seed " << seed;
+      ASSERT_GE(result.vertices, vertices) << "seed " << seed << ": levels are nested";
+      vertices = result.vertices;
+      // The TIN of the same number of vertices, and one vertex more is too many.
+      request.triangles.reset();
+      request.detail.vertices = vertices;
+      const RefinedTin same = tin.refine(request);
+      const std::set<VertexKey> taken = keys_beyond_t0(result);
+      ASSERT_EQ(taken, keys_beyond_t0(same)) << "seed " << seed;
+      const double left = largest_error_left(h.records, taken);
+      ASSERT_GE(result.certified_error, left) << "seed " << seed << ", " << n << " triangles";
+      ASSERT_LE(result.certified_error, left * 1.125) << "seed " << seed << ", " << n;
+      ASSERT_EQ(result.exact, same.exact) << "seed " << seed;
+      request.detail.vertices = vertices + 1;
+      ASSERT_TRUE(n >= all || tin.refine(request).triangles > n) << "seed " << seed << ", " << n;
+    }
+    EXPECT_EQ(vertices, h.full.vertices.size());
+  }
+}
+
+RC_GTEST_PROP(RefineToTriangleCount, WithinARegionIsThatOfTheSameNumberOfVertices,
+              (std::uint64_t seed)) {
+  const reference::Hierarchy h = reference::random_hierarchy(seed);
+  const reference::TemporaryStore file(h);
+  const Terrain tin(file.open());
+  std::mt19937_64 random(seed);
+  RefineRequest request;
+  request.region = reference::random_region(random, h.facts);
+  request.triangles = h.t0.triangles.size() + random() % (2 * h.records.size() + 3);
+  const RefinedTin result = tin.refine(request);
+  const std::uint64_t most = *request.triangles;
+  RC_ASSERT(result.triangles <= most);
+  request.detail.vertices = result.vertices;
+  request.triangles.reset();
+  RC_ASSERT(keys_beyond_t0(result) == keys_beyond_t0(tin.refine(request)));
+  request.detail.vertices = result.vertices + 1;
+  const RefinedTin more = tin.refine(request);
+  RC_ASSERT(more.vertices == result.vertices || more.triangles > most);
+}
+
+TEST(RefineToTriangleCount, ReadsLittleMoreThanThePagesItNeeds) {
+  std::mt19937_64 random(1);
+  const reference::Hierarchy h =
+      reference::simplify(reference::random_grid(random, 160, 160, 1, 0.0), random, {0.0, false});
+  const reference::TemporaryStore file(h, 4096, 1);
+  RefineRequest request;
+  request.triangles = h.t0.triangles.size() + 2000;
+  const RefinedTin some = Terrain(file.open()).refine(request);
+  EXPECT_GE(some.triangles + 1, *request.triangles);
+  EXPECT_LT(some.cost.io.pages, 3 * 1000 / 56 + 20);
+}
+
+TEST(RefineToTriangleCount, SaysWhatMeansNothing) {
+  const reference::Hierarchy h = reference::random_hierarchy(3);
+  const reference::TemporaryStore file(h);
+  const Terrain tin(file.open());
+  RefineRequest request;
+  request.triangles = h.t0.triangles.size() - 1;
+  EXPECT_THROW(static_cast<void>(tin.refine(request)), Error);
+  request.triangles = h.t0.triangles.size();
+  EXPECT_EQ(tin.refine(request).vertices, h.t0.vertices.size());
+  request.detail.tolerance = 1.0;
+  EXPECT_THROW(static_cast<void>(tin.refine(request)), Error);
+  request.detail.tolerance.reset();
+  request.detail.vertices = h.full.vertices.size();
+  EXPECT_THROW(static_cast<void>(tin.refine(request)), Error);
 }
 
 RC_GTEST_PROP(RefineToVertexCount, WithinARegionTakesItsMostImportantRecords,
@@ -160,11 +246,7 @@ RC_GTEST_PROP(FirstVertices, PointsAndProfilesAreThoseOfTheTinOfThatManyVertices
   locating.detail.vertices = count;
   const LocateResult found = locate(terrain, points, locating);
   RC_ASSERT(found.exact == wanted.exact);
-  double left = 0.0;
-  const std::set<VertexKey> kept = keys_beyond_t0(wanted);
-  for (const VertexSplit& r : h.records) {
-    if (!kept.contains(key_of(r.u))) left = std::max<double>(left, r.error);
-  }
+  const double left = largest_error_left(h.records, keys_beyond_t0(wanted));
   RC_ASSERT(found.certified_error >= left);
   RC_ASSERT(found.certified_error <= left * 1.125);
   for (std::size_t i = 0; i < spots.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "engine/query/sight/viewshed.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -95,7 +96,8 @@ RC_GTEST_PROP(Viewshed, IsASightLineToEveryVertexAndPixel, (std::uint64_t seed))
   request.curvature.coefficient = 0;
   request.radius =
       (1 + double(random() % 30)) / 40 * double(half_perimeter(b)) * h.facts.map.step_x;
-  if (random() % 2 == 0) request.pixel_size = h.facts.map.step_x * 0.71;
+  if (random() % 2 == 0)
+    request.pixel_size = std::array{h.facts.map.step_x * 0.71, h.facts.map.step_x * 0.71};
   Viewshed seen{};
   try {
     seen = viewshed(terrain, request);
@@ -232,7 +234,7 @@ TEST(Viewshed, AnswersOnTheRimOfAVoidSeenAcrossIt) {
         request.absolute = true;
         request.curvature.coefficient = 0;
         request.radius = 12 * h.facts.map.step_x;
-        if (by_size) request.pixel_size = h.facts.map.step_x;
+        if (by_size) request.pixel_size = std::array{h.facts.map.step_x, h.facts.map.step_x};
         const Viewshed seen = viewshed(terrain, request);
         for (std::uint32_t row = 0; row < seen.height; ++row) {
           for (std::uint32_t column = 0; column < seen.width; ++column) {
@@ -294,7 +296,7 @@ TEST(Viewshed, WalksWhereTrianglesHideOneAnotherInARing) {
     request.eye = h.facts.map.to_map(1003, 996);
     request.eye_height = 3;
     request.radius = 1e9;
-    request.pixel_size = h.facts.map.step_x * 90;
+    request.pixel_size = std::array{h.facts.map.step_x * 90, h.facts.map.step_x * 90};
     request.curvature.coefficient = 0;
     request.target_height = 0.25;
     request.radius = h.facts.map.step_x * 1000;
@@ -353,7 +355,8 @@ RC_GTEST_PROP(Viewshed, AtALevelOfDetailIsNeverWrongWhereItIsCertain, (std::uint
     request.target_height = double(random() % 4);
     request.curvature.coefficient = 0;
     request.radius = f.map.step_x * (3 + double(random() % 50));
-    if (random() % 2 == 0) request.pixel_size = f.map.step_x * 0.71;
+    if (random() % 2 == 0)
+      request.pixel_size = std::array{f.map.step_x * 0.71, f.map.step_x * 0.71};
     try {
       const Viewshed exact = viewshed(*t.terrain, request);
       if (random() % 2 == 0) {
@@ -421,7 +424,7 @@ TEST(Viewshed, CountsTheRastersThatAFileWithoutItsDetailsNeeds) {
   request.eye = h.facts.map.to_map(7, 9);
   request.eye_height = 2;
   request.radius = 20 * h.facts.map.step_x;
-  request.pixel_size = h.facts.map.step_x / 16;
+  request.pixel_size = std::array{h.facts.map.step_x / 16, h.facts.map.step_x / 16};
   request.list_vertices = false;
   const TemporaryStore whole(h);
   h.facts.base_deviation = 0.5;  // larger than rounding: details were left out

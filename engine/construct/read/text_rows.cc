@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/read/text_rows.h"
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+#include <utility>
+
+#include "engine/error.h"
+
+namespace ptin {
+namespace {
+
+/// So many rows show that a column counts; one or two may do so by chance.
+constexpr std::uint64_t kFewestCounted = 3;
+
+/// "x, y and z".
+std::string listed(std::span<const ColumnRole> roles) {
+  std::string text;
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    text.append(i == 0 ? "" : i + 1 == roles.size() ? " and " : ", ").append(name_of(roles[i]));
+  }
+  return text;
+}
+
+/// What could be said instead: "--columns id x y z".
+std::string example_of(std::span<const ColumnRole> roles) {
+  std::string text = "--columns id";
+  for (const ColumnRole role : roles) {
+    text.append(" ").append(name_of(role));
+  }
+  return text;
+}
+
+}  // namespace
+
+TextRows::TextRows(TextTable& table, std::span<const ColumnRole> roles,
+                   std::vector<std::string> columns)
+    : table_(table), roles_(roles.begin(), roles.end()), given_(std::move(columns)) {
+  if (!given_.empty()) {
+    columns_ = columns_of(given_, roles_);
+  }
+}
+
+/// Finds the columns, once the first row is known.
+void TextRows::begin() {
+  begun_ = true;
+  const std::vector<std::string>& header = table_.header();
+  if (table_.line() == 0 || table_.field_count() == 0) {
+    return;  // an empty text
+  }
+  const std::size_t count = table_.field_count();
+  if (!given_.empty()) {
+    if (given_.size() > count) {
+      table_.refuse("--columns names " + std::to_string(given_.size()) +
+                    " columns, and the first line has " + std::to_string(count));
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < roles_.size(); ++i) {
+    columns_.push_back(header.empty() ? i : find_column(header, roles_[i]));
+    if (columns_[i] == count && !header.empty()) {
+      table_.refuse(
+          "the first line is taken for a header, since no field of it is a number, but names no "
+          "column for " +
+          name_of(roles_[i]) +
+          "; columns are named x, y, z or easting, northing, height or lon, lat, elevation" +
+          (roles_[i].end == 0 ? "" : ", with 1 and 2 behind them for the two ends") +
+          ", or by --columns");
+    }
+  }
+  if (count < roles_.size()) {
+    table_.refuse("there are " + std::to_string(count) + " fields in the first line, where " +
+                  listed(roles_) + " are expected");
+  }
+  is_guess_ = header.empty() && count > roles_.size();
+  may_be_numbers_ = is_guess_;
+}
+
+bool TextRows::choose_id(const std::string& name) {
+  const std::vector<std::string>& all = names();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const std::string& n) {
+    return name.empty() ? !n.empty() && !is_coordinate_name(n) : equal_in_any_case(n, name);
+  });
+  id_ = static_cast<std::size_t>(found - all.begin());
+  if (found != all.end() || name.empty()) {
+    return found != all.end();
+  }
+  std::string known;
+  for (const std::string& n : all) {
+    known.append(known.empty() ? "" : ", ").append(shown_field(n));
+  }
+  table_.refuse("there is no column " + shown_field(name) + "; " +
+                (all.empty()
+                     ? "no header names any: name them with --columns, as in " + example_of(roles_)
+                     : "there are " + known));
+}
+
+/// A column that numbers the rows is whole and rises in each of them.
+void TextRows::note_numbering() {
+  const std::string_view field = fields_[0];
+  std::int64_t number = 0;
+  const auto [end, fault] = std::from_chars(field.data(), field.data() + field.size(), number);
+  may_be_numbers_ = fault == std::errc() && end == field.data() + field.size() && number >= 0 &&
+                    (rows_ == 0 || number > last_number_);
+  by_one_ = by_one_ && (rows_ == 0 || number - 1 == last_number_);
+  has_decimals_ = has_decimals_ || fields_[1].find('.') != std::string_view::npos;
+  last_number_ = number;
+}
+
+void TextRows::check_numbering() const {
+  if (!may_be_numbers_ || rows_ < kFewestCounted || !(by_one_ || has_decimals_)) {
+    return;
+  }
+  table_.refuse("the first column numbers the lines, " +
+                std::string(by_one_ ? "one by one" : "rising") + " to " +
+                std::to_string(last_number_) + ", and would be taken for " + name_of(roles_[0]) +
+                ", since there is no header; name the columns with --columns, "
+                "as in " +
+                example_of(roles_));
+}
+
+bool TextRows::next() {
+  if (!begun_) {
+    begin();
+  }
+  if (!table_.next()) {
+    check_numbering();
+    return false;
+  }
+  fields_ = table_.fields();
+  if (may_be_numbers_) {
+    note_numbering();
+  }
+  ++rows_;
+  return true;
+}
+
+void TextRows::refuse_field(std::size_t role, const std::string& what) const {
+  table_.refuse("the " + name_of(roles_[role]) +
+                (roles_[role].end == 0 ? " of this point, " : " of this pair, ") +
+                shown_field(field(role)) + ", " + what);
+}
+
+void TextRows::refuse_no_number(std::size_t role) const {
+  refuse_field(role,
+               why_no_number(field(role)) +
+                   (is_guess_ ? "; if the columns are others, name them with --columns, as in " +
+                                    example_of(roles_)
+                              : ""));
+}
+
+}  // namespace ptin

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Which columns of a text hold the coordinates, and which one tells rows apart.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/construct/read/column_names.h"
+#include "engine/construct/read/text_table.h"
+
+namespace ptin {
+
+/// The rows of a text as points, or as pairs of points. Their columns are those that the caller
+/// named; else those that a header names; else the first ones, in the order of the roles. Not
+/// thread-safe.
+class TextRows {
+ public:
+  /// @param table    Which outlives the rows; nothing of it was read yet but the header.
+  /// @param columns  The names of the columns from the left, as columns_of() takes them; empty:
+  ///                 none were given.
+  /// @throws Error as columns_of()
+  TextRows(TextTable& table, std::span<const ColumnRole> roles,
+           std::vector<std::string> columns = {});
+
+  /// Chooses the column that tells rows apart: the one of this name, in any case; without a name
+  /// the first whose name is none of a coordinate's.
+  /// @return  False where there is no name and no such column.
+  /// @throws Error  invalid_argument  no column has this name; also as next()
+  [[nodiscard]] bool choose_id(const std::string& name);
+
+  /// Reads the next row; false at the end.
+  /// @throws Error as TextTable::next(); invalid_argument also where a header lacks a column, where
+  ///         there are too few, and, at the end, where the column taken for the first coordinate
+  ///         counts 1, 2, 3 ..., or rises by whole numbers beside coordinates with decimals, and
+  ///         there are more columns than coordinates: nobody said which columns these are, and such
+  ///         a column numbers the rows.
+  [[nodiscard]] bool next();
+
+  /// The field of a role, by its place among the roles.
+  [[nodiscard]] std::string_view field(std::size_t role) const { return fields_[columns_[role]]; }
+  /// The field that tells the row apart. REQUIRES: choose_id() returned true.
+  [[nodiscard]] std::string_view id() const { return fields_[id_]; }
+  /// Refuses the row for what is wrong with the field of a role: "the x of this point " and `what`.
+  [[noreturn]] void refuse_field(std::size_t role, const std::string& what) const;
+  /// Refuses the row since the field of a role is no number.
+  [[noreturn]] void refuse_no_number(std::size_t role) const;
+
+ private:
+  void begin();
+  void note_numbering();
+  void check_numbering() const;
+  /// The names of the columns: given, of the header, or none.
+  [[nodiscard]] const std::vector<std::string>& names() {
+    return given_.empty() ? table_.header() : given_;
+  }
+
+  TextTable& table_;
+  std::vector<ColumnRole> roles_;
+  std::vector<std::string> given_;
+  std::vector<std::size_t> columns_;  ///< By role.
+  std::size_t id_ = 0;
+  std::span<const std::string_view> fields_;
+  bool begun_ = false;
+
+  /// Nobody named the columns, and there are more of them than roles.
+  bool is_guess_ = false;
+  bool may_be_numbers_ = false;  ///< The first column may number the rows, as far as was read.
+  bool by_one_ = true;           ///< It rose by one from each row to the next.
+  bool has_decimals_ = false;    ///< The second column has.
+  std::int64_t last_number_ = 0;
+  std::uint64_t rows_ = 0;
+};
+
+}  // namespace ptin

@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/read/text_table.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <istream>
+#include <utility>
+
+#include <cpl_conv.h>
+#include <cpl_vsi.h>
+
+#include "engine/construct/grid/decimal.h"
+#include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/read/column_names.h"
+#include "engine/construct/read/input_kind.h"
+#include "engine/error.h"
+
+namespace ptin {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kLongestRow = std::size_t{1} << 16;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::string_view kBlanks = " \t\r";
+
+std::string_view trimmed(std::string_view text, std::string_view blanks) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) {
+    return text.substr(text.size());
+  }
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// Where the quoted field that begins at `at` ends: behind its last quote; npos when it does not.
+std::size_t end_of_quoted(std::string_view row, std::size_t at) {
+  for (at = row.find('"', at + 1); at != std::string_view::npos; at = row.find('"', at + 2)) {
+    if (at + 1 == row.size() || row[at + 1] != '"') {
+      return at + 1;
+    }
+  }
+  return at;
+}
+
+/// True for a number, and for a field that was meant as one: with a unit or a decimal comma.
+bool begins_as_number(std::string_view field) {
+  Decimal ignored;
+  const std::size_t digit = field.find_first_not_of("'+-.");
+  return parse_number(field, ignored) != NumberKind::kNoNumber ||
+         (digit != std::string_view::npos && field[digit] >= '0' && field[digit] <= '9');
+}
+
+/// True when two words of a text, set apart by blanks, begin as numbers do.
+bool has_two_numbers(std::string_view text) {
+  int numbers = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(kBlanks, i), text.size());
+    numbers += begins_as_number(text.substr(i, end - i)) ? 1 : 0;
+    i = end + 1;
+  }
+  return numbers > 1;
+}
+
+/// True where blanks separate numbers in the row though it has tabs too.
+bool has_numbers_between_tabs(std::string_view row) {
+  for (std::size_t i = 0; i <= row.size();) {
+    const std::size_t end = std::min(row.find('\t', i), row.size());
+    if (has_two_numbers(row.substr(i, end - i))) {
+      return true;
+    }
+    i = end + 1;
+  }
+  return false;
+}
+
+/// The separator of a row: what stands outside of its quoted fields decides.
+char separator_of(std::string_view row) {
+  bool has_comma = false, has_tab = false;
+  bool is_begin = true;  // of a field, or of a word of one
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (row[i] == '"' && is_begin) {
+      i = end_of_quoted(row, i);
+      if (i == std::string_view::npos) {
+        break;
+      }
+      --i;
+      is_begin = false;
+      continue;
+    }
+    if (row[i] == ';') {
+      return ';';
+    }
+    has_comma = has_comma || row[i] == ',';
+    has_tab = has_tab || row[i] == '\t';
+    is_begin = row[i] == ',' || kBlanks.find(row[i]) != std::string_view::npos;
+  }
+  return has_comma ? ',' : has_tab && !has_numbers_between_tabs(row) ? '\t' : ' ';
+}
+
+bool is_header(std::span<const std::string_view> fields, std::span<const std::string> names) {
+  return std::none_of(fields.begin(), fields.end(), begins_as_number) ||
+         (find_column(names, {Coordinate::kX}) != names.size() &&
+          find_column(names, {Coordinate::kY}) != names.size());
+}
+
+}  // namespace
+
+struct TextTable::File {
+  VSILFILE* handle = nullptr;
+  std::istream* stream = nullptr;
+  bool packed = false;
+  bool on_disk = false;  ///< A file of the system's, whose faults GDAL does not always tell.
+  ~File() {
+    if (handle != nullptr) {
+      const GdalSession session;
+      VSIFCloseL(handle);
+    }
+  }
+};
+
+TextTable::TextTable(std::string path) : path_(std::move(path)), file_(std::make_unique<File>()) {
+  const GdalSession session;
+  file_->packed = is_packed(path_);
+  file_->on_disk = !file_->packed && !path_.starts_with("/vsi");
+  errno = 0;
+  file_->handle = VSIFOpenL(((file_->packed ? "/vsigzip/" : "") + path_).c_str(), "rb");
+  const int failure = errno;
+  VSIStatBufL status;
+  const bool is_there = VSIStatL(path_.c_str(), &status) == 0;
+  if (is_there && VSI_ISDIR(status.st_mode) != 0) {
+    throw Error(ErrorCode::invalid_argument, "is a folder; name a file of text", path_);
+  }
+  if (file_->handle == nullptr) {
+    const bool is_refused = failure != 0 && failure != ENOENT && failure != ENOTDIR;
+    if (!is_there && !is_refused) {
+      throw Error(ErrorCode::not_found, "there is no such file of points", path_);
+    }
+    throw is_refused ? system_error(failure, "cannot open", path_)
+                     : Error(ErrorCode::io_error, session.explain("cannot open"), path_);
+  }
+  buffer_.reserve(kBufferBytes + kLongestRow);
+}
+
+TextTable::TextTable(std::string name, std::string text)
+    : path_(std::move(name)),
+      file_(std::make_unique<File>()),
+      buffer_(std::move(text)),
+      at_end_(true) {}
+
+TextTable::TextTable(std::string name, std::istream& in)
+    : path_(std::move(name)), file_(std::make_unique<File>()) {
+  file_->stream = &in;
+}
+
+TextTable::~TextTable() = default;
+
+void TextTable::refuse(const std::string& sentence) const {
+  throw Error(ErrorCode::invalid_argument, sentence, path_ + ":" + std::to_string(row_line_));
+}
+
+/// Keeps what is left in the buffer and reads on behind it.
+void TextTable::fill() {
+  buffer_.erase(0, begin_);
+  begin_ = 0;
+  const std::size_t kept = buffer_.size();
+  buffer_.resize(kept + kBufferBytes);
+  const GdalSession session;
+  std::size_t got = 0;
+  bool failed = false;
+  if (file_->stream != nullptr) {
+    file_->stream->read(buffer_.data() + kept, static_cast<std::streamsize>(kBufferBytes));
+    got = static_cast<std::size_t>(file_->stream->gcount());
+    failed = file_->stream->bad();
+  } else {
+    // GDAL would write a note of the unpacked size beside the file, in a folder that is not ours.
+    const CPLConfigOptionSetter no_notes("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false);
+    got = VSIFReadL(buffer_.data() + kept, 1, kBufferBytes, file_->handle);
+    failed = session.failed() || (file_->on_disk && got == 0 && VSIFEofL(file_->handle) == 0);
+  }
+  buffer_.resize(kept + got);
+  if (failed) {
+    throw Error(ErrorCode::io_error,
+                session.explain("cannot read on behind line " + std::to_string(line_) +
+                                "; the file may be damaged or cut short"),
+                path_);
+  }
+  at_end_ = got == 0;
+}
+
+/// Lengthens the row by one line; false at the end of the text.
+bool TextTable::add_line() {
+  const std::size_t from = row_bytes_;
+  for (;;) {
+    const std::size_t left = buffer_.size() - begin_;
+    const char* row = buffer_.data() + begin_;
+    const auto* end = static_cast<const char*>(
+        left == from ? nullptr : std::memchr(row + from, '\n', left - from));
+    const std::size_t length = end == nullptr ? left : static_cast<std::size_t>(end - row);
+    if (length > kLongestRow) {
+      row_line_ = from == 0 ? line_ + 1 : row_line_;
+      refuse(from == 0 ? "a line is longer than 64 KiB; this does not look like points as text"
+                       : "a quoted field that begins in this line does not end within 64 KiB");
+    }
+    if (end == nullptr && !at_end_) {
+      fill();
+      continue;
+    }
+    if (left == from) {
+      return false;
+    }
+    ++line_;
+    row_line_ = from == 0 ? line_ : row_line_;
+    row_ = {row, length};
+    row_bytes_ = length + (end == nullptr ? 0 : 1);
+    return true;
+  }
+}
+
+bool TextTable::is_blank(char c) const noexcept {
+  return c == ' ' || c == '\r' || (c == '\t' && separator_ != '\t');
+}
+
+bool TextTable::is_separator(char c) const noexcept {
+  return separator_ == ' ' ? c == ' ' || c == '\t' || c == '\r' : c == separator_;
+}
+
+std::string_view TextTable::without_blanks(std::string_view text) const noexcept {
+  while (!text.empty() && is_blank(text.front())) {
+    text.remove_prefix(1);
+  }
+  while (!text.empty() && is_blank(text.back())) {
+    text.remove_suffix(1);
+  }
+  return text;
+}
+
+void TextTable::split_unquoted(std::string_view row) {
+  if (separator_ != ' ') {
+    for (;;) {
+      const std::size_t end = row.find(separator_);
+      fields_.push_back(without_blanks(row.substr(0, end)));
+      if (end == std::string_view::npos) {
+        return;
+      }
+      row.remove_prefix(end + 1);
+    }
+  }
+  for (std::size_t i = 0; i < row.size();) {
+    std::size_t end = i;
+    while (end < row.size() && !is_separator(row[end])) {
+      ++end;
+    }
+    if (end > i) {
+      fields_.push_back(row.substr(i, end - i));
+    }
+    i = end + 1;
+  }
+}
+
+/// False where a quoted field does not end in the row.
+bool TextTable::split_quoted(std::string_view row) {
+  unquoted_.clear();
+  unquoted_.reserve(row.size());  // fields_ holds views into it
+  for (std::size_t i = 0;; ++i) {
+    while (i < row.size() && is_blank(row[i])) {
+      ++i;
+    }
+    if (i == row.size() && separator_ == ' ') {
+      return true;
+    }
+    std::size_t end = i;
+    if (i < row.size() && row[i] == '"') {
+      end = end_of_quoted(row, i);
+      if (end == std::string_view::npos) {
+        return false;
+      }
+      const std::size_t begin = unquoted_.size();
+      for (std::size_t c = i + 1; c + 1 < end; c += row[c] == '"' ? 2 : 1) {
+        unquoted_ += row[c];
+      }
+      fields_.push_back(std::string_view(unquoted_).substr(begin));
+      while (end < row.size() && is_blank(row[end]) && !is_separator(row[end])) {
+        ++end;
+      }
+      if (end < row.size() && !is_separator(row[end])) {
+        refuse("text follows the quotes around field " + std::to_string(fields_.size()) +
+               "; a quote within quotes is written twice");
+      }
+    } else {
+      while (end < row.size() && !is_separator(row[end])) {
+        ++end;
+      }
+      fields_.push_back(without_blanks(row.substr(i, end - i)));
+    }
+    if (end == row.size()) {
+      return true;
+    }
+    i = end;
+  }
+}
+
+/// Splits the row into fields; false where a quoted field does not end in it.
+bool TextTable::split() {
+  if (!begun_) {
+    separator_ = separator_of(row_);
+  }
+  fields_.clear();
+  if (row_.find('"') != std::string_view::npos) {
+    return split_quoted(row_);
+  }
+  split_unquoted(row_);
+  return true;
+}
+
+/// Reads the next line that is neither empty nor a comment, with those that its quotes go on in.
+bool TextTable::next_row() {
+  for (;;) {
+    begin_ += row_bytes_;
+    bytes_read_ += file_->packed ? 0 : row_bytes_;
+    row_bytes_ = 0;
+    if (!add_line()) {
+      return false;
+    }
+    const std::string_view mark =
+        line_ == 1 && row_.starts_with(kByteOrderMark) ? kByteOrderMark : "";
+    row_.remove_prefix(mark.size());
+    const std::string_view text = trimmed(row_, kBlanks);
+    if (text.empty() || text.front() == '#') {
+      continue;
+    }
+    while (!split()) {
+      if (!add_line()) {
+        refuse("a quoted field that begins in this line does not end");
+      }
+      row_.remove_prefix(mark.size());
+    }
+    return true;
+  }
+}
+
+/// Looks at the first row: separator, number of fields, header.
+void TextTable::begin() {
+  is_pending_ = next_row();
+  begun_ = true;
+  field_count_ = fields_.size();
+  for (const std::string_view field : fields_) {
+    header_.emplace_back(trimmed(field, kBlanks));
+  }
+  if (is_pending_ && is_header(fields_, header_)) {
+    is_pending_ = false;
+  } else {
+    header_.clear();
+  }
+}
+
+const std::vector<std::string>& TextTable::header() {
+  if (!begun_) {
+    begin();
+  }
+  return header_;
+}
+
+bool TextTable::next() {
+  if (!begun_) {
+    begin();
+  }
+  if (std::exchange(is_pending_, false)) {
+    return true;
+  }
+  if (!next_row()) {
+    return false;
+  }
+  if (fields_.size() != field_count_) {
+    refuse("there are " + std::to_string(fields_.size()) + " fields where the first line has " +
+           std::to_string(field_count_) +
+           (separator_ == ',' && fields_.size() > field_count_
+                ? "; numbers have a decimal point, no comma"
+                : ""));
+  }
+  return true;
+}
+
+std::string shown_field(std::string_view field) {
+  std::string text(field.substr(0, 40));
+  for (char& c : text) {
+    c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  }
+  return "'" + text + (field.size() > 40 ? "...'" : "'");
+}
+
+std::string why_no_number(std::string_view field) {
+  Decimal ignored;
+  if (field.empty()) {
+    return "is empty";
+  }
+  std::string with_point(field);
+  if (const std::size_t comma = with_point.find(','); comma != std::string::npos) {
+    with_point[comma] = '.';
+    if (parse_number(with_point, ignored) != NumberKind::kNoNumber) {
+      return "has a decimal comma; write it with a point, " + with_point;
+    }
+  }
+  if (has_two_numbers(field)) {
+    return "holds two numbers; a comma or a semicolon in the first line separates the fields of "
+           "all "
+           "lines, and numbers have a decimal point";
+  }
+  return "is no number; numbers are written with a decimal point, as in -12.5";
+}
+
+}  // namespace ptin

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Text as a table: CSV and its like, a row a line, read as a stream.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ptin {
+
+/// Reads rows of fields from text. Lines end in LF or CR LF; empty lines and comments (lines that
+/// begin with '#') are passed over, and so is a byte order mark. The first other line decides
+///   - the separator: semicolons where it has any, else commas, else tabs, unless two numbers stand
+///     between them, else spaces; spaces in any number count as one, and where they separate so do
+///     tabs;
+///   - the number of fields, which is that of all rows;
+///   - whether it is a header, which it is when none of its fields begins as a number does, or when
+///     it names a column for x and one for y (read/column_names.h).
+/// A field may be quoted by RFC 4180: between quotes separators, line ends and '#' are text, and
+/// two quotes are one. Blanks around a field are no part of it. A file that is_packed()
+/// (read/input_kind.h) is unpacked while it is read. Not thread-safe.
+class TextTable {
+ public:
+  /// @throws Error  not_found, io_error  the file cannot be opened
+  ///                invalid_argument     it is a folder
+  explicit TextTable(std::string path);
+  /// Reads `text`, which it keeps; `name` stands for the path in errors.
+  TextTable(std::string name, std::string text);
+  /// Reads `in`, which outlives the table.
+  TextTable(std::string name, std::istream& in);
+  ~TextTable();
+  TextTable(const TextTable&) = delete;
+  TextTable& operator=(const TextTable&) = delete;
+
+  /// The names of the columns; empty where there is no header. Reads the first row of the text when
+  /// it was not read yet, and line() is then its line.
+  /// @throws Error as next()
+  [[nodiscard]] const std::vector<std::string>& header();
+
+  /// Reads the next row below the header; false at the end.
+  /// @throws Error  invalid_argument  a row has another number of fields; a quoted field does not
+  ///                                  end, or goes on behind its end; a row is longer than 64 KiB.
+  ///                                  The context is "path:line".
+  ///                io_error          the text cannot be read on, or is damaged (.gz)
+  /// Cost: about 50 ns a line; 1 MiB of memory whatever the text's size.
+  [[nodiscard]] bool next();
+
+  /// The fields of the row that was read last, without quotes and the blanks around them. Valid
+  /// until the next row is read.
+  [[nodiscard]] std::span<const std::string_view> fields() const noexcept { return fields_; }
+  /// Of the first line: what each row has.
+  [[nodiscard]] std::size_t field_count() const noexcept { return field_count_; }
+
+  /// The line that the row read last begins in, from 1.
+  [[nodiscard]] std::uint64_t line() const noexcept { return row_line_; }
+  /// Bytes of the text before the row that was read last; 0 where the file is packed, since they
+  /// are not known.
+  [[nodiscard]] std::uint64_t bytes_read() const noexcept { return bytes_read_; }
+
+  /// @throws Error  invalid_argument  with this sentence, and "path:line" of the row read last
+  [[noreturn]] void refuse(const std::string& sentence) const;
+
+ private:
+  struct File;
+  void fill();
+  [[nodiscard]] bool add_line();
+  [[nodiscard]] bool next_row();
+  [[nodiscard]] bool split();
+  [[nodiscard]] bool split_quoted(std::string_view row);
+  void split_unquoted(std::string_view row);
+  [[nodiscard]] bool is_blank(char c) const noexcept;
+  [[nodiscard]] bool is_separator(char c) const noexcept;
+  [[nodiscard]] std::string_view without_blanks(std::string_view text) const noexcept;
+  void begin();
+
+  std::string path_;
+  std::unique_ptr<File> file_;
+  std::string buffer_;
+  std::size_t begin_ = 0;      ///< Where the row begins in buffer_.
+  std::size_t row_bytes_ = 0;  ///< Of the row, with its line ends.
+  std::string_view row_;       ///< Without the last line end.
+  bool at_end_ = false;
+  std::uint64_t line_ = 0;      ///< Lines read so far.
+  std::uint64_t row_line_ = 0;  ///< The line that the row begins in.
+  std::uint64_t bytes_read_ = 0;
+
+  bool begun_ = false;       ///< The first row was read.
+  bool is_pending_ = false;  ///< It is no header, and next() has still to return it.
+  char separator_ = '\0';    ///< ' ' for spaces and tabs.
+  std::size_t field_count_ = 0;
+  std::vector<std::string> header_;
+  std::vector<std::string_view> fields_;
+  std::string unquoted_;  ///< What quoted fields of the row hold.
+};
+
+/// At most 40 characters of a field in quotes, others than printable ones replaced, for messages.
+[[nodiscard]] std::string shown_field(std::string_view field);
+
+/// What is wrong with a field that should be a number and is none, as "is no number; ...", for
+/// messages: it is empty, or has a decimal comma.
+[[nodiscard]] std::string why_no_number(std::string_view field);
+
+}  // namespace ptin

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/refine/hierarchy_check.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/geometry/key_table.h"
+#include "engine/large_array.h"
+#include "engine/mesh/split.h"
+#include "engine/mesh/star.h"
+#include "engine/mesh/validate.h"
+#include "engine/query/refine/grid_cell.h"
+#include "engine/query/refine/refinement.h"
+#include "engine/query/refine/split_site.h"
+#include "engine/query/select/accounting.h"
+#include "engine/query/select/predicate.h"
+#include "engine/stop.h"
+
+namespace ptin {
+
+namespace {
+
+struct EnoughFaults {};  // thrown by report(), caught by check_hierarchy()
+
+/// A record of a cell.
+struct CellRecord {
+  VertexSplit split;
+  std::uint32_t page;  ///< Modulo 2^32, for faults.
+};
+
+/// Cells are cut until they take no more than this, so that their mesh stays in the caches.
+constexpr std::uint64_t kCellBytes = std::uint64_t{64} << 20;
+
+/// validate() keeps a set of the keys, and two numbers, for each vertex.
+constexpr std::uint64_t kValidationBytes = 64;
+
+/// Bytes that a cell of so many records takes at most, beside T0.
+std::uint64_t cell_bytes(std::uint64_t records) {
+  constexpr std::uint64_t kVertexBytes = sizeof(Vertex) + 1 + kValidationBytes;
+  constexpr std::uint64_t kTriangleBytes =
+      sizeof(Triangle) + sizeof(TriangleClass) + sizeof(std::uint32_t);
+  return records *
+             (sizeof(CellRecord) + sizeof(std::uint32_t) + kVertexBytes + 2 * kTriangleBytes) +
+         KeyTable::bytes_for(records);
+}
+
+std::string text_of(GridPoint p) {
+  return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")";
+}
+std::string text_of(const GridBox& b) {
+  return text_of(GridPoint{b.min_x, b.min_y}) + " to " + text_of(GridPoint{b.max_x, b.max_y});
+}
+std::string text_of(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", v);
+  return text;
+}
+std::string text_of(const Interval& codes, const HeightEncoding& heights) {
+  return is_empty(codes) ? "none"
+                         : text_of(heights.height_of_code(codes.lo)) + " to " +
+                               text_of(heights.height_of_code(codes.hi));
+}
+
+/// "page 17, record of vertex (3, 4)".
+std::string name_of(const CellRecord& r) {
+  return "page " + std::to_string(r.page) + ", record of vertex " + text_of(r.split.u);
+}
+
+class HierarchyCheck {
+ public:
+  HierarchyCheck(const OpenedTerrain& terrain, const HierarchyRequest& request,
+                 HierarchyReport& report)
+      : terrain_(terrain),
+        heights_(terrain.store().facts().heights),
+        request_(request),
+        context_(request.limits, terrain.store().path()),
+        report_(report) {}
+
+  void run();
+
+ private:
+  void report(std::string what, std::string where);
+  [[nodiscard]] std::uint64_t bytes_for(const GridBox& box);
+  void look_into(const GridCell& cell);
+  void read(const GridBox& box);
+  void apply_all(const GridCell& cell);
+  [[nodiscard]] std::string apply(const VertexSplit& r, Star& star, SplitResult& made);
+  [[nodiscard]] std::string fault_in_classes(const Star& star) const;
+  [[nodiscard]] std::string fault_in_bounds(const VertexSplit& r, const Star& star) const;
+  [[nodiscard]] std::string fault_in_needs(const VertexSplit& r, const Star& star,
+                                           const SplitResult& made) const;
+  [[nodiscard]] std::string fault_against(const VertexSplit& r, const CellRecord& needed) const;
+
+  const OpenedTerrain& terrain_;
+  const HeightEncoding& heights_;
+  const HierarchyRequest& request_;
+  QueryContext context_;
+  HierarchyReport& report_;
+  std::set<std::string> told_;  ///< A record that is not applied is met in many cells.
+
+  // Of the cell at hand:
+  std::vector<CellRecord> records_;
+  std::vector<std::uint32_t> order_;
+  Tin tin_;
+  KeyTable ids_;
+  std::vector<std::uint32_t> makers_;  ///< For each triangle its maker in records_; kNone: T0.
+};
+
+void HierarchyCheck::report(std::string what, std::string where) {
+  if (report_.faults.size() >= request_.max_faults) {
+    report_.stopped_early = true;
+    throw EnoughFaults{};
+  }
+  report_.faults.push_back({std::move(what), std::move(where)});
+}
+
+void HierarchyCheck::run() {
+  const StoreFile& store = terrain_.store();
+  const std::uint64_t limit = request_.limits.memory_bytes;
+  const auto is_small_enough = [&](const GridCell& cell, double share) {
+    context_.check_stop();
+    const std::uint64_t even =
+        cell_bytes(static_cast<std::uint64_t>(static_cast<double>(store.record_count()) * share));
+    // A search of the index lists all pages: not worth it for cells that are far too large anyway.
+    if (even / 16 > std::min(limit, kCellBytes)) return false;
+    const std::uint64_t bytes = bytes_for(cell.box());
+    // Four times the share: mostly records that reach beyond the cell, and would be applied again
+    // in each of its parts.
+    return bytes <= std::min(limit, kCellBytes) || (bytes <= limit && bytes / 4 > even);
+  };
+  walk_fitting_cells(store.facts().bounds, is_small_enough, [&](const GridCell& cell, double done) {
+    look_into(cell);
+    if (request_.progress) request_.progress(done);
+  });
+  store.pages().check_unchanged();
+  if (report_.is_sound() && report_.records != store.record_count()) {
+    report("records lie in no part of the domain: " + std::to_string(store.record_count()) +
+               " are counted, " + std::to_string(report_.records) + " found",
+           "the records");
+  }
+}
+
+std::uint64_t HierarchyCheck::bytes_for(const GridBox& box) {
+  std::vector<PageId> pages;
+  terrain_.index().search(MeetsBox(box), pages, context_.cost.io);
+  const Tin& t0 = terrain_.t0();
+  return bytes_of(t0) + t0.vertices.size() * kValidationBytes +
+         cell_bytes(most_records(terrain_.store(), pages));
+}
+
+void HierarchyCheck::look_into(const GridCell& cell) {
+  ++report_.cells;
+  const GridBox box = cell.box();
+  if (const std::uint64_t bytes = bytes_for(box); bytes > request_.limits.memory_bytes) {
+    throw Error(ErrorCode::resource_exhausted,
+                "the records around position " + text_of(GridPoint{box.min_x, box.min_y}) +
+                    " take " + std::to_string((bytes + 0xFFFFF) >> 20) +
+                    " MiB to check, more than the limit of " +
+                    std::to_string(request_.limits.memory_bytes >> 20) + " MiB: give more memory",
+                terrain_.store().path());
+  }
+  try {
+    read(box);
+    apply_all(cell);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::corruption) throw;
+    if (told_.insert(e.message()).second) report(e.message(), e.context());
+  }
+}
+
+/// Fills `records_` with the records whose roi meets the box, and `order_` with their places by
+/// falling rank; those of one rank keep the order of the file.
+void HierarchyCheck::read(const GridBox& box) {
+  const StoreFile& store = terrain_.store();
+  const MeetsBox meets_box(box);
+  std::vector<PageId> pages;
+  terrain_.index().search(meets_box, pages, context_.cost.io);
+  store.pages().announce(pages, context_.cost.io);
+  records_.clear();
+  reserve_large(records_, most_records(store, pages));
+  std::vector<VertexSplit> splits;
+  for (const PageId page : pages) {
+    context_.check_stop();
+    splits.clear();
+    (void)store.read_matching(page, meets_box, splits, context_.cost.io);
+    for (const VertexSplit& r : splits) {
+      records_.push_back({r, static_cast<std::uint32_t>(index_of(page))});
+    }
+  }
+  std::vector<std::uint32_t> next(std::size_t{UINT16_MAX} + 2, 0);
+  for (const CellRecord& r : records_) ++next[UINT16_MAX - r.split.rank + std::size_t{1}];
+  for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
+  order_.resize(records_.size());
+  for (std::uint32_t i = 0; i < records_.size(); ++i) {
+    order_[next[UINT16_MAX - records_[i].split.rank]++] = i;
+  }
+}
+
+/// Applies the records of the cell up to the first that is refused, since nothing can be said of
+/// those that need it, and validates the mesh.
+void HierarchyCheck::apply_all(const GridCell& cell) {
+  const Tin& t0 = terrain_.t0();
+  tin_ = t0;
+  reserve_large(tin_.vertices, t0.vertices.size() + records_.size());
+  tin_.has_height.reserve(t0.vertices.size() + records_.size());
+  reserve_large(tin_.triangles, t0.triangles.size() + 2 * records_.size());
+  tin_.classes.reserve(t0.triangles.size() + 2 * records_.size());
+  makers_.assign(t0.triangles.size(), kNone);
+  reserve_large(makers_, t0.triangles.size() + 2 * records_.size());
+  ids_.reset(t0.vertices.size() + records_.size());
+  for (VertexId v = 0; v < t0.vertices.size(); ++v) ids_.insert(key_of(t0.position(v)), v);
+  Star star;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    if (i % kStopInterval == 0) context_.check_stop();
+    const CellRecord& r = records_[order_[i]];
+    SplitResult made;
+    if (std::string fault = apply(r.split, star, made); !fault.empty()) {
+      if (told_.insert(name_of(r)).second) report(std::move(fault), name_of(r));
+      return;
+    }
+    if (cell.holds(r.split.w)) {
+      ++report_.records;
+      std::string fault = fault_in_bounds(r.split, star);
+      if (fault.empty()) fault = fault_in_needs(r.split, star, made);
+      if (!fault.empty()) report(std::move(fault), name_of(r));
+    }
+    makers_.resize(tin_.triangles.size());
+    for (const TriangleId t : star.triangles) makers_[t] = order_[i];
+  }
+  if (std::string broken = validate(tin_); !broken.empty() && told_.insert(broken).second) {
+    report(std::move(broken), "the full TIN");
+  }
+}
+
+/// Applies one record and walks the star of its vertex. @returns why it is refused, or nothing
+std::string HierarchyCheck::apply(const VertexSplit& r, Star& star, SplitResult& made) {
+  const auto u = static_cast<VertexId>(tin_.vertices.size());
+  if (!ids_.insert(key_of(r.u), u)) return "its vertex is there already when its turn comes";
+  for (const GridPoint p : {r.w, r.vl, r.vr}) {
+    if (ids_.find(key_of(p)) == KeyTable::kAbsent) {
+      return "it names " + text_of(p) +
+             ", where no record that comes before it, by falling rank, makes a vertex";
+    }
+  }
+  tin_.vertices.push_back({r.u, r.height, kNone});
+  tin_.has_height.push_back((r.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0);
+  made = split(tin_, site_of(u, ids_.find(key_of(r.w)), ids_.find(key_of(r.vl)),
+                             ids_.find(key_of(r.vr)), r.flags));
+  if (!made.applied) {
+    return "it does not find its fan: w, vl and vr are no neighbours in that order when its turn "
+           "comes, by falling rank, or a triangle would not be counter-clockwise";
+  }
+  walk_star(tin_, u, star);
+  return fault_in_classes(star);
+}
+
+std::string HierarchyCheck::fault_in_classes(const Star& star) const {
+  for (const TriangleId t : star.triangles) {
+    const auto& v = tin_.triangles[t].v;
+    if (tin_.classes[t] == TriangleClass::kSurface &&
+        (tin_.has_height[v[0]] & tin_.has_height[v[1]] & tin_.has_height[v[2]]) == 0) {
+      return "its classes do not fit its heights: a surface triangle gets a corner without one";
+    }
+  }
+  return {};
+}
+
+/// Holds roi and heights against the polygon that the split changes.
+std::string HierarchyCheck::fault_in_bounds(const VertexSplit& r, const Star& star) const {
+  const Attributes own = attributes_of(r, heights_);
+  const auto fault_at = [&](VertexId v) -> std::string {
+    const Vertex& vertex = tin_.vertices[v];
+    if (!contains(own.roi, vertex.position)) {
+      return "its region of influence, " + text_of(own.roi) + ", does not hold " +
+             text_of(vertex.position) + ", a corner of the polygon that it changes";
+    }
+    if (tin_.has_height[v] != 0 && !contains(own.heights, heights_.code(vertex.height))) {
+      return "its heights, " + text_of(own.heights, heights_) + ", do not hold " +
+             text_of(heights_.height(vertex.height)) + ", the height at " +
+             text_of(vertex.position) + " in the polygon that it changes";
+    }
+    return {};
+  };
+  std::string fault = fault_at(star.center);
+  for (std::size_t i = 0; fault.empty() && i < star.link.size(); ++i) {
+    fault = fault_at(star.link[i]);
+  }
+  return fault;
+}
+
+/// Holds a record against the makers of its fan, which it needs.
+std::string HierarchyCheck::fault_in_needs(const VertexSplit& r, const Star& star,
+                                           const SplitResult& made) const {
+  std::uint32_t last = kNone;
+  for (const TriangleId t : star.triangles) {
+    if (t == made.left || t == made.right) continue;
+    const std::uint32_t maker = makers_[t];
+    if (maker == kNone || maker == last) continue;
+    last = maker;
+    if (std::string fault = fault_against(r, records_[maker]); !fault.empty()) return fault;
+  }
+  return {};
+}
+
+std::string HierarchyCheck::fault_against(const VertexSplit& r, const CellRecord& needed) const {
+  const Attributes own = attributes_of(r, heights_);
+  const Attributes its = attributes_of(needed.split, heights_);
+  const auto fault = [&](const std::string& what, const std::string& theirs,
+                         const std::string& relation, const std::string& ours) {
+    return "it needs the record of vertex " + text_of(needed.split.u) + " on page " +
+           std::to_string(needed.page) + ", whose " + what + ", " + theirs + ", " + relation +
+           " its own, " + ours;
+  };
+  if (!contains(its.roi, own.roi)) {
+    return fault("region of influence", text_of(its.roi), "does not hold", text_of(own.roi));
+  }
+  if (!contains(its.heights, own.heights)) {
+    return fault("heights", text_of(its.heights, heights_), "do not hold",
+                 text_of(own.heights, heights_));
+  }
+  if (its.error < own.error) {
+    return fault("error", text_of(its.error), "is below", text_of(own.error));
+  }
+  if (its.deviation < own.deviation) {
+    return fault("deviation", text_of(its.deviation), "is below", text_of(own.deviation));
+  }
+  if (needed.split.rank <= r.rank) {
+    return fault("rank", std::to_string(needed.split.rank), "is not above", std::to_string(r.rank));
+  }
+  return {};
+}
+
+}  // namespace
+
+HierarchyReport check_hierarchy(const OpenedTerrain& terrain, const HierarchyRequest& request) {
+  HierarchyReport report;
+  try {
+    HierarchyCheck(terrain, request, report).run();
+  } catch (const EnoughFaults&) {
+    // The report says so.
+  }
+  return report;
+}
+
+}  // namespace ptin

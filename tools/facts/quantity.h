@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Numbers with a unit, as options take them: 90m, 5.8GHz.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace ptin::tools {
+
+struct Quantity {
+  double number = 0.0;  ///< Finite.
+  std::string unit;     ///< As written; empty: none was.
+};
+
+/// A decimal number, and what stands behind it, blanks between them left out: "90", "90m",
+/// "5.8 GHz", "1e3km". None where the text does not begin with a finite number.
+[[nodiscard]] std::optional<Quantity> quantity_of(const std::string& text);
+
+}  // namespace ptin::tools

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/pixel_size.h"
+
+#include <cstdint>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/crs/ground.h"
+#include "engine/error.h"
+#include "tools/facts/quantity.h"
+
+namespace ptin::tools {
+
+namespace {
+
+constexpr const char* kPixelSize = "--pixel-size";
+
+PixelSide pixel_side_of(const std::string& text) {
+  const std::optional<Quantity> quantity = quantity_of(text);
+  if (quantity && quantity->number > 0) {
+    if (quantity->unit.empty()) return {quantity->number, false};
+    for (const auto& [unit, metres] : {std::pair{"m", 1.0}, {"km", 1000.0}, {"ft", 0.3048}}) {
+      if (quantity->unit == unit) return {quantity->number * metres, true};
+    }
+  }
+  throw Error(ErrorCode::invalid_argument,
+              "\"" + text +
+                  "\" is no size of a pixel; expected a number > 0 in map units, or with m, km or "
+                  "ft behind it a length over ground, as 90m",
+              kPixelSize);
+}
+
+/// A count that the build wrote about its source; 0 when it wrote none.
+/// @throws Error corruption  what stands there is no count
+std::uint64_t source_count(const nlohmann::json& metadata, const char* key,
+                           const std::string& path) {
+  const auto source = metadata.find("source");
+  if (source == metadata.end()) return 0;
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::corruption,
+                "the metadata's " + what + "; ptin build did not write this, build the file anew",
+                path);
+  };
+  if (!source->is_object()) refuse("\"source\" is no object");
+  const auto count = source->find(key);
+  if (count == source->end()) return 0;
+  if (!count->is_number_unsigned()) refuse(std::string("\"").append(key) + "\" is no count");
+  return count->get<std::uint64_t>();
+}
+
+}  // namespace
+
+std::vector<PixelSide> pixel_sides_of(const std::vector<std::string>& texts) {
+  std::vector<PixelSide> sides;
+  for (const std::string& text : texts) sides.push_back(pixel_side_of(text));
+  return sides;
+}
+
+std::array<double, 2> pixel_size_of(const std::vector<PixelSide>& sides, const CrsFacts& crs,
+                                    MapPoint at) {
+  const PixelSide& across = sides.front();
+  const PixelSide& up = sides.back();
+  if (!across.is_on_ground && !up.is_on_ground) return {across.length, up.length};
+  const std::optional<MapPoint> metres = metres_per_map_unit(crs, at);
+  if (!metres) {
+    throw Error(ErrorCode::invalid_argument,
+                "the unit of the terrain's map is unknown, so a length over ground cannot be "
+                "turned into it; give a number in map units",
+                kPixelSize);
+  }
+  return {across.is_on_ground ? across.length / metres->x : across.length,
+          up.is_on_ground ? up.length / metres->y : up.length};
+}
+
+MapPoint middle_of(const std::optional<Window>& window, const StoreFacts& facts) {
+  const GridBox& b = facts.bounds;
+  if (!window)
+    return facts.map.to_map((0.0 + b.min_x + b.max_x) / 2, (0.0 + b.min_y + b.max_y) / 2);
+  return {(window->min_x + window->max_x) / 2, (window->min_y + window->max_y) / 2};
+}
+
+std::array<double, 2> own_pixel_size(const StoreFile& store) {
+  const StoreFacts& facts = store.facts();
+  const nlohmann::json metadata = metadata_of(store);
+  const auto number = [&](const char* key) { return source_count(metadata, key, store.path()); };
+  const std::uint64_t samples =
+      facts.source_samples + number("void_samples") + number("lone_samples");
+  const std::uint64_t places =
+      (static_cast<std::uint64_t>(facts.bounds.max_x - facts.bounds.min_x) + 1) *
+      (static_cast<std::uint64_t>(facts.bounds.max_y - facts.bounds.min_y) + 1);
+  if (samples < places) {
+    throw Error(ErrorCode::invalid_argument,
+                "this terrain was not built from a raster, so it has no pixel size of its own; "
+                "give --pixel-size",
+                store.path());
+  }
+  return {facts.map.step_x, facts.map.step_y};
+}
+
+}  // namespace ptin::tools
