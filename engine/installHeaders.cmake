@@ -32,6 +32,7 @@ set(public_headers
     engine/construct/scratch/workspace.h
     engine/construct/collapse/cost.h
     engine/construct/tile/tile_tree.h
+    engine/crs/border_move.h
     engine/crs/crs_facts.h
     engine/crs/ground.h
     engine/error.h

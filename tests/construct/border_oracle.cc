@@ -49,9 +49,8 @@ class Classes {
   }
   /// The triangle whose inside holds p; kNone on an edge.
   [[nodiscard]] TriangleId at(PlanPoint p) const {
-    auto e = std::lower_bound(
-        all_.begin(), all_.end(), p.y - tallest_,
-        [](const Entry& entry, double y) { return entry.box.min_y < y; });
+    auto e = std::lower_bound(all_.begin(), all_.end(), p.y - tallest_,
+                              [](const Entry& entry, double y) { return entry.box.min_y < y; });
     for (; e != all_.end() && e->box.min_y <= p.y; ++e) {
       if (p.x < e->box.min_x || p.x > e->box.max_x || p.y > e->box.max_y) {
         continue;

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 
@@ -14,6 +15,12 @@ namespace ptin::tools {
 
 [[nodiscard]] inline nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+/// How far the border of voids may have moved in an answer; null where nothing bounds it.
+[[nodiscard]] inline nlohmann::json border_move_json(const StoreFile& store,
+                                                     double certified_error) {
+  return number_or_null(border_moved_at_most(store, certified_error));
 }
 
 /// The object `units` of every answer.

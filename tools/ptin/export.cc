@@ -245,6 +245,7 @@ int run_export(const ExportOptions& options, const Context& context) {
         {"format", format.name},
         {"certified_error", certificate.error},
         {"certified_deviation", certificate.deviation},
+        {"border_moved_at_most", border_move_json(terrain.store(), certificate.error)},
         {"exact", certificate.complete && facts.base_error == 0 && made.rounding == 0},
         {"units", units_json(crs_facts(terrain.store()))},
         {"bytes", bytes},

@@ -65,15 +65,17 @@ int run_highest(const HighestOptions& options, const Context& context) {
     print_text(result, options, !terrain.store().facts().free_of_voids);
     return kExitDone;
   }
-  nlohmann::json answer = {{"state", name_of(result.state)},
-                           {"lowest", options.lowest},
-                           {"point", nullptr},
-                           {"vertices", nlohmann::json::array()},
-                           {"certified_error", result.certified_error},
-                           {"certified_deviation", result.certified_deviation},
-                           {"exact", result.exact},
-                           {"units", units_json(crs)},
-                           {"cost", cost_json(result.cost)}};
+  nlohmann::json answer = {
+      {"state", name_of(result.state)},
+      {"lowest", options.lowest},
+      {"point", nullptr},
+      {"vertices", nlohmann::json::array()},
+      {"certified_error", result.certified_error},
+      {"certified_deviation", result.certified_deviation},
+      {"border_moved_at_most", border_move_json(terrain.store(), result.certified_error)},
+      {"exact", result.exact},
+      {"units", units_json(crs)},
+      {"cost", cost_json(result.cost)}};
   if (result.state == PointState::kSurface) {
     answer["point"] = position_json(result.point);
     answer["point"]["at_vertex"] = result.at_vertex;

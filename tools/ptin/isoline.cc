@@ -62,7 +62,8 @@ std::string folder_for_temporaries(const IsolineOptions& options) {
 }
 
 void report(const IsolineOptions& options, const Isolines& lines,
-            const IsolineLayer::Written& written, const CrsFacts& crs, const Context& context) {
+            const IsolineLayer::Written& written, const StoreFile& store, const CrsFacts& crs,
+            const Context& context) {
   if (context.json) {
     print_json({{"output", options.output},
                 {"levels", lines.levels()},
@@ -76,6 +77,7 @@ void report(const IsolineOptions& options, const Isolines& lines,
                 {"tiles", lines.tiles},
                 {"certified_error", lines.certified_error},
                 {"certified_deviation", lines.certified_deviation},
+                {"border_moved_at_most", border_move_json(store, lines.certified_error)},
                 {"exact", lines.exact},
                 {"units", units_json(crs)},
                 {"cost", cost_json(lines.cost)}});
@@ -97,7 +99,7 @@ int run_lines(const IsolineOptions& options, const IsolineRequest& request, cons
   if (written.lines == 0 && !context.quiet) {
     std::fprintf(stderr, "ptin: warning: no surface crosses these levels; the layer is empty\n");
   }
-  report(options, lines, written, crs, context);
+  report(options, lines, written, terrain.store(), crs, context);
   return kExitDone;
 }
 
@@ -190,15 +192,17 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
   }
   const std::uint64_t features = write_bands(polygons, levels, facts, options, crs.wkt);
   if (context.json) {
-    print_json({{"output", options.output},
-                {"levels", levels.heights()},
-                {"features", features},
-                {"polygons", polygons.size()},
-                {"certified_error", refined.certified_error},
-                {"certified_deviation", refined.certified_deviation},
-                {"exact", refined.exact},
-                {"units", units_json(crs)},
-                {"cost", cost_json(refined.cost)}});
+    print_json(
+        {{"output", options.output},
+         {"levels", levels.heights()},
+         {"features", features},
+         {"polygons", polygons.size()},
+         {"certified_error", refined.certified_error},
+         {"certified_deviation", refined.certified_deviation},
+         {"border_moved_at_most", border_move_json(terrain.store(), refined.certified_error)},
+         {"exact", refined.exact},
+         {"units", units_json(crs)},
+         {"cost", cost_json(refined.cost)}});
   } else if (!context.quiet && options.output != "-") {
     std::printf("%s: %s of %s\n", options.output.c_str(), counted(features, "band").c_str(),
                 counted(polygons.size(), "polygon").c_str());

@@ -95,13 +95,15 @@ void write_layer(const AnswerOptions& options, const Asked<MapPoint>& asked,
 
 nlohmann::json answer_of(const LocateOptions& options, const Asked<MapPoint>& asked,
                          const LocateResult& result, const StoreFile& store) {
-  nlohmann::json answer = {{"output", output_json(options.answer)},
-                           {"certified_error", result.certified_error},
-                           {"certified_deviation", result.certified_deviation},
-                           {"exact", result.exact},
-                           {"units", units_json(crs_facts(store))},
-                           {"cost", cost_json(result.cost)},
-                           {"points", nlohmann::json::array()}};
+  nlohmann::json answer = {
+      {"output", output_json(options.answer)},
+      {"certified_error", result.certified_error},
+      {"certified_deviation", result.certified_deviation},
+      {"border_moved_at_most", border_move_json(store, result.certified_error)},
+      {"exact", result.exact},
+      {"units", units_json(crs_facts(store))},
+      {"cost", cost_json(result.cost)},
+      {"points", nlohmann::json::array()}};
   for (std::size_t i = 0; i < asked.all.size(); ++i) {
     nlohmann::json point = point_json(asked.all[i], result.points[i], store.facts());
     if (!asked.ids.empty()) point["id"] = asked.ids[i];

@@ -196,19 +196,22 @@ void write_profile(const AnswerOptions& options, AnswerForm form, bool json,
 }
 
 nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& result,
-                         const std::vector<std::string>& ids, const CrsFacts& crs) {
+                         const std::vector<std::string>& ids, const StoreFile& store,
+                         const CrsFacts& crs) {
   nlohmann::json units = units_json(crs);
   units["length"] = unit_of_lengths(crs);
-  nlohmann::json answer = {{"output", output_json(options.answer)},
-                           {"lines", lines_of(result).size()},
-                           {"skipped_lines", result.skipped_lines},
-                           {"length", length_of(result)},
-                           {"certified_error", result.certified_error},
-                           {"certified_deviation", result.certified_deviation},
-                           {"exact", result.exact},
-                           {"units", units},
-                           {"cost", cost_json(result.cost)},
-                           {"points", nlohmann::json::array()}};
+  nlohmann::json answer = {
+      {"output", output_json(options.answer)},
+      {"lines", lines_of(result).size()},
+      {"skipped_lines", result.skipped_lines},
+      {"length", length_of(result)},
+      {"certified_error", result.certified_error},
+      {"certified_deviation", result.certified_deviation},
+      {"border_moved_at_most", border_move_json(store, result.certified_error)},
+      {"exact", result.exact},
+      {"units", units},
+      {"cost", cost_json(result.cost)},
+      {"points", nlohmann::json::array()}};
   if (!ids.empty()) answer["ids"] = ids;
   for (const ProfilePoint& p : result.points) {
     answer["points"].push_back({{"line", p.line},
@@ -243,7 +246,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
                  counted(lines.size(), "line").c_str());
   }
   write_profile(options.answer, form, context.json, result, asked.ids, crs);
-  if (context.json) print_json(answer_of(options, result, asked.ids, crs));
+  if (context.json) print_json(answer_of(options, result, asked.ids, terrain.store(), crs));
   return kExitDone;
 }
 

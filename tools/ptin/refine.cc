@@ -48,7 +48,7 @@ void check_options(const RefineOptions& options) {
 }
 
 nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
-                         const CrsFacts& crs) {
+                         const StoreFile& store, const CrsFacts& crs) {
   return {{"output", options.output},
           {"vertices", refined.vertices},
           {"void_vertices", refined.void_vertices},
@@ -57,6 +57,7 @@ nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined
           {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
           {"certified_error", refined.certified_error},
           {"certified_deviation", refined.certified_deviation},
+          {"border_moved_at_most", border_move_json(store, refined.certified_error)},
           {"exact", refined.exact},
           {"units", units_json(crs)},
           {"cost", cost_json(refined.cost)}};
@@ -144,7 +145,7 @@ int run_refine(const RefineOptions& options, const Context& context) {
                  options.output.c_str());
   }
   if (context.json) {
-    print_json(answer_of(options, refined, mesh, crs));
+    print_json(answer_of(options, refined, mesh, terrain.store(), crs));
   } else if (!context.quiet) {
     print_written(options, refined, mesh, terrain.store());
     if (options.stats) print_stats(options, refined);

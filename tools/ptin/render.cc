@@ -165,6 +165,7 @@ int run_render(const RenderOptions& options, const Context& context) {
       {"triangles", refined.triangles},
       {"certified_error", refined.certified_error},
       {"certified_deviation", refined.certified_deviation},
+      {"border_moved_at_most", border_move_json(terrain.store(), refined.certified_error)},
       {"exact", refined.exact},
       {"units", units_json(crs)},
       {"exaggeration", style.exaggeration},

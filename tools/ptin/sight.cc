@@ -26,6 +26,7 @@
 #include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
 #include "tools/formats/vector_file.h"
+#include "tools/output/file_name.h"
 #include "tools/ptin/answer_output.h"
 #include "tools/ptin/point_input.h"
 #include "tools/ptin/query_options.h"

@@ -123,6 +123,7 @@ int run_stream(const StreamOptions& options, const Context& context) {
                 {"split_bytes", summary.split_bytes},
                 {"certified_error", summary.certificate.error},
                 {"certified_deviation", summary.certificate.deviation},
+                {"border_moved_at_most", border_move_json(store, summary.certificate.error)},
                 {"exact", summary.certificate.complete && store.facts().base_error == 0},
                 {"units", units_json(crs_facts(store))},
                 {"cost", cost_json(summary.cost)}});

@@ -182,8 +182,8 @@ nlohmann::json counts_json(bool asked, std::uint64_t visible, std::uint64_t hidd
   return {{"visible", visible}, {"hidden", hidden}, {"undecided", undecided}};
 }
 
-void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts& crs,
-            const Context& context) {
+void report(const ViewshedOptions& options, const Viewshed& seen, const StoreFile& store,
+            const CrsFacts& crs, const Context& context) {
   const bool raster = is_raster(options.output);
   if (context.json) {
     print_json({{"output", options.output},
@@ -196,6 +196,7 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const CrsFacts
                                          seen.undecided_vertices)},
                 {"certified_error", seen.certified_error},
                 {"certified_deviation", seen.certified_deviation},
+                {"border_moved_at_most", border_move_json(store, seen.certified_error)},
                 {"exact", seen.exact},
                 {"units", units_json(crs)},
                 {"cost", cost_json(seen.cost)}});
@@ -246,7 +247,7 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   } else {
     write_vertices(seen, options, crs.wkt, context);
   }
-  report(options, seen, crs, context);
+  report(options, seen, terrain.store(), crs, context);
   return kExitDone;
 }
 

@@ -127,7 +127,7 @@ std::vector<GridBox> Verifier::windows() {
     const std::int64_t height = std::int64_t{box.max_y} - box.min_y;
     const bool small =
         is_grid_ ? std::max(width, height) < options_.window_side
-                : std::max(width, height) < 2 || source_.count(box) <= options_.samples_per_window;
+                 : std::max(width, height) < 2 || source_.count(box) <= options_.samples_per_window;
     if (small) {
       boxes.push_back(box);
       continue;
@@ -176,9 +176,9 @@ double Verifier::border_moves(double allowed) const {
   constexpr double kFormulas = 1.001;  // Two formulas for a degree's length differ by less.
   // What is no raster is held against the file's own finest TIN, which may be off by the base error.
   const double base = is_grid_ ? 0.0 : facts_.base_error;
-  return choices_.void_slope > 0
-             ? (allowed + base) / choices_.void_slope * kFormulas + 1e-9 * least_steps(facts_.bounds).y
-             : std::numeric_limits<double>::infinity();
+  return choices_.void_slope > 0 ? (allowed + base) / choices_.void_slope * kFormulas +
+                                       1e-9 * least_steps(facts_.bounds).y
+                                 : std::numeric_limits<double>::infinity();
 }
 
 /// The least steps of the rows of a box: distances come out too small rather than too large.
@@ -197,8 +197,7 @@ std::int64_t Verifier::margin_of(const GridBox& box) const {
   const GroundSteps steps = least_steps(box);
   const double moved = border_moves(std::max(largest, facts_.base_error));
   const double sides = 2.0 * std::max(options_.window_side, box.max_x - box.min_x);
-  return static_cast<std::int64_t>(
-             std::min(sides, std::ceil(moved / std::min(steps.x, steps.y)))) +
+  return static_cast<std::int64_t>(std::min(sides, std::ceil(moved / std::min(steps.x, steps.y)))) +
          2;
 }
 

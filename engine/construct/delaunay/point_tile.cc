@@ -26,8 +26,8 @@ StartedTile PointTileStarter::start(const SampleRange& window) {
     return static_cast<std::uint64_t>(Uint128{buckets_.size()} * i / tree_.leaves());
   };
   DelaunayTile part = tiler_.make(begin_of(leaf), begin_of(leaf + 1) - begin_of(leaf), stop_);
-  StartedTile started = start_part(std::move(part.tin), units_, *tree_.hull(),
-                                   ground_ ? &*ground_ : nullptr);
+  StartedTile started =
+      start_part(std::move(part.tin), units_, *tree_.hull(), ground_ ? &*ground_ : nullptr);
   started.lone_samples = part.lone_points;
   return started;
 }

@@ -9,8 +9,8 @@
 
 namespace ptin {
 
-FanError measure_fan(const Tile& tile, const StarSamples& s, FanFrame& fan,
-                     const FullSurface* full, FanAssignment& assignment) {
+FanError measure_fan(const Tile& tile, const StarSamples& s, FanFrame& fan, const FullSurface* full,
+                     FanAssignment& assignment) {
   assign_samples(s, fan, assignment.triangle, assignment.residual);
   assign_directed(tile, s, fan, assignment);
   if (s.void_only || s.flat) {
@@ -62,8 +62,7 @@ void assign_by_class(const Tile& tile, const StarSamples& s, const FanFrame& fra
 void assign_directed(const Tile& tile, const StarSamples& s, const FanFrame& frame,
                      FanAssignment& assignment) {
   for (const DirectedElement& d : s.directed) {
-    assignment.triangle[d.element] =
-        static_cast<double>(triangle_of_directed(tile, s, frame, d));
+    assignment.triangle[d.element] = static_cast<double>(triangle_of_directed(tile, s, frame, d));
   }
 }
 

@@ -19,10 +19,10 @@ bool is_void(const Tile& tile, const StarSamples& s, std::size_t star_triangle) 
 
 /// Where a sample lies in the fan.
 struct SamplePlace {
-  std::size_t surface = kNone;   ///< A closed surface triangle that holds it; kNone: none does.
-  std::size_t any = kNone;       ///< A triangle that holds it; a void one where one does.
-  bool in_void = false;          ///< A closed void triangle holds it.
-  double residual = 0.0;         ///< To `surface`; without that, to an edge with heights, or 0.
+  std::size_t surface = kNone;  ///< A closed surface triangle that holds it; kNone: none does.
+  std::size_t any = kNone;      ///< A triangle that holds it; a void one where one does.
+  bool in_void = false;         ///< A closed void triangle holds it.
+  double residual = 0.0;        ///< To `surface`; without that, to an edge with heights, or 0.
 };
 
 /// The |vertical distance| of a sample to the plane of fan triangle i.

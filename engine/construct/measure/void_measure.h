@@ -23,7 +23,7 @@ struct VoidMeasure {
 };
 
 /// Measures every sample of the star, and the link vertices that would lose their last surface
-/// triangle of this star (engine/DESIGN.md, section 3.3).
+/// triangle of this star (engine/DESIGN.md, section 3.4).
 ///
 /// - A sample with a height is right in a closed surface triangle; a sample without a height is
 ///   right in a closed void triangle. A sample in the wrong class is charged its reach times the

@@ -22,6 +22,8 @@ namespace {
 /// close to the window's seams knows of a border beyond. Whether the last of these samples are lone,
 /// the cells around them tell: hence one more.
 constexpr std::int64_t kMargin = 32 + 1;
+/// Depths beyond so many samples count as infinite.
+constexpr double kFarthest = 64.0;
 
 template <class T>
 std::vector<T> cut_out(std::vector<T>& from, const SampleRange& outer, const SampleRange& inner) {
@@ -74,10 +76,10 @@ std::function<bool(GridPoint, GridPoint)> goes_on_beyond(const SampleRange& rast
                                                          const SampleRange& window) {
   const GridBox all = box_of_window(raster), part = box_of_window(window);
   return [=](GridPoint a, GridPoint b) {
-    return (a.x == b.x && ((a.x == part.min_x && a.x > all.min_x) ||
-                           (a.x == part.max_x && a.x < all.max_x))) ||
-           (a.y == b.y && ((a.y == part.min_y && a.y > all.min_y) ||
-                           (a.y == part.max_y && a.y < all.max_y)));
+    return (a.x == b.x &&
+            ((a.x == part.min_x && a.x > all.min_x) || (a.x == part.max_x && a.x < all.max_x))) ||
+           (a.y == b.y &&
+            ((a.y == part.min_y && a.y > all.min_y) || (a.y == part.max_y && a.y < all.max_y)));
   };
 }
 
@@ -89,8 +91,9 @@ BorderWitnesses witnesses_of(const Tin& outer_tin, const RasterSamples& samples,
   for (TriangleId t = 0; t < is_inner.size(); ++t) {
     is_inner[t] = inner.inner_triangle(t) == kNone ? 0 : 1;
   }
-  BorderWitnesses found = find_border_witnesses(
-      {outer_tin, goes_on_beyond(samples.raster, samples.range), is_inner, samples.step});
+  BorderWitnesses found =
+      find_border_witnesses({outer_tin, goes_on_beyond(samples.raster, samples.range), is_inner,
+                             samples.step, kFarthest * std::max(samples.step.x, samples.step.y)});
   BorderWitnesses own;
   const auto n = static_cast<std::size_t>(window.samples());
   own.kind.reserve(n);
@@ -145,8 +148,7 @@ std::uint64_t drop_lone_samples(std::vector<std::uint8_t>& valid, const SampleRa
 SampleRange range_around(const SampleRange& raster, const SampleRange& window) {
   const std::int64_t x0 = std::max(window.x0 - kMargin, raster.x0);
   const std::int64_t y0 = std::max(window.y0 - kMargin, raster.y0);
-  return {x0, y0,
-          std::min(window.x0 + window.width + kMargin, raster.x0 + raster.width) - x0,
+  return {x0, y0, std::min(window.x0 + window.width + kMargin, raster.x0 + raster.width) - x0,
           std::min(window.y0 + window.height + kMargin, raster.y0 + raster.height) - y0};
 }
 
@@ -172,8 +174,7 @@ StartedTile start_raster_tile(RasterSamples&& samples, const SampleRange& window
   started.lone_samples = drop_lone_samples(samples.valid, samples.range, window);
   std::optional<BorderWitnesses> witnesses;
   if (std::find(samples.valid.begin(), samples.valid.end(), 0) != samples.valid.end()) {
-    const Tin around =
-        tin_of_window(samples.heights, samples.valid, samples.range, units.heights);
+    const Tin around = tin_of_window(samples.heights, samples.valid, samples.range, units.heights);
     if (has_border(around)) {
       witnesses = witnesses_of(around, samples, window);
     }

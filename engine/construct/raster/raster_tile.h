@@ -18,8 +18,8 @@ namespace ptin {
 struct RasterSamples {
   SampleRange raster;  ///< All there are.
   SampleRange range;   ///< Those that are here: range_around() a window, or the window.
-  std::vector<HeightBits> heights;   ///< Row-major, row 0 in the south.
-  std::vector<std::uint8_t> valid;   ///< Beside `heights`; 0 for a sample without a height.
+  std::vector<HeightBits> heights;  ///< Row-major, row 0 in the south.
+  std::vector<std::uint8_t> valid;  ///< Beside `heights`; 0 for a sample without a height.
   GroundStep step;  ///< As PartOfTerrain::step; of no account where all samples have heights.
 };
 

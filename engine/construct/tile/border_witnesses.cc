@@ -35,7 +35,8 @@ Place place_of(GridPoint p) noexcept {
 }
 
 double distance(Place a, Place b, GroundStep step) noexcept {
-  return std::hypot((a.x - b.x) * step.x, (a.y - b.y) * step.y);
+  const double x = (a.x - b.x) * step.x, y = (a.y - b.y) * step.y;
+  return std::sqrt(x * x + y * y);
 }
 
 double distance(GridPoint a, GridPoint b, GroundStep step) noexcept {
@@ -48,7 +49,8 @@ double distance_to_edge(Place p, Place a, Place b, GroundStep step) noexcept {
   const double vx = (p.x - a.x) * step.x, vy = (p.y - a.y) * step.y;
   const double length = ux * ux + uy * uy;
   const double t = length > 0.0 ? std::clamp((ux * vx + uy * vy) / length, 0.0, 1.0) : 0.0;
-  return std::hypot(vx - t * ux, vy - t * uy);
+  const double x = vx - t * ux, y = vy - t * uy;
+  return std::sqrt(x * x + y * y);
 }
 
 /// The farthest distance on the ground from `p` to a point of the box.
@@ -56,8 +58,9 @@ double farthest(const GridBox& box, Place p, GroundStep step) noexcept {
   if (is_empty(box)) {
     return 0.0;
   }
-  return std::hypot(std::max(std::abs(p.x - box.min_x), std::abs(p.x - box.max_x)) * step.x,
-                    std::max(std::abs(p.y - box.min_y), std::abs(p.y - box.max_y)) * step.y);
+  const double x = std::max(std::abs(p.x - box.min_x), std::abs(p.x - box.max_x)) * step.x;
+  const double y = std::max(std::abs(p.y - box.min_y), std::abs(p.y - box.max_y)) * step.y;
+  return std::sqrt(x * x + y * y);
 }
 
 /// A bound of a length that a few roundings made.
@@ -101,6 +104,10 @@ class Finder {
   [[nodiscard]] double depth_of_node(std::uint32_t node) const {
     return node < n_ ? depth_of(node) : 0.0;
   }
+  /// Farther from any border than counts: an infinite reach, and the end of all paths.
+  [[nodiscard]] bool is_far(std::uint32_t node) const {
+    return node < n_ && found_.nearest[node] == BorderWitnesses::kNoBorder;
+  }
   void link_nodes();
   void grow_trees();
   void find_reaches();
@@ -132,7 +139,7 @@ void Finder::find_kinds() {
   }
   found_.kind.resize(n_);
   for (std::size_t v = 0; v < n_; ++v) {
-    found_.kind[v] = (seen[v] & 3) == 3      ? Kind::kBorder
+    found_.kind[v] = (seen[v] & 3) == 3       ? Kind::kBorder
                      : (seen[v] & kOpen) != 0 ? Kind::kUnknown
                                               : Kind::kInner;
   }
@@ -182,6 +189,9 @@ void Finder::find_nearest() {
     for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) {
       for (const VertexId to : tin_.triangles[around_[i]].v) {
         const double there = distance(tin_.position(to), source, part_.step);
+        if (there > part_.farthest) {
+          continue;
+        }
         if (there < best[to] || (there == best[to] && key < key_of(found_.nearest[to]))) {
           best[to] = there;
           found_.nearest[to] = source;
@@ -214,9 +224,9 @@ void Finder::find_regions() {
   }
   // Vertices are in the order of their keys.
   const auto vertex_at = [&](GridPoint p) {
-    const auto at = std::lower_bound(
-        tin_.vertices.begin(), tin_.vertices.end(), key_of(p),
-        [](const Vertex& v, VertexKey key) { return key_of(v.position) < key; });
+    const auto at =
+        std::lower_bound(tin_.vertices.begin(), tin_.vertices.end(), key_of(p),
+                         [](const Vertex& v, VertexKey key) { return key_of(v.position) < key; });
     return static_cast<VertexId>(at - tin_.vertices.begin());
   };
   found_.region.assign(n_, {kNone, kNone});
@@ -263,16 +273,16 @@ void Finder::measure_triangles() {
     }
     const WitnessedTriangle w = witnessed_triangle(part_, found_, t);
     const bool at_corner = w.witness == WitnessedTriangle::kCornerWitness;
-    const auto node = at_corner ? static_cast<std::uint32_t>(n_ + t)
-                                : tin_.triangles[t].v[w.witness];
+    const auto node =
+        at_corner ? static_cast<std::uint32_t>(n_ + t) : tin_.triangles[t].v[w.witness];
     witness_[t] = node;
     if (at_corner) {
       ways_[t] = way_into(w.corners);
     }
     const std::array<Place, 3> whole{place_of(w.corners[0]), place_of(w.corners[1]),
                                      place_of(w.corners[2])};
-    depth_[node] = std::max(
-        depth_[node], length_bound(std::max(w.gap, greatest_depth(w, whole, part_.step))));
+    depth_[node] =
+        std::max(depth_[node], length_bound(std::max(w.gap, greatest_depth(w, whole, part_.step))));
     for (int i = 0; i < 3; ++i) {
       if (w.is_border_side[i]) {
         border_[node] = united(border_[node], w.corners[(i + 1) % 3]);
@@ -297,7 +307,8 @@ void Finder::link_nodes() {
       for (int i = 0; i < 3 && witness_[t] != kNone; ++i) {
         const TriangleId other = tin_.triangles[t].n[i];
         if (other == kNone || other < t || witness_[other] == kNone ||
-            witness_[other] == witness_[t] || tin_.classes[t] != tin_.classes[other]) {
+            witness_[other] == witness_[t] || tin_.classes[t] != tin_.classes[other] ||
+            (is_far(witness_[t]) && is_far(witness_[other]))) {
           continue;
         }
         const GridPoint a = tin_.position(tin_.triangles[t].v[next_corner(i)]);
@@ -343,17 +354,20 @@ void Finder::grow_trees() {
     }
   }
   const Deeper deeper{depth};
-  std::sort(roots.begin(), roots.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return deeper(b, a); });
   std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, Deeper> queue(deeper);
   std::vector<std::uint8_t> queued(nodes, 0), taken(nodes, 0);
   parent_.assign(nodes, Link{kNone, {}});
-  for (const std::uint32_t root : roots) {
-    if (queued[root] != 0) {
-      continue;
+  const auto begin_at = [&](std::uint32_t root) {
+    if (queued[root] == 0) {
+      queued[root] = 1;
+      queue.push(root);
     }
-    queued[root] = 1;
-    queue.push(root);
+  };
+  const auto near =
+      std::partition(roots.begin(), roots.end(), [&](std::uint32_t i) { return is_far(i); });
+  std::for_each(roots.begin(), near, begin_at);
+  std::sort(near, roots.end(), [&](std::uint32_t a, std::uint32_t b) { return deeper(b, a); });
+  const auto grow = [&] {
     while (!queue.empty()) {
       const std::uint32_t node = queue.top();
       queue.pop();
@@ -371,7 +385,12 @@ void Finder::grow_trees() {
         }
       }
     }
-  }
+  };
+  grow();
+  std::for_each(near, roots.end(), [&](std::uint32_t root) {
+    begin_at(root);
+    grow();
+  });
 }
 
 void Finder::find_reaches() {

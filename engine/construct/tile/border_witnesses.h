@@ -27,6 +27,8 @@ struct PartOfTerrain {
   /// Triangles of the leaf itself: 1, others, of a margin around it: 0. Empty: all are of the leaf.
   std::span<const std::uint8_t> inner;
   GroundStep step;  ///< Lengths on the ground; at least those of each of its rows.
+  /// Depths beyond this count as infinite, in ground units: so do reaches.
+  double farthest = std::numeric_limits<double>::infinity();
 };
 
 /// Of a triangle whose corners are all on the border, or of which that is not known: the witness
@@ -45,9 +47,9 @@ struct CornerWitness {
 /// - the distance between two regions of the other class that these triangles lie between, so that
 ///   the regions stay apart while nothing of that reach changes its class; and
 /// - the distance from any point of the border that it stands for to where the border may be when
-///   this witness has changed its class and the next has not. Each witness but one of a class and
-///   connected region of the leaf has a next one, beside it, towards greater depth; the last has
-///   an infinite reach.
+///   this witness has changed its class and the next has not. Each witness of finite depth, but one
+///   of a class and connected region of the leaf, has a next one beside it, on the way to greater
+///   depth; the others have an infinite reach.
 /// So a collapse that leaves all witnesses of at least a reach in their class, and whose new border
 /// edges cut no more off the triangles that they cross (BorderCrossing), moves no point of the border
 /// by more than that reach, neither way, and changes the class of no point that is deeper.
@@ -78,9 +80,10 @@ struct BorderWitnesses {
 struct WitnessedTriangle {
   static constexpr int kCornerWitness = 3;
   std::array<GridPoint, 3> corners;
-  std::array<GridPoint, 3> nearest;   ///< Of the corners.
-  std::array<bool, 3> is_border_side{};  ///< Side i, opposite to corner i, is or may be of the border.
-  std::array<bool, 3> is_known_side{};   ///< Side i is of the border.
+  std::array<GridPoint, 3> nearest;  ///< Of the corners.
+  std::array<bool, 3>
+      is_border_side{};  ///< Side i, opposite to corner i, is or may be of the border.
+  std::array<bool, 3> is_known_side{};  ///< Side i is of the border.
   double gap = 0.0;  ///< Distance of the regions of the other class that it lies between; else 0.
   int witness = kCornerWitness;  ///< The corner that is its witness; or there is a CornerWitness.
   float reach = std::numeric_limits<float>::infinity();  ///< Of that corner.

@@ -33,8 +33,7 @@ struct DirectionStep {
                                                     Direction d) noexcept {
   const std::int64_t abx = std::int64_t{b.x} - a.x;
   const std::int64_t aby = std::int64_t{b.y} - a.y;
-  const std::int64_t side =
-      abx * (std::int64_t{p.y} - a.y) - aby * (std::int64_t{p.x} - a.x);
+  const std::int64_t side = abx * (std::int64_t{p.y} - a.y) - aby * (std::int64_t{p.x} - a.x);
   return side != 0 ? side : abx * step_of(d).y - aby * step_of(d).x;
 }
 

@@ -17,7 +17,7 @@ namespace ptin {
 
 /// The border between surface and void in a part.
 struct PartBorder {
-  BorderWitnesses witnesses;  ///< Beside the vertices of the part.
+  BorderWitnesses witnesses;                          ///< Beside the vertices of the part.
   std::function<bool(GridPoint, GridPoint)> goes_on;  ///< As PartOfTerrain::goes_on.
   GroundStep step;
 };

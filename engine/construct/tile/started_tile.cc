@@ -32,11 +32,11 @@ StartedTile start_part(Tin&& part, const MeasureUnits& units, const ConvexHull& 
     border.emplace();
     border->goes_on = [&hull](GridPoint a, GridPoint b) { return !hull.has_on_border(a, b); };
     border->step = largest_step(*ground, started.box);
-    border->witnesses = find_border_witnesses({started.tile.tin, border->goes_on, {}, border->step});
+    border->witnesses =
+        find_border_witnesses({started.tile.tin, border->goes_on, {}, border->step});
   }
   start_tile(started.tile, border ? &border->witnesses : nullptr);
-  started.full =
-      std::make_unique<PartSurface>(started.tile.tin, units.heights, std::move(border));
+  started.full = std::make_unique<PartSurface>(started.tile.tin, units.heights, std::move(border));
   return started;
 }
 

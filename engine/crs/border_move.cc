@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/crs/border_move.h"
+
+#include <nlohmann/json.hpp>
+
+#include "engine/crs/crs_facts.h"
+#include "engine/geometry/infinity.h"
+
+namespace ptin {
+
+double border_moved_at_most(const StoreFile& store, double certified_error) {
+  if (store.facts().free_of_voids || certified_error == 0.0) {
+    return 0.0;
+  }
+  const nlohmann::json metadata = metadata_of(store);
+  const auto options = metadata.find("options");
+  if (options == metadata.end() || !options->is_object()) {
+    return kInfinity;
+  }
+  const auto slope = options->find("void_slope");
+  if (slope == options->end() || !slope->is_number() || !(slope->get<double>() > 0.0)) {
+    return kInfinity;
+  }
+  return certified_error / slope->get<double>();
+}
+
+}  // namespace ptin
