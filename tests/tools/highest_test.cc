@@ -51,21 +51,21 @@ TEST(HighestProgram, FindsThePeakAndTellsOutsideFromVoid) {
   EXPECT_EQ(run_ptin({"highest", file, "-k", "0"}).status, 2);
 }
 
-/// An islet of 3 x 3 samples amid void, which costs less than the error: in the coarse TIN its
-/// window has no surface, and so no highest point.
+/// The corner of an islet, which is cut off within the error: in the coarse TIN its window has no
+/// surface, and so no highest point.
 TEST(HighestProgram, HasNoPointWhereTheLevelIsVoid) {
   const testing::TestFolder folder;
   testing::RasterRecipe recipe;
   recipe.nodata = -9999.0;
   recipe.value = [](int column, int row) {
-    const bool on_islet = column > 23 && column < 27 && row > 9 && row < 13;
+    const bool on_islet = column >= 20 && column <= 30 && row >= 6 && row <= 16;
     return column < 12 || on_islet ? testing::hills(column, row) : -9999.0;
   };
   testing::make_raster(folder.file("r.tif"), recipe);
   const std::string file = folder.file("r.ptin");
-  testing::expect_done({"build", folder.file("r.tif"), "-o", file, "-q"});
-  const std::vector<std::string> asked = {"highest", file,     "--window", "500720",
-                                          "3999600", "500820", "3999700",  "--json"};
+  testing::expect_done({"build", folder.file("r.tif"), "-o", file, "-q", "--void-slope", "0.1"});
+  const std::vector<std::string> asked = {"highest", file,     "--window", "500880",
+                                          "3999490", "500925", "3999540",  "--json"};
   EXPECT_EQ(testing::answer_of(asked).at("state"), "surface");
   std::vector<std::string> coarse = asked;
   coarse.insert(coarse.end(), {"--error", "60"});

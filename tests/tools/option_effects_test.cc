@@ -91,6 +91,7 @@ class EveryIndexAndReader : public Options {
       for (json& vertex : answer.at("vertices")) {
         vertex = vertex.at("height");  // of equal ones those that are found first
       }
+      answer.at("point") = answer.at("point").at("height");
     }
     const auto output = std::find(question.begin(), question.end(), "-o");
     return {answer, output == question.end() ? "" : read_file(*(output + 1))};

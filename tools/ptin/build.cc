@@ -520,8 +520,10 @@ Action declare_build(CLI::App& app, Context& context) {
                  "Leave out detail below this error, in the height's unit")
       ->check(not_negative())
       ->type_name("E");
-  app.add_option("--void-slope", options.void_slope,
-                 "Error charged for each ground unit that a void's border moves")
+  app.add_option(
+         "--void-slope", options.void_slope,
+         "Error charged for each ground unit that the border of a void moves: at an error E it\n"
+         "moves by E / S at most")
       ->check(not_negative())
       ->type_name("S")
       ->capture_default_str();

@@ -183,6 +183,7 @@ nlohmann::json findings_json(const VerifyCommand& command, const Findings& f) {
                       {"samples", c.samples},
                       {"void_samples", c.void_samples},
                       {"reclassified", c.reclassified},
+                      {"worst_border_move", c.worst_border_move},
                       {"faults", c.faults}});
   }
   json["against"] = {{"inputs", command.against}, {"checks", checks}};
@@ -192,14 +193,14 @@ nlohmann::json findings_json(const VerifyCommand& command, const Findings& f) {
 void print_checks(const AgainstReport& report) {
   std::printf(
       "  tolerance  certified  worst at samples  certified anywhere  worst at random points  "
-      "reclassified\n");
+      "reclassified  worst move of a void's border\n");
   for (const ToleranceCheck& c : report.checks) {
-    std::printf("  %9s  %9s  %16s  %18s  %22s  %12s\n",
+    std::printf("  %9s  %9s  %16s  %18s  %22s  %12s  %28s\n",
                 c.tolerance ? short_number(*c.tolerance).c_str() : "none",
                 short_number(c.certified_error).c_str(), short_number(c.worst_error).c_str(),
                 short_number(c.certified_deviation).c_str(),
                 c.tolerance ? short_number(c.worst_deviation).c_str() : "-",
-                grouped(c.reclassified).c_str());
+                grouped(c.reclassified).c_str(), short_number(c.worst_border_move).c_str());
   }
 }
 
