@@ -15,6 +15,7 @@
 #include <numeric>
 #include <queue>
 #include <tuple>
+#include <unordered_map>
 
 #include "engine/geometry/box.h"
 #include "engine/geometry/infinity.h"
@@ -95,31 +96,45 @@ class Finder {
   BorderWitnesses found_;
   std::vector<std::uint32_t> first_, around_;  ///< Triangles of each vertex.
 
-  // The forest. A node is a vertex, or n_ + a triangle with a witness at a corner.
-  struct Link {
-    std::uint32_t node;
-    Place crossing;  ///< Where the path to that node crosses the side that their triangles share.
+  // The forest. A node is a witness that is not far, or is beside one that is not.
+  struct Node {
+    std::uint32_t at;               ///< A vertex, or n_ + a triangle with a witness at a corner.
+    float depth = 0.0F;             ///< The greatest of its triangles.
+    GridBox border;                 ///< The border that it stands for.
+    double key = 0.0;               ///< Its own depth.
+    std::uint32_t parent = kNone;   ///< The next node on the way; kNone for the last.
+    std::uint32_t parent_side = 0;  ///< The side that the way crosses, as Link::side.
+    bool queued = false, taken = false;
   };
-  [[nodiscard]] Place place_of_node(std::uint32_t node) const;
-  [[nodiscard]] double depth_of_node(std::uint32_t node) const {
-    return node < n_ ? depth_of(node) : 0.0;
+  /// A node beside another one, over side `side` % 3 of triangle `side` / 3.
+  struct Link {
+    std::uint32_t node, side;
+  };
+  /// Farther from any border than counts: an infinite reach, and the end of all ways.
+  [[nodiscard]] bool is_far(std::uint32_t at) const {
+    return at < n_ && found_.nearest[at] == BorderWitnesses::kNoBorder;
   }
-  /// Farther from any border than counts: an infinite reach, and the end of all paths.
-  [[nodiscard]] bool is_far(std::uint32_t node) const {
-    return node < n_ && found_.nearest[node] == BorderWitnesses::kNoBorder;
+  [[nodiscard]] Place place_of_node(const Node& node) const;
+  [[nodiscard]] Place middle_of(std::uint32_t side) const;
+  [[nodiscard]] WayIn way_of(TriangleId t) const;
+  [[nodiscard]] bool is_deeper(std::uint32_t a, std::uint32_t b) const {
+    return nodes_[a].key != nodes_[b].key ? nodes_[a].key > nodes_[b].key
+                                          : nodes_[a].at < nodes_[b].at;
   }
+  std::uint32_t node_at(std::uint32_t at);
+  template <class Visit>
+  void for_each_link(const Visit& visit);
   void link_nodes();
   void grow_trees();
   void find_reaches();
 
-  std::vector<std::uint32_t> witness_;  ///< Node of each triangle; kNone for those of the margin.
-  std::vector<WayIn> ways_;             ///< Beside the triangles; of those with a CornerWitness.
-  std::vector<float> depth_;            ///< Of nodes: greatest depth of their triangles.
-  std::vector<GridBox> border_;         ///< Of nodes: the border that they stand for.
+  std::vector<std::uint32_t> witness_;  ///< Of each triangle, as Node::at; kNone in the margin.
+  std::vector<std::uint32_t> node_of_vertex_;
+  std::unordered_map<TriangleId, std::uint32_t> node_of_triangle_;
+  std::vector<Node> nodes_;
   std::vector<std::uint32_t> first_link_;
   std::vector<Link> links_;
   std::vector<std::uint32_t> order_;  ///< Nodes, parents before their children.
-  std::vector<Link> parent_;          ///< Of nodes; node kNone for roots.
 };
 
 void Finder::find_kinds() {
@@ -262,158 +277,173 @@ double greatest_depth(const WitnessedTriangle& t, std::span<const Place> piece, 
   return least;
 }
 
+std::uint32_t Finder::node_at(std::uint32_t at) {
+  const auto next = static_cast<std::uint32_t>(nodes_.size());
+  std::uint32_t* known = nullptr;
+  if (at < n_) {
+    known = &node_of_vertex_[at];
+  } else {
+    known = &node_of_triangle_.try_emplace(static_cast<TriangleId>(at - n_), kNone).first->second;
+  }
+  if (*known == kNone) {
+    *known = next;
+    nodes_.push_back({.at = at});
+    nodes_.back().key = at < n_ ? depth_of(at) : 0.0;
+  }
+  return *known;
+}
+
+WayIn Finder::way_of(TriangleId t) const {
+  const Triangle& triangle = tin_.triangles[t];
+  return way_into(
+      {tin_.position(triangle.v[0]), tin_.position(triangle.v[1]), tin_.position(triangle.v[2])});
+}
+
+/// Gives each triangle its witness, and each witness what its triangles ask of it.
 void Finder::measure_triangles() {
   witness_.assign(tin_.triangles.size(), kNone);
-  ways_.resize(tin_.triangles.size());
-  depth_.assign(n_ + tin_.triangles.size(), 0.0F);
-  border_.assign(n_ + tin_.triangles.size(), GridBox{});
+  node_of_vertex_.assign(n_, kNone);
+  found_.reach.assign(n_, 0.0F);
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
     if (!is_inner(t)) {
       continue;
     }
     const WitnessedTriangle w = witnessed_triangle(part_, found_, t);
-    const bool at_corner = w.witness == WitnessedTriangle::kCornerWitness;
-    const auto node =
-        at_corner ? static_cast<std::uint32_t>(n_ + t) : tin_.triangles[t].v[w.witness];
-    witness_[t] = node;
-    if (at_corner) {
-      ways_[t] = way_into(w.corners);
+    witness_[t] = w.witness == WitnessedTriangle::kCornerWitness
+                      ? static_cast<std::uint32_t>(n_ + t)
+                      : tin_.triangles[t].v[w.witness];
+    if (is_far(witness_[t])) {
+      found_.reach[witness_[t]] = std::numeric_limits<float>::infinity();
+      continue;
     }
+    Node& node = nodes_[node_at(witness_[t])];
     const std::array<Place, 3> whole{place_of(w.corners[0]), place_of(w.corners[1]),
                                      place_of(w.corners[2])};
-    depth_[node] =
-        std::max(depth_[node], length_bound(std::max(w.gap, greatest_depth(w, whole, part_.step))));
+    node.depth =
+        std::max(node.depth, length_bound(std::max(w.gap, greatest_depth(w, whole, part_.step))));
     for (int i = 0; i < 3; ++i) {
       if (w.is_border_side[i]) {
-        border_[node] = united(border_[node], w.corners[(i + 1) % 3]);
-        border_[node] = united(border_[node], w.corners[(i + 2) % 3]);
+        node.border = united(node.border, w.corners[(i + 1) % 3]);
+        node.border = united(node.border, w.corners[(i + 2) % 3]);
       }
     }
   }
 }
 
-Place Finder::place_of_node(std::uint32_t node) const {
-  if (node < n_) {
-    return place_of(tin_.position(node));
+Place Finder::place_of_node(const Node& node) const {
+  if (node.at < n_) {
+    return place_of(tin_.position(node.at));
   }
-  const auto t = static_cast<TriangleId>(node - n_);
-  return place_of(tin_.position(tin_.triangles[t].v[ways_[t].corner]));
+  const auto t = static_cast<TriangleId>(node.at - n_);
+  return place_of(tin_.position(tin_.triangles[t].v[way_of(t).corner]));
 }
 
-/// Links the witnesses of triangles of one class that share a side.
+Place Finder::middle_of(std::uint32_t side) const {
+  const Triangle& triangle = tin_.triangles[side / 3];
+  const int i = static_cast<int>(side % 3);
+  const Place a = place_of(tin_.position(triangle.v[next_corner(i)]));
+  const Place b = place_of(tin_.position(triangle.v[previous_corner(i)]));
+  return {(a.x + b.x) / 2.0, (a.y + b.y) / 2.0};
+}
+
+/// Visits, from both sides, witnesses of triangles of one class that share a side.
+template <class Visit>
+void Finder::for_each_link(const Visit& visit) {
+  for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
+    for (int i = 0; i < 3 && witness_[t] != kNone; ++i) {
+      const TriangleId other = tin_.triangles[t].n[i];
+      if (other == kNone || other < t || witness_[other] == kNone ||
+          witness_[other] == witness_[t] || tin_.classes[t] != tin_.classes[other] ||
+          (is_far(witness_[t]) && is_far(witness_[other]))) {
+        continue;
+      }
+      const std::uint32_t a = node_at(witness_[t]), b = node_at(witness_[other]);
+      const auto side = static_cast<std::uint32_t>(3 * t + static_cast<std::uint32_t>(i));
+      visit(a, Link{b, side});
+      visit(b, Link{a, side});
+    }
+  }
+}
+
 void Finder::link_nodes() {
-  const auto for_each_link = [&](const auto& visit) {
-    for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
-      for (int i = 0; i < 3 && witness_[t] != kNone; ++i) {
-        const TriangleId other = tin_.triangles[t].n[i];
-        if (other == kNone || other < t || witness_[other] == kNone ||
-            witness_[other] == witness_[t] || tin_.classes[t] != tin_.classes[other] ||
-            (is_far(witness_[t]) && is_far(witness_[other]))) {
-          continue;
-        }
-        const GridPoint a = tin_.position(tin_.triangles[t].v[next_corner(i)]);
-        const GridPoint b = tin_.position(tin_.triangles[t].v[previous_corner(i)]);
-        const Place middle{(static_cast<double>(a.x) + b.x) / 2.0,
-                           (static_cast<double>(a.y) + b.y) / 2.0};
-        visit(witness_[t], Link{witness_[other], middle});
-        visit(witness_[other], Link{witness_[t], middle});
-      }
-    }
-  };
-  const std::size_t nodes = n_ + tin_.triangles.size();
-  first_link_.assign(nodes + 1, 0);
-  for_each_link([&](std::uint32_t from, const Link&) { ++first_link_[from + 1]; });
-  for (std::size_t i = 0; i < nodes; ++i) {
-    first_link_[i + 1] += first_link_[i];
+  std::vector<std::uint32_t> count;
+  for_each_link([&](std::uint32_t from, const Link& link) {
+    count.resize(std::max<std::size_t>(count.size(), std::max(from, link.node) + 1));
+    ++count[from];
+  });
+  first_link_.assign(nodes_.size() + 1, 0);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    first_link_[i + 1] = first_link_[i] + (i < count.size() ? count[i] : 0);
   }
-  links_.resize(first_link_[nodes]);
-  std::vector<std::uint32_t> next(first_link_.begin(), first_link_.end() - 1);
-  for_each_link([&](std::uint32_t from, const Link& link) { links_[next[from]++] = link; });
+  links_.resize(first_link_.back());
+  std::copy(first_link_.begin(), first_link_.begin() + static_cast<std::ptrdiff_t>(count.size()),
+            count.begin());
+  for_each_link([&](std::uint32_t from, const Link& link) { links_[count[from]++] = link; });
 }
 
 void Finder::grow_trees() {
-  struct Deeper {
-    const std::vector<double>& depth;
-    bool operator()(std::uint32_t a, std::uint32_t b) const {
-      return depth[a] != depth[b] ? depth[a] < depth[b] : a > b;
+  const auto after = [this](std::uint32_t a, std::uint32_t b) { return is_deeper(b, a); };
+  std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, decltype(after)> queue(after);
+  const auto put = [&](std::uint32_t node) {
+    if (!nodes_[node].queued) {
+      nodes_[node].queued = true;
+      queue.push(node);
     }
   };
-  const std::size_t nodes = n_ + tin_.triangles.size();
-  std::vector<double> depth(nodes, 0.0);
-  std::vector<std::uint8_t> is_node(nodes, 0);
-  for (const std::uint32_t node : witness_) {
-    if (node != kNone && is_node[node] == 0) {
-      is_node[node] = 1;
-      depth[node] = depth_of_node(node);
-    }
-  }
-  std::vector<std::uint32_t> roots;
-  for (std::uint32_t i = 0; i < nodes; ++i) {
-    if (is_node[i] != 0) {
-      roots.push_back(i);
-    }
-  }
-  const Deeper deeper{depth};
-  std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, Deeper> queue(deeper);
-  std::vector<std::uint8_t> queued(nodes, 0), taken(nodes, 0);
-  parent_.assign(nodes, Link{kNone, {}});
-  const auto begin_at = [&](std::uint32_t root) {
-    if (queued[root] == 0) {
-      queued[root] = 1;
-      queue.push(root);
-    }
-  };
-  const auto near =
-      std::partition(roots.begin(), roots.end(), [&](std::uint32_t i) { return is_far(i); });
-  std::for_each(roots.begin(), near, begin_at);
-  std::sort(near, roots.end(), [&](std::uint32_t a, std::uint32_t b) { return deeper(b, a); });
   const auto grow = [&] {
     while (!queue.empty()) {
-      const std::uint32_t node = queue.top();
+      const std::uint32_t id = queue.top();
       queue.pop();
-      taken[node] = 1;
-      order_.push_back(node);
-      for (std::uint32_t i = first_link_[node]; i < first_link_[node + 1]; ++i) {
+      Node& node = nodes_[id];
+      node.taken = true;
+      order_.push_back(id);
+      for (std::uint32_t i = first_link_[id]; i < first_link_[id + 1]; ++i) {
         const Link& link = links_[i];
-        if (taken[link.node] != 0) {
-          if (parent_[node].node == kNone || deeper(parent_[node].node, link.node)) {
-            parent_[node] = link;
-          }
-        } else if (queued[link.node] == 0) {
-          queued[link.node] = 1;
-          queue.push(link.node);
+        if (!nodes_[link.node].taken) {
+          put(link.node);
+        } else if (!is_far(node.at) &&
+                   (node.parent == kNone || is_deeper(link.node, node.parent))) {
+          node.parent = link.node;
+          node.parent_side = link.side;
         }
       }
     }
   };
+  std::vector<std::uint32_t> roots(nodes_.size());
+  std::iota(roots.begin(), roots.end(), 0U);
+  std::sort(roots.begin(), roots.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return is_deeper(a, b); });
+  const auto near = std::find_if(roots.begin(), roots.end(),
+                                 [&](std::uint32_t i) { return !is_far(nodes_[i].at); });
+  std::for_each(roots.begin(), near, put);
   grow();
   std::for_each(near, roots.end(), [&](std::uint32_t root) {
-    begin_at(root);
+    put(root);
     grow();
   });
 }
 
 void Finder::find_reaches() {
-  found_.reach.assign(n_, 0.0F);
   for (std::size_t i = order_.size(); i-- > 0;) {
-    const std::uint32_t node = order_[i];
-    const Link& up = parent_[node];
+    const Node& node = nodes_[order_[i]];
     float reach = std::numeric_limits<float>::infinity();
-    if (up.node != kNone) {
+    if (node.parent != kNone) {
+      Node& next = nodes_[node.parent];
       double most = 0.0;
-      for (const Place p : {place_of_node(node), up.crossing, place_of_node(up.node)}) {
-        most = std::max(most, farthest(border_[node], p, part_.step));
+      for (const Place p :
+           {place_of_node(node), middle_of(node.parent_side), place_of_node(next)}) {
+        most = std::max(most, farthest(node.border, p, part_.step));
       }
-      reach = std::max(depth_[node], length_bound(most));
-      if (!is_empty(border_[node])) {
-        border_[up.node] = united(border_[up.node], border_[node]);
+      reach = std::max(node.depth, length_bound(most));
+      if (!is_empty(node.border)) {
+        next.border = united(next.border, node.border);
       }
     }
-    if (node < n_) {
-      found_.reach[node] = reach;
+    if (node.at < n_) {
+      found_.reach[node.at] = reach;
     } else {
-      const auto t = static_cast<TriangleId>(node - n_);
-      found_.corners.push_back({t, ways_[t], reach});
+      const auto t = static_cast<TriangleId>(node.at - n_);
+      found_.corners.push_back({t, way_of(t), reach});
     }
   }
   std::sort(found_.corners.begin(), found_.corners.end(),
