@@ -98,7 +98,7 @@ class Finder {
 
   // The forest. A node is a witness that is not far, or is beside one that is not.
   struct Node {
-    std::uint32_t at;               ///< A vertex, or n_ + a triangle with a witness at a corner.
+    std::uint32_t at = kNone;       ///< A vertex, or n_ + a triangle with a witness at a corner.
     float depth = 0.0F;             ///< The greatest of its triangles.
     GridBox border;                 ///< The border that it stands for.
     double key = 0.0;               ///< Its own depth.
@@ -287,8 +287,9 @@ std::uint32_t Finder::node_at(std::uint32_t at) {
   }
   if (*known == kNone) {
     *known = next;
-    nodes_.push_back({.at = at});
-    nodes_.back().key = at < n_ ? depth_of(at) : 0.0;
+    Node& node = nodes_.emplace_back();
+    node.at = at;
+    node.key = at < n_ ? depth_of(at) : 0.0;
   }
   return *known;
 }
