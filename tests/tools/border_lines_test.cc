@@ -55,7 +55,9 @@ TEST(BorderLines, MeasureTheDistanceToTheNearestOfThem) {
         nearest = std::min(nearest, at(low));
       }
       EXPECT_NEAR(border.distance(x, y, 1e9), nearest, 1e-5);
-      if (nearest > 1e-5) EXPECT_TRUE(std::isinf(border.distance(x, y, nearest / 2)));
+      if (nearest > 1e-5) {
+        EXPECT_TRUE(std::isinf(border.distance(x, y, nearest / 2)));
+      }
     }
   }
 }
