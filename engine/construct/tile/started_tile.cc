@@ -10,13 +10,19 @@ namespace ptin {
 
 GroundStep largest_step(const GroundMetric& ground, const GridBox& rows) {
   GroundStep largest = ground.at(rows.min_y);
-  if (!ground.is_uniform()) {
-    for (std::int32_t y = rows.min_y; y < rows.max_y; ++y) {
-      const GroundStep step = ground.at(y + 1.0);
-      largest = {std::max(largest.x, step.x), std::max(largest.y, step.y)};
-    }
+  if (ground.is_uniform()) {
+    return largest;
   }
-  return largest;
+  // Between two of so many rows, at most 180 degrees / 64 apart, a step grows by less than 0.13 %.
+  constexpr int kRows = 64;
+  constexpr double kBetween = 1.0013;
+  for (int i = 1; i <= kRows; ++i) {
+    const double y = rows.min_y + (static_cast<double>(rows.max_y) - rows.min_y) * i /
+                                      static_cast<double>(kRows);
+    const GroundStep step = ground.at(y);
+    largest = {std::max(largest.x, step.x), std::max(largest.y, step.y)};
+  }
+  return {largest.x * kBetween, largest.y * kBetween};
 }
 
 StartedTile start_part(Tin&& part, const MeasureUnits& units, const ConvexHull& hull,

@@ -24,7 +24,7 @@ struct StartedTile {
 };
 
 /// The lengths of grid steps on the ground, at least those of each row of the box.
-/// Cost: the rows, unless all have the same steps.
+/// Larger by a thousandth at most, unless all have the same steps.
 [[nodiscard]] GroundStep largest_step(const GroundMetric& ground, const GridBox& rows);
 
 /// Starts a leaf of points or of a TIN: its mesh is `part`, the triangles that are its own.
