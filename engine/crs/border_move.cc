@@ -9,7 +9,7 @@
 namespace ptin {
 
 double border_moved_at_most(const StoreFile& store, double certified_error) {
-  if (store.facts().free_of_voids || certified_error == 0.0) {
+  if (store.facts().free_of_voids) {
     return 0.0;
   }
   const nlohmann::json metadata = metadata_of(store);

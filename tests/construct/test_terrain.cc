@@ -69,7 +69,7 @@ TestTerrain make_sampled(const std::string& name, int width, int height,
   terrain.samples = samples_of(terrain.full, encoding);
   measure_depths(terrain);
   const SampleRange all{origin.x, origin.y, width, height};
-  StartedTile started = start_raster_tile(RasterSamples{all, all, heights, valid, {}}, all,
+  StartedTile started = start_raster_tile(RasterSamples{all, all, heights, valid, true, {}}, all,
                                           units_of(encoding, slope));
   terrain.tile = std::move(started.tile);
   terrain.surface = std::move(started.full);

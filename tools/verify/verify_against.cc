@@ -67,15 +67,17 @@ class Verifier {
   [[nodiscard]] GridBox widened(const GridBox& box, std::int64_t margin) const;
   [[nodiscard]] GroundSteps least_steps(const GridBox& box) const;
   [[nodiscard]] double border_moves(double allowed) const;
+  [[nodiscard]] bool reaches(const GridBox& box, double moved) const;
   [[nodiscard]] BorderLines source_border(const SampleWindow& window, const GridBox& box) const;
-  void judge_class(const SourceSample& sample, double allowed, ToleranceCheck& check);
+  void judge_class(const GridBox& box, const SourceSample& sample, double allowed,
+                   ToleranceCheck& check);
   void judge_border(const GridBox& box, double allowed, ToleranceCheck& check);
   void judge_lines(const BorderLines& from, const BorderLines& to, const GridBox& box,
                    double allowed, const char* what, ToleranceCheck& check);
   void place_probes(const GridBox& box, std::vector<Probe>& probes);
   void measure_probes(const Tin& tin, std::vector<Probe>& probes, double Probe::*height) const;
-  void judge_probes(const std::vector<Probe>& probes, const RefinedTin& refined, double allowed,
-                    ToleranceCheck& check);
+  void judge_probes(const GridBox& box, const std::vector<Probe>& probes, const RefinedTin& refined,
+                    double allowed, ToleranceCheck& check);
   void fault(ToleranceCheck* check, std::string what);
   [[nodiscard]] std::string place_text(double x, double y) const;
   [[nodiscard]] double height_in(const Tin& tin, TriangleId t,
@@ -179,6 +181,12 @@ double Verifier::border_moves(double allowed) const {
   return choices_.void_slope > 0 ? (allowed + base) / choices_.void_slope * kFormulas +
                                        1e-9 * least_steps(facts_.bounds).y
                                  : std::numeric_limits<double>::infinity();
+}
+
+/// Whether what lies as far as `moved` from a window is looked at with it.
+bool Verifier::reaches(const GridBox& box, double moved) const {
+  const GroundSteps steps = least_steps(box);
+  return moved <= static_cast<double>(margin_of(box)) * std::min(steps.x, steps.y);
 }
 
 /// The least steps of the rows of a box: distances come out too small rather than too large.
@@ -289,7 +297,7 @@ void Verifier::check_window(const GridBox& box) {
     if (border_) judge_border(box, allowed, check);
     if (check.tolerance) {
       measure_probes(refined.tin, probes, &Probe::coarse);
-      judge_probes(probes, refined, allowed, check);
+      judge_probes(box, probes, refined, allowed, check);
     }
   }
 }
@@ -364,7 +372,7 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
       fault(&check, std::string(f.covered ? "two triangles overlap at " : "no triangle covers ") +
                         place_text(sample.x, sample.y));
     } else if (sample.is_void ? !f.in_closed_void : !f.in_closed_surface) {
-      judge_class(sample, allowed, check);
+      judge_class(box, sample, allowed, check);
     } else if (!sample.is_void) {
       check.worst_error = std::max(check.worst_error, f.residual);
       if (f.residual > allowed) {
@@ -377,9 +385,11 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
   }
 }
 
-void Verifier::judge_class(const SourceSample& sample, double allowed, ToleranceCheck& check) {
+void Verifier::judge_class(const GridBox& box, const SourceSample& sample, double allowed,
+                           ToleranceCheck& check) {
   const double moved = border_moves(allowed);
-  if (border_ && std::isfinite(border_->distance(sample.x, sample.y, moved))) {
+  if (border_ &&
+      (!reaches(box, moved) || std::isfinite(border_->distance(sample.x, sample.y, moved)))) {
     ++check.reclassified;
     return;
   }
@@ -401,14 +411,14 @@ void Verifier::judge_border(const GridBox& box, double allowed, ToleranceCheck& 
 void Verifier::judge_lines(const BorderLines& from, const BorderLines& to, const GridBox& box,
                            double allowed, const char* what, ToleranceCheck& check) {
   const double moved = border_moves(allowed);
+  if (!reaches(box, moved)) return;
   const GroundSteps steps = least_steps(box);
-  if (moved > static_cast<double>(margin_of(box)) * std::min(steps.x, steps.y)) {
-    return;  // what lies so far away is in no window
-  }
-  constexpr int kPoints = 8;
   for (const auto& [a, b] : from.lines()) {
-    for (int i = 0; i <= kPoints; ++i) {
-      const double t = static_cast<double>(i) / kPoints;
+    const double length = std::hypot((static_cast<double>(b.x) - a.x) * steps.x,
+                                     (static_cast<double>(b.y) - a.y) * steps.y);
+    const int points = static_cast<int>(std::clamp(std::ceil(4.0 * length / moved), 8.0, 128.0));
+    for (int i = 0; i <= points; ++i) {
+      const double t = static_cast<double>(i) / points;
       const double x = a.x + (static_cast<double>(b.x) - a.x) * t;
       const double y = a.y + (static_cast<double>(b.y) - a.y) * t;
       if (x < box.min_x || x > box.max_x || y < box.min_y || y > box.max_y) continue;
@@ -461,11 +471,11 @@ void Verifier::measure_probes(const Tin& tin, std::vector<Probe>& probes,
   }
 }
 
-void Verifier::judge_probes(const std::vector<Probe>& probes, const RefinedTin& refined,
-                            double allowed, ToleranceCheck& check) {
+void Verifier::judge_probes(const GridBox& box, const std::vector<Probe>& probes,
+                            const RefinedTin& refined, double allowed, ToleranceCheck& check) {
   const double moved = border_moves(allowed);
   for (const Probe& probe : probes) {
-    if (std::isnan(probe.full) != std::isnan(probe.coarse) && border_ &&
+    if (std::isnan(probe.full) != std::isnan(probe.coarse) && border_ && reaches(box, moved) &&
         !std::isfinite(border_->distance(probe.x, probe.y, moved))) {
       fault(&check, "at " + place_text(probe.x, probe.y) + " surface and void are exchanged, " +
                         "farther than " + short_number(moved) + " from the border");

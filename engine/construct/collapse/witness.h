@@ -21,8 +21,8 @@ inline constexpr std::size_t kMostWitnessesInWork = 1024;
 
 /// Cuts the samples of a triangle down to at most `most`, the weightiest ones, spread over its
 /// corners and over both signs. The weight of a sample with a height in a surface triangle is its
-/// |residual|. The weight of any other sample is what its depth would be charged: so of samples in
-/// the wrong class the deepest stay, and in a void triangle the deepest voids too, which tell a
+/// |residual|. The weight of any other sample is what its reach would be charged: so of samples in
+/// the wrong class those that reach farthest stay, and in a void triangle such voids too, which tell a
 /// parent what a surface over them would cost. A block counts as its first sample.
 /// Witnesses order the collapses of the parent and bound nothing: tightening does
 /// (construct/hierarchy/tighten.h). Deterministic. Cost: n log n.

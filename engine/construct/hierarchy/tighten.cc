@@ -24,8 +24,8 @@ namespace ptin {
 
 namespace {
 
-/// The depth that a vertex has in a replay. Construction has charged the vertex itself, so it is
-/// not charged again: the depth is (nearly) 0, and its sign tells the class alone.
+/// The reach that a vertex has in a replay. Construction has charged the vertex itself, so it is
+/// not charged again: the reach is (nearly) 0, and its sign tells the class alone.
 float no_reach(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
 
 /// The mesh of one replay: T0, refined around one leaf, with the leaf's samples in its triangles.

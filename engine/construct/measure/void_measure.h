@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Errors where surface and void meet: samples of the wrong class, charged by their depth.
+// Errors where surface and void meet: samples of the wrong class, and edges that move the border.
 #pragma once
 
 #include <cstddef>

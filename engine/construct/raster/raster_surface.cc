@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "engine/geometry/infinity.h"
+
 namespace ptin {
 
 namespace {
@@ -221,6 +223,27 @@ RasterSurface::Line RasterSurface::line_of(const EdgeEnd& a, const EdgeEnd& b) c
     line.clip(line.y, line.dy, height_);
   }
   return line;
+}
+
+double RasterSurface::border_move(GridPoint a, GridPoint b) const {
+  if (border_ != nullptr) {
+    return border_->border_move(a, b);
+  }
+  if (!far_from_border_) {
+    return 0.0;
+  }
+  Line line = line_of({a, 0.0}, {b, 0.0});
+  line.clip(line.x, line.dx, width_);
+  line.clip(line.y, line.dy, height_);
+  if (line.enter >= line.leave) {
+    return 0.0;
+  }
+  // Along a side of the window it crosses no triangle of it.
+  const double middle = (line.enter + line.leave) / 2.0;
+  const double x = static_cast<double>(line.x) + static_cast<double>(line.dx) * middle;
+  const double y = static_cast<double>(line.y) + static_cast<double>(line.dy) * middle;
+  const bool is_inside = x > 0.0 && y > 0.0 && x < width_ - 1.0 && y < height_ - 1.0;
+  return is_inside ? kInfinity : 0.0;
 }
 
 double RasterSurface::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {

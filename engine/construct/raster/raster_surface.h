@@ -23,10 +23,11 @@ class RasterSurface final : public FullSurface {
                 GridPoint origin);
 
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
-  /// 0 unless set_border() was called.
-  [[nodiscard]] double border_move(GridPoint a, GridPoint b) const override {
-    return border_ == nullptr ? 0.0 : border_->border_move(a, b);
-  }
+  /// Without set_border(): infinite where the edge leads through the window of a raster with voids,
+  /// which then has no border in reach; 0 in a raster without voids.
+  [[nodiscard]] double border_move(GridPoint a, GridPoint b) const override;
+  /// Says that the raster has voids, but the window no border in reach.
+  void set_far_from_border() noexcept { far_from_border_ = true; }
   /// Gives the surface the triangles of the window, where surface and void meet in it.
   void set_border(std::unique_ptr<const PartSurface> border) { border_ = std::move(border); }
 
@@ -69,6 +70,7 @@ class RasterSurface final : public FullSurface {
   HeightEncoding encoding_;
   GridPoint origin_;
   std::unique_ptr<const PartSurface> border_;
+  bool far_from_border_ = false;
 };
 
 }  // namespace ptin

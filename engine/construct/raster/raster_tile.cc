@@ -162,7 +162,8 @@ StartedTile start_raster_tile(const RasterSource& source, const SampleRange& win
   samples.valid.resize(n);
   source.read(samples.range.x0, samples.range.y0, samples.range.width, samples.range.height,
               samples.heights, samples.valid);
-  if (source.void_samples() != 0) {
+  samples.has_voids = source.void_samples() != 0;
+  if (samples.has_voids) {
     samples.step = largest_step(GroundMetric(source.frame()), box_of_window(samples.range));
   }
   return start_raster_tile(std::move(samples), window, units);
@@ -194,6 +195,8 @@ StartedTile start_raster_tile(RasterSamples&& samples, const SampleRange& window
     full->set_border(std::make_unique<PartSurface>(
         started.tile.tin, units.heights,
         PartBorder{std::move(*witnesses), goes_on_beyond(samples.raster, window), samples.step}));
+  } else if (samples.has_voids) {
+    full->set_far_from_border();
   }
   started.full = std::move(full);
   return started;

@@ -20,6 +20,7 @@ struct RasterSamples {
   SampleRange range;   ///< Those that are here: range_around() a window, or the window.
   std::vector<HeightBits> heights;  ///< Row-major, row 0 in the south.
   std::vector<std::uint8_t> valid;  ///< Beside `heights`; 0 for a sample without a height.
+  bool has_voids = false;           ///< The raster has, if not these samples.
   GroundStep step;  ///< As PartOfTerrain::step; of no account where all samples have heights.
 };
 

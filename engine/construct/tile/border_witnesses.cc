@@ -515,7 +515,7 @@ namespace {
 struct CutOff {
   std::array<Place, 8> piece;  ///< The corners of the piece, in no order.
   std::size_t corners = 0;
-  std::array<Place, 2> cut;  ///< The ends of the edge's part within the triangle.
+  std::array<Place, 2> cut{};  ///< The ends of the edge's part within the triangle.
   std::size_t ends = 0;
 };
 

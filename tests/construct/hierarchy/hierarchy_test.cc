@@ -49,6 +49,7 @@ class SampledRaster {
     RasterSamples samples;
     samples.raster = {0, 0, width(), height()};
     samples.range = range_around(samples.raster, w);
+    samples.has_voids = true;
     const SampleRange& r = samples.range;
     for (std::int64_t y = r.y0; y < r.y0 + r.height; ++y) {
       for (std::int64_t x = r.x0; x < r.x0 + r.width; ++x) {
