@@ -4,8 +4,11 @@
 #include "engine/construct/raster/raster_surface.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -120,6 +123,31 @@ TEST(RasterSurface, SkipsCrossingsInVoids) {
   EXPECT_EQ(terrain.surface->largest_gap(end(0), end(6 * 7)), 0.0);        // x = 0, all of it data
   EXPECT_NEAR(terrain.surface->largest_gap(end(0), end(6)), 100.0, 1e-9);  // y = 0, over the wall
   EXPECT_NEAR(terrain.surface->largest_gap(end(1 * 7), end(6)), 40.0, 1e-9);  // leaves the data
+}
+
+/// A window of a raster with voids that has no border in reach: an edge of the border through it has
+/// moved by nobody knows how much.
+TEST(RasterSurface, FarFromAnyBorderLetsNoBorderThrough) {
+  RasterSurface surface(std::vector<HeightBits>(30, 0), std::vector<std::uint8_t>(30, 1), 6, 5,
+                        oracle::kInt, {100, 200});  // from (100, 200) to (105, 204)
+  EXPECT_EQ(surface.border_move({90, 201}, {110, 203}), 0.0) << "there are no voids";
+  surface.set_far_from_border();
+  for (const auto& [a, b] : {std::pair(GridPoint{90, 201}, GridPoint{110, 203}),
+                             {{102, 202}, {130, 260}},
+                             {{100, 200}, {105, 204}},
+                             {{101, 190}, {101, 201}}}) {
+    EXPECT_EQ(surface.border_move(a, b), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(surface.border_move(b, a), std::numeric_limits<double>::infinity());
+  }
+  for (const auto& [a, b] : {std::pair(GridPoint{90, 200}, GridPoint{110, 200}),  // along its sides
+                             {{105, 190}, {105, 300}},
+                             {{100, 201}, {100, 203}},
+                             {{90, 210}, {110, 205}},  // beside it
+                             {{99, 201}, {101, 199}},  // through a corner
+                             {{106, 200}, {109, 204}}}) {
+    EXPECT_EQ(surface.border_move(a, b), 0.0) << a.x << " " << a.y << " to " << b.x << " " << b.y;
+    EXPECT_EQ(surface.border_move(b, a), 0.0);
+  }
 }
 
 }  // namespace
