@@ -32,7 +32,7 @@ struct SampleChoices {
   std::optional<double> nodata;
   std::optional<double> resolution;  ///< Points: the grid's step in CRS units, if it was chosen.
   std::optional<GridBox> bbox;       ///< Samples outside were left out.
-  double void_slope = 0.1;
+  double void_slope = 0.0;           ///< 0: nothing bounds how far the border of voids moves.
   /// Points: triangles with an edge that is longer on the ground are void.
   std::optional<double> max_edge;
 };

@@ -51,7 +51,7 @@ struct CornerWitness {
 ///   of a class and connected region of the leaf, has a next one beside it, on the way to greater
 ///   depth; the others have an infinite reach.
 /// So a collapse that leaves all witnesses of at least a reach in their class, and whose new border
-/// edges cut no more off the triangles that they cross (BorderCrossing), moves no point of the border
+/// edges cut no more off the triangles that they cross (border_crossing), moves no point of the border
 /// by more than that reach, neither way, and changes the class of no point that is deeper.
 struct BorderWitnesses {
   /// What a vertex is.
