@@ -88,6 +88,7 @@ class Finder {
   void list_triangles();
   void find_nearest();
   void find_regions();
+  void find_doubts();
   void measure_triangles();
 
   const PartOfTerrain& part_;
@@ -95,6 +96,7 @@ class Finder {
   std::size_t n_;
   BorderWitnesses found_;
   std::vector<std::uint32_t> first_, around_;  ///< Triangles of each vertex.
+  std::vector<std::uint8_t> on_seam_;          ///< Of each vertex: other leaves have it too.
 
   // The forest. A node is a witness that is not far, or is beside one that is not.
   struct Node {
@@ -137,12 +139,15 @@ class Finder {
   std::vector<std::uint32_t> order_;  ///< Nodes, parents before their children.
 };
 
+/// A vertex with a height has surface somewhere: one that has voids alone in the part, and is on its
+/// side, is on the border. One without a height has voids all around, wherever it is.
 void Finder::find_kinds() {
   std::vector<std::uint8_t> seen(n_, 0);
-  constexpr std::uint8_t kOpen = 4;
+  constexpr std::uint8_t kSurface = 1, kVoid = 2, kOpen = 4, kInside = 8, kOutside = 16;
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
     const Triangle& triangle = tin_.triangles[t];
-    const std::uint8_t own = tin_.classes[t] == TriangleClass::kSurface ? 1 : 2;
+    const std::uint8_t own = (tin_.classes[t] == TriangleClass::kSurface ? kSurface : kVoid) |
+                             (is_inner(t) ? kInside : kOutside);
     for (int i = 0; i < 3; ++i) {
       seen[triangle.v[i]] |= own;
       const VertexId a = triangle.v[next_corner(i)], b = triangle.v[previous_corner(i)];
@@ -153,10 +158,14 @@ void Finder::find_kinds() {
     }
   }
   found_.kind.resize(n_);
+  on_seam_.resize(n_);
   for (std::size_t v = 0; v < n_; ++v) {
-    found_.kind[v] = (seen[v] & 3) == 3       ? Kind::kBorder
-                     : (seen[v] & kOpen) != 0 ? Kind::kUnknown
-                                              : Kind::kInner;
+    const bool surface = (seen[v] & kSurface) != 0, is_void = (seen[v] & kVoid) != 0;
+    const bool open = (seen[v] & kOpen) != 0, height = tin_.has_height[v] != 0;
+    const bool border = (surface && is_void) || (open && is_void && height);
+    found_.kind[v] = border ? Kind::kBorder : (open && height ? Kind::kUnknown : Kind::kInner);
+    const std::uint8_t both = kInside | kOutside;
+    on_seam_[v] = (open && (seen[v] & kInside) != 0) || (seen[v] & both) == both ? 1 : 0;
   }
 }
 
@@ -213,6 +222,19 @@ void Finder::find_nearest() {
           queue.emplace(there, key, to);
         }
       }
+    }
+  }
+}
+
+/// Two leaves with a region each on their side of a seam may both take its vertices to be near their
+/// own. The distances from such a vertex to both regions add up to that of the regions at least, so
+/// one of the leaves charges as much when it charges twice its own.
+void Finder::find_doubts() {
+  found_.doubt.assign(n_, 0.0F);
+  for (VertexId v = 0; v < n_; ++v) {
+    if (on_seam_[v] != 0 && found_.nearest[v] != BorderWitnesses::kNoBorder &&
+        depth_of(v) > part_.known) {
+      found_.doubt[v] = length_bound(2.0 * depth_of(v));
     }
   }
 }
@@ -456,6 +478,7 @@ BorderWitnesses Finder::run() {
   list_triangles();
   find_nearest();
   find_regions();
+  find_doubts();
   measure_triangles();
   link_nodes();
   grow_trees();
@@ -502,6 +525,7 @@ WitnessedTriangle witnessed_triangle(const PartOfTerrain& part, const BorderWitn
     if (of_a != kNone && of_b != kNone && of_a != of_b) {
       w.gap = std::max(w.gap, distance(witnesses.nearest[a], witnesses.nearest[b], part.step));
     }
+    w.gap = std::max(w.gap, static_cast<double>(witnesses.doubt[a]));
   }
   if (w.witness != WitnessedTriangle::kCornerWitness && !witnesses.reach.empty()) {
     w.reach = witnesses.reach[triangle.v[w.witness]];

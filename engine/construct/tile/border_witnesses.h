@@ -27,6 +27,8 @@ struct PartOfTerrain {
   /// Triangles of the leaf itself: 1, others, of a margin around it: 0. Empty: all are of the leaf.
   std::span<const std::uint8_t> inner;
   GroundStep step;  ///< Lengths on the ground; at least those of each of its rows.
+  /// Around each vertex of the leaf borders are known up to this distance, in ground units.
+  double known = 0.0;
   /// Depths beyond this count as infinite, in ground units: so do reaches.
   double farthest = std::numeric_limits<double>::infinity();
 };
@@ -68,6 +70,9 @@ struct BorderWitnesses {
   /// Of each vertex: which connected region of surface, and which of voids, its nearest vertex of the
   /// border belongs to; kNone where the part has no border.
   std::vector<std::array<std::uint32_t, 2>> region;
+  /// How far the regions of the other class may be apart that a vertex on a seam lies between, as far
+  /// as this leaf can tell: twice its depth where another leaf may know of a nearer border, else 0.
+  std::vector<float> doubt;
   std::vector<CornerWitness> corners;
 
   static constexpr GridPoint kNoBorder{-1, -1};
