@@ -3,6 +3,8 @@
 // How far the border between surface and void may have moved in an answer.
 #pragma once
 
+#include <array>
+
 #include "storage/store_file.h"
 
 namespace ptin {
@@ -14,5 +16,10 @@ namespace ptin {
 /// metadata do not tell it.
 /// @throws Error corruption  the metadata are no JSON
 [[nodiscard]] double border_moved_at_most(const StoreFile& store, double certified_error);
+
+/// The same along x and along y, in map units: no part of the border is farther from that of the
+/// source than this in both. Over degrees it is what the distance is where a degree is shortest.
+/// @throws Error as border_moved_at_most()
+[[nodiscard]] std::array<double, 2> border_reach(const StoreFile& store, double certified_error);
 
 }  // namespace ptin

@@ -35,6 +35,10 @@ HighestResult Terrain::highest(const HighestRequest& request) const {
   return ptin::highest(*this, request);
 }
 
+ClassChanges Terrain::class_changes(const ClassChangesRequest& request) const {
+  return ptin::class_changes(*this, request);
+}
+
 SightResult Terrain::sight(const SightPair& pair, const SightRequest& request) const {
   return ptin::sight(*this, pair, request);
 }

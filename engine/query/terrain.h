@@ -11,6 +11,7 @@
 // | heights at points          | locate          | LocateRequest       | heights/locate.h         |
 // | heights along lines        | profile         | ProfileRequest      | heights/profile.h        |
 // | highest or lowest point    | highest         | HighestRequest      | heights/highest.h        |
+// | what became void, surface  | class_changes   | ClassChangesRequest | heights/class_changes.h  |
 // | is a line of sight free    | sight           | SightRequest        | sight/sight.h            |
 // | the same of many pairs     | sight_lines     | SightRequest        | sight/sight.h            |
 // | what an observer sees      | viewshed        | ViewshedRequest     | sight/viewshed.h         |
@@ -36,6 +37,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/query/heights/class_changes.h"
 #include "engine/query/heights/highest.h"
 #include "engine/query/heights/locate.h"
 #include "engine/query/heights/profile.h"
@@ -99,6 +101,8 @@ class Terrain : public OpenedTerrain {
                                       const ProfileRequest& request = {}) const;
   /// The highest or lowest point of the terrain or of a window.
   [[nodiscard]] HighestResult highest(const HighestRequest& request = {}) const;
+  /// Samples that a level of detail moves from surface to void, or back.
+  [[nodiscard]] ClassChanges class_changes(const ClassChangesRequest& request) const;
 
   /// Whether the ends of a line see each other.
   [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request = {}) const;

@@ -322,6 +322,31 @@ TEST(Export, RasterOfTheFullTinIsTheSource) {
   }
 }
 
+TEST(Export, TellsWhichSamplesChangeBetweenSurfaceAndVoid) {
+  const TestFolder folder;
+  const std::string file = built(folder, "coast_257.tif");
+  expect_done({"export", file, "-q", "-o", folder.file("full.tif")});
+  const ReadRaster full = read_raster(folder.file("full.tif"));
+  std::size_t most = 0;
+  for (const char* error : {"5", "40"}) {
+    const Outcome outcome = run_ptin({"export", file, "--error", error, "--json", "--overwrite",
+                                      "-o", folder.file("coarse.tif")});
+    const auto answer = nlohmann::json::parse(outcome.out);
+    const ReadRaster coarse = read_raster(folder.file("coarse.tif"));
+    std::size_t to_void = 0, to_surface = 0;
+    for (std::size_t i = 0; i < full.values.size(); ++i) {
+      const bool before = full.values[i] != full.nodata, after = coarse.values[i] != coarse.nodata;
+      to_void += before && !after ? 1 : 0;
+      to_surface += !before && after ? 1 : 0;
+    }
+    EXPECT_EQ(answer["samples_made_void"], to_void);
+    // A void sample on the border gets a height as a pixel, and has not changed its class.
+    EXPECT_LE(answer["samples_made_surface"], to_surface);
+    most = std::max(most, to_void);
+  }
+  EXPECT_GT(most, 0U);
+}
+
 TEST(Export, TakesSeveralCreationOptions) {
   const TestFolder folder;
   const std::string file = built(folder, "coast_257.tif");

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 #include "storage/file/file_questions.h"
@@ -123,6 +124,7 @@ struct Exported {
   std::array<double, 2> pixel_size{};  ///< Map units.
   Certificate certificate;
   double rounding = 0.0;  ///< Of heights to pixels; rasters only.
+  ClassChanges changes;   ///< Of the samples in the region.
 };
 
 using Report = std::function<void(double)>;
@@ -177,6 +179,18 @@ void warn_without_index(const ExportFormat& format, const SinkTarget& target,
                target.path.c_str());
 }
 
+/// The samples of what was exported that the level of detail moved across the border of voids.
+ClassChanges changes_of(const PartRefiner& refiner, const ExportOptions& options,
+                        const CrsFacts& crs) {
+  const StoreFile& store = refiner.terrain().store();
+  ClassChangesRequest request;
+  request.region = region_of(options.region, store.facts(), crs.wkt);
+  request.detail = detail_of(options.detail);
+  request.reach = border_reach(store, refiner.detail().certificate().error);
+  request.limits = refiner.request().limits;
+  return class_changes(refiner.terrain(), request);
+}
+
 Exported export_as(const ExportFormat& format, const ExportOptions& options, const Terrain& terrain,
                    const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
@@ -220,6 +234,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
     made = export_pixels(refiner, *grid, target, report);
   }
   progress.finish();
+  made.changes = changes_of(refiner, options, crs);
   made.certificate = refiner.detail().certificate();
   made.certificate.error = sum_above(made.certificate.error, made.rounding);
   made.certificate.deviation = sum_above(made.certificate.deviation, made.rounding);
@@ -246,6 +261,8 @@ int run_export(const ExportOptions& options, const Context& context) {
         {"certified_error", certificate.error},
         {"certified_deviation", certificate.deviation},
         {"border_moved_at_most", border_move_json(terrain.store(), certificate.error)},
+        {"samples_made_void", made.changes.to_void},
+        {"samples_made_surface", made.changes.to_surface},
         {"exact", certificate.complete && facts.base_error == 0 && made.rounding == 0},
         {"units", units_json(crs_facts(terrain.store()))},
         {"bytes", bytes},
@@ -267,12 +284,16 @@ int run_export(const ExportOptions& options, const Context& context) {
                         short_number(made.pixel_size[0]) + " x " + short_number(made.pixel_size[1])
                   : counted(made.vertices, "vertex", "vertices") + ", " +
                         counted(made.triangles, "triangle") + " in " + counted(made.cells, "cell");
-    const bool may_change_class = !facts.free_of_voids && !certificate.complete;
-    std::printf("%s: %s, %s, %.2f s; within %s at every sample%s, %s at any point\n",
-                options.output.c_str(), size.c_str(), human_bytes(bytes).c_str(), seconds,
-                short_number(certificate.error).c_str(),
-                may_change_class ? " (but where voids moved)" : "",
-                short_number(certificate.deviation).c_str());
+    std::printf(
+        "%s: %s, %s, %.2f s; within %s at every sample%s, %s at any point\n",
+        options.output.c_str(), size.c_str(), human_bytes(bytes).c_str(), seconds,
+        short_number(certificate.error).c_str(),
+        made.changes.to_void + made.changes.to_surface > 0 ? " (but where voids moved)" : "",
+        short_number(certificate.deviation).c_str());
+    if (!facts.free_of_voids && !certificate.complete) {
+      std::printf("%s became void, %s surface\n", counted(made.changes.to_void, "sample").c_str(),
+                  grouped(made.changes.to_surface).c_str());
+    }
   }
   return kExitDone;
 }

@@ -101,6 +101,15 @@ void around_vertex(const Tin& tin, VertexId v, const Visit& visit) {
   } while (t != kNone && t != first);
 }
 
+bool touches(const Tin& tin, VertexId v, TriangleClass wanted) {
+  bool touches = false;
+  around_vertex(tin, v, [&](TriangleId t, int /*corner*/) {
+    touches = tin.classes[t] == wanted;
+    return !touches;
+  });
+  return touches;
+}
+
 }  // namespace
 
 Place find_spot(const Tin& tin, Spot q, TriangleId start) {
@@ -152,13 +161,10 @@ TriangleId answering_triangle(const Tin& tin, const Place& place) {
 }
 
 bool touches_surface(const Tin& tin, VertexId v) {
-  bool touches = false;
-  around_vertex(tin, v, [&](TriangleId t, int /*corner*/) {
-    touches = tin.classes[t] == TriangleClass::kSurface;
-    return !touches;
-  });
-  return touches;
+  return touches(tin, v, TriangleClass::kSurface);
 }
+
+bool touches_void(const Tin& tin, VertexId v) { return touches(tin, v, TriangleClass::kVoid); }
 
 Footing footing_of(const Tin& tin, Spot q, const Place& place) {
   const Triangle& t = tin.triangles[place.triangle];

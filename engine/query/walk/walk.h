@@ -44,6 +44,8 @@ struct Place {
 
 /// True when a surface triangle holds the vertex. Cost: its degree.
 [[nodiscard]] bool touches_surface(const Tin& tin, VertexId v);
+/// True when a void triangle holds the vertex. Cost: its degree.
+[[nodiscard]] bool touches_void(const Tin& tin, VertexId v);
 
 /// A point of the mesh as a weighted mean of one, two or three vertices: the vertex that it is on,
 /// the ends of its edge, or the corners of its triangle. Vertices ascend by key, so that the same
