@@ -51,6 +51,7 @@ set(public_headers
     engine/mesh/tin.h
     engine/mesh/validate.h
     engine/prefetch.h
+    engine/query/heights/class_changes.h
     engine/query/heights/highest.h
     engine/query/heights/locate.h
     engine/query/heights/profile.h

@@ -18,12 +18,12 @@
 
 namespace ptin {
 
-/// A part of the full TIN.
+/// A part of the full TIN. All of it is borrowed.
 struct PartOfTerrain {
   const Tin& tin;
   /// True when more of the terrain lies beyond the edge from a to b, which has no triangle beyond
   /// it in the part.
-  std::function<bool(GridPoint a, GridPoint b)> goes_on;
+  const std::function<bool(GridPoint a, GridPoint b)>& goes_on;
   /// Triangles of the leaf itself: 1, others, of a margin around it: 0. Empty: all are of the leaf.
   std::span<const std::uint8_t> inner;
   GroundStep step;  ///< Lengths on the ground; at least those of each of its rows.
