@@ -18,6 +18,7 @@
 #include "tools/output/file_name.h"
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
+#include "tools/ptin/pixel_content.h"
 #include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
 
@@ -30,6 +31,7 @@ struct ExportOptions {
   RegionOptions region;
   DetailOptions detail;
   std::vector<std::string> pixel_size;
+  PixelContentOptions content;
   std::optional<double> nodata;
   std::vector<std::string> creation_options;
   std::string format;
@@ -90,6 +92,13 @@ ExportMemory memory_of(const ExportOptions& options) {
   return ExportMemory(bytes);
 }
 
+/// What the options say of pixels and slopes.
+PixelContent content_of(const ExportOptions& options, const ExportFormat& format) {
+  const bool is_layer =
+      format.make_sink == make_geopackage_sink || format.make_sink == make_flatgeobuf_sink;
+  return pixel_content_of(options.content, format.make_sink == nullptr, is_layer);
+}
+
 void check_options(const ExportOptions& options, const ExportFormat& format) {
   check_detail(options.detail);
   static_cast<void>(pixel_sides_of(options.pixel_size));
@@ -98,6 +107,12 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
       (!options.pixel_size.empty() || options.nodata || !options.creation_options.empty())) {
     throw Error(ErrorCode::invalid_argument,
                 "--pixel-size, --nodata and --co are for rasters (.tif)", options.output);
+  }
+  const PixelContent content = content_of(options, format);
+  if (options.nodata && content.value != PixelValue::kHeight) {
+    throw Error(ErrorCode::invalid_argument,
+                "is for heights; slopes and aspects have -9999 as nodata, hillshades 0",
+                "--nodata");
   }
   if (is_raster && !options.region.polygon.empty()) {
     throw Error(ErrorCode::invalid_argument,
@@ -187,6 +202,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   request.detail = detail_of(options.detail);
   request.limits.memory_bytes = memory.part;
   request.limits.stop = context.stop;
+  const PixelContent content = content_of(options, format);
   std::optional<PixelGrid> grid;
   if (format.make_sink == nullptr) grid.emplace(grid_of(options, terrain.store(), crs));
   const PartRefiner refiner = terrain.parts(request);
@@ -199,7 +215,8 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   report(0.0);
   Exported made;
   if (format.make_sink != nullptr) {
-    SinkTarget target{options.output, options.overwrite, crs, memory.buffers, memory.index, 0};
+    SinkTarget target{options.output, options.overwrite, crs, false, memory.buffers, memory.index};
+    target.slope_in_percent = content.in_percent;
     target.most_triangles = 2 * (refiner.records() + terrain.store().t0().vertices.size());
     made = export_triangles(refiner, format, target, report);
     progress.finish();
@@ -209,14 +226,16 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
                    options.output.c_str());
     }
   } else {
-    const RasterTarget target{options.output,
-                              options.overwrite,
-                              format.is_cog,
-                              options.nodata.value_or(default_nodata(terrain.store().facts())),
-                              options.creation_options,
-                              crs,
-                              memory.buffers,
-                              memory.index};
+    const RasterTarget target{
+        options.output,
+        options.overwrite,
+        format.is_cog,
+        content,
+        options.nodata.value_or(default_nodata(terrain.store().facts(), content.value)),
+        options.creation_options,
+        crs,
+        memory.buffers,
+        memory.index};
     made = export_pixels(refiner, *grid, target, report);
   }
   progress.finish();
@@ -239,21 +258,24 @@ int run_export(const ExportOptions& options, const Context& context) {
   const std::uint64_t bytes = bytes_of_file(options.output);
   const bool is_raster = format.make_sink == nullptr;
   const StoreFacts& facts = terrain.store().facts();
+  using nlohmann::json;
+  const bool has_heights = options.content.what == "height";
   if (context.json) {
-    nlohmann::json answer = {
-        {"output", options.output},
-        {"format", format.name},
-        {"certified_error", certificate.error},
-        {"certified_deviation", certificate.deviation},
-        {"border_moved_at_most", border_move_json(terrain.store(), certificate.error)},
-        {"exact", certificate.complete && facts.base_error == 0 && made.rounding == 0},
-        {"units", units_json(crs_facts(terrain.store()))},
-        {"bytes", bytes},
-        {"seconds", seconds}};
+    json answer = {{"output", options.output},
+                   {"format", format.name},
+                   {"certified_error", has_heights ? json(certificate.error) : json()},
+                   {"certified_deviation", has_heights ? json(certificate.deviation) : json()},
+                   {"border_moved_at_most", border_move_json(terrain.store(), certificate.error)},
+                   {"exact", certificate.complete && facts.base_error == 0 && made.rounding == 0},
+                   {"units", units_json(crs_facts(terrain.store()))},
+                   {"bytes", bytes},
+                   {"seconds", seconds}};
     if (is_raster) {
       answer["width"] = made.columns;
       answer["height"] = made.rows;
       answer["pixel_size"] = made.pixel_size;
+      answer["what"] = options.content.what;
+      if (options.content.what == "slope") answer["slope_unit"] = slope_unit_of(options.content);
     } else {
       answer["vertices"] = made.vertices;
       answer["triangles"] = made.triangles;
@@ -268,8 +290,9 @@ int run_export(const ExportOptions& options, const Context& context) {
                   : counted(made.vertices, "vertex", "vertices") + ", " +
                         counted(made.triangles, "triangle") + " in " + counted(made.cells, "cell");
     const bool may_change_class = !facts.free_of_voids && !certificate.complete;
-    std::printf("%s: %s, %s, %.2f s; within %s at every sample%s, %s at any point\n",
+    std::printf("%s: %s, %s, %.2f s; %swithin %s at every sample%s, %s at any point\n",
                 options.output.c_str(), size.c_str(), human_bytes(bytes).c_str(), seconds,
+                has_heights ? "" : (options.content.what + " of a TIN that is ").c_str(),
                 short_number(certificate.error).c_str(),
                 may_change_class ? " (but where voids moved)" : "",
                 short_number(certificate.deviation).c_str());
@@ -299,8 +322,9 @@ Action declare_export(CLI::App& app, Context& context) {
                  "raster's)")
       ->expected(1, 2)
       ->type_name("SIZE");
+  add_pixel_content_options(app, options->content);
   app.add_option("--nodata", options->nodata,
-                 "Rasters: the value where there is no surface (default -9999)")
+                 "Rasters of heights: the value where there is no surface (default -9999)")
       ->type_name("V");
   app.add_option("--co", options->creation_options,
                  "Rasters: a creation option of GDAL's driver; may be given several times")
