@@ -9,6 +9,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "tools/export/tin_patch.h"
+#include "tools/formats/mesh.h"
 
 namespace ptin::tools {
 
@@ -17,6 +18,7 @@ struct SinkTarget {
   std::string path;
   bool overwrite = false;
   CrsFacts crs;
+  LocalFrame frame;                                      ///< Of STL.
   bool slope_in_percent = false;                         ///< Of the field `slope`: else in degrees.
   std::uint64_t border_bytes = std::uint64_t{64} << 20;  ///< What PatchMaker::make() may take.
   std::uint64_t index_bytes = std::uint64_t{256} << 20;  ///< For an index of features.
@@ -50,5 +52,10 @@ class TinSink {
 [[nodiscard]] std::unique_ptr<TinSink> make_flatgeobuf_sink(const SinkTarget& target);
 /// True when a FlatGeobuf gets its index.
 [[nodiscard]] bool flatgeobuf_index_fits(const SinkTarget& target);
+
+/// As tools/formats/mesh_stream.h has them.
+[[nodiscard]] std::unique_ptr<TinSink> make_land_xml_sink(const SinkTarget& target);
+[[nodiscard]] std::unique_ptr<TinSink> make_dxf_sink(const SinkTarget& target);
+[[nodiscard]] std::unique_ptr<TinSink> make_stl_sink(const SinkTarget& target);
 
 }  // namespace ptin::tools

@@ -84,6 +84,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin export dem.ptin -o dem.ply\n"
      "  ptin export dem.ptin --error 2 --memory 256M -o dem_2m.gpkg\n"
+     "  ptin export dem.ptin --error 0.1 --window 385000 3790000 390000 3795000 -o site.xml\n"
      "  ptin export dem.ptin --error 5 --pixel-size 90m -o coarse.tif\n"
      "  ptin export dem.ptin --what slope --slope-unit percent -o slope.tif\n"
      "  ptin export dem.ptin --window 385000 3790000 390000 3795000 --format COG -o valley.tif\n",

@@ -18,6 +18,7 @@
 #include "tools/output/file_name.h"
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
+#include "tools/ptin/mesh_crs.h"
 #include "tools/ptin/pixel_content.h"
 #include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
@@ -48,12 +49,30 @@ struct ExportFormat {
   std::unique_ptr<TinSink> (*make_sink)(const SinkTarget& target);  ///< Null for rasters.
   bool is_cog;
 };
-constexpr std::array<ExportFormat, 5> kFormats = {
+constexpr std::array<ExportFormat, 8> kFormats = {
     {{"PLY", ".ply", make_ply_sink, false},
+     {"LandXML", ".xml", make_land_xml_sink, false},
+     {"DXF", ".dxf", make_dxf_sink, false},
+     {"STL", ".stl", make_stl_sink, false},
      {"GPKG", ".gpkg", make_geopackage_sink, false},
      {"FlatGeobuf", ".fgb", make_flatgeobuf_sink, false},
      {"GTiff", ".tif", nullptr, false},
      {"COG", "", nullptr, true}}};
+
+std::string known_formats() {
+  std::string known;
+  for (const ExportFormat& format : kFormats)
+    known.append(known.empty() ? "" : ", ").append(format.name);
+  return known;
+}
+
+std::string known_extensions() {
+  std::string known;
+  for (const ExportFormat& format : kFormats) {
+    if (*format.extension != 0) known.append(known.empty() ? "" : ", ").append(format.extension);
+  }
+  return known;
+}
 
 const ExportFormat& format_of(const ExportOptions& options) {
   const std::string extension = lower_extension(options.output);
@@ -66,12 +85,13 @@ const ExportFormat& format_of(const ExportOptions& options) {
     }
   }
   if (!options.format.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "unknown format; known are PLY, GPKG, FlatGeobuf, GTiff, COG", options.format);
+    throw Error(ErrorCode::invalid_argument, "unknown format; known are " + known_formats(),
+                options.format);
   }
-  throw Error(ErrorCode::invalid_argument,
-              "the extension names no format; known are .ply, .gpkg, .fgb, .tif, or give --format",
-              options.output);
+  throw Error(
+      ErrorCode::invalid_argument,
+      "the extension names no format; known are " + known_extensions() + ", or give --format",
+      options.output);
 }
 
 /// The shares of --memory, in bytes. The rest is for the program itself and the allocator's slack.
@@ -215,7 +235,9 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   report(0.0);
   Exported made;
   if (format.make_sink != nullptr) {
-    SinkTarget target{options.output, options.overwrite, crs, false, memory.buffers, memory.index};
+    SinkTarget target{
+        options.output, options.overwrite, crs,         frame_of(terrain.store().facts(), crs),
+        false,          memory.buffers,    memory.index};
     target.slope_in_percent = content.in_percent;
     target.most_triangles = 2 * (refiner.records() + terrain.store().t0().vertices.size());
     made = export_triangles(refiner, format, target, report);
@@ -280,6 +302,8 @@ int run_export(const ExportOptions& options, const Context& context) {
       answer["vertices"] = made.vertices;
       answer["triangles"] = made.triangles;
       answer["cells"] = made.cells;
+      if (format.make_sink == make_stl_sink)
+        answer["local_frame"] = frame_json(frame_of(facts, crs_facts(terrain.store())));
     }
     print_json(answer);
   } else if (!context.quiet) {
@@ -296,6 +320,9 @@ int run_export(const ExportOptions& options, const Context& context) {
                 short_number(certificate.error).c_str(),
                 may_change_class ? " (but where voids moved)" : "",
                 short_number(certificate.deviation).c_str());
+    if (format.make_sink == make_stl_sink) {
+      std::printf("  frame  %s\n", frame_text(frame_of(facts, crs_facts(terrain.store()))).c_str());
+    }
   }
   return kExitDone;
 }
@@ -310,11 +337,11 @@ Action declare_export(CLI::App& app, Context& context) {
   add_detail_options(app, options->detail, " (default: the full TIN)",
                      "The TIN of the terrain's N most important vertices");
   app.add_option("-o,--output", options->output,
-                 "The file to write; its extension chooses the format: .ply, .gpkg, .fgb, .tif")
+                 "The file to write; its extension chooses the format: " + known_extensions())
       ->type_name("OUT")
       ->required();
   app.add_option("--format,--of", options->format,
-                 "The format: PLY, GPKG, FlatGeobuf, GTiff, COG (default: by the extension)")
+                 "The format: " + known_formats() + " (default: by the extension)")
       ->type_name("NAME");
   app.add_option("--pixel-size", options->pixel_size,
                  "Rasters: the size of a pixel, one number or two, in map units, or over ground as "
