@@ -184,7 +184,7 @@ TEST(CliBadInput, OutputThatCannotBe) {
   EXPECT_EQ(read_file(store), before);
   EXPECT_EQ(run_ptin({"build", folder.file("hills.tif"), "-o", store, "-q", "--overwrite"}).status,
             0);
-  expect_refusal(run_ptin({"refine", store, "-o", folder.file("a.stl")}), 2,
+  expect_refusal(run_ptin({"refine", store, "-o", folder.file("a.doc")}), 2,
                  ".ply, .obj, .2dm, .glb");
   expect_refusal(run_ptin({"render", store, "-o", folder.file("a.jpg")}), 2, ".png");
   write_file(folder.file("a.ply"), "mine");

@@ -70,6 +70,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin isoline dem.ptin --interval 20 -o contours.gpkg\n"
      "  ptin isoline dem.ptin --level 500 1000 --3d -o two.fgb --error 2\n"
      "  ptin isoline dem.ptin --interval 100 --base 50 --polygons -o bands.gpkg\n"
+     "  ptin isoline dem.ptin --interval 2 --window 385000 3790000 390000 3795000 -o site.dxf\n"
      "  ptin isoline dem.ptin --level 0 --window 385000 3790000 390000 3795000 -o - | jq "
      ".features\n",
      declare_isoline},

@@ -243,7 +243,8 @@ void check_options(const UnstreamOptions& options, bool json) {
     }
     if (!options.output.empty()) static_cast<void>(mesh_format_of(options.output));
   } else if (!options.output.empty()) {
-    static_cast<void>(vector_format_of(options.output));
+    static_cast<void>(isoline_format_of(options.output));
+    if (options.isolines.steps) check_isoline_fields(options.output, "--steps");
     if (options.output == "-" && json) {
       throw Error(ErrorCode::invalid_argument,
                   "--json and -o - both write to stdout; give the isolines a file name");
