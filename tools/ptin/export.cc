@@ -267,6 +267,21 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   return made;
 }
 
+bool has_heights(const ExportOptions& options) { return options.content.what == "height"; }
+
+/// Adds to an answer what some outputs alone have, and takes out what they do not: the certificate
+/// speaks of heights.
+void add_content(nlohmann::json& answer, const ExportOptions& options, const ExportFormat& format,
+                 const Terrain& terrain) {
+  if (format.make_sink == nullptr) answer["what"] = options.content.what;
+  if (options.content.what == "slope") answer["slope_unit"] = slope_unit_of(options.content);
+  if (!has_heights(options)) answer["certified_error"] = answer["certified_deviation"] = nullptr;
+  if (format.make_sink == make_stl_sink) {
+    answer["local_frame"] =
+        frame_json(frame_of(terrain.store().facts(), crs_facts(terrain.store())));
+  }
+}
+
 int run_export(const ExportOptions& options, const Context& context) {
   const ExportFormat& format = format_of(options);
   check_options(options, format);
@@ -280,31 +295,27 @@ int run_export(const ExportOptions& options, const Context& context) {
   const std::uint64_t bytes = bytes_of_file(options.output);
   const bool is_raster = format.make_sink == nullptr;
   const StoreFacts& facts = terrain.store().facts();
-  using nlohmann::json;
-  const bool has_heights = options.content.what == "height";
   if (context.json) {
-    json answer = {{"output", options.output},
-                   {"format", format.name},
-                   {"certified_error", has_heights ? json(certificate.error) : json()},
-                   {"certified_deviation", has_heights ? json(certificate.deviation) : json()},
-                   {"border_moved_at_most", border_move_json(terrain.store(), certificate.error)},
-                   {"exact", certificate.complete && facts.base_error == 0 && made.rounding == 0},
-                   {"units", units_json(crs_facts(terrain.store()))},
-                   {"bytes", bytes},
-                   {"seconds", seconds}};
+    nlohmann::json answer = {
+        {"output", options.output},
+        {"format", format.name},
+        {"certified_error", certificate.error},
+        {"certified_deviation", certificate.deviation},
+        {"border_moved_at_most", border_move_json(terrain.store(), certificate.error)},
+        {"exact", certificate.complete && facts.base_error == 0 && made.rounding == 0},
+        {"units", units_json(crs_facts(terrain.store()))},
+        {"bytes", bytes},
+        {"seconds", seconds}};
     if (is_raster) {
       answer["width"] = made.columns;
       answer["height"] = made.rows;
       answer["pixel_size"] = made.pixel_size;
-      answer["what"] = options.content.what;
-      if (options.content.what == "slope") answer["slope_unit"] = slope_unit_of(options.content);
     } else {
       answer["vertices"] = made.vertices;
       answer["triangles"] = made.triangles;
       answer["cells"] = made.cells;
-      if (format.make_sink == make_stl_sink)
-        answer["local_frame"] = frame_json(frame_of(facts, crs_facts(terrain.store())));
     }
+    add_content(answer, options, format, terrain);
     print_json(answer);
   } else if (!context.quiet) {
     const std::string size =
@@ -316,7 +327,7 @@ int run_export(const ExportOptions& options, const Context& context) {
     const bool may_change_class = !facts.free_of_voids && !certificate.complete;
     std::printf("%s: %s, %s, %.2f s; %swithin %s at every sample%s, %s at any point\n",
                 options.output.c_str(), size.c_str(), human_bytes(bytes).c_str(), seconds,
-                has_heights ? "" : (options.content.what + " of a TIN that is ").c_str(),
+                has_heights(options) ? "" : (options.content.what + " of a TIN that is ").c_str(),
                 short_number(certificate.error).c_str(),
                 may_change_class ? " (but where voids moved)" : "",
                 short_number(certificate.deviation).c_str());
