@@ -35,6 +35,7 @@ set(public_headers
     engine/crs/border_move.h
     engine/crs/crs_facts.h
     engine/crs/ground.h
+    engine/crs/height_unit.h
     engine/error.h
     engine/geometry/affine.h
     engine/geometry/box.h

@@ -149,10 +149,19 @@ TEST_F(RefusedMemory, OfLayersIsStatus7) {
         {"viewshed", store_, "500500", "3999500", "2", "--radius", "300", "-o", output(name), "-q"},
         name, 30);
   }
+  for (const std::string name : {"a.dxf", "a.xml"}) {
+    expect_whole_or_nothing({"isoline", store_, "-i", "20", "-o", output(name), "-q"}, name, 30);
+  }
+}
+
+TEST_F(RefusedMemory, OfSlopesIsStatus7) {
+  expect_whole_or_nothing(
+      {"export", store_, "-o", output("a.tif"), "-q", "--error", "5", "--what", "slope"}, "a.tif",
+      30);
 }
 
 TEST_F(RefusedMemory, OfExportsIsStatus7) {
-  for (const std::string name : {"a.gpkg", "a.fgb", "a.ply", "a.tif"}) {
+  for (const std::string name : {"a.gpkg", "a.fgb", "a.ply", "a.xml", "a.dxf", "a.stl", "a.tif"}) {
     expect_whole_or_nothing({"export", store_, "-o", output(name), "-q", "--error", "5"}, name, 30);
   }
 }

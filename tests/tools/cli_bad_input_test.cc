@@ -184,7 +184,7 @@ TEST(CliBadInput, OutputThatCannotBe) {
   EXPECT_EQ(read_file(store), before);
   EXPECT_EQ(run_ptin({"build", folder.file("hills.tif"), "-o", store, "-q", "--overwrite"}).status,
             0);
-  expect_refusal(run_ptin({"refine", store, "-o", folder.file("a.stl")}), 2,
+  expect_refusal(run_ptin({"refine", store, "-o", folder.file("a.doc")}), 2,
                  ".ply, .obj, .2dm, .glb");
   expect_refusal(run_ptin({"render", store, "-o", folder.file("a.jpg")}), 2, ".png");
   write_file(folder.file("a.ply"), "mine");
@@ -556,17 +556,17 @@ TEST(CliBadInput, FullDisk) {
       run_ptin({"build", test_data("mountains_257.tif"), "-o", disk.path() + "/m.ptin", "-q"}), 7,
       "m.ptin");
   EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
-  for (const char* name : {"/a.ply", "/a.obj", "/a.2dm", "/a.glb"}) {
+  for (const char* name : {"/a.ply", "/a.obj", "/a.2dm", "/a.glb", "/a.xml", "/a.dxf", "/a.stl"}) {
     expect_refusal(run_ptin({"refine", store, "-o", disk.path() + name}), 7, name);
     EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
   }
-  for (const char* name : {"/a.ply", "/a.gpkg", "/a.fgb", "/a.tif"}) {
+  for (const char* name : {"/a.ply", "/a.xml", "/a.dxf", "/a.stl", "/a.gpkg", "/a.fgb", "/a.tif"}) {
     std::vector<std::string> arguments = {"export", store, "-q", "-o", disk.path() + name};
     if (name == std::string("/a.tif")) arguments.insert(arguments.end(), {"--pixel-size", "4"});
     expect_refusal(run_ptin(arguments), 7, name);
     EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
   }
-  for (const char* name : {"/a.gpkg", "/a.fgb", "/a.geojson", "/a.shp"}) {
+  for (const char* name : {"/a.gpkg", "/a.fgb", "/a.geojson", "/a.shp", "/a.dxf", "/a.xml"}) {
     expect_refusal(run_ptin({"isoline", store, "--interval", "5", "-q", "-o", disk.path() + name}),
                    7, name);
     EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;

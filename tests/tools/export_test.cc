@@ -20,6 +20,7 @@
 #include "tests/tools/program.h"
 #include "tools/export/raster_export.h"
 #include "tools/export/tin_patch.h"
+#include "tools/export/tin_samples.h"
 
 namespace ptin::tools {
 namespace {
@@ -372,7 +373,7 @@ TEST(Export, RasterDoesNotDependOnMemory) {
     PartRequest request;
     request.limits.memory_bytes = limit;
     const PartRefiner refiner(terrain, request);
-    const RasterTarget target{folder.file("a.tif"), true, false, -9999.0, {}, {}, limit / 8};
+    const RasterTarget target{folder.file("a.tif"), true, false, {}, -9999.0, {}, {}, limit / 8};
     GDALAllRegister();
     static_cast<void>(export_raster(refiner, grid, target, {}));
     const std::string bytes = read_file(target.path);
@@ -416,7 +417,7 @@ TEST(Export, RasterInterpolatesTheTriangles) {
     const PixelGrid grid(facts, {facts.map.step_x * pitch, facts.map.step_y * pitch}, std::nullopt);
     const PixelRect all{0, 0, grid.columns(), grid.rows()};
     std::vector<double> heights(static_cast<std::size_t>(all.pixels()), NAN);
-    sample_tin(refined, facts, grid, all, all, heights);
+    sample_heights(refined, facts, grid, all, all, heights);
     std::size_t surface = 0;
     for (std::size_t i = 0; i < heights.size(); ++i) {
       const auto column = static_cast<std::int64_t>(i) % all.width;

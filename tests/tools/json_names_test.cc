@@ -163,6 +163,10 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   question({"viewshed", store, "500500", "3999500", "2", "--radius", "300", "-o", file("a.gpkg")});
   question({"export", store, "-o", file("c.ply"), "-q"});
   question({"export", store, "-o", file("c.tif"), "--pixel-size", "30", "-q"});
+  question({"export", store, "--what", "slope", "-o", file("slope.tif"), "-q"});
+  question({"export", store, "-o", file("c.stl"), "-q"});
+  question({"refine", store, "--error", "2", "-o", file("a.stl")});
+  question({"unstream", file("a.pts"), "-o", file("b.stl")});
   question({"render", store, "-o", file("a.png"), "-q"});
   ask({"stream", store, "--window", "500100", "3999300", "500700", "3999900", "--error", "1",
        "--level", "90", "--splits", "40", "-o", file("d.pts")});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// GeoPackage and FlatGeobuf: a feature a triangle.
+// GeoPackage and FlatGeobuf: a feature a triangle, with its slope and aspect.
 #include <array>
 #include <cstring>
 
@@ -8,7 +8,9 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include "engine/crs/ground.h"
 #include "engine/error.h"
+#include "tools/export/tin_samples.h"
 #include "tools/export/tin_sink.h"
 #include "tools/output/gdal_output.h"
 #include "tools/output/pending_file.h"
@@ -51,7 +53,10 @@ class TriangleWkb {
 class OgrSink final : public TinSink {
  public:
   OgrSink(const SinkTarget& target, const char* driver_name, bool has_index, bool has_transactions)
-      : pending_(target.path, target.overwrite), has_transactions_(has_transactions) {
+      : pending_(target.path, target.overwrite),
+        has_transactions_(has_transactions),
+        slope_in_percent_(target.slope_in_percent),
+        per_map_unit_(ground_of(target.crs).per_map_unit) {
     GDALDriver& driver = driver_named(driver_name);
     CPLErrorReset();
     dataset_.reset(driver.Create(pending_.temporary().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
@@ -64,6 +69,11 @@ class OgrSink final : public TinSink {
     options.SetNameValue("SPATIAL_INDEX", has_index ? "YES" : "NO");
     layer_ = dataset_->CreateLayer("triangles", has_srs ? &srs : nullptr, wkbPolygon25D, options);
     if (layer_ == nullptr) throw gdal_failure("cannot create a layer", pending_.path());
+    for (const char* name : {"slope", "aspect"}) {
+      OGRFieldDefn field(name, OFTReal);
+      if (layer_->CreateField(&field) != OGRERR_NONE)
+        throw gdal_failure("cannot create a field", pending_.path());
+    }
     feature_.reset(OGRFeature::CreateFeature(layer_->GetLayerDefn()));
     begin();
   }
@@ -71,6 +81,7 @@ class OgrSink final : public TinSink {
   void add(const TinPatch& patch) override {
     for (const auto& triangle : patch.triangles) {
       for (std::size_t i = 0; i < 4; ++i) wkb_.set(i, patch.point(triangle[i % 3]));
+      set_fields(patch, triangle);
       write();
     }
   }
@@ -87,6 +98,23 @@ class OgrSink final : public TinSink {
   }
 
  private:
+  void set_fields(const TinPatch& patch, const std::array<TinPatch::Corner, 3>& triangle) {
+    std::array<VertexId, 3> corners{};
+    MapPoint middle;
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = triangle[i].local;
+      const TinPatch::Point p = patch.point(triangle[i]);
+      middle = {middle.x + p[0] / 3, middle.y + p[1] / 3};
+    }
+    const Slope slope = slope_of(normal_of(*patch.tin, corners, patch.facts->heights), *patch.facts,
+                                 per_map_unit_(middle));
+    feature_->SetField(0, slope_in_percent_ ? percent_of(slope) : degrees_of(slope));
+    if (const std::optional<double> aspect = aspect_of(slope)) {
+      feature_->SetField(1, *aspect);
+    } else {
+      feature_->SetFieldNull(1);
+    }
+  }
   void write() {
     OGRGeometry* geometry = nullptr;
     if (OGRGeometryFactory::createFromWkb(wkb_.data(), nullptr, &geometry, TriangleWkb::size()) !=
@@ -128,6 +156,8 @@ class OgrSink final : public TinSink {
 
   PendingFile pending_;
   bool has_transactions_;
+  bool slope_in_percent_;
+  std::function<MapPoint(MapPoint)> per_map_unit_;
   GDALDatasetUniquePtr dataset_;
   OGRLayer* layer_ = nullptr;
   std::unique_ptr<OGRFeature, FeatureDestroyer> feature_;

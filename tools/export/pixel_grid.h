@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A raster laid over a terrain, and the TIN sampled at the centres of its pixels, exactly.
+// A raster laid over a terrain: where the centres of its pixels stand.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "engine/query/terrain.h"
 #include "storage/store_file.h"
@@ -27,6 +26,8 @@ struct PixelRect {
 /// Positions on the grid are rounded to 2^-20 grid units; from there on everything is exact.
 class PixelGrid {
  public:
+  static constexpr int kLatticeBits = 20;  ///< Positions are whole multiples of 2^-20.
+
   /// @param facts   Of the terrain; borrowed for the life of the grid.
   /// @param size    Width and height of a pixel, in map units, > 0.
   /// @param window  Only pixels with their centres in this closed window; none means the terrain's
@@ -43,6 +44,8 @@ class PixelGrid {
   /// The centre of a column or row, in units of 2^-20 grid units.
   [[nodiscard]] std::int64_t x(std::int64_t column) const noexcept;
   [[nodiscard]] std::int64_t y(std::int64_t row) const noexcept;
+  /// The centre of a pixel, in map units.
+  [[nodiscard]] MapPoint centre(std::int64_t column, std::int64_t row) const noexcept;
   /// The grid box around the centres of `rect`, closed, clipped to the grid.
   [[nodiscard]] GridBox box(const PixelRect& rect) const noexcept;
 
@@ -53,15 +56,5 @@ class PixelGrid {
   std::int64_t first_column_ = 0, first_row_ = 0;  ///< In pixels from the corner.
   std::int64_t columns_ = 0, rows_ = 0;
 };
-
-/// Samples `refined` at the pixels of `part`. The height of each centre that lies in a closed
-/// surface triangle is written to its place in `heights`, which holds the pixels of `rect` row by
-/// row from the north; other places are left alone. A centre on a vertex gets the vertex's height,
-/// one on an edge is interpolated along the edge alone: so a height depends neither on the triangle
-/// that gives it nor on the part. Weights are exact; the height is rounded where it is formed.
-/// @param part  Inside of `rect`.
-/// Cost: the triangles, and the pixels under them.
-void sample_tin(const RefinedTin& refined, const StoreFacts& facts, const PixelGrid& grid,
-                const PixelRect& part, const PixelRect& rect, std::vector<double>& heights);
 
 }  // namespace ptin::tools

@@ -12,8 +12,10 @@
 #include <ogr_spatialref.h>
 
 #include "engine/construct/memory_plan.h"
+#include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "engine/stop.h"
+#include "tools/export/tin_samples.h"
 #include "tools/output/gdal_output.h"
 #include "tools/output/pending_file.h"
 
@@ -23,9 +25,12 @@ namespace {
 
 constexpr const char* kBlockSide = "512";
 
-/// The type of the pixels: Float64 where Float32 does not hold every height of a vertex. Float32
-/// holds whole multiples of a power of two that take at most 24 bits; it does not hold tenths.
-GDALDataType type_for(const StoreFacts& facts) {
+/// The type of the pixels: of heights Float64 where Float32 does not hold every height of a vertex.
+/// Float32 holds whole multiples of a power of two that take at most 24 bits; it does not hold
+/// tenths.
+GDALDataType type_for(const StoreFacts& facts, PixelValue value) {
+  if (value == PixelValue::kHillshade) return GDT_Byte;
+  if (value != PixelValue::kHeight) return GDT_Float32;
   const HeightEncoding& heights = facts.heights;
   if (heights.type != HeightType::int32) return GDT_Float32;
   int exponent = 0;
@@ -49,7 +54,9 @@ CPLStringList options_of(const RasterTarget& target, bool for_copy) {
   set("BIGTIFF", "IF_SAFER");
   if (for_copy) {
     set("PREDICTOR", "YES");
-    set("OVERVIEW_RESAMPLING", "AVERAGE");
+    // The mean of 359 and 1 degrees is no direction between them.
+    const bool is_aspect = target.content.value == PixelValue::kAspect;
+    set("OVERVIEW_RESAMPLING", is_aspect ? "NEAREST" : "AVERAGE");
     return options;
   }
   set("TILED", "YES");
@@ -59,7 +66,7 @@ CPLStringList options_of(const RasterTarget& target, bool for_copy) {
   }
   const std::string compression = options.FetchNameValueDef("COMPRESS", "");
   if (compression == "DEFLATE" || compression == "LZW" || compression == "ZSTD")
-    set("PREDICTOR", "3");
+    set("PREDICTOR", target.content.value == PixelValue::kHillshade ? "2" : "3");
   return options;
 }
 
@@ -93,6 +100,7 @@ class RasterWriter {
         grid_(grid),
         target_(target),
         band_(*dataset.GetRasterBand(1)),
+        per_map_unit_(ground_of(target.crs).per_map_unit),
         progress_(progress) {
     int width = 0;
     int height = 0;
@@ -140,15 +148,39 @@ class RasterWriter {
   /// Samples and writes a rectangle of blocks: together when it fits, else half by half.
   void write(const PixelRect& b) {
     const PixelRect rect = pixels_of(b);
+    const std::uint64_t pixel_bytes = sizeof(double) + (of_heights() ? 0 : sizeof(GridNormal));
     const bool buffer_fits =
-        static_cast<std::uint64_t>(rect.pixels()) * sizeof(double) <= target_.buffer_bytes;
+        static_cast<std::uint64_t>(rect.pixels()) * pixel_bytes <= target_.buffer_bytes;
     if (b.pixels() > 1 && !(buffer_fits && fits(rect))) {
       for (const PixelRect& half : halves(b)) write(half);
       return;
     }
-    heights_.assign(static_cast<std::size_t>(rect.pixels()), target_.nodata);
+    const auto pixels = static_cast<std::size_t>(rect.pixels());
+    values_.assign(pixels, target_.nodata);
+    if (!of_heights()) normals_.assign(pixels, {});
     sample(rect, rect);
+    if (!of_heights()) turn_normals_into_values(rect);
     emit(b, rect);
+  }
+
+  [[nodiscard]] bool of_heights() const { return target_.content.value == PixelValue::kHeight; }
+
+  void turn_normals_into_values(const PixelRect& rect) {
+    const StoreFacts& facts = refiner_.terrain().store().facts();
+    for (std::size_t i = 0; i < normals_.size(); ++i) {
+      if (!(normals_[i].z > 0)) continue;
+      const auto place = static_cast<std::int64_t>(i);
+      const MapPoint centre =
+          grid_.centre(rect.column + place % rect.width, rect.row + place / rect.width);
+      values_[i] = value_of(slope_of(normals_[i], facts, per_map_unit_(centre)));
+    }
+  }
+
+  [[nodiscard]] double value_of(const Slope& slope) const {
+    const PixelContent& content = target_.content;
+    if (content.value == PixelValue::kAspect) return aspect_of(slope).value_or(target_.nodata);
+    if (content.value == PixelValue::kHillshade) return grey_of(content.light.on(slope));
+    return content.in_percent ? percent_of(slope) : degrees_of(slope);
   }
 
   void sample(const PixelRect& part, const PixelRect& rect) {
@@ -159,7 +191,12 @@ class RasterWriter {
       return;
     }
     const RefinedTin refined = refiner_.refine(box);
-    sample_tin(refined, refiner_.terrain().store().facts(), grid_, part, rect, heights_);
+    const StoreFacts& facts = refiner_.terrain().store().facts();
+    if (of_heights()) {
+      sample_heights(refined, facts, grid_, part, rect, values_);
+    } else {
+      sample_normals(refined, facts, grid_, part, rect, normals_);
+    }
   }
 
   /// Writes the blocks of `b` in the order in which halving reaches them.
@@ -170,6 +207,8 @@ class RasterWriter {
     }
     if (band_.GetRasterDataType() == GDT_Float64) {
       write_block<double>(b, rect);
+    } else if (band_.GetRasterDataType() == GDT_Byte) {
+      write_block<std::uint8_t>(b, rect);
     } else {
       write_block<float>(b, rect);
     }
@@ -189,10 +228,10 @@ class RasterWriter {
     for (std::int64_t y = 0; y < pixels.height; ++y) {
       const std::int64_t from =
           (pixels.row + y - rect.row) * rect.width + pixels.column - rect.column;
-      std::transform(heights_.begin() + from, heights_.begin() + from + pixels.width,
-                     block.begin() + y * block_width_, [&](double height) {
-                       const T written = static_cast<T>(height);
-                       note_rounding(height, static_cast<double>(written));
+      std::transform(values_.begin() + from, values_.begin() + from + pixels.width,
+                     block.begin() + y * block_width_, [&](double value) {
+                       const T written = static_cast<T>(value);
+                       note_rounding(value, static_cast<double>(written));
                        return written;
                      });
     }
@@ -204,7 +243,7 @@ class RasterWriter {
   }
 
   void note_rounding(double height, double written) noexcept {
-    if (height != target_.nodata) {
+    if (of_heights() && height != target_.nodata) {
       // Exact: the two numbers are nearly the same.
       largest_rounding_ = std::max(largest_rounding_, std::abs(written - height));
     }
@@ -214,12 +253,14 @@ class RasterWriter {
   const PixelGrid& grid_;
   const RasterTarget& target_;
   GDALRasterBand& band_;
+  std::function<MapPoint(MapPoint)> per_map_unit_;
   const std::function<void(double)>& progress_;
   std::int64_t block_width_ = 0;
   std::int64_t block_height_ = 0;
   std::int64_t blocks_done_ = 0;
   double largest_rounding_ = 0.0;
-  std::vector<double> heights_;
+  std::vector<double> values_;
+  std::vector<GridNormal> normals_;  ///< Beside `values_`; empty when these are heights.
 };
 
 /// Refuses options that the driver does not know; GDAL itself only warns of them.
@@ -232,6 +273,21 @@ void check_creation_options(GDALDriver* driver, const CPLStringList& options,
   }
 }
 
+/// The unit of the pixels; empty when it is unknown, or there is none.
+std::string unit_of(const RasterTarget& target) {
+  switch (target.content.value) {
+    case PixelValue::kHeight:
+      return target.crs.vertical_unit == "unknown" ? "" : target.crs.vertical_unit;
+    case PixelValue::kSlope:
+      return target.content.in_percent ? "percent" : "degree";
+    case PixelValue::kAspect:
+      return "degree";
+    case PixelValue::kHillshade:
+      break;
+  }
+  return {};
+}
+
 GDALDatasetUniquePtr create(const PendingFile& file, const PixelGrid& grid,
                             const RasterTarget& target, const StoreFacts& facts) {
   GDALDriver& driver = driver_named("GTiff");
@@ -240,7 +296,7 @@ GDALDatasetUniquePtr create(const PendingFile& file, const PixelGrid& grid,
   CPLErrorReset();
   GDALDatasetUniquePtr dataset(driver.Create(
       file.temporary().c_str(), static_cast<int>(grid.columns()), static_cast<int>(grid.rows()), 1,
-      type_for(facts), const_cast<char**>(options.List())));
+      type_for(facts, target.content.value), const_cast<char**>(options.List())));
   if (!dataset) throw gdal_failure("cannot create the raster", target.path);
   auto transform = grid.geotransform();
   require_done(dataset->SetGeoTransform(transform.data()), "cannot place the raster", target.path);
@@ -251,7 +307,8 @@ GDALDatasetUniquePtr create(const PendingFile& file, const PixelGrid& grid,
   }
   GDALRasterBand* band = dataset->GetRasterBand(1);
   require_done(band->SetNoDataValue(target.nodata), "cannot set the nodata value", target.path);
-  if (target.crs.vertical_unit != "unknown") band->SetUnitType(target.crs.vertical_unit.c_str());
+  const std::string unit = unit_of(target);
+  if (!unit.empty()) band->SetUnitType(unit.c_str());
   return dataset;
 }
 
@@ -292,9 +349,11 @@ void copy_as_cog(const PendingFile& raw, const PendingFile& file, const RasterTa
 
 }  // namespace
 
-double default_nodata(const StoreFacts& facts) noexcept {
+double default_nodata(const StoreFacts& facts, PixelValue value) noexcept {
   constexpr double kUsual = -9999.0;
-  if (!(facts.min_height <= kUsual && kUsual <= facts.max_height)) return kUsual;
+  if (value == PixelValue::kHillshade) return 0.0;
+  if (value != PixelValue::kHeight || !(facts.min_height <= kUsual && kUsual <= facts.max_height))
+    return kUsual;
   return static_cast<double>(std::numeric_limits<float>::lowest());
 }
 

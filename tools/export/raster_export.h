@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A TIN sampled into a GeoTIFF or a COG, block by block.
+// A TIN sampled into a GeoTIFF or a COG, block by block: its heights, or how its triangles lie.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,29 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 #include "tools/export/pixel_grid.h"
+#include "tools/slope.h"
 
 namespace ptin::tools {
+
+/// What a pixel tells of the surface at its centre.
+enum class PixelValue {
+  kHeight,
+  kSlope,     ///< 0 to 90 degrees, or percent.
+  kAspect,    ///< Degrees clockwise from north, of where the surface falls to.
+  kHillshade  ///< 1 to 255.
+};
+
+struct PixelContent {
+  PixelValue value = PixelValue::kHeight;
+  bool in_percent = false;  ///< Slopes.
+  Light light{315, 45};     ///< Hillshades.
+};
 
 struct RasterTarget {
   std::string path;
   bool overwrite = false;
   bool is_cog = false;
+  PixelContent content;
   double nodata = -9999.0;
   std::vector<std::string> creation_options;  ///< KEY=VALUE for the driver; they override ours.
   CrsFacts crs;
@@ -27,15 +43,17 @@ struct RasterTarget {
   std::uint64_t table_bytes = std::uint64_t{64} << 20;  ///< For GDAL's table of blocks.
 };
 
-/// Samples the TIN of `refiner` at the centres of `grid` and writes the heights: as Float32, or as
-/// Float64 where Float32 does not hold every height of a vertex. A pixel without surface gets
-/// `nodata`.
+/// Samples the TIN of `refiner` at the centres of `grid` and writes what `target.content` names.
+/// Heights are Float32, or Float64 where Float32 does not hold every height of a vertex. Slopes and
+/// aspects are Float32, hillshades bytes, all three of the normal that sample_normals() gives, over
+/// ground at the pixel's centre. A pixel without surface gets `nodata`, and so does the aspect of
+/// what is flat.
 ///
 /// Blocks are sampled together as far as memory allows, and written in an order that depends on the
 /// size of the raster alone. A COG is copied by GDAL, with its overviews, from a GeoTIFF beside it.
 /// @param progress  Called with the share done, 0 to 1; may be empty.
 /// @return The largest distance of a written height from that of the TIN: what Float32 rounds
-/// between vertices.
+/// between vertices; 0 of what is no height.
 /// @throws Error  invalid_argument    GDAL refuses an option, or the output exists
 ///                resource_exhausted  what a single pixel needs does not fit the memory; the table
 ///                                    of blocks does not fit `table_bytes`; the disk is full
@@ -44,8 +62,8 @@ struct RasterTarget {
                                    const RasterTarget& target,
                                    const std::function<void(double)>& progress);
 
-/// A value for pixels without a height: -9999, or the lowest float when -9999 lies between the
-/// terrain's least and largest height.
-[[nodiscard]] double default_nodata(const StoreFacts& facts) noexcept;
+/// A value for pixels without one: 0 of hillshades, else -9999; of heights the lowest float when
+/// -9999 lies between the terrain's least and largest height.
+[[nodiscard]] double default_nodata(const StoreFacts& facts, PixelValue value) noexcept;
 
 }  // namespace ptin::tools

@@ -9,6 +9,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "tools/export/tin_patch.h"
+#include "tools/formats/mesh.h"
 
 namespace ptin::tools {
 
@@ -17,6 +18,8 @@ struct SinkTarget {
   std::string path;
   bool overwrite = false;
   CrsFacts crs;
+  LocalFrame frame;                                      ///< Of STL.
+  bool slope_in_percent = false;                         ///< Of the field `slope`: else in degrees.
   std::uint64_t border_bytes = std::uint64_t{64} << 20;  ///< What PatchMaker::make() may take.
   std::uint64_t index_bytes = std::uint64_t{256} << 20;  ///< For an index of features.
   std::uint64_t most_triangles = 0;                      ///< At most; tells the size of that index.
@@ -42,11 +45,17 @@ class TinSink {
 [[nodiscard]] std::unique_ptr<TinSink> make_ply_sink(const SinkTarget& target);
 
 /// Triangles as polygons with heights, one feature each, written by GDAL as POLYGON Z, which QGIS
-/// reads in any version. A GeoPackage gets its spatial index when it is finished. A FlatGeobuf gets
+/// reads in any version. The fields `slope` and `aspect` tell how a triangle lies over ground
+/// (tools/slope.h), at its middle; `aspect` is null where it is flat. A GeoPackage gets its spatial index when it is finished. A FlatGeobuf gets
 /// one where the index fits `index_bytes` (128 bytes a triangle).
 [[nodiscard]] std::unique_ptr<TinSink> make_geopackage_sink(const SinkTarget& target);
 [[nodiscard]] std::unique_ptr<TinSink> make_flatgeobuf_sink(const SinkTarget& target);
 /// True when a FlatGeobuf gets its index.
 [[nodiscard]] bool flatgeobuf_index_fits(const SinkTarget& target);
+
+/// As tools/formats/mesh_stream.h has them.
+[[nodiscard]] std::unique_ptr<TinSink> make_land_xml_sink(const SinkTarget& target);
+[[nodiscard]] std::unique_ptr<TinSink> make_dxf_sink(const SinkTarget& target);
+[[nodiscard]] std::unique_ptr<TinSink> make_stl_sink(const SinkTarget& target);
 
 }  // namespace ptin::tools

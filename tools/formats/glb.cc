@@ -19,17 +19,12 @@ namespace {
 
 using Vec3f = std::array<float, 3>;
 
-/// The origin of the local frame, and the number of local units in a unit of x, y and z.
-struct LocalFrame {
-  std::array<double, 3> origin{};
-  std::array<double, 3> scale{1.0, 1.0, 1.0};
-
-  [[nodiscard]] Vec3f to_local(const std::array<double, 3>& p) const {
-    return {static_cast<float>((p[0] - origin[0]) * scale[0]),
-            static_cast<float>((p[2] - origin[2]) * scale[2]),
-            static_cast<float>((origin[1] - p[1]) * scale[1])};
-  }
-};
+/// A position in the local frame, turned so that y is up.
+Vec3f turned_up(const LocalFrame& frame, const std::array<double, 3>& p) {
+  const std::array<double, 3> local = frame.to_local(p);
+  return {static_cast<float>(local[0]), static_cast<float>(local[2]),
+          -static_cast<float>(local[1])};
+}
 
 LocalFrame frame_of(const Mesh& mesh) {
   if (mesh.vertices.empty()) return {};
@@ -69,8 +64,8 @@ nlohmann::json extent_of(const std::vector<Vec3f>& points, bool upper) {
 nlohmann::json scene_of(const Mesh& mesh, const LocalFrame& frame) {
   nlohmann::json extras = {
       {"origin", frame.origin}, {"scale", frame.scale}, {"axes", "x east, y up, z south"}};
-  if (!mesh.crs.empty()) extras["crs"] = mesh.crs;
-  if (!mesh.vertical_crs.empty()) extras["vertical_crs"] = mesh.vertical_crs;
+  if (!mesh.crs.horizontal_text().empty()) extras["crs"] = mesh.crs.horizontal_text();
+  if (!mesh.crs.vertical_text().empty()) extras["vertical_crs"] = mesh.crs.vertical_text();
   nlohmann::json json;
   json["asset"] = {{"version", "2.0"}, {"generator", "ptin"}};
   json["scene"] = 0;
@@ -121,7 +116,7 @@ void write_glb(const Mesh& mesh, OutputFile& out) {
   const LocalFrame frame = frame_of(mesh);
   std::vector<Vec3f> points;
   points.reserve(mesh.vertices.size());
-  for (const auto& vertex : mesh.vertices) points.push_back(frame.to_local(vertex));
+  for (const auto& vertex : mesh.vertices) points.push_back(turned_up(frame, vertex));
   const std::vector<Vec3f> normals = normals_of(points, mesh);
 
   nlohmann::json json = scene_of(mesh, frame);

@@ -10,12 +10,24 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr std::array<MeshFormat, 4> kMeshFormats = {{
-    {"ply", "PLY, binary, double coordinates (QGIS, Blender, MeshLab)", write_ply},
-    {"obj", "Wavefront OBJ, text", write_obj},
-    {"2dm", "SMS 2DM, text (QGIS, hydraulic models)", write_2dm},
-    {"glb", "glTF 2.0 binary, around a local origin (viewers, Blender, web)", write_glb},
+constexpr std::array<MeshFormat, 7> kMeshFormats = {{
+    {"ply", "PLY, binary, double coordinates (QGIS, Blender, MeshLab)", write_ply, nullptr},
+    {"obj", "Wavefront OBJ, text", write_obj, nullptr},
+    {"2dm", "SMS 2DM, text (QGIS, hydraulic models)", write_2dm, nullptr},
+    {"glb", "glTF 2.0 binary, around a local origin (viewers, Blender, web)", write_glb, nullptr},
+    {"xml", "LandXML 1.2, a TIN surface (CAD, machine control)", nullptr, make_land_xml},
+    {"dxf", "DXF, a 3DFACE a triangle (CAD)", nullptr, make_dxf},
+    {"stl", "STL, binary, around a local origin (3D printing)", nullptr, make_stl},
 }};
+
+void write_in_pieces(const Mesh& mesh, MeshStream& stream) {
+  for (const auto& vertex : mesh.vertices) stream.add_vertex(vertex);
+  for (const auto& t : mesh.triangles) {
+    stream.add_triangle(
+        {{{t[0], mesh.vertices[t[0]]}, {t[1], mesh.vertices[t[1]]}, {t[2], mesh.vertices[t[2]]}}});
+  }
+  stream.publish();
+}
 
 }  // namespace
 
@@ -36,6 +48,10 @@ const MeshFormat& mesh_format_of(const std::string& path) {
 
 void write_mesh(const Mesh& mesh, const std::string& path, bool overwrite) {
   const MeshFormat& format = mesh_format_of(path);
+  if (format.make != nullptr) {
+    write_in_pieces(mesh, *format.make({path, overwrite, mesh.crs, mesh.frame}));
+    return;
+  }
   OutputFile out(path, overwrite);
   format.write(mesh, out);
   out.publish();

@@ -3,20 +3,24 @@
 // Writing meshes: one writer a format, chosen by the extension of the file's name.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "tools/formats/mesh.h"
+#include "tools/formats/mesh_stream.h"
 #include "tools/output/output_file.h"
 
 namespace ptin::tools {
 
 /// A mesh format: its extension and how to write it.
 struct MeshFormat {
-  std::string_view extension;    ///< Lower case, without the dot.
-  std::string_view description;  ///< For --help and error messages.
-  void (*write)(const Mesh& mesh, OutputFile& out);
+  std::string_view extension;                        ///< Lower case, without the dot.
+  std::string_view description;                      ///< For --help and error messages.
+  void (*write)(const Mesh& mesh, OutputFile& out);  ///< Null where there is `make`.
+  /// Of a format that is written piece by piece; else null.
+  std::unique_ptr<MeshStream> (*make)(const MeshStreamTarget& target);
 };
 
 /// Every known format.
@@ -31,7 +35,7 @@ struct MeshFormat {
 /// the mesh
 void write_mesh(const Mesh& mesh, const std::string& path, bool overwrite);
 
-// The writers. Each documents its own conventions.
+// The writers of whole meshes. Each documents its own conventions.
 void write_ply(const Mesh& mesh, OutputFile& out);
 void write_obj(const Mesh& mesh, OutputFile& out);
 void write_2dm(const Mesh& mesh, OutputFile& out);

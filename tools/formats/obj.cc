@@ -9,8 +9,9 @@ namespace ptin::tools {
 
 void write_obj(const Mesh& mesh, OutputFile& out) {
   std::string line = "# written by ptin; x east, y north, z up\n";
-  if (!mesh.crs.empty()) line += "# crs: " + mesh.crs + "\n";
-  if (!mesh.vertical_crs.empty()) line += "# vertical_crs: " + mesh.vertical_crs + "\n";
+  if (!mesh.crs.horizontal_text().empty()) line += "# crs: " + mesh.crs.horizontal_text() + "\n";
+  if (!mesh.crs.vertical_text().empty())
+    line += "# vertical_crs: " + mesh.crs.vertical_text() + "\n";
   out.write(line);
   for (const auto& vertex : mesh.vertices) {
     line.assign(1, 'v');

@@ -15,8 +15,10 @@ namespace {
 
 std::string header_of(const Mesh& mesh) {
   std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by ptin\n";
-  if (!mesh.crs.empty()) text += "comment crs: " + mesh.crs + "\n";
-  if (!mesh.vertical_crs.empty()) text += "comment vertical_crs: " + mesh.vertical_crs + "\n";
+  if (!mesh.crs.horizontal_text().empty())
+    text += "comment crs: " + mesh.crs.horizontal_text() + "\n";
+  if (!mesh.crs.vertical_text().empty())
+    text += "comment vertical_crs: " + mesh.crs.vertical_text() + "\n";
   text += "element vertex " + std::to_string(mesh.vertices.size()) + "\n";
   text += "property double x\nproperty double y\nproperty double z\n";
   text += "element face " + std::to_string(mesh.triangles.size()) + "\n";

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include <cpl_conv.h>
 #include <gdal_priv.h>
@@ -87,9 +88,14 @@ void create_fields(OGRLayer& layer, const VectorFile::Layer& wanted, const std::
   }
 }
 
-/// True when a file ends as whole GeoJSON does, with "]\n}". GDAL's GeoJSON driver does not tell
-/// when the disk is full.
-bool ends_as_geojson(const std::string& path) {
+/// How a whole file of a format ends, but for white space, where GDAL's driver does not tell when the
+/// disk is full; else empty.
+std::string_view end_of_whole_file(const std::string& driver) {
+  if (driver == kGeoJson.driver) return "]}";
+  return driver == "DXF" ? "EOF" : "";
+}
+
+bool ends_with(const std::string& path, std::string_view end) {
   constexpr std::streamoff kTail = 16;
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = in.tellg();
@@ -98,7 +104,7 @@ bool ends_as_geojson(const std::string& path) {
   for (char c = 0; in.get(c);) {
     if (std::isspace(static_cast<unsigned char>(c)) == 0) tail += c;
   }
-  return tail.ends_with("]}");
+  return tail.ends_with(end);
 }
 
 /// The name under which a file of the output is published. The file that was asked for gets the
@@ -136,22 +142,25 @@ const VectorFormat* find_vector_format(const std::string& path) {
   return nullptr;
 }
 
-const VectorFormat& vector_format_of(const std::string& path) {
-  if (path == "-") return kGeoJson;
-  if (const VectorFormat* format = find_vector_format(path)) return *format;
+void refuse_extension(const std::string& path, const std::string& known) {
   const std::string extension = lower_extension(path);
   const std::string what = extension.empty() ? std::string("the name has no extension")
                                              : std::string("unknown extension ").append(extension);
   throw Error(ErrorCode::invalid_argument,
-              what + "; known are " + known_vector_extensions() + ", and - for GeoJSON on stdout",
-              path);
+              what + "; known are " + known + ", and - for GeoJSON on stdout", path);
+}
+
+const VectorFormat& vector_format_of(const std::string& path) {
+  if (path == "-") return kGeoJson;
+  if (const VectorFormat* format = find_vector_format(path)) return *format;
+  refuse_extension(path, known_vector_extensions());
 }
 
 VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     : path_(std::move(path)), overwrite_(overwrite), dataset_(nullptr, [](GDALDataset* d) {
         if (d != nullptr) GDALClose(d);
       }) {
-  const VectorFormat& format = vector_format_of(path_);
+  driver_ = layer.driver != nullptr ? layer.driver : vector_format_of(path_).driver;
   std::string target = "/vsistdout/";
   if (path_ != "-") {
     check_output(path_, overwrite_);
@@ -172,7 +181,7 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     target = (fs::path(folder_->path()) / fs::path(path_).filename()).string();
   }
   try {
-    GDALDriver& driver = driver_named(format.driver);
+    GDALDriver& driver = driver_named(driver_.c_str());
     const UnsafeSqlite unsafe;
     CPLErrorReset();
     dataset_.reset(driver.Create(target.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
@@ -182,6 +191,8 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     }
     if (layer_ == nullptr) throw gdal_failure("cannot create the output", path_);
     create_fields(*layer_, layer, path_);
+    for (const Field& field : layer.fields)
+      fields_.push_back(layer_->GetLayerDefn()->GetFieldIndex(field.name));
     if (dataset_->TestCapability(ODsCTransactions) != 0 &&
         dataset_->StartTransaction() != OGRERR_NONE) {
       throw gdal_failure("cannot begin to write the output", path_);
@@ -197,7 +208,7 @@ VectorFile::~VectorFile() { dataset_.reset(); }
 void VectorFile::add(std::unique_ptr<OGRGeometry> geometry, std::span<const Value> values) {
   OGRFeature feature(layer_->GetLayerDefn());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    set_field(feature, static_cast<int>(i), values[i]);
+    set_field(feature, fields_[i], values[i]);
   }
   feature.SetGeometryDirectly(geometry.release());
   if (layer_->CreateFeature(&feature) != OGRERR_NONE) {
@@ -216,8 +227,8 @@ void VectorFile::close() {
   }
   dataset_.reset();
   if (CPLGetLastErrorType() == CE_Failure) throw gdal_failure("cannot write the output", path_);
-  if (folder_ && &vector_format_of(path_) == &kGeoJson &&
-      !ends_as_geojson((fs::path(folder_->path()) / fs::path(path_).filename()).string())) {
+  if (folder_ && !ends_with((fs::path(folder_->path()) / fs::path(path_).filename()).string(),
+                            end_of_whole_file(driver_))) {
     throw gdal_failure("cannot write the output", path_);
   }
 }

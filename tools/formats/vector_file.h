@@ -34,6 +34,10 @@ struct VectorFormat {
 /// @throws Error invalid_argument  unknown extension
 [[nodiscard]] const VectorFormat& vector_format_of(const std::string& path);
 
+/// Refuses an output whose name ends in none of the extensions that are known.
+/// @throws Error invalid_argument
+[[noreturn]] void refuse_extension(const std::string& path, const std::string& known);
+
 /// One layer in one file. It is written in a folder beside the target, and publish() renames it.
 /// Destroyed without publish(), it removes what it wrote. With "-" features go to stdout as they
 /// come.
@@ -51,10 +55,13 @@ class VectorFile {
     OGRwkbGeometryType geometry;
     std::vector<Field> fields;
     std::string crs_wkt;  ///< Empty: unknown.
+    /// GDAL's name of a format that only some layers fit, as DXF; null: by the file's extension.
+    const char* driver = nullptr;
   };
   /// A number that is infinite or unknown leaves its field null.
   using Value = std::variant<std::int64_t, double, std::string>;
 
+  /// A field that the format has of itself (as DXF its `Layer`) is the layer's own.
   /// @throws Error as check_output; io_error when GDAL cannot create the file
   VectorFile(std::string path, bool overwrite, const Layer& layer);
   VectorFile(const VectorFile&) = delete;
@@ -75,8 +82,10 @@ class VectorFile {
   /// For the work; none on stdout.
   std::optional<TemporaryPath> folder_;
   bool overwrite_;
+  std::string driver_;
   std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> dataset_;
   OGRLayer* layer_ = nullptr;
+  std::vector<int> fields_;  ///< Places of the layer's fields in a feature.
 };
 
 /// A line through map points; all of them at height `z`, unless `z` is null.

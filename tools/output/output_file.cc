@@ -14,6 +14,7 @@
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
 #include "tools/output/companion_files.h"
+#include "tools/refused_memory.h"
 
 namespace ptin::tools {
 
@@ -169,6 +170,7 @@ void OutputFile::replace(std::uint64_t offset, std::string_view bytes) {
 }
 
 void OutputFile::publish() {
+  require_memory_given(path_);  // without it a CRS may have lost its name on the way
   flush();
   const int failure = sync_content(files_, fd_);
   if (failure != 0) throw system_error(failure, "cannot sync", path_);

@@ -63,7 +63,7 @@ class OutputFile {
 
   /// Makes the file appear under its name. With `overwrite` the companions of the file that it
   /// replaces are removed first (tools/output/companion_files.h).
-  /// @throws Error resource_exhausted  the disk is full
+  /// @throws Error resource_exhausted  the disk is full; memory was refused (tools/refused_memory.h)
   /// @throws Error io_error  also: the folder cannot be synced; then the file has its name
   /// @throws Error invalid_argument  the target has appeared meanwhile and `overwrite` is off
   void publish();

@@ -70,6 +70,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin isoline dem.ptin --interval 20 -o contours.gpkg\n"
      "  ptin isoline dem.ptin --level 500 1000 --3d -o two.fgb --error 2\n"
      "  ptin isoline dem.ptin --interval 100 --base 50 --polygons -o bands.gpkg\n"
+     "  ptin isoline dem.ptin --interval 2 --window 385000 3790000 390000 3795000 -o site.dxf\n"
      "  ptin isoline dem.ptin --level 0 --window 385000 3790000 390000 3795000 -o - | jq "
      ".features\n",
      declare_isoline},
@@ -84,7 +85,9 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin export dem.ptin -o dem.ply\n"
      "  ptin export dem.ptin --error 2 --memory 256M -o dem_2m.gpkg\n"
+     "  ptin export dem.ptin --error 0.1 --window 385000 3790000 390000 3795000 -o site.xml\n"
      "  ptin export dem.ptin --error 5 --pixel-size 90m -o coarse.tif\n"
+     "  ptin export dem.ptin --what slope --slope-unit percent -o slope.tif\n"
      "  ptin export dem.ptin --window 385000 3790000 390000 3795000 --format COG -o valley.tif\n",
      declare_export},
     {"stream", "Send a terrain progressively, the most important first",

@@ -15,10 +15,12 @@
 #include "tools/export/raster_export.h"
 #include "tools/export/tin_sink.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/human.h"
 #include "tools/output/file_name.h"
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
+#include "tools/ptin/export_report.h"
+#include "tools/ptin/mesh_crs.h"
+#include "tools/ptin/pixel_content.h"
 #include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
 
@@ -31,6 +33,7 @@ struct ExportOptions {
   RegionOptions region;
   DetailOptions detail;
   std::vector<std::string> pixel_size;
+  PixelContentOptions content;
   std::optional<double> nodata;
   std::vector<std::string> creation_options;
   std::string format;
@@ -47,12 +50,30 @@ struct ExportFormat {
   std::unique_ptr<TinSink> (*make_sink)(const SinkTarget& target);  ///< Null for rasters.
   bool is_cog;
 };
-constexpr std::array<ExportFormat, 5> kFormats = {
+constexpr std::array<ExportFormat, 8> kFormats = {
     {{"PLY", ".ply", make_ply_sink, false},
+     {"LandXML", ".xml", make_land_xml_sink, false},
+     {"DXF", ".dxf", make_dxf_sink, false},
+     {"STL", ".stl", make_stl_sink, false},
      {"GPKG", ".gpkg", make_geopackage_sink, false},
      {"FlatGeobuf", ".fgb", make_flatgeobuf_sink, false},
      {"GTiff", ".tif", nullptr, false},
      {"COG", "", nullptr, true}}};
+
+std::string known_formats() {
+  std::string known;
+  for (const ExportFormat& format : kFormats)
+    known.append(known.empty() ? "" : ", ").append(format.name);
+  return known;
+}
+
+std::string known_extensions() {
+  std::string known;
+  for (const ExportFormat& format : kFormats) {
+    if (*format.extension != 0) known.append(known.empty() ? "" : ", ").append(format.extension);
+  }
+  return known;
+}
 
 const ExportFormat& format_of(const ExportOptions& options) {
   const std::string extension = lower_extension(options.output);
@@ -65,12 +86,13 @@ const ExportFormat& format_of(const ExportOptions& options) {
     }
   }
   if (!options.format.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "unknown format; known are PLY, GPKG, FlatGeobuf, GTiff, COG", options.format);
+    throw Error(ErrorCode::invalid_argument, "unknown format; known are " + known_formats(),
+                options.format);
   }
-  throw Error(ErrorCode::invalid_argument,
-              "the extension names no format; known are .ply, .gpkg, .fgb, .tif, or give --format",
-              options.output);
+  throw Error(
+      ErrorCode::invalid_argument,
+      "the extension names no format; known are " + known_extensions() + ", or give --format",
+      options.output);
 }
 
 /// The shares of --memory, in bytes. The rest is for the program itself and the allocator's slack.
@@ -91,6 +113,13 @@ ExportMemory memory_of(const ExportOptions& options) {
   return ExportMemory(bytes);
 }
 
+/// What the options say of pixels and slopes.
+PixelContent content_of(const ExportOptions& options, const ExportFormat& format) {
+  const bool is_layer =
+      format.make_sink == make_geopackage_sink || format.make_sink == make_flatgeobuf_sink;
+  return pixel_content_of(options.content, format.make_sink == nullptr, is_layer);
+}
+
 void check_options(const ExportOptions& options, const ExportFormat& format) {
   check_detail(options.detail);
   static_cast<void>(pixel_sides_of(options.pixel_size));
@@ -99,6 +128,12 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
       (!options.pixel_size.empty() || options.nodata || !options.creation_options.empty())) {
     throw Error(ErrorCode::invalid_argument,
                 "--pixel-size, --nodata and --co are for rasters (.tif)", options.output);
+  }
+  const PixelContent content = content_of(options, format);
+  if (options.nodata && content.value != PixelValue::kHeight) {
+    throw Error(ErrorCode::invalid_argument,
+                "is for heights; slopes and aspects have -9999 as nodata, hillshades 0",
+                "--nodata");
   }
   if (is_raster && !options.region.polygon.empty()) {
     throw Error(ErrorCode::invalid_argument,
@@ -116,16 +151,6 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
 double sum_above(double a, double b) {
   return a == 0 || b == 0 ? a + b : std::nextafter(a + b, HUGE_VAL);
 }
-
-/// What was made, for the report.
-struct Exported {
-  std::uint64_t vertices = 0, triangles = 0, cells = 0;
-  std::int64_t columns = 0, rows = 0;
-  std::array<double, 2> pixel_size{};  ///< Map units.
-  Certificate certificate;
-  double rounding = 0.0;  ///< Of heights to pixels; rasters only.
-  ClassChanges changes;   ///< Of the samples in the region.
-};
 
 using Report = std::function<void(double)>;
 
@@ -169,16 +194,6 @@ Exported export_pixels(const PartRefiner& refiner, const PixelGrid& grid,
   return made;
 }
 
-void warn_without_index(const ExportFormat& format, const SinkTarget& target,
-                        const Context& context) {
-  if (context.quiet || format.make_sink != make_flatgeobuf_sink || flatgeobuf_index_fits(target))
-    return;
-  std::fprintf(stderr,
-               "ptin: warning: %s has no spatial index: it would take more than a quarter of the "
-               "memory given; write .gpkg, or give more --memory\n",
-               target.path.c_str());
-}
-
 /// The samples of what was exported that the level of detail moved across the border of voids.
 ClassChanges changes_of(const PartRefiner& refiner, const ExportOptions& options,
                         const CrsFacts& crs) {
@@ -191,20 +206,67 @@ ClassChanges changes_of(const PartRefiner& refiner, const ExportOptions& options
   return class_changes(refiner.terrain(), request);
 }
 
-Exported export_as(const ExportFormat& format, const ExportOptions& options, const Terrain& terrain,
-                   const Context& context) {
-  const CrsFacts crs = crs_facts(terrain.store());
-  const ExportMemory memory = memory_of(options);
+PartRequest request_of(const ExportOptions& options, const ExportFormat& format,
+                       const StoreFile& store, const Context& context) {
   PartRequest request;
   if (format.make_sink != nullptr)
-    request.region = region_of(options.region, terrain.store().facts(), crs.wkt);
+    request.region = region_of(options.region, store.facts(), crs_facts(store).wkt);
   request.detail = detail_of(options.detail);
-  request.limits.memory_bytes = memory.part;
+  request.limits.memory_bytes = memory_of(options).part;
   request.limits.stop = context.stop;
-  std::optional<PixelGrid> grid;
-  if (format.make_sink == nullptr) grid.emplace(grid_of(options, terrain.store(), crs));
-  const PartRefiner refiner = terrain.parts(request);
+  return request;
+}
 
+SinkTarget sink_target(const ExportFormat& format, const ExportOptions& options,
+                       const PartRefiner& refiner) {
+  const StoreFile& store = refiner.terrain().store();
+  const CrsFacts crs = crs_facts(store);
+  const ExportMemory memory = memory_of(options);
+  return {options.output,
+          options.overwrite,
+          crs,
+          frame_of(store.facts(), crs),
+          content_of(options, format).in_percent,
+          memory.buffers,
+          memory.index,
+          2 * (refiner.records() + store.t0().vertices.size())};
+}
+
+void warn_of_triangles(const Exported& made, const ExportFormat& format, const SinkTarget& target) {
+  if (format.make_sink == make_flatgeobuf_sink && !flatgeobuf_index_fits(target)) {
+    std::fprintf(stderr,
+                 "ptin: warning: %s has no spatial index: it would take more than a quarter of the "
+                 "memory given; write .gpkg, or give more --memory\n",
+                 target.path.c_str());
+  }
+  if (made.triangles == 0) {
+    std::fprintf(stderr, "ptin: warning: the region holds no surface; %s has no triangle\n",
+                 target.path.c_str());
+  }
+}
+
+RasterTarget raster_target(const ExportFormat& format, const ExportOptions& options,
+                           const StoreFile& store) {
+  const ExportMemory memory = memory_of(options);
+  const PixelContent content = content_of(options, format);
+  return {options.output,
+          options.overwrite,
+          format.is_cog,
+          content,
+          options.nodata.value_or(default_nodata(store.facts(), content.value)),
+          options.creation_options,
+          crs_facts(store),
+          memory.buffers,
+          memory.index};
+}
+
+Exported export_as(const ExportFormat& format, const ExportOptions& options, const Terrain& terrain,
+                   const Context& context) {
+  const StoreFile& store = terrain.store();
+  const bool is_raster = format.make_sink == nullptr;
+  std::optional<PixelGrid> grid;
+  if (is_raster) grid.emplace(grid_of(options, store, crs_facts(store)));
+  const PartRefiner refiner = terrain.parts(request_of(options, format, store, context));
   Progress progress(Progress::style_for(context.quiet, stderr));
   const Report report = [&](double done) {
     constexpr double kSteps = 10'000.0;
@@ -212,32 +274,26 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   };
   report(0.0);
   Exported made;
-  if (format.make_sink != nullptr) {
-    SinkTarget target{options.output, options.overwrite, crs, memory.buffers, memory.index, 0};
-    target.most_triangles = 2 * (refiner.records() + terrain.store().t0().vertices.size());
+  if (is_raster) {
+    made = export_pixels(refiner, *grid, raster_target(format, options, store), report);
+    progress.finish();
+  } else {
+    const SinkTarget target = sink_target(format, options, refiner);
     made = export_triangles(refiner, format, target, report);
     progress.finish();
-    warn_without_index(format, target, context);
-    if (made.triangles == 0 && !context.quiet) {
-      std::fprintf(stderr, "ptin: warning: the region holds no surface; %s has no triangle\n",
-                   options.output.c_str());
-    }
-  } else {
-    const RasterTarget target{options.output,
-                              options.overwrite,
-                              format.is_cog,
-                              options.nodata.value_or(default_nodata(terrain.store().facts())),
-                              options.creation_options,
-                              crs,
-                              memory.buffers,
-                              memory.index};
-    made = export_pixels(refiner, *grid, target, report);
+    if (!context.quiet) warn_of_triangles(made, format, target);
+    if (format.make_sink == make_stl_sink) made.frame = target.frame;
   }
-  progress.finish();
-  made.changes = changes_of(refiner, options, crs);
+  made.output = options.output;
+  made.format = format.name;
+  made.is_raster = is_raster;
+  made.what = options.content.what;
+  if (made.what == "slope") made.slope_unit = slope_unit_of(options.content);
+  made.changes = changes_of(refiner, options, crs_facts(store));
   made.certificate = refiner.detail().certificate();
   made.certificate.error = sum_above(made.certificate.error, made.rounding);
   made.certificate.deviation = sum_above(made.certificate.deviation, made.rounding);
+  made.bytes = bytes_of_file(options.output);
   return made;
 }
 
@@ -247,53 +303,12 @@ int run_export(const ExportOptions& options, const Context& context) {
   const auto start = std::chrono::steady_clock::now();
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
-  const Exported made = export_as(format, options, terrain, context);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const Certificate& certificate = made.certificate;
-  const std::uint64_t bytes = bytes_of_file(options.output);
-  const bool is_raster = format.make_sink == nullptr;
-  const StoreFacts& facts = terrain.store().facts();
+  Exported made = export_as(format, options, terrain, context);
+  made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (context.json) {
-    nlohmann::json answer = {
-        {"output", options.output},
-        {"format", format.name},
-        {"certified_error", certificate.error},
-        {"certified_deviation", certificate.deviation},
-        {"border_moved_at_most", border_move_json(terrain.store(), certificate.error)},
-        {"samples_made_void", made.changes.to_void},
-        {"samples_made_surface", made.changes.to_surface},
-        {"exact", certificate.complete && facts.base_error == 0 && made.rounding == 0},
-        {"units", units_json(crs_facts(terrain.store()))},
-        {"bytes", bytes},
-        {"seconds", seconds}};
-    if (is_raster) {
-      answer["width"] = made.columns;
-      answer["height"] = made.rows;
-      answer["pixel_size"] = made.pixel_size;
-    } else {
-      answer["vertices"] = made.vertices;
-      answer["triangles"] = made.triangles;
-      answer["cells"] = made.cells;
-    }
-    print_json(answer);
+    print_json(json_of(made, terrain.store()));
   } else if (!context.quiet) {
-    const std::string size =
-        is_raster ? grouped(static_cast<std::uint64_t>(made.columns)) + " x " +
-                        grouped(static_cast<std::uint64_t>(made.rows)) + " pixels of " +
-                        short_number(made.pixel_size[0]) + " x " + short_number(made.pixel_size[1])
-                  : counted(made.vertices, "vertex", "vertices") + ", " +
-                        counted(made.triangles, "triangle") + " in " + counted(made.cells, "cell");
-    std::printf(
-        "%s: %s, %s, %.2f s; within %s at every sample%s, %s at any point\n",
-        options.output.c_str(), size.c_str(), human_bytes(bytes).c_str(), seconds,
-        short_number(certificate.error).c_str(),
-        made.changes.to_void + made.changes.to_surface > 0 ? " (but where voids moved)" : "",
-        short_number(certificate.deviation).c_str());
-    if (!facts.free_of_voids && !certificate.complete) {
-      std::printf("%s became void, %s surface\n", counted(made.changes.to_void, "sample").c_str(),
-                  grouped(made.changes.to_surface).c_str());
-    }
+    print_exported(made, terrain.store().facts());
   }
   return kExitDone;
 }
@@ -308,11 +323,11 @@ Action declare_export(CLI::App& app, Context& context) {
   add_detail_options(app, options->detail, " (default: the full TIN)",
                      "The TIN of the terrain's N most important vertices");
   app.add_option("-o,--output", options->output,
-                 "The file to write; its extension chooses the format: .ply, .gpkg, .fgb, .tif")
+                 "The file to write; its extension chooses the format: " + known_extensions())
       ->type_name("OUT")
       ->required();
   app.add_option("--format,--of", options->format,
-                 "The format: PLY, GPKG, FlatGeobuf, GTiff, COG (default: by the extension)")
+                 "The format: " + known_formats() + " (default: by the extension)")
       ->type_name("NAME");
   app.add_option("--pixel-size", options->pixel_size,
                  "Rasters: the size of a pixel, one number or two, in map units, or over ground as "
@@ -320,8 +335,9 @@ Action declare_export(CLI::App& app, Context& context) {
                  "raster's)")
       ->expected(1, 2)
       ->type_name("SIZE");
+  add_pixel_content_options(app, options->content);
   app.add_option("--nodata", options->nodata,
-                 "Rasters: the value where there is no surface (default -9999)")
+                 "Rasters of heights: the value where there is no surface (default -9999)")
       ->type_name("V");
   app.add_option("--co", options->creation_options,
                  "Rasters: a creation option of GDAL's driver; may be given several times")

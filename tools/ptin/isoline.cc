@@ -46,7 +46,8 @@ void check_options(const IsolineOptions& options, const Context& context) {
                 "the levels are given by --level H... or by --interval D; give one of them");
   }
   check_detail(options.detail);
-  static_cast<void>(vector_format_of(options.output));
+  static_cast<void>(isoline_format_of(options.output));
+  if (options.polygons) check_isoline_fields(options.output, "--polygons");
   if (options.output != "-") {
     check_output(options.output, options.overwrite);
   } else if (context.json) {
@@ -93,7 +94,9 @@ void report(const IsolineOptions& options, const Isolines& lines,
 int run_lines(const IsolineOptions& options, const IsolineRequest& request, const Terrain& terrain,
               const CrsFacts& crs, const Context& context) {
   const Isolines lines = terrain.isolines(request);
-  IsolineLayer layer({options.output, options.overwrite, options.z, false, crs.wkt, context.stop});
+  const IndexLevels index{options.levels.interval.value_or(0.0), options.levels.base};
+  IsolineLayer layer(
+      {options.output, options.overwrite, options.z, false, crs, index, context.stop});
   const IsolineLayer::Written written = layer.add(lines);
   layer.publish();
   if (written.lines == 0 && !context.quiet) {
@@ -249,7 +252,7 @@ Action declare_isoline(CLI::App& app, Context& context) {
       ->excludes(z);
   app.add_option("-o,--output", options->output,
                  "The layer to write; its extension chooses the format: " +
-                     known_vector_extensions() + "; - is GeoJSON on stdout")
+                     known_isoline_extensions() + "; - is GeoJSON on stdout")
       ->type_name("OUT")
       ->required();
   app.add_option("--max-lines", options->max_lines,

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/isoline_layer.h"
 
+#include <cmath>
+
 #include "engine/error.h"
 #include "engine/query/terrain.h"
 #include "engine/stop.h"
+#include "tools/output/file_name.h"
 
 namespace ptin::tools {
 
@@ -11,10 +14,12 @@ namespace {
 
 VectorFile::Layer layer_of(const IsolineLayer::Options& options) {
   using Type = VectorFile::FieldType;
+  if (isoline_format_of(options.path) == IsolineFormat::kDxf)
+    return {"entities", wkbLineString25D, {{"Layer", Type::kText}}, {}, "DXF"};
   VectorFile::Layer layer{"contour",
                           options.z ? wkbLineString25D : wkbLineString,
                           {{"ID", Type::kInteger}, {"elev", Type::kReal}},
-                          options.crs_wkt};
+                          options.crs.wkt};
   if (options.steps) {
     layer.fields.push_back({"step", Type::kInteger});
     layer.fields.push_back({"splits", Type::kReal});  // may exceed 32 bits
@@ -25,8 +30,38 @@ VectorFile::Layer layer_of(const IsolineLayer::Options& options) {
 
 }  // namespace
 
+IsolineFormat isoline_format_of(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".dxf") return IsolineFormat::kDxf;
+  if (extension == ".xml") return IsolineFormat::kLandXml;
+  if (path != "-" && find_vector_format(path) == nullptr)
+    refuse_extension(path, known_isoline_extensions());
+  return IsolineFormat::kFields;
+}
+
+void check_isoline_fields(const std::string& path, const std::string& what) {
+  if (isoline_format_of(path) == IsolineFormat::kFields) return;
+  throw Error(ErrorCode::invalid_argument,
+              "has no fields, which " + what + " needs; write " + known_vector_extensions(), path);
+}
+
+std::string known_isoline_extensions() { return known_vector_extensions() + ", .dxf, .xml"; }
+
+bool IndexLevels::holds(double level) const {
+  constexpr double kEvery = 5.0;
+  return interval > 0 && std::fmod(std::round((level - base) / interval), kEvery) == 0;
+}
+
 IsolineLayer::IsolineLayer(const Options& options)
-    : options_(options), file_(options.path, options.overwrite, layer_of(options)) {}
+    : options_(options), format_(isoline_format_of(options.path)) {
+  if (format_ == IsolineFormat::kLandXml) {
+    contours_.emplace(options.path, options.overwrite, options.crs);
+  } else {
+    file_.emplace(options.path, options.overwrite, layer_of(options));
+  }
+}
+
+void IsolineLayer::publish() { contours_ ? contours_->publish() : file_->publish(); }
 
 IsolineLayer::Written IsolineLayer::add(const Isolines& lines, const IsolineStep& step,
                                         const std::optional<Window>& window) {
@@ -52,11 +87,19 @@ IsolineLayer::Written IsolineLayer::add(const Isolines& lines, const IsolineStep
 
 void IsolineLayer::add_line(std::span<const MapPoint> points, bool ring, double elevation,
                             const IsolineStep& step, Written& written) {
-  const VectorFile::Value values[] = {static_cast<std::int64_t>(next_id_++), elevation,
-                                      static_cast<std::int64_t>(step.step),
-                                      static_cast<double>(step.splits), step.certified_error};
-  file_.add(line_geometry(points, options_.z ? &elevation : nullptr),
-            std::span(values).first(options_.steps ? 5 : 2));
+  if (format_ == IsolineFormat::kLandXml) {
+    contours_->add(points, elevation);
+  } else if (format_ == IsolineFormat::kDxf) {
+    const VectorFile::Value values[] = {options_.index.holds(elevation) ? "contour_index"
+                                                                        : "contour"};
+    file_->add(line_geometry(points, &elevation), values);
+  } else {
+    const VectorFile::Value values[] = {static_cast<std::int64_t>(next_id_++), elevation,
+                                        static_cast<std::int64_t>(step.step),
+                                        static_cast<double>(step.splits), step.certified_error};
+    file_->add(line_geometry(points, options_.z ? &elevation : nullptr),
+               std::span(values).first(options_.steps ? 5 : 2));
+  }
   ++written.lines;
   written.rings += ring ? 1 : 0;
   written.points += points.size();

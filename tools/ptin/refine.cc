@@ -49,18 +49,21 @@ void check_options(const RefineOptions& options) {
 
 nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
                          const StoreFile& store, const CrsFacts& crs) {
-  return {{"output", options.output},
-          {"vertices", refined.vertices},
-          {"void_vertices", refined.void_vertices},
-          {"triangles", refined.triangles},
-          {"t0_vertices", refined.t0_vertices},
-          {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
-          {"certified_error", refined.certified_error},
-          {"certified_deviation", refined.certified_deviation},
-          {"border_moved_at_most", border_move_json(store, refined.certified_error)},
-          {"exact", refined.exact},
-          {"units", units_json(crs)},
-          {"cost", cost_json(refined.cost)}};
+  nlohmann::json answer = {
+      {"output", options.output},
+      {"vertices", refined.vertices},
+      {"void_vertices", refined.void_vertices},
+      {"triangles", refined.triangles},
+      {"t0_vertices", refined.t0_vertices},
+      {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
+      {"certified_error", refined.certified_error},
+      {"certified_deviation", refined.certified_deviation},
+      {"border_moved_at_most", border_move_json(store, refined.certified_error)},
+      {"exact", refined.exact},
+      {"units", units_json(crs)},
+      {"cost", cost_json(refined.cost)}};
+  if (has_frame(options.output)) answer["local_frame"] = frame_json(mesh.frame);
+  return answer;
 }
 
 /// Why so many vertices or triangles are written and not as many as were asked for; empty where as
@@ -100,6 +103,7 @@ void print_written(const RefineOptions& options, const RefinedTin& refined, cons
   const std::uint64_t vertices = store.t0().vertices.size() + store.record_count();
   const std::string difference = difference_of(options, refined, mesh, vertices);
   if (!difference.empty()) std::printf("  asked for  %s\n", difference.c_str());
+  if (has_frame(options.output)) std::printf("  frame      %s\n", frame_text(mesh.frame).c_str());
 }
 
 void print_stats(const RefineOptions& options, const RefinedTin& refined) {
@@ -138,7 +142,7 @@ int run_refine(const RefineOptions& options, const Context& context) {
   const StoreFacts& facts = terrain.store().facts();
   Mesh mesh =
       options.cut ? cut_to_region(refined, facts, *request.region) : surface_mesh(refined, facts);
-  set_crs(mesh, crs);
+  set_crs(mesh, crs, facts);
   write_mesh(mesh, options.output, options.overwrite);
   if (mesh.triangles.empty() && !context.quiet) {
     std::fprintf(stderr, "ptin: warning: the region holds no surface; %s has no triangle\n",

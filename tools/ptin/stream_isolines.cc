@@ -67,9 +67,10 @@ void StreamIsolines::begin(const StreamReader& reader) {
                     context_);
   if (!output_.empty()) {
     const nlohmann::json metadata = nlohmann::json::parse(reader.metadata(), nullptr, false);
-    const std::string wkt = metadata.is_object() ? crs_facts_of(metadata).wkt : std::string();
+    const CrsFacts crs = metadata.is_object() ? crs_facts_of(metadata) : CrsFacts{};
+    const IndexLevels index{options_.levels.interval.value_or(0.0), options_.levels.base};
     layer_ = std::make_unique<IsolineLayer>(
-        IsolineLayer::Options{output_, overwrite_, options_.z, options_.steps, wkt, stop_});
+        IsolineLayer::Options{output_, overwrite_, options_.z, options_.steps, crs, index, stop_});
   }
 }
 

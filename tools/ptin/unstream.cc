@@ -243,7 +243,8 @@ void check_options(const UnstreamOptions& options, bool json) {
     }
     if (!options.output.empty()) static_cast<void>(mesh_format_of(options.output));
   } else if (!options.output.empty()) {
-    static_cast<void>(vector_format_of(options.output));
+    static_cast<void>(isoline_format_of(options.output));
+    if (options.isolines.steps) check_isoline_fields(options.output, "--steps");
     if (options.output == "-" && json) {
       throw Error(ErrorCode::invalid_argument,
                   "--json and -o - both write to stdout; give the isolines a file name");
@@ -277,14 +278,18 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   refined.tin = receiver.reader().tin();
   Mesh mesh = surface_mesh(refined, receiver.reader().facts());
   const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
-  set_crs(mesh, crs);
+  set_crs(mesh, crs, receiver.reader().facts());
   if (!options.output.empty()) write_mesh(mesh, options.output, options.overwrite);
   const Serving everywhere = receiver.within_terrain({});
   if (!options.output.empty()) warn_of_what_is_beyond(receiver, everywhere, context);
+  const bool tells_frame = !options.output.empty() && has_frame(options.output);
   if (context.json) {
-    print_json(answer_of(options, receiver, refined, mesh, crs, everywhere));
+    nlohmann::json answer = answer_of(options, receiver, refined, mesh, crs, everywhere);
+    if (tells_frame) answer["local_frame"] = frame_json(mesh.frame);
+    print_json(answer);
   } else if (!context.quiet) {
     print_report(receiver, refined);
+    if (tells_frame) std::fprintf(stderr, "frame: %s\n", frame_text(mesh.frame).c_str());
   }
   return kExitDone;
 }

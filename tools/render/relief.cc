@@ -8,6 +8,7 @@
 
 #include "engine/mesh/tin.h"
 #include "engine/stop.h"
+#include "tools/slope.h"
 
 namespace ptin::tools {
 
@@ -31,11 +32,6 @@ constexpr std::array<Stop, 8> kRamp = {{{0.00F, {104, 150, 116}},
                                         {0.90F, {190, 174, 168}},
                                         {1.00F, {250, 250, 250}}}};
 
-struct Slope {
-  double x = 0.0;  ///< Rise to the east.
-  double y = 0.0;  ///< Rise to the south.
-};
-
 /// Horn's slope at a pixel: weighted differences of the eight pixels around it, `reach` away. A
 /// pixel without a height counts as the middle one.
 Slope slope_at(const TerrainRaster& r, int x, int y, double ground_per_pixel, int reach) {
@@ -51,17 +47,13 @@ Slope slope_at(const TerrainRaster& r, int x, int y, double ground_per_pixel, in
   }
   const double run = 8.0 * reach * ground_per_pixel;
   return {((z[0][2] + 2 * z[1][2] + z[2][2]) - (z[0][0] + 2 * z[1][0] + z[2][0])) / run,
-          ((z[2][0] + 2 * z[2][1] + z[2][2]) - (z[0][0] + 2 * z[0][1] + z[0][2])) / run};
+          ((z[0][0] + 2 * z[0][1] + z[0][2]) - (z[2][0] + 2 * z[2][1] + z[2][2])) / run};
 }
 
-/// Cosine of the angle between the surface's normal and the light from the north-west, 45 degrees
-/// high.
+/// The light from the north-west, 45 degrees high, on a slope drawn steeper than it is.
 double light_on(const Slope& slope, double exaggeration) {
-  const double dx = slope.x * exaggeration;
-  const double dy = slope.y * exaggeration;
-  // Normal (-dx, -dy, 1); to the light: west (-1/2), north (-1/2 of rows to the south), up
-  // sqrt(1/2).
-  return (0.5 * dx + 0.5 * dy + std::sqrt(0.5)) / std::sqrt(dx * dx + dy * dy + 1.0);
+  static const Light kLight(315, 45);
+  return kLight.on({slope.east * exaggeration, slope.north * exaggeration});
 }
 
 /// A colour for each page, neighbours in number far apart in hue.
@@ -89,7 +81,8 @@ Colour pixel_colour(const TerrainRaster& raster, int x, int y, double ground_per
   }
   const Slope slope = slope_at(raster, x, y, ground_per_pixel, style.reach);
   const float height = raster.heights[place];
-  const bool is_water = height == 0.0F && slope.x == 0.0 && slope.y == 0.0 && style.high > 0.0F;
+  const bool is_water =
+      height == 0.0F && slope.east == 0.0 && slope.north == 0.0 && style.high > 0.0F;
   Colour colour = style.by_page ? page_colour(raster.pages[place]) : height_colour(height, style);
   if (is_water && !style.by_page) return kWater;
   const double light = std::max(0.0, light_on(slope, style.exaggeration));
@@ -119,9 +112,9 @@ ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_
       const float height = raster.heights[raster.place(x, y)];
       lowest = std::min(lowest, height), highest = std::max(highest, height);
       const Slope slope = slope_at(raster, x, y, ground, style.reach);
-      if (slope.x == 0.0 && slope.y == 0.0) continue;
+      if (slope.east == 0.0 && slope.north == 0.0) continue;
       heights.push_back(height);
-      squares += slope.x * slope.x + slope.y * slope.y;
+      squares += slope.east * slope.east + slope.north * slope.north;
     }
   }
   if (heights.empty()) return style;

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ptin/export_report.h"
+
+#include <cstdio>
+
+#include "engine/crs/crs_facts.h"
+#include "tools/facts/answers.h"
+#include "tools/facts/human.h"
+#include "tools/ptin/mesh_crs.h"
+
+namespace ptin::tools {
+
+namespace {
+
+std::string size_text(const Exported& made) {
+  if (!made.is_raster) {
+    return counted(made.vertices, "vertex", "vertices") + ", " +
+           counted(made.triangles, "triangle") + " in " + counted(made.cells, "cell");
+  }
+  return grouped(static_cast<std::uint64_t>(made.columns)) + " x " +
+         grouped(static_cast<std::uint64_t>(made.rows)) + " pixels of " +
+         short_number(made.pixel_size[0]) + " x " + short_number(made.pixel_size[1]);
+}
+
+}  // namespace
+
+nlohmann::json json_of(const Exported& made, const StoreFile& store) {
+  const Certificate& certificate = made.certificate;
+  nlohmann::json answer = {
+      {"output", made.output},
+      {"format", made.format},
+      {"certified_error", certificate.error},
+      {"certified_deviation", certificate.deviation},
+      {"border_moved_at_most", border_move_json(store, certificate.error)},
+      {"samples_made_void", made.changes.to_void},
+      {"samples_made_surface", made.changes.to_surface},
+      {"exact", certificate.complete && store.facts().base_error == 0 && made.rounding == 0},
+      {"units", units_json(crs_facts(store))},
+      {"bytes", made.bytes},
+      {"seconds", made.seconds}};
+  if (made.is_raster) {
+    answer["width"] = made.columns;
+    answer["height"] = made.rows;
+    answer["pixel_size"] = made.pixel_size;
+    answer["what"] = made.what;
+  } else {
+    answer["vertices"] = made.vertices;
+    answer["triangles"] = made.triangles;
+    answer["cells"] = made.cells;
+  }
+  if (!made.slope_unit.empty()) answer["slope_unit"] = made.slope_unit;
+  if (made.what != "height") answer["certified_error"] = answer["certified_deviation"] = nullptr;
+  if (made.frame) answer["local_frame"] = frame_json(*made.frame);
+  return answer;
+}
+
+void print_exported(const Exported& made, const StoreFacts& facts) {
+  const bool has_moved = made.changes.to_void + made.changes.to_surface > 0;
+  std::printf("%s: %s, %s, %.2f s; %swithin %s at every sample%s, %s at any point\n",
+              made.output.c_str(), size_text(made).c_str(), human_bytes(made.bytes).c_str(),
+              made.seconds, made.what == "height" ? "" : (made.what + " of a TIN that is ").c_str(),
+              short_number(made.certificate.error).c_str(),
+              has_moved ? " (but where voids moved)" : "",
+              short_number(made.certificate.deviation).c_str());
+  if (!facts.free_of_voids && !made.certificate.complete) {
+    std::printf("  classes  %s became void, %s surface\n",
+                counted(made.changes.to_void, "sample").c_str(),
+                grouped(made.changes.to_surface).c_str());
+  }
+  if (made.frame) std::printf("  frame  %s\n", frame_text(*made.frame).c_str());
+}
+
+}  // namespace ptin::tools

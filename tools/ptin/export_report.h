@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What export says when it is done.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/query/terrain.h"
+#include "tools/formats/mesh.h"
+
+namespace ptin::tools {
+
+/// What was made.
+struct Exported {
+  std::string output, format;
+  bool is_raster = false;
+  std::string what = "height";  ///< Of a raster's pixels.
+  std::string slope_unit;       ///< "degree" or "percent"; of slopes alone.
+  std::uint64_t vertices = 0, triangles = 0, cells = 0;
+  std::int64_t columns = 0, rows = 0;
+  std::array<double, 2> pixel_size{};  ///< Map units.
+  std::optional<LocalFrame> frame;     ///< Of formats that have one.
+  Certificate certificate;             ///< Of heights, with what pixels are rounded by.
+  double rounding = 0.0;               ///< Of heights to pixels; rasters only.
+  ClassChanges changes;                ///< Of the samples in the region.
+  std::uint64_t bytes = 0;
+  double seconds = 0.0;
+};
+
+/// For `--json`. The certificate speaks of heights, so other pixels have none.
+[[nodiscard]] nlohmann::json json_of(const Exported& made, const StoreFile& store);
+
+/// Prints it for people.
+void print_exported(const Exported& made, const StoreFacts& facts);
+
+}  // namespace ptin::tools
