@@ -3,6 +3,7 @@
 // Profiles against every triangle of the full TIN, and against point location.
 #include "engine/query/heights/profile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -207,6 +208,103 @@ TEST(Profile, SharesRefinementsAndKeepsTheOrderOfManyLines) {
     }
     EXPECT_EQ(i, all.points.size());
     EXPECT_LT(all.cost.records_applied, alone / 3);
+  }
+}
+
+/// Positions on an edge between classes fall to either side by rounding: a break is near them.
+bool is_near_break(const ProfileResult& breaks, const ProfilePoint& p) {
+  return std::any_of(breaks.points.begin(), breaks.points.end(), [&](const ProfilePoint& b) {
+    return b.line == p.line && std::abs(b.distance - p.distance) < 1e-4;
+  });
+}
+
+RC_GTEST_PROP(Profile, StandsAtEveryStationAtTheHeightOfItsPlace, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const Hierarchy h = reference::random_hierarchy(seed);
+  const reference::TemporaryStore file(h);
+  const Terrain terrain(file.open());
+  const SpotMap map(h.facts.map, h.facts.bounds);
+  std::vector<std::vector<MapPoint>> lines(2);
+  for (auto& line : lines) {
+    while (line.size() < 3) line.push_back(map.map(nasty_spot(random, h.full)));
+    if (line[0] == line[1] && line[1] == line[2]) return;
+  }
+  const ProfileResult breaks = terrain.profile(lines);
+  ProfileRequest request;
+  request.station_step = random() % 2 == 0 ? 0.25 : 0.01 + 1e-6 * double(random() % 2'000'000);
+  const ProfileResult found = terrain.profile(lines, request);
+  std::vector<MapPoint> places;
+  std::size_t next_break = 0;
+  for (std::uint32_t line = 0; line < 2; ++line) {
+    double steps = 0;
+    double reached = -1;
+    for (const ProfilePoint& p : found.points) {
+      if (p.line != line) continue;
+      RC_ASSERT(p.distance > reached);
+      reached = p.distance;
+      const ProfilePoint* const b =
+          next_break < breaks.points.size() ? &breaks.points[next_break] : nullptr;
+      const bool is_break = b != nullptr && b->line == line && b->distance == p.distance;
+      if (is_break) {
+        RC_ASSERT(b->position == p.position && b->state == p.state && b->part == p.part);
+        ++next_break;
+      }
+      RC_ASSERT(p.is_station || is_break);
+      const bool is_end = is_break && (next_break == breaks.points.size() ||
+                                       breaks.points[next_break].line != line);
+      if (p.is_station && !(is_end && p.distance < steps * request.station_step - 1e-6)) {
+        RC_ASSERT(std::abs(p.distance - steps * request.station_step) < 1e-6);
+        ++steps;
+      }
+      RC_ASSERT(p.is_station || !is_end);
+    }
+    RC_ASSERT(steps * request.station_step > reached);
+  }
+  RC_ASSERT(next_break == breaks.points.size());
+  for (const ProfilePoint& p : found.points) places.push_back(p.position);
+  const LocateResult located = terrain.locate(places);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const ProfilePoint& p = found.points[i];
+    if (is_near_break(breaks, p)) continue;
+    RC_ASSERT(p.state == located.points[i].state);
+    RC_ASSERT(std::isnan(p.height) == (p.state != PointState::kSurface));
+    RC_ASSERT(std::isnan(p.height) || std::abs(p.height - located.points[i].height) < 1e-6);
+  }
+}
+
+TEST(Profile, TakesABreakAtAStationForOnePoint) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  const MapPoint line[] = {f.map.to_map(10, 20), f.map.to_map(30, 20)};  // along a row of samples
+  ProfileRequest request;
+  request.station_step = f.map.step_x;
+  const ProfileResult found = terrain.profile(line, request);
+  ASSERT_EQ(found.points.size(), 21U);
+  for (const ProfilePoint& p : found.points) EXPECT_TRUE(p.is_station);
+  request.station_step = 7 * f.map.step_x;
+  std::size_t stations = 0;
+  for (const ProfilePoint& p : terrain.profile(line, request).points) stations += p.is_station;
+  EXPECT_EQ(stations, 4U);  // at 0, 7 and 14 steps, and the end
+}
+
+TEST(Profile, RefusesMoreStationsThanTheMemoryHolds) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  const MapPoint line[] = {f.map.to_map(10, 20), f.map.to_map(30, 20)};
+  ProfileRequest request;
+  for (const double step : {1e-6, 1e-300, 5e-324}) {
+    request.station_step = step;
+    try {
+      static_cast<void>(terrain.profile(line, request));
+      FAIL() << step;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
+      EXPECT_NE(e.message().find("stations take"), std::string::npos) << e.what();
+    }
+  }
+  for (const double step : {-1.0, std::nan(""), HUGE_VAL}) {
+    request.station_step = step;
+    EXPECT_THROW(static_cast<void>(terrain.profile(line, request)), Error) << step;
   }
 }
 
