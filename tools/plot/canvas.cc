@@ -68,6 +68,15 @@ std::string readable(const std::string& text) {
   return printable(ascii.get());
 }
 
+/// Throws unless the system still gives what drawing takes: the pixels, and room for Cairo's paths
+/// and the font. Cairo does not always survive a refusal in the middle of a stroke.
+/// @throws std::bad_alloc
+void require_room(int width, int height) {
+  constexpr std::size_t kRoom = std::size_t{32} << 20;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  ::operator delete(::operator new(pixels * sizeof(std::uint32_t) + kRoom));
+}
+
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 
 }  // namespace
@@ -89,7 +98,7 @@ class Canvas::Impl {
         width_(width),
         height_(height),
         format_(format_of(path_)),
-        surface_(make_surface(), cairo_surface_destroy),
+        surface_(start_surface(), cairo_surface_destroy),
         cairo_(cairo_create(surface_.get()), cairo_destroy) {
     check();
     if (format_ == PictureFormat::kPdf) cairo_scale(cairo_.get(), kPointsInPixel, kPointsInPixel);
@@ -176,7 +185,8 @@ class Canvas::Impl {
   }
 
  private:
-  cairo_surface_t* make_surface() {
+  cairo_surface_t* start_surface() {
+    require_room(width_, height_);
     if (format_ == PictureFormat::kPng) {
       return cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_, height_);
     }

@@ -109,15 +109,22 @@ Canvas sheet_for(std::size_t panels, const std::string& path, bool overwrite) {
 
 void draw_sheet_legend(Canvas& canvas, std::span<const LegendEntry> entries) {
   constexpr double kSign = 26, kBetween = 8, kApart = 30;
+  double width = -kApart;
+  for (const LegendEntry& entry : entries) {
+    width += (entry.draw ? kSign + kBetween : 0) + canvas.text_width(entry.text) + kApart;
+  }
+  // Entries that do not fit beside each other become smaller.
+  const double scale = std::min(1.0, (kSheetWidth - kLeft - kRight) / std::max(width, 1.0));
+  const TextStyle style{.size = scale * TextStyle{}.size};
   const double y = canvas.height() - kLegendHeight / 2.0 - 4;
   double x = kLeft;
   for (const LegendEntry& entry : entries) {
     if (entry.draw) {
-      entry.draw(canvas, {x, y - 7, x + kSign, y + 7});
-      x += kSign + kBetween;
+      entry.draw(canvas, {x, y - 7, x + scale * kSign, y + 7});
+      x += scale * (kSign + kBetween);
     }
-    canvas.text({x, y}, entry.text);
-    x += canvas.text_width(entry.text) + kApart;
+    canvas.text({x, y}, entry.text, style);
+    x += canvas.text_width(entry.text, style) + scale * kApart;
   }
 }
 
@@ -189,12 +196,8 @@ void Panel::draw_surface(std::span<const ProfilePoint> stretch, double deviation
 void Panel::draw_void(const CanvasBox& band) {
   canvas_.hatch(band, kHatch);
   const std::string name = "void";
-  const double width = canvas_.text_width(name) + 12;
-  if (band.width() < width + 8) return;
-  const CanvasPoint middle{(band.left + band.right) / 2, (band.top + band.bottom) / 2};
-  canvas_.box({middle.x - width / 2, middle.y - 10, middle.x + width / 2, middle.y + 10},
-              {255, 255, 255});
-  canvas_.text(middle, name, {TextAnchor::kMiddle});
+  if (band.width() < canvas_.text_width(name) + 20) return;
+  draw_words({(band.left + band.right) / 2, (band.top + band.bottom) / 2}, name);
 }
 
 void Panel::draw_stations(std::span<const ProfilePoint> line) {
@@ -242,8 +245,13 @@ void Panel::draw_axes() {
 }
 
 void Panel::draw_note(const std::string& text) {
-  canvas_.text({(area_.left + area_.right) / 2, (area_.top + area_.bottom) / 2}, text,
-               {TextAnchor::kMiddle});
+  draw_words({(area_.left + area_.right) / 2, (area_.top + area_.bottom) / 2}, text);
+}
+
+void Panel::draw_words(CanvasPoint middle, const std::string& text) {
+  const double half = canvas_.text_width(text) / 2 + 6;
+  canvas_.box({middle.x - half, middle.y - 10, middle.x + half, middle.y + 10}, {255, 255, 255});
+  canvas_.text(middle, text, {TextAnchor::kMiddle});
 }
 
 }  // namespace ptin::tools

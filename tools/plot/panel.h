@@ -79,6 +79,8 @@ class Panel {
  private:
   void draw_surface(std::span<const ProfilePoint> stretch, double deviation);
   void draw_void(const CanvasBox& band);
+  /// On white.
+  void draw_words(CanvasPoint middle, const std::string& text);
 
   Canvas& canvas_;
   const PanelScales& scales_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "tools/facts/answers.h"
@@ -110,14 +111,27 @@ class SightPanel {
       const double ground = p.height - r.clearance_min;
       canvas.line(panel.at(p.distance, ground), panel.at(p.distance, p.height), {kInk, 1.4});
       canvas.dot(panel.at(p.distance, ground), 2.6, kInk);
-      const CanvasPoint top = panel.at(p.distance, std::max(ground, p.height));
-      const bool is_left = top.x < (panel.area().left + panel.area().right) / 2;
-      label(canvas, {top.x + (is_left ? 9 : -9), std::max(top.y - 12, panel.area().top + 10)},
-            is_left ? TextAnchor::kBegin : TextAnchor::kEnd, clearance_text());
+      draw_clearance_label(canvas, panel, p.distance,
+                           {std::min(ground, p.height), std::max(ground, p.height)});
     }
     if (r.obstruction) {
       canvas.dot(panel.at(r.obstruction->distance, r.obstruction->height), 4.0, kHidden);
     }
+  }
+
+  /// Above the heights of the line and of the ground, or below them where the label of an end is.
+  void draw_clearance_label(Canvas& canvas, const Panel& panel, double distance,
+                            std::pair<double, double> heights) const {
+    constexpr double kEndLabel = 170, kLower = 28;  // pixels of the corners that ends' labels take
+    const CanvasBox& area = panel.area();
+    const CanvasPoint top = panel.at(distance, heights.second);
+    const bool is_left = top.x < (area.left + area.right) / 2;
+    const double beside = is_left ? top.x - area.left : area.right - top.x;
+    const bool is_taken = beside < kEndLabel && top.y - 12 < area.top + kLower;
+    const double y = is_taken ? std::max(panel.at(distance, heights.first).y, area.top) + kLower
+                              : std::max(top.y - 12, area.top + 10);
+    label(canvas, {top.x + (is_left ? 9 : -9), y}, is_left ? TextAnchor::kBegin : TextAnchor::kEnd,
+          clearance_text());
   }
 
   /// What carries an end, from the ground up.
@@ -148,8 +162,9 @@ class SightPanel {
   [[nodiscard]] std::string clearance_text() const {
     const SightResult& r = sight_.result;
     const std::string least = scales_.heights.text(r.clearance_min);
-    const bool is_interval = r.clearance_max != r.clearance_min && std::isfinite(r.clearance_max);
-    return is_interval ? least + " to " + scales_.heights.text(r.clearance_max) : least;
+    if (r.clearance_max == r.clearance_min) return least;
+    if (!std::isfinite(r.clearance_max)) return least + " or more";
+    return least + " to " + scales_.heights.text(r.clearance_max);
   }
 
   [[nodiscard]] std::string facts() const {
@@ -192,10 +207,11 @@ std::vector<LegendEntry> legend_of(std::span<const PlottedSight> sights,
     entries.push_back(line_entry({colour_of(shown->result), 1.8},
                                  std::string("line of sight, ") + name_of(verdict)));
   }
-  if (style.curvature.coefficient > 0) {
+  const bool has_lines = !entries.empty();
+  if (has_lines && style.curvature.coefficient > 0) {
     entries.push_back({nullptr, "sunk by curvature " + short_number(style.curvature.coefficient)});
   }
-  if (style.wavelength > 0) {
+  if (has_lines && style.wavelength > 0) {
     entries.push_back(
         {[](Canvas& c, const CanvasBox& box) { c.box(box, kZone, 0.16); }, "first Fresnel zone"});
     entries.push_back(line_entry({kZone, 1.0, 0.8, true}, "0.6 of it"));
