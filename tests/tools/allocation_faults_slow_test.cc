@@ -170,6 +170,11 @@ TEST_F(RefusedMemory, OfProfilesAndMeshesIsStatus7) {
   expect_whole_or_nothing({"profile", store_, "--line",
                            "LINESTRING(500100 3999900, 500700 3999300)", "-o", output("a.geojson")},
                           "a.geojson", 30);
+  for (const std::string name : {"a.png", "a.svg"}) {
+    expect_whole_or_nothing({"profile", store_, "--line",
+                             "LINESTRING(500100 3999900, 500700 3999300)", "-o", output(name)},
+                            name, 30);
+  }
   expect_whole_or_nothing({"refine", store_, "-o", output("a.glb"), "-q"}, "a.glb", 30);
 }
 

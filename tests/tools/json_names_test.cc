@@ -152,6 +152,7 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   question({"refine", store, "--error", "2", "-o", file("a.ply")});
   question({"locate", store, "500100", "3999900"});
   question({"profile", store, "--line", line, "-o", file("a.csv")});
+  question({"profile", store, "--line", line, "--stations", "50m"});
   question({"stream", store, "-o", file("a.pts")});
   question({"unstream", file("a.pts"), "-o", file("b.ply")});
   question({"isoline", store, "--interval", "20", "-o", file("a.geojson"), "-q"});

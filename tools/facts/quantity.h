@@ -17,4 +17,13 @@ struct Quantity {
 /// "5.8 GHz", "1e3km". None where the text does not begin with a finite number.
 [[nodiscard]] std::optional<Quantity> quantity_of(const std::string& text);
 
+/// A length as options take it.
+struct Length {
+  double number = 0.0;  ///< > 0; metres where it is one over ground.
+  bool is_on_ground =
+      false;  ///< It was given in m, km or ft: over ground, whatever the map unit is.
+};
+/// None where the text is no number above 0, or has another unit behind it.
+[[nodiscard]] std::optional<Length> length_of(const std::string& text);
+
 }  // namespace ptin::tools

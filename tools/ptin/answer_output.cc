@@ -6,18 +6,20 @@
 #include "tools/output/file_name.h"
 #include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
+#include "tools/plot/canvas.h"
 
 namespace ptin::tools {
 
-void add_answer_options(CLI::App& app, AnswerOptions& options, const std::string& also) {
+void add_answer_options(CLI::App& app, AnswerOptions& options, bool has_plot) {
   app.add_option("-o,--output", options.output,
-                 "Write .csv, a layer (" + known_vector_extensions() + ")" + also +
+                 "Write .csv, a layer (" + known_vector_extensions() + ")" +
+                     (has_plot ? ",\na plot (" + known_picture_extensions() + ")" : "") +
                      ", or - for\nGeoJSON on stdout; default: CSV to stdout")
       ->type_name("OUT");
   app.add_flag("--overwrite", options.overwrite, "Replace an existing output");
 }
 
-AnswerForm form_of(const AnswerOptions& options, bool json, const std::string& other) {
+AnswerForm form_of(const AnswerOptions& options, bool json, bool has_plot) {
   if (options.output.empty()) return AnswerForm::kStdout;
   if (options.output == "-") {
     if (!json) return AnswerForm::kLayer;
@@ -28,12 +30,13 @@ AnswerForm form_of(const AnswerOptions& options, bool json, const std::string& o
   AnswerForm form = AnswerForm::kLayer;
   if (extension == ".csv") {
     form = AnswerForm::kCsv;
-  } else if (!other.empty() && extension == other) {
-    form = AnswerForm::kOther;
+  } else if (has_plot && is_picture_name(options.output)) {
+    form = AnswerForm::kPlot;
   } else if (find_vector_format(options.output) == nullptr) {
     throw Error(ErrorCode::invalid_argument,
                 "unknown format; end the name in .csv, " + known_vector_extensions() +
-                    (other.empty() ? "" : ", " + other) + ", or write - for GeoJSON on stdout",
+                    (has_plot ? ", " + known_picture_extensions() : "") +
+                    ", or write - for GeoJSON on stdout",
                 options.output);
   }
   check_output(options.output, options.overwrite);

@@ -17,22 +17,21 @@ struct AnswerOptions {
   std::string output;  ///< Empty: CSV on stdout.
   bool overwrite = false;
 };
-/// @param also  Further formats, as ".png (a plot)"; may be empty.
-void add_answer_options(CLI::App& app, AnswerOptions& options, const std::string& also = "");
+/// @param has_plot  The subcommand can write a plot too.
+void add_answer_options(CLI::App& app, AnswerOptions& options, bool has_plot = false);
 
 enum class AnswerForm : std::uint8_t {
   kStdout,  ///< CSV on stdout.
   kCsv,
   kLayer,  ///< A format of tools/formats/vector_file.h, or GeoJSON on stdout.
-  kOther,  ///< A further extension.
+  kPlot,   ///< A picture (tools/plot/canvas.h).
 };
 /// The form that is asked for. Called before the work, so that nobody waits for an answer that
 /// cannot be kept.
-/// @param other  A further extension that the subcommand writes, as ".png"; may be empty.
+/// @param has_plot  The subcommand can write a plot too.
 /// @throws Error as check_output(); invalid_argument  unknown extension; both the answer and --json
 ///                                                    would go to stdout
-[[nodiscard]] AnswerForm form_of(const AnswerOptions& options, bool json,
-                                 const std::string& other = "");
+[[nodiscard]] AnswerForm form_of(const AnswerOptions& options, bool json, bool has_plot = false);
 
 /// Writes CSV where the form asks for it; nothing for other forms. With `json` stdout is taken.
 /// @throws Error as OutputFile, as write_to_stdout()

@@ -132,6 +132,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin profile dem.ptin --line 'LINESTRING(385000 3790000, 390000 3795000)'\n"
      "  ptin profile dem.ptin --line road.geojson --error 1 -o road.png\n"
+     "  ptin profile dem.ptin --line road.geojson --stations 50m --stations-only -o stations.csv\n"
      "  ptin profile dem.ptin --line tracks.gpkg -o - | jq .features[0].properties\n",
      declare_profile},
     {"sight", "Tell whether one point sees another, and what is in the way",
@@ -140,6 +141,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Heights are above ground, or with --absolute absolute.\n\n"
      "Examples:\n"
      "  ptin sight dem.ptin 385000 3790000 2 390000 3795000 10 --json\n"
+     "  ptin sight dem.ptin 385000 3790000 20 390000 3795000 30 --frequency 5.8GHz -o link.png\n"
      "  ptin sight dem.ptin --pairs links.csv --frequency 5.8GHz > links_seen.csv\n"
      "  ptin sight dem.ptin --pairs - --verdict --curvature 0 < pairs.txt\n",
      declare_sight},
@@ -152,7 +154,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin viewshed dem.ptin 387500 3792500 1.7 --radius 10000 -o seen.tif\n"
      "  ptin viewshed dem.ptin 387500 3792500 30 --radius 40000 --curvature 0 -o seen.gpkg\n",
      declare_viewshed},
-    {"render", "Draw shaded relief, triangles or pages as a PNG",
+    {"render", "Draw shaded relief, triangles or pages as PNG, SVG or PDF",
      "Examples:\n"
      "  ptin render dem.ptin -o dem.png\n"
      "  ptin render dem.ptin --error 20 --wireframe -o coarse.png\n"

@@ -16,14 +16,8 @@ namespace {
 
 constexpr const char* kPixelSize = "--pixel-size";
 
-PixelSide pixel_side_of(const std::string& text) {
-  const std::optional<Quantity> quantity = quantity_of(text);
-  if (quantity && quantity->number > 0) {
-    if (quantity->unit.empty()) return {quantity->number, false};
-    for (const auto& [unit, metres] : {std::pair{"m", 1.0}, {"km", 1000.0}, {"ft", 0.3048}}) {
-      if (quantity->unit == unit) return {quantity->number * metres, true};
-    }
-  }
+Length pixel_side_of(const std::string& text) {
+  if (const std::optional<Length> length = length_of(text)) return *length;
   throw Error(ErrorCode::invalid_argument,
               "\"" + text +
                   "\" is no size of a pixel; expected a number > 0 in map units, or with m, km or "
@@ -51,17 +45,17 @@ std::uint64_t source_count(const nlohmann::json& metadata, const char* key,
 
 }  // namespace
 
-std::vector<PixelSide> pixel_sides_of(const std::vector<std::string>& texts) {
-  std::vector<PixelSide> sides;
+std::vector<Length> pixel_sides_of(const std::vector<std::string>& texts) {
+  std::vector<Length> sides;
   for (const std::string& text : texts) sides.push_back(pixel_side_of(text));
   return sides;
 }
 
-std::array<double, 2> pixel_size_of(const std::vector<PixelSide>& sides, const CrsFacts& crs,
+std::array<double, 2> pixel_size_of(const std::vector<Length>& sides, const CrsFacts& crs,
                                     MapPoint at) {
-  const PixelSide& across = sides.front();
-  const PixelSide& up = sides.back();
-  if (!across.is_on_ground && !up.is_on_ground) return {across.length, up.length};
+  const Length& across = sides.front();
+  const Length& up = sides.back();
+  if (!across.is_on_ground && !up.is_on_ground) return {across.number, up.number};
   const std::optional<MapPoint> metres = metres_per_map_unit(crs, at);
   if (!metres) {
     throw Error(ErrorCode::invalid_argument,
@@ -69,8 +63,8 @@ std::array<double, 2> pixel_size_of(const std::vector<PixelSide>& sides, const C
                 "turned into it; give a number in map units",
                 kPixelSize);
   }
-  return {across.is_on_ground ? across.length / metres->x : across.length,
-          up.is_on_ground ? up.length / metres->y : up.length};
+  return {across.is_on_ground ? across.number / metres->x : across.number,
+          up.is_on_ground ? up.number / metres->y : up.number};
 }
 
 MapPoint middle_of(const std::optional<Window>& window, const StoreFacts& facts) {

@@ -12,25 +12,20 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 #include "storage/store_file.h"
+#include "tools/facts/quantity.h"
 
 namespace ptin::tools {
-
-/// A side of a pixel.
-struct PixelSide {
-  double length = 0.0;        ///< > 0; metres over ground, or map units.
-  bool is_on_ground = false;  ///< The length is in metres over ground.
-};
 
 /// The sides that --pixel-size names: each a number in map units, or with m, km or ft behind it a
 /// length over ground.
 /// @throws Error invalid_argument  no number > 0, another unit
-[[nodiscard]] std::vector<PixelSide> pixel_sides_of(const std::vector<std::string>& texts);
+[[nodiscard]] std::vector<Length> pixel_sides_of(const std::vector<std::string>& texts);
 
 /// Width and height in map units of pixels with these sides; one side is both.
 /// @param at  Where lengths over ground are turned into map units. In a geographic CRS a degree
 ///            differs elsewhere.
 /// @throws Error invalid_argument  a length over ground, and the map unit is unknown
-[[nodiscard]] std::array<double, 2> pixel_size_of(const std::vector<PixelSide>& sides,
+[[nodiscard]] std::array<double, 2> pixel_size_of(const std::vector<Length>& sides,
                                                   const CrsFacts& crs, MapPoint at);
 
 /// The middle of the window, or where there is none of the box of the terrain's samples.

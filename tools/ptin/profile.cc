@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// ptin profile: heights along a line, as CSV, a layer or a picture.
-#include <algorithm>
-#include <array>
+// ptin profile: heights along a line, as CSV, a layer or a plot.
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -21,13 +19,14 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
+#include "tools/facts/quantity.h"
 #include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
 #include "tools/formats/vector_file.h"
+#include "tools/plot/profile_plot.h"
 #include "tools/ptin/answer_output.h"
 #include "tools/ptin/point_input.h"
 #include "tools/ptin/query_options.h"
-#include "tools/render/overlay.h"
 
 namespace ptin::tools {
 
@@ -36,6 +35,8 @@ namespace {
 struct ProfileOptions {
   TerrainOptions terrain;
   std::string line;
+  std::optional<std::string> stations;
+  bool stations_only = false;
   InputChoice choice;
   DetailOptions detail;
   std::string memory;
@@ -47,28 +48,42 @@ std::string unit_of_lengths(const CrsFacts& crs) {
   return crs.geographic ? "metre" : crs.horizontal_unit;
 }
 
-/// The points of the profile, line by line.
-std::vector<std::span<const ProfilePoint>> lines_of(const ProfileResult& profile) {
-  std::vector<std::span<const ProfilePoint>> lines;
-  const std::span<const ProfilePoint> all(profile.points);
-  for (std::size_t begin = 0, i = 1; i <= all.size(); ++i) {
-    if (i < all.size() && all[i].line == all[begin].line) continue;
-    lines.push_back(all.subspan(begin, i - begin));
-    begin = i;
+/// The distance between stations that --stations asks for, in the unit of distances along lines; 0
+/// where there are none.
+/// @throws Error invalid_argument  no length, or one over ground where the map unit is unknown
+double station_step_of(const std::optional<std::string>& text, const CrsFacts& crs) {
+  constexpr const char* kStations = "--stations";
+  if (!text) return 0.0;
+  const std::optional<Length> step = length_of(*text);
+  if (!step) {
+    refuse("\"" + *text + "\" is no distance between stations; expected a number > 0 in " +
+               (crs.geographic ? "metres" : "map units") +
+               ", or with m, km or ft behind it, as 50m",
+           kStations);
   }
-  return lines;
+  if (!step->is_on_ground || crs.geographic) return step->number;
+  const std::optional<MapPoint> metres = metres_per_map_unit(crs, {});  // of a plane
+  if (!metres) {
+    refuse(
+        "the unit of the terrain's map is unknown, so a length in m, km or ft cannot be turned "
+        "into it; give a number in map units",
+        kStations);
+  }
+  return step->number / metres->x;
 }
 
 /// The length of all lines together.
-double length_of(const ProfileResult& profile) {
+double total_length(const ProfileResult& profile) {
   double length = 0.0;
   for (const auto& line : lines_of(profile)) length += line.back().distance;
   return length;
 }
 
 /// The profile as CSV: heights, with the interval that the certificate guarantees.
-std::string csv_of(const ProfileResult& profile, const std::vector<std::string>& ids) {
+std::string csv_of(const ProfileOptions& options, const ProfileResult& profile,
+                   const std::vector<std::string>& ids) {
   std::string text = "distance,x,y,height,state,line,height_min,height_max";
+  if (options.stations) text += ",station";
   text += ids.empty() ? "\n" : ",id\n";
   for (const ProfilePoint& p : profile.points) {
     for (const double value : {p.distance, p.position.x, p.position.y}) {
@@ -80,6 +95,7 @@ std::string csv_of(const ProfileResult& profile, const std::vector<std::string>&
     for (const double off : {-profile.certified_deviation, profile.certified_deviation}) {
       append_csv_number(text, p.height + off);
     }
+    if (options.stations) text += p.is_station ? ",1" : ",0";
     if (!ids.empty()) append_csv_field(text += ',', ids[p.line]);
     text += '\n';
   }
@@ -129,69 +145,52 @@ void write_layer(const AnswerOptions& options, const ProfileResult& profile,
   file.publish();
 }
 
-/// A number for a plot, with its unit where that has a short name.
-std::string label_of(double value, const std::string& unit) {
-  const bool metres = unit == "metre" || unit == "m" || unit == "meter";
-  const bool kilo = metres && std::abs(value) >= 10'000;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.5g", kilo ? value / 1000 : value);
-  return std::string(text.data()).append(metres ? (kilo ? " km" : " m") : "");
+/// Writes stations as a layer, a feature for each.
+void write_stations(const AnswerOptions& options, const ProfileResult& profile,
+                    const std::vector<std::string>& ids, const CrsFacts& crs) {
+  using Type = VectorFile::FieldType;
+  VectorFile::Layer layer{"stations",
+                          wkbPoint25D,
+                          {{"line", Type::kInteger},
+                           {"distance", Type::kReal},
+                           {"height", Type::kReal},
+                           {"state", Type::kText},
+                           {"certified_deviation", Type::kReal}},
+                          crs.wkt};
+  if (!ids.empty()) layer.fields.push_back({"id", Type::kText});
+  VectorFile file(options.output, options.overwrite, layer);
+  for (const ProfilePoint& p : profile.points) {
+    std::vector<VectorFile::Value> values = {std::int64_t{p.line}, p.distance, p.height,
+                                             std::string(name_of(p.state)),
+                                             profile.certified_deviation};
+    if (!ids.empty()) values.emplace_back(ids[p.line]);
+    const double z = std::isfinite(p.height) ? p.height : 0.0;  // the field tells what is unknown
+    file.add(std::make_unique<OGRPoint>(p.position.x, p.position.y, z), values);
+  }
+  file.publish();
 }
 
-/// A plot of the profile: distance to the right, height upwards, both filling the picture, lines
-/// one behind the other. A grey line stands at the lowest and at the highest height. These heights
-/// are written beside it, and so is the length.
-Image plot_of(const ProfileResult& profile, const CrsFacts& crs) {
-  constexpr int kWidth = 1200, kHeight = 400, kMargin = 20;
-  constexpr Colour kPaper{255, 255, 255}, kLine{150, 60, 30}, kFrame{200, 200, 200};
-  Image image(kWidth, kHeight, kPaper);
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const ProfilePoint& p : profile.points) {
-    if (std::isfinite(p.height)) low = std::min(low, p.height), high = std::max(high, p.height);
-  }
-  const double range = high > low ? high - low : 1.0;
-  const double length = length_of(profile);
-  double before = 0.0;
-  const auto x = [&](const ProfilePoint& p) {
-    return kMargin + (kWidth - 2 * kMargin) * (before + p.distance) / length;
-  };
-  const auto y = [&](const ProfilePoint& p) {
-    return kHeight - kMargin - (kHeight - 2 * kMargin) * (p.height - low) / range;
-  };
-  for (const int row : {kMargin, kHeight - kMargin}) {
-    draw_line(image, kMargin, row, kWidth - kMargin, row, kFrame, 1.0);
-  }
-  for (const std::span<const ProfilePoint> line : lines_of(profile)) {
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-      if (line[i].state != PointState::kSurface) continue;
-      draw_line(image, x(line[i]), y(line[i]), x(line[i + 1]), y(line[i + 1]), kLine, 1.0);
-    }
-    before += line.back().distance;
-  }
-  if (low <= high) {
-    draw_text(image, kMargin, kMargin - 12, label_of(high, crs.vertical_unit));
-    draw_text(image, kMargin, kHeight - kMargin + 6, label_of(low, crs.vertical_unit));
-  }
-  if (profile.certified_deviation > 0) {
-    const std::string within = "+/- " + label_of(profile.certified_deviation, crs.vertical_unit);
-    draw_text(image, kWidth - kMargin - text_width(within), kMargin - 12, within);
-  }
-  const std::string end = label_of(length, unit_of_lengths(crs));
-  draw_text(image, kWidth - kMargin - text_width(end), kHeight - kMargin + 6, end);
-  return image;
+/// How the plot names units, and how distances and heights compare.
+PlotUnits plot_units_of(const CrsFacts& crs) {
+  const Ground ground = ground_of(crs);
+  const double heights =
+      ground.geographic ? 1 / ground.metres_per_height : ground.per_map_unit({}).x;
+  return {unit_of_lengths(crs), crs.vertical_unit, heights};
 }
 
 /// Puts the profile where it is asked for.
-void write_profile(const AnswerOptions& options, AnswerForm form, bool json,
-                   const ProfileResult& profile, const std::vector<std::string>& ids,
-                   const CrsFacts& crs) {
-  if (form == AnswerForm::kLayer) {
-    write_layer(options, profile, ids, crs);
-  } else if (form == AnswerForm::kOther) {
-    write_png(plot_of(profile, crs), options.output, options.overwrite);
+void write_profile(const ProfileOptions& options, bool json, const ProfileResult& profile,
+                   const std::vector<std::string>& ids, const CrsFacts& crs) {
+  const AnswerOptions& answer = options.answer;
+  const AnswerForm form = form_of(answer, json, true);
+  if (form == AnswerForm::kLayer && options.stations_only) {
+    write_stations(answer, profile, ids, crs);
+  } else if (form == AnswerForm::kLayer) {
+    write_layer(answer, profile, ids, crs);
+  } else if (form == AnswerForm::kPlot) {
+    plot_profile(answer.output, answer.overwrite, profile, ids, plot_units_of(crs));
   } else if (form == AnswerForm::kCsv || !json) {
-    write_csv(options, form, json, csv_of(profile, ids));
+    write_csv(answer, form, json, csv_of(options, profile, ids));
   }
 }
 
@@ -204,7 +203,7 @@ nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& res
       {"output", output_json(options.answer)},
       {"lines", lines_of(result).size()},
       {"skipped_lines", result.skipped_lines},
-      {"length", length_of(result)},
+      {"length", total_length(result)},
       {"certified_error", result.certified_error},
       {"certified_deviation", result.certified_deviation},
       {"border_moved_at_most", border_move_json(store, result.certified_error)},
@@ -220,12 +219,17 @@ nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& res
                                 {"y", p.position.y},
                                 {"height", p.height},
                                 {"state", name_of(p.state)}});
+    if (options.stations) answer["points"].back()["station"] = p.is_station;
   }
   return answer;
 }
 
 int run_profile(const ProfileOptions& options, const Context& context) {
-  const AnswerForm form = form_of(options.answer, context.json, ".png");
+  if (const AnswerForm form = form_of(options.answer, context.json, true);  // before the work
+      form == AnswerForm::kPlot && options.stations_only) {
+    refuse("a plot draws the ground between stations too; leave --stations-only out",
+           options.answer.output);
+  }
   check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
@@ -235,17 +239,21 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   ProfileRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
+  request.station_step = station_step_of(options.stations, crs);
   if (const Ground ground = ground_of(crs); ground.geographic) {  // Degrees are no lengths.
     request.ground_distance = [ground](MapPoint a, MapPoint b) {
       return ground.distance(a, b) * ground.metres_per_height;
     };
   }
-  const ProfileResult result = terrain.profile(lines, request);
+  ProfileResult result = terrain.profile(lines, request);
   if (result.skipped_lines > 0 && !context.json && !context.quiet) {
     std::fprintf(stderr, "%s of %s: no length, skipped\n", grouped(result.skipped_lines).c_str(),
                  counted(lines.size(), "line").c_str());
   }
-  write_profile(options.answer, form, context.json, result, asked.ids, crs);
+  if (options.stations_only) {
+    std::erase_if(result.points, [](const ProfilePoint& p) { return !p.is_station; });
+  }
+  write_profile(options, context.json, result, asked.ids, crs);
   if (context.json) print_json(answer_of(options, result, asked.ids, terrain.store(), crs));
   return kExitDone;
 }
@@ -261,10 +269,18 @@ Action declare_profile(CLI::App& app, Context& context) {
                      "file (transformed to the terrain's CRS)");
   line->type_name("WKT_OR_FILE")->required();
   add_input_options(app, options->choice, line, "");
+  auto* stations = app.add_option("--stations", options->stations,
+                                  "Beside the breaks, heights at equal distances: map units (in "
+                                  "degrees metres), or 50m, 0.1km, "
+                                  "200ft");
+  stations->type_name("D");
+  app.add_flag("--stations-only", options->stations_only,
+               "The stations alone: rows of CSV, or points of a layer")
+      ->needs(stations);
   add_detail_options(app, options->detail, "",
                      "Ask the TIN of the terrain's N most important vertices");
   add_memory_option(app, options->memory);
-  add_answer_options(app, options->answer, ", .png (a plot)");
+  add_answer_options(app, options->answer, true);
   return [options, &context] { return run_profile(*options, context); };
 }
 

@@ -12,6 +12,7 @@
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
 #include "tools/output/output_file.h"
+#include "tools/plot/canvas.h"
 #include "tools/ptin/error_stats.h"
 #include "tools/ptin/query_options.h"
 #include "tools/render/overlay.h"
@@ -34,8 +35,9 @@ struct RenderOptions {
 
 void check_options(const RenderOptions& options) {
   const std::string& path = options.output;
-  if (path.size() < 4 || (!path.ends_with(".png") && !path.ends_with(".PNG"))) {
-    throw Error(ErrorCode::invalid_argument, "unknown extension; known is .png", path);
+  if (!is_picture_name(path)) {
+    throw Error(ErrorCode::invalid_argument,
+                "unknown extension; known are " + known_picture_extensions(), path);
   }
   if (options.error && !(*options.error >= 0)) {
     throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
@@ -63,10 +65,11 @@ constexpr int kSupersampling = 2;
 /// @throws Error resource_exhausted  the picture alone takes more than the limit
 std::uint64_t memory_beside_picture(const RenderOptions& options, const View& view) {
   const std::uint64_t limit = memory_limit_of(options.memory);
-  // Pixels of the relief and of the picture; making a PNG takes less.
+  // Pixels of the relief, of the picture and of the sheet; making a file takes less.
   const std::uint64_t bytes =
       static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height) *
-      (kSupersampling * kSupersampling * raster_bytes_per_pixel(options.pages) + sizeof(Colour));
+      (kSupersampling * kSupersampling * raster_bytes_per_pixel(options.pages) +
+       2 * sizeof(Image::pixels[0]));
   if (bytes < limit) return limit - bytes;
   throw Error(ErrorCode::resource_exhausted,
               "a picture of " + std::to_string(view.width) + " x " + std::to_string(view.height) +
@@ -88,17 +91,12 @@ std::optional<double> tolerance_for(const StoreFile& store, double share, const 
   return tolerances.empty() ? 0.0 : tolerances.back();
 }
 
-std::string short_unit(const std::string& unit) {
-  if (unit == "metre" || unit == "m" || unit == "meter") return "m";
-  return unit.find("foot") != std::string::npos || unit.find("feet") != std::string::npos ? "ft"
-                                                                                          : "";
-}
-
 View view_of(const RenderOptions& options, const Window& window, const CrsFacts& crs) {
   const MapPoint middle{(window.min_x + window.max_x) / 2, (window.min_y + window.max_y) / 2};
   const bool sized = !options.size.empty();
   if (sized && (options.size[0] < 1 || options.size[1] < 1)) {
-    throw Error(ErrorCode::invalid_argument, "the picture's sides must be from 1 to 32768 pixels",
+    throw Error(ErrorCode::invalid_argument,
+                "the picture's sides must be from 1 to " + std::to_string(kMostPixels) + " pixels",
                 "--size");
   }
   return make_view(window, ground_of(crs).per_map_unit(middle), sized ? options.size[0] : 0,
@@ -113,15 +111,17 @@ Window visible_window(const View& view) {
   return {w.min_x - beside, w.min_y - above, w.max_x + beside, w.max_y + above};
 }
 
-Image draw(const RenderOptions& options, const RefinedTin& refined, const StoreFacts& facts,
-           const View& view, const std::stop_token& stop, ReliefStyle& style) {
+/// Draws the terrain on a sheet; returns what it looks like.
+ReliefStyle draw(Canvas& canvas, const RenderOptions& options, const RefinedTin& refined,
+                 const StoreFacts& facts, const View& view, const std::stop_token& stop) {
   const TerrainRaster raster = rasterize(refined, facts, supersampled(view, kSupersampling), stop);
   const bool shows_facets = options.wireframe || options.pages;
-  style = choose_style(raster, view, options.pages,
-                       shows_facets ? 1 : pixels_between_samples(facts.map, view) * kSupersampling);
-  Image image = draw_relief(raster, view, kSupersampling, style, stop);
-  if (options.wireframe) draw_wireframe(image, refined, facts, view, stop);
-  return image;
+  const ReliefStyle style =
+      choose_style(raster, view, options.pages,
+                   shows_facets ? 1 : pixels_between_samples(facts.map, view) * kSupersampling);
+  canvas.paint(draw_relief(raster, view, kSupersampling, style, stop));
+  if (options.wireframe) draw_wireframe(canvas, refined, facts, view, stop);
+  return style;
 }
 
 int run_render(const RenderOptions& options, const Context& context) {
@@ -145,11 +145,10 @@ int run_render(const RenderOptions& options, const Context& context) {
   request.page_of_triangle = options.pages;
   request.limits.stop = context.stop;
   const RefinedTin refined = terrain.refine(request);
-  ReliefStyle style;
-  Image image = draw(options, refined, store.facts(), view, context.stop, style);
-  if (!options.no_legend)
-    draw_legend(image, view, style, short_unit(unit_of_ground(crs)), short_unit(crs.vertical_unit));
-  write_png(image, options.output, options.overwrite);
+  Canvas canvas(options.output, options.overwrite, view.width, view.height);
+  const ReliefStyle style = draw(canvas, options, refined, store.facts(), view, context.stop);
+  if (!options.no_legend) draw_legend(canvas, view, style, unit_of_ground(crs), crs.vertical_unit);
+  canvas.publish();
   if (refined.triangles == 0 && !context.quiet) {
     std::fprintf(stderr, "ptin: warning: no triangle meets the window; %s shows nothing\n",
                  options.output.c_str());
@@ -202,8 +201,9 @@ Action declare_render(CLI::App& app, Context& context) {
   app.add_flag("--wireframe", options->wireframe, "Draw the triangles");
   app.add_flag("--pages", options->pages, "Colour triangles by the page that each came from");
   app.add_flag("--no-legend", options->no_legend, "No scale bar and no height colours");
-  app.add_option("-o,--output", options->output, "The .png file to write")
-      ->type_name("OUT.png")
+  app.add_option("-o,--output", options->output,
+                 "The picture to write: " + known_picture_extensions())
+      ->type_name("OUT")
       ->required();
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");

@@ -27,6 +27,7 @@
 #include "tools/formats/number_text.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/file_name.h"
+#include "tools/plot/sight_plot.h"
 #include "tools/ptin/answer_output.h"
 #include "tools/ptin/point_input.h"
 #include "tools/ptin/query_options.h"
@@ -153,6 +154,33 @@ std::array<double, kNumbers.size()> numbers_of(const SightResult& r) {
           r.fresnel_ratio.value_or(kNone)};
 }
 
+/// What a plot shows of a pair, beside its answer: the ground below it, and how high its ends are.
+PlottedSight plotted(const Terrain& terrain, const SightRequest& request, const SightPair& pair,
+                     const std::string& unit) {
+  PlottedSight plotted;
+  const std::array<MapPoint, 2> line = {pair.a, pair.b};
+  if (pair.a != pair.b) {
+    ProfileRequest below;
+    below.ground_distance = request.ground_distance;
+    below.detail = request.detail;
+    below.limits = request.limits;
+    plotted.profile = terrain.profile(line, below);
+  }
+  const ShownUnit heights{1.0, short_unit(unit)};
+  const auto label_of = [&](double height) {
+    return heights.text(height) + (request.absolute ? "" : " above ground");
+  };
+  plotted.a = {pair.height_a, label_of(pair.height_a)};
+  plotted.b = {pair.height_b, label_of(pair.height_b)};
+  if (request.absolute) return plotted;
+  LocateRequest ground;  // exact below the ends, at a level of detail too
+  ground.limits = request.limits;
+  const LocateResult ends = terrain.locate(line, ground);
+  plotted.a.height += ends.points[0].height;
+  plotted.b.height += ends.points[1].height;
+  return plotted;
+}
+
 /// Takes the answers one by one, and puts them where they are asked for.
 class SightAnswers {
  public:
@@ -161,7 +189,7 @@ class SightAnswers {
       : options_(options),
         asked_(asked),
         is_json_(context.json),
-        form_(form_of(options.answer, context.json)) {
+        form_(form_of(options.answer, context.json, true)) {
     csv_ = "verdict";
     for (const char* name : kNumbers) csv_.append(",").append(name);
     csv_ += asked.ids.empty() ? "\n" : ",id\n";
@@ -171,6 +199,18 @@ class SightAnswers {
     for (const char* name : kNumbers) layer.fields.push_back({name, Type::kReal});
     if (!asked.ids.empty()) layer.fields.push_back({"id", Type::kText});
     layer_.emplace(options.answer.output, options.answer.overwrite, layer);
+  }
+
+  [[nodiscard]] bool are_plotted() const { return form_ == AnswerForm::kPlot; }
+
+  /// Takes the answer of the next pair with what the plot shows of it.
+  void add_plotted(const SightResult& result, PlottedSight sight) {
+    sight.title = "line of sight";
+    if (!options_.pairs.empty()) sight.title = "pair " + std::to_string(count_ + 1);
+    if (!asked_.ids.empty()) sight.title = asked_.ids[count_];
+    sight.result = result;
+    plotted_.push_back(std::move(sight));
+    add(result);
   }
 
   void add(const SightResult& result) {
@@ -189,8 +229,12 @@ class SightAnswers {
   }
 
   /// Completes what is written. Returns the answers as JSON, where that is asked for.
-  nlohmann::json finish() {
+  nlohmann::json finish(const SightRequest& request, const PlotUnits& units) {
     if (layer_) layer_->publish();
+    if (are_plotted()) {
+      plot_sights(options_.answer.output, options_.answer.overwrite, plotted_,
+                  {request.curvature, request.wavelength}, units);
+    }
     write_csv(options_.answer, form_, is_json_, csv_);
     return std::move(json_);
   }
@@ -210,6 +254,7 @@ class SightAnswers {
   AnswerForm form_;
   std::string csv_;
   std::optional<VectorFile> layer_;
+  std::vector<PlottedSight> plotted_;
   nlohmann::json json_ = nlohmann::json::array();
   std::size_t count_ = 0;
 };
@@ -219,7 +264,7 @@ int run_sight(const SightOptions& options, const Context& context) {
     throw Error(ErrorCode::invalid_argument, "give either X1 Y1 H1 X2 Y2 H2 or --pairs FILE");
   }
   check_detail(options.detail);
-  std::ignore = form_of(options.answer, context.json);  // before the work
+  std::ignore = form_of(options.answer, context.json, true);  // before the work
   if (options.frequency) std::ignore = hertz_of(*options.frequency);
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
@@ -227,17 +272,20 @@ int run_sight(const SightOptions& options, const Context& context) {
   const Asked<SightPair> asked = pairs_of(options, crs.wkt);
   const SightRequest request = request_of(options, ground_of(crs), context);
   SightAnswers answers(options, asked, context, crs);
+  if (answers.are_plotted()) require_panels(asked.all.size(), "pairs", options.answer.output);
+  const std::string unit = unit_of_ground(crs);
   SightSolver solver =
       terrain.sight_lines(request, asked.all.size() < kFewPairs ? 0 : std::uint64_t{1} << 15);
   for (const SightPair& pair : asked.all) {
     SightResult result = solver.solve(pair);
     if (options.pairs.empty()) result.cost.add_counts(solver.base_cost());
-    answers.add(result);
+    answers.are_plotted() ? answers.add_plotted(result, plotted(terrain, request, pair, unit))
+                          : answers.add(result);
   }
-  const nlohmann::json all = answers.finish();
+  const nlohmann::json all = answers.finish(request, {unit, unit});
   if (!context.json) return kExitDone;
   nlohmann::json units = units_json(crs);
-  units["length"] = unit_of_ground(crs);
+  units["length"] = unit;
   nlohmann::json answer = {{"base_cost", cost_json(solver.base_cost())}, {"pairs", all}};
   if (options.pairs.empty()) answer = all.at(0);
   answer["output"] = output_json(options.answer);
@@ -279,7 +327,7 @@ Action declare_sight(CLI::App& app, Context& context) {
       ->type_name("RECORDS")
       ->check(counts());
   add_memory_option(app, options->memory);
-  add_answer_options(app, options->answer);
+  add_answer_options(app, options->answer, true);
   return [options, &context] { return run_sight(*options, context); };
 }
 

@@ -58,7 +58,7 @@ bool is_raster(const std::string& path) {
 }
 
 /// The side of a pixel that was asked for; none: none was.
-std::vector<PixelSide> sides_of(const ViewshedOptions& options) {
+std::vector<Length> sides_of(const ViewshedOptions& options) {
   if (!options.pixel_size) return {};
   return pixel_sides_of({*options.pixel_size});
 }
@@ -68,7 +68,7 @@ std::vector<PixelSide> sides_of(const ViewshedOptions& options) {
 std::optional<std::array<double, 2>> pixel_size_of(const ViewshedOptions& options,
                                                    const CrsFacts& crs,
                                                    const ViewshedRequest& request) {
-  const std::vector<PixelSide> sides = sides_of(options);
+  const std::vector<Length> sides = sides_of(options);
   if (sides.empty()) return std::nullopt;
   const std::array<double, 2> size = pixel_size_of(sides, crs, request.eye);
   const bool is_wider = size[0] * request.ground_per_map_x > request.radius;

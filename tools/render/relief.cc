@@ -140,7 +140,7 @@ Colour height_colour(float height, const ReliefStyle& style) {
 
 Image draw_relief(const TerrainRaster& raster, const View& view, int factor,
                   const ReliefStyle& style, const std::stop_token& stop) {
-  Image image(view.width, view.height, kBackground);
+  Image image(view.width, view.height);
   const double ground = view.ground_per_pixel() / factor;
   const float share = 1.0F / static_cast<float>(factor * factor);
   for (int y = 0; y < view.height; ++y) {
@@ -152,7 +152,7 @@ Image draw_relief(const TerrainRaster& raster, const View& view, int factor,
                                       ground, factor, style);
         for (std::size_t i = 0; i < 3; ++i) sum[i] += c[i] * share;
       }
-      image.at(x, y) = sum;
+      image.put(x, y, sum);
     }
   }
   return image;

@@ -5,7 +5,7 @@
 
 #include <stop_token>
 
-#include "tools/render/image.h"
+#include "tools/plot/image.h"
 #include "tools/render/rasterize.h"
 #include "tools/render/view.h"
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "engine/error.h"
 
@@ -38,8 +39,9 @@ View make_view(const Window& window, const MapPoint& ground_per_unit, int width,
     width = sides_pixels(ground_width / longer * kLongerSide);
     height = sides_pixels(ground_height / longer * kLongerSide);
   }
-  if (width < 1 || height < 1 || width > 32768 || height > 32768) {
-    throw Error(ErrorCode::invalid_argument, "the picture's sides must be from 1 to 32768 pixels",
+  if (width < 1 || height < 1 || width > kMostPixels || height > kMostPixels) {
+    throw Error(ErrorCode::invalid_argument,
+                "the picture's sides must be from 1 to " + std::to_string(kMostPixels) + " pixels",
                 "--size");
   }
   view.width = width;

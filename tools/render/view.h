@@ -7,6 +7,9 @@
 
 namespace ptin::tools {
 
+/// Of a side of a picture: Cairo has no larger ones.
+constexpr int kMostPixels = 32767;
+
 /// Pixel (0, 0) is the upper left one; its centre is at (0.5, 0.5).
 struct View {
   Window window{};  ///< Map units; shown whole, centred.
@@ -33,7 +36,7 @@ struct View {
 /// window's own aspect.
 /// @param ground_per_unit  Ground units in a map unit along x and y, at the middle of the window.
 /// @throws Error invalid_argument  the window has no area, or none over ground that doubles hold;
-///                                 one side alone is 0, or one is negative or above 32768
+///                                 one side alone is 0, or one is negative or above kMostPixels
 [[nodiscard]] View make_view(const Window& window, const MapPoint& ground_per_unit, int width,
                              int height);
 

@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
+#include "engine/query/heights/stations.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/retrieval.h"
@@ -204,6 +205,7 @@ class Profiling {
     }
     walk_group(group);
     put_in_order(order, lines.size());
+    put_stations();
     terrain_.store().pages().check_unchanged();
     result_.certified_error = detail_.certificate().error;
     result_.certified_deviation = detail_.certificate().deviation;
@@ -222,6 +224,7 @@ class Profiling {
   /// The lines that have a length; counts the others.
   std::vector<OrderedLine> order_of(std::span<const std::span<const MapPoint>> lines) {
     std::vector<OrderedLine> order;
+    StationCount stations(request_.station_step);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       context_.check_stop();
       const SpotLine line = spot_line(lines[i], i, lines.size(), facts(), request_);
@@ -229,6 +232,7 @@ class Profiling {
         ++result_.skipped_lines;
         continue;
       }
+      stations.add(line.distances.back());
       const GridBox& b = facts().bounds;
       const MapPoint p = grid_of(line.spots[0]);
       const MapPoint q = grid_of(line.spots[1]);
@@ -240,6 +244,7 @@ class Profiling {
     if (!lines.empty() && order.empty()) {
       throw Error(ErrorCode::invalid_argument, no_length(lines.size()));
     }
+    station_bytes_ = stations.bytes_within(request_.limits.memory_bytes);
     std::sort(order.begin(), order.end(), [](const OrderedLine& a, const OrderedLine& b) {
       return a.along != b.along ? a.along < b.along : a.index < b.index;
     });
@@ -367,6 +372,12 @@ class Profiling {
     result_.points = std::move(points);
   }
 
+  void put_stations() {
+    if (request_.station_step == 0) return;
+    context_.admit(held() + held() + station_bytes_);
+    result_.points = with_stations(result_.points, request_.station_step);
+  }
+
   [[nodiscard]] std::uint64_t held() const noexcept {
     return result_.points.capacity() * sizeof(ProfilePoint);
   }
@@ -378,6 +389,7 @@ class Profiling {
   Refinement refinement_;  ///< Of the group at hand.
   std::vector<std::size_t>
       begins_;  ///< First point of each line of the request, once it is walked.
+  std::uint64_t station_bytes_ = 0;  ///< What the points of all stations take.
   ProfileResult result_;
 };
 

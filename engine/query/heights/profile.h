@@ -20,13 +20,16 @@ struct ProfileRequest {
   /// Distance over ground between two map positions, for example along the ellipsoid of a
   /// geographic CRS; none: the distance in the plane, in map units.
   std::function<double(MapPoint, MapPoint)> ground_distance;
+  /// Above 0: a point stands at every multiple of this distance along each line too, from its
+  /// beginning, and its ends count as stations. In the unit of `ground_distance`.
+  double station_step = 0.0;
   DetailRequest detail;  ///< The TIN along which the profile runs.
   /// Lines whose records do not fit the memory together are walked one by one, or in pieces.
   QueryLimits limits;
 };
 
 /// A point where the profile bends: a vertex of the line, or where it crosses an edge or a vertex
-/// of the TIN. Between two points the surface is straight.
+/// of the TIN; or a station. Between two points the surface is straight.
 struct ProfilePoint {
   MapPoint position;      ///< Map units.
   double distance = 0.0;  ///< From the beginning of its line, over ground.
@@ -35,6 +38,8 @@ struct ProfilePoint {
   /// What the stretch that begins here runs over. For the last point of a line: what the stretch
   /// before it runs over.
   PointState state = PointState::kOutside;
+  bool is_station =
+      false;  ///< At a multiple of ProfileRequest::station_step, or an end of its line.
   std::uint32_t part = 0;  ///< Segment of its line, from 0.
   std::uint32_t line = 0;  ///< Index of its line in the request.
 };
@@ -51,9 +56,11 @@ struct ProfileResult {
 /// The heights along polylines. Segments of no length are left out, and among several lines those
 /// without any length.
 /// @throws Error invalid_argument    no line has a length; a coordinate that is not finite, or more
-///                                   than 2^31 grid units away (names the line); as Detail
+///                                   than 2^31 grid units away (names the line); a step between
+///                                   stations that is negative or not finite; as Detail
 ///               resource_exhausted  the records of one segment, or the points of the result,
-///                                   exceed the memory limit
+///                                   exceed the memory limit; more stations than fit it, before
+///                                   anything is read
 ///               corruption, io_error, cancelled
 /// Cost: the records whose region of influence meets a line, where each test takes the logarithm of
 /// the number of segments; and the triangles on the way. Lines are taken along the Hilbert curve,

@@ -3,8 +3,11 @@
 // Profiles against every triangle of the full TIN, and against point location.
 #include "engine/query/heights/profile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -207,6 +210,117 @@ TEST(Profile, SharesRefinementsAndKeepsTheOrderOfManyLines) {
     }
     EXPECT_EQ(i, all.points.size());
     EXPECT_LT(all.cost.records_applied, alone / 3);
+  }
+}
+
+/// The breaks of a line are all there and as they were, every point else is a station, and a station
+/// stands at each multiple of the step and at the end.
+void check_stations(std::span<const ProfilePoint> found, std::span<const ProfilePoint> breaks,
+                    double step) {
+  double steps = 0;
+  double reached = -1;
+  for (const ProfilePoint& p : found) {
+    RC_ASSERT(p.distance > reached);
+    reached = p.distance;
+    const bool is_break = !breaks.empty() && breaks.front().distance == p.distance;
+    if (is_break) {
+      RC_ASSERT(breaks.front().position == p.position && breaks.front().state == p.state);
+      RC_ASSERT(breaks.front().part == p.part);
+      breaks = breaks.subspan(1);
+    }
+    RC_ASSERT(p.is_station || (is_break && !breaks.empty()));
+    const bool is_end_alone = breaks.empty() && p.distance < steps * step - 1e-6;
+    if (p.is_station && !is_end_alone) {
+      RC_ASSERT(std::abs(p.distance - steps * step) < 1e-6);
+      ++steps;
+    }
+  }
+  RC_ASSERT(breaks.empty() && steps * step > reached);
+}
+
+/// Every point stands at the height of its place, by point location: there, or a little beside it,
+/// since a line along a border falls to either side of it by rounding. What is near a break is left
+/// out.
+void check_heights(const Terrain& terrain, std::span<const ProfilePoint> found,
+                   std::span<const ProfilePoint> breaks) {
+  constexpr double kBeside = 1e-6;  // some spots
+  for (const ProfilePoint& p : found) {
+    if (std::any_of(breaks.begin(), breaks.end(), [&](const ProfilePoint& b) {
+          return std::abs(b.distance - p.distance) < 1e-4;
+        })) {
+      continue;
+    }
+    const auto& [x, y] = p.position;
+    const MapPoint places[] = {
+        p.position, {x - kBeside, y}, {x + kBeside, y}, {x, y - kBeside}, {x, y + kBeside}};
+    const LocateResult located = terrain.locate(places);
+    RC_ASSERT(std::isnan(p.height) == (p.state != PointState::kSurface));
+    RC_ASSERT(std::any_of(located.points.begin(), located.points.end(), [&](const auto& at) {
+      return at.state == p.state && (std::isnan(p.height) || std::abs(p.height - at.height) < 1e-6);
+    }));
+  }
+}
+
+std::span<const ProfilePoint> points_of(const ProfileResult& profile, std::uint32_t line) {
+  const auto [begin, end] =
+      std::ranges::equal_range(profile.points, line, {}, [](const auto& p) { return p.line; });
+  return {begin, end};
+}
+
+RC_GTEST_PROP(Profile, StandsAtEveryStationAtTheHeightOfItsPlace, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const Hierarchy h = reference::random_hierarchy(seed);
+  const reference::TemporaryStore file(h);
+  const Terrain terrain(file.open());
+  const SpotMap map(h.facts.map, h.facts.bounds);
+  std::vector<std::vector<MapPoint>> lines(2);
+  for (auto& line : lines) {
+    while (line.size() < 3) line.push_back(map.map(nasty_spot(random, h.full)));
+    if (line[0] == line[1] && line[1] == line[2]) return;
+  }
+  const ProfileResult breaks = terrain.profile(lines);
+  ProfileRequest request;
+  request.station_step = random() % 2 == 0 ? 0.25 : 0.01 + 1e-6 * double(random() % 2'000'000);
+  const ProfileResult found = terrain.profile(lines, request);
+  for (std::uint32_t line = 0; line < 2; ++line) {
+    check_stations(points_of(found, line), points_of(breaks, line), request.station_step);
+    check_heights(terrain, points_of(found, line), points_of(breaks, line));
+  }
+}
+
+TEST(Profile, TakesABreakAtAStationForOnePoint) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  const MapPoint line[] = {f.map.to_map(10, 20), f.map.to_map(30, 20)};  // along a row of samples
+  ProfileRequest request;
+  request.station_step = f.map.step_x;
+  const ProfileResult found = terrain.profile(line, request);
+  ASSERT_EQ(found.points.size(), 21U);
+  for (const ProfilePoint& p : found.points) EXPECT_TRUE(p.is_station);
+  request.station_step = 7 * f.map.step_x;
+  std::size_t stations = 0;
+  for (const ProfilePoint& p : terrain.profile(line, request).points) stations += p.is_station;
+  EXPECT_EQ(stations, 4U);  // at 0, 7 and 14 steps, and the end
+}
+
+TEST(Profile, RefusesMoreStationsThanTheMemoryHolds) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& f = terrain.store().facts();
+  const MapPoint line[] = {f.map.to_map(10, 20), f.map.to_map(30, 20)};
+  ProfileRequest request;
+  for (const double step : {1e-6, 1e-300, 5e-324}) {
+    request.station_step = step;
+    try {
+      static_cast<void>(terrain.profile(line, request));
+      FAIL() << step;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::resource_exhausted);
+      EXPECT_NE(e.message().find("stations take"), std::string::npos) << e.what();
+    }
+  }
+  for (const double step : {-1.0, std::nan(""), HUGE_VAL}) {
+    request.station_step = step;
+    EXPECT_THROW(static_cast<void>(terrain.profile(line, request)), Error) << step;
   }
 }
 
