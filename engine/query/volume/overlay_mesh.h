@@ -42,11 +42,15 @@ class OverlayMesh {
   /// Takes in the triangles of `tin` whose boxes meet `near`, on the other grid.
   void take(const Tin& tin, const GridBox& near);
   [[nodiscard]] MapPoint position(VertexId v) const noexcept { return positions_[v]; }
-  /// Calls visit(triangle) for each triangle taken in whose box meets `box`.
+  /// Calls visit(triangle) for each triangle taken in whose box shares more than a side with `box`:
+  /// only those share an area.
   template <class Visit>
   void visit(const GridBox& box, const Visit& visit) const {
-    boxes_.visit([&](const GridBox& b) { return meets(b, box); },
-                 [&](std::size_t i) { visit(triangles_[i]); });
+    const auto overlaps = [&](const GridBox& b) {
+      return b.min_x < box.max_x && box.min_x < b.max_x && b.min_y < box.max_y &&
+             box.min_y < b.max_y;
+    };
+    boxes_.visit(overlaps, [&](std::size_t i) { visit(triangles_[i]); });
   }
 
  private:

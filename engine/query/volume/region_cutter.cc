@@ -124,7 +124,10 @@ void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, int h
     (std::max(edge->low.x, edge->high.x) < e.min_x ? left : local).push_back(edge);
   }
   if (local.size() <= kFewEdges || halvings == kMostHalvings) {
-    cut_in_slabs(piece, e, local, left, parts);
+    const std::vector<double> ends = slab_ends(e, local);
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      cut_in_slab(piece, ends[i], ends[i + 1], local, left, parts);
+    }
     return;
   }
   MapPoint a{(e.min_x + e.max_x) / 2, e.max_y}, b{a.x, e.min_y};
@@ -140,10 +143,9 @@ void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, int h
   cut_along(other, local, halvings + 1, parts);
 }
 
-/// @param local  Edges in the extent of the piece.
-/// @param left   Edges left of it, which tell whether it begins inside.
-void RegionCutter::cut_in_slabs(const ConvexPiece& piece, const Extent& extent, const Edges& local,
-                                const Edges& left, std::vector<ConvexPiece>& parts) {
+/// Where slabs of a piece begin and end, ascending: between them no edge begins, ends or crosses
+/// another.
+std::vector<double> RegionCutter::slab_ends(const Extent& extent, const Edges& local) {
   std::vector<double> ends = {extent.min_y, extent.max_y};
   const auto add = [&](double y) {
     if (y > extent.min_y && y < extent.max_y) ends.push_back(y);
@@ -159,36 +161,43 @@ void RegionCutter::cut_in_slabs(const ConvexPiece& piece, const Extent& extent, 
     }
   }
   std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
+/// @param local  Edges in the extent of the piece.
+/// @param left   Edges left of it, which tell whether it begins inside.
+void RegionCutter::cut_in_slab(const ConvexPiece& piece, double low, double high,
+                               const Edges& local, const Edges& left,
+                               std::vector<ConvexPiece>& parts) {
+  const double middle = (low + high) / 2;
+  if (!(low < middle && middle < high)) return;
+  const auto spans = [&](const Edge* e) { return e->low.y <= middle && middle < e->high.y; };
+  bool inside = std::count_if(left.begin(), left.end(), spans) % 2 != 0;
+  const Extent extent = extent_of(piece);
+  double side = extent.min_x;
   std::vector<std::pair<double, const Edge*>> across;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const double low = ends[i], high = ends[i + 1], middle = (low + high) / 2;
-    if (!(low < middle && middle < high)) continue;
-    const auto spans = [&](const Edge* e) { return e->low.y <= middle && middle < e->high.y; };
-    bool inside = std::count_if(left.begin(), left.end(), spans) % 2 != 0;
-    across.clear();
-    double side = extent.min_x;
-    for (const Edge* e : local) {
-      if (!spans(e)) continue;
-      across.emplace_back(e->x_at(middle), e);
-      side = std::min({side, e->x_at(low), e->x_at(high)});
-    }
-    std::sort(across.begin(), across.end());
-    MapPoint from_low{side - 1, low}, from_high{side - 1, high};
-    const auto take = [&](double x_low, double x_high) {
-      const MapPoint to_low{std::max(x_low, from_low.x), low};
-      const MapPoint to_high{std::max(x_high, from_high.x), high};
-      if (inside) {
-        ConvexPiece part = piece;
-        part.keep_in({from_low, to_low, to_high, from_high});
-        if (!part.is_empty()) parts.push_back(part);
-      }
-      inside = !inside;
-      from_low = to_low;
-      from_high = to_high;
-    };
-    for (const auto& [x, e] : across) take(e->x_at(low), e->x_at(high));
-    if (inside) take(extent.max_x + 1, extent.max_x + 1);
+  for (const Edge* e : local) {
+    if (!spans(e)) continue;
+    across.emplace_back(e->x_at(middle), e);
+    side = std::min({side, e->x_at(low), e->x_at(high)});
   }
+  std::sort(across.begin(), across.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  MapPoint from_low{side - 1, low}, from_high{side - 1, high};
+  const auto take = [&](double x_low, double x_high) {
+    const MapPoint to_low{std::max(x_low, from_low.x), low};
+    const MapPoint to_high{std::max(x_high, from_high.x), high};
+    if (inside) {
+      ConvexPiece part = piece;
+      part.keep_in({from_low, to_low, to_high, from_high});
+      if (!part.is_empty()) parts.push_back(part);
+    }
+    inside = !inside;
+    from_low = to_low;
+    from_high = to_high;
+  };
+  for (const auto& [x, e] : across) take(e->x_at(low), e->x_at(high));
+  if (inside) take(extent.max_x + 1, extent.max_x + 1);
 }
 
 }  // namespace ptin

@@ -56,8 +56,9 @@ class RegionCutter {
   [[nodiscard]] Edges edges_along(const Extent& extent) const;
   static void cut_along(const ConvexPiece& piece, const Edges& along, int halvings,
                         std::vector<ConvexPiece>& parts);
-  static void cut_in_slabs(const ConvexPiece& piece, const Extent& extent, const Edges& local,
-                           const Edges& left, std::vector<ConvexPiece>& parts);
+  static std::vector<double> slab_ends(const Extent& extent, const Edges& local);
+  static void cut_in_slab(const ConvexPiece& piece, double low, double high, const Edges& local,
+                          const Edges& left, std::vector<ConvexPiece>& parts);
 
   GridRegion region_;
   std::vector<Edge> edges_;

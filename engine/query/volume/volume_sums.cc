@@ -87,42 +87,41 @@ void VolumeSums::add(const VolumeSums& o) {
 void VolumeSums::add_surface(const PlaneArea& plane, const ConvexPiece& piece,
                              std::span<const double> f, const PieceDifference& how) {
   const std::span<const MapPoint> at = piece.corners();
-  const auto above = [&](const Facet& t, double sign, double raised) {
-    return plane.positive(
-        {t.area, t.y, {sign * t.f[0] + raised, sign * t.f[1] + raised, sign * t.f[2] + raised}});
-  };
   double most = 0.0;
   for (const double value : f) most = std::max(most, std::abs(value));
+  const double of_heights = how.noise + (plane.is_uniform() ? kRoundings : kQuadrature) * most;
   for (std::size_t i = 1; i + 1 < at.size(); ++i) {
     const Facet t{piece.fan_area(i), {at[0].y, at[i].y, at[i + 1].y}, {f[0], f[i], f[i + 1]}};
     if (t.area == 0) continue;
     const double area = plane.area(t);
     surface_area.add(area);
-    const PositivePart over = above(t, 1, 0), under = above(t, -1, 0);
-    cut.add(over.volume);
-    cut_area.add(over.area);
-    fill.add(under.volume);
-    fill_area.add(under.area);
-    rounding.add(area * (how.noise + (plane.is_uniform() ? kRoundings : kQuadrature) * most));
-    if (how.deviation == 0) {
-      least_cut.add(over.volume);
-      most_cut.add(over.volume);
-      least_fill.add(under.volume);
-      most_fill.add(under.volume);
-      continue;
-    }
-    const double d = how.deviation;
-    least_cut.add(above(t, 1, -d).volume);
-    most_cut.add(above(t, 1, d).volume);
-    least_fill.add(above(t, -1, -d).volume);
-    most_fill.add(above(t, -1, d).volume);
-    slack.add(area * d);
+    rounding.add(area * of_heights);
+    slack.add(area * how.deviation);
+    add_facet(plane, t, how.deviation);
   }
   if (how.shift > 0) {
     const double strip = plane.strip_area(half_perimeter_of(at), how.shift, at[0].y);
     rounding.add(strip * most);
     area_rounding.add(strip);
   }
+}
+
+void VolumeSums::add_facet(const PlaneArea& plane, const Facet& t, double deviation) {
+  const auto above = [&](double sign, double raised) {
+    Facet facet = t;
+    for (double& f : facet.f) f = sign * f + raised;
+    return plane.positive(facet);
+  };
+  const PositivePart over = above(1, 0), under = above(-1, 0);
+  cut.add(over.volume);
+  cut_area.add(over.area);
+  fill.add(under.volume);
+  fill_area.add(under.area);
+  const bool is_exact = deviation == 0;
+  least_cut.add(is_exact ? over.volume : above(1, -deviation).volume);
+  most_cut.add(is_exact ? over.volume : above(1, deviation).volume);
+  least_fill.add(is_exact ? under.volume : above(-1, -deviation).volume);
+  most_fill.add(is_exact ? under.volume : above(-1, deviation).volume);
 }
 
 void VolumeSums::add_void(const PlaneArea& plane, const ConvexPiece& piece,

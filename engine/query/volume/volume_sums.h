@@ -57,6 +57,9 @@ class VolumeSums {
   FixedSum void_cut, void_fill;  ///< What the source can have at most where it is void here.
   FixedSum rounding;             ///< Most that rounding changed any of the volumes.
   FixedSum area_rounding;        ///< The same of areas.
+
+ private:
+  void add_facet(const PlaneArea& plane, const Facet& t, double deviation);
 };
 
 }  // namespace ptin
