@@ -14,11 +14,16 @@ namespace ptin {
 
 namespace {
 
+/// Far beyond any height, and far from where sums would overflow.
+constexpr double kLargest = 1e100;
+
 void check(const VolumeRequest& request) {
-  if (!std::isfinite(request.level)) {
-    throw Error(ErrorCode::invalid_argument, "the level of a volume must be a finite number");
+  if (!(std::abs(request.level) <= kLargest)) {
+    throw Error(ErrorCode::invalid_argument,
+                "the level of a volume must be a finite number, no larger than 1e100");
   }
-  if (!(request.other_height_scale > 0) || !std::isfinite(request.other_height_scale)) {
+  const double scale = request.other_height_scale;
+  if (!(scale >= 1 / kLargest && scale <= kLargest)) {
     throw Error(ErrorCode::invalid_argument,
                 "the scale of the other terrain's heights must be a number above 0");
   }
