@@ -91,6 +91,8 @@ set(public_headers
     engine/query/stream/stream_reader.h
     engine/query/stream/stream_writer.h
     engine/query/terrain.h
+    engine/query/volume/plane_area.h
+    engine/query/volume/volume.h
     engine/query/walk/point_state.h
     engine/stop.h
     storage/attributes.h

@@ -54,6 +54,22 @@ CrsFacts crs_facts(const std::string& wkt) {
   return facts;
 }
 
+bool is_same_plane(const CrsFacts& a, const CrsFacts& b) {
+  OGRSpatialReference of_a, of_b;
+  const bool is_known = !a.wkt.empty() && !b.wkt.empty() &&
+                        of_a.importFromWkt(a.wkt.c_str()) == OGRERR_NONE &&
+                        of_b.importFromWkt(b.wkt.c_str()) == OGRERR_NONE;
+  if (!is_known) {
+    return a.horizontal_unit == b.horizontal_unit || a.horizontal_unit == "unknown" ||
+           b.horizontal_unit == "unknown";
+  }
+  of_a.StripVertical();
+  of_b.StripVertical();
+  const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
+                                 "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
+  return of_a.IsSame(&of_b, options) != 0;
+}
+
 nlohmann::json metadata_of(const StoreFile& store) {
   nlohmann::json json = nlohmann::json::parse(store.metadata_json(), nullptr, false);
   if (!json.is_object()) {

@@ -32,6 +32,10 @@ struct CrsFacts {
 /// alone.
 [[nodiscard]] CrsFacts crs_facts(const std::string& wkt);
 
+/// Whether the same coordinates are the same place in both: the horizontal parts name one CRS,
+/// whatever the order of the axes. Where one of them is unknown: no units that are known differ.
+[[nodiscard]] bool is_same_plane(const CrsFacts& a, const CrsFacts& b);
+
 /// The metadata of a store as JSON.  @throws Error corruption when it is none
 [[nodiscard]] nlohmann::json metadata_of(const StoreFile& store);
 

@@ -55,6 +55,10 @@ Isolines Terrain::isolines(const IsolineRequest& request) const {
   return ptin::isolines(*this, request);
 }
 
+VolumeResult Terrain::volume(const VolumeRequest& request) const {
+  return ptin::volume(*this, request);
+}
+
 StreamSummary Terrain::stream(const StreamRequest& request, const ByteSink& sink) const {
   return write_stream(*this, request, sink);
 }

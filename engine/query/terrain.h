@@ -15,6 +15,7 @@
 // | is a line of sight free    | sight           | SightRequest        | sight/sight.h            |
 // | the same of many pairs     | sight_lines     | SightRequest        | sight/sight.h            |
 // | what an observer sees      | viewshed        | ViewshedRequest     | sight/viewshed.h         |
+// | volumes, cut and fill      | volume          | VolumeRequest       | volume/volume.h          |
 // | contours                   | isolines        | IsolineRequest      | isoline/isoline.h        |
 // | the file, coarse to fine   | stream          | StreamRequest       | stream/stream_writer.h   |
 // | do the records fit         | check_hierarchy | HierarchyRequest    | refine/hierarchy_check.h |
@@ -57,6 +58,7 @@
 #include "engine/query/sight/viewshed.h"
 #include "engine/query/stream/stream_reader.h"
 #include "engine/query/stream/stream_writer.h"
+#include "engine/query/volume/volume.h"
 
 namespace ptin {
 
@@ -115,6 +117,9 @@ class Terrain : public OpenedTerrain {
 
   /// Isolines, joined over the whole terrain.
   [[nodiscard]] Isolines isolines(const IsolineRequest& request) const;
+
+  /// Cut, fill and net volume over or under a level, or between two terrains.
+  [[nodiscard]] VolumeResult volume(const VolumeRequest& request) const;
 
   /// Sends T0 and then splits, the most important ones first. StreamReader (stream/stream_reader.h)
   /// receives them.

@@ -30,6 +30,7 @@
 #include "engine/query/sight/viewshed.h"
 #include "engine/query/stream/stream_writer.h"
 #include "engine/query/terrain.h"
+#include "engine/query/volume/volume.h"
 #include "storage/file/sigbus_guard.h"
 #include "tests/query/reference_hierarchy.h"
 
@@ -172,6 +173,8 @@ std::vector<KindOfQuestion> questions() {
          request.window = Window{low.x, low.y, high.x, high.y};
          return [&t, request] { (void)highest(t, request); };
        }},
+      {"Volume",
+       [](const Terrain& t, const Store&) -> Asking { return [&] { (void)volume(t, {}); }; }},
       {"IsolinesAboveAll",
        [](const Terrain& t, const Store& s) -> Asking {
          IsolineRequest request;

@@ -124,6 +124,12 @@ every_question() {
        }},
       {"isolines", [](const Terrain& t,
                       const QueryLimits& l) { static_cast<void>(t.isolines(isoline_request(l))); }},
+      {"volume",
+       [](const Terrain& t, const QueryLimits& l) {
+         VolumeRequest request;
+         request.limits = l;
+         static_cast<void>(t.volume(request));
+       }},
       {"stream",
        [](const Terrain& t, const QueryLimits& l) {
          StreamRequest request;

@@ -220,6 +220,7 @@ TEST(CliBadInput, AnswerThatStdoutDoesNotTake) {
         {"profile", store, "--line", line, "-o", "-"},
         {"sight", store, "500100", "3999900", "2", "500700", "3999300", "2"},
         {"highest", store},
+        {"volume", store, "--level", "1"},
         {"isoline", store, "--interval", "1", "-o", "-", "-q"},
         {"stream", store, "-o", "-"},
         {"verify", store, "-q", "--json"},
@@ -280,6 +281,7 @@ std::vector<std::pair<std::vector<std::string>, std::string>> questions_with_win
       {{"isoline", store, "-i", "10", "-o", folder.file("a.gpkg")}, "--window"},
       {{"isoline", store, "-i", "10", "-p", "-o", folder.file("a.gpkg")}, "--window"},
       {{"highest", store}, "--window"},
+      {{"volume", store, "--level", "1"}, "--window"},
       {{"render", store, "-o", folder.file("a.png")}, "--window"},
       {{"stream", store, "-o", folder.file("b.pts")}, "--window"},
       {{"stream", store, "-o", folder.file("b.pts")}, "--have-window"},
@@ -417,6 +419,7 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
         {"profile", "--line", "LINESTRING(0 0, 1 1)"},
         {"sight", "0", "0", "1", "1", "1", "1"},
         {"highest"},
+        {"volume", "--level", "1"},
         {"isoline", "-i", "10", "-o", gpkg},
         {"viewshed", "500100", "3999900", "1", "--radius", "9", "-o", tif}}) {
     const auto with = [&](const std::vector<std::string>& more) {
@@ -431,6 +434,11 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
     refuse(with({"--vertices", "-1"}), 2, "--vertices");
     refuse(with({"--memory", "0"}), 2, "not a size");
   }
+  refuse({"volume"}, 2, "--level H or --against OTHER");
+  refuse({"volume", "--level", "1", "--against", store}, 2, "--against");
+  refuse({"volume", "--level", "nan"}, 2, "finite");
+  refuse({"volume", "--level", "1", "--memory", "1K"}, 7, "more than the limit of 1 KiB");
+  refuse({"volume", "--against", folder.file("none.ptin")}, 3, "none.ptin");
   refuse({"highest", "--memory", "1K"}, 7, "more than the limit of 1 KiB");
   refuse({"highest", "-k", "0"}, 2, "-k");
   refuse({"highest", "--window", "3", "2", "1", "4"}, 2, "inverted");

@@ -30,8 +30,9 @@ using testing::TestFolder;
 TEST(Cli, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(run_ptin({"--help"}).status, 0);
   EXPECT_TRUE(run_ptin({"--version"}).out.starts_with("ptin "));
-  for (const char* command : {"build", "info", "verify", "refine", "isoline", "locate", "profile",
-                              "sight", "stream", "unstream", "highest", "render", "completion"}) {
+  for (const char* command :
+       {"build", "info", "verify", "refine", "isoline", "locate", "profile", "sight", "stream",
+        "unstream", "highest", "volume", "render", "completion"}) {
     const Outcome help = run_ptin({command, "--help"});
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos)
@@ -60,6 +61,7 @@ TEST(Cli, QuestionsAreAnsweredQuietlyToo) {
       {"locate", coarse, x, y, "--error", "1"},
       {"profile", coarse, "--line", line, "--error", "1"},
       {"highest", coarse, "--error", "1"},
+      {"volume", coarse, "--level", "900", "--error", "1"},
       {"sight", coarse, x, y, "2", b.at("max_x").dump(), y, "2", "--error", "1"}};
   for (std::vector<std::string> question : questions) {
     const Outcome told = run_ptin(question);

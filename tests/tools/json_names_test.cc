@@ -160,6 +160,8 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   question(
       {"sight", store, "500100", "3999900", "2", "500700", "3999300", "2", "--frequency", "1e9"});
   question({"highest", store, "-k", "2"});
+  question({"volume", store, "--level", "90"});
+  question({"volume", store, "--against", store, "--error", "2"});
   question({"viewshed", store, "500500", "3999500", "2", "--radius", "300", "-o", file("a.tif")});
   question({"viewshed", store, "500500", "3999500", "2", "--radius", "300", "-o", file("a.gpkg")});
   question({"export", store, "-o", file("c.ply"), "-q"});

@@ -107,6 +107,7 @@ TEST_F(EveryIndexAndReader, FindsTheSameHeights) {
 
 TEST_F(EveryIndexAndReader, FindsTheSamePeaksAndLines) {
   expect_the_same({"highest", store_, "--window", a_[0], a_[1], b_[0], b_[1], "-k", "20"});
+  expect_the_same({"volume", store_, "--level", "100"});
   expect_the_same({"isoline", store_, "--interval", "50", "-o", file("i.fgb"), "--overwrite"});
 }
 

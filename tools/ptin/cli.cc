@@ -119,6 +119,18 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 -k 10 --json\n"
      "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 --lowest\n",
      declare_highest},
+    {"volume", "Measure cut and fill against a level, or between two terrains",
+     "Cut is what lies above the level or above OTHER, fill what lies below, net is cut less fill. "
+     "Integrals over the\n"
+     "triangles, or over those of the overlay of both TINs; with --error, and always with "
+     "--max-error files, the volumes\n"
+     "of the sources lie in the intervals.\n\n"
+     "Examples:\n"
+     "  ptin volume dem.ptin --level 1000\n"
+     "  ptin volume after.ptin --against before.ptin --polygon pit.gpkg\n"
+     "  ptin volume lake.ptin --level 412.5 --window 385000 3790000 390000 3795000 --error 2 "
+     "--json\n",
+     declare_volume},
     {"locate", "Tell the triangle and the height at points",
      "Three answers, told apart: a height (surface), void, outside. None is an error.\n\n"
      "Examples:\n"

@@ -47,6 +47,7 @@ Action declare_sight(CLI::App& app, Context& context);
 Action declare_render(CLI::App& app, Context& context);
 Action declare_isoline(CLI::App& app, Context& context);
 Action declare_highest(CLI::App& app, Context& context);
+Action declare_volume(CLI::App& app, Context& context);
 Action declare_viewshed(CLI::App& app, Context& context);
 Action declare_completion(CLI::App& app, Context& context);
 

@@ -243,7 +243,7 @@ Action declare_isoline(CLI::App& app, Context& context) {
       "--index spatialindex (default: beside FILE)");
   add_level_options(app, options->levels, "Heights, in the height's unit",
                     "Every multiple of D, from the base");
-  add_region_options(app, options->region, true);
+  add_region_options(app, options->region, RegionKinds::kWindow);
   add_detail_options(app, options->detail, "",
                      "The isolines of the TIN of the terrain's N most important vertices");
   auto* z = app.add_flag("--3d", options->z, "Points carry the height of their line");

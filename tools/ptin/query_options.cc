@@ -56,16 +56,17 @@ void check_finite(const std::vector<double>& numbers, const std::string& option)
 
 }  // namespace
 
-void add_region_options(CLI::App& app, RegionOptions& options, bool window_only) {
+void add_region_options(CLI::App& app, RegionOptions& options, RegionKinds kinds) {
   auto* window =
       app.add_option("--window", options.window, "A window in map units: xmin ymin xmax ymax")
           ->expected(4)
           ->type_name("XMIN YMIN XMAX YMAX");
-  if (window_only) return;
+  if (kinds == RegionKinds::kWindow) return;
   auto* polygon =
       app.add_option("--polygon", options.polygon, "A polygon: WKT, or a file that holds it")
           ->type_name("WKT_OR_FILE")
           ->excludes(window);
+  if (kinds == RegionKinds::kWithInside) return;
   app.add_option("--point", options.point, "A point in map units")
       ->expected(2)
       ->type_name("X Y")

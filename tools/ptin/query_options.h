@@ -36,7 +36,10 @@ struct RegionOptions {
 
   [[nodiscard]] bool given() const { return !window.empty() || !polygon.empty() || !point.empty(); }
 };
-void add_region_options(CLI::App& app, RegionOptions& options, bool window_only = false);
+enum class RegionKinds : std::uint8_t { kWindow, kWithInside, kAll };
+/// @param kinds  A window alone, a window or a polygon, or a point too.
+void add_region_options(CLI::App& app, RegionOptions& options,
+                        RegionKinds kinds = RegionKinds::kAll);
 /// The window of four numbers.
 /// @param option  Gave the numbers; named in errors.
 /// @throws Error invalid_argument  a number is not finite, or the window is inverted

@@ -190,7 +190,7 @@ int run_render(const RenderOptions& options, const Context& context) {
 Action declare_render(CLI::App& app, Context& context) {
   const auto options = std::make_shared<RenderOptions>();
   add_terrain_options(app, options->terrain, false);
-  add_region_options(app, options->region, true);
+  add_region_options(app, options->region, RegionKinds::kWindow);
   app.add_option(
          "--error", options->error,
          "Certified error allowed, in the height's unit (default: as fine as the pixels can show)")

@@ -2,16 +2,13 @@
 #include "engine/query/isoline/isoline_tiles.h"
 
 #include <algorithm>
-#include <condition_variable>
-#include <exception>
+#include <memory>
 #include <mutex>
-#include <optional>
-#include <system_error>
-#include <thread>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/query/refine/refinement.h"
+#include "engine/query/refine/tile_queue.h"
 #include "engine/query/select/predicate.h"
 #include "engine/query/select/retrieval.h"
 
@@ -21,75 +18,10 @@ namespace {
 
 constexpr std::int64_t kSmallestTile = 8;  // grid units a side
 
-std::pair<GridBox, GridBox> halves(const GridBox& box) {
-  std::pair<GridBox, GridBox> two{box, box};
-  if (std::int64_t{box.max_x} - box.min_x >= std::int64_t{box.max_y} - box.min_y) {
-    two.first.max_x = box.min_x + (box.max_x - box.min_x) / 2;
-    two.second.min_x = two.first.max_x + 1;
-  } else {
-    two.first.max_y = box.min_y + (box.max_y - box.min_y) / 2;
-    two.second.min_y = two.first.max_y + 1;
-  }
-  return two;
-}
-
 std::string size_text(std::uint64_t bytes) {
   return bytes < (16 << 20) ? std::to_string((bytes + 1023) >> 10) + " KiB"
                             : std::to_string((bytes + 0xFFFFF) >> 20) + " MiB";
 }
-
-/// Tiles that wait to be traced. A tile in work may come back as its halves, so no worker leaves
-/// before all tiles are done. Threads: any.
-class TileQueue {
- public:
-  explicit TileQueue(const GridBox& all) : waiting_{all} {}
-
-  /// The next tile, of which the worker then tells done() or fail(). None when all tiles are done,
-  /// or after a failure.
-  std::optional<GridBox> take() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return failed_ || !waiting_.empty() || in_work_ == 0; });
-    if (failed_ || waiting_.empty()) {
-      return std::nullopt;
-    }
-    const GridBox tile = waiting_.back();
-    waiting_.pop_back();
-    ++in_work_;
-    return tile;
-  }
-  void put_halves(const GridBox& tile) {
-    const std::lock_guard lock(mutex_);
-    const auto [low, high] = halves(tile);
-    waiting_.push_back(high);
-    waiting_.push_back(low);
-  }
-  void done() {
-    const std::lock_guard lock(mutex_);
-    --in_work_;
-    changed_.notify_all();
-  }
-  /// Ends a tile by a failure, of which the first is kept. No worker gets another tile.
-  void fail(std::exception_ptr failure) {
-    const std::lock_guard lock(mutex_);
-    if (!failed_) {
-      failed_ = std::move(failure);
-    }
-    --in_work_;
-    changed_.notify_all();
-  }
-  void rethrow() const {
-    if (failed_) {
-      std::rethrow_exception(failed_);
-    }
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<GridBox> waiting_;
-  int in_work_ = 0;
-  std::exception_ptr failed_;
-};
 
 /// Where all workers put what they traced.
 class Collected {
@@ -141,14 +73,7 @@ class Worker {
         refinement_(terrain.t0()) {}
 
   void run() noexcept {
-    while (const std::optional<GridBox> tile = queue_.take()) {
-      try {
-        trace(*tile);
-        queue_.done();
-      } catch (...) {
-        queue_.fail(std::current_exception());
-      }
-    }
+    queue_.run([this](const GridBox& tile) { trace(tile); });
   }
   [[nodiscard]] const QueryCost& cost() const noexcept { return context_.cost; }
 
@@ -246,18 +171,7 @@ TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& req
   for (int i = 0; i < count; ++i) {
     workers.push_back(std::make_unique<Worker>(terrain, request, limit, queue, collected));
   }
-  {
-    std::vector<std::jthread> threads;  // joined where the block ends
-    for (int i = 1; i < count; ++i) {
-      try {
-        threads.emplace_back(
-            [worker = workers[static_cast<std::size_t>(i)].get()] { worker->run(); });
-      } catch (const std::system_error&) {
-        break;  // the system gives no more threads: those that run do all of the work
-      }
-    }
-    workers.front()->run();
-  }
+  run_on_threads(count, [&](int i) { workers[static_cast<std::size_t>(i)]->run(); });
   queue.rethrow();
   for (const auto& worker : workers) {
     cost.add_counts(worker->cost());

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/volume/region_cutter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/error.h"
+#include "engine/query/volume/grid_box.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::size_t kFewEdges = 12;  // all pairs of them are looked at
+constexpr int kMostHalvings = 40;
+
+double cross(MapPoint o, MapPoint a, MapPoint b) {
+  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+}  // namespace
+
+RegionCutter::RegionCutter(const Region& region, const AffineMap& map) : region_(region, map) {
+  if (const auto* window = std::get_if<Window>(&region)) {
+    const MapPoint corners[] = {{window->min_x, window->min_y},
+                                {window->max_x, window->min_y},
+                                {window->max_x, window->max_y},
+                                {window->min_x, window->max_y}};
+    add_ring(corners, map);
+  } else if (const auto* polygon = std::get_if<Polygon>(&region)) {
+    for (const std::vector<MapPoint>& ring : polygon->rings) add_ring(ring, map);
+  } else {
+    throw Error(ErrorCode::invalid_argument,
+                "a volume is asked of a window or a polygon; a point has no inside");
+  }
+  sort_into_bins();
+}
+
+void RegionCutter::add_ring(std::span<const MapPoint> ring, const AffineMap& map) {
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    MapPoint a = map.to_grid(ring[i]);
+    MapPoint b = map.to_grid(ring[(i + 1) % ring.size()]);
+    if (a.y > b.y) std::swap(a, b);
+    edges_.push_back({a, b});
+  }
+}
+
+void RegionCutter::sort_into_bins() {
+  if (edges_.empty()) return;
+  double high = edges_.front().high.y;
+  low_ = edges_.front().low.y;
+  for (const Edge& e : edges_) {
+    low_ = std::min(low_, e.low.y);
+    high = std::max(high, e.high.y);
+  }
+  const std::size_t bins = std::min<std::size_t>(edges_.size(), std::size_t{1} << 16);
+  bins_per_unit_ = high > low_ ? static_cast<double>(bins) / (high - low_) : 0.0;
+  bin_begin_.assign(bins + 1, 0);
+  for (Edge& e : edges_) {
+    e.first_bin = bin_of(e.low.y);
+    for (std::size_t b = e.first_bin; b <= bin_of(e.high.y); ++b) ++bin_begin_[b + 1];
+  }
+  for (std::size_t b = 0; b < bins; ++b) bin_begin_[b + 1] += bin_begin_[b];
+  in_bin_.resize(bin_begin_.back());
+  std::vector<std::uint32_t> next(bin_begin_.begin(), bin_begin_.end() - 1);
+  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+    const Edge& e = edges_[i];
+    for (std::size_t b = e.first_bin; b <= bin_of(e.high.y); ++b) in_bin_[next[b]++] = i;
+  }
+}
+
+std::size_t RegionCutter::bin_of(double y) const {
+  const double bin = (y - low_) * bins_per_unit_;
+  const auto last = static_cast<double>(bin_begin_.size() - 2);
+  return static_cast<std::size_t>(std::clamp(bin, 0.0, last));
+}
+
+RegionCutter::Edges RegionCutter::edges_along(const Extent& extent) const {
+  Edges along;
+  if (edges_.empty()) return along;
+  const std::size_t first = bin_of(extent.min_y), last = bin_of(extent.max_y);
+  for (std::size_t b = first; b <= last; ++b) {
+    for (std::uint32_t i = bin_begin_[b]; i < bin_begin_[b + 1]; ++i) {
+      const Edge& e = edges_[in_bin_[i]];
+      const bool is_seen = std::max(e.first_bin, first) != b;
+      if (!is_seen) along.push_back(&e);
+    }
+  }
+  return along;
+}
+
+RegionCutter::Extent RegionCutter::extent_of(const ConvexPiece& piece) {
+  const MapPoint p = piece.corners().front();
+  Extent extent{p.x, p.y, p.x, p.y};
+  for (const MapPoint q : piece.corners()) {
+    extent = {std::min(extent.min_x, q.x), std::min(extent.min_y, q.y), std::max(extent.max_x, q.x),
+              std::max(extent.max_y, q.y)};
+  }
+  return extent;
+}
+
+void RegionCutter::cut(const ConvexPiece& piece, std::vector<ConvexPiece>& parts) const {
+  if (piece.is_empty()) return;
+  const Extent e = extent_of(piece);
+  const GridBox box = box_between({e.min_x, e.min_y}, {e.max_x, e.max_y});
+  if (!region_.meets(box)) return;
+  if (region_.contains(box)) {
+    parts.push_back(piece);
+    return;
+  }
+  cut_along(piece, edges_along(e), 0, parts);
+}
+
+/// @param along  Edges, among them all that meet the piece's extent along y and lie in it or left of
+///               it.
+void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, int halvings,
+                             std::vector<ConvexPiece>& parts) {
+  if (piece.is_empty()) return;
+  const Extent e = extent_of(piece);
+  Edges local, left;
+  for (const Edge* edge : along) {
+    const bool is_beside = edge->low.y >= e.max_y || edge->high.y <= e.min_y;
+    if (is_beside || std::min(edge->low.x, edge->high.x) > e.max_x) continue;
+    (std::max(edge->low.x, edge->high.x) < e.min_x ? left : local).push_back(edge);
+  }
+  if (local.size() <= kFewEdges || halvings == kMostHalvings) {
+    const std::vector<double> ends = slab_ends(e, local);
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      cut_in_slab(piece, ends[i], ends[i + 1], local, left, parts);
+    }
+    return;
+  }
+  MapPoint a{(e.min_x + e.max_x) / 2, e.max_y}, b{a.x, e.min_y};
+  if (e.max_y - e.min_y > e.max_x - e.min_x) {
+    a = {e.min_x, (e.min_y + e.max_y) / 2};
+    b = {e.max_x, a.y};
+  }
+  local.insert(local.end(), left.begin(), left.end());
+  ConvexPiece one = piece, other = piece;
+  one.keep_left(a, b);
+  other.keep_left(b, a);
+  cut_along(one, local, halvings + 1, parts);
+  cut_along(other, local, halvings + 1, parts);
+}
+
+/// Where slabs of a piece begin and end, ascending: between them no edge begins, ends or crosses
+/// another.
+std::vector<double> RegionCutter::slab_ends(const Extent& extent, const Edges& local) {
+  std::vector<double> ends = {extent.min_y, extent.max_y};
+  const auto add = [&](double y) {
+    if (y > extent.min_y && y < extent.max_y) ends.push_back(y);
+  };
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    const Edge& a = *local[i];
+    add(a.low.y);
+    add(a.high.y);
+    for (std::size_t j = 0; j < i; ++j) {
+      const Edge& b = *local[j];
+      const double low = cross(a.low, a.high, b.low), high = cross(a.low, a.high, b.high);
+      if ((low > 0) != (high > 0)) add(b.low.y + low / (low - high) * (b.high.y - b.low.y));
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
+/// @param local  Edges in the extent of the piece.
+/// @param left   Edges left of it, which tell whether it begins inside.
+void RegionCutter::cut_in_slab(const ConvexPiece& piece, double low, double high,
+                               const Edges& local, const Edges& left,
+                               std::vector<ConvexPiece>& parts) {
+  const double middle = (low + high) / 2;
+  if (!(low < middle && middle < high)) return;
+  const auto spans = [&](const Edge* e) { return e->low.y <= middle && middle < e->high.y; };
+  bool inside = std::count_if(left.begin(), left.end(), spans) % 2 != 0;
+  const Extent extent = extent_of(piece);
+  double side = extent.min_x;
+  std::vector<std::pair<double, const Edge*>> across;
+  for (const Edge* e : local) {
+    if (!spans(e)) continue;
+    across.emplace_back(e->x_at(middle), e);
+    side = std::min({side, e->x_at(low), e->x_at(high)});
+  }
+  std::sort(across.begin(), across.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  MapPoint from_low{side - 1, low}, from_high{side - 1, high};
+  const auto take = [&](double x_low, double x_high) {
+    const MapPoint to_low{std::max(x_low, from_low.x), low};
+    const MapPoint to_high{std::max(x_high, from_high.x), high};
+    if (inside) {
+      ConvexPiece part = piece;
+      part.keep_in({from_low, to_low, to_high, from_high});
+      if (!part.is_empty()) parts.push_back(part);
+    }
+    inside = !inside;
+    from_low = to_low;
+    from_high = to_high;
+  };
+  for (const auto& [x, e] : across) take(e->x_at(low), e->x_at(high));
+  if (inside) take(extent.max_x + 1, extent.max_x + 1);
+}
+
+}  // namespace ptin

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Convex pieces cut at a window or a polygon.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/geometry/affine.h"
+#include "engine/query/select/region.h"
+#include "engine/query/volume/convex_piece.h"
+
+namespace ptin {
+
+/// Cuts convex pieces at a region, by the even-odd rule: rings may nest, cross and touch. The
+/// region's corners are rounded to doubles on the grid; cuts are rounded as those of ConvexPiece.
+///
+/// A piece on the border is divided into slabs along y, between which no edge of the region begins,
+/// ends or crosses another; in a slab the region is every other space between two edges, a
+/// trapezoid. A piece that many edges meet is halved first.
+/// Threads: immutable.
+class RegionCutter {
+ public:
+  /// @throws Error invalid_argument  the region has no inside (a point, a segment); as GridRegion
+  RegionCutter(const Region& region, const AffineMap& map);
+
+  /// Appends to `parts` convex pieces without overlap that make up the part of `piece` in the region.
+  /// Cost: a look at the piece's box, and on the border the edges near the piece, sorted.
+  void cut(const ConvexPiece& piece, std::vector<ConvexPiece>& parts) const;
+  /// On the grid, conservative.
+  [[nodiscard]] const GridRegion& region() const noexcept { return region_; }
+
+ private:
+  /// An edge, its lower end first. A horizontal one begins a slab, and is a side of none.
+  struct Edge {
+    MapPoint low, high;
+    std::size_t first_bin = 0;
+
+    [[nodiscard]] double x_at(double y) const {
+      if (y <= low.y) return low.x;
+      if (y >= high.y) return high.x;
+      return low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x);
+    }
+  };
+  struct Extent {
+    double min_x, min_y, max_x, max_y;
+  };
+  using Edges = std::vector<const Edge*>;
+
+  static Extent extent_of(const ConvexPiece& piece);
+  void add_ring(std::span<const MapPoint> ring, const AffineMap& map);
+  void sort_into_bins();
+  [[nodiscard]] std::size_t bin_of(double y) const;
+  [[nodiscard]] Edges edges_along(const Extent& extent) const;
+  static void cut_along(const ConvexPiece& piece, const Edges& along, int halvings,
+                        std::vector<ConvexPiece>& parts);
+  static std::vector<double> slab_ends(const Extent& extent, const Edges& local);
+  static void cut_in_slab(const ConvexPiece& piece, double low, double high, const Edges& local,
+                          const Edges& left, std::vector<ConvexPiece>& parts);
+
+  GridRegion region_;
+  std::vector<Edge> edges_;
+  /// Edges by bins along y: those of bin i are in_bin_[bin_begin_[i], bin_begin_[i + 1]).
+  std::vector<std::uint32_t> bin_begin_, in_bin_;
+  double low_ = 0, bins_per_unit_ = 0;
+};
+
+}  // namespace ptin
