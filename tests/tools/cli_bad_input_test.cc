@@ -336,6 +336,18 @@ TEST(CliBadInput, ServingsThatAreNoCounts) {
   EXPECT_EQ(folder.names(), before);
 }
 
+/// Of which the system lets nobody read the first byte.
+TEST(BadInput, LayersThatCannotBeReadAreNotOfAnUnknownKind) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  for (const char* name : {"a.gpkg", "a.geojson", "a.gpx"}) {
+    std::filesystem::create_symlink("/proc/self/mem", folder.file(name));
+    const std::string layer = folder.file(name);
+    expect_refusal(run_ptin({"locate", store, "--points", layer}), 6, "cannot read");
+    expect_refusal(run_ptin({"profile", store, "--line", layer}), 6, "cannot read");
+  }
+}
+
 /// What the system does not tell is an error of input or output, not a fault of the program.
 TEST(BadInput, NamesThatTheSystemRefusesAreErrorsOfTheirOwn) {
   const TestFolder folder;
