@@ -3,6 +3,8 @@
 // How far the border between surface and void may have moved in an answer.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "storage/store_file.h"
 
 namespace ptin {
@@ -14,5 +16,10 @@ namespace ptin {
 /// metadata do not tell it.
 /// @throws Error corruption  the metadata are no JSON
 [[nodiscard]] double border_moved_at_most(const StoreFile& store, double certified_error);
+
+/// The same of metadata that hold the options of the build; those of a stream do.
+/// @param free_of_voids  As in StoreFacts.
+[[nodiscard]] double border_moved_at_most(const nlohmann::json& metadata, bool free_of_voids,
+                                          double certified_error);
 
 }  // namespace ptin
