@@ -69,19 +69,19 @@ layout::NodeEntry PackedRTree::sound_entry(const layout::IndexNode& node, std::u
 
 void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const {
   struct Waiting {
-    double bound;
+    Merit bound;
     bool is_page;
     std::uint32_t level;  // of a node
     std::uint64_t number, checksum;
-    bool operator<(const Waiting& other) const { return bound < other.bound; }
+    bool operator<(const Waiting& other) const { return bound.is_below(other.bound); }
   };
   const IndexShape& shape = nodes_.shape();
   if (shape.levels() == 0) {
     return;
   }
-  std::vector<Waiting> heap{{kInfinity, false, shape.levels() - 1, 0, nodes_.root_checksum()}};
-  double cut_off = -kInfinity;
-  while (!heap.empty() && heap.front().bound >= cut_off) {
+  std::vector<Waiting> heap{{{kInfinity, 0}, false, shape.levels() - 1, 0, nodes_.root_checksum()}};
+  Merit cut_off = kNoMerit;
+  while (!heap.empty() && !heap.front().bound.is_below(cut_off)) {
     std::pop_heap(heap.begin(), heap.end());
     const Waiting at = heap.back();
     heap.pop_back();
@@ -96,8 +96,8 @@ void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& count
     const std::uint32_t entries = shape.entries(at.level, at.number);
     for (std::uint32_t i = 0; i < entries; ++i) {
       const layout::NodeEntry entry = sound_entry(node, at.level, at.number, i);
-      const double bound = visitor.bound(attributes_of(entry, heights_));
-      if (bound > -kInfinity && bound >= cut_off) {
+      const Merit bound = visitor.bound(attributes_of(entry, heights_));
+      if (bound.value > -kInfinity && !bound.is_below(cut_off)) {
         heap.push_back(
             {bound, at.level == 0, at.level - 1, at.number * layout::kFanOut + i, entry.checksum});
         std::push_heap(heap.begin(), heap.end());

@@ -8,10 +8,23 @@
 #include <vector>
 
 #include "engine/geometry/height.h"
+#include "engine/geometry/infinity.h"
 #include "storage/index.h"
 #include "storage/index_nodes.h"
 
 namespace ptin {
+
+/// How good a record is in a best-first search: by its value, larger is better, and among equal
+/// values by its place, smaller is better.
+struct Merit {
+  double value;  ///< Not NaN.
+  std::uint64_t place;
+  [[nodiscard]] bool is_below(const Merit& other) const noexcept {
+    return value != other.value ? value < other.value : place > other.place;
+  }
+};
+/// Below the merit of every record, and that of none.
+inline constexpr Merit kNoMerit{-kInfinity, ~std::uint64_t{0}};
 
 /// The caller's part of a best-first search: bounds, and what is done with each page.
 class BestFirstVisitor {
@@ -20,12 +33,12 @@ class BestFirstVisitor {
   BestFirstVisitor(const BestFirstVisitor&) = delete;
   BestFirstVisitor& operator=(const BestFirstVisitor&) = delete;
   virtual ~BestFirstVisitor() = default;
-  /// An upper bound of the value of any record with these attributes or smaller ones; -infinity
-  /// when no such record is wanted. Monotone: larger attributes have no smaller bound.
-  [[nodiscard]] virtual double bound(const Attributes& a) const = 0;
+  /// An upper bound of the merit of any record with these attributes or smaller ones; a value of
+  /// -infinity when no such record is wanted. Monotone: larger attributes have no smaller bound.
+  [[nodiscard]] virtual Merit bound(const Attributes& a) const = 0;
   /// Called for pages in the order of falling bounds. Returns the cut-off, which never falls: pages
   /// and nodes whose bound is below it are not visited.
-  virtual double visit(PageId page) = 0;
+  virtual Merit visit(PageId page) = 0;
 };
 
 class PackedRTree final : public RecordIndex {

@@ -329,7 +329,7 @@ const char* Verifier::look_at_heights(const VertexSplit& r) {
     return "an interval of heights reaches out of the least and largest in the header";
   }
   if ((r.flags & VertexSplit::kVertexVoid) != 0) {
-    return nullptr;
+    return r.height == 0 ? nullptr : "a vertex without a height has one";
   }
   count_height(r.height);
   const bool is_surface = (r.flags & (VertexSplit::kNoLeft | VertexSplit::kLeftVoid)) == 0 ||

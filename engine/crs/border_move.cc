@@ -12,10 +12,15 @@
 namespace ptin {
 
 double border_moved_at_most(const StoreFile& store, double certified_error) {
-  if (store.facts().free_of_voids) {
+  const bool free_of_voids = store.facts().free_of_voids;
+  return free_of_voids ? 0.0 : border_moved_at_most(metadata_of(store), false, certified_error);
+}
+
+double border_moved_at_most(const nlohmann::json& metadata, bool free_of_voids,
+                            double certified_error) {
+  if (free_of_voids) {
     return 0.0;
   }
-  const nlohmann::json metadata = metadata_of(store);
   const auto options = metadata.find("options");
   if (options == metadata.end() || !options->is_object()) {
     return kInfinity;

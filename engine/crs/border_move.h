@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "storage/store_file.h"
 
 namespace ptin {
@@ -16,6 +18,11 @@ namespace ptin {
 /// metadata do not tell it.
 /// @throws Error corruption  the metadata are no JSON
 [[nodiscard]] double border_moved_at_most(const StoreFile& store, double certified_error);
+
+/// The same of metadata that hold the options of the build; those of a stream do.
+/// @param free_of_voids  As in StoreFacts.
+[[nodiscard]] double border_moved_at_most(const nlohmann::json& metadata, bool free_of_voids,
+                                          double certified_error);
 
 /// The same along x and along y, in map units: no part of the border is farther from that of the
 /// source than this in both. Over degrees it is what the distance is where a degree is shortest.

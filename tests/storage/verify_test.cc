@@ -268,6 +268,17 @@ TEST_F(Verify, FindsHeightsOutOfTheHeaderAndOutOfTheirIntervals) {
       own));
 }
 
+TEST_F(Verify, FindsAHeightOfAVertexThatHasNone) {
+  StoreContent content = random_content({.segments = 1, .records = 100});
+  VertexSplit& r = content.segments[0][3];
+  r.flags |= VertexSplit::kVertexVoid | VertexSplit::kLeftVoid | VertexSplit::kRightVoid;
+  for (const HeightBits height : {0U, 1U, 0x7F800000U}) {
+    r.height = height;
+    write(content);
+    EXPECT_EQ(tells(verify_store(path_), "without a height has one"), height != 0) << height;
+  }
+}
+
 TEST_F(Verify, FindsIntervalsOfHeightsOutOfTheHeader) {
   const auto told = [&](double low, double high) {
     StoreContent content = random_content({.segments = 1, .records = 100});

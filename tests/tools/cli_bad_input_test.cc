@@ -1,43 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Bad input: the documented exit status, one clear sentence, and nothing left behind.
-#include <algorithm>
-#include <csignal>
-#include <cstring>
+#include <filesystem>
 #include <limits>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/resource.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include "tests/storage/seal.h"
-#include "tests/support/test_folder.h"
 #include "tests/tools/program.h"
+#include "tests/tools/refusal.h"
 
 namespace ptin::tools {
 namespace {
 
-using test::SmallDisk;
+using testing::expect_refusal;
 using testing::make_raster;
 using testing::Outcome;
 using testing::RasterRecipe;
 using testing::read_file;
 using testing::run_ptin;
-using testing::spawn_ptin;
-using testing::test_data;
+using testing::small_store;
 using testing::TestFolder;
 using testing::write_file;
-
-/// One sentence on stderr with `words` in it, nothing on stdout, and the folder as it was.
-void expect_refusal(const Outcome& outcome, int status, const std::string& words) {
-  EXPECT_EQ(outcome.status, status) << outcome.err;
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(testing::lines_in(outcome.err), 1U) << outcome.err;
-  EXPECT_TRUE(outcome.err.starts_with("ptin: ")) << outcome.err;
-  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
-}
 
 /// Builds `input` and expects a refusal that leaves nothing but the input.
 void expect_no_build(const TestFolder& folder, const std::string& input, int status,
@@ -47,14 +32,6 @@ void expect_no_build(const TestFolder& folder, const std::string& input, int sta
   arguments.insert(arguments.end(), extra.begin(), extra.end());
   expect_refusal(run_ptin(arguments), status, words);
   EXPECT_EQ(folder.names(), before);
-}
-
-std::string small_store(const TestFolder& folder) {
-  make_raster(folder.file("hills.tif"), {});
-  EXPECT_EQ(
-      run_ptin({"build", folder.file("hills.tif"), "-o", folder.file("hills.ptin"), "-q"}).status,
-      0);
-  return folder.file("hills.ptin");
 }
 
 TEST(CliBadUse, IsStatus2WithOneSentence) {
@@ -208,44 +185,6 @@ TEST(CliBadInput, OutputThatIsADeviceOrAPipe) {
   EXPECT_TRUE(std::filesystem::is_symlink(folder.file("null.ply")));
 }
 
-TEST(CliBadInput, AnswerThatStdoutDoesNotTake) {
-  const TestFolder folder;
-  const std::string store = small_store(folder);
-  const std::string line = "LINESTRING(500100 3999900, 500700 3999300)";
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"info", store},
-        {"info", store, "--json"},
-        {"locate", store, "500100", "3999900"},
-        {"profile", store, "--line", line},
-        {"profile", store, "--line", line, "-o", "-"},
-        {"sight", store, "500100", "3999900", "2", "500700", "3999300", "2"},
-        {"highest", store},
-        {"volume", store, "--level", "1"},
-        {"isoline", store, "--interval", "1", "-o", "-", "-q"},
-        {"stream", store, "-o", "-"},
-        {"verify", store, "-q", "--json"},
-        {"completion", "bash"},
-        {"--help"},
-        {"--version"}}) {
-    const Outcome outcome = testing::spawn_ptin_into("/dev/full", arguments);
-    EXPECT_EQ(outcome.status, 7) << arguments[0];
-    EXPECT_NE(outcome.err.find("standard output"), std::string::npos)
-        << arguments[0] << outcome.err;
-  }
-}
-
-TEST(CliBadInput, FolderWithoutWritePermission) {
-  if (geteuid() == 0) GTEST_SKIP() << "the superuser may write everywhere";
-  const TestFolder folder;
-  const std::string store = small_store(folder);
-  std::filesystem::create_directory(folder.file("locked"));
-  chmod(folder.file("locked").c_str(), 0500);
-  expect_refusal(run_ptin({"refine", store, "-o", folder.file("locked/a.ply")}), 6, "locked");
-  expect_refusal(
-      run_ptin({"build", folder.file("hills.tif"), "-o", folder.file("locked/a.ptin"), "-q"}), 6,
-      "locked");
-}
-
 TEST(CliBadInput, QuestionsOutOfContract) {
   const TestFolder folder;
   const std::string store = small_store(folder);
@@ -337,71 +276,6 @@ TEST(CliBadInput, RegionsThatTouchTheTerrainAreAnswered) {
   }
 }
 
-TEST(CliBadInput, DamagedStores) {
-  const TestFolder folder;
-  const std::string store = small_store(folder);
-  const std::string sound = read_file(store);
-  const std::string bad = folder.file("bad.ptin");
-  const auto refine = [&] { return run_ptin({"refine", bad, "-o", folder.file("a.ply")}); };
-  write_file(bad, sound.substr(0, sound.size() / 2));
-  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
-  expect_refusal(refine(), 4, "bad.ptin");
-  EXPECT_EQ(run_ptin({"verify", bad, "-q"}).status, 1);
-  write_file(bad, "");
-  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
-  write_file(bad, "POINTS ARE NOT A STORE, WHATEVER THEIR NAME SAYS");
-  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
-  std::string flipped = sound;
-  flipped[flipped.size() - 2000] = static_cast<char>(flipped[flipped.size() - 2000] ^ 0x10);
-  write_file(bad, flipped);
-  EXPECT_EQ(run_ptin({"info", bad}).status, 0) << "info reads no record page";
-  expect_refusal(refine(), 4, "page");
-  const Outcome verified = run_ptin({"verify", bad, "-q"});
-  EXPECT_EQ(verified.status, 1);
-  EXPECT_NE(verified.out.find("page"), std::string::npos) << verified.out;
-  const std::vector<std::string> left = {"bad.ptin", "hills.ptin", "hills.tif"};
-  EXPECT_EQ(folder.names(), left);
-}
-
-/// The store with another `source` in its metadata, every checksum right; no longer than before.
-std::string with_source(const std::string& store, const nlohmann::json& source) {
-  test::Bytes bytes(store.size());
-  std::memcpy(bytes.data(), store.data(), store.size());
-  const auto section = test::section_of(bytes, layout::SectionKind::kMetadata);
-  nlohmann::json metadata = nlohmann::json::parse(store.substr(section.offset, section.bytes));
-  metadata["source"] = source;
-  std::string text = metadata.dump();
-  EXPECT_LE(text.size(), section.bytes);
-  text.resize(section.bytes, ' ');
-  std::memcpy(bytes.data() + section.offset, text.data(), text.size());
-  test::seal(bytes);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-TEST(CliBadInput, MetadataOfOtherTypes) {
-  const TestFolder folder;
-  const std::string sound = read_file(small_store(folder));
-  const std::string bad = folder.file("bad.ptin");
-  const auto sources = {nlohmann::json(3), nlohmann::json{{"void_samples", "0"}},
-                        nlohmann::json{{"lone_samples", -1}}};
-  for (const nlohmann::json& source : sources) {
-    write_file(bad, with_source(sound, source));
-    expect_refusal(run_ptin({"export", bad, "-q", "-o", folder.file("a.tif")}), 4, "metadata");
-  }
-  write_file(bad, with_source(sound, nlohmann::json::object()));
-  testing::expect_done({"export", bad, "-q", "-o", folder.file("a.tif")});
-}
-
-TEST(CliBadInput, StoreOfANewerVersion) {
-  const TestFolder folder;
-  const std::string store = small_store(folder);
-  std::string newer = read_file(store);
-  newer[8] = 2;  // major version
-  write_file(folder.file("newer.ptin"), newer);
-  expect_refusal(run_ptin({"info", folder.file("newer.ptin")}), 5, "version");
-  expect_refusal(run_ptin({"verify", folder.file("newer.ptin"), "-q"}), 5, "version");
-}
-
 TEST(CliBadInput, QuestionsThatMeanNothing) {
   const TestFolder folder;
   const std::string store = small_store(folder);
@@ -446,47 +320,6 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
          "must end in .tif for a raster");
 }
 
-TEST(CliOutput, KeepsTheCapitalsOfAShapefile) {
-  const TestFolder folder;
-  const std::string store = small_store(folder);
-  const Outcome outcome =
-      run_ptin({"isoline", store, "-i", "10", "-o", folder.file("X.SHP"), "-q"});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  const auto names = folder.names();
-  for (const std::string name : {"X.SHP", "X.SHX", "X.DBF"}) {
-    EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
-  }
-}
-
-/// Files that are made from now on may have so many bytes; as `ulimit -f`.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
-
-TEST(CliBadInput, FilesLargerThanTheLimitOfTheProcess) {
-  const TestFolder folder;
-  const std::string store = small_store(folder);
-  const auto before = folder.names();
-  const FileSizeLimit limit(2048);
-  expect_refusal(spawn_ptin({"refine", store, "-o", folder.file("a.ply")}), 7, "too large");
-  expect_refusal(spawn_ptin({"stream", store, "-o", folder.file("a.pts")}), 7, "too large");
-  EXPECT_EQ(
-      spawn_ptin({"build", folder.file("hills.tif"), "-q", "-o", folder.file("b.ptin")}).status, 7);
-  EXPECT_EQ(spawn_ptin({"build", "--discard", "-q", "-o", folder.file("b.ptin")}).status, 0);
-  EXPECT_EQ(folder.names(), before);
-}
-
 TEST(CliBadInput, OptionsThatMeanNothingToARaster) {
   const TestFolder folder;
   make_raster(folder.file("hills.tif"), {});
@@ -510,98 +343,15 @@ TEST(CliBadInput, ServingsThatAreNoCounts) {
   EXPECT_EQ(folder.names(), before);
 }
 
-/// The link stays, and what it names is replaced.
-TEST(CliOutput, GoesWhereALinkLeads) {
+/// Of which the system lets nobody read the first byte.
+TEST(BadInput, LayersThatCannotBeReadAreNotOfAnUnknownKind) {
   const TestFolder folder;
   const std::string store = small_store(folder);
-  std::filesystem::create_directory(folder.file("real"));
-  const auto question = [&](const std::string& name) {
-    const std::string out = folder.file(name);
-    if (name == "a.ptin")
-      return std::vector<std::string>{"build", folder.file("hills.tif"), "-o", out};
-    if (name == "a.gpkg") return std::vector<std::string>{"isoline", store, "-i", "10", "-o", out};
-    if (name == "a.tif") return std::vector<std::string>{"export", store, "-o", out};
-    return std::vector<std::string>{"refine", store, "-o", out};
-  };
-  for (const std::string name : {"a.ptin", "a.gpkg", "a.tif", "a.ply"}) {
-    std::filesystem::create_symlink("real/x.dat", folder.file(name));
-    std::vector<std::string> arguments = question(name);
-    testing::expect_done(arguments);  // to where nothing is yet
-    EXPECT_TRUE(std::filesystem::is_symlink(folder.file(name))) << name;
-    const std::string written = read_file(folder.file("real/x.dat"));
-    EXPECT_GT(written.size(), 100U) << name;
-    write_file(folder.file("real/x.dat"), "old");
-    arguments.emplace_back("--overwrite");
-    testing::expect_done(arguments);
-    EXPECT_TRUE(std::filesystem::is_symlink(folder.file(name))) << name;
-    EXPECT_EQ(read_file(folder.file("real/x.dat")).size(), written.size()) << name;
-    std::filesystem::remove(folder.file("real/x.dat"));
-    EXPECT_TRUE(std::filesystem::is_empty(folder.file("real"))) << name;
-  }
-}
-
-/// Standard output that is a file: what /dev/stdout leads to.
-TEST(CliBadInput, OutputThatLeadsToStandardOutput) {
-  const TestFolder folder;
-  const std::string store = small_store(folder);
-  const auto links = {folder.file("a.ply"), folder.file("a.gpkg"), folder.file("a.tif")};
-  for (const std::string& link : links) {
-    std::filesystem::create_symlink("/proc/self/fd/1", link);
-    const Outcome outcome = link.ends_with(".gpkg")
-                                ? run_ptin({"isoline", store, "-i", "9", "--overwrite", "-o", link})
-                                : run_ptin({"export", store, "--overwrite", "-o", link});
-    expect_refusal(outcome, 2, "leads under /dev or /proc");
-    EXPECT_TRUE(std::filesystem::is_symlink(link)) << link;
-  }
-}
-
-TEST(CliBadInput, FullDisk) {
-  const TestFolder folder;
-  const SmallDisk disk(folder.file("disk"), 1);
-  if (!disk.is_mounted()) GTEST_SKIP() << SmallDisk::kNeeded;
-  const std::string store = testing::built(folder, "mountains_257.tif");
-  expect_refusal(
-      run_ptin({"build", test_data("mountains_257.tif"), "-o", disk.path() + "/m.ptin", "-q"}), 7,
-      "m.ptin");
-  EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
-  for (const char* name : {"/a.ply", "/a.obj", "/a.2dm", "/a.glb", "/a.xml", "/a.dxf", "/a.stl"}) {
-    expect_refusal(run_ptin({"refine", store, "-o", disk.path() + name}), 7, name);
-    EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
-  }
-  for (const char* name : {"/a.ply", "/a.xml", "/a.dxf", "/a.stl", "/a.gpkg", "/a.fgb", "/a.tif"}) {
-    std::vector<std::string> arguments = {"export", store, "-q", "-o", disk.path() + name};
-    if (name == std::string("/a.tif")) arguments.insert(arguments.end(), {"--pixel-size", "4"});
-    expect_refusal(run_ptin(arguments), 7, name);
-    EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
-  }
-  for (const char* name : {"/a.gpkg", "/a.fgb", "/a.geojson", "/a.shp", "/a.dxf", "/a.xml"}) {
-    expect_refusal(run_ptin({"isoline", store, "--interval", "5", "-q", "-o", disk.path() + name}),
-                   7, name);
-    EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
-  }
-  expect_refusal(
-      run_ptin({"render", store, "--size", "2000", "2000", "-o", disk.path() + "/a.png", "-q"}), 7,
-      "a.png");
-  EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
-}
-
-TEST(CliSignals, StopABuildTidily) {
-  const TestFolder folder;
-  RasterRecipe large;
-  large.width = large.height = 1500;
-  make_raster(folder.file("large.tif"), large);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    const Outcome outcome =
-        spawn_ptin({"build", folder.file("large.tif"), "-o", folder.file("large.ptin"), "-q"},
-                   signal, std::chrono::milliseconds(700));
-    expect_refusal(outcome, 8, "");
-    // What is done is kept, and goes when it is told to.
-    const auto names = folder.names();
-    EXPECT_EQ(std::count(names.begin(), names.end(), "large.ptin"), 0);
-    const bool is_kept = names.size() == 2;
-    EXPECT_EQ(spawn_ptin({"build", "--discard", "-q", "-o", folder.file("large.ptin")}).status,
-              is_kept ? 0 : 1);
-    EXPECT_EQ(folder.names(), std::vector<std::string>{"large.tif"});
+  for (const char* name : {"a.gpkg", "a.geojson", "a.gpx"}) {
+    std::filesystem::create_symlink("/proc/self/mem", folder.file(name));
+    const std::string layer = folder.file(name);
+    expect_refusal(run_ptin({"locate", store, "--points", layer}), 6, "cannot read");
+    expect_refusal(run_ptin({"profile", store, "--line", layer}), 6, "cannot read");
   }
 }
 

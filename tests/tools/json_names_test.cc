@@ -140,6 +140,7 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   const std::string store = file("dem.ptin");
   ask({"build", file("dem.tif"), "-o", store, "-q"});
   ask({"build", file("dem.tif"), "-o", file("none.ptin"), "-q", "--dry-run"});
+  ask({"build", "--discard", "-o", file("none.ptin"), "-q"}, 1);
   ask({"info", store});
   ask({"verify", store, "-q", "--against", file("dem.tif"), "--tolerance", "0", "5"});
   tools::testing::write_file(file("cut.ptin"), tools::testing::read_file(store).substr(0, 50000));

@@ -103,6 +103,26 @@ TEST_F(StreamCertificate, OfTwoStreamsHoldsForTheLevelsOfBoth) {
   EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
 }
 
+TEST_F(StreamCertificate, SaysHowFarTheBorderOfVoidsMoved) {
+  stream({"--error", "10"});
+  const Outcome whole = received({"-o", mesh_});
+  EXPECT_EQ(json::parse(whole.out).at("border_moved_at_most"), 0.0) << "a terrain without voids";
+
+  testing::RasterRecipe holes;
+  holes.value = [](int column, int row) { return column / 8 == 1 && row / 8 == 1 ? -9999.0 : row; };
+  holes.nodata = -9999.0;
+  testing::make_raster(folder_.file("h.tif"), holes);
+  const std::string store = folder_.file("t.ptin");
+  expect_done(
+      {"build", folder_.file("h.tif"), "-o", store, "--void-slope", "0.25", "--overwrite", "-q"});
+  expect_done({"stream", store, "-o", stream_, "--overwrite", "--error", "10", "-q"});
+  const json sent = json::parse(
+      run_ptin({"stream", store, "-o", folder_.file("u.pts"), "--error", "10", "--json"}).out);
+  const json answer = json::parse(received({"-o", mesh_}).out);
+  EXPECT_EQ(answer.at("border_moved_at_most"), sent.at("border_moved_at_most"));
+  EXPECT_EQ(answer.at("border_moved_at_most"), answer.at("certified_error").get<double>() / 0.25);
+}
+
 // It holds everywhere, so nothing is to be warned of; it only is not the source.
 TEST_F(StreamCertificate, OfACoarseTerrainIsNotExact) {
   stream({"--error", "10"});

@@ -382,7 +382,9 @@ void tell(const BuildCommand& command, const BuildReport& report, const Context&
 int run_build(BuildCommand& command, const Context& context) {
   if (command.discard && command.inputs.empty()) {
     const bool found = Workspace::discard(FileLayer::system(), output_target(command.output));
-    if (!context.quiet) {
+    if (context.json) {
+      print_json({{"output", command.output}, {"discarded", found}});
+    } else if (!context.quiet) {
       std::printf(
           found ? "%s: the unfinished build is removed\n" : "%s: there is no unfinished build\n",
           command.output.c_str());

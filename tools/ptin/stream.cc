@@ -45,13 +45,18 @@ void check_options(const StreamOptions& options, const Context& context) {
   }
 }
 
-/// The metadata of the stream: CRS and units for the receiver, and what was asked for, so that the
-/// receiver can say what it has.
+/// The metadata of the stream: CRS and units for the receiver, what keeps the border of voids in
+/// place, and what was asked for, so that the receiver can say what it has.
 std::string metadata_for(const StoreFile& store, const Serving& wanted) {
   const nlohmann::json all = metadata_of(store);
   nlohmann::json metadata = {{"request", to_json(wanted)}};
   for (const char* name : {"crs", "crs_wkt", "units"}) {
     if (const auto it = all.find(name); it != all.end()) metadata[name] = *it;
+  }
+  metadata["free_of_voids"] = store.facts().free_of_voids;
+  const nlohmann::json options = all.value("options", nlohmann::json::object());
+  if (const auto it = options.find("void_slope"); it != options.end()) {
+    metadata["options"] = {{"void_slope", *it}};
   }
   return metadata.dump();
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 #include "engine/stop.h"
@@ -53,6 +54,14 @@ nlohmann::json metadata_of(const StreamReader& reader) {
                 "did not write it");
   }
   return json;
+}
+
+/// As border_move_json() of the store that the stream came from.
+nlohmann::json border_move_of(const StreamReader& reader, double certified_error) {
+  const nlohmann::json metadata = metadata_of(reader);
+  const auto free_of_voids = metadata.find("free_of_voids");
+  return number_or_null(border_moved_at_most(
+      metadata, free_of_voids != metadata.end() && *free_of_voids == true, certified_error));
 }
 
 /// What the sender was asked for, from the metadata.  @throws Error corruption  it is no request
@@ -185,6 +194,7 @@ nlohmann::json answer_of(const UnstreamOptions& options, const Receiver& receive
           {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
           {"certified_error", refined.certified_error},
           {"certified_deviation", refined.certified_deviation},
+          {"border_moved_at_most", border_move_of(reader, refined.certified_error)},
           {"certified_for", certified.given() ? to_json(certified) : nlohmann::json()},
           {"exact", receiver.exact(asked)},
           {"units", units_json(crs)},

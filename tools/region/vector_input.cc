@@ -15,6 +15,7 @@
 #include <ogrsf_frmts.h>
 
 #include "engine/error.h"
+#include "storage/file/file_questions.h"
 
 namespace ptin::tools {
 
@@ -105,6 +106,7 @@ void for_each_feature(const std::string& path, const LayerWish& wish, const std:
   const std::unique_ptr<GDALDataset> data(GDALDataset::Open(
       path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
   if (!data || data->GetLayerCount() == 0) {
+    require_readable(path);
     throw Error(ErrorCode::invalid_argument,
                 "neither text that is understood here nor a vector file that GDAL reads", path);
   }

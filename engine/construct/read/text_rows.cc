@@ -13,6 +13,10 @@ namespace {
 
 /// So many rows show that a column counts; one or two may do so by chance.
 constexpr std::uint64_t kFewestCounted = 3;
+/// In so many rows no number of a column that numbers them comes twice.
+constexpr std::uint64_t kRowsCompared = 1 << 16;
+/// Fewer columns are no coordinates with a number before them.
+constexpr std::size_t kFewestNumbered = 3;
 
 /// "x, y and z".
 std::string listed(std::span<const ColumnRole> roles) {
@@ -23,13 +27,24 @@ std::string listed(std::span<const ColumnRole> roles) {
   return text;
 }
 
-/// What could be said instead: "--columns id x y z".
-std::string example_of(std::span<const ColumnRole> roles) {
-  std::string text = "--columns id";
+/// What could be said instead: "--columns id x y z"; without `before` "--columns x y z".
+std::string example_of(std::span<const ColumnRole> roles, const std::string& before = " id") {
+  std::string text = "--columns" + before;
   for (const ColumnRole role : roles) {
     text.append(" ").append(name_of(role));
   }
   return text;
+}
+
+/// A whole number that is not negative, also as "7.0"; -1 where the field is none.
+std::int64_t whole_number(std::string_view field) {
+  const std::size_t point = std::min(field.find('.'), field.size());
+  if (field.find_first_not_of('0', std::min(point + 1, field.size())) != std::string_view::npos) {
+    return -1;
+  }
+  std::int64_t number = 0;
+  const auto [end, fault] = std::from_chars(field.data(), field.data() + point, number);
+  return fault == std::errc() && end == field.data() + point ? number : -1;
 }
 
 }  // namespace
@@ -73,8 +88,17 @@ void TextRows::begin() {
     table_.refuse("there are " + std::to_string(count) + " fields in the first line, where " +
                   listed(roles_) + " are expected");
   }
+  for (const std::size_t column : columns_) {
+    const auto is_same = [&](const std::string& name) {
+      return equal_in_any_case(name, header[column]);
+    };
+    if (!header.empty() && std::count_if(header.begin(), header.end(), is_same) > 1) {
+      table_.refuse("the header names two columns " + shown_field(header[column]) +
+                    "; name the one that is meant with --columns, and the other by any other name");
+    }
+  }
   is_guess_ = header.empty() && count > roles_.size();
-  may_be_numbers_ = is_guess_;
+  may_be_numbers_ = is_guess_ || (header.empty() && count >= kFewestNumbered);
 }
 
 bool TextRows::choose_id(const std::string& name) {
@@ -96,28 +120,33 @@ bool TextRows::choose_id(const std::string& name) {
                      : "there are " + known));
 }
 
-/// A column that numbers the rows is whole and rises in each of them.
+/// A column that numbers the rows is whole in each of them.
 void TextRows::note_numbering() {
-  const std::string_view field = fields_[0];
-  std::int64_t number = 0;
-  const auto [end, fault] = std::from_chars(field.data(), field.data() + field.size(), number);
-  may_be_numbers_ = fault == std::errc() && end == field.data() + field.size() && number >= 0 &&
-                    (rows_ == 0 || number > last_number_);
+  const std::int64_t number = whole_number(fields_[0]);
+  may_be_numbers_ = number >= 0;
+  if (rows_ < kRowsCompared) {
+    numbers_.push_back(number);
+  }
   by_one_ = by_one_ && (rows_ == 0 || number - 1 == last_number_);
   has_decimals_ = has_decimals_ || fields_[1].find('.') != std::string_view::npos;
   last_number_ = number;
 }
 
-void TextRows::check_numbering() const {
-  if (!may_be_numbers_ || rows_ < kFewestCounted || !(by_one_ || has_decimals_)) {
+/// It holds no number twice either.
+void TextRows::check_numbering() {
+  const bool is_numbering = is_guess_ ? by_one_ || has_decimals_ : by_one_ && has_decimals_;
+  if (!may_be_numbers_ || rows_ < kFewestCounted || !is_numbering) {
     return;
   }
-  table_.refuse("the first column numbers the lines, " +
-                std::string(by_one_ ? "one by one" : "rising") + " to " +
-                std::to_string(last_number_) + ", and would be taken for " + name_of(roles_[0]) +
-                ", since there is no header; name the columns with --columns, "
-                "as in " +
-                example_of(roles_));
+  std::sort(numbers_.begin(), numbers_.end());
+  if (std::adjacent_find(numbers_.begin(), numbers_.end()) != numbers_.end()) {
+    return;
+  }
+  const std::string manner = by_one_ ? "one by one to " : "none of them twice, the last as ";
+  table_.refuse("the first column numbers the lines, " + manner + std::to_string(last_number_) +
+                ", and would be taken for " + name_of(roles_[0]) +
+                ", since there is no header; name the columns with --columns, as in " +
+                (is_guess_ ? example_of(roles_) : example_of(roles_, "") + " if they are these"));
 }
 
 bool TextRows::next() {

@@ -2,6 +2,7 @@
 #include "engine/construct/read/text_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <istream>
@@ -22,6 +23,7 @@ namespace {
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 constexpr std::size_t kLongestRow = std::size_t{1} << 16;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::array<std::string_view, 2> kByteOrderMarksOfUtf16 = {"\xFF\xFE", "\xFE\xFF"};
 constexpr std::string_view kBlanks = " \t\r";
 
 std::string_view trimmed(std::string_view text, std::string_view blanks) {
@@ -323,6 +325,11 @@ bool TextTable::next_row() {
     }
     const std::string_view mark =
         line_ == 1 && row_.starts_with(kByteOrderMark) ? kByteOrderMark : "";
+    for (const std::string_view wide : kByteOrderMarksOfUtf16) {
+      if (line_ == 1 && row_.starts_with(wide)) {
+        refuse("this text is UTF-16; save it as UTF-8, as with 'iconv -f UTF-16 -t UTF-8'");
+      }
+    }
     row_.remove_prefix(mark.size());
     const std::string_view text = trimmed(row_, kBlanks);
     if (text.empty() || text.front() == '#') {

@@ -151,15 +151,15 @@ class Search {
   void search_in_order(HighGatherer& gatherer) {
     std::vector<PageId> pages;
     terrain_.index().search(*predicate_of_pages(), pages, context_.cost.io);
-    std::vector<std::pair<double, PageId>> order;
+    std::vector<std::pair<Merit, PageId>> order;
     for (const PageId page : pages) {
       order.emplace_back(gatherer.bound(store_.page_info(page).attributes), page);
     }
     std::stable_sort(order.begin(), order.end(),
-                     [](const auto& a, const auto& b) { return a.first > b.first; });
-    double cut_off = -kInfinity;
+                     [](const auto& a, const auto& b) { return b.first.is_below(a.first); });
+    Merit cut_off = kNoMerit;
     for (const auto& [bound, page] : order) {
-      if (bound < cut_off || bound == -kInfinity) {
+      if (bound.is_below(cut_off) || bound.value == -kInfinity) {
         break;
       }
       cut_off = gatherer.visit(page);

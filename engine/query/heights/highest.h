@@ -34,16 +34,17 @@ struct HighestResult {
   /// kSurface: `point` is set. kOutside: the window lies outside of the domain, which is the convex
   /// hull and not its box. kVoid: the window holds nothing but voids.
   PointState state = PointState::kSurface;
-  /// The highest point of the surface in the window; of several, one. It is a vertex, or lies on
-  /// the border of the window: where an edge crosses it, or at a corner of the window.
+  /// The highest point of the surface in the window; of several the first of `vertices`, or else
+  /// one. It is a vertex, or lies on the border of the window: where an edge crosses it, or at a
+  /// corner of the window.
   HeightAt point;
   bool at_vertex = false;
   /// Bounds of the height of the source's highest point, as far as both TINs are surface; equal
   /// when exact.
   double height_min = 0, height_max = 0;
   /// The highest vertices in the window that touch the surface, by falling height; fewer than asked
-  /// for when the window holds fewer. Of vertices of equal height those found first are listed;
-  /// they are the same for the same file and request.
+  /// for when the window holds fewer. Of equal heights the vertex farthest south comes first, then
+  /// the one farthest west, in any file of the same TIN.
   std::vector<HeightAt> vertices;
   /// How far the TIN that was asked is at most from the source, at samples and at any point,
   /// height's unit. 0 when exact.
@@ -57,9 +58,9 @@ struct HighestResult {
 /// @throws Error invalid_argument    the window is inverted or not finite; no vertex is asked for;
 ///                                   as Detail
 ///               resource_exhausted, corruption, io_error, cancelled
-/// Cost: the nodes and pages whose height interval reaches above the last vertex listed: those
-/// around the vertices listed, and coarse records that reach out to higher ground outside of the
-/// window; n log n for n vertices. With voids, or at a level of detail, each vertex is located too
+/// Cost: the nodes and pages whose height interval reaches above the last vertex listed, or just to
+/// it and with the box farther south: those around the vertices listed, and coarse records that
+/// reach out to higher ground outside of the window; n log n for n vertices. With voids, or at a level of detail, each vertex is located too
 /// (heights/locate.h), in batches; where V vertices are higher but touch no surface, in O(log V)
 /// searches. An index other than the packed R-tree reads the same pages, after a search of all
 /// pages that meet the window. With `vertices` the cost of Detail is added (select/detail.h).

@@ -2,7 +2,6 @@
 #include "engine/query/heights/highest_gather.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/query/refine/refinement.h"
 
@@ -16,7 +15,6 @@ constexpr std::size_t kFewSplits = 4096;  // fewer are not worth looking through
 
 void HighGatherer::start(std::size_t wanted) {
   wanted_ = wanted;
-  found_ = 0;
   most_ = -kInfinity;
   heap_.clear();
   splits_.clear();
@@ -39,14 +37,14 @@ std::uint64_t HighGatherer::held_bytes() const noexcept {
   return splits_.capacity() * sizeof(Reaching) + KeyTable::bytes_for(told_capacity_);
 }
 
-double HighGatherer::bound(const Attributes& a) const {
+Merit HighGatherer::bound(const Attributes& a) const {
   if (!predicate_.holds(a) || is_empty(a.heights)) {
-    return -kInfinity;
+    return kNoMerit;
   }
-  return lowest_ ? -a.heights.lo : a.heights.hi;
+  return {lowest_ ? -a.heights.lo : a.heights.hi, key_of({a.roi.min_x, a.roi.min_y})};
 }
 
-double HighGatherer::visit(PageId page) {
+Merit HighGatherer::visit(PageId page) {
   context_.check_stop();
   records_.clear();
   context_.cost.records_examined +=
@@ -59,7 +57,7 @@ double HighGatherer::visit(PageId page) {
     if ((r.flags & VertexSplit::kVertexVoid) == 0) {
       offer(r.u, r.height);
     }
-    const double reach = bound(attributes_of(r, store_.facts().heights));
+    const double reach = bound(attributes_of(r, store_.facts().heights)).value;
     if (reach > most_) {
       splits_.push_back({split, reach});
     }
@@ -69,18 +67,16 @@ double HighGatherer::visit(PageId page) {
   }
   context_.admit(refinement_bytes(splits_.size()) + heap_.capacity() * sizeof(HighCandidate) +
                  KeyTable::bytes_for(told_capacity_));
-  // The next larger number: pages that reach no higher than the last of the best are not needed.
-  return std::nextafter(cut_off(), kInfinity);
+  return cut_off();
 }
 
 void HighGatherer::offer(GridPoint p, HeightBits height) {
   const double code = store_.facts().heights.code(height);
-  const HighCandidate c{lowest_ ? -code : code, found_, key_of(p)};
-  if (!(c.value > cut_off()) || (window_ != nullptr && !window_->meets(box_of(p))) ||
+  const HighCandidate c{lowest_ ? -code : code, key_of(p)};
+  if (!cut_off().is_below(merit_of(c)) || (window_ != nullptr && !window_->meets(box_of(p))) ||
       is_rejected(c.key)) {
     return;
   }
-  ++found_;
   most_ = std::max(most_, c.value);
   if (heap_.size() == wanted_) {
     std::pop_heap(heap_.begin(), heap_.end(), is_better);

@@ -21,8 +21,6 @@ namespace ptin {
 /// A vertex that may be among the highest.
 struct HighCandidate {
   double value;  ///< Its height's code, negated when the lowest are wanted.
-  /// Candidates found before this one: of equal values the one found first is better.
-  std::uint64_t found;
   VertexKey key;
 };
 
@@ -56,12 +54,13 @@ class HighGatherer final : public BestFirstVisitor {
   }
   [[nodiscard]] bool is_rejected(VertexKey key) const noexcept { return told_.find(key) == 0; }
 
-  /// The best value below these attributes; -infinity where the predicate is false or all is void.
-  [[nodiscard]] double bound(const Attributes& a) const override;
+  /// The best value below these attributes, at the least key in their box; a value of -infinity
+  /// where the predicate is false or all is void.
+  [[nodiscard]] Merit bound(const Attributes& a) const override;
   /// Takes a page's vertices and records; returns the smallest bound that is still worth a visit.
-  double visit(PageId page) override;
+  Merit visit(PageId page) override;
 
-  /// The best vertices, by falling value; fewer than wanted when there are fewer. Ends the search.
+  /// The best vertices, by falling value, of equal ones by key; fewer than wanted when there are fewer. Ends the search.
   /// Cost: n log n.
   [[nodiscard]] std::vector<HighCandidate> take_best();
 
@@ -77,15 +76,17 @@ class HighGatherer final : public BestFirstVisitor {
     PendingSplit split;
     double bound;
   };
-  /// The order of the best vertices. In the heap the last of them is on top.
+  static Merit merit_of(const HighCandidate& c) noexcept { return {c.value, c.key}; }
+  /// The order of the best vertices, which no file's layout changes. In the heap the last of them
+  /// is on top.
   static bool is_better(const HighCandidate& a, const HighCandidate& b) noexcept {
-    return a.value != b.value ? a.value > b.value : a.found < b.found;
+    return merit_of(b).is_below(merit_of(a));
   }
   void offer(GridPoint p, HeightBits height);
   void drop_what_ends_below();
-  /// No value at or below this is wanted: it is that of the last of the best vertices.
-  [[nodiscard]] double cut_off() const noexcept {
-    return heap_.size() == wanted_ ? heap_.front().value : -kInfinity;
+  /// No vertex at or below this is wanted: it is the last of the best ones.
+  [[nodiscard]] Merit cut_off() const noexcept {
+    return heap_.size() == wanted_ ? merit_of(heap_.front()) : kNoMerit;
   }
 
   const StoreFile& store_;
@@ -95,7 +96,6 @@ class HighGatherer final : public BestFirstVisitor {
   bool lowest_;
   QueryContext& context_;
   std::size_t wanted_ = 1;
-  std::uint64_t found_ = 0;
   double most_ = -kInfinity;  ///< The best value found.
   std::vector<HighCandidate> heap_;
   std::vector<Reaching> splits_;

@@ -165,13 +165,47 @@ TEST(XyzReader, RefusesAFirstColumnThatNumbersTheRows) {
   };
   expect_line_refused(points("", {1, 2, 3, 4}, ""), "4", "--columns id x y z");
   expect_line_refused(points("# a comment\n", {101, 102, 103}, ".25"), "4", "numbers the lines");
-  expect_line_refused(points("", {1, 2, 5, 6, 9}, ".25"), "5", "rising to 9");
+  expect_line_refused(points("", {1, 2, 5, 6, 9}, ".25"), "5", "none of them twice, the last as 9");
   EXPECT_EQ(read(points("", {1, 2}, ".25")).size(), 2U) << "by chance";
   EXPECT_EQ(read(points("", {1, 2, 3, 3}, ".25")).size(), 4U) << "a row of a grid";
   EXPECT_EQ(read(points("", {1, 2, 5}, "")).size(), 3U) << "whole as its neighbours are";
+  expect_line_refused(points("", {3, 1, 2, 17}, ".25"), "4", "the last as 17");
+  expect_line_refused(points("", {9, 8, 7}, ".25"), "3", "the last as 7");
+  expect_line_refused("1.0,5.5,2,3\n2.0,5.5,3,3\n3.0,6.5,2,3\n", "3", "one by one to 3");
+  EXPECT_EQ(read("1.5,5.5,2,3\n2.0,5.5,3,3\n3.0,6.5,2,3\n").size(), 3U);
   EXPECT_EQ(read(points("x,y,z,w,code\n", {1, 2, 3}, ".25")).size(), 3U);
   EXPECT_EQ(read(points("", {1, 2, 3}, ".25"), "p.csv", {"x", "y", "z"}).size(), 3U);
-  EXPECT_EQ(read("1 2.5 3\n2 2.5 3\n3 2.5 4\n").size(), 3U) << "no column is left over";
+}
+
+TEST(XyzReader, NamesUtf16) {
+  using namespace std::string_literals;
+  expect_line_refused(
+      "\xFF\xFE"
+      "1\0 \0"
+      "2\0 \0"
+      "3\0\n\0"s,
+      "1", "UTF-16; save it as UTF-8");
+  expect_line_refused(
+      "\xFE\xFF\0"
+      "1\0 \0"
+      "2\0 \0"
+      "3\0\n"s,
+      "1", "UTF-16");
+}
+
+// Number, easting and northing of points without a height.
+TEST(XyzReader, RefusesACountBesideDecimalsWhereNoColumnIsLeftOver) {
+  expect_line_refused("1 2.5 3\n2 2.5 3\n3 2.5 4\n", "3", "--columns x y z if they are these");
+  EXPECT_EQ(read("1 2.5 3\n2 2.5 3\n3 2.5 4\n", "p.xyz", {"x", "y", "z"}).size(), 3U);
+  EXPECT_EQ(read("1 2 3\n2 2 3\n3 2 4\n").size(), 3U) << "whole as its neighbours are";
+  EXPECT_EQ(read("1 2.5 3\n3 2.5 3\n2 2.5 4\n").size(), 3U) << "not one by one";
+}
+
+TEST(XyzReader, RefusesAHeaderThatNamesACoordinateTwice) {
+  expect_line_refused("x,y,X,z\n1,2,3,4\n", "1", "two columns 'x'");
+  expect_line_refused("id,x,y,z,z\n1,2,3,4,5\n", "1", "--columns");
+  EXPECT_EQ(read("id,x,y,z,id\n1,2,3,4,5\n").size(), 1U) << "no coordinate";
+  EXPECT_EQ(read("lon,lat,x,y,z\n1,2,3,4,5\n").size(), 1U) << "x stands before lon";
 }
 
 TEST(XyzReader, FindsNoPointInAnEmptyFile) {

@@ -4,6 +4,7 @@
 #include "engine/query/heights/highest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <span>
@@ -26,8 +27,10 @@ using reference::Hierarchy;
 using reference::TemporaryStore;
 
 struct Brute {
+  /// A vertex: its value, negated, and its position, y before x.
+  using Vertex = std::array<double, 3>;
   double most = -INFINITY;       ///< Of the surface in the window.
-  std::vector<double> vertices;  ///< Falling.
+  std::vector<Vertex> vertices;  ///< Falling; of equal values from south to north, west to east.
   bool domain = false;           ///< Some triangle, void or not, meets the window.
 };
 
@@ -53,7 +56,7 @@ Brute brute_force(const Tin& tin, const StoreFacts& facts, const Window& w, doub
       z[i] = sign * facts.heights.height(tin.vertices[v].height);
       if (inside(p[i])) {
         reach(z[i]);
-        if (surface && seen[v] == 0) b.vertices.push_back(z[i]);
+        if (surface && seen[v] == 0) b.vertices.push_back({-z[i], p[i].y, p[i].x});
         seen[v] = surface ? 1 : seen[v];
       }
     }
@@ -82,7 +85,7 @@ Brute brute_force(const Tin& tin, const StoreFacts& facts, const Window& w, doub
       }
     }
   }
-  std::sort(b.vertices.begin(), b.vertices.end(), std::greater<>());
+  std::sort(b.vertices.begin(), b.vertices.end());
   return b;
 }
 
@@ -107,7 +110,8 @@ void check(const HighestResult& got, const HighestRequest& request, const Tin& t
   const Brute wanted = brute_force(tin, facts, w, sign);
   RC_ASSERT(got.vertices.size() == std::min<std::size_t>(request.listed, wanted.vertices.size()));
   for (std::size_t k = 0; k < got.vertices.size(); ++k) {
-    RC_ASSERT(sign * got.vertices[k].height == wanted.vertices[k]);
+    const HeightAt& v = got.vertices[k];
+    RC_ASSERT((Brute::Vertex{-sign * v.height, v.position.y, v.position.x}) == wanted.vertices[k]);
   }
   if (std::isinf(wanted.most)) {
     RC_ASSERT(got.state == (wanted.domain ? PointState::kVoid : PointState::kOutside));
@@ -120,7 +124,11 @@ void check(const HighestResult& got, const HighestRequest& request, const Tin& t
   const MapPoint p = got.point.position;
   RC_ASSERT((w.min_x - 1e-9 <= p.x && p.x <= w.max_x + 1e-9));
   RC_ASSERT((w.min_y - 1e-9 <= p.y && p.y <= w.max_y + 1e-9));
-  if (got.at_vertex) RC_ASSERT(got.point.height == got.vertices.front().height);
+  if (got.at_vertex) {
+    RC_ASSERT(got.point.height == got.vertices.front().height);
+    RC_ASSERT(got.point.position.x == got.vertices.front().position.x);
+    RC_ASSERT(got.point.position.y == got.vertices.front().position.y);
+  }
 }
 
 RC_GTEST_PROP(Highest, IsThatOfAllTriangles, (std::uint64_t seed)) {
@@ -314,6 +322,25 @@ TEST(Highest, OfALargeTerrainReadsFewPagesOfIt) {
   terrain.use_index(SpatialIndexRTree::open(store, index));
   const HighestResult other = highest(terrain, request);
   EXPECT_EQ(other.point.height, packed.point.height);
+}
+
+// All of a plain is as high: its south-western vertex, which T0 has, is the first of it.
+TEST(Highest, OfAPlainReadsFewPagesOfIt) {
+  std::mt19937_64 random(5);
+  Tin plain = reference::random_grid(random, 120, 120, 4, 0.0);
+  for (auto& v : plain.vertices) v.height = plain.vertices.front().height;
+  const Hierarchy h = reference::simplify_unmeasured(std::move(plain), random);
+  const TemporaryStore file(h);
+  const Terrain terrain(file.open());
+  HighestRequest request;
+  for (const std::uint32_t listed : {1U, 5U}) {
+    request.listed = listed;
+    const HighestResult found = highest(terrain, request);
+    const MapPoint corner = h.facts.map.to_map(h.facts.bounds.min_x, h.facts.bounds.min_y);
+    EXPECT_EQ(found.point.position.x, corner.x);
+    EXPECT_EQ(found.point.position.y, corner.y);
+    EXPECT_LT(found.cost.io.pages, 120U * 120U / 64U / 4U) << listed;
+  }
 }
 
 TEST(Highest, RefusesWhatMeansNothing) {

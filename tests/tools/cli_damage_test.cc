@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Damaged stores, and those of a newer version: the documented exit status, one clear sentence, and
+// nothing left behind.
+#include <cstring>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/storage/seal.h"
+#include "tests/tools/program.h"
+#include "tests/tools/refusal.h"
+
+namespace ptin::tools {
+namespace {
+
+using testing::expect_refusal;
+using testing::Outcome;
+using testing::read_file;
+using testing::run_ptin;
+using testing::small_store;
+using testing::TestFolder;
+using testing::write_file;
+
+TEST(CliBadInput, DamagedStores) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  const std::string sound = read_file(store);
+  const std::string bad = folder.file("bad.ptin");
+  const auto refine = [&] { return run_ptin({"refine", bad, "-o", folder.file("a.ply")}); };
+  write_file(bad, sound.substr(0, sound.size() / 2));
+  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
+  expect_refusal(refine(), 4, "bad.ptin");
+  EXPECT_EQ(run_ptin({"verify", bad, "-q"}).status, 1);
+  write_file(bad, "");
+  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
+  write_file(bad, "POINTS ARE NOT A STORE, WHATEVER THEIR NAME SAYS");
+  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
+  std::string flipped = sound;
+  flipped[flipped.size() - 2000] = static_cast<char>(flipped[flipped.size() - 2000] ^ 0x10);
+  write_file(bad, flipped);
+  EXPECT_EQ(run_ptin({"info", bad}).status, 0) << "info reads no record page";
+  expect_refusal(refine(), 4, "page");
+  const Outcome verified = run_ptin({"verify", bad, "-q"});
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_NE(verified.out.find("page"), std::string::npos) << verified.out;
+  const std::vector<std::string> left = {"bad.ptin", "hills.ptin", "hills.tif"};
+  EXPECT_EQ(folder.names(), left);
+}
+
+/// The store with another `source` in its metadata, every checksum right; no longer than before.
+std::string with_source(const std::string& store, const nlohmann::json& source) {
+  test::Bytes bytes(store.size());
+  std::memcpy(bytes.data(), store.data(), store.size());
+  const auto section = test::section_of(bytes, layout::SectionKind::kMetadata);
+  nlohmann::json metadata = nlohmann::json::parse(store.substr(section.offset, section.bytes));
+  metadata["source"] = source;
+  std::string text = metadata.dump();
+  EXPECT_LE(text.size(), section.bytes);
+  text.resize(section.bytes, ' ');
+  std::memcpy(bytes.data() + section.offset, text.data(), text.size());
+  test::seal(bytes);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+TEST(CliBadInput, MetadataOfOtherTypes) {
+  const TestFolder folder;
+  const std::string sound = read_file(small_store(folder));
+  const std::string bad = folder.file("bad.ptin");
+  const auto sources = {nlohmann::json(3), nlohmann::json{{"void_samples", "0"}},
+                        nlohmann::json{{"lone_samples", -1}}};
+  for (const nlohmann::json& source : sources) {
+    write_file(bad, with_source(sound, source));
+    expect_refusal(run_ptin({"export", bad, "-q", "-o", folder.file("a.tif")}), 4, "metadata");
+  }
+  write_file(bad, with_source(sound, nlohmann::json::object()));
+  testing::expect_done({"export", bad, "-q", "-o", folder.file("a.tif")});
+}
+
+TEST(CliBadInput, StoreOfANewerVersion) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  std::string newer = read_file(store);
+  newer[8] = 2;  // major version
+  write_file(folder.file("newer.ptin"), newer);
+  expect_refusal(run_ptin({"info", folder.file("newer.ptin")}), 5, "version");
+  expect_refusal(run_ptin({"verify", folder.file("newer.ptin"), "-q"}), 5, "version");
+}
+
+}  // namespace
+}  // namespace ptin::tools
