@@ -13,11 +13,11 @@ namespace ptin {
 
 double border_moved_at_most(const StoreFile& store, double certified_error) {
   const bool free_of_voids = store.facts().free_of_voids;
-  return free_of_voids ? 0.0 : border_moved_at_most(metadata_of(store), false, certified_error);
+  return free_of_voids ? 0.0 : border_move_told_by(metadata_of(store), false, certified_error);
 }
 
-double border_moved_at_most(const nlohmann::json& metadata, bool free_of_voids,
-                            double certified_error) {
+double border_move_told_by(const nlohmann::json& metadata, bool free_of_voids,
+                           double certified_error) {
   if (free_of_voids) {
     return 0.0;
   }

@@ -21,8 +21,8 @@ namespace ptin {
 
 /// The same of metadata that hold the options of the build; those of a stream do.
 /// @param free_of_voids  As in StoreFacts.
-[[nodiscard]] double border_moved_at_most(const nlohmann::json& metadata, bool free_of_voids,
-                                          double certified_error);
+[[nodiscard]] double border_move_told_by(const nlohmann::json& metadata, bool free_of_voids,
+                                         double certified_error);
 
 /// The same along x and along y, in map units: no part of the border is farther from that of the
 /// source than this in both. Over degrees it is what the distance is where a degree is shortest.

@@ -60,7 +60,7 @@ nlohmann::json metadata_of(const StreamReader& reader) {
 nlohmann::json border_move_of(const StreamReader& reader, double certified_error) {
   const nlohmann::json metadata = metadata_of(reader);
   const auto free_of_voids = metadata.find("free_of_voids");
-  return number_or_null(border_moved_at_most(
+  return number_or_null(border_move_told_by(
       metadata, free_of_voids != metadata.end() && *free_of_voids == true, certified_error));
 }
 
