@@ -29,17 +29,60 @@ int rounds_before_last(GridPoint p) noexcept {
 
 }  // namespace
 
+GrowingDelaunay::GrowingDelaunay(const PointBuckets& buckets, std::uint64_t first,
+                                 std::uint64_t count, std::size_t cache_bytes,
+                                 const std::stop_token& stop)
+    : buckets_(buckets),
+      first_(first),
+      end_(first + count),
+      stop_(stop),
+      fixed_(buckets.fixed_edges()),
+      plain_(fixed_.is_empty() ? std::make_unique<Delaunay>() : nullptr),
+      constrained_(fixed_.is_empty() ? nullptr : std::make_unique<ConstrainedDelaunay>()),
+      delaunay_(plain_ ? static_cast<Triangulation&>(*plain_) : *constrained_),
+      cache_(buckets, first, first + count, cache_bytes) {}
+
 void GrowingDelaunay::insert(const BucketPoint& p, bool own) {
   if (handles_.size() % kStopInterval == 0) {
     stop_if_asked(stop_, "the triangulation");
   }
-  const Vertex_handle v = delaunay_.insert(GridKernel::Point_2(p.position.x, p.position.y), hint_);
+  const GridKernel::Point_2 point(p.position.x, p.position.y);
+  const Vertex_handle v =
+      plain_ ? plain_->insert(point, hint_) : constrained_->insert(point, hint_);
+  if (delaunay_.number_of_vertices() == handles_.size()) {
+    return;  // the end of a fixed edge, which came before the other points around it
+  }
   v->info() = static_cast<VertexId>(handles_.size());
   hint_ = v->face();
   handles_.push_back(v);
   heights_.push_back(p.height);
   own_.push_back(own ? 1 : 0);
   inserted_.push_back(v->info());
+}
+
+Vertex_handle GrowingDelaunay::insert_fixed(std::uint32_t vertex) {
+  const GridPoint p = fixed_.vertices()[vertex].position;
+  insert({p, buckets_.fixed_height(vertex)}, false);
+  return constrained_->insert(GridKernel::Point_2(p.x, p.y), hint_);  // finds it
+}
+
+template <class Meets>
+bool GrowingDelaunay::force_edges(const Meets& meets) {
+  std::vector<std::uint32_t> found;
+  fixed_.visit(meets, [&](std::uint32_t edge) {
+    if (forced_.insert(edge).second) {
+      found.push_back(edge);
+    }
+  });
+  std::sort(found.begin(), found.end());
+  for (const std::uint32_t edge : found) {
+    const LineEdge& e = fixed_.edges()[edge];
+    const Vertex_handle a = insert_fixed(e.a);
+    const Vertex_handle b = insert_fixed(e.b);
+    constrained_->force_edge(a, b, changed_);
+    hint_ = b->face();  // the one before may have been crossed, and so is gone
+  }
+  return !found.empty();
 }
 
 /// Chooses the box: that of the own points, and a margin around it. The margin is quartered until
@@ -105,7 +148,9 @@ void GrowingDelaunay::triangulate() {
   }
   insert_all(all);
   span_area();
+  force_edges([&](const GridBox& b) { return meets(b, box_); });
   inserted_.clear();
+  changed_.clear();
 }
 
 /// Where all points so far lie on one line there is no face yet: inserts the nearest points around
@@ -177,7 +222,9 @@ bool GrowingDelaunay::take_from(BucketCache::Bucket& loaded, const UnseenRegion&
 }
 
 /// Looks for points in the region that are not in yet, from `near` outwards, and inserts those of
-/// the first bucket that has any. True when there was none.
+/// the first bucket that has any; where there is none, forces the fixed edges of the region that are
+/// not in yet. True when there was neither. Points come first: they make discs smaller, and large
+/// ones meet many edges.
 bool GrowingDelaunay::see(const UnseenRegion& region, GridPoint near) {
   bool found = false;
   buckets_.visit_nearest(
@@ -194,7 +241,7 @@ bool GrowingDelaunay::see(const UnseenRegion& region, GridPoint near) {
         cache_.tidy();
         return !found;
       });
-  return !found;
+  return !found && !force_edges([&](const GridBox& b) { return region.may_meet(b); });
 }
 
 /// True when a face is final. False when points were inserted instead: the face may be gone.
@@ -228,7 +275,13 @@ bool GrowingDelaunay::is_final(const Face_handle& face) {
   if (final_.contains(corners)) {
     return true;
   }
-  if (!see(UnseenRegion(Circumdisc(p[0], p[1], p[2])), p[0])) {
+  UnseenRegion region(Circumdisc(p[0], p[1], p[2]));
+  for (int i = 0; i < 3; ++i) {
+    if (face->is_constrained(i)) {
+      region.hide_beyond(p[next_corner(i)], p[previous_corner(i)]);
+    }
+  }
+  if (!see(region, p[0])) {
     return false;
   }
   final_.insert(corners);
@@ -258,10 +311,21 @@ void GrowingDelaunay::settle(std::vector<VertexId> vertices) {
     const VertexId v = vertices.back();
     stop_if_asked(stop_, "the triangulation");
     inserted_.clear();
+    changed_.clear();
     if (settle_star(v)) {
       vertices.pop_back();
       wanted[v] = 0;
       continue;
+    }
+    const auto look_again = [&](VertexId u) {
+      if (u < own_.size() && u < wanted.size() && (own_[u] != 0 || of_interest[u] != 0) &&
+          wanted[u] == 0) {
+        wanted[u] = 1;
+        vertices.push_back(u);
+      }
+    };
+    for (const VertexId u : changed_) {
+      look_again(u);
     }
     // Every new face has a new point as a corner. Its other corners have to be looked at again
     // where they are own vertices or vertices of interest.
@@ -270,12 +334,7 @@ void GrowingDelaunay::settle(std::vector<VertexId> vertices) {
       const auto begin = n;
       do {
         if (!delaunay_.is_infinite(n)) {
-          const VertexId u = n->info();
-          if (u < own_.size() && u < wanted.size() && (own_[u] != 0 || of_interest[u] != 0) &&
-              wanted[u] == 0) {
-            wanted[u] = 1;
-            vertices.push_back(u);
-          }
+          look_again(n->info());
         }
       } while (++n != begin);
     }

@@ -4,7 +4,10 @@
 // delaunay/growing_delaunay.cc.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include "engine/geometry/box.h"
@@ -14,18 +17,25 @@
 namespace ptin::delaunay_internal {
 
 /// The region in which no point may be unseen (not inserted) for a face to be final. For a finite
-/// face it is the closed circumdisc. For an infinite one, beyond an edge of the hull, it is the
+/// face it is the closed circumdisc, without what lies beyond a fixed side of the face: the line
+/// through the side meets the disc in the side alone, so nothing beyond is visible from the face. For
+/// an infinite one, beyond an edge of the hull, it is the
 /// open half-plane outside of the edge, and the edge itself.
 class UnseenRegion {
  public:
   /// The region of a finite face.
   explicit UnseenRegion(const Circumdisc& disc) : disc_(disc) {}
+  /// Takes away what lies to the right of a -> b, a fixed side of the finite face.
+  void hide_beyond(GridPoint a, GridPoint b) {
+    sides_[static_cast<std::size_t>(hidden_++)] = {a, b};
+  }
   /// The region of an infinite face, to the right of a -> b.
   UnseenRegion(GridPoint a, GridPoint b) : a_(a), b_(b) {}
 
   [[nodiscard]] bool holds(GridPoint p) const noexcept {
     if (disc_) {
-      return disc_->holds(p);
+      return disc_->holds(p) && std::all_of(sides_.begin(), sides_.begin() + hidden_,
+                                            [&](auto s) { return orient(s.a, s.b, p) >= 0; });
     }
     const std::int64_t side = orient(a_, b_, p);
     return side < 0 || (side == 0 && contains(united(box_of(a_), b_), p));
@@ -34,7 +44,12 @@ class UnseenRegion {
   /// other.
   [[nodiscard]] bool may_meet(const GridBox& box) const noexcept {
     if (disc_) {
-      return disc_->may_meet(box);
+      return disc_->may_meet(box) &&
+             std::all_of(sides_.begin(), sides_.begin() + hidden_, [&](auto s) {
+               const GridPoint left{s.b.y - s.a.y < 0 ? box.max_x : box.min_x,
+                                    s.b.x - s.a.x > 0 ? box.max_y : box.min_y};
+               return orient(s.a, s.b, left) >= 0;  // the corner farthest to the left
+             });
     }
     const GridPoint corner{b_.y - a_.y > 0 ? box.max_x : box.min_x,
                            b_.x - a_.x > 0 ? box.min_y : box.max_y};
@@ -45,6 +60,11 @@ class UnseenRegion {
  private:
   std::optional<Circumdisc> disc_;  ///< None: the edge a_ -> b_.
   GridPoint a_, b_;
+  struct Side {
+    GridPoint a, b;
+  };
+  std::array<Side, 3> sides_{};  ///< The first hidden_ ones.
+  int hidden_ = 0;
 };
 
 /// True only when the closed circumdisc of a triangle lies inside of the box. Computed in doubles,

@@ -22,6 +22,11 @@ namespace ptin {
 [[nodiscard]] double fan_deviation(const Tile& tile, const StarSamples& s, const FanFrame& fan,
                                    const FullSurface& full, const GridBox& within);
 
+/// The same at crossings with edges of breaklines and of the boundary alone: what these count for in
+/// the error of the fan. Tiles where no leaf has such edges pay nothing.
+[[nodiscard]] double fan_fixed_gap(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                                   const FullSurface& full, const GridBox& within);
+
 /// A box that every edge meets.
 inline constexpr GridBox kEverywhere{0, 0, kGridMax, kGridMax};
 
