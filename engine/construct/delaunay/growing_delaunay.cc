@@ -221,11 +221,13 @@ bool GrowingDelaunay::take_from(BucketCache::Bucket& loaded, const UnseenRegion&
   return !found.empty();
 }
 
-/// Looks for points in the region that are not in yet, from `near` outwards, and inserts those of
-/// the first bucket that has any; where there is none, forces the fixed edges of the region that are
-/// not in yet. True when there was neither. Points come first: they make discs smaller, and large
-/// ones meet many edges.
+/// Forces the fixed edges of the region that are not in yet; or else looks for points in it that are
+/// not in yet, from `near` outwards, and inserts those of the first bucket that has any. True when
+/// there was neither. Edges come first: they hide points.
 bool GrowingDelaunay::see(const UnseenRegion& region, GridPoint near) {
+  if (force_edges([&](const GridBox& b) { return region.may_meet(b); })) {
+    return false;
+  }
   bool found = false;
   buckets_.visit_nearest(
       near, [&](const GridBox& b) { return region.may_meet(b); },
@@ -241,7 +243,41 @@ bool GrowingDelaunay::see(const UnseenRegion& region, GridPoint near) {
         cache_.tidy();
         return !found;
       });
-  return !found && !force_edges([&](const GridBox& b) { return region.may_meet(b); });
+  return !found;
+}
+
+/// What can be seen of a disc from its face past fixed edges: the faces that are reached over sides
+/// which meet the disc and are not fixed. A line of sight lies in the disc, and goes through such
+/// faces alone. None, where there are too many: all of the disc then.
+std::vector<Part> GrowingDelaunay::visible_parts(const Face_handle& face,
+                                                 const Circumdisc& disc) const {
+  constexpr std::size_t kMost = 48;
+  std::vector<Face_handle> reached = {face};
+  std::vector<Part> parts;
+  for (std::size_t next = 0; next < reached.size(); ++next) {
+    const Face_handle f = reached[next];
+    if (reached.size() > kMost) {
+      return {};
+    }
+    if (delaunay_.is_infinite(f)) {
+      const int i = f->index(delaunay_.infinite_vertex());
+      parts.emplace_back(position_of(f->vertex(next_corner(i))),
+                         position_of(f->vertex(previous_corner(i))));
+      continue;
+    }
+    parts.emplace_back(position_of(f->vertex(0)), position_of(f->vertex(1)),
+                       position_of(f->vertex(2)));
+    for (int i = 0; i < 3; ++i) {
+      const GridBox side = united(box_of(position_of(f->vertex(next_corner(i)))),
+                                  position_of(f->vertex(previous_corner(i))));
+      const Face_handle g = f->neighbor(i);
+      if (!f->is_constrained(i) && disc.may_meet(side) &&
+          std::find(reached.begin(), reached.end(), g) == reached.end()) {
+        reached.push_back(g);
+      }
+    }
+  }
+  return parts;
 }
 
 /// True when a face is final. False when points were inserted instead: the face may be gone.
@@ -275,13 +311,8 @@ bool GrowingDelaunay::is_final(const Face_handle& face) {
   if (final_.contains(corners)) {
     return true;
   }
-  UnseenRegion region(Circumdisc(p[0], p[1], p[2]));
-  for (int i = 0; i < 3; ++i) {
-    if (face->is_constrained(i)) {
-      region.hide_beyond(p[next_corner(i)], p[previous_corner(i)]);
-    }
-  }
-  if (!see(region, p[0])) {
+  const Circumdisc disc(p[0], p[1], p[2]);
+  if (!see(plain_ ? UnseenRegion(disc) : UnseenRegion(disc, visible_parts(face, disc)), p[0])) {
     return false;
   }
   final_.insert(corners);

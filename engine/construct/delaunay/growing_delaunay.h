@@ -15,15 +15,17 @@
 #include "engine/construct/delaunay/delaunay_kernel.h"
 #include "engine/construct/lines/fixed_edges.h"
 #include "engine/construct/points/point_buckets.h"
+#include "engine/geometry/circumdisc.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin::delaunay_internal {
 
+class Part;
 class UnseenRegion;
 
 /// The *own* points of one tile, triangulated with as many others around them as decide the tile's
 /// triangles. A face is *final* when no point that was not inserted lies where it would change the
-/// face (delaunay/unseen_region.h), and no fixed edge that was not forced meets its circumdisc.
+/// face (delaunay/unseen_region.h), and no fixed edge that was not forced meets that region.
 /// Vertices are numbered in the order in which points are inserted.
 class GrowingDelaunay {
  public:
@@ -75,6 +77,8 @@ class GrowingDelaunay {
   }
   [[nodiscard]] bool settle_star(VertexId v);
   [[nodiscard]] bool is_final(const Face_handle& face);
+  [[nodiscard]] std::vector<Part> visible_parts(const Face_handle& face,
+                                                const Circumdisc& disc) const;
   [[nodiscard]] bool take_from(BucketCache::Bucket& loaded, const UnseenRegion& region);
   [[nodiscard]] bool see(const UnseenRegion& region, GridPoint near);
 

@@ -47,11 +47,11 @@ struct DelaunayTile {
 ///
 /// Where there are fixed edges (lines/fixed_edges.h) it is the constrained Delaunay triangulation:
 /// these are edges, divided where points lie on them, and no circumdisc holds a point that is
-/// visible from the triangle past them (Chew, Constrained Delaunay triangulations, 1989). What is
-/// visible within a disc is decided within the disc. So a triangle is final when all points of its
-/// closed circumdisc and all fixed edges that meet it are in. Ties are broken as above: the
-/// perturbation is one of the lifted points, and with it there is exactly one triangulation in which
-/// every edge that is not fixed is locally Delaunay. Triangles outside of a boundary are void.
+/// visible from the triangle past them (Chew, Constrained Delaunay triangulations, 1989). A triangle is
+/// final when all points and fixed edges are in that lie in its closed circumdisc and can be reached
+/// from it over sides that are not fixed. Ties are broken as above: the perturbation is one of the
+/// lifted points, and with it there is exactly one triangulation in which every edge that is not fixed
+/// is locally Delaunay. Triangles outside of a boundary are void.
 ///
 /// Not thread-safe: each thread needs a tiler of its own; any number of them may share the buckets.
 class DelaunayTiler {

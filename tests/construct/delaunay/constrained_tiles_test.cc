@@ -26,14 +26,13 @@ namespace {
 __extension__ using Int128 = __int128;
 using KeyEdge = std::pair<VertexKey, VertexKey>;
 
-/// All heights lie in one plane, so lines may cross anywhere.
-std::int64_t plane(std::int64_t x, std::int64_t y) { return 3 * x + 2 * y; }
+/// All lines are level, so they may cross anywhere.
+constexpr std::int64_t kHeight = 7;
 
 PointBuckets buckets_with(const std::vector<GridPoint>& points, const SourceLines& lines) {
   std::string text;
   for (const GridPoint p : points) {
-    text += std::to_string(p.x) + " " + std::to_string(p.y) + " " +
-            std::to_string(plane(p.x, p.y)) + "\n";
+    text += std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(kHeight) + "\n";
   }
   const MemoryFile file("set.xyz", text);
   SourceOptions options;
@@ -152,7 +151,7 @@ std::vector<TestLine> random_lines(std::mt19937_64& random, std::int64_t side, i
     TestLine line;
     std::int64_t x = up_to(side), y = up_to(side);
     for (std::int64_t k = up_to(4) + 2; k > 0; --k) {
-      line.push_back({x, y, plane(x, y)});
+      line.push_back({x, y, kHeight});
       const std::int64_t reach = i % 3 == 0 ? side : side / 4 + 1;
       x = i % 4 == 1 ? x : std::clamp<std::int64_t>(x + up_to(2 * reach) - reach, 0, side);
       y = i % 4 == 2 ? y : std::clamp<std::int64_t>(y + up_to(2 * reach) - reach, 0, side);
@@ -201,7 +200,7 @@ RC_GTEST_PROP(ConstrainedTiles, AreOneTriangulationWhereLinesReachFarBeyondThePo
   std::mt19937_64 random(*rc::gen::inRange<std::uint64_t>(0, 1U << 30));
   const auto n = *rc::gen::inRange<std::uint64_t>(3, 200);
   std::vector<TestLine> far = random_lines(random, 3000, 6);
-  far.push_back({{0, 0, plane(0, 0)}, {2900, 1700, plane(2900, 1700)}});  // from among the points
+  far.push_back({{0, 0, kHeight}, {2900, 1700, kHeight}});  // from among the points
   const SourceLines lines = lines_of(far);
   expect_tiles_agree(buckets_with(points_of(PointKind::kEven, n, n), lines), {2, 9, 40});
 }
