@@ -152,12 +152,13 @@ void CollapseChooser::select_next(const Tile& tile, const StarSamples& s, std::s
   std::swap(candidates_[first], candidates_[least]);
 }
 
-double CollapseChooser::fixed_gap(const Tile& tile, const StarSamples& s, std::size_t j) {
+double CollapseChooser::fixed_gap(const Tile& tile, const StarSamples& s, std::size_t j,
+                                  double stop_above) {
   if (!has_fixed_edges_ || s.void_only) {
     return 0.0;
   }
   PTIN_CHECK(make_fan(s, j, fan_));
-  return fan_fixed_gap(tile, s, fan_, *full_, kEverywhere);
+  return fan_fixed_gap(tile, s, fan_, {*full_, kEverywhere, stop_above});
 }
 
 /// Measures candidate link[j] and makes it the best if it is.
@@ -183,7 +184,7 @@ void CollapseChooser::measure(const Tile& tile, const StarSamples& s, std::size_
   if (error > best.error) {
     return;
   }
-  const double fixed = fixed_gap(tile, s, j);
+  const double fixed = fixed_gap(tile, s, j, best.error);
   error = std::max(error, fixed);
   if (error > best.error) {
     return;

@@ -57,8 +57,10 @@ class CollapseChooser {
   [[nodiscard]] static bool is_crowded(const Tile& tile, const StarSamples& s, std::size_t j);
   [[nodiscard]] Best best_of(const Tile& tile, const StarSamples& s, bool crowded_too);
   void measure(const Tile& tile, const StarSamples& s, std::size_t j, Best& best);
-  /// What fixed edges count for in the error of candidate link[j], rounded up.
-  [[nodiscard]] double fixed_gap(const Tile& tile, const StarSamples& s, std::size_t j);
+  /// What fixed edges count for in the error of candidate link[j], rounded up; any number above
+  /// `stop_above` where it is more than that.
+  [[nodiscard]] double fixed_gap(const Tile& tile, const StarSamples& s, std::size_t j,
+                                 double stop_above);
   [[nodiscard]] double certified(const Tile& tile, StarSamples& s, const Best& best);
 
   std::vector<Candidate> candidates_;

@@ -217,7 +217,7 @@ RecordBounds Replay::measure(VertexId w) {
       std::find(star_.star.link.begin(), star_.star.link.end(), w) - star_.star.link.begin());
   PTIN_CHECK(make_fan(star_, j, fan_));
   const double gap = fan_deviation(tile_, star_, fan_, *full_, box_);
-  const double fixed = fan_fixed_gap(tile_, star_, fan_, *full_, box_);
+  const double fixed = fan_fixed_gap(tile_, star_, fan_, {*full_, box_});
   if (star_.count == 1 && star_.surface_triangles) {  // u alone: construction has measured it
     return {height_bound(fixed, tile_.units.heights), height_bound(gap, tile_.units.heights)};
   }

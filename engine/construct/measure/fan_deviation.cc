@@ -72,13 +72,18 @@ double fan_deviation(const Tile& tile, const StarSamples& s, const FanFrame& fan
 }
 
 double fan_fixed_gap(const Tile& tile, const StarSamples& s, const FanFrame& fan,
-                     const FullSurface& full, const GridBox& within) {
-  if (!full.has_fixed_edges()) {
+                     const FixedQuestion& question) {
+  if (!question.full.has_fixed_edges()) {
     return 0.0;
   }
-  return largest_over_spokes(tile, s, fan, within, [&](const EdgeEnd& a, const EdgeEnd& b) {
-    return full.fixed_gap(a, b);
-  });
+  double worst = 0.0;
+  return largest_over_spokes(
+      tile, s, fan, question.within, [&](const EdgeEnd& a, const EdgeEnd& b) {
+        if (worst <= question.stop_above) {
+          worst = std::max(worst, question.full.fixed_gap(a, b, question.stop_above));
+        }
+        return worst;
+      });
 }
 
 }  // namespace ptin

@@ -42,26 +42,35 @@ FixedGaps::FixedGaps(const Tin& part, std::span<const std::uint8_t> sides,
   boxes_ = PackedBoxes(std::move(boxes));
 }
 
-double FixedGaps::largest_gap(const EdgeEnd& a, const EdgeEnd& b) const {
+double FixedGaps::largest_gap(const EdgeEnd& a, const EdgeEnd& b, double stop_above) const {
   const GridBox around = united(box_of(a.position), b.position);
   GapMaximum gap(a.code);
-  boxes_.visit([&](const GridBox& box) { return meets(box, around); },
-               [&](std::size_t i) {
-                 const auto& [p, q] = edges_[i];
-                 const std::int64_t sp = orient(a.position, b.position, p.position);
-                 const std::int64_t sq = orient(a.position, b.position, q.position);
-                 const std::int64_t ta = orient(p.position, q.position, a.position);
-                 const std::int64_t tb = orient(p.position, q.position, b.position);
-                 // Where they only touch, a vertex tells: one of the full TIN, which is a sample.
-                 if ((sp > 0) == (sq > 0) || (ta > 0) == (tb > 0) || sp == 0 || sq == 0 ||
-                     ta == 0 || tb == 0) {
-                   return;
-                 }
-                 const auto along_fixed = static_cast<double>(sp);
-                 const auto along_edge = static_cast<double>(ta);
-                 gap.add(p.code, q.code, along_fixed / (along_fixed - static_cast<double>(sq)),
-                         (b.code - a.code) * (along_edge / (along_edge - static_cast<double>(tb))));
-               });
+  bool is_enough = false;
+  // The corners of a box that lie farthest to the left and to the right of a -> b.
+  const bool rises = b.position.y > a.position.y, goes_east = b.position.x > a.position.x;
+  const auto may_meet = [&](const GridBox& box) {
+    return !is_enough && meets(box, around) &&
+           orient(a.position, b.position,
+                  {rises ? box.min_x : box.max_x, goes_east ? box.max_y : box.min_y}) >= 0 &&
+           orient(a.position, b.position,
+                  {rises ? box.max_x : box.min_x, goes_east ? box.min_y : box.max_y}) <= 0;
+  };
+  boxes_.visit(may_meet, [&](std::size_t i) {
+    const auto& [p, q] = edges_[i];
+    const std::int64_t sp = orient(a.position, b.position, p.position);
+    const std::int64_t sq = orient(a.position, b.position, q.position);
+    const std::int64_t ta = orient(p.position, q.position, a.position);
+    const std::int64_t tb = orient(p.position, q.position, b.position);
+    // Where they only touch, a vertex tells: one of the full TIN, which is a sample.
+    if ((sp > 0) == (sq > 0) || (ta > 0) == (tb > 0) || sp == 0 || sq == 0 || ta == 0 || tb == 0) {
+      return;
+    }
+    const auto along_fixed = static_cast<double>(sp);
+    const auto along_edge = static_cast<double>(ta);
+    gap.add(p.code, q.code, along_fixed / (along_fixed - static_cast<double>(sq)),
+            (b.code - a.code) * (along_edge / (along_edge - static_cast<double>(tb))));
+    is_enough = gap.bound() > stop_above;
+  });
   return gap.bound();
 }
 

@@ -25,8 +25,9 @@ class FixedGaps {
   [[nodiscard]] bool is_empty() const noexcept { return edges_.empty(); }
   /// A bound on the vertical distance between the edge a-b and the fixed edges that it crosses, in
   /// height codes. Tight up to rounding; 0 where all heights are equal, or none is crossed.
-  /// Cost: the fixed edges whose boxes meet that of a-b.
-  [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const;
+  /// @param stop_above  As FullSurface::fixed_gap().
+  /// Cost: the fixed edges whose boxes a-b goes through.
+  [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b, double stop_above) const;
 
  private:
   struct Edge {

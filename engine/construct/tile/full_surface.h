@@ -34,7 +34,9 @@ class FullSurface {
 
   /// The same at crossings with edges of breaklines and of the boundary alone, with surface on one
   /// side at least: these count for the error.
-  [[nodiscard]] virtual double fixed_gap(const EdgeEnd& /*a*/, const EdgeEnd& /*b*/) const {
+  /// @param stop_above  Where the gap is larger, any number above this may be returned.
+  [[nodiscard]] virtual double fixed_gap(const EdgeEnd& /*a*/, const EdgeEnd& /*b*/,
+                                         double /*stop_above*/) const {
     return 0.0;
   }
   /// False where fixed_gap() is 0 everywhere.

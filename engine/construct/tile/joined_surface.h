@@ -35,12 +35,13 @@ class JoinedSurface final : public FullSurface {
     return worst;
   }
 
-  [[nodiscard]] double fixed_gap(const EdgeEnd& a, const EdgeEnd& b) const override {
+  [[nodiscard]] double fixed_gap(const EdgeEnd& a, const EdgeEnd& b,
+                                 double stop_above) const override {
     const GridBox edge = united(box_of(a.position), b.position);
     double worst = 0.0;
     for (const Leaf& leaf : leaves_) {
       if (leaf.full->has_fixed_edges() && meets(edge, leaf.box)) {
-        worst = std::max(worst, leaf.full->fixed_gap(a, b));
+        worst = std::max(worst, leaf.full->fixed_gap(a, b, stop_above));
       }
     }
     return worst;

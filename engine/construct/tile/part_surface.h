@@ -36,8 +36,9 @@ class PartSurface final : public FullSurface {
 
   /// Cost: the crossings, and the logarithm of the length of the border.
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
-  [[nodiscard]] double fixed_gap(const EdgeEnd& a, const EdgeEnd& b) const override {
-    return fixed_.largest_gap(a, b);
+  [[nodiscard]] double fixed_gap(const EdgeEnd& a, const EdgeEnd& b,
+                                 double stop_above) const override {
+    return fixed_.largest_gap(a, b, stop_above);
   }
   [[nodiscard]] bool has_fixed_edges() const noexcept override { return !fixed_.is_empty(); }
   /// 0 without a PartBorder.
