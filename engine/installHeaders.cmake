@@ -22,6 +22,7 @@ set(public_headers
     engine/construct/read/column_names.h
     engine/construct/read/input_kind.h
     engine/construct/read/layer_choice.h
+    engine/construct/read/line_file.h
     engine/construct/read/point_stream.h
     engine/construct/read/text_rows.h
     engine/construct/read/text_table.h
@@ -42,6 +43,7 @@ set(public_headers
     engine/geometry/convex_hull.h
     engine/geometry/height.h
     engine/geometry/hilbert.h
+    engine/geometry/infinity.h
     engine/geometry/interval.h
     engine/geometry/key_table.h
     engine/geometry/orient.h

@@ -22,7 +22,7 @@ namespace ptin::build_internal {
 namespace {
 
 /// Of the temporary files: to be raised when their bytes mean something else.
-constexpr int kTemporaryFormat = 3;
+constexpr int kTemporaryFormat = 4;
 
 /// The number of a file on its disk, which stays the same when it gets another name; none when
 /// there is no such file.
@@ -159,12 +159,21 @@ std::function<void(const char*, std::uint64_t, std::uint64_t)> Job::stages() con
   };
 }
 
-SourceOptions Job::source_options() const { return source_options_of(options); }
+SourceOptions Job::source_options() const {
+  SourceOptions source = source_options_of(options);
+  source.lines = &lines;
+  return source;
+}
 
 nlohmann::json fingerprint(const Job& job) {
+  std::vector<std::string> inputs = job.inputs;
+  inputs.insert(inputs.end(), job.options.breaklines.begin(), job.options.breaklines.end());
+  if (!job.options.boundary.empty()) {
+    inputs.push_back(job.options.boundary);
+  }
   return {{"options", options_json(job.options)},
           {"page_bytes", job.options.page_bytes},
-          {"inputs", input_fingerprint(job.inputs)},
+          {"inputs", input_fingerprint(inputs)},
           {"program", {PTIN_VERSION, kTemporaryFormat}}};
 }
 

@@ -18,6 +18,7 @@
 #include "engine/construct/hierarchy/hierarchy.h"
 #include "engine/construct/hierarchy/tile_bytes.h"
 #include "engine/construct/hierarchy/tile_collapse.h"
+#include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/point_count.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/scratch/workspace.h"
@@ -38,6 +39,7 @@ struct Job {
   const BuildResources& resources;
   const MemoryPlan memory;  ///< Made once, with the kind of source that it is for.
   BuildReport report;
+  SourceLines lines{};  ///< Beside the points, from when they are read.
   /// Of the finished pages, from when they are about to get the output's name.
   std::optional<std::uint64_t> inode_of_output{};
   /// True while a resumed build would do all of the work again: an error then leaves no folder

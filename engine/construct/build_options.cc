@@ -9,6 +9,10 @@
 
 namespace ptin {
 
+LineChoice line_choice_of(const BuildOptions& options) {
+  return {options.breaklines, options.breakline_layer, options.boundary, options.boundary_layer};
+}
+
 PointChoice point_choice_of(const BuildOptions& options) {
   return {options.classes, options.returns, options.layer, options.z_field, options.columns};
 }
@@ -42,6 +46,10 @@ void check_options(const BuildOptions& o) {
           "the longest edge must be a finite number > 0");
   require(!o.bbox || ((*o.bbox)[0] < (*o.bbox)[2] && (*o.bbox)[1] < (*o.bbox)[3]),
           "the bbox is inverted or empty; its order is xmin ymin xmax ymax");
+  require(o.breakline_layer.empty() || !o.breaklines.empty(),
+          "--breakline-layer is for files that --breaklines names; name them, or leave it out");
+  require(o.boundary_layer.empty() || !o.boundary.empty(),
+          "--boundary-layer is for the file that --boundary names; name it, or leave it out");
   if (!o.columns.empty()) {
     std::ignore = columns_of(o.columns, point_roles());
   }

@@ -30,6 +30,12 @@ struct BuildOptions {
   std::optional<double> max_edge;
   std::vector<std::string> columns;  ///< Text: as PointChoice::columns.
   std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
+  /// Points: files of lines whose pieces are edges of the full TIN; and the layer in each of them,
+  /// "" where there is only one.
+  std::vector<std::string> breaklines;
+  std::string breakline_layer;
+  /// Points: a file of polygons outside of which all is void, "" for none; and its layer.
+  std::string boundary, boundary_layer;
   bool repair = false;  ///< TINs: triangulate the vertices anew instead of taking the triangles.
   std::optional<std::array<double, 4>>
       bbox;           ///< xmin ymin xmax ymax in CRS units; samples outside are left out.
@@ -42,6 +48,8 @@ struct BuildOptions {
   std::uint32_t page_bytes = 4096;
 };
 
+/// Which lines a build wants beside its inputs.
+[[nodiscard]] LineChoice line_choice_of(const BuildOptions& options);
 /// Which points of its inputs a build wants.
 [[nodiscard]] PointChoice point_choice_of(const BuildOptions& options);
 /// The options that say what is read from a source.

@@ -6,6 +6,7 @@
 
 #include "engine/construct/build_job.h"
 #include "engine/construct/delaunay/point_tile.h"
+#include "engine/construct/lines/source_lines.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/points/point_buckets.h"
 #include "engine/construct/points/point_count.h"
@@ -38,6 +39,7 @@ PointBuckets sorted_points(Job& job, Workspace& workspace) {
   const std::string buckets = workspace.temporary(kBucketFile);
   const std::string index = workspace.temporary(kPointsIndex);
   if (const auto facts = kept_index(workspace, "points")) {
+    job.lines = {};
     return PointBuckets::load(job.files(), buckets, index, *facts, job.resources.stop,
                               job.stage("checking"));
   }
@@ -45,6 +47,7 @@ PointBuckets sorted_points(Job& job, Workspace& workspace) {
   PointBuckets points =
       PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
                          job.resources.stop, job.stages(), buckets);
+  job.lines = {};  // the points have what they need of them
   note_index(workspace, "points", points.save(job.files(), index));
   return points;
 }
@@ -79,12 +82,13 @@ void build_points_in(Workspace& workspace, Job& job) {
 
 void build_points(Job& job) {
   const GdalCacheLimit cache(job.memory.gdal_cache);
+  const nlohmann::json began_with = fingerprint(job);  // before the first look into the inputs
+  job.lines = read_source_lines(line_choice_of(job.options), job.memory.lines, job.resources.stop);
   plan_before_reading(job, [&](const PointCount& count) { return disk_of(job, count); });
   if (job.resources.dry_run) {
     return;
   }
-  in_workspace(job, fingerprint(job),
-               [&](Workspace& workspace) { build_points_in(workspace, job); });
+  in_workspace(job, began_with, [&](Workspace& workspace) { build_points_in(workspace, job); });
 }
 
 }  // namespace ptin::build_internal

@@ -35,6 +35,7 @@ std::uint64_t MemoryPlan::for_tiles(std::uint64_t present, int threads) const no
 MemoryPlan MemoryPlan::within(std::uint64_t other_limit) const noexcept {
   MemoryPlan plan = *this;
   plan.limit = other_limit;
+  plan.lines = other_limit / 4;
   plan.gdal_cache = std::clamp(other_limit / 16, 8 * kMiB, 64 * kMiB);
   if (kind == InputKind::kPoints) {
     plan.sorting = std::clamp(other_limit / 8, kMiB, 256 * kMiB);

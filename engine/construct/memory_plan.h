@@ -23,6 +23,7 @@ struct MemoryPlan {
   std::uint64_t limit = 0;              ///< Of the process's anonymous memory, bytes.
   std::uint64_t allowed = 0;            ///< By cgroups and resource limits; may be less.
   std::uint64_t gdal_cache = 0;         ///< Decoded blocks of rasters.
+  std::uint64_t lines = 0;              ///< Breaklines and boundary, from reading to the end.
   std::uint64_t sorting = 0;            ///< Points, or a TIN, on their way into temporary files.
 
   /// What is left for tiles in work; 0 when nothing is.

@@ -23,6 +23,9 @@ const char* misfit_of_raster(const BuildOptions& o) {
   if (o.duplicates) return "--duplicates is for points, and this is a raster; leave it out";
   if (o.repair) return "--repair is for TINs, and this is a raster; leave it out";
   if (o.max_edge) return "--max-edge is for points, and this is a raster; leave it out";
+  if (!o.breaklines.empty())
+    return "--breaklines is for points, and this is a raster; leave it out";
+  if (!o.boundary.empty()) return "--boundary is for points, and this is a raster; leave it out";
   return nullptr;
 }
 
@@ -46,6 +49,11 @@ const char* misfit_of_tin(const BuildOptions& o, const std::string& input) {
     return "a TIN is not cut by --bbox; build it whole, then refine or export a window";
   if (o.max_edge && !o.repair)
     return "--max-edge is for points, and for TINs with --repair, and this is a TIN; leave it out";
+  if (!o.breaklines.empty() && !o.repair)
+    return "--breaklines is for points, and for TINs with --repair, and this is a TIN; leave it "
+           "out";
+  if (!o.boundary.empty() && !o.repair)
+    return "--boundary is for points, and for TINs with --repair, and this is a TIN; leave it out";
   return nullptr;
 }
 

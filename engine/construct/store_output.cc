@@ -79,6 +79,21 @@ nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildRe
           {"height_rounding", r.height_rounding}};
 }
 
+/// Files without their folders, as those of the source.
+void add_lines(const BuildOptions& o, nlohmann::json& json) {
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) {
+      json[name] = value;
+    }
+  };
+  for (const std::string& path : o.breaklines) {
+    json["breaklines"].push_back(std::filesystem::path(path).filename().string());
+  }
+  add("breakline_layer", o.breakline_layer);
+  add("boundary", std::filesystem::path(o.boundary).filename().string());
+  add("boundary_layer", o.boundary_layer);
+}
+
 }  // namespace
 
 nlohmann::json options_json(const BuildOptions& o) {
@@ -104,6 +119,7 @@ nlohmann::json options_json(const BuildOptions& o) {
   if (o.max_edge) {
     json["max_edge"] = *o.max_edge;
   }
+  add_lines(o, json);
   if (!o.layer.empty()) {
     json["layer"] = o.layer;
   }

@@ -72,7 +72,9 @@ const std::string& expected_of(SourceKind kind, const std::string& input,
                                const BuildOptions& options) {
   static std::map<std::string, std::string> all;
   const auto [found, is_new] = all.try_emplace(
-      kind == SourceKind::kRaster ? input : std::filesystem::path(input).filename().string());
+      kind == SourceKind::kRaster ? input
+                                  : std::filesystem::path(input).filename().string() +
+                                        (options.boundary.empty() ? "" : " with lines"));
   if (is_new) {
     const oracle::ScratchFolder folder;
     const std::string plain = folder.file("plain.ptin");
@@ -88,9 +90,15 @@ InterruptibleBuild::InterruptibleBuild(SourceKind kind) : kind_(kind) {
   if (kind == SourceKind::kRaster) {
     raster_.emplace(hills_with_a_lake());
     input_ = raster_->path();
-  } else if (kind == SourceKind::kPoints) {
+  } else if (kind == SourceKind::kPoints || kind == SourceKind::kLines) {
     input_ = source_folder_.file("points.xyz");
     oracle::write_text(input_, scattered_points());
+    oracle::write_text(source_folder_.file("lines.csv"),
+                       "id,WKT\n1,\"LINESTRING Z (20 30 50,930 870 20,950 200 30)\"\n"
+                       "2,\"LINESTRING Z (10 700 40,300 340 90)\"\n");
+    oracle::write_text(
+        source_folder_.file("area.csv"),
+        "id,WKT\n1,\"POLYGON Z ((0 0 9,990 30 9,970 990 9,500 700 9,0 980 9,0 0 9))\"\n");
   } else {
     input_ = source_folder_.file("mesh.obj");
     oracle::write_text(input_, triangles_with_holes());
@@ -103,6 +111,10 @@ BuildOptions InterruptibleBuild::options() const {
   options.tile = kind_ == SourceKind::kRaster ? 16 : 10;
   if (kind_ == SourceKind::kPoints) {
     options.max_edge = 60.0;
+  }
+  if (kind_ == SourceKind::kLines) {
+    options.breaklines = {source_folder_.file("lines.csv")};
+    options.boundary = source_folder_.file("area.csv");
   }
   return options;
 }

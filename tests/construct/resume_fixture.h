@@ -15,6 +15,7 @@ namespace ptin::test {
 enum class SourceKind {
   kRaster,  ///< Hills of 65 x 65 samples with a lake, in tiles of 16.
   kPoints,  ///< 1200 points as text, some of them twice, with voids, in tiles of 10.
+  kLines,   ///< The same points with breaklines and a boundary.
   kTin,     ///< 1225 vertices as OBJ, with holes and vertices that are not used, in tiles of 10.
 };
 

@@ -72,6 +72,10 @@ void check_command(BuildCommand& command) {
     throw Error(ErrorCode::invalid_argument,
                 "no input; all that follows --columns names columns, so put INPUT before it");
   }
+  if (command.inputs.empty() && !options.breaklines.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "no input; all that follows --breaklines are breaklines, so put INPUT before it");
+  }
   options.cost = cost_of(command.cost);
   options.duplicates = merge_of(command.duplicates);
   options.returns = returns_of(command.returns);
@@ -141,6 +145,10 @@ void print_next(const BuildCommand& command) {
   const std::string out = shell_word(command.output);
   std::string verify = "ptin verify " + out + " --against";
   for (const std::string& input : command.inputs) verify.append(" ").append(shell_word(input));
+  const BuildOptions& options = command.options;
+  if (!options.breaklines.empty()) verify.append(" --breaklines");
+  for (const std::string& path : options.breaklines) verify.append(" ").append(shell_word(path));
+  if (!options.boundary.empty()) verify.append(" --boundary ").append(shell_word(options.boundary));
   std::printf("next: ptin info %s\n      ptin render %s -o picture.png\n      %s\n", out.c_str(),
               out.c_str(), verify.c_str());
 }
@@ -464,6 +472,22 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
                  "units, or metres\n"
                  "where those are degrees")
       ->type_name("L");
+  app.add_option("--breaklines", options.breaklines,
+                 "Points, --repair: lines with heights that become edges of the TIN, from layers "
+                 "that OGR\n"
+                 "reads; several files")
+      ->type_name("FILE");
+  app.add_option("--breakline-layer", options.breakline_layer,
+                 "Breaklines of this layer, where a file holds several")
+      ->type_name("NAME");
+  app.add_option("--boundary", options.boundary,
+                 "Points, --repair: polygons with heights outside of which all is void, from a "
+                 "layer that\n"
+                 "OGR reads")
+      ->type_name("FILE");
+  app.add_option("--boundary-layer", options.boundary_layer,
+                 "The boundary is this layer, where its file holds several")
+      ->type_name("NAME");
   app.add_option("--bbox", command.bbox, "Leave out samples outside of this box, in CRS units")
       ->expected(4)
       ->type_name("XMIN YMIN XMAX YMAX");

@@ -273,6 +273,8 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
     progress.report("exporting", static_cast<std::uint64_t>(done * kSteps), 10'000);
   };
   report(0.0);
+  // Before anything is published: what may fail for want of memory must leave nothing behind.
+  const ClassChanges changes = changes_of(refiner, options, crs_facts(store));
   Exported made;
   if (is_raster) {
     made = export_pixels(refiner, *grid, raster_target(format, options, store), report);
@@ -289,7 +291,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   made.is_raster = is_raster;
   made.what = options.content.what;
   if (made.what == "slope") made.slope_unit = slope_unit_of(options.content);
-  made.changes = changes_of(refiner, options, crs_facts(store));
+  made.changes = changes;
   made.certificate = refiner.detail().certificate();
   made.certificate.error = sum_above(made.certificate.error, made.rounding);
   made.certificate.deviation = sum_above(made.certificate.deviation, made.rounding);

@@ -32,6 +32,7 @@ namespace {
 struct VerifyCommand {
   TerrainOptions terrain;
   std::vector<std::string> against;
+  LineInputs lines;
   std::vector<double> tolerances;
   std::string memory, tmp;
   std::size_t faults = 20;
@@ -122,7 +123,7 @@ void verify_source(const VerifyCommand& command, const Terrain& terrain, const C
                               command.tmp.empty() ? folder_of(command.terrain.file) : command.tmp,
                               memory_limit_of(command.memory, kMemory)};
   const std::unique_ptr<SourceSamples> source =
-      open_samples(command.against, terrain.store(), {memory, context.stop});
+      open_samples(command.against, terrain.store(), {memory, context.stop, command.lines});
   AgainstOptions options;
   options.tolerances = tolerances_of(command, terrain.store());
   options.listed_faults = command.faults;
@@ -184,13 +185,14 @@ nlohmann::json findings_json(const VerifyCommand& command, const Findings& f) {
                       {"void_samples", c.void_samples},
                       {"reclassified", c.reclassified},
                       {"worst_border_move", c.worst_border_move},
+                      {"worst_breakline_error", c.worst_breakline_error},
                       {"faults", c.faults}});
   }
   json["against"] = {{"inputs", command.against}, {"checks", checks}};
   return json;
 }
 
-void print_checks(const AgainstReport& report) {
+void print_checks(const AgainstReport& report, bool has_lines) {
   std::printf(
       "  tolerance  certified  worst at samples  certified anywhere  worst at random points  "
       "reclassified  worst move of a void's border\n");
@@ -201,6 +203,9 @@ void print_checks(const AgainstReport& report) {
                 short_number(c.certified_deviation).c_str(),
                 c.tolerance ? short_number(c.worst_deviation).c_str() : "-",
                 grouped(c.reclassified).c_str(), short_number(c.worst_border_move).c_str());
+    if (has_lines)
+      std::printf("             worst along breaklines and boundary: %s\n",
+                  short_number(c.worst_breakline_error).c_str());
   }
 }
 
@@ -216,7 +221,7 @@ void print_findings(const VerifyCommand& command, const Findings& f) {
     std::printf("against %s: %s with a height, %s void\n", inputs_text(command.against).c_str(),
                 counted(f.against->checks.front().samples, "sample").c_str(),
                 grouped(f.against->checks.front().void_samples).c_str());
-    print_checks(*f.against);
+    print_checks(*f.against, !command.lines.is_empty());
   }
   if (f.fault_count == 0) return;
   std::printf("%s%s; the first:\n", counted(f.fault_count, "fault").c_str(),
@@ -238,6 +243,13 @@ Action declare_verify(CLI::App& app, Context& context) {
              "The source, every input of the build: certified errors are checked at each of its\n"
              "samples")
           ->type_name("INPUT...");
+  app.add_option("--breaklines", command->lines.breaklines,
+                 "The files of breaklines of the build: the TIN is held against them")
+      ->needs(against)
+      ->type_name("FILE...");
+  app.add_option("--boundary", command->lines.boundary, "The file of the boundary of the build")
+      ->needs(against)
+      ->type_name("FILE");
   app.add_option("--tolerance", command->tolerances,
                  "Tolerances to check against the source (default: 0 and four more)")
       ->needs(against)

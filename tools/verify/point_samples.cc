@@ -31,6 +31,7 @@ class PointSamples final : public SourceSamples {
                const SampleResources& resources)
       : facts_(store.facts()),
         choices_(choices_of(store)),
+        lines_(resources.lines, store, resources.stop),
         samples_(facts_, resources.memory, choices_.duplicates) {
     for (const std::string& path : paths) {
       if (is_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
@@ -39,10 +40,15 @@ class PointSamples final : public SourceSamples {
         read_stream(path, resources);
       }
     }
+    lines_.finish();
+    for (const auto& [key, height] : lines_.vertices()) add_sample(point_of(key), height);
     check_extent(extent_, paths, facts_, choices_);
     samples_.sort(resources.stop);
   }
 
+  [[nodiscard]] const LineSamples* lines() const override {
+    return lines_.is_empty() ? nullptr : &lines_;
+  }
   [[nodiscard]] std::uint64_t count(const GridBox& box) override { return samples_.count(box); }
   [[nodiscard]] SampleWindow read(const GridBox& box) override {
     SampleWindow window;
@@ -60,10 +66,12 @@ class PointSamples final : public SourceSamples {
   void read_stream(const std::string& path, const SampleResources& resources);
   [[nodiscard]] MapPoint grid_point_of(MapPoint p) const;
   void add(const std::array<double, 3>& p);
+  void add_sample(GridPoint p, double height);
 
   const StoreFacts& facts_;
   SampleChoices choices_;
   SourceExtent extent_;
+  LineSamples lines_;
   SortedSamples samples_;
 };
 
@@ -112,10 +120,23 @@ MapPoint PointSamples::grid_point_of(MapPoint p) const {
 void PointSamples::add(const std::array<double, 3>& p) {
   if (choices_.nodata && p[2] == *choices_.nodata) return;
   const MapPoint grid = grid_point_of({p[0], p[1]});
-  extent_.add(grid.x, grid.y);
   const GridBox& b = facts_.bounds;
-  if (grid.x < b.min_x || grid.x > b.max_x || grid.y < b.min_y || grid.y > b.max_y) return;
-  samples_.add({static_cast<std::int32_t>(grid.x), static_cast<std::int32_t>(grid.y)}, p[2]);
+  if (grid.x < b.min_x || grid.x > b.max_x || grid.y < b.min_y || grid.y > b.max_y) {
+    if (!lines_.has_boundary()) extent_.add(grid.x, grid.y);
+    return;  // outside of a boundary that reaches no farther, or of another terrain
+  }
+  const GridPoint place{static_cast<std::int32_t>(grid.x), static_cast<std::int32_t>(grid.y)};
+  if (!lines_.is_empty()) {
+    // A line's height stands where a point falls on its vertex.
+    if (lines_.vertices().contains(key_of(place)) || !lines_.holds(place)) return;
+    lines_.divide_at(place);
+  }
+  add_sample(place, p[2]);
+}
+
+void PointSamples::add_sample(GridPoint p, double height) {
+  extent_.add(p.x, p.y);
+  if (contains(facts_.bounds, p)) samples_.add(p, height);
 }
 
 }  // namespace

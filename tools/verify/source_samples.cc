@@ -113,6 +113,11 @@ std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& path
     }
   }
   std::unique_ptr<SourceSamples> samples = open_raster_samples(paths, store);
+  if (samples && !resources.lines.is_empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "--breaklines and --boundary are for points, and this is a raster; leave them out",
+                paths.front());
+  }
   return samples ? std::move(samples) : open_point_samples(paths, store, resources);
 }
 

@@ -22,6 +22,7 @@
 #include "engine/construct/scratch/external_memory.h"
 #include "engine/geometry/box.h"
 #include "storage/store_file.h"
+#include "tools/verify/line_samples.h"
 
 namespace ptin::tools {
 
@@ -100,6 +101,8 @@ class SourceSamples {
   [[nodiscard]] virtual SampleWindow read(const GridBox& box) = 0;
   /// How many read() would return.  @throws Error io_error
   [[nodiscard]] virtual std::uint64_t count(const GridBox& box) = 0;
+  /// The lines that the source was built with; null where it has none.
+  [[nodiscard]] virtual const LineSamples* lines() const { return nullptr; }
   /// Lines of text that are no points.
   [[nodiscard]] const Misfits& misfits() const noexcept { return misfits_; }
 
@@ -111,6 +114,7 @@ class SourceSamples {
 struct SampleResources {
   ExternalMemory memory;  ///< Points are sorted in it, and in its folder where they do not fit.
   std::stop_token stop;
+  LineInputs lines;
 };
 
 /// Opens rasters, or points of any kind. Points are read here, once; rasters are read by read().

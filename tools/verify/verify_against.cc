@@ -11,6 +11,7 @@
 #include "engine/stop.h"
 #include "tools/facts/human.h"
 #include "tools/verify/border_lines.h"
+#include "tools/verify/line_points.h"
 #include "tools/verify/scan_triangle.h"
 #include "tools/verify/sorted_samples.h"
 
@@ -76,6 +77,8 @@ class Verifier {
                    double allowed, const char* what, ToleranceCheck& check);
   void place_probes(const GridBox& box, std::vector<Probe>& probes);
   void measure_probes(const Tin& tin, std::vector<Probe>& probes, double Probe::*height) const;
+  void judge_lines_of(const Tin& tin, const std::vector<LinePoint>& points, double allowed,
+                      ToleranceCheck& check);
   void judge_probes(const GridBox& box, const std::vector<Probe>& probes, const RefinedTin& refined,
                     double allowed, ToleranceCheck& check);
   void fault(ToleranceCheck* check, std::string what);
@@ -258,7 +261,8 @@ void Verifier::drop_lone_points(SampleWindow& window) const {
     const std::array<GridPoint, 3> p{tin.position(v[0]), tin.position(v[1]), tin.position(v[2])};
     const bool is_void =
         tin.classes[t] == TriangleClass::kVoid &&
-        (is_too_long(p[0], p[1]) || is_too_long(p[1], p[2]) || is_too_long(p[2], p[0]));
+        (is_too_long(p[0], p[1]) || is_too_long(p[1], p[2]) || is_too_long(p[2], p[0]) ||
+         (source_.lines() != nullptr && source_.lines()->has_boundary()));
     for (const VertexId corner : v) {
       seen[corner] = is_void && seen[corner] != kSurface ? kLone : kSurface;
     }
@@ -282,6 +286,12 @@ void Verifier::check_window(const GridBox& box) {
   if (!facts_.free_of_voids) border_.emplace(source_border(window, box));
   std::vector<Probe> probes;
   place_probes(box, probes);
+  std::vector<LinePoint> on_lines;
+  if (source_.lines() != nullptr) {
+    on_lines = points_along(*source_.lines(), box, [&](GridPoint p) {
+      return source_.read(box_of(p)).samples.at(0).height;
+    });
+  }
   if (!probes.empty()) measure_probes(refined_in(box, std::nullopt).tin, probes, &Probe::full);
   for (ToleranceCheck& check : report_.checks) {
     const RefinedTin refined = refined_in(box, check.tolerance);
@@ -295,6 +305,7 @@ void Verifier::check_window(const GridBox& box) {
     const double allowed = std::min(asked, refined.certified_error);
     judge(window, box, findings(refined.tin, window), allowed, check);
     if (border_) judge_border(box, allowed, check);
+    judge_lines_of(refined.tin, on_lines, allowed, check);
     if (check.tolerance) {
       measure_probes(refined.tin, probes, &Probe::coarse);
       judge_probes(box, probes, refined, allowed, check);
@@ -467,6 +478,23 @@ void Verifier::measure_probes(const Tin& tin, std::vector<Probe>& probes,
       // Only in the open triangle: a random point on an edge is left out.
       if (weights[0] > 0 && weights[1] > 0 && weights[2] > 0)
         (*it).*height = height_in(tin, t, weights);
+    }
+  }
+}
+
+/// Whether a TIN is near enough to lines, at points that it takes for surface.
+void Verifier::judge_lines_of(const Tin& tin, const std::vector<LinePoint>& points, double allowed,
+                              ToleranceCheck& check) {
+  const double rounding = 1e-9 + 1e3 * slack_;  // points on an edge are beside it in doubles
+  const std::vector<double> off = distances_from(tin, facts_.heights, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!std::isfinite(off[i])) continue;  // void in this TIN
+    const double distance = std::max(0.0, off[i] - rounding);
+    check.worst_breakline_error = std::max(check.worst_breakline_error, distance);
+    if (distance > allowed) {
+      fault(&check, "the breakline at " + place_text(points[i].x, points[i].y) + " is off by " +
+                        short_number(distance) + ", more than the certified " +
+                        short_number(allowed));
     }
   }
 }

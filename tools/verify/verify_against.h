@@ -36,6 +36,9 @@ struct ToleranceCheck {
   /// The largest distance found between the border of voids in the source and in the TIN, whichever
   /// way it is measured; ground units.
   double worst_border_move = 0.0;
+  /// The largest vertical distance at a point of a breakline or of the boundary, where both TINs are
+  /// surface.
+  double worst_breakline_error = 0.0;
   std::uint64_t faults = 0;
 };
 

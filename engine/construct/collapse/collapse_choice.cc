@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/check.h"
+#include "engine/construct/measure/fan_deviation.h"
 #include "engine/construct/measure/lanes.h"
 #include "engine/construct/measure/sample_blocks.h"
 #include "engine/construct/measure/void_measure.h"
@@ -151,6 +152,15 @@ void CollapseChooser::select_next(const Tile& tile, const StarSamples& s, std::s
   std::swap(candidates_[first], candidates_[least]);
 }
 
+double CollapseChooser::fixed_gap(const Tile& tile, const StarSamples& s, std::size_t j,
+                                  double stop_above) {
+  if (!has_fixed_edges_ || s.void_only) {
+    return 0.0;
+  }
+  PTIN_CHECK(make_fan(s, j, fan_));
+  return fan_fixed_gap(tile, s, fan_, {*full_, kEverywhere, stop_above});
+}
+
 /// Measures candidate link[j] and makes it the best if it is.
 void CollapseChooser::measure(const Tile& tile, const StarSamples& s, std::size_t j, Best& best) {
   double error = 0.0;
@@ -174,9 +184,14 @@ void CollapseChooser::measure(const Tile& tile, const StarSamples& s, std::size_
   if (error > best.error) {
     return;
   }
+  const double fixed = fixed_gap(tile, s, j, best.error);
+  error = std::max(error, fixed);
+  if (error > best.error) {
+    return;
+  }
   const VertexKey key = key_of(tile.tin.position(s.star.link[j]));
   if (best.j == CollapseChoice::kNoNeighbour || error < best.error || key < best.key) {
-    best = {j, error, charge, key};
+    best = {j, error, charge, fixed, key};
   }
 }
 
@@ -193,8 +208,8 @@ CollapseChooser::Best CollapseChooser::best_of(const Tile& tile, const StarSampl
       continue;
     }
     // Where u is the only sample, the screen is the error, and the first candidate is the best.
-    if (s.count == 1 && screened_) {
-      best = {c.j, c.screen, 0.0, kNoVertexKey};
+    if (s.count == 1 && screened_ && !has_fixed_edges_) {
+      best = {c.j, c.screen, 0.0, 0.0, kNoVertexKey};
       break;
     }
     measure(tile, s, c.j, best);
@@ -205,20 +220,21 @@ CollapseChooser::Best CollapseChooser::best_of(const Tile& tile, const StarSampl
 /// The error of the best w as a bound: rounded up, and 0 where exact arithmetic shows that it is 0.
 double CollapseChooser::certified(const Tile& tile, StarSamples& s, const Best& best) {
   if (s.flat || s.void_only) {
-    return 0.0;
+    return best.fixed;
   }
   const double bound = residual_bound(s, tile.units);
   if (bound > 0.0 && best.charge == 0.0 && best.error <= bound) {
     gather_sources(tile, s);
     if (make_fan(s, best.j, fan_) && all_residuals_zero(tile, s, fan_)) {
-      return 0.0;
+      return best.fixed;
     }
   }
-  return certified_residual(best.error, s, tile.units);
+  return std::max(certified_residual(best.error, s, tile.units), best.fixed);
 }
 
 CollapseChoice CollapseChooser::choose(const Tile& tile, const FullSurface* full, StarSamples& s) {
   full_ = full;
+  has_fixed_edges_ = full != nullptr && full->has_fixed_edges();
   collect(tile, s);
   Best best = best_of(tile, s, false);
   if (best.j == CollapseChoice::kNoNeighbour) {

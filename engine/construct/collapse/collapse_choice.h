@@ -48,6 +48,7 @@ class CollapseChooser {
     std::size_t j = CollapseChoice::kNoNeighbour;
     double error = std::numeric_limits<double>::infinity();  ///< Height codes, not rounded up yet.
     double charge = 0.0;  ///< Largest charge within `error` (VoidMeasure).
+    double fixed = 0.0;   ///< What fixed edges count for within `error`.
     VertexKey key = kNoVertexKey;
   };
   void collect(const Tile& tile, const StarSamples& s);
@@ -56,6 +57,10 @@ class CollapseChooser {
   [[nodiscard]] static bool is_crowded(const Tile& tile, const StarSamples& s, std::size_t j);
   [[nodiscard]] Best best_of(const Tile& tile, const StarSamples& s, bool crowded_too);
   void measure(const Tile& tile, const StarSamples& s, std::size_t j, Best& best);
+  /// What fixed edges count for in the error of candidate link[j], rounded up; any number above
+  /// `stop_above` where it is more than that.
+  [[nodiscard]] double fixed_gap(const Tile& tile, const StarSamples& s, std::size_t j,
+                                 double stop_above);
   [[nodiscard]] double certified(const Tile& tile, StarSamples& s, const Best& best);
 
   std::vector<Candidate> candidates_;
@@ -65,6 +70,7 @@ class CollapseChooser {
   bool screened_ = false;  ///< Whether the candidates' screens are known.
   FanFrame fan_;
   const FullSurface* full_ = nullptr;
+  bool has_fixed_edges_ = false;  ///< Of `full_`.
 };
 
 }  // namespace ptin

@@ -37,7 +37,8 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const FanError& own,
                                      const CollapseSite& site) {
   const Tin& tin = tile_.tin;
   VertexSplit r;
-  r.error = height_bound(own.error, tile_.units.heights);
+  const double fixed = full_ != nullptr ? fan_fixed_gap(tile_, s, fan_, {*full_}) : 0.0;
+  r.error = height_bound(std::max(own.error, fixed), tile_.units.heights);
   std::uint32_t rank = 0;
   if (full_ != nullptr) {
     r.deviation =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// CGAL's Delaunay triangulation over grid points, and how it becomes a Tin. For the sources
+// CGAL's Delaunay triangulations over grid points, and how they become a Tin. For the sources
 // *delaunay*.cc alone: no others include CGAL.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include <numeric>
 #include <vector>
 
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
@@ -89,34 +90,73 @@ class GridKernel : public BaseKernel {
 };
 
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<VertexId, GridKernel>;
-using FaceBase = CGAL::Triangulation_face_base_with_info_2<TriangleId, GridKernel>;
+/// The marks of constrained edges lie where the info of a face would be padded: they cost nothing.
+using FaceBase = CGAL::Triangulation_face_base_with_info_2<
+    TriangleId, GridKernel, CGAL::Constrained_triangulation_face_base_2<GridKernel>>;
 using DataStructure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
+/// What both kinds of triangulations are: all but how points are inserted.
+using Triangulation = CGAL::Triangulation_2<GridKernel, DataStructure>;
 using Delaunay = CGAL::Delaunay_triangulation_2<GridKernel, DataStructure>;
+using Vertex_handle = Triangulation::Vertex_handle;
+using Face_handle = Triangulation::Face_handle;
 
-inline GridPoint position_of(const Delaunay::Vertex_handle& v) {
+/// A constrained Delaunay triangulation that tells which vertices have new faces where an edge was
+/// forced. Edges must not cross; they may go through vertices and lie on one another.
+class ConstrainedDelaunay
+    : public CGAL::Constrained_Delaunay_triangulation_2<
+          GridKernel, DataStructure, CGAL::No_constraint_intersection_requiring_constructions_tag> {
+ public:
+  /// Forces the edge from a to b. Every face that comes of it lies in the hole of the faces that the
+  /// edge crosses; the corners of these are appended to `changed`, some more than once.
+  void force_edge(Vertex_handle a, Vertex_handle b, std::vector<VertexId>& changed) {
+    changed_ = &changed;
+    insert_constraint(a, b);
+    changed_ = nullptr;
+  }
+
+ protected:
+  using Base = CGAL::Constrained_Delaunay_triangulation_2<
+      GridKernel, DataStructure, CGAL::No_constraint_intersection_requiring_constructions_tag>;
+  void triangulate_hole(List_faces& crossed, List_edges& left, List_edges& right) override {
+    for (const Face_handle& f : crossed) {
+      for (int i = 0; i < 3; ++i) {
+        if (!is_infinite(f->vertex(i))) {
+          changed_->push_back(f->vertex(i)->info());
+        }
+      }
+    }
+    Base::triangulate_hole(crossed, left, right);
+  }
+
+ private:
+  std::vector<VertexId>* changed_ = nullptr;
+};
+
+inline GridPoint position_of(const Vertex_handle& v) {
   return {static_cast<std::int32_t>(v->point().x()), static_cast<std::int32_t>(v->point().y())};
 }
 
 /// A face, seen from its corner with the smallest id: corner(0) is that corner, and corner(1) and
 /// corner(2) follow counter-clockwise.
 struct Oriented {
-  Delaunay::Face_handle face;
+  Face_handle face;
   int first = 0;
 
   [[nodiscard]] int place(int i) const { return first + i > 2 ? first + i - 3 : first + i; }
   [[nodiscard]] VertexId corner(int i) const { return face->vertex(place(i))->info(); }
   [[nodiscard]] TriangleId neighbour(int i) const { return face->neighbor(place(i))->info(); }
+  [[nodiscard]] bool is_fixed(int i) const { return face->is_constrained(place(i)); }
 };
 
 /// Sorts faces by corner(0), then corner(1), and sets the info of each to its place in that order.
 /// REQUIRES: the infos of their vertices are ids below `vertices`; those of all other faces are
 /// kNone.
-inline std::vector<Oriented> number_faces(const std::vector<Delaunay::Face_handle>& faces,
+inline std::vector<Oriented> number_faces(const std::vector<Face_handle>& faces,
                                           std::size_t vertices) {
   std::vector<std::uint32_t> start(vertices + 1, 0);
   std::vector<Oriented> oriented;
   oriented.reserve(faces.size());
-  for (const Delaunay::Face_handle& f : faces) {
+  for (const Face_handle& f : faces) {
     Oriented face{f, 0};
     for (const int i : {1, 2}) {
       if (f->vertex(i)->info() < face.corner(0)) {

@@ -29,17 +29,60 @@ int rounds_before_last(GridPoint p) noexcept {
 
 }  // namespace
 
+GrowingDelaunay::GrowingDelaunay(const PointBuckets& buckets, std::uint64_t first,
+                                 std::uint64_t count, std::size_t cache_bytes,
+                                 const std::stop_token& stop)
+    : buckets_(buckets),
+      first_(first),
+      end_(first + count),
+      stop_(stop),
+      fixed_(buckets.fixed_edges()),
+      plain_(fixed_.is_empty() ? std::make_unique<Delaunay>() : nullptr),
+      constrained_(fixed_.is_empty() ? nullptr : std::make_unique<ConstrainedDelaunay>()),
+      delaunay_(plain_ ? static_cast<Triangulation&>(*plain_) : *constrained_),
+      cache_(buckets, first, first + count, cache_bytes) {}
+
 void GrowingDelaunay::insert(const BucketPoint& p, bool own) {
   if (handles_.size() % kStopInterval == 0) {
     stop_if_asked(stop_, "the triangulation");
   }
-  const Vertex_handle v = delaunay_.insert(GridKernel::Point_2(p.position.x, p.position.y), hint_);
+  const GridKernel::Point_2 point(p.position.x, p.position.y);
+  const Vertex_handle v =
+      plain_ ? plain_->insert(point, hint_) : constrained_->insert(point, hint_);
+  if (delaunay_.number_of_vertices() == handles_.size()) {
+    return;  // the end of a fixed edge, which came before the other points around it
+  }
   v->info() = static_cast<VertexId>(handles_.size());
   hint_ = v->face();
   handles_.push_back(v);
   heights_.push_back(p.height);
   own_.push_back(own ? 1 : 0);
   inserted_.push_back(v->info());
+}
+
+Vertex_handle GrowingDelaunay::insert_fixed(std::uint32_t vertex) {
+  const GridPoint p = fixed_.vertices()[vertex].position;
+  insert({p, buckets_.fixed_height(vertex)}, false);
+  return constrained_->insert(GridKernel::Point_2(p.x, p.y), hint_);  // finds it
+}
+
+template <class Meets>
+bool GrowingDelaunay::force_edges(const Meets& meets) {
+  std::vector<std::uint32_t> found;
+  fixed_.visit(meets, [&](std::uint32_t edge) {
+    if (forced_.insert(edge).second) {
+      found.push_back(edge);
+    }
+  });
+  std::sort(found.begin(), found.end());
+  for (const std::uint32_t edge : found) {
+    const LineEdge& e = fixed_.edges()[edge];
+    const Vertex_handle a = insert_fixed(e.a);
+    const Vertex_handle b = insert_fixed(e.b);
+    constrained_->force_edge(a, b, changed_);
+    hint_ = b->face();  // the one before may have been crossed, and so is gone
+  }
+  return !found.empty();
 }
 
 /// Chooses the box: that of the own points, and a margin around it. The margin is quartered until
@@ -105,7 +148,9 @@ void GrowingDelaunay::triangulate() {
   }
   insert_all(all);
   span_area();
+  force_edges([&](const GridBox& b) { return meets(b, box_); });
   inserted_.clear();
+  changed_.clear();
 }
 
 /// Where all points so far lie on one line there is no face yet: inserts the nearest points around
@@ -176,9 +221,13 @@ bool GrowingDelaunay::take_from(BucketCache::Bucket& loaded, const UnseenRegion&
   return !found.empty();
 }
 
-/// Looks for points in the region that are not in yet, from `near` outwards, and inserts those of
-/// the first bucket that has any. True when there was none.
+/// Forces the fixed edges of the region that are not in yet; or else looks for points in it that are
+/// not in yet, from `near` outwards, and inserts those of the first bucket that has any. True when
+/// there was neither. Edges come first: they hide points.
 bool GrowingDelaunay::see(const UnseenRegion& region, GridPoint near) {
+  if (force_edges([&](const GridBox& b) { return region.may_meet(b); })) {
+    return false;
+  }
   bool found = false;
   buckets_.visit_nearest(
       near, [&](const GridBox& b) { return region.may_meet(b); },
@@ -195,6 +244,40 @@ bool GrowingDelaunay::see(const UnseenRegion& region, GridPoint near) {
         return !found;
       });
   return !found;
+}
+
+/// What can be seen of a disc from its face past fixed edges: the faces that are reached over sides
+/// which meet the disc and are not fixed. A line of sight lies in the disc, and goes through such
+/// faces alone. None, where there are too many: all of the disc then.
+std::vector<Part> GrowingDelaunay::visible_parts(const Face_handle& face,
+                                                 const Circumdisc& disc) const {
+  constexpr std::size_t kMost = 48;
+  std::vector<Face_handle> reached = {face};
+  std::vector<Part> parts;
+  for (std::size_t next = 0; next < reached.size(); ++next) {
+    const Face_handle f = reached[next];
+    if (reached.size() > kMost) {
+      return {};
+    }
+    if (delaunay_.is_infinite(f)) {
+      const int i = f->index(delaunay_.infinite_vertex());
+      parts.emplace_back(position_of(f->vertex(next_corner(i))),
+                         position_of(f->vertex(previous_corner(i))));
+      continue;
+    }
+    parts.emplace_back(position_of(f->vertex(0)), position_of(f->vertex(1)),
+                       position_of(f->vertex(2)));
+    for (int i = 0; i < 3; ++i) {
+      const GridBox side = united(box_of(position_of(f->vertex(next_corner(i)))),
+                                  position_of(f->vertex(previous_corner(i))));
+      const Face_handle g = f->neighbor(i);
+      if (!f->is_constrained(i) && disc.may_meet(side) &&
+          std::find(reached.begin(), reached.end(), g) == reached.end()) {
+        reached.push_back(g);
+      }
+    }
+  }
+  return parts;
 }
 
 /// True when a face is final. False when points were inserted instead: the face may be gone.
@@ -228,7 +311,8 @@ bool GrowingDelaunay::is_final(const Face_handle& face) {
   if (final_.contains(corners)) {
     return true;
   }
-  if (!see(UnseenRegion(Circumdisc(p[0], p[1], p[2])), p[0])) {
+  const Circumdisc disc(p[0], p[1], p[2]);
+  if (!see(plain_ ? UnseenRegion(disc) : UnseenRegion(disc, visible_parts(face, disc)), p[0])) {
     return false;
   }
   final_.insert(corners);
@@ -258,10 +342,21 @@ void GrowingDelaunay::settle(std::vector<VertexId> vertices) {
     const VertexId v = vertices.back();
     stop_if_asked(stop_, "the triangulation");
     inserted_.clear();
+    changed_.clear();
     if (settle_star(v)) {
       vertices.pop_back();
       wanted[v] = 0;
       continue;
+    }
+    const auto look_again = [&](VertexId u) {
+      if (u < own_.size() && u < wanted.size() && (own_[u] != 0 || of_interest[u] != 0) &&
+          wanted[u] == 0) {
+        wanted[u] = 1;
+        vertices.push_back(u);
+      }
+    };
+    for (const VertexId u : changed_) {
+      look_again(u);
     }
     // Every new face has a new point as a corner. Its other corners have to be looked at again
     // where they are own vertices or vertices of interest.
@@ -270,12 +365,7 @@ void GrowingDelaunay::settle(std::vector<VertexId> vertices) {
       const auto begin = n;
       do {
         if (!delaunay_.is_infinite(n)) {
-          const VertexId u = n->info();
-          if (u < own_.size() && u < wanted.size() && (own_[u] != 0 || of_interest[u] != 0) &&
-              wanted[u] == 0) {
-            wanted[u] = 1;
-            vertices.push_back(u);
-          }
+          look_again(n->info());
         }
       } while (++n != begin);
     }

@@ -6,38 +6,34 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <stop_token>
 #include <unordered_set>
 #include <vector>
 
 #include "engine/construct/delaunay/bucket_cache.h"
 #include "engine/construct/delaunay/delaunay_kernel.h"
+#include "engine/construct/lines/fixed_edges.h"
 #include "engine/construct/points/point_buckets.h"
+#include "engine/geometry/circumdisc.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin::delaunay_internal {
 
+class Part;
 class UnseenRegion;
 
 /// The *own* points of one tile, triangulated with as many others around them as decide the tile's
 /// triangles. A face is *final* when no point that was not inserted lies where it would change the
-/// face (delaunay/unseen_region.h). Vertices are numbered in the order in which points are
-/// inserted.
+/// face (delaunay/unseen_region.h), and no fixed edge that was not forced meets that region.
+/// Vertices are numbered in the order in which points are inserted.
 class GrowingDelaunay {
  public:
-  using Vertex_handle = Delaunay::Vertex_handle;
-  using Face_handle = Delaunay::Face_handle;
-
   /// @param buckets       Must live as long as this.
   /// @param first, count  The own points: first .. first + count - 1 in the order of the buckets.
   /// @param cache_bytes   Memory for points that were looked at and not inserted.
   GrowingDelaunay(const PointBuckets& buckets, std::uint64_t first, std::uint64_t count,
-                  std::size_t cache_bytes, const std::stop_token& stop)
-      : buckets_(buckets),
-        first_(first),
-        end_(first + count),
-        stop_(stop),
-        cache_(buckets, first, first + count, cache_bytes) {}
+                  std::size_t cache_bytes, const std::stop_token& stop);
 
   /// Inserts the own points and those of a margin. To be called once, before all else.
   /// @throws Error io_error, cancelled
@@ -52,14 +48,15 @@ class GrowingDelaunay {
   [[nodiscard]] bool holds_everything() const noexcept {
     return first_ == 0 && end_ == buckets_.size();
   }
+  [[nodiscard]] bool has_fixed_edges() const noexcept { return !fixed_.is_empty(); }
   [[nodiscard]] std::uint64_t own_points() const noexcept { return end_ - first_; }
   /// Points inserted so far, and so the number of vertices.
   [[nodiscard]] std::size_t points() const noexcept { return handles_.size(); }
   [[nodiscard]] bool is_own(VertexId v) const noexcept { return own_[v] != 0; }
   [[nodiscard]] HeightBits height(VertexId v) const noexcept { return heights_[v]; }
   [[nodiscard]] Vertex_handle handle(VertexId v) const noexcept { return handles_[v]; }
-  [[nodiscard]] Delaunay& delaunay() noexcept { return delaunay_; }
-  [[nodiscard]] const Delaunay& delaunay() const noexcept { return delaunay_; }
+  [[nodiscard]] Triangulation& delaunay() noexcept { return delaunay_; }
+  [[nodiscard]] const Triangulation& delaunay() const noexcept { return delaunay_; }
 
  private:
   void choose_box(const std::vector<BucketPoint>& own);
@@ -70,11 +67,18 @@ class GrowingDelaunay {
   void insert(const BucketPoint& p, bool own);
   void insert_all(const std::vector<NewPoint>& points);
   void span_area();
+  /// Inserts the vertex of a fixed edge, which may be in already.
+  [[nodiscard]] Vertex_handle insert_fixed(std::uint32_t vertex);
+  /// Forces the fixed edges with meets(box) that are not in yet. True when there were any.
+  template <class Meets>
+  bool force_edges(const Meets& meets);
   [[nodiscard]] std::uint64_t bucket_of(std::uint64_t point) const noexcept {
     return point / buckets_.bucket_points();
   }
   [[nodiscard]] bool settle_star(VertexId v);
   [[nodiscard]] bool is_final(const Face_handle& face);
+  [[nodiscard]] std::vector<Part> visible_parts(const Face_handle& face,
+                                                const Circumdisc& disc) const;
   [[nodiscard]] bool take_from(BucketCache::Bucket& loaded, const UnseenRegion& region);
   [[nodiscard]] bool see(const UnseenRegion& region, GridPoint near);
 
@@ -82,13 +86,19 @@ class GrowingDelaunay {
   std::uint64_t first_, end_;
   std::stop_token stop_;
   GridBox box_;  ///< All points inside of it are inserted.
-  Delaunay delaunay_;
+  const FixedEdges& fixed_;
+  // The one of the two that the points need; delaunay_ is what they have in common.
+  std::unique_ptr<Delaunay> plain_;
+  std::unique_ptr<ConstrainedDelaunay> constrained_;
+  Triangulation& delaunay_;
   Face_handle hint_;
   std::vector<Vertex_handle> handles_;
   std::vector<HeightBits> heights_;
   std::vector<std::uint8_t> own_;
   BucketCache cache_;               ///< Buckets that reach beyond the box.
   std::vector<VertexId> inserted_;  ///< Vertices inserted since this was last cleared.
+  std::vector<VertexId> changed_;   ///< Likewise, those with new faces beside forced edges.
+  std::unordered_set<std::uint32_t> forced_;  ///< Fixed edges that are in.
   /// A face, from its smallest corner on; an infinite face by the ends of its edge and kNone.
   struct Corners {
     std::array<VertexId, 3> v;

@@ -14,7 +14,7 @@ PointTileStarter::PointTileStarter(const PointBuckets& buckets, const TileTree& 
       units_(units),
       tiler_(buckets, longest_edge),
       stop_(std::move(stop)) {
-  if (longest_edge) {
+  if (longest_edge || buckets.fixed_edges().has_boundary()) {
     ground_.emplace(buckets.frame());
   }
 }
@@ -26,8 +26,8 @@ StartedTile PointTileStarter::start(const SampleRange& window) {
     return static_cast<std::uint64_t>(Uint128{buckets_.size()} * i / tree_.leaves());
   };
   DelaunayTile part = tiler_.make(begin_of(leaf), begin_of(leaf + 1) - begin_of(leaf), stop_);
-  StartedTile started =
-      start_part(std::move(part.tin), units_, *tree_.hull(), ground_ ? &*ground_ : nullptr);
+  StartedTile started = start_part(std::move(part.tin), units_, *tree_.hull(),
+                                   ground_ ? &*ground_ : nullptr, part.fixed_sides);
   started.lone_samples = part.lone_points;
   return started;
 }

@@ -12,14 +12,16 @@ namespace ptin {
 namespace {
 
 using delaunay_internal::add_faces;
-using delaunay_internal::Delaunay;
+using delaunay_internal::Face_handle;
 using delaunay_internal::GrowingDelaunay;
 using delaunay_internal::number_faces;
+using delaunay_internal::Oriented;
 using delaunay_internal::position_of;
-using Vertex_handle = Delaunay::Vertex_handle;
-using Face_handle = Delaunay::Face_handle;
+using delaunay_internal::Triangulation;
+using delaunay_internal::Vertex_handle;
 
-/// Tells which triangles are void. The answer for an edge is the same in every tile.
+/// Tells which triangles have an edge that is too long. The answer for an edge is the same in every
+/// tile.
 struct LongestEdge {
   double length;  ///< On the ground.
   const GroundMetric& ground;
@@ -35,15 +37,26 @@ struct LongestEdge {
   [[nodiscard]] bool is_within(GridPoint a, GridPoint b, GridPoint c) const noexcept {
     return is_within(a, b) && is_within(b, c) && is_within(c, a);
   }
-  [[nodiscard]] bool is_within(const Face_handle& f) const {
-    return is_within(position_of(f->vertex(0)), position_of(f->vertex(1)),
-                     position_of(f->vertex(2)));
+};
+
+/// Tells which triangles are surface: those within the boundary, without an edge that is too long.
+struct SurfaceRule {
+  std::optional<LongestEdge> longest;
+  const FixedEdges& fixed;
+
+  [[nodiscard]] bool has_voids() const noexcept { return longest || fixed.has_boundary(); }
+  [[nodiscard]] bool is_surface(GridPoint a, GridPoint b, GridPoint c) const {
+    return (!longest || longest->is_within(a, b, c)) && fixed.holds(a, b, c);
+  }
+  [[nodiscard]] bool is_surface(const Face_handle& f) const {
+    return is_surface(position_of(f->vertex(0)), position_of(f->vertex(1)),
+                      position_of(f->vertex(2)));
   }
 };
 
 /// The finite faces whose smallest vertex is one of the tile's own.
 std::vector<Face_handle> own_faces(GrowingDelaunay& grown) {
-  Delaunay& delaunay = grown.delaunay();
+  Triangulation& delaunay = grown.delaunay();
   std::vector<Face_handle> faces;
   faces.reserve(2 * grown.own_points());
   for (auto f = delaunay.all_faces_begin(); f != delaunay.all_faces_end(); ++f) {
@@ -90,7 +103,14 @@ DelaunayTile cut_out(const GrowingDelaunay& grown, const std::vector<Face_handle
     tin.vertices.push_back({point_of(key), grown.height(v), kNone});
   }
   tin.has_height.assign(order.size(), 1);
-  add_faces(number_faces(faces, order.size()), tin);
+  const std::vector<Oriented> numbered = number_faces(faces, order.size());
+  add_faces(numbered, tin);
+  if (grown.has_fixed_edges()) {
+    for (const Oriented& f : numbered) {
+      tile.fixed_sides.push_back(static_cast<std::uint8_t>(
+          (f.is_fixed(0) ? 1 : 0) | (f.is_fixed(1) ? 2 : 0) | (f.is_fixed(2) ? 4 : 0)));
+    }
+  }
   return tile;
 }
 
@@ -111,13 +131,13 @@ std::vector<VertexId> other_corners(const GrowingDelaunay& grown,
   return corners;
 }
 
-/// Makes triangles with a long edge void. Vertices with void triangles alone lose their height, and
-/// are counted as lone where they are own points.
-void make_voids(const GrowingDelaunay& grown, const LongestEdge& longest, DelaunayTile& tile) {
+/// Makes triangles void that are no surface. Vertices with void triangles alone lose their height,
+/// and are counted as lone where they are own points.
+void make_voids(const GrowingDelaunay& grown, const SurfaceRule& rule, DelaunayTile& tile) {
   Tin& tin = tile.tin;
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
     const auto& v = tin.triangles[t].v;
-    if (!longest.is_within(tin.position(v[0]), tin.position(v[1]), tin.position(v[2]))) {
+    if (!rule.is_surface(tin.position(v[0]), tin.position(v[1]), tin.position(v[2]))) {
       tin.classes[t] = TriangleClass::kVoid;
     }
   }
@@ -131,7 +151,7 @@ void make_voids(const GrowingDelaunay& grown, const LongestEdge& longest, Delaun
     const auto first = f;
     bool surface = false;
     do {
-      surface = surface || (!grown.delaunay().is_infinite(f) && longest.is_within(f));
+      surface = surface || (!grown.delaunay().is_infinite(f) && rule.is_surface(f));
     } while (++f != first);
     tin.has_height[v] = surface ? 1 : 0;
     tile.lone_points += !surface && grown.is_own(id) ? 1 : 0;
@@ -158,7 +178,11 @@ DelaunayTile DelaunayTiler::make(std::uint64_t first, std::uint64_t count,
     grown.settle(grown.own_vertices_to_settle());
   }
   const std::vector<Face_handle> faces = own_faces(grown);
-  if (!longest_edge_) {
+  SurfaceRule rule{{}, buckets_.fixed_edges()};
+  if (longest_edge_) {
+    rule.longest.emplace(LongestEdge{*longest_edge_, ground_});
+  }
+  if (!rule.has_voids()) {
     return cut_out(grown, faces);
   }
   // Whether a vertex has a surface at all depends on all triangles around it.
@@ -166,7 +190,7 @@ DelaunayTile DelaunayTiler::make(std::uint64_t first, std::uint64_t count,
     grown.settle(other_corners(grown, faces));
   }
   DelaunayTile tile = cut_out(grown, own_faces(grown));
-  make_voids(grown, {*longest_edge_, ground_}, tile);
+  make_voids(grown, rule, tile);
   return tile;
 }
 

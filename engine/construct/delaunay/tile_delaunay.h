@@ -22,6 +22,9 @@ struct DelaunayTile {
   /// ascending order of (first, second) corner. Beyond the border lies another tile or the
   /// outside.
   Tin tin;
+  /// Beside tin.triangles: bit i is set where side i is on a breakline or the boundary. Empty where
+  /// there are none.
+  std::vector<std::uint8_t> fixed_sides;
   std::uint64_t own_points = 0;
   std::uint64_t lone_points = 0;   ///< Own points in no surface triangle: they lose their height.
   std::uint64_t other_points = 0;  ///< Points of other tiles that were triangulated with them.
@@ -41,6 +44,14 @@ struct DelaunayTile {
 /// circle the last one in the order by x, then y, counts as outside of the circle of the others. So
 /// it is cut off as an ear, then the last of the remaining ones, and so on: a square cell is cut
 /// along its falling diagonal.
+///
+/// Where there are fixed edges (lines/fixed_edges.h) it is the constrained Delaunay triangulation:
+/// these are edges, divided where points lie on them, and no circumdisc holds a point that is
+/// visible from the triangle past them (Chew, Constrained Delaunay triangulations, 1989). A triangle is
+/// final when all points and fixed edges are in that lie in its closed circumdisc and can be reached
+/// from it over sides that are not fixed. Ties are broken as above: the perturbation is one of the
+/// lifted points, and with it there is exactly one triangulation in which every edge that is not fixed
+/// is locally Delaunay. Triangles outside of a boundary are void.
 ///
 /// Not thread-safe: each thread needs a tiler of its own; any number of them may share the buckets.
 class DelaunayTiler {

@@ -164,6 +164,22 @@ bool is_same_crs(const std::string& wkt_a, const std::string& wkt_b) {
   return a.IsSame(&b, options) != 0;
 }
 
+bool is_same_in_plan(const std::string& wkt_a, const std::string& wkt_b) {
+  if (wkt_a == wkt_b) {
+    return true;
+  }
+  if (wkt_a.empty() || wkt_b.empty()) {
+    return false;
+  }
+  OGRSpatialReference a = parse(wkt_a, "CRS"), b = parse(wkt_b, "CRS");
+  const GdalSession session;
+  a.StripVertical();
+  b.StripVertical();
+  const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
+                                 "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
+  return a.IsSame(&b, options) != 0;
+}
+
 void set_crs(TerrainFrame& frame, const Crs& crs) {
   frame.crs_wkt = crs.wkt;
   frame.vertical_crs_known = crs.vertical_known;

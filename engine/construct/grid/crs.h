@@ -40,6 +40,10 @@ struct Crs {
 /// @throws Error invalid_argument  GDAL does not understand a text
 [[nodiscard]] bool is_same_crs(const std::string& wkt_a, const std::string& wkt_b);
 
+/// True when two texts name CRSs that are the same in plan, whatever their vertical parts.
+/// @throws Error invalid_argument  GDAL does not understand a text
+[[nodiscard]] bool is_same_in_plan(const std::string& wkt_a, const std::string& wkt_b);
+
 /// Sets those fields of `frame` that describe the CRS.
 void set_crs(TerrainFrame& frame, const Crs& crs);
 

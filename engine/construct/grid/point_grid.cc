@@ -15,6 +15,11 @@ namespace {
 
 __extension__ using Int128 = __int128;
 
+// Lines are often computed, with more digits than anybody measured: a hundredth of a unit, or in
+// degrees a centimetre, is what is kept of them in any case.
+constexpr int kMostLineDecimals = 2;
+constexpr int kMostDegreeDecimals = 7;
+
 /// Refuses an extent beyond the grid, and names the power of ten that would do.
 void check_extent(double extent, double unit, const std::string& context) {
   if (extent / unit <= kGridMax) {
@@ -40,6 +45,11 @@ std::int64_t StepCounter::steps(Decimal value) const noexcept {
   }
   if (value.decimals == decimals_) {
     return value.mantissa;
+  }
+  if (value.decimals > decimals_) {  // ties away from zero
+    const std::int64_t step = power_of_ten(value.decimals - decimals_);
+    const std::int64_t rest = value.mantissa % step;
+    return value.mantissa / step + (rest >= step - rest ? 1 : (-rest >= step + rest ? -1 : 0));
   }
   const Int128 steps = Int128{value.mantissa} * power_of_ten(decimals_ - value.decimals);
   return static_cast<std::int64_t>(std::clamp<Int128>(steps, -kFar, kFar));
@@ -95,6 +105,11 @@ double PointGrid::shift(const SourcePoint& p) const noexcept {
   return std::sqrt(dx * dx + dy * dy);
 }
 
+double PointGrid::shift_of_line(const SourcePoint& p) const noexcept {
+  const double dx = x.shift(p.x), dy = y.shift(p.y);
+  return std::sqrt(dx * dx + dy * dy);
+}
+
 AffineMap PointGrid::map() const noexcept {
   return {x.coordinate(west), y.coordinate(south), x.unit(), y.unit()};
 }
@@ -115,6 +130,23 @@ void PointGridScan::add_source(const PointStreamFacts& facts) {
   }
 }
 
+void PointGridScan::add_lines(std::span<const SourcePoint> vertices, bool degrees) noexcept {
+  most_line_decimals_ = degrees ? kMostDegreeDecimals : kMostLineDecimals;
+  for (const SourcePoint& p : vertices) {
+    line_x_.add(p.x);
+    line_y_.add(p.y);
+    line_z_.add(p.z);
+  }
+}
+
+bool PointGridScan::lines_are_elsewhere() const noexcept {
+  const StepCounter fine(6);  // any steps do for a comparison
+  const auto apart = [&](const DecimalRange& points, const DecimalRange& lines) {
+    return lines.lowest(fine) > points.highest(fine) || lines.highest(fine) < points.lowest(fine);
+  };
+  return apart(x_, line_x_) || apart(y_, line_y_);
+}
+
 void PointGridScan::choose_steps(PointGrid& grid) const {
   if (resolution_) {
     grid.x = grid.y = StepCounter(*resolution_, 0.0);
@@ -122,24 +154,30 @@ void PointGridScan::choose_steps(PointGrid& grid) const {
     grid.x = StepCounter(lattice_->unit, lattice_->origin_x);
     grid.y = StepCounter(lattice_->unit, lattice_->origin_y);
   } else {
-    grid.x = grid.y = StepCounter(std::max({plan_decimals_, x_.decimals(), y_.decimals()}));
+    const int of_lines =
+        std::min(most_line_decimals_, std::max(line_x_.decimals(), line_y_.decimals()));
+    grid.x = grid.y =
+        StepCounter(std::max({plan_decimals_, x_.decimals(), y_.decimals(), of_lines}));
   }
 }
 
 PointGrid PointGridScan::grid() const {
   PointGrid grid;
   choose_steps(grid);
-  grid.west = x_.lowest(grid.x);
-  grid.south = y_.lowest(grid.y);
+  grid.west = std::min(x_.lowest(grid.x), line_x_.lowest(grid.x));
+  grid.south = std::min(y_.lowest(grid.y), line_y_.lowest(grid.y));
   // Differences of numbers up to 2^62 fit; as doubles they are near enough for a limit of 2^30.
-  grid.east = x_.highest(grid.x);
-  grid.north = y_.highest(grid.y);
+  grid.east = std::max(x_.highest(grid.x), line_x_.highest(grid.x));
+  grid.north = std::max(y_.highest(grid.y), line_y_.highest(grid.y));
   const double width = static_cast<double>(grid.east) - static_cast<double>(grid.west);
   const double height = static_cast<double>(grid.north) - static_cast<double>(grid.south);
   check_extent(std::max(width, height) * grid.x.unit(), grid.x.unit(), context_);
-  grid.heights = StepCounter(std::max(height_decimals_, z_.decimals()));
-  grid.whole = static_cast<double>(z_.lowest(grid.heights)) >= -kLargestCode &&
-               static_cast<double>(z_.highest(grid.heights)) <= kLargestCode;
+  const int of_lines = std::min(kMostLineDecimals, line_z_.decimals());
+  grid.heights = StepCounter(std::max({height_decimals_, z_.decimals(), of_lines}));
+  const auto low = std::min(z_.lowest(grid.heights), line_z_.lowest(grid.heights));
+  const auto high = std::max(z_.highest(grid.heights), line_z_.highest(grid.heights));
+  grid.whole =
+      static_cast<double>(low) >= -kLargestCode && static_cast<double>(high) <= kLargestCode;
   return grid;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "engine/construct/grid/source_options.h"
@@ -20,7 +21,8 @@ namespace ptin {
 class StepCounter {
  public:
   StepCounter() = default;
-  /// Steps of 10^-decimals from 0, counted exactly. REQUIRES: no value has more decimals.
+  /// Steps of 10^-decimals from 0, counted exactly; a value with more decimals is rounded to the
+  /// nearest.
   explicit StepCounter(int decimals) : decimals_(decimals) {}
   /// Steps of `unit` from `origin`; coordinates are rounded to the nearest. REQUIRES: unit > 0.
   StepCounter(double unit, double origin) : unit_(unit), origin_(origin) {}
@@ -33,7 +35,7 @@ class StepCounter {
   [[nodiscard]] double coordinate(std::int64_t steps) const noexcept;
   /// How far rounding to a step moves `value`; 0 where steps are counted exactly.
   [[nodiscard]] double shift(Decimal value) const noexcept {
-    return unit_ > 0.0 ? distance(value) : 0.0;
+    return unit_ > 0.0 || value.decimals > decimals_ ? distance(value) : 0.0;
   }
   [[nodiscard]] bool is_exact() const noexcept { return unit_ == 0.0; }
 
@@ -55,9 +57,9 @@ class DecimalRange {
   }
   /// The most digits after the point; 0 when nothing was added.
   [[nodiscard]] int decimals() const noexcept;
-  /// The steps of the smallest decimal. REQUIRES: one was added.
+  /// The steps of the smallest decimal; INT64_MAX where none was added.
   [[nodiscard]] std::int64_t lowest(const StepCounter& counter) const noexcept;
-  /// The steps of the largest decimal. REQUIRES: one was added.
+  /// The steps of the largest decimal; INT64_MIN where none was added.
   [[nodiscard]] std::int64_t highest(const StepCounter& counter) const noexcept;
 
  private:
@@ -81,6 +83,8 @@ struct PointGrid {
     return {static_cast<std::int32_t>(x.steps(p.x) - west),
             static_cast<std::int32_t>(y.steps(p.y) - south)};
   }
+  /// How far a vertex of a line moves in plan, whose digits the grid may not have; CRS units.
+  [[nodiscard]] double shift_of_line(const SourcePoint& p) const noexcept;
   /// The height of a point until it is encoded: its code where `whole`, else the height itself.
   [[nodiscard]] double height(Decimal z) const noexcept {
     return whole ? static_cast<double>(heights.steps(z)) : to_double(z);
@@ -112,7 +116,12 @@ class PointGridScan {
     y_.add(p.y);
     z_.add(p.z);
   }
+  /// Vertices of lines extend the grid. Their digits count as those of points do, up to two after the
+  /// point, or seven in degrees; more are kept where points have more.
+  void add_lines(std::span<const SourcePoint> vertices, bool degrees) noexcept;
   [[nodiscard]] std::uint64_t points() const noexcept { return points_; }
+  /// True when the boxes of all points and of all vertices of lines so far have nothing in common.
+  [[nodiscard]] bool lines_are_elsewhere() const noexcept;
   /// REQUIRES: there are points.
   /// @throws Error invalid_argument  an extent of more than 2^30 steps
   [[nodiscard]] PointGrid grid() const;
@@ -125,6 +134,8 @@ class PointGridScan {
   std::optional<SourceLattice> lattice_;
   int plan_decimals_ = 0, height_decimals_ = 0;
   DecimalRange x_, y_, z_;
+  DecimalRange line_x_, line_y_, line_z_;
+  int most_line_decimals_ = 0;  ///< Of plan coordinates.
   std::uint64_t points_ = 0;
 };
 

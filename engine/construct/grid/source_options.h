@@ -10,6 +10,8 @@
 
 namespace ptin {
 
+struct SourceLines;
+
 /// Which echoes of a laser pulse are wanted. The last one reaches the ground, or comes nearest to
 /// it. An echo without a number counts as the only one of its pulse.
 enum class ReturnChoice : std::uint8_t { kAll, kFirst, kLast };
@@ -23,6 +25,16 @@ struct PointChoice {
   /// Text: the names of its columns from the left (read/column_names.h); empty: those of a header,
   /// else x, y and z come first.
   std::vector<std::string> columns;
+};
+
+/// Which lines are wanted beside points.
+struct LineChoice {
+  std::vector<std::string> breaklines;  ///< Files.
+  std::string breakline_layer;          ///< In each of them; "" where there is only one that fits.
+  std::string boundary;                 ///< A file; "" for none.
+  std::string boundary_layer;
+
+  [[nodiscard]] bool is_empty() const noexcept { return breaklines.empty() && boundary.empty(); }
 };
 
 /// Which height stands for points that fall together on one grid position.
@@ -47,6 +59,8 @@ struct SourceOptions {
   std::string vertical_crs;    ///< Replaces or adds the vertical part, e.g. "EPSG:5773".
   PointMerge merge = PointMerge::kMean;  ///< Points: how those that fall together are merged.
   PointChoice points;                    ///< Points: which of them are wanted.
+  /// Points: breaklines and a boundary (lines/source_lines.h); null: none. Borrowed.
+  const SourceLines* lines = nullptr;
 };
 
 }  // namespace ptin

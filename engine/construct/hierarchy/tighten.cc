@@ -217,12 +217,13 @@ RecordBounds Replay::measure(VertexId w) {
       std::find(star_.star.link.begin(), star_.star.link.end(), w) - star_.star.link.begin());
   PTIN_CHECK(make_fan(star_, j, fan_));
   const double gap = fan_deviation(tile_, star_, fan_, *full_, box_);
+  const double fixed = fan_fixed_gap(tile_, star_, fan_, {*full_, box_});
   if (star_.count == 1 && star_.surface_triangles) {  // u alone: construction has measured it
-    return {0.0F, height_bound(gap, tile_.units.heights)};
+    return {height_bound(fixed, tile_.units.heights), height_bound(gap, tile_.units.heights)};
   }
   const FanError own = measure_fan(tile_, star_, fan_, full_.get(), assignment_);
   hand_to_star();
-  return {height_bound(own.error, tile_.units.heights),
+  return {height_bound(std::max(own.error, fixed), tile_.units.heights),
           height_bound(std::max(own.deviation, gap), tile_.units.heights)};
 }
 

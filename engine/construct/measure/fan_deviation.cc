@@ -39,10 +39,10 @@ class SpokeFilter {
   CollapseSite site_;
 };
 
-}  // namespace
-
-double fan_deviation(const Tile& tile, const StarSamples& s, const FanFrame& fan,
-                     const FullSurface& full, const GridBox& within) {
+/// The largest gap(w, end) over the edges of a fan that are new to a surface triangle.
+template <class Gap>
+double largest_over_spokes(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                           const GridBox& within, const Gap& gap) {
   const Star& star = s.star;
   const auto end_of = [&](std::size_t link) {
     const VertexId v = star.link[link];
@@ -55,11 +55,35 @@ double fan_deviation(const Tile& tile, const StarSamples& s, const FanFrame& fan
     if (filter.counts(i)) {
       const EdgeEnd end = end_of((fan.j + 1 + i) % star.degree());
       if (meets(united(box_of(w.position), end.position), within)) {
-        worst = std::max(worst, full.largest_gap(w, end));
+        worst = std::max(worst, gap(w, end));
       }
     }
   }
   return worst;
+}
+
+}  // namespace
+
+double fan_deviation(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                     const FullSurface& full, const GridBox& within) {
+  return largest_over_spokes(tile, s, fan, within, [&](const EdgeEnd& a, const EdgeEnd& b) {
+    return full.largest_gap(a, b);
+  });
+}
+
+double fan_fixed_gap(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                     const FixedQuestion& question) {
+  if (!question.full.has_fixed_edges()) {
+    return 0.0;
+  }
+  double worst = 0.0;
+  return largest_over_spokes(
+      tile, s, fan, question.within, [&](const EdgeEnd& a, const EdgeEnd& b) {
+        if (worst <= question.stop_above) {
+          worst = std::max(worst, question.full.fixed_gap(a, b, question.stop_above));
+        }
+        return worst;
+      });
 }
 
 }  // namespace ptin

@@ -3,6 +3,8 @@
 // The deviation of a fan along its edges.
 #pragma once
 
+#include <limits>
+
 #include "engine/construct/measure/fan_measure.h"
 #include "engine/construct/measure/star_samples.h"
 #include "engine/construct/tile/full_surface.h"
@@ -21,6 +23,19 @@ namespace ptin {
 /// Cost: the crossings with edges of the full TIN.
 [[nodiscard]] double fan_deviation(const Tile& tile, const StarSamples& s, const FanFrame& fan,
                                    const FullSurface& full, const GridBox& within);
+
+/// Who is asked for the gaps to fixed edges, and how far.
+struct FixedQuestion {
+  const FullSurface& full;
+  GridBox within = {0, 0, kGridMax, kGridMax};  ///< As for fan_deviation().
+  double stop_above = std::numeric_limits<double>::infinity();
+};
+
+/// The same at crossings with edges of breaklines and of the boundary alone: what these count for in
+/// the error of the fan. Tiles where no leaf has such edges pay nothing.
+/// Where it is more than `question.stop_above`, any number above that.
+[[nodiscard]] double fan_fixed_gap(const Tile& tile, const StarSamples& s, const FanFrame& fan,
+                                   const FixedQuestion& question);
 
 /// A box that every edge meets.
 inline constexpr GridBox kEverywhere{0, 0, kGridMax, kGridMax};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <type_traits>
+#include <utility>
 
 #include "engine/construct/grid/frame_file.h"
 #include "engine/construct/points/packed_bucket.h"
@@ -48,6 +49,8 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
   file.put(hull_.corners());
   file.put(boxes_.boxes());
   file.put(ends_);
+  file.put(fixed_.vertices());
+  file.put(fixed_.edges());
   file.sync();
   return file.facts();
 }
@@ -90,7 +93,11 @@ PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
   result.hull_ = ConvexHull(file.take_copy<GridPoint>());
   result.boxes_ = PackedBoxes(file.take_copy<GridBox>());
   result.ends_ = file.take_copy<std::uint64_t>();
+  LineGraph lines;
+  lines.vertices = file.take_copy<LineVertex>();
+  lines.edges = file.take_copy<LineEdge>();
   file.require_undamaged();
+  result.fixed_ = FixedEdges(std::move(lines));
   result.file_ = std::make_unique<ScratchFile>(files, buckets, ScratchFile::Kept::kExisting);
   result.check_points(buckets, kept.checksum, stop, progress);
   return result;

@@ -13,6 +13,7 @@
 #include "engine/construct/grid/point_order.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/lines/lines_on_grid.h"
 #include "engine/construct/points/packed_bucket.h"
 #include "engine/construct/points/point_reading.h"
 #include "engine/construct/points/point_spool.h"
@@ -32,6 +33,15 @@ void check_area(const ConvexHull& hull, std::uint64_t points, const std::string&
   }
   if (hull.corners().size() < 3) {
     refuse("all points lie on one line; a terrain needs an area", context);
+  }
+}
+
+template <class Sorter>
+void add_to(Sorter& sorter, std::uint64_t key, double height) {
+  if constexpr (std::is_same_v<Sorter, NumberedPointSorter>) {
+    sorter.add({key, height, sorter.size()});
+  } else {
+    sorter.add({key, height});
   }
 }
 
@@ -117,6 +127,30 @@ class PointBuckets::Writer {
   std::optional<MergedHeight> merged_;
 };
 
+/// Adds a point that the boundary holds, unless it falls on a vertex of a line.
+template <class Sorter>
+void PointBuckets::add_unless_fixed(const SourcePoint& p, const PointGrid& grid,
+                                    const PointOrder& order, Sorter& sorter) {
+  const GridPoint position = grid.position(p);
+  if (fixed_.vertex_at(position) != KeyTable::kAbsent) {
+    return;
+  }
+  if (fixed_.holds(position)) {
+    add_to(sorter, order.key(position), grid.height(p.z));
+  } else {
+    --counts_.source_points;
+    ++counts_.left_out_points;
+  }
+}
+
+template <class Sorter>
+void PointBuckets::add_fixed_vertices(const PointOrder& order, Sorter& sorter) {
+  for (const LineVertex& v : fixed_.vertices()) {
+    add_to(sorter, order.key(v.position), v.height);
+  }
+  counts_.source_points += fixed_.vertices().size();
+}
+
 template <class Sorter>
 void PointBuckets::sort_by(PointSpool& spool, const PointGrid& grid, PointMerge rule,
                            const ExternalMemory& memory, const std::stop_token& stop,
@@ -135,15 +169,16 @@ void PointBuckets::sort_by(PointSpool& spool, const PointGrid& grid, PointMerge 
   std::vector<SourcePoint> batch;
   while (spool.take(batch)) {
     for (const SourcePoint& p : batch) {
-      if constexpr (std::is_same_v<Sorter, NumberedPointSorter>) {
-        sorter.add({order.key(grid.position(p)), grid.height(p.z), sorter.size()});
+      if (fixed_.is_empty()) {
+        add_to(sorter, order.key(grid.position(p)), grid.height(p.z));
       } else {
-        sorter.add({order.key(grid.position(p)), grid.height(p.z)});
+        add_unless_fixed(p, grid, order, sorter);
       }
       counts_.largest_shift_plan = std::max(counts_.largest_shift_plan, grid.shift(p));
     }
     report(batch.size());
   }
+  add_fixed_vertices(order, sorter);
   while ((total + bucket_points_ - 1) / bucket_points_ > kMostBuckets) {
     bucket_points_ *= 2;
   }
@@ -197,10 +232,19 @@ PointBuckets PointBuckets::read(const std::vector<std::string>& paths, const Sou
   require_latitudes(buckets.frame_, reading.grid.north - reading.grid.south, context);
   buckets.counts_.source_points = reading.points;
   buckets.counts_.left_out_points = reading.left_out;
+  if (options.lines != nullptr && !options.lines->is_empty()) {
+    LinesOnGrid lines = put_on_grid(*options.lines, reading.grid, stop);
+    buckets.fixed_ = std::move(lines.edges);
+    buckets.counts_.largest_shift_plan = lines.largest_shift_plan;
+  }
   buckets.sort(spool, reading.grid, options.merge, memory, stop, progress, keep_as);
   buckets.counts_.largest_shift_plan += reading.largest_shift;
   check_area(buckets.hull_, buckets.size_, context);
   return buckets;
+}
+
+HeightBits PointBuckets::stored(double height) const {
+  return codes_are_whole_ ? frame_.heights.bits(height) : encode_height(frame_.heights, height);
 }
 
 void PointBuckets::take(std::uint64_t first, std::uint64_t count,
@@ -220,8 +264,7 @@ void PointBuckets::take(std::uint64_t first, std::uint64_t count,
     unpack_bucket(std::span(packed).first(bytes), box(number), bucket);
     for (; at < end; ++at) {
       const PlacedHeight& p = bucket[at - begin];
-      points.push_back({p.position, codes_are_whole_ ? frame_.heights.bits(p.height)
-                                                     : encode_height(frame_.heights, p.height)});
+      points.push_back({p.position, stored(p.height)});
     }
   }
 }

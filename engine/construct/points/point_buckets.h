@@ -16,6 +16,7 @@
 #include "engine/construct/grid/source_disk.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/lines/fixed_edges.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/convex_hull.h"
@@ -57,6 +58,9 @@ class PointBuckets {
   /// with the offset of its file.
   /// Merging: points that fall together become one. `options.merge` decides its height: by default
   /// the mean, rounded to a code where heights are codes.
+  /// Lines: the vertices of `options.lines`, noded (lines/line_noding.h), are points too. A point
+  /// that falls on one of them is merged into it, whatever the rule: the line's height stands. Points
+  /// outside of the boundary are left out.
   /// Heights: int32 with the power of ten that keeps every digit, where that fits; else as for a
   /// Float64 raster (grid/height_fit.h).
   /// CRS: `options.a_srs`, else the CRS that all files declare.
@@ -97,6 +101,12 @@ class PointBuckets {
   [[nodiscard]] const TerrainFrame& frame() const noexcept { return frame_; }
   [[nodiscard]] const PointCounts& counts() const noexcept { return counts_; }
   [[nodiscard]] const ConvexHull& hull() const noexcept { return hull_; }
+  /// The edges of breaklines and of the boundary. Their vertices are among the points.
+  [[nodiscard]] const FixedEdges& fixed_edges() const noexcept { return fixed_; }
+  /// The stored height of vertex `number` of the fixed edges.
+  [[nodiscard]] HeightBits fixed_height(std::uint32_t number) const {
+    return stored(fixed_.vertices()[number].height);
+  }
   /// Distinct positions.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   /// Points of each bucket; the last one may have fewer.
@@ -127,6 +137,13 @@ class PointBuckets {
   void sort_by(class PointSpool& spool, const struct PointGrid& grid, PointMerge rule,
                const ExternalMemory& memory, const std::stop_token& stop, const Progress& progress,
                const std::string& keep_as);
+  template <class Sorter>
+  void add_unless_fixed(const struct SourcePoint& p, const struct PointGrid& grid,
+                        const class PointOrder& order, Sorter& sorter);
+  template <class Sorter>
+  void add_fixed_vertices(const class PointOrder& order, Sorter& sorter);
+  /// A height as the file of buckets holds it, as terrains store it.
+  [[nodiscard]] HeightBits stored(double height) const;
   void add_to_checksum(std::span<const std::byte> bucket);
   void check_points(const std::string& path, std::uint64_t expected, const std::stop_token& stop,
                     const std::function<void(std::uint64_t, std::uint64_t)>& progress);
@@ -145,6 +162,7 @@ class PointBuckets {
   std::vector<std::uint64_t> ends_;  ///< Where each bucket ends in the file.
   std::uint64_t checksum_ = 0;       ///< Of all buckets: a chain, from the first to the last.
   PackedBoxes boxes_;                ///< Those of the buckets.
+  FixedEdges fixed_;
 };
 
 }  // namespace ptin

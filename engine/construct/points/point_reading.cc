@@ -4,6 +4,7 @@
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/open_points.h"
 #include "engine/construct/read/point_stream.h"
 #include "engine/error.h"
@@ -28,11 +29,53 @@ class CommonCrs {
     }
   }
   [[nodiscard]] const std::string& text() const { return crs_; }
+  /// Lines without a CRS are taken to be in that of the points.
+  void check_lines(const std::string& crs, const std::string& path) const {
+    if (!crs.empty() && !is_same_in_plan(crs_, crs)) {
+      refuse("these lines have another CRS than '" + path_ +
+                 "', or that file has none; transform them first, or say with --a-srs what all of "
+                 "them are in",
+             path);
+    }
+  }
 
  private:
   bool first_ = false;
   std::string crs_, path_;
 };
+
+/// Lets lines extend the grid, after all points.
+void add_lines(const SourceLines& lines, const SourceOptions& options, const CommonCrs& crs,
+               PointGridScan& scan, const PointReading& reading) {
+  for (const LineFileFacts& file : lines.files) {
+    if (options.a_srs.empty()) {
+      crs.check_lines(file.crs, file.path);
+    }
+    if (file.units != DeclaredUnits{} && file.units != reading.units &&
+        reading.units != DeclaredUnits{}) {
+      refuse("these lines are in other units than the points; bring them to one unit first",
+             file.path);
+    }
+  }
+  const bool degrees = resolve_crs(crs.text(), options.a_srs, "").geographic;
+  for (const LineSet* set : {&lines.breaklines, &lines.rings}) {
+    for (const SourcePoint& v : set->vertices) {
+      if (options.nodata && to_double(v.z) == *options.nodata) {
+        refuse(
+            "a vertex of a breakline or of the boundary has the height that means none; give it "
+            "its own, or leave the line out",
+            lines.files.front().path);
+      }
+    }
+    scan.add_lines(set->vertices, degrees);
+  }
+  if (scan.lines_are_elsewhere()) {
+    refuse(
+        "no breakline and no side of the boundary lies where the points do; the lines are in "
+        "another CRS, or belong to another terrain",
+        lines.files.front().path);
+  }
+}
 
 }  // namespace
 
@@ -86,6 +129,9 @@ PointReading read_sources(const std::vector<std::string>& paths, const SourceOpt
   }
   reading.left_out += count - scan.points();
   reading.points = scan.points();
+  if (options.lines != nullptr && !options.lines->is_empty()) {
+    add_lines(*options.lines, options, crs, scan, reading);
+  }
   reading.grid = scan.grid();
   reading.crs = crs.text();
   reading.vertical_crs = options.vertical_crs.empty() ? vertical_crs.text() : "";

@@ -32,6 +32,16 @@ class FullSurface {
   /// number of crossings.
   [[nodiscard]] virtual double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const = 0;
 
+  /// The same at crossings with edges of breaklines and of the boundary alone, with surface on one
+  /// side at least: these count for the error.
+  /// @param stop_above  Where the gap is larger, any number above this may be returned.
+  [[nodiscard]] virtual double fixed_gap(const EdgeEnd& /*a*/, const EdgeEnd& /*b*/,
+                                         double /*stop_above*/) const {
+    return 0.0;
+  }
+  /// False where fixed_gap() is 0 everywhere.
+  [[nodiscard]] virtual bool has_fixed_edges() const noexcept { return false; }
+
   /// How far the border between surface and void moves, in ground units, where the edge a-b comes to
   /// be a part of it: the most in any triangle of the full TIN that the edge crosses, and the reach of
   /// any witness that it passes through (tile/border_witnesses.h). An upper bound; 0 along edges of

@@ -19,6 +19,7 @@ class JoinedSurface final : public FullSurface {
  public:
   /// @param box  Of all samples of the leaf and its full surface.
   void add(std::unique_ptr<const FullSurface> leaf, const GridBox& box) {
+    has_fixed_edges_ = has_fixed_edges_ || leaf->has_fixed_edges();
     leaves_.push_back({std::move(leaf), box});
   }
 
@@ -33,6 +34,19 @@ class JoinedSurface final : public FullSurface {
     }
     return worst;
   }
+
+  [[nodiscard]] double fixed_gap(const EdgeEnd& a, const EdgeEnd& b,
+                                 double stop_above) const override {
+    const GridBox edge = united(box_of(a.position), b.position);
+    double worst = 0.0;
+    for (const Leaf& leaf : leaves_) {
+      if (leaf.full->has_fixed_edges() && meets(edge, leaf.box)) {
+        worst = std::max(worst, leaf.full->fixed_gap(a, b, stop_above));
+      }
+    }
+    return worst;
+  }
+  [[nodiscard]] bool has_fixed_edges() const noexcept override { return has_fixed_edges_; }
 
   [[nodiscard]] double border_move(GridPoint a, GridPoint b) const override {
     const GridBox edge = united(box_of(a), b);
@@ -51,6 +65,7 @@ class JoinedSurface final : public FullSurface {
     GridBox box;
   };
   std::vector<Leaf> leaves_;
+  bool has_fixed_edges_ = false;
 };
 
 }  // namespace ptin

@@ -204,11 +204,12 @@ void PartSurface::Walk<Visitor>::go(Step step) {
 }
 
 PartSurface::PartSurface(const Tin& part, const HeightEncoding& encoding,
-                         std::optional<PartBorder> border)
+                         std::optional<PartBorder> border, FixedGaps fixed)
     : part_(part),
       encoding_(encoding),
       void_border_(std::move(border)),
-      on_border_(part.vertices.size(), 0) {
+      on_border_(part.vertices.size(), 0),
+      fixed_(std::move(fixed)) {
   for (TriangleId t = 0; t < part_.triangles.size(); ++t) {
     const Triangle& triangle = part_.triangles[t];
     for (int i = 0; i < 3; ++i) {

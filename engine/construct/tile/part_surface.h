@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/construct/tile/border_witnesses.h"
+#include "engine/construct/tile/fixed_gaps.h"
 #include "engine/construct/tile/full_surface.h"
 #include "engine/geometry/packed_boxes.h"
 #include "engine/mesh/tin.h"
@@ -29,11 +30,17 @@ class PartSurface final : public FullSurface {
   /// Keeps a copy of `part`. REQUIRES: its vertices are in the order of their keys, and neighbours
   /// are kNone at its border.
   /// @param border  Where the terrain has voids.
+  /// @param fixed   The fixed edges of the part.
   PartSurface(const Tin& part, const HeightEncoding& encoding,
-              std::optional<PartBorder> border = std::nullopt);
+              std::optional<PartBorder> border = std::nullopt, FixedGaps fixed = {});
 
   /// Cost: the crossings, and the logarithm of the length of the border.
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
+  [[nodiscard]] double fixed_gap(const EdgeEnd& a, const EdgeEnd& b,
+                                 double stop_above) const override {
+    return fixed_.largest_gap(a, b, stop_above);
+  }
+  [[nodiscard]] bool has_fixed_edges() const noexcept override { return !fixed_.is_empty(); }
   /// 0 without a PartBorder.
   [[nodiscard]] double border_move(GridPoint a, GridPoint b) const override;
 
@@ -66,6 +73,7 @@ class PartSurface final : public FullSurface {
   std::vector<std::uint32_t> by_place_;  ///< Indices into border_, along the Hilbert curve.
   PackedBoxes boxes_;                    ///< Of the sides, in that order.
   std::vector<std::uint8_t> on_border_;  ///< Beside the vertices: 1 or 0.
+  FixedGaps fixed_;
 };
 
 }  // namespace ptin

@@ -26,7 +26,7 @@ GroundStep largest_step(const GroundMetric& ground, const GridBox& rows) {
 }
 
 StartedTile start_part(Tin&& part, const MeasureUnits& units, const ConvexHull& hull,
-                       const GroundMetric* ground) {
+                       const GroundMetric* ground, std::span<const std::uint8_t> fixed_sides) {
   StartedTile started;
   started.tile.units = units;
   started.tile.tin = std::move(part);
@@ -42,7 +42,9 @@ StartedTile start_part(Tin&& part, const MeasureUnits& units, const ConvexHull& 
         find_border_witnesses({started.tile.tin, border->goes_on, {}, border->step});
   }
   start_tile(started.tile, border ? &border->witnesses : nullptr);
-  started.full = std::make_unique<PartSurface>(started.tile.tin, units.heights, std::move(border));
+  started.full =
+      std::make_unique<PartSurface>(started.tile.tin, units.heights, std::move(border),
+                                    FixedGaps(started.tile.tin, fixed_sides, units.heights));
   return started;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/terrain_frame.h"
@@ -30,8 +31,10 @@ struct StartedTile {
 /// Starts a leaf of points or of a TIN: its mesh is `part`, the triangles that are its own.
 /// @param hull    Of the whole terrain.
 /// @param ground  Null: the terrain has no voids.
+/// @param fixed_sides  As FixedGaps has them; empty: no breaklines.
 [[nodiscard]] StartedTile start_part(Tin&& part, const MeasureUnits& units, const ConvexHull& hull,
-                                     const GroundMetric* ground);
+                                     const GroundMetric* ground,
+                                     std::span<const std::uint8_t> fixed_sides = {});
 
 /// Constants of measuring for a terrain.
 /// @param void_slope  Height charged per ground unit that the border moves.

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Breaklines and the rings of a boundary, as their files give them, in memory.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_point.h"
+
+namespace ptin {
+
+/// Lines one after the other, of one kind.
+struct LineSet {
+  std::vector<SourcePoint> vertices;
+  std::vector<std::uint64_t> ends;  ///< Of each line: one past the place of its last vertex.
+
+  [[nodiscard]] std::size_t size() const noexcept { return ends.size(); }
+  [[nodiscard]] std::span<const SourcePoint> line(std::size_t i) const noexcept {
+    const std::uint64_t begin = i == 0 ? 0 : ends[i - 1];
+    return std::span(vertices).subspan(begin, ends[i] - begin);
+  }
+};
+
+/// What one file of lines says of itself.
+struct LineFileFacts {
+  std::string path;
+  std::string crs;      ///< As PointStreamFacts::crs.
+  DeclaredUnits units;  ///< As PointStreamFacts::units.
+};
+
+/// All lines that a terrain is built with.
+struct SourceLines {
+  LineSet breaklines;
+  LineSet rings;  ///< Of the boundary; the first vertex of each is its last one too.
+  std::vector<LineFileFacts> files;
+
+  [[nodiscard]] bool is_empty() const noexcept {
+    return breaklines.size() == 0 && rings.size() == 0;
+  }
+};
+
+/// Memory that a vertex of a line takes while a build holds it, at most: as it is read, and with the
+/// edges, boxes and tables that are made of it.
+inline constexpr std::uint64_t kBytesOfLineVertex = 320;
+
+/// Reads the files of a choice.
+/// @param most_bytes  For all lines; kBytesOfLineVertex a vertex.
+/// @throws Error  not_found, io_error
+///                invalid_argument    a file holds no lines (or areas) with heights, or none at all
+///                resource_exhausted  more vertices than `most_bytes` hold; the message names them
+///                cancelled
+[[nodiscard]] SourceLines read_source_lines(
+    const LineChoice& choice, std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max(),
+    const std::stop_token& stop = {});
+
+}  // namespace ptin

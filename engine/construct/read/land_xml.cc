@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/read/land_xml.h"
+
+#include <cstdint>
+#include <utility>
+
+#include <expat.h>
+
+#include "engine/crs/height_unit.h"
+#include "engine/error.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr int kDeepest = 64;                       // elements inside of elements
+constexpr int kUnitsDepth = 3;                     // LandXML/Units/Metric
+constexpr std::uint64_t kLongestToken = 1U << 20;  // bytes without an event
+
+std::string_view local_name(const XML_Char* name) {
+  const std::string_view all(name);
+  const std::size_t colon = all.rfind(':');
+  return colon == std::string_view::npos ? all : all.substr(colon + 1);
+}
+
+}  // namespace
+
+void LandXmlElements::ParserFree::operator()(XML_ParserStruct* p) const { XML_ParserFree(p); }
+
+LandXmlElements::LandXmlElements(ByteReader& in) : in_(in), parser_(XML_ParserCreate(nullptr)) {
+  if (!parser_) {
+    throw Error(ErrorCode::resource_exhausted, "no memory for a parser", in.path());
+  }
+  XML_SetUserData(parser_.get(), this);
+  XML_SetElementHandler(parser_.get(), &LandXmlElements::start, &LandXmlElements::end);
+  XML_SetCharacterDataHandler(parser_.get(), &LandXmlElements::add_text);
+  XML_SetStartDoctypeDeclHandler(parser_.get(), &LandXmlElements::doctype);
+}
+
+LandXmlElements::~LandXmlElements() = default;
+
+void LandXmlElements::parse() {
+  for (auto bytes = in_.some();; bytes = in_.some()) {
+    const bool is_last = bytes.empty();
+    const XML_Status status =
+        XML_Parse(parser_.get(), bytes.data(), static_cast<int>(bytes.size()), is_last ? 1 : 0);
+    if (failure_) {
+      std::rethrow_exception(failure_);
+    }
+    if (status == XML_STATUS_ERROR) {
+      refuse_here(std::string("this is no XML that can be read: ") +
+                  XML_ErrorString(XML_GetErrorCode(parser_.get())));
+    }
+    const XML_Index at = XML_GetCurrentByteIndex(parser_.get());
+    if (at >= 0 && in_.position() - static_cast<std::uint64_t>(at) > kLongestToken + (1U << 17)) {
+      refuse_here("a piece of XML is longer than a mebibyte");
+    }
+    if (is_last) {
+      break;
+    }
+  }
+}
+
+void LandXmlElements::gather(std::size_t most, const char* too_long) {
+  gathering_ = true;
+  most_text_ = most;
+  too_long_ = too_long;
+  text_.clear();
+}
+
+std::string LandXmlElements::place() const {
+  return in_.path() + ":" + std::to_string(XML_GetCurrentLineNumber(parser_.get()));
+}
+
+void LandXmlElements::refuse_here(const std::string& sentence) const {
+  throw Error(ErrorCode::invalid_argument, sentence, place());
+}
+
+/// Runs a handler; no exception may pass through expat.
+template <typename Handler>
+void LandXmlElements::guarded(void* self, const Handler& handler) {
+  auto& me = *static_cast<LandXmlElements*>(self);
+  if (me.failure_) {
+    return;
+  }
+  try {
+    handler(me);
+  } catch (...) {
+    me.failure_ = std::current_exception();
+    XML_StopParser(me.parser_.get(), XML_FALSE);
+  }
+}
+
+void LandXmlElements::start(void* self, const char* name, const char** attributes) {
+  guarded(self, [&](LandXmlElements& me) { me.begin(local_name(name), attributes); });
+}
+
+void LandXmlElements::end(void* self, const char* name) {
+  guarded(self, [&](LandXmlElements& me) {
+    --me.depth_;
+    me.end_element(local_name(name));
+  });
+}
+
+void LandXmlElements::add_text(void* self, const char* s, int length) {
+  guarded(self, [&](LandXmlElements& me) {
+    if (!me.gathering_) {
+      return;
+    }
+    me.text_.append(s, static_cast<std::size_t>(length));
+    if (me.text_.size() > me.most_text_) {
+      me.refuse_here(me.too_long_);
+    }
+  });
+}
+
+void LandXmlElements::doctype(void* self, const char*, const char*, const char*, int) {
+  guarded(self, [](LandXmlElements& me) {
+    me.refuse_here(
+        "a document type declaration is not read: LandXML has none, and it may hide what "
+        "grows without end");
+  });
+}
+
+std::string_view LandXmlElements::attribute(const char** attributes, std::string_view name) {
+  for (; *attributes != nullptr; attributes += 2) {
+    if (name == attributes[0]) {
+      return attributes[1];
+    }
+  }
+  return {};
+}
+
+void LandXmlElements::begin(std::string_view name, const char** attributes) {
+  if (++depth_ > kDeepest) {
+    refuse_here("elements lie more than 64 deep");
+  }
+  if (depth_ == 1 && name != "LandXML") {
+    refuse_here("the first element is '" + std::string(name.substr(0, 40)) + "', not LandXML");
+  }
+  if (name == "CoordinateSystem") {
+    read_crs(attributes);
+  } else if (depth_ == kUnitsDepth && (name == "Metric" || name == "Imperial")) {
+    read_units(attributes);
+  } else {
+    start_element(name, attributes);
+  }
+}
+
+void LandXmlElements::read_crs(const char** attributes) {
+  const std::string code(attribute(attributes, "epsgCode"));
+  const bool is_number = !code.empty() && code.size() < 10 &&
+                         code.find_first_not_of("0123456789") == std::string::npos;
+  if (is_number && code != "0") {
+    crs_ = "EPSG:" + code;
+  }
+}
+
+/// Heights are coordinates and so in the linear unit, unless the file names another one for them.
+/// Its "feet" are those of the linear unit, where that is a foot.
+void LandXmlElements::read_units(const char** attributes) {
+  const auto unit = [&](const char* name) {
+    const std::string text(attribute(attributes, name));
+    return text.empty() ? text : height_unit_named(text);
+  };
+  units_ = {unit("linearUnit"), unit("elevationUnit")};
+  const bool is_same_foot = units_.heights == "foot" && units_.plane == "US survey foot";
+  if (units_.heights.empty() || is_same_foot) {
+    units_.heights = units_.plane;
+  }
+}
+
+}  // namespace ptin

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the readers of LandXML share: elements and texts from expat, units and CRS.
+#pragma once
+
+#include <exception>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/byte_reader.h"
+
+struct XML_ParserStruct;
+
+namespace ptin {
+
+/// Reads LandXML as a stream, and tells a derived class of its elements. A document type declaration
+/// is refused, and with it every entity that a file could define. Errors are kept and thrown outside
+/// of expat, which is C.
+class LandXmlElements {
+ public:
+  LandXmlElements(const LandXmlElements&) = delete;
+  LandXmlElements& operator=(const LandXmlElements&) = delete;
+
+ protected:
+  explicit LandXmlElements(ByteReader& in);
+  virtual ~LandXmlElements();
+
+  /// Reads to the end.  @throws Error io_error, invalid_argument, and what the functions below throw
+  void parse();
+  /// Names come without a prefix. CoordinateSystem and Units are looked at before.
+  virtual void start_element(std::string_view name, const char** attributes) = 0;
+  virtual void end_element(std::string_view name) = 0;
+
+  /// From here on text is added to text_, which is cleared; until stop_gathering().
+  /// @param most  Bytes; more are refused as `too_long` says.
+  void gather(std::size_t most, const char* too_long);
+  void stop_gathering() noexcept { gathering_ = false; }
+  [[nodiscard]] bool is_gathering() const noexcept { return gathering_; }
+  /// "path:line".
+  [[nodiscard]] std::string place() const;
+  [[noreturn]] void refuse_here(const std::string& sentence) const;
+  [[nodiscard]] static std::string_view attribute(const char** attributes, std::string_view name);
+
+  ByteReader& in_;
+  std::string text_;
+  std::string crs_;      ///< As PointStreamFacts::crs, from when it was read.
+  DeclaredUnits units_;  ///< Likewise.
+
+ private:
+  template <typename Handler>
+  static void guarded(void* self, const Handler& handler);
+  static void start(void* self, const char* name, const char** attributes);
+  static void end(void* self, const char* name);
+  static void add_text(void* self, const char* s, int length);
+  static void doctype(void* self, const char*, const char*, const char*, int);
+  void begin(std::string_view name, const char** attributes);
+  void read_crs(const char** attributes);
+  void read_units(const char** attributes);
+
+  struct ParserFree {
+    void operator()(XML_ParserStruct* p) const;
+  };
+  std::unique_ptr<XML_ParserStruct, ParserFree> parser_;
+  std::exception_ptr failure_;
+  int depth_ = 0;
+  bool gathering_ = false;
+  std::size_t most_text_ = 0;
+  const char* too_long_ = "";
+};
+
+}  // namespace ptin

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// LandXML 1.0 to 1.2: Surfaces/Surface/SourceData with Breaklines/Breakline and Boundaries/Boundary,
+// each with a PntList3D: northing, easting and height of one vertex after the other.
+#include "engine/construct/read/land_xml_lines.h"
+
+#include "engine/construct/read/byte_reader.h"
+#include "engine/construct/read/land_xml.h"
+#include "engine/construct/read/tin_reader.h"
+#include "engine/error.h"
+#include "engine/stop.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::size_t kLongestList = std::size_t{16} << 20;  // bytes of text
+
+class LandXmlLines final : public LandXmlElements {
+ public:
+  LandXmlLines(ByteReader& in, const LineWish& wish,
+               const std::function<void(const std::vector<SourcePoint>&)>& take,
+               const std::stop_token& stop)
+      : LandXmlElements(in),
+        wish_(wish),
+        element_(wish.kind == LayerKind::kAreas ? "Boundary" : "Breakline"),
+        take_(take),
+        stop_(stop) {}
+
+  LineFileCrs read() {
+    parse();
+    if (lines_ == 0) {
+      refuse(std::string("there is no ") + element_ + " with a PntList3D in " +
+                 (wish_.layer.empty() ? "this file" : "the surface '" + wish_.layer + "'") +
+                 (surfaces_.empty() ? "" : "; its surfaces are " + surfaces_),
+             in_.path());
+    }
+    return {crs_, units_};
+  }
+
+ private:
+  void start_element(std::string_view name, const char** attributes) override {
+    if (name == "Surface") {
+      const std::string surface(attribute(attributes, "name"));
+      constexpr std::size_t kMostNames = 400;  // bytes that an error needs
+      if (surfaces_.size() < kMostNames) {
+        surfaces_ += (surfaces_.empty() ? "'" : ", '") + surface.substr(0, 60) + "'";
+      }
+      is_wanted_ = wish_.layer.empty() || surface == wish_.layer;
+      lines_of_surface_ = 0;
+    } else if (name == element_) {
+      in_line_ = is_wanted_;
+    } else if (in_line_ && name == "PntList3D") {
+      gather(kLongestList, "a list of points holds more text than 16 MiB");
+    } else if (in_line_ && name == "PntList2D") {
+      refuse_here(std::string("this ") + element_ +
+                  " has no heights; give its vertices heights first, or leave it out");
+    }
+  }
+
+  void end_element(std::string_view name) override {
+    if (name == "Surface") {
+      is_wanted_ = false;
+    } else if (name == element_) {
+      in_line_ = false;
+    } else if (is_gathering() && name == "PntList3D") {
+      stop_gathering();
+      end_line();
+    }
+  }
+
+  void end_line() {
+    stop_if_asked(stop_, "reading", in_.path());
+    if (lines_of_surface_++ == 0 && lines_ > 0) {
+      refuse_here("several surfaces have such lines, " + surfaces_ + "; name one with " +
+                  wish_.option);
+    }
+    for (char& c : text_) {
+      if (c == '\n' || c == '\r') {
+        c = ' ';
+      }
+    }
+    split_words(text_, words_);
+    if (words_.empty() || words_.size() % 3 != 0) {
+      refuse_here("a PntList3D has " + std::to_string(words_.size()) +
+                  " numbers, which are not northing, easting and height of some points");
+    }
+    const std::string where = place();
+    vertices_.clear();
+    for (std::size_t i = 0; i < words_.size(); i += 3) {
+      vertices_.push_back({coordinate_of(words_[i + 1], where), coordinate_of(words_[i], where),
+                           coordinate_of(words_[i + 2], where)});
+    }
+    const SourcePoint first = vertices_.front(), last = vertices_.back();
+    if (wish_.kind == LayerKind::kAreas && !(first.x == last.x && first.y == last.y)) {
+      vertices_.push_back(first);
+    }
+    ++lines_;
+    take_(vertices_);
+  }
+
+  const LineWish& wish_;
+  const char* element_;
+  const std::function<void(const std::vector<SourcePoint>&)>& take_;
+  std::stop_token stop_;
+  bool is_wanted_ = false, in_line_ = false;
+  std::uint64_t lines_ = 0, lines_of_surface_ = 0;
+  std::string surfaces_;
+  std::vector<std::string_view> words_;
+  std::vector<SourcePoint> vertices_;
+};
+
+}  // namespace
+
+LineFileCrs read_land_xml_lines(const std::string& path, const LineWish& wish,
+                                const std::function<void(const std::vector<SourcePoint>&)>& take,
+                                const std::stop_token& stop) {
+  ByteReader in(path);
+  return LandXmlLines(in, wish, take, stop).read();
+}
+
+}  // namespace ptin

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/read/line_file.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include <cpl_vsi.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/read/land_xml_lines.h"
+#include "engine/error.h"
+#include "engine/stop.h"
+
+namespace ptin {
+
+namespace {
+
+using TakeLine = std::function<void(const std::vector<SourcePoint>&)>;
+
+GDALDatasetUniquePtr open_vector(const std::string& path, const GdalSession& session) {
+  GDALDatasetUniquePtr data(
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  if (data != nullptr) {
+    return data;
+  }
+  VSIStatBufL status;
+  if (VSIStatL(path.c_str(), &status) != 0) {
+    throw Error(ErrorCode::not_found, "there is no such file of lines", path);
+  }
+  throw Error(ErrorCode::invalid_argument, session.explain("this is no vector data that OGR reads"),
+              path);
+}
+
+std::string crs_of(const OGRLayer& layer) {
+  const OGRSpatialReference* srs = const_cast<OGRLayer&>(layer).GetSpatialRef();
+  std::string text;
+  if (srs != nullptr) {
+    char* wkt = nullptr;
+    static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", nullptr};
+    if (srs->exportToWkt(&wkt, kOptions) == OGRERR_NONE && wkt != nullptr) {
+      text = wkt;
+    }
+    CPLFree(wkt);
+  }
+  return text;
+}
+
+/// Takes the lines of one feature after the other.
+class LineFeatures {
+ public:
+  LineFeatures(const std::string& path, const LineWish& wish, const TakeLine& take)
+      : path_(path), wants_areas_(wish.kind == LayerKind::kAreas), take_(take) {}
+
+  void add(const OGRFeature& feature) {
+    feature_ = feature.GetFID();
+    if (const OGRGeometry* geometry = feature.GetGeometryRef()) {
+      add(*geometry);
+    }
+  }
+  [[nodiscard]] std::uint64_t lines() const noexcept { return lines_; }
+
+ private:
+  [[noreturn]] void refuse_here(const std::string& sentence) const {
+    refuse(sentence, path_ + ": feature " + std::to_string(feature_));
+  }
+
+  void add(const OGRGeometry& geometry) {
+    if (geometry.IsEmpty() != 0) {
+      return;
+    }
+    const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
+    if (type == wkbLineString && !wants_areas_) {
+      add_line(*geometry.toLineString());
+    } else if (type == wkbPolygon && wants_areas_) {
+      for (const OGRLinearRing* ring : *geometry.toPolygon()) {
+        add_line(*ring);
+      }
+    } else if (type == wkbMultiLineString || type == wkbMultiPolygon ||
+               type == wkbGeometryCollection) {
+      for (const OGRGeometry* part : *geometry.toGeometryCollection()) {
+        add(*part);
+      }
+    } else {
+      refuse_here(std::string("this is a ") + geometry.getGeometryName() + ", not a " +
+                  (wants_areas_ ? "polygon" : "line") + " with straight sides");
+    }
+  }
+
+  void add_line(const OGRLineString& line) {
+    if (line.Is3D() == 0) {
+      refuse_here(
+          wants_areas_
+              ? "this polygon has no heights; give its vertices heights first, for instance "
+                "from a terrain of the points alone by ptin locate"
+              : "this line has no heights, and a breakline is one by its heights; give "
+                "its vertices heights first, or leave it out");
+    }
+    vertices_.clear();
+    for (int i = 0; i < line.getNumPoints(); ++i) {
+      vertices_.push_back(
+          {number(line.getX(i), "x"), number(line.getY(i), "y"), number(line.getZ(i), "height")});
+    }
+    const auto is_same_place = [](const SourcePoint& a, const SourcePoint& b) {
+      return a.x == b.x && a.y == b.y;
+    };
+    if (wants_areas_ && !is_same_place(vertices_.front(), vertices_.back())) {
+      vertices_.push_back(vertices_.front());
+    }
+    ++lines_;
+    take_(vertices_);
+  }
+
+  [[nodiscard]] Decimal number(double value, const char* role) const {
+    if (!(std::abs(value) < 1e15)) {
+      refuse_here(std::string("the ") + role + " of a vertex is " +
+                  (std::isnan(value) ? "NaN" : "infinite or 10^15 and more"));
+    }
+    return decimal_of(value);
+  }
+
+  const std::string& path_;
+  bool wants_areas_;
+  const TakeLine& take_;
+  std::int64_t feature_ = 0;
+  std::uint64_t lines_ = 0;
+  std::vector<SourcePoint> vertices_;
+};
+
+}  // namespace
+
+bool is_land_xml(const std::string& path) {
+  const auto ends_in = [&](std::string_view end) {
+    return path.size() >= end.size() && EQUAL(path.c_str() + path.size() - end.size(), end.data());
+  };
+  return ends_in(".xml") || ends_in(".landxml");
+}
+
+LineFileCrs read_line_file(const std::string& path, const LineWish& wish, const TakeLine& take,
+                           const std::stop_token& stop) {
+  if (is_land_xml(path)) {
+    return read_land_xml_lines(path, wish, take, stop);
+  }
+  const GdalSession session;
+  const GDALDatasetUniquePtr data = open_vector(path, session);
+  OGRLayer& layer =
+      choose_layer(*data, {wish.kind, wish.layer, "name one with " + wish.option}, path);
+  LineFeatures features(path, wish, take);
+  layer.ResetReading();
+  for (;;) {
+    stop_if_asked(stop, "reading", path);
+    const OGRFeatureUniquePtr feature(layer.GetNextFeature());
+    if (feature == nullptr) {
+      break;
+    }
+    features.add(*feature);
+  }
+  if (session.failed()) {
+    throw Error(ErrorCode::io_error, session.explain("cannot be read on"), path);
+  }
+  if (features.lines() == 0) {
+    refuse(std::string("there is no ") + (wish.kind == LayerKind::kAreas ? "polygon" : "line") +
+               " in layer '" + layer.GetName() + "'; leave the file out, or name another layer",
+           path);
+  }
+  return {crs_of(layer), {}};
+}
+
+}  // namespace ptin

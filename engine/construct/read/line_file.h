@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Lines and areas with heights, from one file of any format.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/layer_choice.h"
+
+namespace ptin {
+
+/// What is wanted from a file of lines.
+struct LineWish {
+  LayerKind kind = LayerKind::kLines;  ///< kLines, or kAreas for the rings of polygons.
+  std::string layer;   ///< The layer of OGR, the surface of LandXML; "" where only one fits.
+  std::string option;  ///< That names a layer, for messages.
+};
+
+/// What a file of lines declares.
+struct LineFileCrs {
+  std::string crs;      ///< As PointStreamFacts::crs.
+  DeclaredUnits units;  ///< As PointStreamFacts::units.
+};
+
+/// True where the name tells LandXML: .xml or .landxml, in any case.
+[[nodiscard]] bool is_land_xml(const std::string& path);
+
+/// Hands every line, or every ring of every polygon, to `take`, in the order of the file. A vertex
+/// has a height always; a ring ends with the vertex that it begins with. Features without a geometry
+/// are passed over. Of LandXML these are the Breaklines and the Boundaries of a surface's SourceData,
+/// with northing before easting; of other files what OGR reads.
+/// @throws Error  not_found, io_error, cancelled
+///                invalid_argument  not a vector file; no layer fits, or several do; a feature is
+///                                  no line (no polygon), has curves, a vertex without a height, or
+///                                  a number that is not finite; there is no line at all
+[[nodiscard]] LineFileCrs read_line_file(
+    const std::string& path, const LineWish& wish,
+    const std::function<void(const std::vector<SourcePoint>&)>& take, const std::stop_token& stop);
+
+}  // namespace ptin
