@@ -3,8 +3,10 @@
 // A build over points: counted first, sorted into buckets, then tiles.
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "engine/construct/build_job.h"
+#include "engine/construct/delaunay/boundary_drape.h"
 #include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/memory_plan.h"
@@ -31,7 +33,23 @@ SourceDisk disk_of(const Job& job, const PointCount& count) {
       std::max(disk.while_reading,
                disk.spooled + count.of_largest_tin *
                                   TinVertices::disk_of_vertex(job.options.nodata.has_value()));
+  if (job.lines.rings_are_flat) {
+    disk.while_reading += disk.kept;  // the points below the boundary, until it lies on them
+  }
   return disk;
+}
+
+/// Lays a boundary without heights on the points. They are read and sorted for this, and once more
+/// with the boundary.
+void lay_boundary(Job& job, Workspace& workspace) {
+  const PointBuckets points =
+      PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
+                         job.resources.stop, job.stages());
+  BoundaryDrape drape(job.lines.rings, points);
+  LineSet laid = drape.lay(job.options.max_edge, job.memory.lines / kBytesOfLineVertex,
+                           job.resources.stop, job.stage("laying the boundary"));
+  job.lines.rings = std::move(laid);
+  job.lines.rings_are_flat = false;
 }
 
 /// The points as an interrupted build had sorted them, or else read and sorted now.
@@ -44,6 +62,9 @@ PointBuckets sorted_points(Job& job, Workspace& workspace) {
                               job.stage("checking"));
   }
   workspace.remove(kBucketFile);
+  if (job.lines.rings_are_flat) {
+    lay_boundary(job, workspace);
+  }
   PointBuckets points =
       PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
                          job.resources.stop, job.stages(), buckets);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include <nlohmann/json.hpp>
@@ -37,6 +38,9 @@ double steps_of(Decimal d, double origin, double step) {
   for (; d.decimals < digits; ++d.decimals) m *= 10;
   return static_cast<double>(is_negative ? -m : m) - std::round(origin / step);
 }
+
+/// Of a vertex of a boundary without heights: any other height is lower, and stands.
+constexpr double kNoHeight = std::numeric_limits<double>::infinity();
 
 /// A height as the file stores it.
 double stored(Decimal height, const HeightEncoding& heights) {
@@ -104,15 +108,18 @@ void LineSamples::read(const std::string& path, const std::string& layer, bool i
     }
     return GridPoint{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
   };
+  std::vector<std::pair<VertexKey, double>> vertices;
   const auto take = [&](const std::vector<SourcePoint>& line) {
     for (std::size_t i = 0; i < line.size(); ++i) {
       const GridPoint p = place_of(line[i]);
-      add_vertex(key_of(p), stored(line[i].z, facts_->heights), true);
+      vertices.emplace_back(key_of(p), stored(line[i].z, facts_->heights));
       if (i > 0) pieces_.push_back({place_of(line[i - 1]), p, !is_boundary, is_boundary});
     }
   };
   const LineWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer, "that layer"};
-  (void)read_line_file(path, wish, take, stop);
+  const bool is_flat = read_line_file(path, wish, take, stop).is_flat;
+  is_flat_ = is_flat_ || is_flat;
+  for (const auto& [key, height] : vertices) add_vertex(key, is_flat ? kNoHeight : height, true);
 }
 
 /// Sorts pieces, and makes one of those that fall together; of a boundary's two cancel.
@@ -163,7 +170,7 @@ void LineSamples::cross(std::size_t one, std::size_t other) {
   const GridPoint x{nearest(s.a.x, s.b.x), nearest(s.a.y, s.b.y)};
   const auto height_at = [&](const LinePiece& piece, double t) {
     const double from = vertices_.at(key_of(piece.a)), to = vertices_.at(key_of(piece.b));
-    return from + t * (to - from);
+    return std::isinf(from) || std::isinf(to) ? kNoHeight : from + t * (to - from);
   };
   const double on_s = static_cast<double>(a) / (static_cast<double>(a) - static_cast<double>(b));
   const double ux = static_cast<double>(u.b.x) - u.a.x, uy = static_cast<double>(u.b.y) - u.a.y;
@@ -250,9 +257,26 @@ void LineSamples::index_boundary() {
   }
 }
 
+bool LineSamples::is_beside_boundary(GridPoint p) const {
+  for (std::size_t band = band_of(std::int64_t{p.y} - 1); band <= band_of(std::int64_t{p.y} + 1);
+       ++band) {
+    for (const LinePiece& s : bands_[band]) {
+      GridBox box = united(box_of(s.a), s.b);
+      box = {box.min_x - 1, box.min_y - 1, box.max_x + 1, box.max_y + 1};
+      const double length =
+          std::hypot(static_cast<double>(s.b.x) - s.a.x, static_cast<double>(s.b.y) - s.a.y);
+      if (contains(box, p) && std::abs(static_cast<double>(orient(s.a, s.b, p))) <= 1.5 * length) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 /// By the pieces that lie left of the point in its row, counted half open; or on the boundary.
 bool LineSamples::holds(GridPoint p) const {
   if (!has_boundary_) return true;
+  if (is_flat_ && is_beside_boundary(p)) return false;
   bool is_inside = false;
   for (const LinePiece& s : bands_[band_of(p.y)]) {
     const std::int64_t side = orient(s.a, s.b, p);
@@ -288,11 +312,13 @@ void LineSamples::drop_outside() {
   std::map<VertexKey, double> used;
   for (const LinePiece& s : pieces_) {
     for (const GridPoint p : {s.a, s.b}) {
-      used.emplace(key_of(p), stored(vertices_.at(key_of(p)), facts_->heights));
+      const double height = vertices_.at(key_of(p));
+      if (height != kNoHeight) used.emplace(key_of(p), stored(height, facts_->heights));
     }
   }
   vertices_ = std::move(used);
   if (has_boundary_) index_boundary();
+  if (is_flat_) std::erase_if(pieces_, [](const LinePiece& s) { return !s.breakline; });
 }
 
 }  // namespace ptin::tools

@@ -36,13 +36,16 @@ class LineSamples {
   ///                other files of lines than these, or without, or a file holds no lines
   LineSamples(const LineInputs& inputs, const StoreFile& store, const std::stop_token& stop);
 
-  [[nodiscard]] bool is_empty() const { return pieces_.empty(); }
+  [[nodiscard]] bool is_empty() const { return pieces_.empty() && !has_boundary_; }
   /// The vertices of lines that are samples, with their heights as the file stores them.
   [[nodiscard]] const std::map<VertexKey, double>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<LinePiece>& pieces() const { return pieces_; }
-  /// True unless there is a boundary, and the point lies outside of it.
+  /// True unless there is a boundary, and the point lies outside of it; or so near to a boundary
+  /// without heights that rounding to the grid decides.
   [[nodiscard]] bool holds(GridPoint p) const;
   [[nodiscard]] bool has_boundary() const { return has_boundary_; }
+  /// The boundary has no heights: it tells inside from outside, and has no samples.
+  [[nodiscard]] bool is_flat() const { return is_flat_; }
   /// Takes a sample along: it divides the pieces that it lies on, at its own height.
   void divide_at(GridPoint p);
   /// Divides pieces as was noted.
@@ -58,6 +61,7 @@ class LineSamples {
   void drop_outside();
   [[nodiscard]] std::size_t band_of(std::int64_t y) const;
   void sort_pieces();
+  [[nodiscard]] bool is_beside_boundary(GridPoint p) const;
   void index_boundary();
   template <class Visit>
   void visit_at(GridPoint p, const Visit& visit) const;
@@ -66,7 +70,7 @@ class LineSamples {
   std::map<VertexKey, double> vertices_;
   std::vector<LinePiece> pieces_;  ///< Sorted by their least x.
   std::int64_t widest_ = 0;        ///< The largest width of a piece.
-  bool has_boundary_ = false;
+  bool has_boundary_ = false, is_flat_ = false;
   std::vector<std::vector<LinePiece>> bands_;  ///< Of the boundary, by rows of the terrain.
   std::vector<std::pair<std::size_t, GridPoint>> divisions_;
 };

@@ -42,7 +42,8 @@ class PointSamples final : public SourceSamples {
     }
     lines_.finish();
     for (const auto& [key, height] : lines_.vertices()) add_sample(point_of(key), height);
-    check_extent(extent_, paths, facts_, choices_);
+    // Where a boundary without heights meets the surface, the terrain has vertices that no input has.
+    if (!lines_.is_flat()) check_extent(extent_, paths, facts_, choices_);
     samples_.sort(resources.stop);
   }
 

@@ -155,9 +155,13 @@ AgainstReport Verifier::run() {
     check_window(boxes[i]);
   }
   if (options_.progress) options_.progress(boxes.size(), boxes.size());
+  // A boundary without heights brings vertices that no input has.
+  const bool may_be_fewer = source_.lines() != nullptr && source_.lines()->is_flat();
   for (const ToleranceCheck& check : report_.checks) {
     const std::uint64_t samples = check.samples + check.lone_samples;
-    if (report_.fault_count == 0 && samples != facts_.source_samples) {
+    const bool is_told =
+        samples == facts_.source_samples || (may_be_fewer && samples < facts_.source_samples);
+    if (report_.fault_count == 0 && !is_told) {
       fault(nullptr, "the source has " + grouped(check.samples) +
                          " samples with a height, the file says " + grouped(facts_.source_samples));
     }

@@ -130,12 +130,12 @@ void PointGridScan::add_source(const PointStreamFacts& facts) {
   }
 }
 
-void PointGridScan::add_lines(std::span<const SourcePoint> vertices, bool degrees) noexcept {
+void PointGridScan::add_line_vertex(const SourcePoint& v, bool has_height, bool degrees) noexcept {
   most_line_decimals_ = degrees ? kMostDegreeDecimals : kMostLineDecimals;
-  for (const SourcePoint& p : vertices) {
-    line_x_.add(p.x);
-    line_y_.add(p.y);
-    line_z_.add(p.z);
+  line_x_.add(v.x);
+  line_y_.add(v.y);
+  if (has_height) {
+    line_z_.add(v.z);
   }
 }
 

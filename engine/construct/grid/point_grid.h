@@ -118,7 +118,7 @@ class PointGridScan {
   }
   /// Vertices of lines extend the grid. Their digits count as those of points do, up to two after the
   /// point, or seven in degrees; more are kept where points have more.
-  void add_lines(std::span<const SourcePoint> vertices, bool degrees) noexcept;
+  void add_line_vertex(const SourcePoint& v, bool has_height, bool degrees) noexcept;
   [[nodiscard]] std::uint64_t points() const noexcept { return points_; }
   /// True when the boxes of all points and of all vertices of lines so far have nothing in common.
   [[nodiscard]] bool lines_are_elsewhere() const noexcept;

@@ -7,9 +7,15 @@
 namespace ptin {
 
 FixedEdges::FixedEdges(LineGraph&& graph) : graph_(std::move(graph)) {
-  has_boundary_ = std::any_of(graph_.edges.begin(), graph_.edges.end(),
-                              [](const LineEdge& e) { return e.boundary; });
+  has_boundary_ =
+      !graph_.without_ground.empty() || std::any_of(graph_.edges.begin(), graph_.edges.end(),
+                                                    [](const LineEdge& e) { return e.boundary; });
   boxes_ = EdgeBoxes(graph_);
+  std::vector<GridBox> boxes;
+  for (const SideWithoutGround& s : graph_.without_ground) {
+    boxes.push_back(united(box_of(s.a), s.b));
+  }
+  boxes_without_ground_ = PackedBoxes(std::move(boxes));
   std::vector<LineEdge> kept;
   for (const LineEdge& e : graph_.edges) {
     const GridPoint a = graph_.vertices[e.a].position, b = graph_.vertices[e.b].position;
@@ -61,12 +67,7 @@ bool FixedEdges::holds_scaled(std::int64_t x, std::int64_t y, std::int64_t scale
   const auto is_beside = [&](const GridBox& box) {
     return box.min_y * scale <= y && y <= box.max_y * scale && x <= box.max_x * scale;
   };
-  boxes_.visit(is_beside, [&](std::uint32_t number) {
-    const LineEdge& e = graph_.edges[number];
-    if (!e.boundary) {
-      return;
-    }
-    const GridPoint a = graph_.vertices[e.a].position, b = graph_.vertices[e.b].position;
+  const auto pass = [&](GridPoint a, GridPoint b) {
     const std::int64_t bx = std::int64_t{b.x} - a.x, by = std::int64_t{b.y} - a.y;
     const std::int64_t px = x - a.x * scale, py = y - a.y * scale;
     const std::int64_t side = bx * py - by * px;
@@ -75,6 +76,15 @@ bool FixedEdges::holds_scaled(std::int64_t x, std::int64_t y, std::int64_t scale
     } else if ((a.y * scale > y) != (b.y * scale > y) && (side > 0) == (by > 0)) {
       is_inside = !is_inside;
     }
+  };
+  boxes_.visit(is_beside, [&](std::uint32_t number) {
+    const LineEdge& e = graph_.edges[number];
+    if (e.boundary) {
+      pass(graph_.vertices[e.a].position, graph_.vertices[e.b].position);
+    }
+  });
+  boxes_without_ground_.visit(is_beside, [&](std::size_t i) {
+    pass(graph_.without_ground[i].a, graph_.without_ground[i].b);
   });
   return is_inside || is_on;
 }

@@ -26,10 +26,16 @@ struct LineEdge {
   bool boundary = false;   ///< An odd number of sides of the boundary lie along it.
 };
 
+/// A side of the boundary, or a part of one, where there is no ground. It tells inside from outside.
+struct SideWithoutGround {
+  GridPoint a, b;
+};
+
 /// Lines on the grid, before and after noding.
 struct LineGraph {
   std::vector<LineVertex> vertices;
   std::vector<LineEdge> edges;
+  std::vector<SideWithoutGround> without_ground;  ///< No edges: noding leaves them alone.
 };
 
 /// How heights are compared where lines meet, and how a place is told.

@@ -14,17 +14,27 @@ namespace {
 
 /// Adds the lines of a set to a graph; returns by how much a vertex was moved at most.
 double add_lines(const LineSet& set, const PointGrid& grid, bool is_boundary, LineGraph& to) {
+  const auto has_ground = [&](std::size_t v) {
+    return set.has_ground.empty() || set.has_ground[v] != 0;
+  };
   double moved = 0.0;
+  std::size_t first = 0;
   for (std::size_t i = 0; i < set.size(); ++i) {
     const auto line = set.line(i);
     for (std::size_t k = 0; k < line.size(); ++k) {
-      const auto v = static_cast<std::uint32_t>(to.vertices.size());
-      to.vertices.push_back({grid.position(line[k]), grid.height(line[k].z)});
+      const bool before = k > 0 && has_ground(first + k - 1), here = has_ground(first + k);
+      if (here) {
+        to.vertices.push_back({grid.position(line[k]), grid.height(line[k].z)});
+      }
       moved = std::max(moved, grid.shift_of_line(line[k]));
-      if (k > 0) {
-        to.edges.push_back({v - 1, v, !is_boundary, is_boundary});
+      const auto v = static_cast<std::uint32_t>(to.vertices.size());
+      if (before && here) {
+        to.edges.push_back({v - 2, v - 1, !is_boundary, is_boundary});
+      } else if (k > 0) {
+        to.without_ground.push_back({grid.position(line[k - 1]), grid.position(line[k])});
       }
     }
+    first += line.size();
   }
   return moved;
 }
@@ -35,15 +45,18 @@ LinesOnGrid put_on_grid(const SourceLines& lines, const PointGrid& grid,
                         const std::stop_token& stop) {
   LinesOnGrid result;
   LineGraph graph;
-  result.largest_shift_plan = std::max(add_lines(lines.breaklines, grid, false, graph),
-                                       add_lines(lines.rings, grid, true, graph));
+  result.largest_shift_plan = add_lines(lines.breaklines, grid, false, graph);
+  if (!lines.rings_are_flat) {
+    result.largest_shift_plan =
+        std::max(result.largest_shift_plan, add_lines(lines.rings, grid, true, graph));
+  }
   NodingRules rules;
   rules.whole_heights = grid.whole;
   rules.height_of_unit = grid.whole ? grid.heights.unit() : 1.0;
   rules.height_step = grid.whole ? 1.0 : grid.heights.unit();
   rules.map = grid.map();
   result.edges = FixedEdges(node_lines(std::move(graph), rules, stop));
-  if (lines.rings.size() > 0 && !result.edges.has_boundary()) {
+  if (lines.rings.size() > 0 && !lines.rings_are_flat && !result.edges.has_boundary()) {
     refuse("the boundary encloses nothing", lines.files.back().path);
   }
   return result;

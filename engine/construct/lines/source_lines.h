@@ -19,6 +19,9 @@ namespace ptin {
 struct LineSet {
   std::vector<SourcePoint> vertices;
   std::vector<std::uint64_t> ends;  ///< Of each line: one past the place of its last vertex.
+  /// Beside `vertices`: 0 for a vertex that there is no ground below, whose z means nothing. Empty:
+  /// all have ground.
+  std::vector<std::uint8_t> has_ground;
 
   [[nodiscard]] std::size_t size() const noexcept { return ends.size(); }
   [[nodiscard]] std::span<const SourcePoint> line(std::size_t i) const noexcept {
@@ -38,6 +41,9 @@ struct LineFileFacts {
 struct SourceLines {
   LineSet breaklines;
   LineSet rings;  ///< Of the boundary; the first vertex of each is its last one too.
+  /// The rings have no heights yet: they extend the grid, and nothing else is made of them
+  /// (delaunay/boundary_drape.h).
+  bool rings_are_flat = false;
   std::vector<LineFileFacts> files;
 
   [[nodiscard]] bool is_empty() const noexcept {

@@ -51,6 +51,7 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
   file.put(ends_);
   file.put(fixed_.vertices());
   file.put(fixed_.edges());
+  file.put(fixed_.sides_without_ground());
   file.sync();
   return file.facts();
 }
@@ -96,6 +97,7 @@ PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
   LineGraph lines;
   lines.vertices = file.take_copy<LineVertex>();
   lines.edges = file.take_copy<LineEdge>();
+  lines.without_ground = file.take_copy<SideWithoutGround>();
   file.require_undamaged();
   result.fixed_ = FixedEdges(std::move(lines));
   result.file_ = std::make_unique<ScratchFile>(files, buckets, ScratchFile::Kept::kExisting);

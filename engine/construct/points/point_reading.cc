@@ -59,15 +59,18 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Com
   }
   const bool degrees = resolve_crs(crs.text(), options.a_srs, "").geographic;
   for (const LineSet* set : {&lines.breaklines, &lines.rings}) {
-    for (const SourcePoint& v : set->vertices) {
-      if (options.nodata && to_double(v.z) == *options.nodata) {
+    const bool is_flat = set == &lines.rings && lines.rings_are_flat;
+    for (std::size_t i = 0; i < set->vertices.size(); ++i) {
+      const SourcePoint& v = set->vertices[i];
+      const bool has_height = !is_flat && (set->has_ground.empty() || set->has_ground[i] != 0);
+      if (has_height && options.nodata && to_double(v.z) == *options.nodata) {
         refuse(
             "a vertex of a breakline or of the boundary has the height that means none; give it "
             "its own, or leave the line out",
             lines.files.front().path);
       }
+      scan.add_line_vertex(v, has_height, degrees);
     }
-    scan.add_lines(set->vertices, degrees);
   }
   if (scan.lines_are_elsewhere()) {
     refuse(

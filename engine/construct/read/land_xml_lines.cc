@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // LandXML 1.0 to 1.2: Surfaces/Surface/SourceData with Breaklines/Breakline and Boundaries/Boundary,
-// each with a PntList3D: northing, easting and height of one vertex after the other.
+// each with a PntList3D: northing, easting and height of one vertex after the other. A Boundary may
+// have a PntList2D, without heights.
 #include "engine/construct/read/land_xml_lines.h"
 
 #include "engine/construct/read/byte_reader.h"
@@ -35,7 +36,7 @@ class LandXmlLines final : public LandXmlElements {
                  (surfaces_.empty() ? "" : "; its surfaces are " + surfaces_),
              in_.path());
     }
-    return {crs_, units_};
+    return {crs_, units_, is_flat_};
   }
 
  private:
@@ -50,7 +51,8 @@ class LandXmlLines final : public LandXmlElements {
       lines_of_surface_ = 0;
     } else if (name == element_) {
       in_line_ = is_wanted_;
-    } else if (in_line_ && name == "PntList3D") {
+    } else if (in_line_ && (name == "PntList3D" || (name == "PntList2D" && wants_areas()))) {
+      numbers_of_vertex_ = name == "PntList3D" ? 3 : 2;
       gather(kLongestList, "a list of points holds more text than 16 MiB");
     } else if (in_line_ && name == "PntList2D") {
       refuse_here(std::string("this ") + element_ +
@@ -63,7 +65,7 @@ class LandXmlLines final : public LandXmlElements {
       is_wanted_ = false;
     } else if (name == element_) {
       in_line_ = false;
-    } else if (is_gathering() && name == "PntList3D") {
+    } else if (is_gathering() && (name == "PntList3D" || name == "PntList2D")) {
       stop_gathering();
       end_line();
     }
@@ -81,23 +83,28 @@ class LandXmlLines final : public LandXmlElements {
       }
     }
     split_words(text_, words_);
-    if (words_.empty() || words_.size() % 3 != 0) {
-      refuse_here("a PntList3D has " + std::to_string(words_.size()) +
-                  " numbers, which are not northing, easting and height of some points");
+    const std::size_t n = numbers_of_vertex_;
+    if (words_.empty() || words_.size() % n != 0) {
+      refuse_here("a PntList" + std::to_string(n) + "D has " + std::to_string(words_.size()) +
+                  " numbers, which are not northing" +
+                  (n == 3 ? ", easting and height" : " and easting") + " of some points");
     }
+    is_flat_ = is_flat_ || n == 2;
     const std::string where = place();
     vertices_.clear();
-    for (std::size_t i = 0; i < words_.size(); i += 3) {
+    for (std::size_t i = 0; i < words_.size(); i += n) {
       vertices_.push_back({coordinate_of(words_[i + 1], where), coordinate_of(words_[i], where),
-                           coordinate_of(words_[i + 2], where)});
+                           n == 3 ? coordinate_of(words_[i + 2], where) : Decimal{}});
     }
     const SourcePoint first = vertices_.front(), last = vertices_.back();
-    if (wish_.kind == LayerKind::kAreas && !(first.x == last.x && first.y == last.y)) {
+    if (wants_areas() && !(first.x == last.x && first.y == last.y)) {
       vertices_.push_back(first);
     }
     ++lines_;
     take_(vertices_);
   }
+
+  [[nodiscard]] bool wants_areas() const { return wish_.kind == LayerKind::kAreas; }
 
   const LineWish& wish_;
   const char* element_;
@@ -105,6 +112,8 @@ class LandXmlLines final : public LandXmlElements {
   std::stop_token stop_;
   bool is_wanted_ = false, in_line_ = false;
   std::uint64_t lines_ = 0, lines_of_surface_ = 0;
+  std::size_t numbers_of_vertex_ = 3;
+  bool is_flat_ = false;
   std::string surfaces_;
   std::vector<std::string_view> words_;
   std::vector<SourcePoint> vertices_;

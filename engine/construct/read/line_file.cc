@@ -61,6 +61,7 @@ class LineFeatures {
     }
   }
   [[nodiscard]] std::uint64_t lines() const noexcept { return lines_; }
+  [[nodiscard]] bool is_flat() const noexcept { return is_flat_; }
 
  private:
   [[noreturn]] void refuse_here(const std::string& sentence) const {
@@ -90,18 +91,17 @@ class LineFeatures {
   }
 
   void add_line(const OGRLineString& line) {
-    if (line.Is3D() == 0) {
+    const bool is_flat = line.Is3D() == 0;
+    if (is_flat && !wants_areas_) {
       refuse_here(
-          wants_areas_
-              ? "this polygon has no heights; give its vertices heights first, for instance "
-                "from a terrain of the points alone by ptin locate"
-              : "this line has no heights, and a breakline is one by its heights; give "
-                "its vertices heights first, or leave it out");
+          "this line has no heights, and a breakline is one by its heights; give its vertices "
+          "heights first, or leave it out");
     }
+    is_flat_ = is_flat_ || is_flat;
     vertices_.clear();
     for (int i = 0; i < line.getNumPoints(); ++i) {
-      vertices_.push_back(
-          {number(line.getX(i), "x"), number(line.getY(i), "y"), number(line.getZ(i), "height")});
+      vertices_.push_back({number(line.getX(i), "x"), number(line.getY(i), "y"),
+                           is_flat ? Decimal{} : number(line.getZ(i), "height")});
     }
     const auto is_same_place = [](const SourcePoint& a, const SourcePoint& b) {
       return a.x == b.x && a.y == b.y;
@@ -126,6 +126,7 @@ class LineFeatures {
   const TakeLine& take_;
   std::int64_t feature_ = 0;
   std::uint64_t lines_ = 0;
+  bool is_flat_ = false;
   std::vector<SourcePoint> vertices_;
 };
 
@@ -165,7 +166,7 @@ LineFileCrs read_line_file(const std::string& path, const LineWish& wish, const 
                " in layer '" + layer.GetName() + "'; leave the file out, or name another layer",
            path);
   }
-  return {crs_of(layer), {}};
+  return {crs_of(layer), {}, features.is_flat()};
 }
 
 }  // namespace ptin

@@ -24,18 +24,20 @@ struct LineWish {
 struct LineFileCrs {
   std::string crs;      ///< As PointStreamFacts::crs.
   DeclaredUnits units;  ///< As PointStreamFacts::units.
+  /// Some polygon has no heights: then z means nothing of any of them.
+  bool is_flat = false;
 };
 
 /// True where the name tells LandXML: .xml or .landxml, in any case.
 [[nodiscard]] bool is_land_xml(const std::string& path);
 
 /// Hands every line, or every ring of every polygon, to `take`, in the order of the file. A vertex
-/// has a height always; a ring ends with the vertex that it begins with. Features without a geometry
+/// of a line has a height always, polygons may have none; a ring ends with the vertex that it begins with. Features without a geometry
 /// are passed over. Of LandXML these are the Breaklines and the Boundaries of a surface's SourceData,
 /// with northing before easting; of other files what OGR reads.
 /// @throws Error  not_found, io_error, cancelled
 ///                invalid_argument  not a vector file; no layer fits, or several do; a feature is
-///                                  no line (no polygon), has curves, a vertex without a height, or
+///                                  no line (no polygon), has curves, or a line without heights, or
 ///                                  a number that is not finite; there is no line at all
 [[nodiscard]] LineFileCrs read_line_file(
     const std::string& path, const LineWish& wish,
