@@ -48,6 +48,7 @@ void lay_boundary(Job& job, Workspace& workspace) {
   BoundaryDrape drape(job.lines.rings, points);
   LineSet laid = drape.lay(job.options.max_edge, job.memory.lines / kBytesOfLineVertex,
                            job.resources.stop, job.stage("laying the boundary"));
+  job.lines.breaklines = drape.divided_lines();
   job.lines.rings = std::move(laid);
   job.lines.rings_are_flat = false;
 }

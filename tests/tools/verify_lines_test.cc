@@ -97,6 +97,21 @@ TEST_F(VerifyLines, FindsEveryLineWithinTheErrors) {
   }
 }
 
+TEST_F(VerifyLines, HoldsPointsAgainstABoundaryWithoutHeights) {
+  write_file(lines(), csv({"LINESTRING Z (20.25 30.5 90,380.75 310.5 70.25)"}));
+  write_file(area(), csv({"POLYGON ((50 -20,450 100,395 385.5,210 330,-8 300,50 -20),"
+                          "(250 60,350 65,320 130,250 60))"}));
+  const std::vector<std::string> options = {"--breaklines", lines(), "--boundary", area()};
+  const Outcome built = build(options);
+  ASSERT_EQ(built.status, 0) << built.err;
+  const Outcome verified = verify(options);
+  EXPECT_EQ(verified.status, 0) << verified.out;
+  // Another boundary leaves out points that the terrain has.
+  write_file(folder_.file("other.csv"), csv({"POLYGON ((50 -20,450 100,210 330,-8 300,50 -20))"}));
+  const Outcome other = verify({"--breaklines", lines(), "--boundary", folder_.file("other.csv")});
+  EXPECT_EQ(other.status, 1) << other.out << other.err;
+}
+
 TEST_F(VerifyLines, IsForPoints) {
   write_file(folder_.file("mesh.obj"), "v 0 0 1\nv 9 0 1\nv 0 9 1\nf 1 2 3\n");
   const Outcome tin =

@@ -9,12 +9,11 @@
 #include <cmath>
 #include <cstdio>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 
-#include "engine/construct/delaunay/tile_delaunay.h"
 #include "engine/error.h"
 #include "engine/geometry/box.h"
+#include "engine/geometry/infinity.h"
 #include "engine/geometry/orient.h"
 #include "engine/geometry/rounding.h"
 
@@ -78,7 +77,8 @@ BoundaryDrape::BoundaryDrape(const LineSet& rings, const PointBuckets& points)
   boxes_ = PackedBoxes(std::move(boxes));
 }
 
-void BoundaryDrape::add(const Tin& tin) {
+void BoundaryDrape::add(const DelaunayTile& part) {
+  const Tin& tin = part.tin;
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
     if (tin.classes[t] != TriangleClass::kSurface) {
       continue;
@@ -88,14 +88,15 @@ void BoundaryDrape::add(const Tin& tin) {
       box = united(box, tin.position(v));
     }
     boxes_.visit([&](const GridBox& b) { return meets(b, box); },
-                 [&](std::size_t side) { add(tin, t, static_cast<std::uint32_t>(side)); });
+                 [&](std::size_t side) { add(part, t, static_cast<std::uint32_t>(side)); });
   }
 }
 
 /// Clips one side at one triangle.
-void BoundaryDrape::add(const Tin& tin, TriangleId t, std::uint32_t number) {
+void BoundaryDrape::add(const DelaunayTile& part, TriangleId t, std::uint32_t number) {
+  const Tin& tin = part.tin;
   const Side& side = sides_[number];
-  double begin = 0.0, end = 1.0;
+  Stretch s{number, 0.0, 1.0};
   for (int i = 0; i < 3; ++i) {
     GridPoint a = tin.position(tin.triangles[t].v[next_corner(i)]);
     GridPoint b = tin.position(tin.triangles[t].v[previous_corner(i)]);
@@ -109,37 +110,130 @@ void BoundaryDrape::add(const Tin& tin, TriangleId t, std::uint32_t number) {
     if (starts_out && ends_out) {
       return;
     }
-    if (starts_out) {
-      begin = std::max(begin, from / (from - to));
-    } else if (ends_out) {
-      end = std::min(end, from / (from - to));
+    const bool is_line = !part.fixed_sides.empty() && (part.fixed_sides[t] >> i & 1) != 0;
+    const double share = from / (from - to);
+    if (starts_out && share > s.begin) {
+      s.begin = share;
+      s.begins_at_line = is_line;
+    } else if (ends_out && share < s.end) {
+      s.end = share;
+      s.ends_at_line = is_line;
     }
   }
-  if (end - begin > tolerance_of(side.from, side.to)) {
-    stretches_.push_back({number, begin, end, height_in(tin, t, rounded(side.from, side.to, begin)),
-                          height_in(tin, t, rounded(side.from, side.to, end))});
+  if (s.end - s.begin > tolerance_of(side.from, side.to)) {
+    s.height_at_begin = height_in(tin, t, side, s.begin);
+    s.height_at_end = height_in(tin, t, side, s.end);
+    if (s.begins_at_line) {
+      note_crossing(side, s.begin);
+    }
+    if (s.ends_at_line) {
+      note_crossing(side, s.end);
+    }
+    stretches_.push_back(s);
   }
 }
 
-/// The height of a triangle's plane at a grid point in it, or within rounding of it: on a corner
-/// that of the vertex, so that a ring meets points and breaklines at their own heights.
-double BoundaryDrape::height_in(const Tin& tin, TriangleId t, GridPoint p) const {
+void BoundaryDrape::note_crossing(const Side& side, double share) {
+  const auto between = [&](std::int32_t a, std::int32_t b) {
+    return a + share * (static_cast<double>(b) - a);
+  };
+  crossings_.push_back({rounded(side.from, side.to, share),
+                        {between(side.from.x, side.to.x), between(side.from.y, side.to.y)}});
+}
+
+/// The fixed edge that a point lies on, or nearest to; FixedEdges has one at least.
+std::uint32_t BoundaryDrape::edge_at(MapPoint p) const {
+  const FixedEdges& fixed = points_.fixed_edges();
+  const GridBox box{
+      static_cast<std::int32_t>(std::floor(p.x)), static_cast<std::int32_t>(std::floor(p.y)),
+      static_cast<std::int32_t>(std::ceil(p.x)), static_cast<std::int32_t>(std::ceil(p.y))};
+  std::uint32_t nearest = 0;
+  double least = kInfinity;
+  fixed.visit([&](const GridBox& b) { return meets(b, box); },
+              [&](std::uint32_t e) {
+                const GridPoint a = fixed.vertices()[fixed.edges()[e].a].position;
+                const GridPoint b = fixed.vertices()[fixed.edges()[e].b].position;
+                const double ux = static_cast<double>(b.x) - a.x,
+                             uy = static_cast<double>(b.y) - a.y;
+                const double px = p.x - a.x, py = p.y - a.y;
+                const double t = std::clamp((px * ux + py * uy) / (ux * ux + uy * uy), 0.0, 1.0);
+                const double away = std::hypot(px - t * ux, py - t * uy);
+                if (away < least || (away == least && e < nearest)) {
+                  least = away;
+                  nearest = e;
+                }
+              });
+  return nearest;
+}
+
+LineSet BoundaryDrape::divided_lines() const {
+  const FixedEdges& fixed = points_.fixed_edges();
   const HeightEncoding& heights = points_.frame().heights;
-  GridPoint c[3];
+  std::vector<std::pair<std::uint32_t, GridPoint>> cuts;
+  cuts.reserve(crossings_.size());
+  for (const LineCrossing& c : crossings_) {
+    cuts.emplace_back(edge_at(c.exact), c.place);
+  }
+  const auto along = [&](const std::pair<std::uint32_t, GridPoint>& cut) {
+    const GridPoint a = fixed.vertices()[fixed.edges()[cut.first].a].position;
+    return std::hypot(static_cast<double>(cut.second.x) - a.x,
+                      static_cast<double>(cut.second.y) - a.y);
+  };
+  std::sort(cuts.begin(), cuts.end(), [&](const auto& one, const auto& other) {
+    return std::tuple(one.first, along(one), key_of(one.second)) <
+           std::tuple(other.first, along(other), key_of(other.second));
+  });
+  LineSet lines;
+  std::size_t next = 0;
+  for (std::uint32_t e = 0; e < fixed.edges().size(); ++e) {
+    const LineEdge& edge = fixed.edges()[e];
+    const auto put_end = [&](std::uint32_t v) {
+      lines.vertices.push_back(
+          source_point({fixed.vertices()[v].position, heights.height(points_.fixed_height(v))}));
+    };
+    put_end(edge.a);
+    for (; next < cuts.size() && cuts[next].first == e; ++next) {
+      const GridPoint p = cuts[next].second;
+      const bool is_end =
+          p == fixed.vertices()[edge.a].position || p == fixed.vertices()[edge.b].position;
+      const bool is_again = next > 0 && cuts[next - 1] == cuts[next];
+      if (!is_end && !is_again) {
+        lines.vertices.push_back(source_point({p, height_at_.at(key_of(p))}));
+      }
+    }
+    put_end(edge.b);
+    lines.ends.push_back(lines.vertices.size());
+  }
+  return lines;
+}
+
+/// The height of a triangle where a side is so far along; where that rounds to a corner the height of
+/// the vertex, so that a ring meets points and breaklines at their own heights.
+double BoundaryDrape::height_in(const Tin& tin, TriangleId t, const Side& side,
+                                double share) const {
+  const HeightEncoding& heights = points_.frame().heights;
+  const GridPoint place = rounded(side.from, side.to, share);
+  MapPoint c[3];
   double code[3];
   for (int i = 0; i < 3; ++i) {
     const VertexId v = tin.triangles[t].v[i];
-    c[i] = tin.position(v);
+    const GridPoint p = tin.position(v);
     code[i] = heights.code(tin.vertices[v].height);
-    if (c[i] == p) {
+    if (p == place) {
       return heights.height_of_code(code[i]);
     }
+    // From the crossing, so that little is lost where differences are small.
+    c[i] = {(p.x - side.from.x) - share * (static_cast<double>(side.to.x) - side.from.x),
+            (p.y - side.from.y) - share * (static_cast<double>(side.to.y) - side.from.y)};
   }
-  double sum = 0.0;
+  double sum = 0.0, area = 0.0;
   for (int i = 0; i < 3; ++i) {
-    sum += code[i] * static_cast<double>(orient(c[next_corner(i)], c[previous_corner(i)], p));
+    const MapPoint &p = c[next_corner(i)], &q = c[previous_corner(i)];
+    const double weight = std::max(0.0, p.x * q.y - p.y * q.x);
+    sum += code[i] * weight;
+    area += weight;
   }
-  const double height = heights.height_of_code(sum / static_cast<double>(orient(c[0], c[1], c[2])));
+  const double height = heights.height_of_code(sum / area);
   const double quantum = points_.frame().height_quantum;
   return std::round(height / quantum) * quantum;
 }
@@ -151,10 +245,12 @@ void BoundaryDrape::put_side(std::uint32_t number, std::size_t& next,
                              std::vector<Vertex3>& ring) const {
   const Side& side = sides_[number];
   const double one = tolerance_of(side.from, side.to);
-  const auto put = [&](double share, std::optional<double> height) {
+  const auto put = [&](double share, std::optional<double> height, bool on_line = false) {
     const GridPoint p = rounded(side.from, side.to, share);
     if (ring.empty() || ring.back().position != p) {
-      ring.push_back({p, height});
+      ring.push_back({p, height, on_line});
+    } else if (on_line && ring.back().height) {
+      ring.back() = {p, height, true};
     }
   };
   double done = 0.0;
@@ -168,10 +264,10 @@ void BoundaryDrape::put_side(std::uint32_t number, std::size_t& next,
       put((done + s.begin) / 2.0, std::nullopt);
     }
     if (s.begin > done + one || done == 0.0) {
-      put(s.begin, s.height_at_begin);
+      put(s.begin, s.height_at_begin, s.begins_at_line);
     }
     if (s.end > done + one) {
-      put(s.end, s.height_at_end);
+      put(s.end, s.height_at_end, s.ends_at_line);
       done = s.end;
     }
   }
@@ -187,11 +283,34 @@ SourcePoint BoundaryDrape::source_point(const Vertex3& v) const {
           with_decimals(v.height.value_or(0.0), frame.height_quantum)};
 }
 
+/// Closes a ring. Where several vertices fall together the height of a fixed edge stands, or else
+/// that of the first.
+void BoundaryDrape::add_ring(std::vector<Vertex3>& ring, LineSet& to) {
+  if (ring.back().position != ring.front().position) {
+    ring.push_back(ring.front());
+  }
+  for (const bool on_line : {true, false}) {
+    for (const Vertex3& v : ring) {
+      if (v.height && v.on_line == on_line) {
+        height_at_.try_emplace(key_of(v.position), *v.height);
+      }
+    }
+  }
+  for (Vertex3& v : ring) {
+    if (v.height) {
+      v.height = height_at_.at(key_of(v.position));
+    }
+    to.vertices.push_back(source_point(v));
+    to.has_ground.push_back(v.height ? 1 : 0);
+  }
+  to.ends.push_back(to.vertices.size());
+}
+
 LineSet BoundaryDrape::lay(std::optional<double> longest_edge, std::uint64_t most_vertices,
                            const std::stop_token& stop, const Progress& progress) {
   DelaunayTiler tiler(points_, longest_edge);
   for (std::uint64_t first = 0; first < points_.size(); first += kPartPoints) {
-    add(tiler.make(first, std::min(kPartPoints, points_.size() - first), stop).tin);
+    add(tiler.make(first, std::min(kPartPoints, points_.size() - first), stop));
     if (stretches_.size() > most_vertices) {
       throw Error(ErrorCode::resource_exhausted,
                   "the boundary crosses more than " + std::to_string(most_vertices) +
@@ -207,7 +326,7 @@ LineSet BoundaryDrape::lay(std::optional<double> longest_edge, std::uint64_t mos
            std::tie(b.side, b.begin, b.end, b.height_at_begin, b.height_at_end);
   });
   LineSet laid;
-  std::unordered_map<VertexKey, double> height_at;  // one for each position
+  height_at_.clear();
   std::size_t next = 0;
   std::uint32_t side = 0;
   for (const std::uint32_t end : ends_) {
@@ -215,20 +334,9 @@ LineSet BoundaryDrape::lay(std::optional<double> longest_edge, std::uint64_t mos
     for (; side < end; ++side) {
       put_side(side, next, ring);
     }
-    if (ring.empty()) {
-      continue;
+    if (!ring.empty()) {
+      add_ring(ring, laid);
     }
-    if (ring.back().position != ring.front().position) {
-      ring.push_back(ring.front());
-    }
-    for (Vertex3& v : ring) {
-      if (v.height) {
-        v.height = height_at.try_emplace(key_of(v.position), *v.height).first->second;
-      }
-      laid.vertices.push_back(source_point(v));
-      laid.has_ground.push_back(v.height ? 1 : 0);
-    }
-    laid.ends.push_back(laid.vertices.size());
   }
   return laid;
 }

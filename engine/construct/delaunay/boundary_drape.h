@@ -7,8 +7,10 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <unordered_map>
 #include <vector>
 
+#include "engine/construct/delaunay/tile_delaunay.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/point_buckets.h"
 #include "engine/geometry/packed_boxes.h"
@@ -37,6 +39,9 @@ class BoundaryDrape {
   /// Cost: the triangulation, and the crossings.
   [[nodiscard]] LineSet lay(std::optional<double> longest_edge, std::uint64_t most_vertices,
                             const std::stop_token& stop, const Progress& progress = {});
+  /// After lay(): the breaklines of the points, edge by edge, divided where rings cross them. A ring's
+  /// vertex there is off the line by what rounding to the grid moves it, and could miss it else.
+  [[nodiscard]] LineSet divided_lines() const;
 
  private:
   /// A side of a ring.
@@ -48,16 +53,27 @@ class BoundaryDrape {
     std::uint32_t side = 0;
     double begin = 0.0, end = 0.0;
     double height_at_begin = 0.0, height_at_end = 0.0;
+    bool begins_at_line = false, ends_at_line = false;  ///< At a fixed edge.
+  };
+  /// Where a ring crosses a fixed edge, before and after rounding to the grid.
+  struct LineCrossing {
+    GridPoint place;
+    MapPoint exact;
   };
   struct Vertex3 {
     GridPoint position;
     std::optional<double> height;  ///< None: no ground.
+    bool on_line = false;          ///< On a fixed edge.
   };
 
-  void add(const Tin& tin);
-  void add(const Tin& tin, TriangleId t, std::uint32_t side);
-  [[nodiscard]] double height_in(const Tin& tin, TriangleId t, GridPoint p) const;
+  void add(const DelaunayTile& part);
+  void add(const DelaunayTile& part, TriangleId t, std::uint32_t side);
+  [[nodiscard]] double height_in(const Tin& tin, TriangleId t, const Side& side,
+                                 double share) const;
   void put_side(std::uint32_t side, std::size_t& next, std::vector<Vertex3>& ring) const;
+  void note_crossing(const Side& side, double share);
+  void add_ring(std::vector<Vertex3>& ring, LineSet& to);
+  [[nodiscard]] std::uint32_t edge_at(MapPoint p) const;
   [[nodiscard]] SourcePoint source_point(const Vertex3& v) const;
 
   const LineSet& rings_;
@@ -66,6 +82,8 @@ class BoundaryDrape {
   std::vector<std::uint32_t> ends_;  ///< Of each ring: one past its last side.
   PackedBoxes boxes_;
   std::vector<Stretch> stretches_;
+  std::vector<LineCrossing> crossings_;
+  std::unordered_map<VertexKey, double> height_at_;  ///< One at each position.
 };
 
 }  // namespace ptin
