@@ -112,6 +112,25 @@ TEST_F(VerifyLines, HoldsPointsAgainstABoundaryWithoutHeights) {
   EXPECT_EQ(other.status, 1) << other.out << other.err;
 }
 
+TEST_F(VerifyLines, LeavesOutWhatABoxLeftOutBesideLongerLines) {
+  write_file(lines(), csv({"LINESTRING Z (20.25 30.5 90,380.75 310.5 70.25)"}));
+  ASSERT_EQ(build({"--breaklines", lines(), "--bbox", "100", "100", "250", "220"}).status, 0);
+  const Outcome verified = verify({"--breaklines", lines()});
+  EXPECT_EQ(verified.status, 0) << verified.out;
+}
+
+/// At the crossing both lines are at 259.01501, half a step of the heights, on a grid of thousandths.
+TEST_F(VerifyLines, AgreesOnCrossingsAtHalfAStep) {
+  write_file(points(),
+             "x,y,z\n256.460,742.881,25.95\n-0.004,-0.004,39.88\n"
+             "1009.996,-0.004,8.50\n-0.004,1009.996,34.68\n");
+  write_file(lines(), csv({"LINESTRING Z (330 277 234.25,259 552 267.5)",
+                           "LINESTRING Z (178 615 242.75,405 310 280)"}));
+  ASSERT_EQ(build({"--breaklines", lines()}).status, 0);
+  const Outcome verified = verify({"--breaklines", lines()});
+  EXPECT_EQ(verified.status, 0) << verified.out;
+}
+
 TEST_F(VerifyLines, IsForPoints) {
   write_file(folder_.file("mesh.obj"), "v 0 0 1\nv 9 0 1\nv 0 9 1\nf 1 2 3\n");
   const Outcome tin =

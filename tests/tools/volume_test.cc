@@ -127,6 +127,21 @@ TEST_F(VolumeProgram, TurnsUnitsAndRefusesWhatCannotBeCompared) {
   EXPECT_NE(warned.err.find("CRS of"), std::string::npos) << warned.err;
 }
 
+/// In a CRS in feet, whose unit must not stand in for one that nobody told.
+TEST_F(VolumeProgram, TakesHeightsOfNoUnitForThoseOfTheOtherTerrain) {
+  RasterRecipe untold = recipe([](int column, int) { return 1.0 + column; });
+  untold.epsg = 2263;
+  RasterRecipe metres = untold;
+  metres.unit = "m";
+  const std::string of_none = store("none", untold), in_metres = store("metres", metres);
+  for (const auto& [file, other] : {std::pair{of_none, in_metres}, {in_metres, of_none}}) {
+    const Outcome outcome = run_ptin({"volume", file, "--against", other});
+    EXPECT_NE(outcome.err.find("unit of the heights of " + of_none), std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.out.find("mean  0 metre"), std::string::npos) << outcome.out;
+  }
+}
+
 TEST_F(VolumeProgram, GivesIntervalsAtAnError) {
   const std::string file = testing::built(folder_, "coast_257.tif");
   const json exact = ask({file, "--level", "50"}),

@@ -51,10 +51,14 @@ PanelScales::PanelScales(const PlotUnits& units, double longest, double lowest, 
     : length(longest > 0 ? longest : 1.0), lengths(shown_unit(units.length, length)) {
   heights = {1.0, short_unit(units.height)};
   if (!(lowest <= highest)) return;
-  const double least = std::max(1e-9, 1e-9 * std::max(std::abs(lowest), std::abs(highest)));
+  // Level ground is drawn level, and not what rounding makes of it: at most about 100 times steeper
+  // than it is, and in numbers that are not longer than five digits and a sign.
+  const double largest = std::max(std::abs(lowest), std::abs(highest));
+  const double least = std::max({1e-6, 1e-4 * largest, 0.0025 * length * units.heights_per_length});
   const double range = std::max(highest - lowest, least);
-  low = lowest - 0.12 * range;  // room for the filled ground, and for words above it
-  high = highest + 0.12 * range;
+  const double middle = (lowest + highest) / 2;
+  low = std::min(lowest, middle - range / 2) - 0.12 * range;  // room for the ground, and for words
+  high = std::max(highest, middle + range / 2) + 0.12 * range;
 }
 
 void require_panels(std::size_t count, const std::string& things, const std::string& path) {
@@ -100,7 +104,8 @@ std::string exaggeration_text(const PanelScales& scales, const PlotUnits& units)
   const double pixels_per_length = (kSheetWidth - kLeft - kRight) / scales.length;
   const double factor = pixels_per_height / pixels_per_length * units.heights_per_length;
   const double digit = std::pow(10.0, std::floor(std::log10(factor)) - 1);  // the second
-  return "heights " + short_number(std::round(factor / digit) * digit) + " times exaggerated";
+  return "heights " + short_number(std::round(factor / digit) * digit) +
+         (factor < 1 ? " of their true scale" : " times exaggerated");
 }
 
 Canvas sheet_for(std::size_t panels, const std::string& path, bool overwrite) {

@@ -49,7 +49,8 @@ struct LegendEntry {
 [[nodiscard]] LegendEntry station_entry();
 /// Of the band that a certificate gives.
 [[nodiscard]] LegendEntry deviation_entry(double deviation, const ShownUnit& heights);
-/// How much steeper slopes look than they are: "heights 12 times exaggerated".
+/// How much steeper slopes look than they are: "heights 12 times exaggerated", or "0.5 of their true
+/// scale".
 [[nodiscard]] std::string exaggeration_text(const PanelScales& scales, const PlotUnits& units);
 
 /// A sheet for so many panels, one below the other, and the legend below them.

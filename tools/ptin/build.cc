@@ -475,15 +475,15 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
   app.add_option("--breaklines", options.breaklines,
                  "Points, --repair: lines with heights that become edges of the TIN, from layers "
                  "that OGR\n"
-                 "reads; several files")
+                 "reads or LandXML; several files, behind INPUT")
       ->type_name("FILE");
   app.add_option("--breakline-layer", options.breakline_layer,
                  "Breaklines of this layer, where a file holds several")
       ->type_name("NAME");
   app.add_option("--boundary", options.boundary,
-                 "Points, --repair: polygons with heights outside of which all is void, from a "
-                 "layer that\n"
-                 "OGR reads")
+                 "Points, --repair: polygons outside of which all is void, from a layer that OGR "
+                 "reads or\n"
+                 "LandXML; without heights they are laid on the surface")
       ->type_name("FILE");
   app.add_option("--boundary-layer", options.boundary_layer,
                  "The boundary is this layer, where its file holds several")

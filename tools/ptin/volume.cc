@@ -37,18 +37,21 @@ void warn(const std::string& what, const Context& context) {
   std::fprintf(stderr, "ptin: warning: %s\n", what.c_str());
 }
 
-/// Heights' units of FILE in one of OTHER's. Where nobody knows OTHER's unit, it is FILE's.
-double height_scale(const CrsFacts& file, const CrsFacts& other, const VolumeOptions& options,
+bool knows_height_unit(const CrsFacts& crs) { return crs.vertical_unit != "unknown"; }
+
+/// Heights' units of FILE in one of OTHER's. Where one of the two does not know its unit, it takes
+/// that of the other one.
+double height_scale(CrsFacts& file, const CrsFacts& other, const VolumeOptions& options,
                     const Context& context) {
-  const std::string unit = unit_of_ground(file), of_other = unit_of_ground(other);
-  if (unit != "unknown" && of_other != "unknown") {
+  if (knows_height_unit(file) && knows_height_unit(other)) {
     return ground_of(other).metres_per_height / ground_of(file).metres_per_height;
   }
-  if (unit != of_other) {
+  if (knows_height_unit(file) != knows_height_unit(other)) {
     warn("nothing tells the unit of the heights of " +
-             (unit == "unknown" ? options.terrain.file : options.against) +
+             (knows_height_unit(file) ? options.against : options.terrain.file) +
              "; taken to be that of the other terrain",
          context);
+    if (!knows_height_unit(file)) file.vertical_unit = other.vertical_unit;
   }
   return 1.0;
 }
@@ -180,9 +183,9 @@ int run_volume(const VolumeOptions& options, const Context& context) {
   check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain);
   warn_of_base_error(terrain.store(), options.detail.error, context);
-  const CrsFacts crs = crs_facts(terrain.store());
-  VolumeRequest request = request_of(options, terrain, crs, context);
+  CrsFacts crs = crs_facts(terrain.store());
   std::optional<Terrain> other;
+  double other_height_scale = 1.0;
   if (!options.against.empty()) {
     TerrainOptions of_other = options.terrain;
     of_other.file = options.against;
@@ -190,9 +193,11 @@ int run_volume(const VolumeOptions& options, const Context& context) {
     warn_of_base_error(other->store(), options.detail.error, context);
     const CrsFacts crs_of_other = crs_facts(other->store());
     check_comparable(crs, crs_of_other, options, context);
-    request.other = &*other;
-    request.other_height_scale = height_scale(crs, crs_of_other, options, context);
+    other_height_scale = height_scale(crs, crs_of_other, options, context);
   }
+  VolumeRequest request = request_of(options, terrain, crs, context);
+  request.other = other ? &*other : nullptr;
+  request.other_height_scale = other_height_scale;
   const VolumeResult result = terrain.volume(request);
   if (context.json) {
     print_answer(result, options, terrain, other ? &*other : nullptr, crs);

@@ -109,7 +109,7 @@ void draw_legend(Canvas& canvas, const View& view, const ReliefStyle& style,
   Legend legend;
   legend.bar = std::round(ground / view.ground_per_pixel());
   legend.length = lengths.text(ground);
-  if (!style.by_page && style.high > style.low) {
+  if (!style.by_page && style.high >= style.low) {
     const float range = style.high - style.low;
     const std::string unit = short_unit(height_unit);
     legend.low = (style.any_below ? "< " : "") + height_text(style.low, range, unit);

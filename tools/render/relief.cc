@@ -117,7 +117,13 @@ ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_
       squares += slope.east * slope.east + slope.north * slope.north;
     }
   }
-  if (heights.empty()) return style;
+  if (heights.empty()) {  // level, or no surface at all
+    const bool is_level = lowest <= highest;
+    style.low = is_level ? lowest : 1.0F;
+    style.high = is_level ? lowest : 0.0F;
+    style.any_above = is_level && highest > lowest;
+    return style;
+  }
   std::sort(heights.begin(), heights.end());
   style.low = heights[heights.size() / 200];
   style.high = heights[heights.size() - 1 - heights.size() / 500];

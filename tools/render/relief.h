@@ -13,8 +13,9 @@ namespace ptin::tools {
 
 /// How heights become colours and slopes become shades; chosen from what is visible.
 struct ReliefStyle {
-  float low = 0.0F;   ///< Height of the lowest colour; lower heights have it too.
-  float high = 1.0F;  ///< Height of the highest colour; higher heights have it too.
+  float low = 0.0F;  ///< Height of the lowest colour; lower heights have it too.
+  /// Height of the highest colour; higher heights have it too. Below `low`: there is no surface.
+  float high = 1.0F;
   bool any_below = false, any_above = false;  ///< There are lower or higher heights.
   /// The factor of heights in the shading; more than 1 where the terrain is flat.
   double exaggeration = 1.0;

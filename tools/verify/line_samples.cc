@@ -15,6 +15,7 @@
 #include "engine/geometry/box.h"
 #include "engine/geometry/orient.h"
 #include "engine/stop.h"
+#include "tools/facts/human.h"
 
 namespace ptin::tools {
 
@@ -63,9 +64,9 @@ nlohmann::json options_with(const LineInputs& inputs, const StoreFile& store) {
   const nlohmann::json built = options.value("breaklines", nlohmann::json::array());
   const auto count = static_cast<std::size_t>(built.is_array() ? built.size() : 0);
   if (count != inputs.breaklines.size()) {
-    refuse("this file was built with " + std::to_string(count) + " files of breaklines, and " +
-           std::to_string(inputs.breaklines.size()) +
-           " are given; name all of them behind --breaklines");
+    refuse("this file was built with " + counted(count, "file") + " of breaklines, and " +
+           counted(inputs.breaklines.size(), "file") +
+           " of them given; name all of them behind --breaklines");
   }
   if (options.contains("boundary") != !inputs.boundary.empty()) {
     refuse(inputs.boundary.empty()
@@ -173,12 +174,9 @@ void LineSamples::cross(std::size_t one, std::size_t other) {
     return std::isinf(from) || std::isinf(to) ? kNoHeight : from + t * (to - from);
   };
   const double on_s = static_cast<double>(a) / (static_cast<double>(a) - static_cast<double>(b));
-  const double ux = static_cast<double>(u.b.x) - u.a.x, uy = static_cast<double>(u.b.y) - u.a.y;
-  const double on_u =
-      ((static_cast<double>(x.x) - u.a.x) * ux + (static_cast<double>(x.y) - u.a.y) * uy) /
-      (ux * ux + uy * uy);
-  add_vertex(key_of(x), std::min(height_at(s, on_s), height_at(u, std::clamp(on_u, 0.0, 1.0))),
-             false);
+  const auto c = static_cast<double>(orient(s.a, s.b, u.a));
+  const auto d = static_cast<double>(orient(s.a, s.b, u.b));
+  add_vertex(key_of(x), std::min(height_at(s, on_s), height_at(u, c / (c - d))), false);
   divisions_.emplace_back(one, x);
   divisions_.emplace_back(other, x);
 }

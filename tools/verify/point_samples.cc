@@ -120,6 +120,10 @@ MapPoint PointSamples::grid_point_of(MapPoint p) const {
 
 void PointSamples::add(const std::array<double, 3>& p) {
   if (choices_.nodata && p[2] == *choices_.nodata) return;
+  if (const auto& box = choices_.asked_bbox;
+      box && (p[0] < (*box)[0] || p[1] < (*box)[1] || p[0] > (*box)[2] || p[1] > (*box)[3])) {
+    return;
+  }
   const MapPoint grid = grid_point_of({p[0], p[1]});
   const GridBox& b = facts_.bounds;
   if (grid.x < b.min_x || grid.x > b.max_x || grid.y < b.min_y || grid.y > b.max_y) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/verify/source_samples.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/crs/crs_facts.h"
@@ -69,6 +70,9 @@ SampleChoices choices_of(const StoreFile& store) {
   if (const auto bbox = options.find("bbox");
       bbox != options.end() && bbox->is_array() && bbox->size() == 4) {
     choices.bbox = store.facts().bounds;
+    if (std::all_of(bbox->begin(), bbox->end(), [](const auto& v) { return v.is_number(); })) {
+      choices.asked_bbox = bbox->get<std::array<double, 4>>();
+    }
   }
   return choices;
 }

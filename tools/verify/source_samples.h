@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -33,7 +34,9 @@ struct SampleChoices {
   std::optional<double> nodata;
   std::optional<double> resolution;  ///< Points: the grid's step in CRS units, if it was chosen.
   std::optional<GridBox> bbox;       ///< Samples outside were left out.
-  double void_slope = 0.0;           ///< 0: nothing bounds how far the border of voids moves.
+  /// The box that was asked for, map units: min x, min y, max x, max y.
+  std::optional<std::array<double, 4>> asked_bbox;
+  double void_slope = 0.0;  ///< 0: nothing bounds how far the border of voids moves.
   /// Points: triangles with an edge that is longer on the ground are void.
   std::optional<double> max_edge;
 };

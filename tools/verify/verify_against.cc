@@ -12,6 +12,7 @@
 #include "tools/facts/human.h"
 #include "tools/verify/border_lines.h"
 #include "tools/verify/line_points.h"
+#include "tools/verify/lone_points.h"
 #include "tools/verify/scan_triangle.h"
 #include "tools/verify/sorted_samples.h"
 
@@ -62,6 +63,7 @@ class Verifier {
   [[nodiscard]] std::vector<Finding> findings(const Tin& tin, const SampleWindow& window) const;
   [[nodiscard]] bool is_too_long(GridPoint a, GridPoint b) const;
   void drop_lone_points(SampleWindow& window) const;
+  [[nodiscard]] bool may_be_left_out_as_lone(const SourceSample& sample);
   void judge(const SampleWindow& window, const GridBox& box, const std::vector<Finding>& found,
              double allowed, ToleranceCheck& check);
   [[nodiscard]] std::int64_t margin_of(const GridBox& box) const;
@@ -386,6 +388,10 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
     if (!f.covered || f.open_triangles > 1) {
       fault(&check, std::string(f.covered ? "two triangles overlap at " : "no triangle covers ") +
                         place_text(sample.x, sample.y));
+    } else if (!sample.is_void && !f.in_closed_surface && may_be_left_out_as_lone(sample)) {
+      --check.samples;
+      ++check.void_samples;
+      ++check.lone_samples;
     } else if (sample.is_void ? !f.in_closed_void : !f.in_closed_surface) {
       judge_class(box, sample, allowed, check);
     } else if (!sample.is_void) {
@@ -398,6 +404,19 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
       }
     }
   }
+}
+
+/// A file that left detail out does not have its lone points any more, so drop_lone_points() does not
+/// see them. The points around tell: all within four times the longest edge.
+bool Verifier::may_be_left_out_as_lone(const SourceSample& sample) {
+  if (!choices_.max_edge || facts_.base_error == 0 || source_.lines() != nullptr) return false;
+  const GroundSteps steps = ground_steps(facts_.map, ground_, static_cast<double>(sample.y));
+  const double reach = 4.0 * *choices_.max_edge / std::min(steps.x, steps.y);
+  const GridPoint p{sample.x, sample.y};
+  const SampleWindow around = source_.read(
+      widened(box_of(p), static_cast<std::int64_t>(std::min(std::ceil(reach), double{kGridMax}))));
+  return is_lone_point(p, around.samples,
+                       [this](GridPoint a, GridPoint b) { return is_too_long(a, b); });
 }
 
 void Verifier::judge_class(const GridBox& box, const SourceSample& sample, double allowed,

@@ -183,8 +183,15 @@ void Noding::cross(std::uint32_t one, std::uint32_t other) {
   if (found != by_place_.end()) {
     vertex = found->second;
   } else {
+    const auto from_c = static_cast<double>(orient(a, b, c));
+    const auto from_d = static_cast<double>(orient(a, b, d));
     const double t = static_cast<double>(part) / static_cast<double>(whole);
-    const double on_e = height(e.a) + t * (height(e.b) - height(e.a)), on_f = height_on(f, p);
+    const double u = from_c / (from_c - from_d);
+    const double on_e = height(e.a) + t * (height(e.b) - height(e.a));
+    const double on_f = height(f.a) + u * (height(f.b) - height(f.a));
+    const double bend = std::hypot(a.x + t * (static_cast<double>(b.x) - a.x) - p.x,
+                                   a.y + t * (static_cast<double>(b.y) - a.y) - p.y);
+    graph_.largest_bend = std::max(graph_.largest_bend, bend);
     if (std::abs(on_e - on_f) > rules_.height_step + slope(e) + slope(f)) {
       refuse_heights(p, on_e, on_f);
     }

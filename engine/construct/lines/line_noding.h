@@ -36,6 +36,8 @@ struct LineGraph {
   std::vector<LineVertex> vertices;
   std::vector<LineEdge> edges;
   std::vector<SideWithoutGround> without_ground;  ///< No edges: noding leaves them alone.
+  /// How far the grid position of a crossing is from where the lines cross, at most; grid units.
+  double largest_bend = 0.0;
 };
 
 /// How heights are compared where lines meet, and how a place is told.

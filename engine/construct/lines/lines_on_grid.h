@@ -14,7 +14,8 @@ namespace ptin {
 /// What lines become on a grid.
 struct LinesOnGrid {
   FixedEdges edges;
-  double largest_shift_plan = 0.0;  ///< By which rounding to the grid moved a vertex, CRS units.
+  /// By which rounding to the grid moved a vertex, or a crossing, at most; CRS units.
+  double largest_shift_plan = 0.0;
 };
 
 /// Rounds the vertices of all lines to the grid, and nodes the lines (lines/line_noding.h).

@@ -34,20 +34,6 @@ GDALDatasetUniquePtr open_vector(const std::string& path, const GdalSession& ses
               path);
 }
 
-std::string crs_of(const OGRLayer& layer) {
-  const OGRSpatialReference* srs = const_cast<OGRLayer&>(layer).GetSpatialRef();
-  std::string text;
-  if (srs != nullptr) {
-    char* wkt = nullptr;
-    static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", nullptr};
-    if (srs->exportToWkt(&wkt, kOptions) == OGRERR_NONE && wkt != nullptr) {
-      text = wkt;
-    }
-    CPLFree(wkt);
-  }
-  return text;
-}
-
 /// Takes the lines of one feature after the other.
 class LineFeatures {
  public:
@@ -116,7 +102,8 @@ class LineFeatures {
   [[nodiscard]] Decimal number(double value, const char* role) const {
     if (!(std::abs(value) < 1e15)) {
       refuse_here(std::string("the ") + role + " of a vertex is " +
-                  (std::isnan(value) ? "NaN" : "infinite or 10^15 and more"));
+                  (std::isnan(value) ? "NaN" : "infinite or 10^15 and more") +
+                  "; give it a number, or leave the feature out");
     }
     return decimal_of(value);
   }

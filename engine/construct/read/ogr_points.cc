@@ -86,14 +86,7 @@ OgrPoints::OgrPoints(std::string path, const PointChoice& choice)
     : path_(std::move(path)), layer_(std::make_unique<Layer>()) {
   layer_->open(path_, choice);
   const GdalSession session;
-  if (const OGRSpatialReference* srs = layer_->layer->GetSpatialRef()) {
-    char* wkt = nullptr;
-    static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", nullptr};
-    if (srs->exportToWkt(&wkt, kOptions) == OGRERR_NONE && wkt != nullptr) {
-      facts_.crs = wkt;
-    }
-    CPLFree(wkt);
-  }
+  facts_.crs = crs_of(*layer_->layer);
   if (layer_->layer->TestCapability(OLCFastFeatureCount) != 0) {
     total_ = static_cast<std::uint64_t>(std::max<GIntBig>(layer_->layer->GetFeatureCount(), 0));
   }
