@@ -102,7 +102,7 @@ class Canvas::Impl {
         cairo_(cairo_create(surface_.get()), cairo_destroy) {
     check();
     if (format_ == PictureFormat::kPdf) cairo_scale(cairo_.get(), kPointsInPixel, kPointsInPixel);
-    // Letters are as wide as they are drawn in the file, whatever this machine's settings for its
+    // Letters are as wide as they are drawn in the file, whatever the system's settings for its
     // screen are.
     cairo_font_options_t* const options = cairo_font_options_create();
     cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);

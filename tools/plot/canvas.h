@@ -48,7 +48,7 @@ struct TextStyle {
 
 /// White at first. Coordinates are within a million pixels of the sheet; a caller cuts what is not.
 /// The same calls make the same bytes wherever the fonts are the same, but for a number in an SVG
-/// that counts the sheets of its process. Where a machine has no fonts, Cairo has letters of its own.
+/// that counts the sheets of its process. Where the system has no fonts, Cairo has letters of its own.
 /// Threads: one owner.
 class Canvas {
  public:

@@ -195,15 +195,22 @@ Exported export_pixels(const PartRefiner& refiner, const PixelGrid& grid,
 }
 
 /// The samples of what was exported that the level of detail moved across the border of voids.
-ClassChanges changes_of(const PartRefiner& refiner, const ExportOptions& options,
-                        const CrsFacts& crs) {
+/// None where nothing bounds how far the border moved, or the ground around it does not fit the memory.
+std::optional<ClassChanges> changes_of(const PartRefiner& refiner, const ExportOptions& options,
+                                       const CrsFacts& crs) {
   const StoreFile& store = refiner.terrain().store();
   ClassChangesRequest request;
   request.region = region_of(options.region, store.facts(), crs.wkt);
   request.detail = detail_of(options.detail);
   request.reach = border_reach(store, refiner.detail().certificate().error);
   request.limits = refiner.request().limits;
-  return class_changes(refiner.terrain(), request);
+  if (!std::isfinite(request.reach[0]) || !std::isfinite(request.reach[1])) return std::nullopt;
+  try {
+    return class_changes(refiner.terrain(), request);
+  } catch (const Error& e) {
+    if (e.code() == ErrorCode::resource_exhausted) return std::nullopt;
+    throw;
+  }
 }
 
 PartRequest request_of(const ExportOptions& options, const ExportFormat& format,
@@ -274,7 +281,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   };
   report(0.0);
   // Before anything is published: what may fail for want of memory must leave nothing behind.
-  const ClassChanges changes = changes_of(refiner, options, crs_facts(store));
+  const std::optional<ClassChanges> changes = changes_of(refiner, options, crs_facts(store));
   Exported made;
   if (is_raster) {
     made = export_pixels(refiner, *grid, raster_target(format, options, store), report);

@@ -32,8 +32,8 @@ nlohmann::json json_of(const Exported& made, const StoreFile& store) {
       {"certified_error", certificate.error},
       {"certified_deviation", certificate.deviation},
       {"border_moved_at_most", border_move_json(store, certificate.error)},
-      {"samples_made_void", made.changes.to_void},
-      {"samples_made_surface", made.changes.to_surface},
+      {"samples_made_void", made.changes ? nlohmann::json(made.changes->to_void) : nullptr},
+      {"samples_made_surface", made.changes ? nlohmann::json(made.changes->to_surface) : nullptr},
       {"exact", certificate.complete && store.facts().base_error == 0 && made.rounding == 0},
       {"units", units_json(crs_facts(store))},
       {"bytes", made.bytes},
@@ -55,17 +55,19 @@ nlohmann::json json_of(const Exported& made, const StoreFile& store) {
 }
 
 void print_exported(const Exported& made, const StoreFacts& facts) {
-  const bool has_moved = made.changes.to_void + made.changes.to_surface > 0;
+  const bool may_move = !facts.free_of_voids && !made.certificate.complete;
+  const bool has_moved =
+      may_move && (!made.changes || made.changes->to_void + made.changes->to_surface > 0);
   std::printf("%s: %s, %s, %.2f s; %swithin %s at every sample%s, %s at any point\n",
               made.output.c_str(), size_text(made).c_str(), human_bytes(made.bytes).c_str(),
               made.seconds, made.what == "height" ? "" : (made.what + " of a TIN that is ").c_str(),
               short_number(made.certificate.error).c_str(),
               has_moved ? " (but where voids moved)" : "",
               short_number(made.certificate.deviation).c_str());
-  if (!facts.free_of_voids && !made.certificate.complete) {
+  if (may_move && made.changes) {
     std::printf("  classes  %s became void, %s surface\n",
-                counted(made.changes.to_void, "sample").c_str(),
-                grouped(made.changes.to_surface).c_str());
+                counted(made.changes->to_void, "sample").c_str(),
+                grouped(made.changes->to_surface).c_str());
   }
   if (made.frame) std::printf("  frame  %s\n", frame_text(*made.frame).c_str());
 }

@@ -23,11 +23,11 @@ struct Exported {
   std::string slope_unit;       ///< "degree" or "percent"; of slopes alone.
   std::uint64_t vertices = 0, triangles = 0, cells = 0;
   std::int64_t columns = 0, rows = 0;
-  std::array<double, 2> pixel_size{};  ///< Map units.
-  std::optional<LocalFrame> frame;     ///< Of formats that have one.
-  Certificate certificate;             ///< Of heights, with what pixels are rounded by.
-  double rounding = 0.0;               ///< Of heights to pixels; rasters only.
-  ClassChanges changes;                ///< Of the samples in the region.
+  std::array<double, 2> pixel_size{};   ///< Map units.
+  std::optional<LocalFrame> frame;      ///< Of formats that have one.
+  Certificate certificate;              ///< Of heights, with what pixels are rounded by.
+  double rounding = 0.0;                ///< Of heights to pixels; rasters only.
+  std::optional<ClassChanges> changes;  ///< Of the samples in the region; none: not counted.
   std::uint64_t bytes = 0;
   double seconds = 0.0;
 };

@@ -35,7 +35,10 @@ LocalFrame frame_of(const StoreFacts& facts, const CrsFacts& crs) {
   const MapPoint low = facts.map.to_map(b.min_x, b.min_y);
   const MapPoint high = facts.map.to_map(b.max_x, b.max_y);
   const MapPoint middle{low.x + (high.x - low.x) / 2, low.y + (high.y - low.y) / 2};
-  return {{std::round(middle.x), std::round(middle.y), 0.0}, metres_per_unit_at(middle, crs)};
+  // Whole map units, or some ten metres in degrees.
+  const double unit = crs.geographic ? 1e4 : 1.0;
+  const MapPoint origin{std::round(middle.x * unit) / unit, std::round(middle.y * unit) / unit};
+  return {{origin.x, origin.y, 0.0}, metres_per_unit_at(origin, crs)};
 }
 
 bool has_frame(const std::string& path) { return mesh_format_of(path).make == make_stl; }
@@ -54,7 +57,9 @@ std::string frame_text(const LocalFrame& frame) {
       append_number(text, std::abs(frame.origin[i]));
       text += ')';
     }
-    return frame.scale[i] == 1 ? text : text + " * " + short_number(frame.scale[i]);
+    if (frame.scale[i] == 1) return text;
+    append_number(text += " * ", frame.scale[i]);
+    return text;
   };
   return axis("x", "easting", 0) + ", " + axis("y", "northing", 1) + ", " + axis("z", "height", 2);
 }

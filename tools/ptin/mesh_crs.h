@@ -18,7 +18,7 @@ namespace ptin::tools {
 void set_crs(Mesh& mesh, const CrsFacts& crs, const StoreFacts& facts);
 
 /// The frame of all meshes of a terrain, whatever their window and level of detail, so that they
-/// fit together: its origin is the middle of the terrain in whole map units at height 0, its units
+/// fit together: its origin is the middle of the terrain in whole map units (degrees: 10^-4) at height 0, its units
 /// are metres, by their lengths there.
 [[nodiscard]] LocalFrame frame_of(const StoreFacts& facts, const CrsFacts& crs);
 

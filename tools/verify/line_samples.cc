@@ -31,7 +31,7 @@ double steps_of(Decimal d, double origin, double step) {
                           std::abs(step * std::pow(10.0, digits) - 1.0) < 1e-12 &&
                           std::abs(origin / step - std::round(origin / step)) < 1e-3;
   if (!is_decimal) return std::round((to_double(d) - origin) / step);
-  std::int64_t m = d.mantissa;
+  Wide m = d.mantissa;
   const bool is_negative = m < 0;
   m = is_negative ? -m : m;
   for (; d.decimals > digits + 1; --d.decimals) m /= 10;  // below the digit that decides
@@ -64,9 +64,9 @@ nlohmann::json options_with(const LineInputs& inputs, const StoreFile& store) {
   const nlohmann::json built = options.value("breaklines", nlohmann::json::array());
   const auto count = static_cast<std::size_t>(built.is_array() ? built.size() : 0);
   if (count != inputs.breaklines.size()) {
-    refuse("this file was built with " + counted(count, "file") + " of breaklines, and " +
+    refuse("this file was built with " + counted(count, "file") + " of breaklines, and here " +
            counted(inputs.breaklines.size(), "file") +
-           " of them given; name all of them behind --breaklines");
+           " of them stands behind --breaklines; name all of them");
   }
   if (options.contains("boundary") != !inputs.boundary.empty()) {
     refuse(inputs.boundary.empty()
@@ -117,7 +117,8 @@ void LineSamples::read(const std::string& path, const std::string& layer, bool i
       if (i > 0) pieces_.push_back({place_of(line[i - 1]), p, !is_boundary, is_boundary});
     }
   };
-  const LineWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer, "that layer"};
+  const LineWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer,
+                      "a build with that layer alone"};
   const bool is_flat = read_line_file(path, wish, take, stop).is_flat;
   is_flat_ = is_flat_ || is_flat;
   for (const auto& [key, height] : vertices) add_vertex(key, is_flat ? kNoHeight : height, true);

@@ -6,8 +6,9 @@
 #include "engine/construct/delaunay/boundary_drape.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -43,10 +44,11 @@ GridPoint rounded(GridPoint from, GridPoint to, double share) {
 Decimal with_decimals(double value, double step) {
   const double digits = std::ceil(-std::log10(step) - 1e-9);
   const int decimals = static_cast<int>(std::clamp(digits, 0.0, 9.0));
-  char text[64];
-  const int length = std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  char text[400];
+  const auto [end, status] =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals);
   Decimal number;
-  if (parse_number({text, static_cast<std::size_t>(length)}, number) != NumberKind::kNumber) {
+  if (status != std::errc() || parse_number({text, end}, number) != NumberKind::kNumber) {
     return decimal_of(value);
   }
   return number;
@@ -311,7 +313,7 @@ LineSet BoundaryDrape::lay(std::optional<double> longest_edge, std::uint64_t mos
   DelaunayTiler tiler(points_, longest_edge);
   for (std::uint64_t first = 0; first < points_.size(); first += kPartPoints) {
     add(tiler.make(first, std::min(kPartPoints, points_.size() - first), stop));
-    if (stretches_.size() > most_vertices) {
+    if (stretches_.size() + crossings_.size() > most_vertices) {
       throw Error(ErrorCode::resource_exhausted,
                   "the boundary crosses more than " + std::to_string(most_vertices) +
                       " triangles, which is what a quarter of --memory has room for; give more "

@@ -47,6 +47,8 @@ class Noding {
   void join_edges();
   void meet(std::uint32_t one, std::uint32_t other);
   bool touch(std::uint32_t edge, std::uint32_t vertex, const LineEdge& of);
+  std::uint32_t vertex_at(GridPoint p, double height);
+  [[noreturn]] void refuse_memory() const;
   void cross(std::uint32_t one, std::uint32_t other);
   void divide();
   void sort_all();
@@ -156,8 +158,31 @@ bool Noding::touch(std::uint32_t edge, std::uint32_t vertex, const LineEdge& of)
   if (std::abs(on_edge - height(vertex)) > rules_.height_step + slope(e) + slope(of)) {
     refuse_heights(p, on_edge, height(vertex));
   }
+  if (divisions_.size() >= 4 * rules_.most_vertices) {
+    refuse_memory();
+  }
   divisions_.push_back({edge, vertex});
   return true;
+}
+
+/// The vertex at a position, a new one of this height where there is none.
+std::uint32_t Noding::vertex_at(GridPoint p, double height) {
+  const auto next = static_cast<std::uint32_t>(graph_.vertices.size());
+  const auto [found, is_new] = by_place_.try_emplace(key_of(p), next);
+  if (is_new) {
+    if (next >= rules_.most_vertices) {
+      refuse_memory();
+    }
+    graph_.vertices.push_back({p, rules_.whole_heights ? std::nearbyint(height) : height});
+  }
+  return found->second;
+}
+
+void Noding::refuse_memory() const {
+  throw Error(ErrorCode::resource_exhausted,
+              "breaklines and boundary have more than " + std::to_string(rules_.most_vertices) +
+                  " vertices where they are divided at their crossings, which is what a quarter of "
+                  "--memory has room for; give more --memory, or fewer lines");
 }
 
 /// Notes that two edges that cross divide each other, in a vertex that is new or there already.
@@ -178,27 +203,23 @@ void Noding::cross(std::uint32_t one, std::uint32_t other) {
     return static_cast<std::int32_t>(from + static_cast<std::int64_t>(rounded));
   };
   const GridPoint p{along(a.x, b.x), along(a.y, b.y)};
-  const auto found = by_place_.find(key_of(p));
-  std::uint32_t vertex = 0;
-  if (found != by_place_.end()) {
-    vertex = found->second;
-  } else {
-    const auto from_c = static_cast<double>(orient(a, b, c));
-    const auto from_d = static_cast<double>(orient(a, b, d));
-    const double t = static_cast<double>(part) / static_cast<double>(whole);
-    const double u = from_c / (from_c - from_d);
-    const double on_e = height(e.a) + t * (height(e.b) - height(e.a));
-    const double on_f = height(f.a) + u * (height(f.b) - height(f.a));
-    const double bend = std::hypot(a.x + t * (static_cast<double>(b.x) - a.x) - p.x,
-                                   a.y + t * (static_cast<double>(b.y) - a.y) - p.y);
-    graph_.largest_bend = std::max(graph_.largest_bend, bend);
-    if (std::abs(on_e - on_f) > rules_.height_step + slope(e) + slope(f)) {
-      refuse_heights(p, on_e, on_f);
+  const auto from_c = static_cast<double>(orient(a, b, c));
+  const auto from_d = static_cast<double>(orient(a, b, d));
+  const double t = static_cast<double>(part) / static_cast<double>(whole);
+  const double u = from_c / (from_c - from_d);
+  const double on_e = height(e.a) + t * (height(e.b) - height(e.a));
+  const double on_f = height(f.a) + u * (height(f.b) - height(f.a));
+  const double bend = std::hypot(a.x + t * (static_cast<double>(b.x) - a.x) - p.x,
+                                 a.y + t * (static_cast<double>(b.y) - a.y) - p.y);
+  graph_.largest_bend = std::max(graph_.largest_bend, bend);
+  const std::uint32_t vertex = vertex_at(p, std::min(on_e, on_f));
+  for (const double other_height : {on_f, height(vertex)}) {
+    if (std::abs(on_e - other_height) > rules_.height_step + slope(e) + slope(f)) {
+      refuse_heights(p, on_e, other_height);
     }
-    const double low = std::min(on_e, on_f);
-    vertex = static_cast<std::uint32_t>(graph_.vertices.size());
-    graph_.vertices.push_back({p, rules_.whole_heights ? std::nearbyint(low) : low});
-    by_place_.emplace(key_of(p), vertex);
+  }
+  if (divisions_.size() >= 4 * rules_.most_vertices) {
+    refuse_memory();
   }
   divisions_.push_back({one, vertex});
   divisions_.push_back({other, vertex});
@@ -281,17 +302,18 @@ LineGraph Noding::run() {
   for (std::uint32_t v = 0; v < graph_.vertices.size(); ++v) {
     by_place_.emplace(key_of(at(v)), v);
   }
+  std::uint64_t met = 0;
   for (int round = 0;; ++round) {
     const EdgeBoxes boxes(graph_);
     for (std::uint32_t e = 0; e < graph_.edges.size(); ++e) {
-      if (e % kStopInterval == 0) {
-        stop_if_asked(stop_, "joining breaklines");
-      }
       const GridBox box = united(box_of(at(graph_.edges[e].a)), at(graph_.edges[e].b));
       boxes.visit([&](const GridBox& other) { return meets(box, other); },
                   [&](std::uint32_t f) {
                     if (f > e) {
                       meet(e, f);
+                    }
+                    if (++met % kStopInterval == 0) {
+                      stop_if_asked(stop_, "joining breaklines");
                     }
                   });
     }

@@ -46,6 +46,8 @@ struct NodingRules {
   bool whole_heights = false;   ///< Heights are codes: those of crossings are rounded.
   double height_of_unit = 1.0;  ///< What one unit of LineVertex::height is in the height's unit.
   AffineMap map;                ///< For messages.
+  /// What there is memory for, crossings included.
+  std::uint64_t most_vertices = UINT32_MAX - 1;
 };
 
 /// Divides lines until their edges have nothing in common but ends, and joins what falls together:
@@ -53,7 +55,8 @@ struct NodingRules {
 ///   lowest stands;
 /// - a vertex inside of an edge divides it; its height stands;
 /// - where two edges cross, both get a vertex at the grid position nearest to the crossing, with the
-///   lower of their two heights, or go through the vertex that is there already. This moves edges by
+///   lower of their two heights, or go through the vertex that is there already, at its height, which
+///   must be theirs in the same sense. This moves edges by
 ///   at most half a grid unit in x and in y, which may make new crossings: they are treated in turn,
 ///   until there are none;
 /// - edges that fall together become one, and of a boundary's two cancel.
@@ -62,6 +65,7 @@ struct NodingRules {
 /// The result does not depend on the order of lines. Vertices and edges are sorted by position.
 /// @throws Error  invalid_argument  heights differ where lines meet (the message names the place and
 ///                                  both heights); lines cross without end within a grid unit
+///                resource_exhausted  more vertices than the rules allow
 ///                cancelled
 /// Cost: O(n log n + meetings) a round; mostly two or three rounds.
 [[nodiscard]] LineGraph node_lines(LineGraph&& lines, const NodingRules& rules,

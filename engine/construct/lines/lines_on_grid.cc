@@ -55,6 +55,7 @@ LinesOnGrid put_on_grid(const SourceLines& lines, const PointGrid& grid,
   rules.height_of_unit = grid.whole ? grid.heights.unit() : 1.0;
   rules.height_step = grid.whole ? 1.0 : grid.heights.unit();
   rules.map = grid.map();
+  rules.most_vertices = lines.most_vertices;
   LineGraph noded = node_lines(std::move(graph), rules, stop);
   const double bend = noded.largest_bend * std::max(rules.map.step_x, rules.map.step_y);
   result.largest_shift_plan = std::max(result.largest_shift_plan, bend);

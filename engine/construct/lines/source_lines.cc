@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/lines/source_lines.h"
 
+#include <algorithm>
+
 #include "engine/construct/read/line_file.h"
 #include "engine/error.h"
 #include "engine/memory_units.h"
@@ -58,6 +60,8 @@ SourceLines read_source_lines(const LineChoice& choice, std::uint64_t most_bytes
          lines.rings);
   }
   keeper.require_room();
+  lines.most_vertices =
+      std::min<std::uint64_t>(most_bytes / kBytesOfLineVertex, lines.most_vertices);
   return lines;
 }
 

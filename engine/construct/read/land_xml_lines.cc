@@ -31,7 +31,8 @@ class LandXmlLines final : public LandXmlElements {
   LineFileCrs read() {
     parse();
     if (lines_ == 0) {
-      refuse(std::string("there is no ") + element_ + " with a PntList3D in " +
+      refuse(std::string("there is no ") + element_ + " with a PntList3D " +
+                 (wants_areas() ? "or PntList2D in " : "in ") +
                  (wish_.layer.empty() ? "this file" : "the surface '" + wish_.layer + "'") +
                  (surfaces_.empty() ? "" : "; its surfaces are " + surfaces_),
              in_.path());

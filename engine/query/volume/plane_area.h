@@ -35,7 +35,7 @@ struct PositivePart {
 
 /// Integrates over the ground below one grid. Where a step of the grid has the same length
 /// everywhere, integrals are closed forms. In degrees they are those of a rule of degree five (Radon,
-/// 1948; seven points) over facets that span at most two degrees along y: a part in 10^12 off.
+/// 1948; seven points) over facets that span at most two degrees along y: a part in 10^11 off at most.
 /// Threads: immutable.
 class PlaneArea {
  public:

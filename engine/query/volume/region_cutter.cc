@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "engine/error.h"
 #include "engine/query/volume/grid_box.h"
@@ -13,9 +15,23 @@ namespace {
 
 constexpr std::size_t kFewEdges = 12;  // all pairs of them are looked at
 constexpr int kMostHalvings = 40;
+/// Halvings one after the other that leave as many edges: these meet in one place or lie on another.
+constexpr int kMostInVain = 8;
+/// Edges and pairs of edges that are looked at for one piece.
+constexpr std::uint64_t kMostLooks = std::uint64_t{1} << 26;
 
 double cross(MapPoint o, MapPoint a, MapPoint b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+void look(std::uint64_t& looks, std::uint64_t more) {
+  looks += more;
+  if (looks > kMostLooks) {
+    throw Error(
+        ErrorCode::resource_exhausted,
+        "too many sides of the region meet in one place to cut a triangle at them; simplify "
+        "the region there");
+  }
 }
 
 }  // namespace
@@ -33,7 +49,27 @@ RegionCutter::RegionCutter(const Region& region, const AffineMap& map) : region_
     throw Error(ErrorCode::invalid_argument,
                 "a volume is asked of a window or a polygon; a point has no inside");
   }
+  cancel_pairs();
   sort_into_bins();
+}
+
+/// Two edges between the same ends bound nothing, by the even-odd rule.
+void RegionCutter::cancel_pairs() {
+  const auto ends = [](const Edge& e) { return std::tuple(e.low.y, e.low.x, e.high.y, e.high.x); };
+  for (Edge& e : edges_) {
+    if (e.low.y == e.high.y && e.low.x > e.high.x) std::swap(e.low, e.high);
+  }
+  std::sort(edges_.begin(), edges_.end(),
+            [&](const Edge& a, const Edge& b) { return ends(a) < ends(b); });
+  std::vector<Edge> kept;
+  for (const Edge& e : edges_) {
+    if (!kept.empty() && ends(kept.back()) == ends(e)) {
+      kept.pop_back();
+    } else {
+      kept.push_back(e);
+    }
+  }
+  edges_ = std::move(kept);
 }
 
 void RegionCutter::add_ring(std::span<const MapPoint> ring, const AffineMap& map) {
@@ -53,7 +89,12 @@ void RegionCutter::sort_into_bins() {
     low_ = std::min(low_, e.low.y);
     high = std::max(high, e.high.y);
   }
-  const std::size_t bins = std::min<std::size_t>(edges_.size(), std::size_t{1} << 16);
+  // So many that an edge is in six bins on average at most.
+  double heights = 0.0;
+  for (const Edge& e : edges_) heights += e.high.y - e.low.y;
+  const auto count = static_cast<double>(edges_.size());
+  const double most = heights > 0 ? 4.0 * count * ((high - low_) / heights) : 1.0;
+  const auto bins = static_cast<std::size_t>(std::clamp(std::min(most, count), 1.0, 0x1p16));
   bins_per_unit_ = high > low_ ? static_cast<double>(bins) / (high - low_) : 0.0;
   bin_begin_.assign(bins + 1, 0);
   for (Edge& e : edges_) {
@@ -108,22 +149,27 @@ void RegionCutter::cut(const ConvexPiece& piece, std::vector<ConvexPiece>& parts
     parts.push_back(piece);
     return;
   }
-  cut_along(piece, edges_along(e), 0, parts);
+  std::uint64_t looks = 0;
+  cut_along(piece, edges_along(e), {.looks = &looks}, parts);
 }
 
 /// @param along  Edges, among them all that meet the piece's extent along y and lie in it or left of
 ///               it.
-void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, int halvings,
+void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, Halvings done,
                              std::vector<ConvexPiece>& parts) {
   if (piece.is_empty()) return;
   const Extent e = extent_of(piece);
+  look(*done.looks, along.size());
   Edges local, left;
   for (const Edge* edge : along) {
     const bool is_beside = edge->low.y >= e.max_y || edge->high.y <= e.min_y;
     if (is_beside || std::min(edge->low.x, edge->high.x) > e.max_x) continue;
     (std::max(edge->low.x, edge->high.x) < e.min_x ? left : local).push_back(edge);
   }
-  if (local.size() <= kFewEdges || halvings == kMostHalvings) {
+  done.in_vain = local.size() < done.edges ? 0 : done.in_vain + 1;
+  done.edges = local.size();
+  if (local.size() <= kFewEdges || done.all == kMostHalvings || done.in_vain == kMostInVain) {
+    look(*done.looks, local.size() * local.size());
     const std::vector<double> ends = slab_ends(e, local);
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
       cut_in_slab(piece, ends[i], ends[i + 1], local, left, parts);
@@ -139,8 +185,9 @@ void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, int h
   ConvexPiece one = piece, other = piece;
   one.keep_left(a, b);
   other.keep_left(b, a);
-  cut_along(one, local, halvings + 1, parts);
-  cut_along(other, local, halvings + 1, parts);
+  ++done.all;
+  cut_along(one, local, done, parts);
+  cut_along(other, local, done, parts);
 }
 
 /// Where slabs of a piece begin and end, ascending: between them no edge begins, ends or crosses

@@ -27,6 +27,7 @@ class RegionCutter {
   RegionCutter(const Region& region, const AffineMap& map);
 
   /// Appends to `parts` convex pieces without overlap that make up the part of `piece` in the region.
+  /// @throws Error resource_exhausted  too many edges meet in one place
   /// Cost: a look at the piece's box, and on the border the edges near the piece, sorted.
   void cut(const ConvexPiece& piece, std::vector<ConvexPiece>& parts) const;
   /// On the grid, conservative.
@@ -49,12 +50,20 @@ class RegionCutter {
   };
   using Edges = std::vector<const Edge*>;
 
+  /// How often a piece was halved, how often of late in vain, and the edges in it before the last.
+  struct Halvings {
+    int all = 0, in_vain = -1;
+    std::size_t edges = 0;
+    std::uint64_t* looks = nullptr;  ///< What has been looked at for the whole piece.
+  };
+
   static Extent extent_of(const ConvexPiece& piece);
   void add_ring(std::span<const MapPoint> ring, const AffineMap& map);
+  void cancel_pairs();
   void sort_into_bins();
   [[nodiscard]] std::size_t bin_of(double y) const;
   [[nodiscard]] Edges edges_along(const Extent& extent) const;
-  static void cut_along(const ConvexPiece& piece, const Edges& along, int halvings,
+  static void cut_along(const ConvexPiece& piece, const Edges& along, Halvings done,
                         std::vector<ConvexPiece>& parts);
   static std::vector<double> slab_ends(const Extent& extent, const Edges& local);
   static void cut_in_slab(const ConvexPiece& piece, double low, double high, const Edges& local,

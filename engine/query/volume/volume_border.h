@@ -29,8 +29,8 @@ struct BorderLength {
   [[nodiscard]] double area_within(double reach) const;
 };
 
-/// Which edges of the border are counted: those whose box, widened by `reach_x` and `reach_y` grid
-/// units, meets the region.
+/// Which edges of the border are counted: those whose box, widened by `reach` (grid units along x and
+/// y), meets the region.
 struct BorderScope {
   const GridRegion* region = nullptr;  ///< Null: all.
   MapPoint reach;

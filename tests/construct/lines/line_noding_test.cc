@@ -78,6 +78,32 @@ TEST(LineNoding, CrossingLinesOfTwoHeightsAreRefusedWithPlaceAndHeights) {
   EXPECT_NE(message.find("at 50 50 with two heights, 100 and 120"), std::string::npos) << message;
 }
 
+/// At (10.3, 0.1), a third of a unit from the end of the second line at (10, 0).
+TEST(LineNoding, CrossingsThatRoundToAVertexOfAnotherHeightAreRefused) {
+  const auto crossed_at = [](double height) {
+    return refusal_of({{{{0, -3}, 5}, {{20, 3}, 5}},
+                       {{{10, 0}, height}, {{13, 1}, height}, {{13, -30}, height}}});
+  };
+  EXPECT_EQ(crossed_at(6.0), "");
+  EXPECT_NE(crossed_at(50.0).find("with two heights, 5 and 50"), std::string::npos);
+}
+
+TEST(LineNoding, TakesNoMoreVerticesThanThereIsMemoryFor) {
+  std::vector<Line> comb;
+  for (int i = 0; i < 30; ++i) {
+    comb.push_back({{{i, -1}, 5}, {{i, 40}, 5}});
+    comb.push_back({{{-1, i}, 5}, {{40, i}, 5}});
+  }
+  NodingRules rules = whole_rules();
+  rules.most_vertices = 500;
+  try {
+    (void)node_lines(graph_of(comb), rules);
+    FAIL() << "900 crossings fit";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::resource_exhausted) << e.what();
+  }
+}
+
 TEST(LineNoding, HeightsMayDifferByAStepAndByTheRiseOverAGridUnit) {
   const auto crossed_at = [](double height) {
     return refusal_of({{{{0, 50}, 0}, {{100, 50}, 300}}, {{{50, 0}, height}, {{50, 100}, height}}});
