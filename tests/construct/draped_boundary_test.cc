@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/construct/build.h"
+#include "engine/error.h"
 #include "engine/mesh/validate.h"
 #include "engine/query/terrain.h"
 #include "storage/verify.h"
@@ -161,6 +162,64 @@ TEST_F(DrapedBoundary, DoesNotDependOnTilesOrThreads) {
   EXPECT_GT(many.store().record_count(), 0U);
   EXPECT_TRUE(oracle::named_triangles(one.refine({}).tin) ==
               oracle::named_triangles(many.refine({}).tin));
+}
+
+/// Whole metres, so that gaps, crossings and corners often round to one place.
+TEST(DrapedBoundaryOnACoarseGrid, TellsInsideFromOutsideWithBreaklinesAndGaps) {
+  int built = 0;
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    std::uniform_int_distribution<int> at(0, 40);
+    std::uniform_real_distribution<double> over(-8.0, 48.0);
+    const ScratchFolder folder;
+    std::string points = "x y z\n";
+    for (int i = 0; i < 150; ++i) {
+      points += std::to_string(at(random)) + " " + std::to_string(at(random)) + " 7\n";
+    }
+    oracle::write_text(folder.file("points.xyz"), points);
+    Ring ring;
+    for (int i = 0; i < 4; ++i) ring.push_back({over(random), over(random)});
+    ring.push_back(ring.front());
+    oracle::write_text(folder.file("area.csv"), wkt_of({ring}));
+    oracle::write_text(
+        folder.file("lines.csv"),
+        "id,WKT\n1,\"LINESTRING Z (3 5 7,35 " + std::to_string(at(random)) + " 7,20 38 7)\"\n");
+    BuildOptions options;
+    options.max_edge = 6.0;
+    options.resolution = 1.0;
+    options.breaklines = {folder.file("lines.csv")};
+    options.boundary = folder.file("area.csv");
+    try {
+      build({folder.file("points.xyz")}, folder.file("t.ptin"), options, {});
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::invalid_argument) << e.what();  // too few points inside
+      continue;
+    }
+    ++built;
+    const Terrain terrain = Terrain::open(folder.file("t.ptin"));
+    const RefinedTin full = terrain.refine({});
+    ASSERT_EQ(validate(full.tin), "");
+    const AffineMap& map = terrain.store().facts().map;
+    for (TriangleId t = 0; t < full.tin.triangles.size(); ++t) {
+      if (full.tin.classes[t] == TriangleClass::kVoid) continue;
+      MapPoint corners[3];
+      for (int i = 0; i < 3; ++i) {
+        const GridPoint p = full.tin.position(full.tin.triangles[t].v[i]);
+        corners[i] = map.to_map(p.x, p.y);
+      }
+      for (int i = 0; i < 3; ++i) {  // near each corner too: no triangle reaches across
+        const double x =
+            0.9 * corners[i].x + 0.05 * (corners[(i + 1) % 3].x + corners[(i + 2) % 3].x);
+        const double y =
+            0.9 * corners[i].y + 0.05 * (corners[(i + 1) % 3].y + corners[(i + 2) % 3].y);
+        if (distance({ring}, x, y) > 1.5) {
+          EXPECT_TRUE(is_inside({ring}, x, y)) << x << " " << y;
+        }
+      }
+    }
+  }
+  EXPECT_GT(built, 15);
 }
 
 }  // namespace

@@ -16,7 +16,6 @@
 #include "engine/geometry/box.h"
 #include "engine/geometry/infinity.h"
 #include "engine/geometry/orient.h"
-#include "engine/geometry/rounding.h"
 
 namespace ptin {
 
@@ -56,8 +55,7 @@ Decimal with_decimals(double value, double step) {
 
 }  // namespace
 
-BoundaryDrape::BoundaryDrape(const LineSet& rings, const PointBuckets& points)
-    : rings_(rings), points_(points) {
+BoundaryDrape::BoundaryDrape(const LineSet& rings, const PointBuckets& points) : points_(points) {
   const AffineMap& map = points.frame().map;
   const auto place = [&](const SourcePoint& p) {
     const MapPoint g = map.to_grid({to_double(p.x), to_double(p.y)});
@@ -199,8 +197,9 @@ LineSet BoundaryDrape::divided_lines() const {
       const bool is_end =
           p == fixed.vertices()[edge.a].position || p == fixed.vertices()[edge.b].position;
       const bool is_again = next > 0 && cuts[next - 1] == cuts[next];
-      if (!is_end && !is_again) {
-        lines.vertices.push_back(source_point({p, height_at_.at(key_of(p))}));
+      const auto height = height_at_.find(key_of(p));
+      if (!is_end && !is_again && height != height_at_.end()) {
+        lines.vertices.push_back(source_point({p, height->second}));
       }
     }
     put_end(edge.b);
@@ -244,15 +243,16 @@ double BoundaryDrape::height_in(const Tin& tin, TriangleId t, const Side& side,
 /// goes without ground from one vertex that has some to another, a vertex without stands between.
 /// @param next  The first stretch of the side, and then of the side behind it.
 void BoundaryDrape::put_side(std::uint32_t number, std::size_t& next,
-                             std::vector<Vertex3>& ring) const {
+                             std::vector<RingVertex>& ring) const {
   const Side& side = sides_[number];
   const double one = tolerance_of(side.from, side.to);
   const auto put = [&](double share, std::optional<double> height, bool on_line = false) {
     const GridPoint p = rounded(side.from, side.to, share);
     if (ring.empty() || ring.back().position != p) {
       ring.push_back({p, height, on_line});
-    } else if (on_line && ring.back().height) {
-      ring.back() = {p, height, true};
+    } else if (height && (on_line || !ring.back().height)) {
+      // A gap below a grid unit is none: a side on the ground must stay an edge.
+      ring.back() = {p, height, on_line};
     }
   };
   double done = 0.0;
@@ -278,7 +278,7 @@ void BoundaryDrape::put_side(std::uint32_t number, std::size_t& next,
   }
 }
 
-SourcePoint BoundaryDrape::source_point(const Vertex3& v) const {
+SourcePoint BoundaryDrape::source_point(const RingVertex& v) const {
   const TerrainFrame& frame = points_.frame();
   const MapPoint p = frame.map.to_map(v.position.x, v.position.y);
   return {with_decimals(p.x, frame.map.step_x), with_decimals(p.y, frame.map.step_y),
@@ -287,18 +287,18 @@ SourcePoint BoundaryDrape::source_point(const Vertex3& v) const {
 
 /// Closes a ring. Where several vertices fall together the height of a fixed edge stands, or else
 /// that of the first.
-void BoundaryDrape::add_ring(std::vector<Vertex3>& ring, LineSet& to) {
+void BoundaryDrape::add_ring(std::vector<RingVertex>& ring, LineSet& to) {
   if (ring.back().position != ring.front().position) {
     ring.push_back(ring.front());
   }
   for (const bool on_line : {true, false}) {
-    for (const Vertex3& v : ring) {
+    for (const RingVertex& v : ring) {
       if (v.height && v.on_line == on_line) {
         height_at_.try_emplace(key_of(v.position), *v.height);
       }
     }
   }
-  for (Vertex3& v : ring) {
+  for (RingVertex& v : ring) {
     if (v.height) {
       v.height = height_at_.at(key_of(v.position));
     }
@@ -332,7 +332,7 @@ LineSet BoundaryDrape::lay(std::optional<double> longest_edge, std::uint64_t mos
   std::size_t next = 0;
   std::uint32_t side = 0;
   for (const std::uint32_t end : ends_) {
-    std::vector<Vertex3> ring;
+    std::vector<RingVertex> ring;
     for (; side < end; ++side) {
       put_side(side, next, ring);
     }

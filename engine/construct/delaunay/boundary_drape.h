@@ -27,8 +27,7 @@ class BoundaryDrape {
   using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
   /// @param rings   Without heights.
-  /// @param points  Read with these rings among their lines, so that the grid holds them. Borrowed,
-  ///                as `rings` is.
+  /// @param points  Read with these rings among their lines, so that the grid holds them. Borrowed.
   BoundaryDrape(const LineSet& rings, const PointBuckets& points);
 
   /// Lays the rings on all parts of the full TIN.
@@ -60,7 +59,7 @@ class BoundaryDrape {
     GridPoint place;
     MapPoint exact;
   };
-  struct Vertex3 {
+  struct RingVertex {
     GridPoint position;
     std::optional<double> height;  ///< None: no ground.
     bool on_line = false;          ///< On a fixed edge.
@@ -70,13 +69,12 @@ class BoundaryDrape {
   void add(const DelaunayTile& part, TriangleId t, std::uint32_t side);
   [[nodiscard]] double height_in(const Tin& tin, TriangleId t, const Side& side,
                                  double share) const;
-  void put_side(std::uint32_t side, std::size_t& next, std::vector<Vertex3>& ring) const;
+  void put_side(std::uint32_t side, std::size_t& next, std::vector<RingVertex>& ring) const;
   void note_crossing(const Side& side, double share);
-  void add_ring(std::vector<Vertex3>& ring, LineSet& to);
+  void add_ring(std::vector<RingVertex>& ring, LineSet& to);
   [[nodiscard]] std::uint32_t edge_at(MapPoint p) const;
-  [[nodiscard]] SourcePoint source_point(const Vertex3& v) const;
+  [[nodiscard]] SourcePoint source_point(const RingVertex& v) const;
 
-  const LineSet& rings_;
   const PointBuckets& points_;
   std::vector<Side> sides_;
   std::vector<std::uint32_t> ends_;  ///< Of each ring: one past its last side.
