@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Stars with lifetimes: the triangles that a record's split makes, and the error at which each of
+// them goes (engine/DESIGN.md, section 2.9).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/geometry/height.h"
+#include "engine/geometry/point.h"
+#include "storage/record.h"
+
+namespace ptin {
+
+/// The death of a triangle that no record replaces: it is one of the file's finest TIN.
+inline constexpr float kLivesOn = -std::numeric_limits<float>::infinity();
+
+/// A vertex l_i of the ring around u, and triangle (u, l_i, l_i+1). Of the last corner of an open
+/// ring there is no triangle: `death` is kLivesOn and kVoid is not set.
+struct RingCorner {
+  enum Flag : std::uint8_t {
+    kVoid = 1,      ///< The triangle is void.
+    kNoHeight = 2,  ///< The vertex has no height; `height` is 0.
+  };
+  GridPoint position;
+  HeightBits height = 0;
+  float death = kLivesOn;  ///< Error of the record whose fan the triangle belongs to.
+  std::uint8_t flags = 0;
+  friend bool operator==(const RingCorner&, const RingCorner&) = default;
+};
+
+/// Records, and the star of each. Corners of a ring come counter-clockwise around u. A closed ring
+/// begins at w, so it is w, vl, ..., vr. An open one runs from the next vertex along the border to
+/// the previous one: it is w, vl, ..., vr with kNoRight, and vl, ..., vr, w with kNoLeft. So w, vl,
+/// vr and the classes of (u, w, vl) and (u, vr, w) are there twice, and agree.
+struct StarredRecords {
+  std::vector<VertexSplit> splits;
+  std::vector<RingCorner> corners;      ///< Ring after ring.
+  std::vector<std::uint32_t> ring_end;  ///< Of record i, in `corners`.
+
+  [[nodiscard]] std::size_t size() const noexcept { return splits.size(); }
+  [[nodiscard]] bool empty() const noexcept { return splits.empty(); }
+  [[nodiscard]] std::span<RingCorner> ring(std::size_t i) noexcept {
+    const std::size_t begin = i == 0 ? 0 : ring_end[i - 1];
+    return std::span(corners).subspan(begin, ring_end[i] - begin);
+  }
+  [[nodiscard]] std::span<const RingCorner> ring(std::size_t i) const noexcept {
+    const std::size_t begin = i == 0 ? 0 : ring_end[i - 1];
+    return std::span(corners).subspan(begin, ring_end[i] - begin);
+  }
+  void clear() noexcept {
+    splits.clear();
+    corners.clear();
+    ring_end.clear();
+  }
+};
+
+/// True when the star of a record is all around u: it has as many triangles as corners. Else u is
+/// on the border, and there is one triangle less.
+[[nodiscard]] constexpr bool has_closed_ring(const VertexSplit& r) noexcept {
+  return (r.flags & (VertexSplit::kNoLeft | VertexSplit::kNoRight)) == 0;
+}
+
+}  // namespace ptin
