@@ -22,6 +22,22 @@ struct Attributes {
   friend bool operator==(const Attributes&, const Attributes&) = default;
 };
 
+/// The triangles of a star, or of those of a page or a subtree. A page's or a subtree's are the
+/// union, the largest error and the least death.
+struct StarAttributes {
+  GridBox box;         ///< Of the polygons, grid units, closed.
+  Interval heights;    ///< Codes of the vertices that have one; empty when none has.
+  double error = 0.0;  ///< All triangles live below it; may be +infinity.
+  /// None dies below it; -infinity when one lives on.
+  double death = 0.0;
+  friend bool operator==(const StarAttributes&, const StarAttributes&) = default;
+
+  /// Whether a triangle may live at this error. (-infinity: in the finest TIN.)
+  [[nodiscard]] bool may_live_at(double level) const noexcept {
+    return death <= level && level < error;
+  }
+};
+
 /// A monotone test: once true, it stays true when the arguments grow (engine/DESIGN.md, section
 /// 2.3). The index asks it of nodes and pages, the refinement of records. Implementations are in
 /// engine/query/select/predicate.h. Threads: const, callable from several threads at once.

@@ -2,39 +2,80 @@
 #include "storage/descriptor.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
 namespace ptin {
 
-bool is_sound(const layout::NodeEntry& e, const HeightEncoding& heights) noexcept {
-  return e.min_x >= 0 && e.min_y >= 0 && e.min_x <= e.max_x && e.min_y <= e.max_y &&
-         e.max_x <= kGridMax && e.max_y <= kGridMax && e.error_min <= e.error_max &&
-         e.error_max <= layout::kInfinityBits && e.deviation_max <= layout::kInfinityBits &&
-         !std::isnan(heights.code(e.height_lo)) && !std::isnan(heights.code(e.height_hi));
+namespace {
+
+bool is_on_grid(std::int32_t min_x, std::int32_t min_y, std::int32_t max_x, std::int32_t max_y) {
+  return min_x >= 0 && min_y >= 0 && min_x <= max_x && min_y <= max_y && max_x <= kGridMax &&
+         max_y <= kGridMax;
 }
 
-void Descriptor::add(const GridBox& box, const Interval& heights) noexcept {
-  box_ = united(box_, box);
-  if (!is_empty(heights)) {
-    heights_ = united(heights_, heights);
+Interval joined(const Interval& a, const Interval& b) { return is_empty(b) ? a : united(a, b); }
+
+}  // namespace
+
+HeightInterval no_heights(HeightType type) noexcept {
+  if (type == HeightType::int32) {
+    return {std::bit_cast<HeightBits>(INT32_MAX), std::bit_cast<HeightBits>(INT32_MIN)};
+  }
+  constexpr float kEnd = std::numeric_limits<float>::infinity();
+  return {std::bit_cast<HeightBits>(kEnd), std::bit_cast<HeightBits>(-kEnd)};
+}
+
+bool is_sound(const layout::NodeEntry& e, const HeightEncoding& heights) noexcept {
+  const auto is_number = [&](HeightBits bits) { return !std::isnan(heights.code(bits)); };
+  return is_on_grid(e.min_x, e.min_y, e.max_x, e.max_y) &&
+         is_on_grid(e.star_min_x, e.star_min_y, e.star_max_x, e.star_max_y) &&
+         e.star_min_x >= e.min_x && e.star_min_y >= e.min_y && e.star_max_x <= e.max_x &&
+         e.star_max_y <= e.max_y && e.error_min <= e.error_max && e.error_max <= kShortInfinity &&
+         e.deviation_max <= kShortInfinity && e.death_min <= kMostDeathBits && e.reserved == 0 &&
+         is_number(e.height_lo) && is_number(e.height_hi) && is_number(e.star_height_lo) &&
+         is_number(e.star_height_hi);
+}
+
+void Descriptor::add(const VertexSplit& r, std::span<const RingCorner> ring) noexcept {
+  box_ = united(box_, r.roi);
+  heights_ = joined(heights_, Interval{encoding_.code(r.height_lo), encoding_.code(r.height_hi)});
+  error_max_ = std::max(error_max_, short_bits(r.error));
+  error_min_ = std::min(error_min_, short_bits(r.error));
+  deviation_max_ = std::max(deviation_max_, short_bits(r.deviation));
+  star_box_ = united(star_box_, r.u);
+  if ((r.flags & VertexSplit::kVertexVoid) == 0) {
+    star_heights_ = united(star_heights_, encoding_.code(r.height));
+  }
+  const std::size_t triangles = ring.size() - (has_closed_ring(r) ? 0 : 1);
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    star_box_ = united(star_box_, ring[i].position);
+    if ((ring[i].flags & RingCorner::kNoHeight) == 0) {
+      star_heights_ = united(star_heights_, encoding_.code(ring[i].height));
+    }
+    if (i < triangles) {
+      death_min_ = std::min(death_min_, death_bits(ring[i].death));
+    }
   }
 }
 
-void Descriptor::add(const VertexSplit& r) noexcept {
-  add(r.roi, Interval{encoding_.code(r.height_lo), encoding_.code(r.height_hi)});
-  error_max_ = std::max(error_max_, r.error);
-  error_min_ = std::min(error_min_, r.error);
-  deviation_max_ = std::max(deviation_max_, r.deviation);
+void Descriptor::add(const layout::NodeEntry& e) noexcept {
+  box_ = united(box_, GridBox{e.min_x, e.min_y, e.max_x, e.max_y});
+  star_box_ = united(star_box_, GridBox{e.star_min_x, e.star_min_y, e.star_max_x, e.star_max_y});
+  heights_ = joined(heights_, Interval{encoding_.code(e.height_lo), encoding_.code(e.height_hi)});
+  star_heights_ = joined(
+      star_heights_, Interval{encoding_.code(e.star_height_lo), encoding_.code(e.star_height_hi)});
+  error_max_ = std::max(error_max_, e.error_max);
+  error_min_ = std::min(error_min_, e.error_min);
+  deviation_max_ = std::max(deviation_max_, e.deviation_max);
+  death_min_ = std::min(death_min_, e.death_min);
 }
 
-void Descriptor::add(const layout::NodeEntry& e) noexcept {
-  add(GridBox{e.min_x, e.min_y, e.max_x, e.max_y},
-      Interval{encoding_.code(e.height_lo), encoding_.code(e.height_hi)});
-  error_max_ = std::max(error_max_, layout::to_float(e.error_max));
-  error_min_ = std::min(error_min_, layout::to_float(e.error_min));
-  deviation_max_ = std::max(deviation_max_, layout::to_float(e.deviation_max));
+HeightInterval Descriptor::bits_of(const Interval& heights) const noexcept {
+  return is_empty(heights) ? no_heights(encoding_.type)
+                           : HeightInterval{encoding_.bits(heights.lo), encoding_.bits(heights.hi)};
 }
 
 layout::NodeEntry Descriptor::entry() const noexcept {
@@ -43,15 +84,18 @@ layout::NodeEntry Descriptor::entry() const noexcept {
   e.min_y = box_.min_y;
   e.max_x = box_.max_x;
   e.max_y = box_.max_y;
-  Interval heights = heights_;
-  if (is_empty(heights) && encoding_.type == HeightType::int32) {
-    heights = {INT32_MAX, INT32_MIN};
-  }
-  e.height_lo = encoding_.bits(heights.lo);
-  e.height_hi = encoding_.bits(heights.hi);
-  e.error_max = layout::to_bits(error_max_);
-  e.error_min = layout::to_bits(error_min_);
-  e.deviation_max = layout::to_bits(deviation_max_);
+  e.star_min_x = star_box_.min_x;
+  e.star_min_y = star_box_.min_y;
+  e.star_max_x = star_box_.max_x;
+  e.star_max_y = star_box_.max_y;
+  e.height_lo = bits_of(heights_).lo;
+  e.height_hi = bits_of(heights_).hi;
+  e.star_height_lo = bits_of(star_heights_).lo;
+  e.star_height_hi = bits_of(star_heights_).hi;
+  e.error_max = error_max_;
+  e.error_min = error_min_;
+  e.deviation_max = deviation_max_;
+  e.death_min = death_min_;
   return e;
 }
 

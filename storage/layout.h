@@ -22,7 +22,7 @@ inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'T', 'I', 'N',
 /// What a stream begins with (engine/query/stream/stream_format.h): no store, and told so.
 inline constexpr std::array<std::uint8_t, 8> kStreamMagic = {0x89, 'P',  'T',  'S',
                                                              0x0D, 0x0A, 0x1A, 0x0A};
-inline constexpr std::uint16_t kMajorVersion = 1;
+inline constexpr std::uint16_t kMajorVersion = 2;
 inline constexpr std::uint16_t kMinorVersion = 0;
 
 inline constexpr std::uint32_t kMinPageBytes = 4096;
@@ -86,7 +86,7 @@ static_assert(sizeof(T0Vertex) == 16);
 
 struct T0Triangle {
   std::array<std::uint32_t, 3> v;
-  std::uint32_t is_void;
+  std::uint16_t is_void, death;  ///< Death: 0, or the upper half of the float plus 1.
 };
 static_assert(sizeof(T0Triangle) == 16);
 
@@ -96,63 +96,65 @@ struct ErrorBinEntry {
 };
 static_assert(sizeof(ErrorBinEntry) == 24);
 
-/// Describes a record page (in a leaf) or a node (above).
+/// Describes a page (in a leaf) or a node (above).
 struct NodeEntry {
-  std::int32_t min_x, min_y, max_x, max_y;  //  0
-  std::uint32_t height_lo, height_hi;       // 16  as HeightEncoding
-  std::uint32_t error_max, error_min;       // 24  float
-  std::uint32_t deviation_max;              // 32  float
-  std::uint32_t kind_and_count;  // 36  leaf: records, plus kWidePage for wide ones; above: 0
-  std::uint64_t checksum;        // 40  of the page or node described
+  std::int32_t min_x, min_y, max_x, max_y;                      //  0  of the regions of influence
+  std::int32_t star_min_x, star_min_y, star_max_x, star_max_y;  // 16  of the stars
+  std::uint32_t height_lo, height_hi;                           // 32  saturated, as HeightEncoding
+  std::uint32_t star_height_lo, star_height_hi;                 // 40  of the stars' vertices
+  std::uint16_t error_max, error_min;                           // 48  upper half of a float
+  std::uint16_t deviation_max;                                  // 52
+  std::uint16_t death_min;  // 54  0: a triangle lives on; else plus 1
+  std::uint32_t records;    // 56  on the page; 0 above the leaves
+  std::uint32_t reserved;   // 60  zero
+  std::uint64_t checksum;   // 64  of the page or node described
 };
-static_assert(sizeof(NodeEntry) == 48 && offsetof(NodeEntry, height_lo) == 16 &&
-              offsetof(NodeEntry, checksum) == 40);
-
-inline constexpr std::uint32_t kWidePage = 1U << 16;
+static_assert(sizeof(NodeEntry) == 72 && offsetof(NodeEntry, star_min_x) == 16 &&
+              offsetof(NodeEntry, height_lo) == 32 && offsetof(NodeEntry, error_max) == 48 &&
+              offsetof(NodeEntry, records) == 56 && offsetof(NodeEntry, checksum) == 64);
 
 inline constexpr std::size_t kNodeBytes = 4096;
-inline constexpr std::uint32_t kFanOut = 85;
+inline constexpr std::uint32_t kFanOut = 56;
 
 struct IndexNode {
   std::uint32_t level;    ///< 0 for a leaf.
   std::uint32_t entries;  ///< Entries in use; the others are zero.
   std::uint64_t number;   ///< Within its level.
   std::array<NodeEntry, kFanOut> entry;
+  std::array<std::uint8_t, 48> unused;  ///< Zero.
 };
 static_assert(sizeof(IndexNode) == kNodeBytes && offsetof(IndexNode, entry) == 16);
 
-/// The part that both kinds of record begin with.
-struct RecordHead {
-  std::int32_t min_x, min_y, max_x, max_y;  //  0  roi
-  std::uint32_t height_lo, height_hi;       // 16
-  std::uint32_t error, deviation;           // 24  float
-  std::int32_t x, y;                        // 32  u
-  std::uint32_t height;                     // 40
-  std::uint16_t rank, flags;                // 44
+/// What a page begins with: base and width of each column of numbers (storage/page_columns.h).
+struct PageHeader {
+  std::uint16_t records, ring_bytes;                   //  0
+  std::uint32_t x, y, height;                          //  4  bases
+  std::uint16_t error, deviation, rank;                // 16  bases
+  std::uint16_t death;                                 // 22  base
+  std::uint8_t degree, offset_bits, height_bits;       // 24  bases
+  std::array<std::uint8_t, 16> width;                  // 27  of the columns, bits
+  std::uint8_t death_bits, void_bits, no_height_bits;  // 43  widths in every ring
+  std::array<std::uint8_t, 2> reserved;                // 46  zero
 };
-static_assert(sizeof(RecordHead) == 48 && offsetof(RecordHead, x) == 32 &&
-              offsetof(RecordHead, rank) == 44);
+static_assert(sizeof(PageHeader) == 48 && offsetof(PageHeader, error) == 16 &&
+              offsetof(PageHeader, degree) == 24 && offsetof(PageHeader, width) == 27 &&
+              offsetof(PageHeader, death_bits) == 43);
 
-struct NarrowRecord {
-  RecordHead head;
-  std::array<std::int16_t, 6> reference;  ///< w, vl, vr as offsets (x, y) from u.
-  std::uint32_t spare;                    ///< Zero.
-};
-static_assert(sizeof(NarrowRecord) == 64 && offsetof(NarrowRecord, reference) == 48);
-
-struct WideRecord {
-  RecordHead head;
-  std::array<std::int32_t, 6> reference;
-};
-static_assert(sizeof(WideRecord) == 72 && offsetof(WideRecord, reference) == 48);
+/// The last bytes of a page are zero, so that a number of up to 57 bits is read by one load.
+inline constexpr std::size_t kPageTailBytes = 8;
+/// The most records that a page may hold: one for so many of its bytes.
+inline constexpr std::size_t kLeastRecordBytes = 8;
+/// Records in a run of rings whose place is kept.
+inline constexpr std::uint32_t kRingRun = 16;
+/// The most neighbours of a vertex that a record splits off.
+inline constexpr std::uint32_t kMostDegree = 255;
 
 template <class T>
 inline constexpr bool kIsPlainBytes = std::is_trivially_copyable_v<T>&&
     std::is_standard_layout_v<T>&& std::has_unique_object_representations_v<T>;
 static_assert(kIsPlainBytes<FileHeader> && kIsPlainBytes<SectionEntry> && kIsPlainBytes<T0Vertex> &&
               kIsPlainBytes<T0Triangle> && kIsPlainBytes<ErrorBinEntry> &&
-              kIsPlainBytes<NodeEntry> && kIsPlainBytes<IndexNode> && kIsPlainBytes<NarrowRecord> &&
-              kIsPlainBytes<WideRecord>);
+              kIsPlainBytes<NodeEntry> && kIsPlainBytes<IndexNode> && kIsPlainBytes<PageHeader>);
 
 /// Bits of the largest float that is an error or a deviation: +infinity. Every NaN and every
 /// negative number, -0 too, has larger bits, so one unsigned comparison tells a valid value.

@@ -9,7 +9,9 @@
 #include <type_traits>
 
 #include "engine/error.h"
+#include "engine/geometry/orient.h"
 #include "storage/box_lanes.h"
+#include "storage/short_float.h"
 
 namespace ptin {
 
@@ -30,8 +32,9 @@ class Bounds {
  public:
   explicit Bounds(const layout::NodeEntry& e) : box_(lanes::load<Int4>(&e.min_x)) {
     const auto lane = [](auto bits) { return std::bit_cast<Code>(bits); };
-    least_ = Lanes<Code>{lane(e.height_lo), least_code(), lane(e.error_min), Code{0}};
-    most_ = Lanes<Code>{most_code(), lane(e.height_hi), lane(e.error_max), lane(e.deviation_max)};
+    const auto bound = [&](ShortBits bits) { return lane(layout::to_bits(short_value(bits))); };
+    least_ = Lanes<Code>{lane(e.height_lo), least_code(), bound(e.error_min), Code{0}};
+    most_ = Lanes<Code>{most_code(), lane(e.height_hi), bound(e.error_max), bound(e.deviation_max)};
   }
 
   [[nodiscard]] bool excludes(const VertexSplit& r) const {
@@ -75,18 +78,196 @@ std::size_t first_excluded(const Bounds<Code>& bounds, std::span<const VertexSpl
 
 }  // namespace
 
+RecordPage::RecordPage(std::span<const std::byte> bytes, const HeightEncoding& heights) noexcept
+    : bytes_(bytes), heights_(heights) {
+  layout::PageHeader header;
+  if (bytes.size() >= layout::kMinPageBytes) {
+    std::memcpy(&header, bytes.data(), sizeof header);
+    is_sound_ = columns_.read(header, bytes.size());
+  }
+}
+
+GridBox RecordPage::roi(std::size_t i) const noexcept {
+  // Columns hold at most 32 bits, so sums fit 64. What leaves the grid is cut down to 32 bits, and
+  // lies off the grid still, or is found to be no roi of u.
+  const auto at = [&](PageColumn c) { return static_cast<std::int64_t>(number(c, i)); };
+  const std::int64_t x = at(PageColumn::kX);
+  const std::int64_t y = at(PageColumn::kY);
+  const auto whole = [](std::int64_t v) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, INT32_MIN, INT32_MAX));
+  };
+  return {whole(x - at(PageColumn::kWest)), whole(y - at(PageColumn::kSouth)),
+          whole(x + at(PageColumn::kEast)), whole(y + at(PageColumn::kNorth))};
+}
+
+bool RecordPage::head(std::size_t i, VertexSplit& r) const noexcept {
+  const std::uint64_t x = number(PageColumn::kX, i);
+  const std::uint64_t y = number(PageColumn::kY, i);
+  const std::uint64_t flags = number(PageColumn::kFlags, i);
+  const std::uint64_t rank = number(PageColumn::kRank, i);
+  const std::uint64_t error = number(PageColumn::kError, i);
+  const std::uint64_t deviation = number(PageColumn::kDeviation, i);
+  const std::uint64_t height = number(PageColumn::kHeight, i);
+  const std::uint64_t low = height - number(PageColumn::kBelow, i);  // may wrap around
+  const std::uint64_t high = height + number(PageColumn::kAbove, i);
+  r.roi = roi(i);
+  const bool has_height = (flags & kPageVertexVoid) == 0;
+  const bool has_heights = (flags & kPageNoHeights) == 0;
+  const std::uint64_t border = flags & (kPageNoLeft | kPageNoRight);
+  if (x > kGridMax || y > kGridMax || r.roi.min_x < 0 || r.roi.min_y < 0 ||
+      r.roi.max_x > kGridMax || r.roi.max_y > kGridMax || height > UINT32_MAX || low > UINT32_MAX ||
+      high > UINT32_MAX || error > kShortInfinity || deviation > kShortInfinity ||
+      rank > UINT16_MAX || (has_height && !has_heights) || border == (kPageNoLeft | kPageNoRight)) {
+    return false;
+  }
+  r.u = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+  const auto bits = [&](std::uint64_t ordered) {
+    return height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type);
+  };
+  r.height = has_height ? bits(height) : 0;
+  r.height_lo = bits(low);
+  r.height_hi = bits(high);
+  if (!has_heights) {
+    r.height_lo = no_heights(heights_.type).lo;
+    r.height_hi = no_heights(heights_.type).hi;
+  }
+  r.error = short_value(static_cast<ShortBits>(error));
+  r.deviation = short_value(static_cast<ShortBits>(deviation));
+  r.rank = static_cast<std::uint16_t>(rank);
+  const auto flag = [&](PageFlag from, VertexSplit::Flag to) {
+    return (flags & from) != 0 ? unsigned{to} : 0U;
+  };
+  r.flags = static_cast<std::uint16_t>(flag(kPageNoLeft, VertexSplit::kNoLeft) |
+                                       flag(kPageNoRight, VertexSplit::kNoRight) |
+                                       flag(kPageVertexVoid, VertexSplit::kVertexVoid));
+  return true;
+}
+
+RecordPage::RingShape RecordPage::shape_of(std::size_t i) const noexcept {
+  const auto degree = static_cast<unsigned>(number(PageColumn::kDegree, i));
+  const auto offset_bits = static_cast<unsigned>(number(PageColumn::kOffsetBits, i));
+  const auto height_bits = static_cast<unsigned>(number(PageColumn::kHeightBits, i));
+  return {degree, offset_bits, height_bits, 2 * offset_bits + height_bits + columns_.common_bits()};
+}
+
+/// Finds the ring of record i: from `place`, where that is in the same run and not behind it, else
+/// from the begin of the run. False when the ring cannot be one, or would not lie where rings lie.
+bool RecordPage::find(std::size_t i, const RingShape& shape, RingPlace& place) const noexcept {
+  const std::size_t run = i / layout::kRingRun;
+  if (place.record > i || place.record < run * layout::kRingRun) {
+    place.record = run * layout::kRingRun;
+    place.bit = columns_.run_begin(bytes_.data(), run);
+  }
+  for (; place.record < i; ++place.record) {
+    place.bit += shape_of(place.record).bits();
+  }
+  return shape.degree >= 3 && shape.degree <= layout::kMostDegree && shape.offset_bits <= 32 &&
+         shape.height_bits <= 33 && place.bit + shape.bits() <= columns_.rings_end();
+}
+
+GridPoint RecordPage::corner_position(GridPoint u, const RingShape& shape,
+                                      std::size_t bit) const noexcept {
+  const std::int64_t x = u.x + read_signed_bits(bytes_.data(), bit, shape.offset_bits);
+  const std::int64_t y =
+      u.y + read_signed_bits(bytes_.data(), bit + shape.offset_bits, shape.offset_bits);
+  return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};  // 2^30 + 2^31 at most
+}
+
+bool RecordPage::is_void(const RingShape& shape, std::size_t bit) const noexcept {
+  const layout::PageHeader& h = columns_.header();
+  const std::size_t at = bit + 2 * shape.offset_bits + shape.height_bits + h.death_bits;
+  return read_bits(bytes_.data(), at, h.void_bits) != 0;
+}
+
+bool RecordPage::corner(std::uint32_t height, const RingShape& shape, std::size_t bit,
+                        RingCorner& c) const noexcept {
+  const layout::PageHeader& h = columns_.header();
+  std::size_t at = bit + 2 * shape.offset_bits;
+  const std::int64_t ordered = height + read_signed_bits(bytes_.data(), at, shape.height_bits);
+  at += shape.height_bits;
+  const std::uint64_t stored = read_bits(bytes_.data(), at, h.death_bits);
+  at += h.death_bits;
+  const bool is_void = read_bits(bytes_.data(), at, h.void_bits) != 0;
+  const bool has_height = read_bits(bytes_.data(), at + h.void_bits, h.no_height_bits) == 0;
+  const std::uint64_t death = stored == 0 ? 0 : stored + h.death;
+  if (ordered < 0 || ordered > UINT32_MAX || death > kMostDeathBits) {
+    return false;
+  }
+  c.height = has_height ? height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type) : 0;
+  c.death = death == 0 ? kLivesOn : short_value(static_cast<ShortBits>(death - 1));
+  c.flags = static_cast<std::uint8_t>((is_void ? unsigned{RingCorner::kVoid} : 0U) |
+                                      (has_height ? 0U : unsigned{RingCorner::kNoHeight}));
+  return !std::isnan(heights_.code(c.height));
+}
+
+bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept {
+  const RingShape shape = shape_of(i);
+  if (!head(i, r) || !find(i, shape, place)) {
+    return false;
+  }
+  const bool no_left = (r.flags & VertexSplit::kNoLeft) != 0;
+  const bool no_right = (r.flags & VertexSplit::kNoRight) != 0;
+  const std::size_t last = shape.degree - 1;
+  const auto bit_of = [&](std::size_t k) { return place.bit + k * shape.corner_bits; };
+  r.w = corner_position(r.u, shape, bit_of(no_left ? last : 0));
+  r.vl = corner_position(r.u, shape, bit_of(no_left ? 0 : 1));
+  r.vr = corner_position(r.u, shape, bit_of(no_left ? last - 1 : last));
+  const bool left_void = !no_left && is_void(shape, bit_of(0));
+  const bool right_void = !no_right && is_void(shape, bit_of(no_left ? last - 1 : last));
+  r.flags = static_cast<std::uint16_t>(unsigned{r.flags} |
+                                       (left_void ? unsigned{VertexSplit::kLeftVoid} : 0U) |
+                                       (right_void ? unsigned{VertexSplit::kRightVoid} : 0U));
+  return contains(r.roi, r.w) && contains(r.roi, r.vl) && contains(r.roi, r.vr) && r.w != r.u &&
+         r.vl != r.u && r.vr != r.u;
+}
+
+bool RecordPage::ring(std::size_t i, RingPlace& place, const VertexSplit& r,
+                      std::vector<RingCorner>& out) const {
+  const RingShape shape = shape_of(i);
+  if (!find(i, shape, place)) {
+    return false;
+  }
+  const auto height = static_cast<std::uint32_t>(number(PageColumn::kHeight, i));
+  const std::size_t first = out.size();
+  out.resize(first + shape.degree);
+  const std::span<RingCorner> ring(out.data() + first, shape.degree);
+  bool is_sound = true;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    RingCorner& c = ring[k];
+    const std::size_t bit = place.bit + k * shape.corner_bits;
+    c.position = corner_position(r.u, shape, bit);
+    is_sound &= corner(height, shape, bit, c) && contains(r.roi, c.position) && c.death <= r.error;
+  }
+  const bool is_closed = has_closed_ring(r);
+  for (std::size_t k = is_closed ? 0 : 1; is_sound && k < ring.size(); ++k) {
+    is_sound = orient(r.u, ring[k == 0 ? ring.size() - 1 : k - 1].position, ring[k].position) > 0;
+  }
+  // Behind the last corner of an open ring there is no triangle.
+  return is_sound && (is_closed || (ring.back().death == kLivesOn &&
+                                    (ring.back().flags & RingCorner::kVoid) == 0));
+}
+
 DescribedPage::DescribedPage(const std::string& path, PageId id,
                              const layout::NodeEntry& descriptor, const HeightEncoding& heights,
                              std::uint32_t page_bytes)
     : path_(path), id_(id), descriptor_(descriptor), heights_(heights), page_bytes_(page_bytes) {
-  const bool known =
-      (descriptor.kind_and_count & ~(layout::kWidePage | (layout::kWidePage - 1))) == 0;
-  if (!known || records() == 0 || records() > page_bytes / record_bytes(kind()) ||
+  if (records() == 0 || records() > page_bytes / layout::kLeastRecordBytes ||
       !is_sound(descriptor, heights)) [[unlikely]] {
     throw Error(ErrorCode::corruption,
                 "the descriptor of the page holds values that no program wrote",
                 path + ", page " + std::to_string(index_of(id)));
   }
+}
+
+RecordPage DescribedPage::open(std::span<const std::byte> bytes) const {
+  RecordPage page(bytes, heights_);
+  if (!page.is_sound() || page.records() != records()) [[unlikely]] {
+    throw Error(ErrorCode::corruption,
+                "the page begins with numbers that no program wrote, or that its descriptor "
+                "excludes",
+                path_ + ", page " + std::to_string(index_of(id_)));
+  }
+  return page;
 }
 
 void DescribedPage::report(std::size_t record) const {
@@ -97,15 +278,53 @@ void DescribedPage::report(std::size_t record) const {
 }
 
 void DescribedPage::decode(std::span<const std::byte> bytes, std::vector<VertexSplit>& out) const {
+  const RecordPage page = open(bytes);
   const std::size_t before = out.size();
   out.resize(before + records());
   const std::span<VertexSplit> decoded(out.data() + before, records());
-  std::size_t sound = decode_records(bytes, kind(), decoded);
+  RingPlace place;
+  std::size_t sound = 0;
+  while (sound < decoded.size() && page.split(sound, place, decoded[sound])) {
+    ++sound;
+  }
   sound = std::min(sound, admitted(decoded.first(sound)));
   if (sound < decoded.size()) [[unlikely]] {
     out.resize(before);
     report(sound);
   }
+}
+
+void DescribedPage::decode(std::span<const std::byte> bytes, StarredRecords& out) const {
+  const std::size_t before = out.size();
+  const std::size_t corners = out.corners.size();
+  decode(bytes, out.splits);
+  const RecordPage page = open(bytes);
+  RingPlace place;
+  for (std::size_t i = 0; i < records(); ++i) {
+    const std::size_t begin = out.corners.size();
+    const VertexSplit& r = out.splits[before + i];
+    if (!page.ring(i, place, r, out.corners) || !admits(r, std::span(out.corners).subspan(begin)))
+        [[unlikely]] {
+      out.splits.resize(before);
+      out.corners.resize(corners);
+      out.ring_end.resize(before);
+      report(i);
+    }
+    out.ring_end.push_back(static_cast<std::uint32_t>(out.corners.size()));
+  }
+}
+
+bool DescribedPage::admits(const VertexSplit& r, std::span<const RingCorner> ring) const noexcept {
+  Descriptor own(heights_);
+  own.add(r, ring);
+  const layout::NodeEntry e = own.entry();
+  const layout::NodeEntry& d = descriptor_;
+  const bool has_heights = heights_.code(e.star_height_lo) <= heights_.code(e.star_height_hi);
+  return e.star_min_x >= d.star_min_x && e.star_min_y >= d.star_min_y &&
+         e.star_max_x <= d.star_max_x && e.star_max_y <= d.star_max_y &&
+         e.death_min >= d.death_min &&
+         (!has_heights || (heights_.code(e.star_height_lo) >= heights_.code(d.star_height_lo) &&
+                           heights_.code(e.star_height_hi) <= heights_.code(d.star_height_hi)));
 }
 
 std::size_t DescribedPage::admitted(std::span<const VertexSplit> records) const noexcept {
@@ -117,48 +336,25 @@ std::size_t DescribedPage::admitted(std::span<const VertexSplit> records) const 
 void DescribedPage::decode_matching(std::span<const std::byte> bytes,
                                     const AttributePredicate& predicate,
                                     std::vector<VertexSplit>& out) const {
-  const std::size_t step = record_bytes(kind());
+  const RecordPage page = open(bytes);
+  const GridBox reach = predicate.reach();
   const std::size_t before = out.size();
-  std::array<std::uint16_t, kMostRecords> near;  // NOLINT: written before it is read
-  const std::size_t count = find_near(bytes, predicate.reach(), near);
-  std::size_t matching = 0;  // Counted without branches, as in find_near().
-  for (std::size_t k = 0; k < count; ++k) {
-    layout::RecordHead head;
-    std::memcpy(&head, bytes.data() + near[k] * step, sizeof head);
-    const bool holds = predicate.holds(attributes_of(head, heights_));
-    near[matching] = near[k];
-    matching += holds ? 1 : 0;
-  }
-  out.resize(before + matching);
-  const std::span<VertexSplit> decoded(out.data() + before, matching);
-  std::size_t sound = 0;
-  while (sound < matching &&
-         decode_record(bytes.subspan(near[sound] * step, step), kind(), decoded[sound])) {
-    ++sound;
-  }
-  sound = std::min(sound, admitted(decoded.first(sound)));
-  if (sound < matching) [[unlikely]] {
-    out.resize(before);
-    report(near[sound]);
-  }
-}
-
-/// Lists in `near` the records whose roi meets a box, and returns their number. Without branches,
-/// since it cannot be predicted which records meet it: of the records on a point's pages, one in
-/// three does.
-std::size_t DescribedPage::find_near(std::span<const std::byte> bytes, const GridBox& box,
-                                     std::span<std::uint16_t> near) const noexcept {
-  const std::size_t step = record_bytes(kind());
-  const Int4 ends{box.max_x, box.max_y, box.min_x, box.min_y};
-  const Int4 minima{-1, -1, 0, 0};
-  std::size_t count = 0;
+  RingPlace place;
+  VertexSplit r;
   for (std::uint32_t i = 0; i < records(); ++i) {
-    const auto roi = lanes::load<Int4>(bytes.data() + i * step);
-    const Int4 outside = ((roi > ends) & minima) | ((roi < ends) & ~minima);
-    near[count] = static_cast<std::uint16_t>(i);
-    count += lanes::any(outside) ? 0 : 1;
+    if (!meets(page.roi(i), reach)) {
+      continue;
+    }
+    const bool is_sound = page.head(i, r);
+    if (is_sound && !predicate.holds(attributes_of(r, heights_))) {
+      continue;
+    }
+    if (!is_sound || !page.split(i, place, r) || admitted(std::span(&r, 1)) == 0) [[unlikely]] {
+      out.resize(before);
+      report(i);
+    }
+    out.push_back(r);
   }
-  return count;
 }
 
 }  // namespace ptin

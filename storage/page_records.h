@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The records of one page: from its bytes and its descriptor, each checked.
+// The records of one page and their stars: from its bytes and its descriptor, each checked.
 #pragma once
 
 #include <array>
@@ -11,13 +11,70 @@
 #include <vector>
 
 #include "storage/descriptor.h"
+#include "storage/page_columns.h"
 #include "storage/page_store.h"
-#include "storage/record.h"
+#include "storage/star.h"
 
 namespace ptin {
 
-/// A page as its descriptor describes it. The constructor checks the descriptor: kind and number of
-/// records fit the page, and box, heights and errors are possible.
+/// Where a ring begins, and how to get to the next one without a look at those before it.
+struct RingPlace {
+  std::size_t record = SIZE_MAX;  ///< None yet.
+  std::size_t bit = 0;            ///< In the page.
+};
+
+/// The numbers of a page. Any bytes are safe to ask: an answer of false means that a field cannot
+/// be what was written, and then what was asked for is unspecified.
+class RecordPage {
+ public:
+  /// @param bytes  Borrowed, of a whole page.
+  RecordPage(std::span<const std::byte> bytes, const HeightEncoding& heights) noexcept;
+
+  /// Whether the header of the page can be what was written. REQUIRED by all that follows.
+  [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
+  [[nodiscard]] std::uint32_t records() const noexcept { return columns_.records(); }
+
+  /// The roi of a record. Nothing is checked. REQUIRES, as all that follows: i < records().
+  [[nodiscard]] GridBox roi(std::size_t i) const noexcept;
+  /// As stored: to be compared with short_bits() (storage/short_float.h) of an error.
+  [[nodiscard]] std::uint64_t error_bits(std::size_t i) const noexcept {
+    return number(PageColumn::kError, i);
+  }
+  /// Everything of a record but w, vl, vr and what follows from its ring.
+  [[nodiscard]] bool head(std::size_t i, VertexSplit& r) const noexcept;
+  /// A record. Coordinates are on the grid, u, w, vl and vr differ and lie in the roi.
+  /// @param place  Of a record not behind this one; becomes that of this record.
+  [[nodiscard]] bool split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept;
+  /// Appends the ring of a record whose head is `r`. Its corners lie in the roi, its triangles are
+  /// counter-clockwise, none dies above the error of the record.
+  [[nodiscard]] bool ring(std::size_t i, RingPlace& place, const VertexSplit& r,
+                          std::vector<RingCorner>& out) const;
+
+ private:
+  /// How the corners of a ring are laid out.
+  struct RingShape {
+    unsigned degree, offset_bits, height_bits, corner_bits;
+    [[nodiscard]] std::size_t bits() const noexcept { return std::size_t{degree} * corner_bits; }
+  };
+  [[nodiscard]] std::uint64_t number(PageColumn column, std::size_t i) const noexcept {
+    return columns_.at(bytes_.data(), column, i);
+  }
+  [[nodiscard]] RingShape shape_of(std::size_t i) const noexcept;
+  [[nodiscard]] bool find(std::size_t i, const RingShape& shape, RingPlace& place) const noexcept;
+  [[nodiscard]] GridPoint corner_position(GridPoint u, const RingShape& shape,
+                                          std::size_t bit) const noexcept;
+  [[nodiscard]] bool is_void(const RingShape& shape, std::size_t bit) const noexcept;
+  [[nodiscard]] bool corner(std::uint32_t height, const RingShape& shape, std::size_t bit,
+                            RingCorner& c) const noexcept;
+
+  std::span<const std::byte> bytes_;
+  HeightEncoding heights_;
+  PageColumns columns_;
+  bool is_sound_ = false;
+};
+
+/// A page as its descriptor describes it. The constructor checks the descriptor: the number of
+/// records fits the page, and boxes, heights, errors and deaths are possible.
 class DescribedPage {
  public:
   /// @param path  Borrowed; for messages.
@@ -27,18 +84,19 @@ class DescribedPage {
 
   [[nodiscard]] const layout::NodeEntry& descriptor() const noexcept { return descriptor_; }
   [[nodiscard]] std::uint32_t page_bytes() const noexcept { return page_bytes_; }
-  [[nodiscard]] RecordKind kind() const noexcept {
-    return (descriptor_.kind_and_count & layout::kWidePage) != 0 ? RecordKind::kWide
-                                                                 : RecordKind::kNarrow;
-  }
-  [[nodiscard]] std::uint32_t records() const noexcept {
-    return descriptor_.kind_and_count & (layout::kWidePage - 1);
-  }
+  [[nodiscard]] std::uint32_t records() const noexcept { return descriptor_.records; }
+
+  /// The numbers of the page.
+  /// @throws Error corruption  its header cannot be what was written, or names another number of
+  ///                           records than the descriptor
+  [[nodiscard]] RecordPage open(std::span<const std::byte> bytes) const;
 
   /// Appends all records of the page to `out`. On an error `out` is as before.
   /// @throws Error corruption  a field cannot be what was written, or lies outside of what the
   ///                           descriptor says
   void decode(std::span<const std::byte> bytes, std::vector<VertexSplit>& out) const;
+  /// The same, with the stars.
+  void decode(std::span<const std::byte> bytes, StarredRecords& out) const;
 
   /// Appends the records for which the predicate is true. They are checked as by decode(); of the
   /// other records nothing but the attributes is looked at.
@@ -46,14 +104,14 @@ class DescribedPage {
   void decode_matching(std::span<const std::byte> bytes, const AttributePredicate& predicate,
                        std::vector<VertexSplit>& out) const;
 
+  /// Whether the descriptor admits a star.
+  [[nodiscard]] bool admits(const VertexSplit& r, std::span<const RingCorner> ring) const noexcept;
+  /// @throws Error corruption  always: `record` is not sound
+  [[noreturn]] void report(std::size_t record) const;
+
  private:
   /// The number of records before the first one that the descriptor excludes.
   [[nodiscard]] std::size_t admitted(std::span<const VertexSplit> records) const noexcept;
-  [[nodiscard]] std::size_t find_near(std::span<const std::byte> bytes, const GridBox& box,
-                                      std::span<std::uint16_t> near) const noexcept;
-  [[noreturn]] void report(std::size_t record) const;
-
-  static constexpr std::size_t kMostRecords = layout::kMaxPageBytes / sizeof(layout::NarrowRecord);
 
   const std::string& path_;
   PageId id_;

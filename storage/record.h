@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The vertex-split record, and its two encodings in bytes: narrow and wide (storage/FORMAT.md,
-// "Records").
+// The vertex-split record.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
@@ -46,32 +43,5 @@ struct VertexSplit {
                                               const HeightEncoding& heights) noexcept {
   return {r.roi, {heights.code(r.height_lo), heights.code(r.height_hi)}, r.error, r.deviation};
 }
-
-/// Narrow records hold references as offsets of 2 x int16 from u, wide ones of 2 x int32.
-enum class RecordKind : std::uint8_t { kNarrow = 0, kWide = 1 };
-inline constexpr std::size_t kNarrowRecordBytes = 64;
-inline constexpr std::size_t kWideRecordBytes = 72;
-
-[[nodiscard]] constexpr std::size_t record_bytes(RecordKind kind) noexcept {
-  return kind == RecordKind::kNarrow ? kNarrowRecordBytes : kWideRecordBytes;
-}
-
-/// The smallest kind that holds the references of `r`.
-[[nodiscard]] RecordKind kind_of(const VertexSplit& r) noexcept;
-
-/// Writes `r` to `out` (record_bytes(kind) bytes). REQUIRES: kind_of(r) <= kind.
-void encode_record(const VertexSplit& r, RecordKind kind, std::span<std::byte> out) noexcept;
-
-/// Reads a record. Returns false, and leaves `r` unspecified, when a field cannot be what was
-/// written: coordinates off the grid, an empty or off-grid roi, u, w, vl or vr outside of roi,
-/// unknown flags, a NaN or negative error or deviation. Every byte pattern is safe to pass.
-[[nodiscard]] bool decode_record(std::span<const std::byte> in, RecordKind kind,
-                                 VertexSplit& r) noexcept;
-
-/// Reads `out.size()` records that lie one behind the other in `in`, with the checks of
-/// decode_record(). Returns the number of records before the first that fails them: out.size() when
-/// none fails. That record and those behind it are unspecified in `out`. Cost: about 5 ns a record.
-[[nodiscard]] std::size_t decode_records(std::span<const std::byte> in, RecordKind kind,
-                                         std::span<VertexSplit> out) noexcept;
 
 }  // namespace ptin

@@ -26,6 +26,8 @@ namespace {
 constexpr std::size_t kAxes = 4;
 constexpr int kBinBits = 5;
 constexpr std::size_t kBins = std::size_t{1} << kBinBits;
+// Parts are cut down to so many records. A page holds several such parts, and begins with any.
+constexpr std::size_t kPart = 32;
 constexpr std::size_t kSample = 1024;  // About how many records decide on a cut.
 constexpr std::uint32_t kOctave = 64;  // Steps of error in an octave.
 // An octave of a page's largest error costs as much as this many times the area that each page has
@@ -40,7 +42,7 @@ using lanes::Int4;
 
 /// What decides on the place of a record.
 struct Item {
-  Int4 roi;  ///< min x, min y, -max x, -max y: a union is four minima.
+  Int4 box;  ///< Of the star: min x, min y, -max x, -max y, so that a union is four minima.
   VertexKey key;
   std::uint32_t error;  ///< Steps above the least that is not 0; 0 is an octave below.
   std::uint32_t record;
@@ -54,7 +56,7 @@ std::uint32_t hash_of(VertexKey key) {
 /// The place of a record on an axis: 0 and 1 are x and y of the middle of its box, 2 is its size, 3
 /// its error. Large and coarse records have small numbers.
 std::uint32_t along(const Item& item, std::size_t axis) {
-  const Int4& b = item.roi;
+  const Int4& b = item.box;
   switch (axis) {
     case 0:
       return static_cast<std::uint32_t>(b[0]) - static_cast<std::uint32_t>(b[2]);
@@ -75,8 +77,8 @@ struct Cover {
   std::uint32_t error = 0;
   std::uint32_t records = 0;
 
-  void add(Int4 roi, std::uint32_t most_error, std::uint32_t count) {
-    box = roi < box ? roi : box;
+  void add(Int4 other, std::uint32_t most_error, std::uint32_t count) {
+    box = other < box ? other : box;
     error = std::max(error, most_error);
     records += count;
   }
@@ -89,16 +91,16 @@ struct Cover {
 
 class Cutter {
  public:
-  Cutter(std::span<Item> items, std::size_t a_page) : items_(items), a_page_(a_page) {
+  explicit Cutter(std::span<Item> items) : items_(items) {
     if (items.empty()) {
       return;
     }
     Cover all;
     for (const Item& item : items) {
-      all.add(item.roi, item.error, 1);
+      all.add(item.box, item.error, 1);
     }
     an_area_ = static_cast<double>(kUnit) / static_cast<double>(all.area());
-    const std::uint64_t pages = items.size() / a_page + 1;
+    const std::uint64_t pages = items.size() / kPart + 1;
     error_step_ = std::max<std::uint64_t>((kUnit / pages) * kPagesAnOctave / kOctave, 1);
   }
   void run() { cut(0, items_.size()); }
@@ -119,28 +121,27 @@ class Cutter {
   /// The cost of the pages that hold the records of `c`, each of which stands for `weight` records.
   [[nodiscard]] std::uint64_t cost(const Cover& c, std::uint64_t weight) const {
     const auto area = static_cast<std::uint64_t>(static_cast<double>(c.area()) * an_area_);
-    const std::uint64_t pages = (c.records * weight + a_page_ - 1) / a_page_;
+    const std::uint64_t pages = (c.records * weight + kPart - 1) / kPart;
     return pages * (area + c.error * error_step_);
   }
 
   std::span<Item> items_;
-  std::size_t a_page_;
   std::vector<Item> drawn_;
   double an_area_ = 1.0;
   std::uint64_t error_step_ = 1;
 };
 
 void Cutter::cut(std::size_t begin, std::size_t end) {
-  while (end - begin > a_page_) {
+  while (end - begin > kPart) {
     const Choice choice = choose(begin, end);
-    const std::size_t pages = (end - begin - 1) / a_page_ + 1;
+    const std::size_t pages = (end - begin - 1) / kPart + 1;
     std::size_t first = pages / 2;
     if (choice.is_made) {
       const std::size_t wanted = (end - begin) * choice.before / choice.of;
       const std::size_t least = std::max<std::size_t>(pages / kMostUneven, 1);
-      first = std::clamp((wanted + a_page_ / 2) / a_page_, least, pages - least);
+      first = std::clamp((wanted + kPart / 2) / kPart, least, pages - least);
     }
-    const std::size_t middle = begin + first * a_page_;
+    const std::size_t middle = begin + first * kPart;
     part(begin, middle, end, choice.axis);
     // The call is for the smaller part, so that calls nest log n deep.
     if (middle - begin <= end - middle) {
@@ -188,7 +189,7 @@ Cutter::Choice Cutter::choose(std::size_t begin, std::size_t end) {
     const int fine =
         std::max(static_cast<int>(std::bit_width(high[axis] - low[axis])) - kBinBits, 0);
     for (const Item& item : drawn_) {
-      bins[(along(item, axis) - low[axis]) >> fine].add(item.roi, item.error, 1);
+      bins[(along(item, axis) - low[axis]) >> fine].add(item.box, item.error, 1);
     }
     std::array<Cover, kBins> behind;  // behind[i]: the records of bin i and of all bins behind it.
     Cover sum;
@@ -247,30 +248,26 @@ class ErrorSteps {
 
 }  // namespace
 
-void order_segment(std::span<VertexSplit> records, std::size_t page_bytes) {
+std::vector<std::uint32_t> order_of_segment(const StarredRecords& records) {
   std::vector<Item> items;
   items.reserve(records.size());
-  const ErrorSteps steps(records);
-  const auto add = [&](RecordKind kind) {
-    for (std::size_t i = 0; i < records.size(); ++i) {
-      const VertexSplit& r = records[i];
-      if (kind_of(r) == kind) {
-        const Int4 roi{r.roi.min_x, r.roi.min_y, -r.roi.max_x, -r.roi.max_y};
-        items.push_back({roi, key_of(r.u), steps.of(r.error), static_cast<std::uint32_t>(i)});
-      }
+  const ErrorSteps steps(records.splits);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const VertexSplit& r = records.splits[i];
+    GridBox box = box_of(r.u);
+    for (const RingCorner& c : records.ring(i)) {
+      box = united(box, c.position);
     }
-  };
-  add(RecordKind::kWide);
-  const std::size_t wide = items.size();
-  add(RecordKind::kNarrow);
-  Cutter(std::span(items).first(wide), page_bytes / kWideRecordBytes).run();
-  Cutter(std::span(items).subspan(wide), page_bytes / kNarrowRecordBytes).run();
-  std::vector<VertexSplit> ordered;
-  ordered.reserve(records.size());
-  for (const Item& item : items) {
-    ordered.push_back(records[item.record]);
+    items.push_back({Int4{box.min_x, box.min_y, -box.max_x, -box.max_y}, key_of(r.u),
+                     steps.of(r.error), static_cast<std::uint32_t>(i)});
   }
-  std::copy(ordered.begin(), ordered.end(), records.begin());
+  Cutter(items).run();
+  std::vector<std::uint32_t> order;
+  order.reserve(items.size());
+  for (const Item& item : items) {
+    order.push_back(item.record);
+  }
+  return order;
 }
 
 }  // namespace ptin

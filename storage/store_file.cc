@@ -44,6 +44,7 @@ class StoreFileImpl final : public StoreFile {
   [[nodiscard]] const PageStore& pages() const noexcept override { return *pages_; }
   [[nodiscard]] PageInfo page_info(PageId id) const override;
   void read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const override;
+  void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const override;
   std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
                               std::vector<VertexSplit>& out, IoCounters& counters) const override;
 
@@ -93,12 +94,20 @@ DescribedPage StoreFileImpl::described(PageId id) const {
 StoreFile::PageInfo StoreFileImpl::page_info(PageId id) const {
   const DescribedPage page = described(id);
   nodes_->require_undamaged();
-  return {page.kind(), page.records(), attributes_of(page.descriptor(), front_.facts.heights),
-          layout::to_float(page.descriptor().error_min)};
+  const layout::NodeEntry& d = page.descriptor();
+  return {page.records(), attributes_of(d, front_.facts.heights), short_value(d.error_min),
+          star_attributes_of(d, front_.facts.heights)};
 }
 
 void StoreFileImpl::read_records(PageId id, std::vector<VertexSplit>& out,
                                  IoCounters& counters) const {
+  const DescribedPage page = described(id);
+  PageBuffer bytes;
+  pages_->read_described(id, page.descriptor(), bytes.of(page), counters);
+  page.decode(bytes.of(page), out);
+}
+
+void StoreFileImpl::read_starred(PageId id, StarredRecords& out, IoCounters& counters) const {
   const DescribedPage page = described(id);
   PageBuffer bytes;
   pages_->read_described(id, page.descriptor(), bytes.of(page), counters);

@@ -16,7 +16,7 @@
 #include "engine/geometry/height.h"
 #include "storage/index.h"
 #include "storage/page_store.h"
-#include "storage/record.h"
+#include "storage/star.h"
 
 namespace ptin {
 
@@ -49,7 +49,8 @@ struct CoarsestTin {
   };
   struct T {
     std::uint32_t v[3];
-    std::uint32_t is_void;  ///< 0 or 1.
+    std::uint32_t is_void;   ///< 0 or 1.
+    float death = kLivesOn;  ///< As RingCorner::death.
   };
   std::vector<V> vertices;
   std::vector<T> triangles;
@@ -108,12 +109,12 @@ class StoreFile {
   [[nodiscard]] virtual const RecordIndex& index() const noexcept = 0;  ///< The packed R-tree.
   [[nodiscard]] virtual const PageStore& pages() const noexcept = 0;
 
-  /// What the descriptor of a page says; kind and number of the records are range-checked.
+  /// What the descriptor of a page says.
   struct PageInfo {
-    RecordKind kind;
     std::uint32_t records;
     Attributes attributes;  ///< Union and maximum over the page's records.
     double min_error;
+    StarAttributes stars;  ///< The same over their stars.
   };
   /// @throws Error corruption
   [[nodiscard]] virtual PageInfo page_info(PageId id) const = 0;
@@ -123,6 +124,9 @@ class StoreFile {
   /// @throws Error corruption, io_error
   virtual void read_records(PageId id, std::vector<VertexSplit>& out,
                             IoCounters& counters) const = 0;
+
+  /// As read_records(), with the stars.
+  virtual void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const = 0;
 
   /// As read_records(), for those records alone whose attributes satisfy `predicate`. The others
   /// are not decoded, and not checked. Returns the number of records examined: all records of the

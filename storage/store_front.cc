@@ -12,6 +12,7 @@
 #include "storage/facts.h"
 #include "storage/file/checksum.h"
 #include "storage/metadata_text.h"
+#include "storage/short_float.h"
 
 namespace ptin {
 
@@ -58,6 +59,12 @@ FileHeader read_header(const ReadOnlyFile& file) {
                     std::to_string(layout::kMajorVersion) + "; take a newer program",
                 path);
   }
+  if (h.major_version == 1) {
+    throw Error(ErrorCode::unsupported_version,
+                "the file has format version 1, which was provisional and is read no longer; "
+                "build it again from its source with `ptin build`",
+                path);
+  }
   const auto bytes = std::as_bytes(std::span(&h, 1)).first(offsetof(FileHeader, header_checksum));
   require(h.header_checksum == checksum_of(bytes), path,
           "the header does not match its checksum; the file is damaged");
@@ -84,7 +91,7 @@ void check_header(const FileHeader& h, const ReadOnlyFile& file) {
   require(h.first_page < std::max<std::uint64_t>(h.page_count, 1), path,
           "the first page is none of the pages");
   require(h.record_count >= h.page_count &&
-              h.record_count <= h.page_count * (h.page_bytes / kNarrowRecordBytes),
+              h.record_count <= h.page_count * (h.page_bytes / layout::kLeastRecordBytes),
           path, "the number of records does not go with the number of pages");
   require(h.max_rank <= UINT16_MAX, path, "the largest rank is above 65535");
   // Reserved bytes of a later minor version may mean something; ours are zero.
@@ -156,7 +163,10 @@ CoarsestTin read_t0(const std::vector<SectionEntry>& table, const StoreFacts& fa
     t0.vertices.push_back({{v.x, v.y}, v.height, v.has_height});
   }
   for (const auto& t : read_section<layout::T0Triangle>(table, SectionKind::kT0Triangles, file)) {
-    t0.triangles.push_back({{t.v[0], t.v[1], t.v[2]}, t.is_void});
+    require(t.death <= kMostDeathBits, file.path(),
+            "a triangle of T0 dies at an error that is no number");
+    const float death = t.death == 0 ? kLivesOn : short_value(static_cast<ShortBits>(t.death - 1));
+    t0.triangles.push_back({{t.v[0], t.v[1], t.v[2]}, t.is_void, death});
   }
   const char* fault = fault_in(t0, facts);
   require(fault == nullptr, file.path(), fault);

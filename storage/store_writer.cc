@@ -23,8 +23,9 @@
 #include "storage/file/file_questions.h"
 #include "storage/index_writer.h"
 #include "storage/layout.h"
+#include "storage/page_records.h"
 #include "storage/page_slots.h"
-#include "storage/record_order.h"
+#include "storage/short_float.h"
 #include "storage/store_front.h"
 
 namespace ptin {
@@ -58,53 +59,6 @@ void check_target(const std::string& path, const StoreWriterOptions& options) {
                 path);
   }
 }
-
-// Fills pages with records of one kind each, and hands each finished page and its descriptor on.
-class PagePacker {
- public:
-  PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights)
-      : page_(page_bytes), heights_(heights), descriptor_(heights) {}
-
-  [[nodiscard]] bool takes(RecordKind kind) const {
-    return count_ == 0 || (kind == kind_ && (count_ + 1) * record_bytes(kind) <= page_.size());
-  }
-  [[nodiscard]] bool empty() const { return count_ == 0; }
-
-  void add(const VertexSplit& r, RecordKind kind) {
-    kind_ = kind;
-    const std::span<std::byte> place(page_.data() + count_ * record_bytes(kind),
-                                     record_bytes(kind));
-    encode_record(r, kind, place);
-    VertexSplit back;
-    // What a reader would refuse must not be written: it is better found here, beside its cause,
-    // than when the file is read.
-    PTIN_CHECK(decode_record(place, kind, back));
-    PTIN_CHECK(!std::isnan(heights_.code(r.height)) && !std::isnan(heights_.code(r.height_lo)) &&
-               !std::isnan(heights_.code(r.height_hi)));
-    descriptor_.add(back);
-    ++count_;
-  }
-
-  // The bytes are valid until the next add().
-  std::span<const std::byte> finish(layout::NodeEntry& entry) {
-    const std::size_t used = count_ * record_bytes(kind_);
-    std::fill(page_.begin() + static_cast<std::ptrdiff_t>(used), page_.end(), std::byte{0});
-    entry = descriptor_.entry();
-    entry.kind_and_count =
-        static_cast<std::uint32_t>(count_) | (kind_ == RecordKind::kWide ? layout::kWidePage : 0U);
-    entry.checksum = checksum_of(page_);
-    count_ = 0;
-    descriptor_ = Descriptor(heights_);
-    return page_;
-  }
-
- private:
-  std::vector<std::byte> page_;
-  HeightEncoding heights_;
-  Descriptor descriptor_;
-  RecordKind kind_ = RecordKind::kNarrow;
-  std::size_t count_ = 0;
-};
 
 // The sections before the index, laid out one after the other behind header and table.
 class Front {
@@ -153,10 +107,12 @@ std::vector<layout::ErrorBinEntry> stored(const std::vector<ErrorBin>& bins) {
   return result;
 }
 
-std::vector<layout::T0Vertex> stored(const std::vector<CoarsestTin::V>& vertices) {
+std::vector<layout::T0Vertex> stored(const std::vector<CoarsestTin::V>& vertices, HeightType type) {
   std::vector<layout::T0Vertex> result;
   for (const CoarsestTin::V& v : vertices) {
-    result.push_back({v.position.x, v.position.y, v.height, v.has_height});
+    // As in pages, -0 is written as 0.
+    const HeightBits height = height_of_ordered(ordered_height(v.height, type), type);
+    result.push_back({v.position.x, v.position.y, v.has_height != 0 ? height : 0, v.has_height});
   }
   return result;
 }
@@ -164,7 +120,8 @@ std::vector<layout::T0Vertex> stored(const std::vector<CoarsestTin::V>& vertices
 std::vector<layout::T0Triangle> stored(const std::vector<CoarsestTin::T>& triangles) {
   std::vector<layout::T0Triangle> result;
   for (const CoarsestTin::T& t : triangles) {
-    result.push_back({{t.v[0], t.v[1], t.v[2]}, t.is_void});
+    result.push_back(
+        {{t.v[0], t.v[1], t.v[2]}, static_cast<std::uint16_t>(t.is_void), death_bits(t.death)});
   }
   return result;
 }
@@ -189,7 +146,7 @@ class StoreWriterImpl final : public StoreWriter {
   void resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) override;
   [[nodiscard]] StoreCheckpoint position() const override;
   void sync() override;
-  void add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) override;
+  void add_segment(const PackedSegment& segment, const HeightEncoding& heights) override;
   void publish(const StoreFacts& facts, const CoarsestTin& t0,
                const std::string& metadata_json) override;
 
@@ -198,8 +155,7 @@ class StoreWriterImpl final : public StoreWriter {
     return ScratchFile(files, path, ScratchFile::kept_at(path));
   }
   void start(const HeightEncoding& heights);
-  void add(const VertexSplit& r);
-  void finish_page();
+  [[nodiscard]] bool count(std::span<const std::byte> bytes, const layout::NodeEntry& entry);
   void flush();
   void restore_moved_pages();
   void take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page);
@@ -212,7 +168,6 @@ class StoreWriterImpl final : public StoreWriter {
   ScratchFile file_;
   std::optional<PageJournal> journal_;
   std::optional<HeightEncoding> heights_;
-  std::optional<PagePacker> page_;
   std::optional<IndexWriter> index_;
   ErrorTable errors_;
   std::vector<std::byte> pending_;   // finished pages, not yet written
@@ -225,7 +180,6 @@ class StoreWriterImpl final : public StoreWriter {
 void StoreWriterImpl::start(const HeightEncoding& heights) {
   if (!heights_) {
     heights_ = heights;
-    page_.emplace(options_.page_bytes, heights);
     index_.emplace(files_, folder_, stem_, heights);
   }
   if (!(*heights_ == heights)) {
@@ -234,41 +188,42 @@ void StoreWriterImpl::start(const HeightEncoding& heights) {
   }
 }
 
-void StoreWriterImpl::add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) {
-  PTIN_CHECK(!published_);
+void StoreWriterImpl::add_segment(const PackedSegment& segment, const HeightEncoding& heights) {
+  PTIN_CHECK(!published_ &&
+             segment.pages.size() == segment.descriptors.size() * options_.page_bytes);
   start(heights);
-  order_segment(records, options_.page_bytes);
-  for (const VertexSplit& r : records) {
-    add(r);
-  }
-  // A page of two segments would have the box of both, so a segment ends its last page.
-  if (!page_->empty()) {
-    finish_page();
+  for (std::size_t i = 0; i < segment.descriptors.size(); ++i) {
+    const auto page =
+        std::span(segment.pages).subspan(i * options_.page_bytes, options_.page_bytes);
+    const layout::NodeEntry& entry = segment.descriptors[i];
+    PTIN_CHECK(count(page, entry));
+    index_->add(entry);
+    if (journal_) {
+      journal_->add(entry);
+    }
+    pending_.insert(pending_.end(), page.begin(), page.end());
+    if (pending_.size() >= kWriteBytes) {
+      flush();
+    }
   }
 }
 
-void StoreWriterImpl::add(const VertexSplit& r) {
-  const RecordKind kind = kind_of(r);
-  if (!page_->takes(kind)) {
-    finish_page();
+// Counts the records of a page. False when one of them is not sound.
+bool StoreWriterImpl::count(std::span<const std::byte> bytes, const layout::NodeEntry& entry) {
+  const RecordPage page(bytes, *heights_);
+  if (!page.is_sound() || page.records() != entry.records) {
+    return false;
   }
-  page_->add(r, kind);
-  errors_.add(r);
-  max_rank_ = std::max(max_rank_, r.rank);
-  ++records_;
-}
-
-void StoreWriterImpl::finish_page() {
-  layout::NodeEntry entry;
-  const std::span<const std::byte> bytes = page_->finish(entry);
-  index_->add(entry);
-  if (journal_) {
-    journal_->add(entry);
+  VertexSplit r;
+  for (std::uint32_t i = 0; i < page.records(); ++i) {
+    if (!page.head(i, r)) {
+      return false;
+    }
+    errors_.add(r);
+    max_rank_ = std::max(max_rank_, r.rank);
   }
-  pending_.insert(pending_.end(), bytes.begin(), bytes.end());
-  if (pending_.size() >= kWriteBytes) {
-    flush();
-  }
+  records_ += page.records();
+  return true;
 }
 
 void StoreWriterImpl::flush() {
@@ -305,26 +260,15 @@ void StoreWriterImpl::restore_moved_pages() {
   file_.sync();
 }
 
-// Reads the next page again, checks it, and counts it as add() and finish_page() did.
+// Reads the next page again, checks it, and counts it as add_segment() did.
 void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page) {
-  const std::uint32_t count = entry.kind_and_count & (layout::kWidePage - 1);
-  const RecordKind kind =
-      (entry.kind_and_count & layout::kWidePage) != 0 ? RecordKind::kWide : RecordKind::kNarrow;
   file_.read_at(page, written_bytes_);
-  const bool fits = count * record_bytes(kind) <= page.size();
-  std::vector<VertexSplit> records(fits ? count : 0);
-  if (!fits || checksum_of(page) != entry.checksum ||
-      decode_records(page, kind, records) != count) {
+  if (checksum_of(page) != entry.checksum || !count(page, entry)) {
     throw Error(ErrorCode::corruption,
                 "page " + std::to_string(written_bytes_ / options_.page_bytes) +
                     " of the unfinished build is damaged; start again after --discard",
                 path_);
   }
-  for (const VertexSplit& r : records) {
-    errors_.add(r);
-    max_rank_ = std::max(max_rank_, r.rank);
-  }
-  records_ += count;
   index_->add(entry);
   written_bytes_ += page.size();
 }
@@ -370,7 +314,7 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
   flush();
   const IndexShape shape(index_->pages());
   Front front(6);
-  const std::vector<layout::T0Vertex> vertices = stored(t0.vertices);
+  const std::vector<layout::T0Vertex> vertices = stored(t0.vertices, facts.heights.type);
   const std::vector<layout::T0Triangle> triangles = stored(t0.triangles);
   const std::vector<layout::ErrorBinEntry> bins = stored(errors_.bins());
   front.add(layout::SectionKind::kMetadata, std::as_bytes(std::span(metadata_json)));

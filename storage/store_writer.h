@@ -6,11 +6,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 
+#include "storage/packed_segment.h"
 #include "storage/page_journal.h"
-#include "storage/record.h"
 #include "storage/store_file.h"
 
 namespace ptin {
@@ -35,13 +34,11 @@ struct StoreWriterOptions {
 /// writer that is destroyed without publish() removes what it wrote: the target's name never shows
 /// a part. (A process that is killed leaves a file named .TARGET.PID-N.tmp.)
 ///
-/// The file keeps the order in which segments come, whatever their records need of each other; each
-/// segment has pages of its own, and its records are ordered by storage/record_order.h. The bytes
-/// depend on what is given alone.
+/// The file keeps the order in which segments come, whatever their records need of each other. The
+/// bytes depend on what is given alone.
 ///
-/// Memory: one segment twice, and 32 bytes for each of its records, while the segment is ordered; 2
-/// MiB; and less than one byte for a hundred records, since leaves of the index go to a nameless
-/// side file.
+/// Memory: 2 MiB, and about one byte for a hundred records, since leaves of the index go to a
+/// nameless side file.
 class StoreWriter {
  public:
   /// @throws Error invalid_argument (target exists and overwrite is off), io_error, not_found (no
@@ -66,10 +63,10 @@ class StoreWriter {
   /// @throws Error resource_exhausted, io_error
   virtual void sync() = 0;
 
-  /// Appends one segment. `records` is reordered in place.
+  /// Appends one segment, packed for pages of StoreWriterOptions::page_bytes.
   /// @throws Error resource_exhausted (disk full), io_error, invalid_argument (another encoding of
-  ///               heights than before), internal (a record that no reader would accept)
-  virtual void add_segment(std::span<VertexSplit> records, const HeightEncoding& heights) = 0;
+  ///               heights than before), internal (pages that no reader would accept)
+  virtual void add_segment(const PackedSegment& segment, const HeightEncoding& heights) = 0;
 
   /// Writes T0, metadata, index and tables, syncs, renames onto the target, syncs the folder. To be
   /// called once, at the end. Cost besides: moves as many bytes of pages as the front of the file

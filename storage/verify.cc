@@ -14,6 +14,7 @@
 #include "storage/descriptor.h"
 #include "storage/error_table.h"
 #include "storage/file/checksum.h"
+#include "storage/page_packer.h"
 #include "storage/page_records.h"
 #include "storage/store_front.h"
 #include "storage/unique_keys.h"
@@ -49,6 +50,7 @@ class Verifier {
                      const std::string& where);
   std::optional<layout::NodeEntry> look_at_page(PageId id, const layout::NodeEntry& descriptor);
   bool read_page(PageId id, const layout::NodeEntry& descriptor);
+  [[nodiscard]] bool is_packed_so() const;
   void count(PageId id);
   void count_height(HeightBits bits);
   const char* look_at_heights(const VertexSplit& r);
@@ -73,7 +75,7 @@ class Verifier {
   std::uint64_t vertices_with_height_ = 0;
   bool all_seen_ = true;  // no page was left out because of damage
   std::vector<std::byte> page_;
-  std::vector<VertexSplit> records_;
+  StarredRecords records_;
 };
 
 bool is_zero(std::span<const std::byte> bytes) {
@@ -218,7 +220,7 @@ std::optional<layout::NodeEntry> Verifier::look_at_node(std::uint32_t level, std
 
 void Verifier::look_at_entry(std::uint32_t level, const layout::NodeEntry& entry,
                              std::uint64_t child, const std::string& where) {
-  if (!is_sound(entry, front_.facts.heights) || (level > 0 && entry.kind_and_count != 0)) {
+  if (!is_sound(entry, front_.facts.heights) || (level > 0 && entry.records != 0)) {
     all_seen_ = false;
     if (pass_ == 0) {
       report("the entry holds values that no program wrote", where);
@@ -245,7 +247,7 @@ std::optional<layout::NodeEntry> Verifier::look_at_page(PageId id,
     all_seen_ = false;
     return std::nullopt;
   }
-  for (const VertexSplit& r : records_) {
+  for (const VertexSplit& r : records_.splits) {
     keys_->add(r.u);
   }
   if (pass_ > 0) {
@@ -254,8 +256,8 @@ std::optional<layout::NodeEntry> Verifier::look_at_page(PageId id,
   ++report_.pages;
   count(id);
   Descriptor all(front_.facts.heights);
-  for (const VertexSplit& r : records_) {
-    all.add(r);
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    all.add(records_.splits[i], records_.ring(i));
   }
   return all.entry();
 }
@@ -274,11 +276,10 @@ bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
       }
       return false;
     }
-    const auto tail = std::span(page_).subspan(page.records() * record_bytes(page.kind()));
-    if (pass_ == 0 && !is_zero(tail)) {
-      report("the bytes behind the last record are not zero", page_name(id));
-    }
     page.decode(page_, records_);
+    if (pass_ == 0 && !is_packed_so()) {
+      report("the page does not hold its records as they are to be packed", page_name(id));
+    }
   } catch (const Error& e) {
     if (e.code() != ErrorCode::corruption) {
       throw;
@@ -291,10 +292,23 @@ bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
   return true;
 }
 
+// Whether page_ is what a writer makes of records_: bases and widths are the least, and what is
+// unused is zero.
+bool Verifier::is_packed_so() const {
+  PagePacker packer(front_.facts.page_bytes, front_.facts.heights);
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    if (!packer.add(records_.splits[i], records_.ring(i))) {
+      return false;
+    }
+  }
+  layout::NodeEntry entry;
+  return std::ranges::equal(packer.finish(entry), page_);
+}
+
 // Counts the records of a page, which are in `records_`, and looks at each.
 void Verifier::count(PageId id) {
   report_.records += records_.size();
-  for (const VertexSplit& r : records_) {
+  for (const VertexSplit& r : records_.splits) {
     const auto where = [&] {
       return page_name(id) + ", record of vertex (" + std::to_string(r.u.x) + ", " +
              std::to_string(r.u.y) + ")";
@@ -405,9 +419,9 @@ void Verifier::compare_heights() {
 }
 
 bool Verifier::same(const layout::NodeEntry& a, const layout::NodeEntry& b) const {
-  const Attributes x = attributes_of(a, front_.facts.heights);
-  const Attributes y = attributes_of(b, front_.facts.heights);
-  return x == y && a.error_min == b.error_min;
+  const HeightEncoding& heights = front_.facts.heights;
+  return attributes_of(a, heights) == attributes_of(b, heights) && a.error_min == b.error_min &&
+         star_attributes_of(a, heights) == star_attributes_of(b, heights);
 }
 
 }  // namespace

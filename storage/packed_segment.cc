@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/packed_segment.h"
+
+#include <span>
+
+#include "engine/check.h"
+#include "storage/page_packer.h"
+#include "storage/record_order.h"
+
+namespace ptin {
+
+PackedSegment pack_segment(const StarredRecords& records, const HeightEncoding& heights,
+                           std::uint32_t page_bytes) {
+  PackedSegment packed;
+  PagePacker page(page_bytes, heights);
+  const auto finish = [&] {
+    layout::NodeEntry descriptor;
+    const std::span<const std::byte> bytes = page.finish(descriptor);
+    packed.pages.insert(packed.pages.end(), bytes.begin(), bytes.end());
+    packed.descriptors.push_back(descriptor);
+  };
+  for (const std::uint32_t i : order_of_segment(records)) {
+    if (!page.add(records.splits[i], records.ring(i))) {
+      finish();
+      PTIN_CHECK(page.add(records.splits[i], records.ring(i)));
+    }
+  }
+  // A page of two segments would have the box of both, so a segment ends its last page.
+  if (!page.empty()) {
+    finish();
+  }
+  return packed;
+}
+
+}  // namespace ptin

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/page_columns.h"
+
+#include <algorithm>
+
+#include "storage/short_float.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr std::size_t bytes_of_bits(std::size_t bits) { return (bits + 7) / 8; }
+
+}  // namespace
+
+std::array<std::uint32_t, kPageColumns> bases_of(const layout::PageHeader& h) noexcept {
+  return {h.x,      h.y,           h.height,     0, 0, 0, 0, 0, 0, h.error, h.deviation, h.rank, 0,
+          h.degree, h.offset_bits, h.height_bits};
+}
+
+std::size_t column_bytes(const std::array<std::uint8_t, kPageColumns>& width,
+                         std::size_t records) noexcept {
+  std::size_t bytes = (records + layout::kRingRun - 1) / layout::kRingRun * sizeof(std::uint16_t);
+  for (const std::uint8_t w : width) {
+    bytes += bytes_of_bits(records * w);
+  }
+  return bytes;
+}
+
+bool PageColumns::read(const layout::PageHeader& header, std::size_t page_bytes) noexcept {
+  header_ = header;
+  const bool widths_fit =
+      std::equal(header.width.begin(), header.width.end(), kMostColumnBits.begin(),
+                 [](std::uint8_t width, std::uint8_t most) { return width <= most; });
+  if (header.records == 0 || header.records > page_bytes / layout::kLeastRecordBytes ||
+      !widths_fit || header.death_bits > 15 || header.void_bits > 1 || header.no_height_bits > 1 ||
+      header.reserved != decltype(header.reserved){}) {
+    return false;
+  }
+  base_ = bases_of(header);
+  std::size_t at = sizeof header;
+  for (std::size_t c = 0; c < kPageColumns; ++c) {
+    begin_[c] = static_cast<std::uint32_t>(at * 8);
+    at += bytes_of_bits(std::size_t{header.records} * header.width[c]);
+  }
+  runs_ = at;
+  rings_ = sizeof header + column_bytes(header.width, header.records);
+  common_bits_ = 0U + header.death_bits + header.void_bits + header.no_height_bits;
+  return rings_ + header.ring_bytes + layout::kPageTailBytes <= page_bytes;
+}
+
+}  // namespace ptin

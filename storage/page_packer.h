@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Packs records and their stars into the bytes of a page (storage/FORMAT.md, "Pages").
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "storage/descriptor.h"
+#include "storage/page_columns.h"
+#include "storage/star.h"
+
+namespace ptin {
+
+/// Takes records as long as a page holds them. The bytes of a page depend on its records, their
+/// order and the size of the page alone.
+class PagePacker {
+ public:
+  PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights);
+
+  /// Adds a record, unless the page would not hold it: then nothing changes, and the answer is
+  /// false. An empty page holds any record.
+  /// REQUIRES: `ring` is as storage/star.h says, with at most layout::kMostDegree corners; errors,
+  /// deviations and deaths are short numbers (storage/short_float.h); no death is above the error;
+  /// the roi holds the ring, and the interval of heights those of u and of the ring.
+  /// @throws Error internal  the record is not so
+  [[nodiscard]] bool add(const VertexSplit& r, std::span<const RingCorner> ring);
+  [[nodiscard]] bool empty() const noexcept { return items_.empty(); }
+
+  /// Ends the page. The bytes are valid until the next call.
+  /// REQUIRES: not empty.
+  /// @param entry  Receives the descriptor.
+  [[nodiscard]] std::span<const std::byte> finish(layout::NodeEntry& entry);
+
+ private:
+  using Numbers = std::array<std::uint32_t, kPageColumns>;
+  struct Item {
+    Numbers numbers;  ///< For each column.
+    std::size_t first_corner;
+  };
+  /// Corner of a ring, relative to its record.
+  struct Corner {
+    std::int64_t x, y, height;
+    ShortBits death;
+    std::uint8_t flags;
+  };
+  /// What a page takes: extremes of its columns, and sums over its rings.
+  struct Frame {
+    Numbers least, most;
+    ShortBits least_death = UINT16_MAX;
+    ShortBits most_death = 0;
+    bool has_void = false, has_no_height = false;
+    std::size_t own_bits = 0;  ///< Of all corners: offsets and heights.
+    std::size_t corners = 0;
+  };
+
+  [[nodiscard]] Item item_of(const VertexSplit& r, std::span<const RingCorner> ring);
+  void widen(Frame& frame, const Item& item) const;
+  [[nodiscard]] layout::PageHeader header_of(const Frame& frame, std::size_t records) const;
+  [[nodiscard]] bool fits(const Frame& frame, std::size_t records) const;
+  [[nodiscard]] std::size_t write_columns(const layout::PageHeader& header);
+  void write_rings(layout::PageHeader& header, std::size_t runs);
+
+  std::vector<std::byte> page_;
+  HeightEncoding heights_;
+  Descriptor descriptor_;
+  Frame frame_;
+  std::vector<Item> items_;
+  std::vector<Corner> corners_;
+};
+
+}  // namespace ptin
