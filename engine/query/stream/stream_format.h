@@ -66,6 +66,12 @@ static_assert(sizeof(Start) == 160 && offsetof(Start, bounds) == 64 &&
 struct T0Counts {
   std::uint32_t vertices, triangles;
 };
+/// A triangle of T0: as in the file, but for the death.
+struct T0Triangle {
+  std::array<std::uint32_t, 3> v;
+  std::uint32_t is_void;
+};
+static_assert(sizeof(T0Triangle) == 16);
 
 /// Payload of a frame of splits; their code follows.
 struct Splits {

@@ -261,7 +261,7 @@ void StreamReader::take_t0(std::span<const std::byte> payload) {
   const std::span<const std::byte> rest = payload.subspan(sizeof counts);
   const std::uint64_t vertex_bytes = std::uint64_t{counts.vertices} * sizeof(layout::T0Vertex);
   if (counts.vertices != base_vertices_ || counts.triangles == 0 ||
-      vertex_bytes + std::uint64_t{counts.triangles} * sizeof(layout::T0Triangle) != rest.size()) {
+      vertex_bytes + std::uint64_t{counts.triangles} * sizeof(stream::T0Triangle) != rest.size()) {
     reject("the counts of T0 are not those of its bytes");
   }
   admit(growing_bytes(counts.vertices) + 4 * payload.size());  // read, checked, and as a mesh
@@ -273,8 +273,8 @@ void StreamReader::take_t0(std::span<const std::byte> payload) {
     t0.vertices.push_back({{v.x, v.y}, v.height, v.has_height});
   }
   for (const auto& t :
-       read_array<layout::T0Triangle>(rest.subspan(vertex_bytes), counts.triangles)) {
-    t0.triangles.push_back({{t.v[0], t.v[1], t.v[2]}, t.is_void});
+       read_array<stream::T0Triangle>(rest.subspan(vertex_bytes), counts.triangles)) {
+    t0.triangles.push_back({{t.v[0], t.v[1], t.v[2]}, t.is_void, kLivesOn});
   }
   if (const char* fault = fault_in(t0, facts_); fault != nullptr) {
     reject(fault);

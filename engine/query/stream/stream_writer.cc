@@ -336,7 +336,7 @@ void Writer::send_t0(const Tin& base) {
   }
   for (TriangleId t = 0; t < base.triangles.size(); ++t) {
     const Triangle& c = base.triangles[t];
-    append(payload, layout::T0Triangle{{c.v[0], c.v[1], c.v[2]},
+    append(payload, stream::T0Triangle{{c.v[0], c.v[1], c.v[2]},
                                        base.classes[t] == TriangleClass::kVoid ? 1U : 0U});
   }
   send_frame(stream::FrameKind::kT0, payload);
