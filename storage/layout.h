@@ -127,18 +127,17 @@ static_assert(sizeof(IndexNode) == kNodeBytes && offsetof(IndexNode, entry) == 1
 
 /// What a page begins with: base and width of each column of numbers (storage/page_columns.h).
 struct PageHeader {
-  std::uint16_t records, ring_bytes;                   //  0
-  std::uint32_t x, y, height;                          //  4  bases
-  std::uint16_t error, deviation, rank;                // 16  bases
-  std::uint16_t death;                                 // 22  base
-  std::uint8_t degree, offset_bits, height_bits;       // 24  bases
-  std::array<std::uint8_t, 16> width;                  // 27  of the columns, bits
-  std::uint8_t death_bits, void_bits, no_height_bits;  // 43  widths in every ring
-  std::array<std::uint8_t, 2> reserved;                // 46  zero
+  std::uint16_t records, ring_bytes;                          //  0
+  std::uint32_t x, y, height;                                 //  4  bases
+  std::uint16_t error, deviation, rank;                       // 16  bases
+  std::uint8_t degree, offset_bits, height_bits, death_bits;  // 22  bases
+  std::array<std::uint8_t, 17> width;                         // 26  of the columns, bits
+  std::uint8_t void_bits, no_height_bits;                     // 43  0 or 1, of every corner
+  std::array<std::uint8_t, 3> reserved;                       // 45  zero
 };
 static_assert(sizeof(PageHeader) == 48 && offsetof(PageHeader, error) == 16 &&
-              offsetof(PageHeader, degree) == 24 && offsetof(PageHeader, width) == 27 &&
-              offsetof(PageHeader, death_bits) == 43);
+              offsetof(PageHeader, degree) == 22 && offsetof(PageHeader, width) == 26 &&
+              offsetof(PageHeader, void_bits) == 43);
 
 /// The last bytes of a page are zero, so that a number of up to 57 bits is read by one load.
 inline constexpr std::size_t kPageTailBytes = 8;

@@ -14,8 +14,8 @@ constexpr std::size_t bytes_of_bits(std::size_t bits) { return (bits + 7) / 8; }
 }  // namespace
 
 std::array<std::uint32_t, kPageColumns> bases_of(const layout::PageHeader& h) noexcept {
-  return {h.x,      h.y,           h.height,     0, 0, 0, 0, 0, 0, h.error, h.deviation, h.rank, 0,
-          h.degree, h.offset_bits, h.height_bits};
+  return {h.x,      h.y,           h.height,      0,           0, 0, 0, 0, 0, 0, 0, h.rank, 0,
+          h.degree, h.offset_bits, h.height_bits, h.death_bits};
 }
 
 std::size_t column_bytes(const std::array<std::uint8_t, kPageColumns>& width,
@@ -33,7 +33,7 @@ bool PageColumns::read(const layout::PageHeader& header, std::size_t page_bytes)
       std::equal(header.width.begin(), header.width.end(), kMostColumnBits.begin(),
                  [](std::uint8_t width, std::uint8_t most) { return width <= most; });
   if (header.records == 0 || header.records > page_bytes / layout::kLeastRecordBytes ||
-      !widths_fit || header.death_bits > 15 || header.void_bits > 1 || header.no_height_bits > 1 ||
+      !widths_fit || header.void_bits > 1 || header.no_height_bits > 1 ||
       header.reserved != decltype(header.reserved){}) {
     return false;
   }
@@ -45,7 +45,7 @@ bool PageColumns::read(const layout::PageHeader& header, std::size_t page_bytes)
   }
   runs_ = at;
   rings_ = sizeof header + column_bytes(header.width, header.records);
-  common_bits_ = 0U + header.death_bits + header.void_bits + header.no_height_bits;
+  common_bits_ = 0U + header.void_bits + header.no_height_bits;
   return rings_ + header.ring_bytes + layout::kPageTailBytes <= page_bytes;
 }
 

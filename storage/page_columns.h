@@ -27,15 +27,16 @@ enum class PageColumn : std::uint8_t {
   kNorth,
   kBelow,  ///< From kHeight to the ends of the interval of heights.
   kAbove,
-  kError,  ///< Short numbers (storage/short_float.h).
+  kError,  ///< As stored_short() has it, above a base of its own (storage/short_float.h).
   kDeviation,
   kRank,
   kFlags,       ///< PageFlag.
   kDegree,      ///< Corners of the ring.
   kOffsetBits,  ///< Width of a corner's offset from u, for x and y each.
   kHeightBits,  ///< Width of a corner's height above u's.
+  kDeathBits,   ///< Width of a triangle's death.
 };
-inline constexpr std::size_t kPageColumns = 16;
+inline constexpr std::size_t kPageColumns = 17;
 
 enum PageFlag : std::uint8_t {
   kPageNoLeft = 1,      ///< VertexSplit::kNoLeft.
@@ -47,7 +48,7 @@ inline constexpr std::uint8_t kAllPageFlags = 15;
 
 /// The most bits that a number of each column takes.
 inline constexpr std::array<std::uint8_t, kPageColumns> kMostColumnBits = {
-    30, 30, 32, 30, 30, 30, 30, 32, 32, 15, 15, 16, 4, 8, 5, 6};
+    30, 30, 32, 30, 30, 30, 30, 32, 32, 15, 15, 16, 4, 8, 5, 6, 4};
 
 /// A height as a number whose order is that of heights, -0 and 0 being one.
 [[nodiscard]] constexpr std::uint32_t ordered_height(HeightBits bits, HeightType type) noexcept {
@@ -107,7 +108,7 @@ class PageColumns {
 [[nodiscard]] std::size_t column_bytes(const std::array<std::uint8_t, kPageColumns>& width,
                                        std::size_t records) noexcept;
 
-/// The bases of all columns; that of a column without one is 0.
+/// The bases of all columns; 0 where a column has none, or one of its own.
 [[nodiscard]] std::array<std::uint32_t, kPageColumns> bases_of(
     const layout::PageHeader& header) noexcept;
 

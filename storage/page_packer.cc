@@ -57,16 +57,18 @@ PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingC
   const std::uint32_t height = has_height ? ordered(r.height) : lo;
   unsigned offset_bits = 0;
   unsigned height_bits = 0;
+  unsigned death_bits = 0;
   const std::size_t first = corners_.size();
   for (const RingCorner& c : ring) {
     const bool is_known = (c.flags & RingCorner::kNoHeight) == 0;
     PTIN_CHECK(is_known || c.height == 0);
+    PTIN_CHECK(c.death <= r.error && (c.death < 0 || shortened(c.death) == c.death));
     const Corner own{std::int64_t{c.position.x} - r.u.x, std::int64_t{c.position.y} - r.u.y,
-                     is_known ? std::int64_t{ordered(c.height)} - height : 0, death_bits(c.death),
-                     c.flags};
+                     is_known ? std::int64_t{ordered(c.height)} - height : 0,
+                     stored_death(c.death, short_bits(r.error)), c.flags};
     offset_bits = std::max({offset_bits, signed_width(own.x), signed_width(own.y)});
     height_bits = std::max(height_bits, signed_width(own.height));
-    PTIN_CHECK(c.death <= r.error && (c.death < 0 || shortened(c.death) == c.death));
+    death_bits = std::max(death_bits, static_cast<unsigned>(std::bit_width(own.death)));
     corners_.push_back(own);
   }
   PTIN_CHECK(shortened(r.error) == r.error && shortened(r.deviation) == r.deviation);
@@ -74,8 +76,20 @@ PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingC
            distance(r.roi.min_y, r.u.y), distance(r.u.x, r.roi.max_x), distance(r.u.y, r.roi.max_y),
            distance(lo, height), distance(height, hi), short_bits(r.error), short_bits(r.deviation),
            r.rank, page_flags(r, has_heights), static_cast<std::uint32_t>(ring.size()), offset_bits,
-           height_bits},
+           height_bits, death_bits},
           first};
+}
+
+void PagePacker::ShortRange::add(ShortBits bits) noexcept {
+  has_infinity |= bits == kShortInfinity;
+  if (!is_beside_base(bits)) {
+    least = std::min(least, bits);
+    most = std::max(most, bits);
+  }
+}
+
+std::uint32_t PagePacker::ShortRange::most_stored() const noexcept {
+  return most != 0 ? stored_short(most, least) : (has_infinity ? 1U : 0U);
 }
 
 void PagePacker::widen(Frame& frame, const Item& item) const {
@@ -83,16 +97,15 @@ void PagePacker::widen(Frame& frame, const Item& item) const {
     frame.least[c] = std::min(frame.least[c], item.numbers[c]);
     frame.most[c] = std::max(frame.most[c], item.numbers[c]);
   }
+  frame.error.add(static_cast<ShortBits>(item.numbers[at(PageColumn::kError)]));
+  frame.deviation.add(static_cast<ShortBits>(item.numbers[at(PageColumn::kDeviation)]));
   const std::size_t degree = item.numbers[at(PageColumn::kDegree)];
   frame.corners += degree;
   frame.own_bits += degree * (2 * item.numbers[at(PageColumn::kOffsetBits)] +
-                              item.numbers[at(PageColumn::kHeightBits)]);
+                              item.numbers[at(PageColumn::kHeightBits)] +
+                              item.numbers[at(PageColumn::kDeathBits)]);
   for (std::size_t i = 0; i < degree; ++i) {
     const Corner& c = corners_[item.first_corner + i];
-    if (c.death != 0) {
-      frame.least_death = std::min(frame.least_death, c.death);
-      frame.most_death = std::max(frame.most_death, c.death);
-    }
     frame.has_void |= (c.flags & RingCorner::kVoid) != 0;
     frame.has_no_height |= (c.flags & RingCorner::kNoHeight) != 0;
   }
@@ -105,8 +118,9 @@ layout::PageHeader PagePacker::header_of(const Frame& frame, std::size_t records
   h.x = least(PageColumn::kX);
   h.y = least(PageColumn::kY);
   h.height = least(PageColumn::kHeight);
-  h.error = static_cast<std::uint16_t>(least(PageColumn::kError));
-  h.deviation = static_cast<std::uint16_t>(least(PageColumn::kDeviation));
+  h.error = frame.error.base();
+  h.deviation = frame.deviation.base();
+  h.death_bits = static_cast<std::uint8_t>(least(PageColumn::kDeathBits));
   h.rank = static_cast<std::uint16_t>(least(PageColumn::kRank));
   h.degree = static_cast<std::uint8_t>(least(PageColumn::kDegree));
   h.offset_bits = static_cast<std::uint8_t>(least(PageColumn::kOffsetBits));
@@ -115,11 +129,11 @@ layout::PageHeader PagePacker::header_of(const Frame& frame, std::size_t records
   for (std::size_t c = 0; c < kPageColumns; ++c) {
     h.width[c] = static_cast<std::uint8_t>(std::bit_width(frame.most[c] - base[c]));
   }
-  if (frame.most_death != 0) {  // 0 is kept for triangles that live on
-    h.death = static_cast<std::uint16_t>(frame.least_death - 1);
-    h.death_bits =
-        static_cast<std::uint8_t>(std::bit_width(std::uint32_t{frame.most_death} - h.death));
-  }
+  const auto set_width = [&](PageColumn c, const ShortRange& range) {
+    h.width[at(c)] = static_cast<std::uint8_t>(std::bit_width(range.most_stored()));
+  };
+  set_width(PageColumn::kError, frame.error);
+  set_width(PageColumn::kDeviation, frame.deviation);
   h.void_bits = frame.has_void ? 1 : 0;
   h.no_height_bits = frame.has_no_height ? 1 : 0;
   return h;
@@ -128,7 +142,7 @@ layout::PageHeader PagePacker::header_of(const Frame& frame, std::size_t records
 /// Whether so many records in this frame fit. Each run of rings may leave bits of its last byte.
 bool PagePacker::fits(const Frame& frame, std::size_t records) const {
   const layout::PageHeader h = header_of(frame, records);
-  const std::size_t common = 0U + h.death_bits + h.void_bits + h.no_height_bits;
+  const std::size_t common = 0U + h.void_bits + h.no_height_bits;
   const std::size_t runs = records / layout::kRingRun + 1;
   const std::size_t rings = (frame.own_bits + frame.corners * common) / 8 + runs;
   return records <= page_.size() / layout::kLeastRecordBytes &&
@@ -158,7 +172,14 @@ std::size_t PagePacker::write_columns(const layout::PageHeader& header) {
   for (std::size_t c = 0; c < kPageColumns; ++c) {
     const unsigned width = header.width[c];
     for (std::size_t i = 0; i < items_.size(); ++i) {
-      write_bits(page_.data(), begin * 8 + i * width, width, items_[i].numbers[c] - base[c]);
+      const std::uint32_t number = items_[i].numbers[c];
+      std::uint32_t stored = number - base[c];
+      if (c == at(PageColumn::kError)) {
+        stored = stored_short(static_cast<ShortBits>(number), header.error);
+      } else if (c == at(PageColumn::kDeviation)) {
+        stored = stored_short(static_cast<ShortBits>(number), header.deviation);
+      }
+      write_bits(page_.data(), begin * 8 + i * width, width, stored);
     }
     begin += (items_.size() * width + 7) / 8;
   }
@@ -183,12 +204,13 @@ void PagePacker::write_rings(layout::PageHeader& header, std::size_t runs) {
     }
     const unsigned offset_bits = item.numbers[at(PageColumn::kOffsetBits)];
     const unsigned height_bits = item.numbers[at(PageColumn::kHeightBits)];
+    const unsigned death_bits = item.numbers[at(PageColumn::kDeathBits)];
     for (std::size_t k = 0; k < item.numbers[at(PageColumn::kDegree)]; ++k) {
       const Corner& c = corners_[item.first_corner + k];
       put(offset_bits, c.x);
       put(offset_bits, c.y);
       put(height_bits, c.height);
-      put(header.death_bits, c.death == 0 ? 0 : c.death - header.death);
+      put(death_bits, c.death);
       put(header.void_bits, (c.flags & RingCorner::kVoid) != 0 ? 1 : 0);
       put(header.no_height_bits, (c.flags & RingCorner::kNoHeight) != 0 ? 1 : 0);
     }

@@ -44,16 +44,23 @@ class PagePacker {
   /// Corner of a ring, relative to its record.
   struct Corner {
     std::int64_t x, y, height;
-    ShortBits death;
+    std::uint32_t death;  ///< stored_death().
     std::uint8_t flags;
+  };
+  /// The short numbers of a page that have a base, and whether others are there.
+  struct ShortRange {
+    ShortBits least = kShortInfinity, most = 0;
+    bool has_infinity = false;
+    void add(ShortBits bits) noexcept;
+    [[nodiscard]] ShortBits base() const noexcept { return most == 0 ? ShortBits{0} : least; }
+    [[nodiscard]] std::uint32_t most_stored() const noexcept;
   };
   /// What a page takes: extremes of its columns, and sums over its rings.
   struct Frame {
     Numbers least, most;
-    ShortBits least_death = UINT16_MAX;
-    ShortBits most_death = 0;
+    ShortRange error, deviation;
     bool has_void = false, has_no_height = false;
-    std::size_t own_bits = 0;  ///< Of all corners: offsets and heights.
+    std::size_t own_bits = 0;  ///< Of all corners: offsets, heights and deaths.
     std::size_t corners = 0;
   };
 

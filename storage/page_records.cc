@@ -105,8 +105,9 @@ bool RecordPage::head(std::size_t i, VertexSplit& r) const noexcept {
   const std::uint64_t y = number(PageColumn::kY, i);
   const std::uint64_t flags = number(PageColumn::kFlags, i);
   const std::uint64_t rank = number(PageColumn::kRank, i);
-  const std::uint64_t error = number(PageColumn::kError, i);
-  const std::uint64_t deviation = number(PageColumn::kDeviation, i);
+  const std::uint32_t error = error_bits(i);
+  const std::uint32_t deviation =
+      short_of_stored(number(PageColumn::kDeviation, i), columns_.header().deviation);
   const std::uint64_t height = number(PageColumn::kHeight, i);
   const std::uint64_t low = height - number(PageColumn::kBelow, i);  // may wrap around
   const std::uint64_t high = height + number(PageColumn::kAbove, i);
@@ -147,7 +148,9 @@ RecordPage::RingShape RecordPage::shape_of(std::size_t i) const noexcept {
   const auto degree = static_cast<unsigned>(number(PageColumn::kDegree, i));
   const auto offset_bits = static_cast<unsigned>(number(PageColumn::kOffsetBits, i));
   const auto height_bits = static_cast<unsigned>(number(PageColumn::kHeightBits, i));
-  return {degree, offset_bits, height_bits, 2 * offset_bits + height_bits + columns_.common_bits()};
+  const auto death_bits = static_cast<unsigned>(number(PageColumn::kDeathBits, i));
+  return {degree, offset_bits, height_bits, death_bits,
+          2 * offset_bits + height_bits + death_bits + columns_.common_bits()};
 }
 
 /// Finds the ring of record i: from `place`, where that is in the same run and not behind it, else
@@ -162,7 +165,8 @@ bool RecordPage::find(std::size_t i, const RingShape& shape, RingPlace& place) c
     place.bit += shape_of(place.record).bits();
   }
   return shape.degree >= 3 && shape.degree <= layout::kMostDegree && shape.offset_bits <= 32 &&
-         shape.height_bits <= 33 && place.bit + shape.bits() <= columns_.rings_end();
+         shape.height_bits <= 33 && shape.death_bits <= 15 &&
+         place.bit + shape.bits() <= columns_.rings_end();
 }
 
 GridPoint RecordPage::corner_position(GridPoint u, const RingShape& shape,
@@ -175,26 +179,27 @@ GridPoint RecordPage::corner_position(GridPoint u, const RingShape& shape,
 
 bool RecordPage::is_void(const RingShape& shape, std::size_t bit) const noexcept {
   const layout::PageHeader& h = columns_.header();
-  const std::size_t at = bit + 2 * shape.offset_bits + shape.height_bits + h.death_bits;
+  const std::size_t at = bit + 2 * shape.offset_bits + shape.height_bits + shape.death_bits;
   return read_bits(bytes_.data(), at, h.void_bits) != 0;
 }
 
-bool RecordPage::corner(std::uint32_t height, const RingShape& shape, std::size_t bit,
-                        RingCorner& c) const noexcept {
+bool RecordPage::corner(std::uint32_t height, ShortBits error, const RingShape& shape,
+                        std::size_t bit, RingCorner& c) const noexcept {
   const layout::PageHeader& h = columns_.header();
   std::size_t at = bit + 2 * shape.offset_bits;
   const std::int64_t ordered = height + read_signed_bits(bytes_.data(), at, shape.height_bits);
   at += shape.height_bits;
-  const std::uint64_t stored = read_bits(bytes_.data(), at, h.death_bits);
-  at += h.death_bits;
+  const auto stored = static_cast<std::uint32_t>(read_bits(bytes_.data(), at, shape.death_bits));
+  at += shape.death_bits;
   const bool is_void = read_bits(bytes_.data(), at, h.void_bits) != 0;
   const bool has_height = read_bits(bytes_.data(), at + h.void_bits, h.no_height_bits) == 0;
-  const std::uint64_t death = stored == 0 ? 0 : stored + h.death;
-  if (ordered < 0 || ordered > UINT32_MAX || death > kMostDeathBits) {
+  const std::uint32_t below = stored < kFirstAboveBase ? error : stored - kFirstAboveBase;
+  // A death above 0 that is written as one at 0 would be there in two forms.
+  if (ordered < 0 || ordered > UINT32_MAX || (stored >= kFirstAboveBase && below >= error)) {
     return false;
   }
   c.height = has_height ? height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type) : 0;
-  c.death = death == 0 ? kLivesOn : short_value(static_cast<ShortBits>(death - 1));
+  c.death = stored == 0 ? kLivesOn : short_value(static_cast<ShortBits>(error - below));
   c.flags = static_cast<std::uint8_t>((is_void ? unsigned{RingCorner::kVoid} : 0U) |
                                       (has_height ? 0U : unsigned{RingCorner::kNoHeight}));
   return !std::isnan(heights_.code(c.height));
@@ -228,6 +233,7 @@ bool RecordPage::ring(std::size_t i, RingPlace& place, const VertexSplit& r,
     return false;
   }
   const auto height = static_cast<std::uint32_t>(number(PageColumn::kHeight, i));
+  const ShortBits error = short_bits(r.error);
   const std::size_t first = out.size();
   out.resize(first + shape.degree);
   const std::span<RingCorner> ring(out.data() + first, shape.degree);
@@ -236,7 +242,7 @@ bool RecordPage::ring(std::size_t i, RingPlace& place, const VertexSplit& r,
     RingCorner& c = ring[k];
     const std::size_t bit = place.bit + k * shape.corner_bits;
     c.position = corner_position(r.u, shape, bit);
-    is_sound &= corner(height, shape, bit, c) && contains(r.roi, c.position) && c.death <= r.error;
+    is_sound &= corner(height, error, shape, bit, c) && contains(r.roi, c.position);
   }
   const bool is_closed = has_closed_ring(r);
   for (std::size_t k = is_closed ? 0 : 1; is_sound && k < ring.size(); ++k) {

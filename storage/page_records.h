@@ -36,9 +36,9 @@ class RecordPage {
 
   /// The roi of a record. Nothing is checked. REQUIRES, as all that follows: i < records().
   [[nodiscard]] GridBox roi(std::size_t i) const noexcept;
-  /// As stored: to be compared with short_bits() (storage/short_float.h) of an error.
-  [[nodiscard]] std::uint64_t error_bits(std::size_t i) const noexcept {
-    return number(PageColumn::kError, i);
+  /// The bits of a short number (storage/short_float.h), or more than those of infinity.
+  [[nodiscard]] std::uint32_t error_bits(std::size_t i) const noexcept {
+    return short_of_stored(number(PageColumn::kError, i), columns_.header().error);
   }
   /// Everything of a record but w, vl, vr and what follows from its ring.
   [[nodiscard]] bool head(std::size_t i, VertexSplit& r) const noexcept;
@@ -53,7 +53,7 @@ class RecordPage {
  private:
   /// How the corners of a ring are laid out.
   struct RingShape {
-    unsigned degree, offset_bits, height_bits, corner_bits;
+    unsigned degree, offset_bits, height_bits, death_bits, corner_bits;
     [[nodiscard]] std::size_t bits() const noexcept { return std::size_t{degree} * corner_bits; }
   };
   [[nodiscard]] std::uint64_t number(PageColumn column, std::size_t i) const noexcept {
@@ -64,8 +64,8 @@ class RecordPage {
   [[nodiscard]] GridPoint corner_position(GridPoint u, const RingShape& shape,
                                           std::size_t bit) const noexcept;
   [[nodiscard]] bool is_void(const RingShape& shape, std::size_t bit) const noexcept;
-  [[nodiscard]] bool corner(std::uint32_t height, const RingShape& shape, std::size_t bit,
-                            RingCorner& c) const noexcept;
+  [[nodiscard]] bool corner(std::uint32_t height, ShortBits error, const RingShape& shape,
+                            std::size_t bit, RingCorner& c) const noexcept;
 
   std::span<const std::byte> bytes_;
   HeightEncoding heights_;

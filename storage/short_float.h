@@ -27,11 +27,37 @@ inline constexpr ShortBits kShortInfinity = layout::kInfinityBits >> 16;
 /// The least short number that is not below `v`. REQUIRES: v >= 0.
 [[nodiscard]] constexpr float shortened(float v) noexcept { return short_value(short_bits(v)); }
 
-/// A death in 16 bits: 0 for a triangle that lives on, else the bits of the error plus 1.
+/// A death in 16 bits, as descriptors and T0 have it: 0 for a triangle that lives on, else the bits of the error plus 1.
 /// REQUIRES: kLivesOn, or an error.
 [[nodiscard]] constexpr ShortBits death_bits(float death) noexcept {
   return death < 0.0F ? ShortBits{0} : static_cast<ShortBits>(short_bits(death) + 1);
 }
 inline constexpr ShortBits kMostDeathBits = kShortInfinity + 1;
+
+// Zero and infinity lie far from the other numbers of a page, so a column holds them beside its
+// base: 0 is zero, 1 is infinity, and n > 1 is the short number of bits base + n - 2.
+inline constexpr std::uint32_t kFirstAboveBase = 2;
+[[nodiscard]] constexpr bool is_beside_base(ShortBits bits) noexcept {
+  return bits == 0 || bits == kShortInfinity;
+}
+/// REQUIRES: bits is beside the base, or not below it.
+[[nodiscard]] constexpr std::uint32_t stored_short(ShortBits bits, ShortBits base) noexcept {
+  return is_beside_base(bits) ? (bits == 0 ? 0U : 1U)
+                              : bits - std::uint32_t{base} + kFirstAboveBase;
+}
+/// The bits of a short number, or more than kShortInfinity where none is stored so.
+[[nodiscard]] constexpr std::uint32_t short_of_stored(std::uint64_t stored,
+                                                      ShortBits base) noexcept {
+  return stored < kFirstAboveBase ? (stored == 0 ? 0U : std::uint32_t{kShortInfinity})
+                                  : static_cast<std::uint32_t>(base + stored - kFirstAboveBase);
+}
+
+/// A death beside the error of the star's record: 0 for a triangle that lives on, 1 for a death at
+/// error 0, else how many short numbers it is below the error, plus 2.
+/// REQUIRES: death <= error, both short.
+[[nodiscard]] constexpr std::uint32_t stored_death(float death, ShortBits error) noexcept {
+  const ShortBits bits = death < 0.0F ? ShortBits{0} : short_bits(death);
+  return bits == 0 ? (death < 0.0F ? 0U : 1U) : std::uint32_t{error} - bits + kFirstAboveBase;
+}
 
 }  // namespace ptin
