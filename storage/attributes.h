@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "engine/geometry/box.h"
 #include "engine/geometry/interval.h"
@@ -36,6 +37,30 @@ struct StarAttributes {
   [[nodiscard]] bool may_live_at(double level) const noexcept {
     return death <= level && level < error;
   }
+};
+
+/// What is asked of stars: a triangle that lives at a level, meets a box and has heights within an
+/// interval. Of the stars of a page all are found that have such a triangle, and some others.
+struct StarFilter {
+  GridBox box{INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
+  Interval heights{-std::numeric_limits<double>::infinity(),
+                   std::numeric_limits<double>::infinity()};  ///< Codes; this one holds voids too.
+  double level = -1.0;  ///< An error; negative: the finest TIN.
+
+  [[nodiscard]] bool may_hold(const StarAttributes& a) const noexcept {
+    return a.may_live_at(level) && meets(a.box, box) && meets(a.heights, heights);
+  }
+};
+
+/// A test of stars for the index: true for a page or a subtree when it is true for a star below.
+/// Threads: const, callable from several threads at once.
+class StarPredicate {
+ public:
+  StarPredicate() = default;
+  StarPredicate(const StarPredicate&) = default;
+  StarPredicate& operator=(const StarPredicate&) = default;
+  virtual ~StarPredicate() = default;
+  [[nodiscard]] virtual bool may_hold(const StarAttributes& a) const noexcept = 0;
 };
 
 /// A monotone test: once true, it stays true when the arguments grow (engine/DESIGN.md, section

@@ -21,10 +21,8 @@ inline constexpr unsigned kMostFieldBits = 57;
   return (word >> (at % 8)) & ((std::uint64_t{1} << width) - 1);
 }
 
-/// The same for a number with a sign, in two's complement.
-[[nodiscard]] inline std::int64_t read_signed_bits(const std::byte* from, std::size_t at,
-                                                   unsigned width) noexcept {
-  const std::uint64_t bits = read_bits(from, at, width);
+/// The number whose lower `width` bits are these, in two's complement.
+[[nodiscard]] constexpr std::int64_t with_sign(std::uint64_t bits, unsigned width) noexcept {
   const std::uint64_t sign = (std::uint64_t{1} << width) >> 1;
   return static_cast<std::int64_t>((bits ^ sign) - sign);
 }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/error.h"
+#include "storage/descriptor.h"
 #include "storage/file/checksum.h"
 
 namespace ptin {
@@ -40,6 +41,14 @@ void IndexNodes::verify(const layout::IndexNode& node, std::uint32_t level, std:
                 "the node says another place or number of entries than follows from its position",
                 node_name(path(), level, number));
   }
+  for (std::uint32_t i = 0; i < node.entries; ++i) {
+    if (!is_sound(node.entry[i], heights_)) {
+      throw Error(
+          ErrorCode::corruption,
+          "entry " + std::to_string(i) + " has a box, heights or errors that no program wrote",
+          node_name(path(), level, number));
+    }
+  }
 }
 
 layout::NodeEntry IndexNodes::descend_to(PageId page) const {
@@ -62,8 +71,8 @@ layout::NodeEntry IndexNodes::descend_to(PageId page) const {
 }
 
 MappedIndexNodes::MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping,
-                                   const Root& place)
-    : IndexNodes(file, place), mapping_(mapping), verified_(place.shape.total_nodes()) {}
+                                   const Root& place, const HeightEncoding& heights)
+    : IndexNodes(file, place, heights), mapping_(mapping), verified_(place.shape.total_nodes()) {}
 
 const layout::IndexNode& MappedIndexNodes::node(std::uint32_t level, std::uint64_t number,
                                                 std::uint64_t expected, layout::IndexNode&) const {
@@ -101,8 +110,9 @@ layout::NodeEntry MappedIndexNodes::descriptor(PageId page) const {
   return mapped.entry[index_of(page) % layout::kFanOut];
 }
 
-PreadIndexNodes::PreadIndexNodes(const ReadOnlyFile& file, const Root& place)
-    : IndexNodes(file, place) {}
+PreadIndexNodes::PreadIndexNodes(const ReadOnlyFile& file, const Root& place,
+                                 const HeightEncoding& heights)
+    : IndexNodes(file, place, heights) {}
 
 const layout::IndexNode& PreadIndexNodes::node(std::uint32_t level, std::uint64_t number,
                                                std::uint64_t expected,

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/geometry/height.h"
 #include "storage/file/io_counters.h"
 #include "storage/file/mapped_file.h"
 #include "storage/file/read_only_file.h"
@@ -54,8 +55,7 @@ class IndexNodes {
   virtual void announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
                         IoCounters& counters) const noexcept = 0;
 
-  /// A copy of the descriptor of a page. Its bytes are verified; whether its fields are possible
-  /// (is_sound()) is not checked. Cost: one copy when the leaf of the page was verified before
+  /// A copy of the descriptor of a page, verified as node() verifies. Cost: one copy when the leaf of the page was verified before
   /// (mapped) or is in the cache (pread), otherwise the path from the root.
   /// @throws Error corruption (also: no such page), io_error
   [[nodiscard]] virtual layout::NodeEntry descriptor(PageId page) const = 0;
@@ -64,13 +64,15 @@ class IndexNodes {
   virtual void require_undamaged() const {}
 
  protected:
-  IndexNodes(const ReadOnlyFile& file, const Root& place) : file_(file), place_(place) {}
+  IndexNodes(const ReadOnlyFile& file, const Root& place, const HeightEncoding& heights)
+      : file_(file), place_(place), heights_(heights) {}
   void require_page(PageId page) const;
   [[nodiscard]] std::uint64_t offset_of(std::uint64_t position) const noexcept {
     return place_.offset + position * layout::kNodeBytes;
   }
   /// Compares the checksum of a node with `expected`, and the level, number and entries that it
-  /// names with its place. @throws Error corruption
+  /// names with its place, and looks whether its entries are possible (is_sound()).
+  /// @throws Error corruption
   void verify(const layout::IndexNode& node, std::uint32_t level, std::uint64_t number,
               std::uint64_t expected) const;
   /// Calls start(offset, bytes) for the ranges of the file that hold the nodes `numbers` of a
@@ -105,12 +107,14 @@ class IndexNodes {
 
   const ReadOnlyFile& file_;
   Root place_;
+  HeightEncoding heights_;
 };
 
 /// Nodes are read in place, in the mapping. A node is verified when it is first touched.
 class MappedIndexNodes final : public IndexNodes {
  public:
-  MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping, const Root& place);
+  MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping, const Root& place,
+                   const HeightEncoding& heights);
   [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
                                               std::uint64_t expected,
                                               layout::IndexNode& scratch) const override;
@@ -127,7 +131,7 @@ class MappedIndexNodes final : public IndexNodes {
 /// Nodes are read by pread. Verified ones are kept in a cache of at most 4 MiB.
 class PreadIndexNodes final : public IndexNodes {
  public:
-  PreadIndexNodes(const ReadOnlyFile& file, const Root& place);
+  PreadIndexNodes(const ReadOnlyFile& file, const Root& place, const HeightEncoding& heights);
   [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
                                               std::uint64_t expected,
                                               layout::IndexNode& scratch) const override;

@@ -24,8 +24,8 @@ struct Found {
 /// Searches level by level, and announces the nodes of each level before it reads them: so a search
 /// waits for the disk once a level, not once a node. Within a level nodes are visited from left to
 /// right, so that pages come out ascending.
-void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId>& pages,
-                         IoCounters& counters) const {
+template <class Test, class Take>
+void PackedRTree::descend(const Test& test, IoCounters& counters, const Take& take) const {
   const IndexShape& shape = nodes_.shape();
   if (shape.levels() == 0) {
     return;
@@ -39,13 +39,13 @@ void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId
     below.numbers.clear();
     below.checksums.clear();
     for (std::size_t i = 0; i < found.numbers.size(); ++i) {
-      visit({level, found.numbers[i], found.checksums[i]}, predicate, counters,
-            [&](std::uint64_t child, std::uint64_t checksum) {
+      visit({level, found.numbers[i], found.checksums[i]}, test, counters,
+            [&](std::uint64_t child, const layout::NodeEntry& entry) {
               if (level == 0) {
-                pages.push_back(PageId{child});
+                take(PageId{child}, entry);
               } else {
                 below.numbers.push_back(child);
-                below.checksums.push_back(checksum);
+                below.checksums.push_back(entry.checksum);
               }
             });
     }
@@ -54,17 +54,30 @@ void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId
   nodes_.require_undamaged();
 }
 
-layout::NodeEntry PackedRTree::sound_entry(const layout::IndexNode& node, std::uint32_t level,
-                                           std::uint64_t number, std::uint32_t i) const {
-  const layout::NodeEntry entry = node.entry[i];
-  if (!is_sound(entry, heights_)) [[unlikely]] {
-    throw Error(
-        ErrorCode::corruption,
-        "entry " + std::to_string(i) + " has a box, heights or errors that no program wrote",
-        nodes_.path() + ", index level " + std::to_string(level) + ", node " +
-            std::to_string(number));
-  }
-  return entry;
+void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId>& pages,
+                         IoCounters& counters) const {
+  descend([&](const layout::NodeEntry& e) { return predicate.holds(attributes_of(e, heights_)); },
+          counters, [&](PageId id, const layout::NodeEntry&) { pages.push_back(id); });
+}
+
+void PackedRTree::search_stars(const StarFilter& filter, const StarPredicate* also,
+                               std::vector<StarPage>& pages, IoCounters& counters) const {
+  const std::int32_t level = level_bits(filter.level);
+  const GridBox& box = filter.box;
+  const bool any_heights = filter.heights == StarFilter{}.heights;
+  descend(
+      [&](const layout::NodeEntry& e) {
+        // Of a node's entries few pass the first line, which looks at whole numbers alone.
+        return e.star_min_x <= box.max_x && box.min_x <= e.star_max_x &&
+               e.star_min_y <= box.max_y && box.min_y <= e.star_max_y && e.error_max > level &&
+               e.death_min <= level + 1 &&
+               (any_heights || meets(star_attributes_of(e, heights_).heights, filter.heights)) &&
+               (also == nullptr || also->may_hold(star_attributes_of(e, heights_)));
+      },
+      counters,
+      [&](PageId id, const layout::NodeEntry& e) {
+        pages.push_back({id, short_value(e.error_max), e.records});
+      });
 }
 
 void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const {
@@ -95,7 +108,7 @@ void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& count
     counters.bytes_read += layout::kNodeBytes;
     const std::uint32_t entries = shape.entries(at.level, at.number);
     for (std::uint32_t i = 0; i < entries; ++i) {
-      const layout::NodeEntry entry = sound_entry(node, at.level, at.number, i);
+      const layout::NodeEntry& entry = node.entry[i];
       const Merit bound = visitor.bound(attributes_of(entry, heights_));
       if (bound.value > -kInfinity && !bound.is_below(cut_off)) {
         heap.push_back(
@@ -107,19 +120,19 @@ void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& count
   nodes_.require_undamaged();
 }
 
-/// Calls `take` for each entry that satisfies the predicate.
-template <class Take>
-void PackedRTree::visit(const NodePlace& at, const AttributePredicate& predicate,
-                        IoCounters& counters, const Take& take) const {
+/// Calls `take` for each entry that passes the test.
+template <class Test, class Take>
+void PackedRTree::visit(const NodePlace& at, const Test& test, IoCounters& counters,
+                        const Take& take) const {
   layout::IndexNode scratch;  // stays untouched when nodes are mapped
   const layout::IndexNode& node = nodes_.node(at.level, at.number, at.checksum, scratch);
   ++counters.index_nodes;
   counters.bytes_read += layout::kNodeBytes;
   const std::uint32_t entries = nodes_.shape().entries(at.level, at.number);
   for (std::uint32_t i = 0; i < entries; ++i) {
-    const layout::NodeEntry entry = sound_entry(node, at.level, at.number, i);
-    if (predicate.holds(attributes_of(entry, heights_))) {
-      take(at.number * layout::kFanOut + i, entry.checksum);
+    const layout::NodeEntry& entry = node.entry[i];
+    if (test(entry)) {
+      take(at.number * layout::kFanOut + i, entry);
     }
   }
 }

@@ -41,6 +41,13 @@ class BestFirstVisitor {
   virtual Merit visit(PageId page) = 0;
 };
 
+/// A page of stars that a search found.
+struct StarPage {
+  PageId id{};
+  float error = 0.0F;  ///< Largest error of its records.
+  std::uint32_t records = 0;
+};
+
 class PackedRTree final : public RecordIndex {
  public:
   /// @param nodes    Borrowed for the life of the index.
@@ -54,6 +61,13 @@ class PackedRTree final : public RecordIndex {
   void search(const AttributePredicate& predicate, std::vector<PageId>& pages,
               IoCounters& counters) const override;
 
+  /// Appends the pages with a star that may hold what the filter asks for, each once, ascending,
+  /// with what their descriptors say of their stars. Cost: as search().
+  /// @param also  A further condition; null: none.
+  /// @throws Error corruption, io_error
+  void search_stars(const StarFilter& filter, const StarPredicate* also,
+                    std::vector<StarPage>& pages, IoCounters& counters) const;
+
   /// Visits pages best first, until the bounds of all that are left lie below the cut-off.
   /// @throws Error corruption, io_error; what the visitor throws
   /// Cost: the nodes and pages whose bound is at least the final cut-off, times a logarithm.
@@ -64,11 +78,10 @@ class PackedRTree final : public RecordIndex {
     std::uint32_t level;
     std::uint64_t number, checksum;
   };
-  [[nodiscard]] layout::NodeEntry sound_entry(const layout::IndexNode& node, std::uint32_t level,
-                                              std::uint64_t number, std::uint32_t i) const;
-  template <class Take>
-  void visit(const NodePlace& at, const AttributePredicate& predicate, IoCounters& counters,
-             const Take& take) const;
+  template <class Test, class Take>
+  void descend(const Test& test, IoCounters& counters, const Take& take) const;
+  template <class Test, class Take>
+  void visit(const NodePlace& at, const Test& test, IoCounters& counters, const Take& take) const;
 
   const IndexNodes& nodes_;
   HeightEncoding heights_;

@@ -100,6 +100,29 @@ GridBox RecordPage::roi(std::size_t i) const noexcept {
           whole(x + at(PageColumn::kEast)), whole(y + at(PageColumn::kNorth))};
 }
 
+/// Looks at the roi only where u is no farther from the box than any roi of the page reaches.
+std::uint32_t RecordPage::next_near(std::uint32_t i, const GridBox& box) const noexcept {
+  const auto reach = [&](PageColumn c) {
+    return static_cast<std::int64_t>(
+        (std::uint64_t{1} << columns_.header().width[static_cast<std::size_t>(c)]) - 1);
+  };
+  const std::int64_t low_x = box.min_x - reach(PageColumn::kEast);
+  const std::int64_t high_x = box.max_x + reach(PageColumn::kWest);
+  const std::int64_t low_y = box.min_y - reach(PageColumn::kNorth);
+  const std::int64_t high_y = box.max_y + reach(PageColumn::kSouth);
+  for (; i < records(); ++i) {
+    const auto x = static_cast<std::int64_t>(number(PageColumn::kX, i));
+    if (x < low_x || x > high_x) {
+      continue;
+    }
+    const auto y = static_cast<std::int64_t>(number(PageColumn::kY, i));
+    if (y >= low_y && y <= high_y && meets(roi(i), box)) {
+      return i;
+    }
+  }
+  return i;
+}
+
 bool RecordPage::head(std::size_t i, VertexSplit& r) const noexcept {
   const std::uint64_t x = number(PageColumn::kX, i);
   const std::uint64_t y = number(PageColumn::kY, i);
@@ -171,9 +194,11 @@ bool RecordPage::find(std::size_t i, const RingShape& shape, RingPlace& place) c
 
 GridPoint RecordPage::corner_position(GridPoint u, const RingShape& shape,
                                       std::size_t bit) const noexcept {
-  const std::int64_t x = u.x + read_signed_bits(bytes_.data(), bit, shape.offset_bits);
+  const std::int64_t x =
+      u.x + with_sign(read_bits(bytes_.data(), bit, shape.offset_bits), shape.offset_bits);
   const std::int64_t y =
-      u.y + read_signed_bits(bytes_.data(), bit + shape.offset_bits, shape.offset_bits);
+      u.y + with_sign(read_bits(bytes_.data(), bit + shape.offset_bits, shape.offset_bits),
+                      shape.offset_bits);
   return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};  // 2^30 + 2^31 at most
 }
 
@@ -183,26 +208,60 @@ bool RecordPage::is_void(const RingShape& shape, std::size_t bit) const noexcept
   return read_bits(bytes_.data(), at, h.void_bits) != 0;
 }
 
-bool RecordPage::corner(std::uint32_t height, ShortBits error, const RingShape& shape,
-                        std::size_t bit, RingCorner& c) const noexcept {
+/// Takes the corner at a bit apart. A corner takes up to 112 bits, nearly always fewer than 57: then
+/// one load gets all of it.
+RecordPage::StoredCorner RecordPage::stored_corner(const RingShape& shape,
+                                                   std::size_t bit) const noexcept {
   const layout::PageHeader& h = columns_.header();
-  std::size_t at = bit + 2 * shape.offset_bits;
-  const std::int64_t ordered = height + read_signed_bits(bytes_.data(), at, shape.height_bits);
-  at += shape.height_bits;
-  const auto stored = static_cast<std::uint32_t>(read_bits(bytes_.data(), at, shape.death_bits));
-  at += shape.death_bits;
-  const bool is_void = read_bits(bytes_.data(), at, h.void_bits) != 0;
-  const bool has_height = read_bits(bytes_.data(), at + h.void_bits, h.no_height_bits) == 0;
-  const std::uint32_t below = stored < kFirstAboveBase ? error : stored - kFirstAboveBase;
-  // A death above 0 that is written as one at 0 would be there in two forms.
-  if (ordered < 0 || ordered > UINT32_MAX || (stored >= kFirstAboveBase && below >= error)) {
-    return false;
+  StoredCorner c;
+  if (shape.corner_bits <= kMostFieldBits) [[likely]] {
+    std::uint64_t bits = read_bits(bytes_.data(), bit, shape.corner_bits);
+    const auto take = [&](unsigned width) {
+      const std::uint64_t field = bits & ((std::uint64_t{1} << width) - 1);
+      bits >>= width;
+      return field;
+    };
+    c.x = with_sign(take(shape.offset_bits), shape.offset_bits);
+    c.y = with_sign(take(shape.offset_bits), shape.offset_bits);
+    c.height = with_sign(take(shape.height_bits), shape.height_bits);
+    c.death = static_cast<std::uint32_t>(take(shape.death_bits));
+    c.is_void = take(h.void_bits) != 0;
+    c.has_height = bits == 0;
+    return c;
   }
-  c.height = has_height ? height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type) : 0;
-  c.death = stored == 0 ? kLivesOn : short_value(static_cast<ShortBits>(error - below));
-  c.flags = static_cast<std::uint8_t>((is_void ? unsigned{RingCorner::kVoid} : 0U) |
-                                      (has_height ? 0U : unsigned{RingCorner::kNoHeight}));
-  return !std::isnan(heights_.code(c.height));
+  const auto take = [&](unsigned width) {
+    const std::uint64_t field = read_bits(bytes_.data(), bit, width);
+    bit += width;
+    return field;
+  };
+  c.x = with_sign(take(shape.offset_bits), shape.offset_bits);
+  c.y = with_sign(take(shape.offset_bits), shape.offset_bits);
+  c.height = with_sign(take(shape.height_bits), shape.height_bits);
+  c.death = static_cast<std::uint32_t>(take(shape.death_bits));
+  c.is_void = take(h.void_bits) != 0;
+  c.has_height = take(h.no_height_bits) == 0;
+  return c;
+}
+
+/// Makes a corner of what is stored. False when it cannot be one, but for its place.
+bool RecordPage::make_corner(const StoredCorner& stored, const VertexSplit& r, std::uint32_t height,
+                             ShortBits error, RingCorner& c) const noexcept {
+  const std::int64_t ordered = height + stored.height;
+  const std::uint32_t below =
+      stored.death < kFirstAboveBase ? error : stored.death - kFirstAboveBase;
+  // A death above 0 that is written as one at 0 would be there in two forms.
+  const bool is_sound =
+      ordered >= 0 && ordered <= UINT32_MAX && (stored.death < kFirstAboveBase || below < error);
+  // 2^30 + 2^31 at most: what leaves the grid becomes negative, and lies off it still.
+  c.position = {static_cast<std::int32_t>(r.u.x + stored.x),
+                static_cast<std::int32_t>(r.u.y + stored.y)};
+  c.height =
+      stored.has_height ? height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type) : 0;
+  c.death = stored.death == 0 ? kLivesOn : short_value(static_cast<ShortBits>(error - below));
+  c.flags = static_cast<std::uint8_t>((stored.is_void ? unsigned{RingCorner::kVoid} : 0U) |
+                                      (stored.has_height ? 0U : unsigned{RingCorner::kNoHeight}));
+  return is_sound && contains(r.roi, c.position) &&
+         (heights_.type == HeightType::int32 || !std::isnan(heights_.code(c.height)));
 }
 
 bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept {
@@ -240,9 +299,8 @@ bool RecordPage::ring(std::size_t i, RingPlace& place, const VertexSplit& r,
   bool is_sound = true;
   for (std::size_t k = 0; k < ring.size(); ++k) {
     RingCorner& c = ring[k];
-    const std::size_t bit = place.bit + k * shape.corner_bits;
-    c.position = corner_position(r.u, shape, bit);
-    is_sound &= corner(height, error, shape, bit, c) && contains(r.roi, c.position);
+    is_sound &=
+        make_corner(stored_corner(shape, place.bit + k * shape.corner_bits), r, height, error, c);
   }
   const bool is_closed = has_closed_ring(r);
   for (std::size_t k = is_closed ? 0 : 1; is_sound && k < ring.size(); ++k) {
@@ -302,7 +360,6 @@ void DescribedPage::decode(std::span<const std::byte> bytes, std::vector<VertexS
 
 void DescribedPage::decode(std::span<const std::byte> bytes, StarredRecords& out) const {
   const std::size_t before = out.size();
-  const std::size_t corners = out.corners.size();
   decode(bytes, out.splits);
   const RecordPage page = open(bytes);
   RingPlace place;
@@ -311,9 +368,7 @@ void DescribedPage::decode(std::span<const std::byte> bytes, StarredRecords& out
     const VertexSplit& r = out.splits[before + i];
     if (!page.ring(i, place, r, out.corners) || !admits(r, std::span(out.corners).subspan(begin)))
         [[unlikely]] {
-      out.splits.resize(before);
-      out.corners.resize(corners);
-      out.ring_end.resize(before);
+      out.resize(before);
       report(i);
     }
     out.ring_end.push_back(static_cast<std::uint32_t>(out.corners.size()));
@@ -321,22 +376,62 @@ void DescribedPage::decode(std::span<const std::byte> bytes, StarredRecords& out
 }
 
 bool DescribedPage::admits(const VertexSplit& r, std::span<const RingCorner> ring) const noexcept {
-  Descriptor own(heights_);
-  own.add(r, ring);
-  const layout::NodeEntry e = own.entry();
   const layout::NodeEntry& d = descriptor_;
-  const bool has_heights = heights_.code(e.star_height_lo) <= heights_.code(e.star_height_hi);
-  return e.star_min_x >= d.star_min_x && e.star_min_y >= d.star_min_y &&
-         e.star_max_x <= d.star_max_x && e.star_max_y <= d.star_max_y &&
-         e.death_min >= d.death_min &&
-         (!has_heights || (heights_.code(e.star_height_lo) >= heights_.code(d.star_height_lo) &&
-                           heights_.code(e.star_height_hi) <= heights_.code(d.star_height_hi)));
+  const GridBox box{d.star_min_x, d.star_min_y, d.star_max_x, d.star_max_y};
+  const HeightType type = heights_.type;
+  const std::uint32_t lo = ordered_height(d.star_height_lo, type);
+  const std::uint32_t hi = ordered_height(d.star_height_hi, type);
+  const auto is_within = [&](HeightBits height) {
+    const std::uint32_t ordered = ordered_height(height, type);
+    return lo <= ordered && ordered <= hi;
+  };
+  const float least =
+      d.death_min == 0 ? kLivesOn : short_value(static_cast<ShortBits>(d.death_min - 1));
+  bool fits =
+      contains(box, r.u) && ((r.flags & VertexSplit::kVertexVoid) != 0 || is_within(r.height));
+  for (const RingCorner& c : ring) {
+    fits &= contains(box, c.position) &&
+            ((c.flags & RingCorner::kNoHeight) != 0 || is_within(c.height));
+  }
+  const std::size_t triangles = ring.size() - (has_closed_ring(r) ? 0 : 1);
+  for (const RingCorner& c : ring.first(triangles)) {
+    fits &= c.death >= least;
+  }
+  return fits;
 }
 
 std::size_t DescribedPage::admitted(std::span<const VertexSplit> records) const noexcept {
   return heights_.type == HeightType::int32
              ? first_excluded(Bounds<std::int32_t>(descriptor_), records)
              : first_excluded(Bounds<float>(descriptor_), records);
+}
+
+void DescribedPage::decode_stars(std::span<const std::byte> bytes, const StarFilter& filter,
+                                 StarredRecords& out) const {
+  const RecordPage page = open(bytes);
+  const std::size_t before = out.size();
+  const std::int32_t level = level_bits(filter.level);
+  RingPlace place;
+  VertexSplit r;
+  for (std::uint32_t i = page.next_near(0, filter.box); i < records();
+       i = page.next_near(i + 1, filter.box)) {
+    if (static_cast<std::int64_t>(page.error_bits(i)) <= level) {
+      continue;
+    }
+    const bool is_sound = page.head(i, r);
+    if (is_sound && !meets(attributes_of(r, heights_).heights, filter.heights)) {
+      continue;
+    }
+    const std::size_t first = out.corners.size();
+    if (!is_sound || admitted(std::span(&r, 1)) == 0 || !page.ring(i, place, r, out.corners) ||
+        !admits(r, std::span(out.corners).subspan(first))) [[unlikely]] {
+      out.corners.resize(first);
+      out.resize(before);
+      report(i);
+    }
+    out.splits.push_back(r);
+    out.ring_end.push_back(static_cast<std::uint32_t>(out.corners.size()));
+  }
 }
 
 void DescribedPage::decode_matching(std::span<const std::byte> bytes,

@@ -36,6 +36,8 @@ class RecordPage {
 
   /// The roi of a record. Nothing is checked. REQUIRES, as all that follows: i < records().
   [[nodiscard]] GridBox roi(std::size_t i) const noexcept;
+  /// The first record from i on whose roi may meet a box; records() when there is none.
+  [[nodiscard]] std::uint32_t next_near(std::uint32_t i, const GridBox& box) const noexcept;
   /// The bits of a short number (storage/short_float.h), or more than those of infinity.
   [[nodiscard]] std::uint32_t error_bits(std::size_t i) const noexcept {
     return short_of_stored(number(PageColumn::kError, i), columns_.header().error);
@@ -56,6 +58,12 @@ class RecordPage {
     unsigned degree, offset_bits, height_bits, death_bits, corner_bits;
     [[nodiscard]] std::size_t bits() const noexcept { return std::size_t{degree} * corner_bits; }
   };
+  /// The fields of a corner.
+  struct StoredCorner {
+    std::int64_t x, y, height;
+    std::uint32_t death;
+    bool is_void, has_height;
+  };
   [[nodiscard]] std::uint64_t number(PageColumn column, std::size_t i) const noexcept {
     return columns_.at(bytes_.data(), column, i);
   }
@@ -64,8 +72,10 @@ class RecordPage {
   [[nodiscard]] GridPoint corner_position(GridPoint u, const RingShape& shape,
                                           std::size_t bit) const noexcept;
   [[nodiscard]] bool is_void(const RingShape& shape, std::size_t bit) const noexcept;
-  [[nodiscard]] bool corner(std::uint32_t height, ShortBits error, const RingShape& shape,
-                            std::size_t bit, RingCorner& c) const noexcept;
+  [[nodiscard]] StoredCorner stored_corner(const RingShape& shape, std::size_t bit) const noexcept;
+  [[nodiscard]] bool make_corner(const StoredCorner& stored, const VertexSplit& r,
+                                 std::uint32_t height, ShortBits error,
+                                 RingCorner& c) const noexcept;
 
   std::span<const std::byte> bytes_;
   HeightEncoding heights_;
@@ -103,6 +113,11 @@ class DescribedPage {
   /// @throws Error as decode()
   void decode_matching(std::span<const std::byte> bytes, const AttributePredicate& predicate,
                        std::vector<VertexSplit>& out) const;
+
+  /// Appends the stars that may hold what the filter asks for (StoreFile::read_stars).
+  /// @throws Error as decode()
+  void decode_stars(std::span<const std::byte> bytes, const StarFilter& filter,
+                    StarredRecords& out) const;
 
   /// Whether the descriptor admits a star.
   [[nodiscard]] bool admits(const VertexSplit& r, std::span<const RingCorner> ring) const noexcept;

@@ -8,6 +8,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 
 #include "storage/layout.h"
 
@@ -26,6 +27,18 @@ inline constexpr ShortBits kShortInfinity = layout::kInfinityBits >> 16;
 }
 /// The least short number that is not below `v`. REQUIRES: v >= 0.
 [[nodiscard]] constexpr float shortened(float v) noexcept { return short_value(short_bits(v)); }
+
+/// A level of detail among the bits of short numbers: an error is above the level when its bits are
+/// greater, and a death_bits() is at or below it when it is at most one more. -1: a level below 0.
+[[nodiscard]] constexpr std::int32_t level_bits(double level) noexcept {
+  if (!(level >= 0.0)) {
+    return -1;
+  }
+  const auto up = shortened(level < static_cast<double>(std::numeric_limits<float>::max())
+                                ? static_cast<float>(level)
+                                : std::numeric_limits<float>::infinity());
+  return short_bits(up) - (static_cast<double>(up) > level ? 1 : 0);
+}
 
 /// A death in 16 bits, as descriptors and T0 have it: 0 for a triangle that lives on, else the bits of the error plus 1.
 /// REQUIRES: kLivesOn, or an error.

@@ -52,6 +52,12 @@ struct StarredRecords {
     const std::size_t begin = i == 0 ? 0 : ring_end[i - 1];
     return std::span(corners).subspan(begin, ring_end[i] - begin);
   }
+  /// Keeps the first `count` records.
+  void resize(std::size_t count) {
+    splits.resize(count);
+    ring_end.resize(count);
+    corners.resize(count == 0 ? 0 : ring_end.back());
+  }
   void clear() noexcept {
     splits.clear();
     corners.clear();

@@ -40,15 +40,20 @@ class StoreFileImpl final : public StoreFile {
   [[nodiscard]] std::uint64_t fingerprint() const noexcept override {
     return front_.header.header_checksum;
   }
-  [[nodiscard]] const RecordIndex& index() const noexcept override { return *index_; }
+  [[nodiscard]] const PackedRTree& index() const noexcept override { return *index_; }
   [[nodiscard]] const PageStore& pages() const noexcept override { return *pages_; }
   [[nodiscard]] PageInfo page_info(PageId id) const override;
   void read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const override;
   void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const override;
+  std::uint32_t read_stars(PageId id, const StarFilter& filter, StarredRecords& out,
+                           IoCounters& counters) const override;
   std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
                               std::vector<VertexSplit>& out, IoCounters& counters) const override;
 
  private:
+  template <class Read, class Undo>
+  std::uint32_t read_in_place(PageId id, IoCounters& counters, const Read& read,
+                              const Undo& undo) const;
   [[nodiscard]] DescribedPage described(PageId id) const;
 
   ReadOnlyFile file_;
@@ -64,11 +69,11 @@ StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access)
   const IndexNodes::Root place{front_.index, front_.index_offset, front_.root_checksum};
   if (access == PageAccess::kMapped) {
     mapping_.emplace(file_);
-    nodes_ = std::make_unique<MappedIndexNodes>(file_, *mapping_, place);
+    nodes_ = std::make_unique<MappedIndexNodes>(file_, *mapping_, place, front_.facts.heights);
     pages_ = std::make_unique<MappedPageStore>(file_, *mapping_, front_.slots, *nodes_);
   } else {
     file_.expect_jumps();
-    nodes_ = std::make_unique<PreadIndexNodes>(file_, place);
+    nodes_ = std::make_unique<PreadIndexNodes>(file_, place, front_.facts.heights);
     pages_ = std::make_unique<PreadPageStore>(file_, front_.slots, *nodes_);
   }
   index_ = std::make_unique<PackedRTree>(*nodes_, front_.facts.heights);
@@ -114,23 +119,47 @@ void StoreFileImpl::read_starred(PageId id, StarredRecords& out, IoCounters& cou
   page.decode(bytes.of(page), out);
 }
 
-std::uint32_t StoreFileImpl::read_matching(PageId id, const AttributePredicate& predicate,
-                                           std::vector<VertexSplit>& out,
-                                           IoCounters& counters) const {
+/// Lets `read` look at a page where it lies. What it made is undone when the page turns out to be
+/// damaged, or to have been.
+template <class Read, class Undo>
+std::uint32_t StoreFileImpl::read_in_place(PageId id, IoCounters& counters, const Read& read,
+                                           const Undo& undo) const {
   const DescribedPage page = described(id);
   PageBuffer buffer;
   const std::span<const std::byte> bytes =
       pages_->view_described(id, page.descriptor(), buffer.of(page), counters);
-  const std::size_t before = out.size();
   try {
-    page.decode_matching(bytes, predicate, out);
+    read(page, bytes);
     pages_->require_undamaged();
   } catch (const Error&) {
-    out.resize(before);
+    undo();
     pages_->require_undamaged();  // Lost bytes are the cause, where there are any.
     throw;
   }
   return page.records();
+}
+
+std::uint32_t StoreFileImpl::read_matching(PageId id, const AttributePredicate& predicate,
+                                           std::vector<VertexSplit>& out,
+                                           IoCounters& counters) const {
+  const std::size_t before = out.size();
+  return read_in_place(
+      id, counters,
+      [&](const DescribedPage& page, std::span<const std::byte> bytes) {
+        page.decode_matching(bytes, predicate, out);
+      },
+      [&] { out.resize(before); });
+}
+
+std::uint32_t StoreFileImpl::read_stars(PageId id, const StarFilter& filter, StarredRecords& out,
+                                        IoCounters& counters) const {
+  const std::size_t before = out.size();
+  return read_in_place(
+      id, counters,
+      [&](const DescribedPage& page, std::span<const std::byte> bytes) {
+        page.decode_stars(bytes, filter, out);
+      },
+      [&] { out.resize(before); });
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "engine/geometry/affine.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
-#include "storage/index.h"
+#include "storage/packed_rtree.h"
 #include "storage/page_store.h"
 #include "storage/star.h"
 
@@ -106,7 +106,7 @@ class StoreFile {
   /// all sections, and an index entry that of what it describes: so this one number stands for the
   /// content of the file.
   [[nodiscard]] virtual std::uint64_t fingerprint() const noexcept = 0;
-  [[nodiscard]] virtual const RecordIndex& index() const noexcept = 0;  ///< The packed R-tree.
+  [[nodiscard]] virtual const PackedRTree& index() const noexcept = 0;
   [[nodiscard]] virtual const PageStore& pages() const noexcept = 0;
 
   /// What the descriptor of a page says.
@@ -127,6 +127,13 @@ class StoreFile {
 
   /// As read_records(), with the stars.
   virtual void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const = 0;
+
+  /// Appends the stars of a page that may hold what the filter asks for, each checked against the
+  /// page's descriptor. Of the records it sets everything but w, vl, vr, and the classes of the two
+  /// triangles that are made. Returns the number of records examined: all records of the page.
+  /// @throws Error corruption, io_error
+  virtual std::uint32_t read_stars(PageId id, const StarFilter& filter, StarredRecords& out,
+                                   IoCounters& counters) const = 0;
 
   /// As read_records(), for those records alone whose attributes satisfy `predicate`. The others
   /// are not decoded, and not checked. Returns the number of records examined: all records of the

@@ -20,6 +20,9 @@ struct QueryCost {
   std::uint64_t records_retrieved = 0;
   std::uint64_t records_examined = 0;  ///< Records decoded and tested by the predicate.
   std::uint64_t records_applied = 0;   ///< Splits made.
+  /// Stars decoded, each with all its triangles: those of the pages read that may hold what was
+  /// asked for.
+  std::uint64_t stars_read = 0;
   IoCounters io;
   double seconds = 0.0;  ///< Elapsed time of the answer.
 

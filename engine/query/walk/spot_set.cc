@@ -49,8 +49,11 @@ SpotSet::SpotSet(std::span<const Spot> spots, double tolerance)
   }
   spots_.resize(spots.size());
   std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for (const Spot& s : spots) {
-    spots_[next[cell(s)]++] = s;
+  index_.resize(spots.size());
+  for (std::size_t i = 0; i < spots.size(); ++i) {
+    const std::uint32_t place = next[cell(spots[i])]++;
+    spots_[place] = spots[i];
+    index_[place] = static_cast<std::uint32_t>(i);
   }
   sums_.assign(std::size_t{columns_ + 1} * (rows_ + 1), 0);
   for (std::uint32_t row = 0; row < rows_; ++row) {
@@ -60,10 +63,6 @@ SpotSet::SpotSet(std::span<const Spot> spots, double tolerance)
           spots_below(column + 1, row) + begin_[first + column + 1] - begin_[first];
     }
   }
-}
-
-std::uint32_t SpotSet::cell_of(std::int64_t grid, std::int64_t low) const noexcept {
-  return static_cast<std::uint32_t>((grid - low) >> cell_shift_);
 }
 
 /// A cell strictly between the cells of the box's sides lies inside of the box, so one spot in such

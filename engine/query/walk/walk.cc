@@ -189,22 +189,29 @@ Footing footing_of(const Tin& tin, Spot q, const Place& place) {
 /// differences, quotients of exact sums and products carry 4u of |z_i - z0|, which is at most
 /// 2 max |z|. The weights sum to at most W, so 8u max |z| covers the products. Each sum adds u of a
 /// value that is at most max |z| after the clamp.
+double weighted_mean(int count, const std::array<double, 3>& z,
+                     const std::array<Int128, 3>& weight) {
+  if (count == 1) {
+    return z[0];
+  }
+  if (count == 2) {
+    const double mean = z[0] + (z[1] - z[0]) * (static_cast<double>(weight[1]) /
+                                                static_cast<double>(weight[0] + weight[1]));
+    return std::clamp(mean, std::min(z[0], z[1]), std::max(z[0], z[1]));
+  }
+  const auto whole = static_cast<double>(weight[0] + weight[1] + weight[2]);
+  const double mean = z[0] + (z[1] - z[0]) * (static_cast<double>(weight[1]) / whole) +
+                      (z[2] - z[0]) * (static_cast<double>(weight[2]) / whole);
+  return std::clamp(mean, std::min({z[0], z[1], z[2]}), std::max({z[0], z[1], z[2]}));
+}
+
 double code_at(const Tin& tin, const HeightEncoding& heights, const Footing& f) {
-  const double z0 = heights.code(tin.vertices[f.vertex[0]].height);
-  if (f.count == 1) {
-    return z0;
+  std::array<double, 3> codes{};
+  for (int i = 0; i < f.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    codes[k] = heights.code(tin.vertices[f.vertex[k]].height);
   }
-  const double z1 = heights.code(tin.vertices[f.vertex[1]].height);
-  if (f.count == 2) {
-    const double z = z0 + (z1 - z0) * (static_cast<double>(f.weight[1]) /
-                                       static_cast<double>(f.weight[0] + f.weight[1]));
-    return std::clamp(z, std::min(z0, z1), std::max(z0, z1));
-  }
-  const double z2 = heights.code(tin.vertices[f.vertex[2]].height);
-  const auto whole = static_cast<double>(f.weight[0] + f.weight[1] + f.weight[2]);
-  const double z = z0 + (z1 - z0) * (static_cast<double>(f.weight[1]) / whole) +
-                   (z2 - z0) * (static_cast<double>(f.weight[2]) / whole);
-  return std::clamp(z, std::min({z0, z1, z2}), std::max({z0, z1, z2}));
+  return weighted_mean(f.count, codes, f.weight);
 }
 
 LineWalk::LineWalk(const Tin& tin, Spot p, Spot q, TriangleId start) : tin_(&tin), p_(p), q_(q) {

@@ -64,10 +64,14 @@ struct Footing {
 /// The footing of a spot. REQUIRES: place = find_spot(tin, q, ...), not outside.
 [[nodiscard]] Footing footing_of(const Tin& tin, Spot q, const Place& place);
 
-/// The height code at a footing, interpolated between the codes of its vertices. Exact on a vertex
-/// and where all codes are equal; else off by at most 8 units of rounding (2^-53) of the largest
-/// code's magnitude, and never outside of the range of the codes. REQUIRES: all vertices of the
-/// footing have heights.
+/// The mean of the first `count` of some numbers, 1 to 3, with these weights. Exact of one number
+/// and where all are equal; else off by at most 8 units of rounding (2^-53) of the largest
+/// magnitude, and never outside of their range. REQUIRES: weights are positive.
+[[nodiscard]] double weighted_mean(int count, const std::array<double, 3>& z,
+                                   const std::array<Int128, 3>& weight);
+
+/// The height code at a footing: the weighted mean of the codes of its vertices. REQUIRES: all
+/// vertices of the footing have heights.
 [[nodiscard]] double code_at(const Tin& tin, const HeightEncoding& heights, const Footing& f);
 
 /// Where a line crosses the mesh.

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Triangles that live at a level of detail: those of its TIN, by lifetimes alone (engine/DESIGN.md,
+// section 2.10).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "engine/geometry/box.h"
+#include "engine/geometry/infinity.h"
+#include "engine/geometry/interval.h"
+#include "storage/star.h"
+#include "storage/store_file.h"
+
+namespace ptin {
+
+/// A triangle with what its maker says of the full surface below it: every record that refines the
+/// triangle depends on its maker.
+struct LivingTriangle {
+  struct Corner {
+    GridPoint position;
+    HeightBits height = 0;
+    bool has_height = false;
+  };
+  std::array<Corner, 3> corner;  ///< Counter-clockwise.
+  bool is_void = false;
+  /// Most vertical distance to the full surface where both are surface, height's unit; +infinity
+  /// for a triangle of T0.
+  double deviation = kInfinity;
+  Interval heights{-kInfinity, kInfinity};  ///< Codes of the full surface; empty: nothing but void.
+};
+
+[[nodiscard]] inline GridBox box_of(const LivingTriangle& t) noexcept {
+  return united(united(box_of(t.corner[0].position), t.corner[1].position), t.corner[2].position);
+}
+
+/// Calls visit(const LivingTriangle&) for each triangle of the stars that lives at a level: all
+/// errors above it are applied (negative: all records). Stars of records that the level leaves out
+/// are passed over.
+template <class Visit>
+void visit_living(const StarredRecords& stars, double level, const HeightEncoding& heights,
+                  const Visit& visit) {
+  for (std::size_t i = 0; i < stars.size(); ++i) {
+    const VertexSplit& r = stars.splits[i];
+    if (!(r.error > level)) {
+      continue;
+    }
+    const std::span<const RingCorner> ring = stars.ring(i);
+    const std::size_t triangles = ring.size() - (has_closed_ring(r) ? 0 : 1);
+    LivingTriangle t;
+    t.corner[0] = {r.u, r.height, (r.flags & VertexSplit::kVertexVoid) == 0};
+    t.deviation = r.deviation;
+    t.heights = {heights.code(r.height_lo), heights.code(r.height_hi)};
+    const auto corner_of_ring = [](const RingCorner& c) {
+      return LivingTriangle::Corner{c.position, c.height, (c.flags & RingCorner::kNoHeight) == 0};
+    };
+    for (std::size_t k = 0; k < triangles; ++k) {
+      if (ring[k].death <= level) {
+        t.corner[1] = corner_of_ring(ring[k]);
+        t.corner[2] = corner_of_ring(ring[k + 1 == ring.size() ? 0 : k + 1]);
+        t.is_void = (ring[k].flags & RingCorner::kVoid) != 0;
+        visit(t);
+      }
+    }
+  }
+}
+
+/// The same for the triangles of T0.
+template <class Visit>
+void visit_living(const CoarsestTin& t0, double level, const Visit& visit) {
+  for (const CoarsestTin::T& triangle : t0.triangles) {
+    if (triangle.death <= level) {
+      LivingTriangle t;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const CoarsestTin::V& v = t0.vertices[triangle.v[i]];
+        t.corner[i] = {v.position, v.height, v.has_height != 0};
+      }
+      t.is_void = triangle.is_void != 0;
+      visit(t);
+    }
+  }
+}
+
+}  // namespace ptin

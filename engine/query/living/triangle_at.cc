@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/living/triangle_at.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/query/walk/spot_set.h"
+#include "engine/query/walk/walk.h"
+#include "storage/packed_rtree.h"
+
+namespace ptin {
+
+namespace {
+
+/// With fewer records of the region for each of its spots, the region is read as a whole. Else the
+/// pages of each spot are: a spot reads a few pages and leaves out most of their stars.
+constexpr double kRecordsOfSpot = 128;
+
+std::array<VertexKey, 3> keys_of(const LivingTriangle& t) {
+  std::array<VertexKey, 3> keys{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    keys[i] = key_of(t.corner[i].position);
+  }
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+bool is_preferred(const LivingTriangle& a, const LivingTriangle& b) {
+  return a.is_void != b.is_void ? !a.is_void : keys_of(a) < keys_of(b);
+}
+
+/// Twice the areas of the triangles of q and the side opposite to each corner.
+std::array<Int128, 3> weights_of(const LivingTriangle& t, Spot q) {
+  return {side(t.corner[1].position, t.corner[2].position, q),
+          side(t.corner[2].position, t.corner[0].position, q),
+          side(t.corner[0].position, t.corner[1].position, q)};
+}
+
+/// Takes a triangle as the answer for a spot that it holds, if it is the better one.
+void offer(const LivingTriangle& t, Spot q, TriangleAt& at) {
+  if (at.is_inside) {
+    return;
+  }
+  const std::array<Int128, 3> weight = weights_of(t, q);
+  if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0) {
+    return;
+  }
+  if (!at.is_found || is_preferred(t, at.triangle)) {
+    at.triangle = t;
+    at.is_found = true;
+  }
+  at.is_inside = weight[0] > 0 && weight[1] > 0 && weight[2] > 0;
+}
+
+class SpotStars final : public StarPredicate {
+ public:
+  explicit SpotStars(const SpotSet& spots) : spots_(spots) {}
+  [[nodiscard]] bool may_hold(const StarAttributes& a) const noexcept override {
+    return spots_.holds_spot(a.box);
+  }
+
+ private:
+  const SpotSet& spots_;
+};
+
+class Finder {
+ public:
+  Finder(const OpenedTerrain& terrain, double level, QueryContext& context)
+      : store_(terrain.store()), context_(context) {
+    filter_.level = level;
+  }
+  void find(std::span<const Spot> spots, std::span<TriangleAt> found);
+
+ private:
+  void search(const SpotSet& set);
+  void read(PageId page);
+  [[nodiscard]] bool is_dense(const GridBox& reach, std::size_t spots) const;
+  template <class Source>
+  void offer_all(const SpotSet& set, const Source& source, std::span<const Spot> spots,
+                 std::span<TriangleAt> found) const;
+
+  const StoreFile& store_;
+  QueryContext& context_;
+  StarFilter filter_;
+  std::vector<StarPage> pages_;
+  StarredRecords stars_;
+};
+
+void Finder::search(const SpotSet& set) {
+  pages_.clear();
+  filter_.box = set.reach();
+  const SpotStars also(set);
+  store_.index().search_stars(filter_, set.is_single() ? nullptr : &also, pages_, context_.cost.io);
+  context_.check_stop();
+}
+
+void Finder::read(PageId page) {
+  stars_.clear();
+  context_.cost.records_examined += store_.read_stars(page, filter_, stars_, context_.cost.io);
+  context_.cost.stars_read += stars_.size();
+}
+
+/// Offers each triangle of a source to the spots in its box.
+template <class Source>
+void Finder::offer_all(const SpotSet& set, const Source& source, std::span<const Spot> spots,
+                       std::span<TriangleAt> found) const {
+  const auto take = [&](const LivingTriangle& t) {
+    set.for_each_in(box_of(t), [&](std::size_t i) { offer(t, spots[i], found[i]); });
+  };
+  source(take);
+}
+
+/// Whether so many spots are many for the records of their box, were the records spread evenly.
+bool Finder::is_dense(const GridBox& reach, std::size_t spots) const {
+  const auto area = [](const GridBox& b) {
+    return (static_cast<double>(b.max_x) - b.min_x + 1) *
+           (static_cast<double>(b.max_y) - b.min_y + 1);
+  };
+  const double share = area(reach) / area(store_.facts().bounds);
+  return static_cast<double>(store_.record_count()) * share <
+         kRecordsOfSpot * static_cast<double>(spots);
+}
+
+void Finder::find(std::span<const Spot> spots, std::span<TriangleAt> found) {
+  const SpotSet set(spots, filter_.level);
+  if (spots.size() > 1 && !is_dense(set.reach(), spots.size())) {
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+      find(spots.subspan(i, 1), found.subspan(i, 1));
+    }
+    return;
+  }
+  const auto from_t0 = [&](const auto& take) { visit_living(store_.t0(), filter_.level, take); };
+  const auto from_page = [&](const auto& take) {
+    visit_living(stars_, filter_.level, store_.facts().heights, take);
+  };
+  offer_all(set, from_t0, spots, found);
+  search(set);
+  if (spots.size() == 1) {
+    std::sort(pages_.begin(), pages_.end(), [](const StarPage& a, const StarPage& b) {
+      return a.error != b.error ? a.error < b.error : index_of(a.id) < index_of(b.id);
+    });
+  }
+  for (const StarPage& page : pages_) {
+    if (spots.size() == 1 && found[0].is_inside) {
+      return;
+    }
+    context_.check_stop();
+    read(page.id);
+    offer_all(set, from_page, spots, found);
+  }
+}
+
+}  // namespace
+
+void find_triangles(const OpenedTerrain& terrain, double level, std::span<const Spot> spots,
+                    std::span<TriangleAt> found, QueryContext& context) {
+  std::fill(found.begin(), found.end(), TriangleAt{});
+  if (!spots.empty()) {
+    Finder(terrain, level, context).find(spots, found);
+  }
+}
+
+double code_in(const LivingTriangle& t, const HeightEncoding& heights, Spot q) {
+  const std::array<Int128, 3> of_corner = weights_of(t, q);
+  std::array<std::size_t, 3> corners{0, 1, 2};  // by key, so that both sides of an edge agree
+  std::sort(corners.begin(), corners.end(), [&](std::size_t a, std::size_t b) {
+    return key_of(t.corner[a].position) < key_of(t.corner[b].position);
+  });
+  int count = 0;
+  std::array<double, 3> codes{};
+  std::array<Int128, 3> weights{};
+  for (const std::size_t i : corners) {
+    if (of_corner[i] != 0) {
+      const auto k = static_cast<std::size_t>(count++);
+      codes[k] = heights.code(t.corner[i].height);
+      weights[k] = of_corner[i];
+    }
+  }
+  return weighted_mean(count, codes, weights);
+}
+
+}  // namespace ptin

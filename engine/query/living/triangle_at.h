@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The living triangle at a spot.
+#pragma once
+
+#include <span>
+
+#include "engine/query/living/living_triangle.h"
+#include "engine/query/select/accounting.h"
+#include "engine/query/select/opened_terrain.h"
+#include "engine/query/walk/spot.h"
+
+namespace ptin {
+
+/// The closed triangle of a level that answers for a spot: of several a surface one before a void
+/// one, then the one whose corners' keys, in ascending order, come first.
+struct TriangleAt {
+  LivingTriangle triangle;
+  bool is_found = false;
+  bool is_inside = false;  ///< The spot lies on no side, so that no other triangle holds it.
+};
+
+/// Finds the triangles at spots.
+/// @param level  As StarFilter::level.
+/// @param spots  In the bounds of the terrain. Spots that lie close together cost less.
+/// @param found  As many; receives the answers. One that is not found lies outside of the domain.
+/// @throws Error corruption, io_error, cancelled
+/// Cost: of one spot the pages whose stars may hold it, those of small errors first, until a
+/// triangle holds it within; of many spots in a small region the pages of the region.
+void find_triangles(const OpenedTerrain& terrain, double level, std::span<const Spot> spots,
+                    std::span<TriangleAt> found, QueryContext& context);
+
+/// The code of the height of a surface triangle at a spot that it holds, the same from both sides
+/// of an edge; rounded as weighted_mean() says (walk/walk.h).
+[[nodiscard]] double code_in(const LivingTriangle& t, const HeightEncoding& heights, Spot q);
+
+}  // namespace ptin
