@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/infinity.h"
+#include "engine/query/living/triangle_at.h"
 #include "engine/query/refine/bounded_mesh.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/detail.h"
@@ -34,6 +35,16 @@ struct Ordered {
   std::uint64_t index;  ///< In the request.
   Spot spot;
 };
+
+/// Turns a triangle so that the corner of least key comes first, however the mesh has it.
+void begin_with_least(std::array<LocatedPoint::Corner, 3>& triangle) {
+  const auto least =
+      std::min_element(triangle.begin(), triangle.end(),
+                       [](const LocatedPoint::Corner& a, const LocatedPoint::Corner& b) {
+                         return key_of(a.position) < key_of(b.position);
+                       });
+  std::rotate(triangle.begin(), least, triangle.end());
+}
 
 class Locating {
  public:
@@ -64,6 +75,11 @@ class Locating {
  private:
   [[nodiscard]] std::vector<Ordered> order(std::span<const MapPoint> points) const;
   void locate_group(std::span<const Ordered> group);
+  [[nodiscard]] bool is_by_stars() const noexcept {
+    return request_.by == AnswerBy::kStars && detail_.is_by_error() && !terrain_.uses_other_index();
+  }
+  void locate_by_stars(std::span<const Ordered> group);
+  void locate_by_splits(std::span<const Ordered> group);
   void locate_exactly(std::span<const Ordered> group, std::span<const PageId> pages,
                       const SpotSet& wanted);
   void locate_bounded(std::span<const Ordered> group, std::span<const PageId> pages,
@@ -72,6 +88,7 @@ class Locating {
   /// triangle.
   template <typename BoundsOf>
   void walk_group(const Tin& tin, std::span<const Ordered> group, const BoundsOf& bounds_of);
+  [[nodiscard]] LocatedPoint answer(const TriangleAt& at, Spot spot) const;
   [[nodiscard]] LocatedPoint answer(const Tin& tin, Spot spot, const Place& place) const;
   void set_interval(const SurfaceBounds& bounds, LocatedPoint& point) const;
 
@@ -81,6 +98,8 @@ class Locating {
   QueryContext context_;
   Detail detail_;
   // Of the group at hand; the next group uses the same memory.
+  std::vector<Spot> spots_;
+  std::vector<TriangleAt> found_;
   std::vector<PendingSplit> splits_;
   std::optional<Refinement> refinement_;
   LocateResult result_;
@@ -114,8 +133,30 @@ std::vector<Ordered> Locating::order(std::span<const MapPoint> points) const {
   return ordered;
 }
 
-/// A group whose records might not fit, or are very many, is halved.
 void Locating::locate_group(std::span<const Ordered> group) {
+  if (is_by_stars()) {
+    locate_by_stars(group);
+  } else {
+    locate_by_splits(group);
+  }
+}
+
+void Locating::locate_by_stars(std::span<const Ordered> group) {
+  context_.admit(result_.points.size() * (sizeof(LocatedPoint) + sizeof(Ordered)) +
+                 group.size() * (sizeof(Spot) + sizeof(TriangleAt)));
+  spots_.clear();
+  for (const Ordered& o : group) {
+    spots_.push_back(o.spot);
+  }
+  found_.resize(group.size());
+  find_triangles(terrain_, detail_.tolerance(), spots_, found_, context_);
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    result_.points[group[i].index] = answer(found_[i], spots_[i]);
+  }
+}
+
+/// A group whose records might not fit, or are very many, is halved.
+void Locating::locate_by_splits(std::span<const Ordered> group) {
   std::vector<Spot> spots;
   spots.reserve(group.size());
   std::transform(group.begin(), group.end(), std::back_inserter(spots),
@@ -184,6 +225,32 @@ void Locating::walk_group(const Tin& tin, std::span<const Ordered> group,
   }
 }
 
+LocatedPoint Locating::answer(const TriangleAt& at, Spot spot) const {
+  LocatedPoint point;
+  if (!at.is_found) {
+    return point;
+  }
+  const LivingTriangle& t = at.triangle;
+  for (std::size_t i = 0; i < 3; ++i) {
+    point.triangle[i].position = t.corner[i].position;
+    if (t.corner[i].has_height) {
+      point.triangle[i].height = facts_.heights.height(t.corner[i].height);
+    }
+  }
+  point.state = t.is_void ? PointState::kVoid : PointState::kSurface;
+  if (!t.is_void) {
+    point.height = facts_.heights.height_of_code(code_in(t, facts_.heights, spot));
+    // Where the full TIN was asked for, a height is no interval.
+    SurfaceBounds bounds{0.0, {-kInfinity, kInfinity}};
+    if (detail_.is_asked()) {
+      bounds = {std::min(t.deviation, detail_.certificate().deviation), t.heights};
+    }
+    set_interval(bounds, point);
+  }
+  begin_with_least(point.triangle);
+  return point;
+}
+
 LocatedPoint Locating::answer(const Tin& tin, Spot spot, const Place& place) const {
   LocatedPoint point;
   if (place.lies == Lies::kOutside) {
@@ -203,6 +270,7 @@ LocatedPoint Locating::answer(const Tin& tin, Spot spot, const Place& place) con
     const double code = code_at(tin, facts_.heights, footing_of(tin, spot, place));
     point.height = facts_.heights.height_of_code(code);
   }
+  begin_with_least(point.triangle);
   return point;
 }
 

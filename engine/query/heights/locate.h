@@ -20,9 +20,19 @@
 
 namespace ptin {
 
+/// How an answer is found. Both ways give the same answer.
+enum class AnswerBy : std::uint8_t {
+  /// From the triangles that live at the level and meet the place (engine/DESIGN.md, section 2.10),
+  /// where the level is one of error and the packed R-tree is in use; else by splits.
+  kStars,
+  /// As the paper has it: records are retrieved, sorted topologically and applied to T0.
+  kSplits,
+};
+
 struct LocateRequest {
   DetailRequest detail;  ///< The TIN of which the heights are.
   QueryLimits limits;
+  AnswerBy by = AnswerBy::kStars;
 };
 
 /// The answer for one point. The point's grid position is rounded as SpotMap says (2^-22 of a grid
@@ -42,7 +52,8 @@ struct LocatedPoint {
   double height_min = std::numeric_limits<double>::quiet_NaN();
   double height_max = std::numeric_limits<double>::quiet_NaN();
   /// The closed triangle that holds the point; of several, a surface one before a void one, then
-  /// the one whose vertex keys, ascending, come first. Corners counter-clockwise. Unset outside.
+  /// the one whose vertex keys, ascending, come first. Corners counter-clockwise, the one of least
+  /// key first. Unset outside.
   std::array<Corner, 3> triangle{};
 };
 
@@ -55,16 +66,17 @@ struct LocateResult {
   QueryCost cost;
 };
 
-/// Locates points given in map units. Points are taken along the Hilbert curve in groups that share
-/// one refinement each.
+/// Locates points given in map units. Points are taken along the Hilbert curve in groups, which
+/// share what they read.
 /// @throws Error invalid_argument    a coordinate is not finite (names the point); tolerance
 ///                                   negative or NaN; as Detail
 ///               resource_exhausted  a single point's records, beside the results, exceed the
 ///                                   memory limit
 ///               corruption, io_error, cancelled
-/// Cost: for one point the records whose region of influence holds it, O(log n) of them in
-/// practice. For a batch the records that any of its points needs, each read and applied once per
-/// group. With `vertices` the cost of Detail is added, once a call (select/detail.h).
+/// Cost: by stars, for one point a few pages (find_triangles()), for a group of points close together
+/// the pages of their region, each once. By splits, for one point the records whose region of
+/// influence holds it, O(log n) of them in practice; for a group the records that any of its points
+/// needs, each read and applied once. With `vertices` the cost of Detail is added, once a call (select/detail.h).
 [[nodiscard]] LocateResult locate(const OpenedTerrain& terrain, std::span<const MapPoint> points,
                                   const LocateRequest& request = {});
 

@@ -47,6 +47,9 @@ class Detail {
   /// Every record of error at or below this is left out; negative: none are. Questions put it into
   /// the predicate by which they select pages and records, and call keep() afterwards.
   [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
+  /// True when tolerance() alone tells what is left out, so that lifetimes tell which triangles
+  /// live at the level. False where a number of vertices cuts between records of one error.
+  [[nodiscard]] bool is_by_error() const noexcept { return !last_; }
   /// True when the level keeps the record.
   [[nodiscard]] bool keeps(const PendingSplit& split) const noexcept {
     return split.error > tolerance_ && (!last_ || !is_behind(split));

@@ -31,6 +31,8 @@ class OpenedTerrain {
   [[nodiscard]] const RecordIndex& index() const noexcept {
     return index_ ? *index_ : store_->index();
   }
+  /// Whether another index than the packed R-tree is in use.
+  [[nodiscard]] bool uses_other_index() const noexcept { return index_ != nullptr; }
   /// The store and the index in use, borrowed from this object.
   [[nodiscard]] RecordSource record_source() const noexcept { return {*store_, index()}; }
 
