@@ -9,7 +9,6 @@
 #include <type_traits>
 
 #include "engine/error.h"
-#include "engine/geometry/orient.h"
 #include "storage/box_lanes.h"
 #include "storage/short_float.h"
 
@@ -197,7 +196,7 @@ bool RecordPage::corner(std::uint32_t height, const RingShape& shape, std::size_
   c.death = death == 0 ? kLivesOn : short_value(static_cast<ShortBits>(death - 1));
   c.flags = static_cast<std::uint8_t>((is_void ? unsigned{RingCorner::kVoid} : 0U) |
                                       (has_height ? 0U : unsigned{RingCorner::kNoHeight}));
-  return !std::isnan(heights_.code(c.height));
+  return true;
 }
 
 bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept {
@@ -233,18 +232,11 @@ bool RecordPage::ring(std::size_t i, RingPlace& place, const VertexSplit& r,
   const std::span<RingCorner> ring(out.data() + first, shape.degree);
   bool is_sound = true;
   for (std::size_t k = 0; k < ring.size(); ++k) {
-    RingCorner& c = ring[k];
     const std::size_t bit = place.bit + k * shape.corner_bits;
-    c.position = corner_position(r.u, shape, bit);
-    is_sound &= corner(height, shape, bit, c) && contains(r.roi, c.position) && c.death <= r.error;
+    ring[k].position = corner_position(r.u, shape, bit);
+    is_sound &= corner(height, shape, bit, ring[k]);
   }
-  const bool is_closed = has_closed_ring(r);
-  for (std::size_t k = is_closed ? 0 : 1; is_sound && k < ring.size(); ++k) {
-    is_sound = orient(r.u, ring[k == 0 ? ring.size() - 1 : k - 1].position, ring[k].position) > 0;
-  }
-  // Behind the last corner of an open ring there is no triangle.
-  return is_sound && (is_closed || (ring.back().death == kLivesOn &&
-                                    (ring.back().flags & RingCorner::kVoid) == 0));
+  return is_sound && is_star(r, ring, heights_);
 }
 
 DescribedPage::DescribedPage(const std::string& path, PageId id,
