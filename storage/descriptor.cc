@@ -74,8 +74,10 @@ void Descriptor::add(const layout::NodeEntry& e) noexcept {
 }
 
 HeightInterval Descriptor::bits_of(const Interval& heights) const noexcept {
-  return is_empty(heights) ? no_heights(encoding_.type)
-                           : HeightInterval{encoding_.bits(heights.lo), encoding_.bits(heights.hi)};
+  // A sum with 0 makes 0 of -0: records are packed so too.
+  return is_empty(heights)
+             ? no_heights(encoding_.type)
+             : HeightInterval{encoding_.bits(heights.lo + 0.0), encoding_.bits(heights.hi + 0.0)};
 }
 
 layout::NodeEntry Descriptor::entry() const noexcept {

@@ -33,7 +33,7 @@ inline constexpr std::uint32_t kMaxSections = 64;
 struct FileHeader {
   std::array<std::uint8_t, 8> magic;           //   0
   std::uint16_t major_version, minor_version;  //   8
-  std::uint32_t header_bytes;                  //  12  256 in version 1
+  std::uint32_t header_bytes;                  //  12  256
   std::uint64_t file_bytes;                    //  16
   std::uint32_t page_bytes;                    //  24  power of two, 4096 to 65536
   std::uint32_t section_count;                 //  28

@@ -48,7 +48,7 @@ inline constexpr std::uint8_t kAllPageFlags = 15;
 
 /// The most bits that a number of each column takes.
 inline constexpr std::array<std::uint8_t, kPageColumns> kMostColumnBits = {
-    30, 30, 32, 30, 30, 30, 30, 32, 32, 15, 15, 16, 4, 8, 5, 6, 4};
+    31, 31, 32, 31, 31, 31, 31, 32, 32, 15, 15, 16, 4, 8, 5, 6, 4};
 
 /// A height as a number whose order is that of heights, -0 and 0 being one.
 [[nodiscard]] constexpr std::uint32_t ordered_height(HeightBits bits, HeightType type) noexcept {

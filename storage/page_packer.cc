@@ -37,6 +37,20 @@ std::uint32_t page_flags(const VertexSplit& r, bool has_heights) {
          (has_heights ? 0U : std::uint32_t{kPageNoHeights});
 }
 
+/// Whether w, vl, vr and the classes of (u, w, vl) and (u, vr, w) are those of the ring.
+bool agrees(const VertexSplit& r, std::span<const RingCorner> ring) {
+  const bool no_left = (r.flags & VertexSplit::kNoLeft) != 0;
+  const bool no_right = (r.flags & VertexSplit::kNoRight) != 0;
+  const std::size_t last = ring.size() - 1;
+  const std::size_t vr = no_left ? last - 1 : last;
+  const auto is_void = [&](std::size_t i) { return (ring[i].flags & RingCorner::kVoid) != 0; };
+  return r.flags <= VertexSplit::kAllFlags && !(no_left && no_right) &&
+         r.w == ring[no_left ? last : 0].position && r.vl == ring[no_left ? 0 : 1].position &&
+         r.vr == ring[vr].position &&
+         ((r.flags & VertexSplit::kLeftVoid) != 0) == (!no_left && is_void(0)) &&
+         ((r.flags & VertexSplit::kRightVoid) != 0) == (!no_right && is_void(vr));
+}
+
 }  // namespace
 
 PagePacker::PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights)
@@ -47,7 +61,9 @@ PagePacker::PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights)
 
 /// The numbers of a record, and its corners at the end of corners_.
 PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingCorner> ring) {
-  PTIN_CHECK(ring.size() >= 3 && ring.size() <= layout::kMostDegree);
+  PTIN_CHECK(ring.size() >= 3 && ring.size() <= layout::kMostDegree && agrees(r, ring));
+  PTIN_CHECK(on_grid(r.u) && contains(GridBox{0, 0, kGridMax, kGridMax}, r.roi) &&
+             contains(r.roi, r.u) && is_star(r, ring, heights_));
   const bool has_height = (r.flags & VertexSplit::kVertexVoid) == 0;
   const bool has_heights = heights_.code(r.height_lo) <= heights_.code(r.height_hi);
   const auto ordered = [&](HeightBits h) { return ordered_height(h, heights_.type); };
@@ -61,8 +77,7 @@ PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingC
   const std::size_t first = corners_.size();
   for (const RingCorner& c : ring) {
     const bool is_known = (c.flags & RingCorner::kNoHeight) == 0;
-    PTIN_CHECK(is_known || c.height == 0);
-    PTIN_CHECK(c.death <= r.error && (c.death < 0 || shortened(c.death) == c.death));
+    PTIN_CHECK(c.death == kLivesOn || (c.death >= 0 && shortened(c.death) == c.death));
     const Corner own{std::int64_t{c.position.x} - r.u.x, std::int64_t{c.position.y} - r.u.y,
                      is_known ? std::int64_t{ordered(c.height)} - height : 0,
                      stored_death(c.death, short_bits(r.error)), c.flags};
@@ -71,7 +86,8 @@ PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingC
     death_bits = std::max(death_bits, static_cast<unsigned>(std::bit_width(own.death)));
     corners_.push_back(own);
   }
-  PTIN_CHECK(shortened(r.error) == r.error && shortened(r.deviation) == r.deviation);
+  PTIN_CHECK(r.error >= 0 && shortened(r.error) == r.error && r.deviation >= 0 &&
+             shortened(r.deviation) == r.deviation);
   return {{distance(0, r.u.x), distance(0, r.u.y), height, distance(r.roi.min_x, r.u.x),
            distance(r.roi.min_y, r.u.y), distance(r.u.x, r.roi.max_x), distance(r.u.y, r.roi.max_y),
            distance(lo, height), distance(height, hi), short_bits(r.error), short_bits(r.deviation),

@@ -23,9 +23,10 @@ class PagePacker {
 
   /// Adds a record, unless the page would not hold it: then nothing changes, and the answer is
   /// false. An empty page holds any record.
-  /// REQUIRES: `ring` is as storage/star.h says, with at most layout::kMostDegree corners; errors,
-  /// deviations and deaths are short numbers (storage/short_float.h); no death is above the error;
-  /// the roi holds the ring, and the interval of heights those of u and of the ring.
+  /// REQUIRES: `ring` is as storage/star.h says (is_star(), and w, vl, vr and the two classes agree
+  /// with it), with 3 to layout::kMostDegree corners; the roi lies on the grid and holds u, the
+  /// interval of heights holds u's; errors, deviations and deaths are short numbers
+  /// (storage/short_float.h).
   /// @throws Error internal  the record is not so
   [[nodiscard]] bool add(const VertexSplit& r, std::span<const RingCorner> ring);
   [[nodiscard]] bool empty() const noexcept { return items_.empty(); }

@@ -9,7 +9,6 @@
 #include <type_traits>
 
 #include "engine/error.h"
-#include "engine/geometry/orient.h"
 #include "storage/box_lanes.h"
 #include "storage/short_float.h"
 
@@ -260,8 +259,7 @@ bool RecordPage::make_corner(const StoredCorner& stored, const VertexSplit& r, s
   c.death = stored.death == 0 ? kLivesOn : short_value(static_cast<ShortBits>(error - below));
   c.flags = static_cast<std::uint8_t>((stored.is_void ? unsigned{RingCorner::kVoid} : 0U) |
                                       (stored.has_height ? 0U : unsigned{RingCorner::kNoHeight}));
-  return is_sound && contains(r.roi, c.position) &&
-         (heights_.type == HeightType::int32 || !std::isnan(heights_.code(c.height)));
+  return is_sound;
 }
 
 bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept {
@@ -302,13 +300,7 @@ bool RecordPage::ring(std::size_t i, RingPlace& place, const VertexSplit& r,
     is_sound &=
         make_corner(stored_corner(shape, place.bit + k * shape.corner_bits), r, height, error, c);
   }
-  const bool is_closed = has_closed_ring(r);
-  for (std::size_t k = is_closed ? 0 : 1; is_sound && k < ring.size(); ++k) {
-    is_sound = orient(r.u, ring[k == 0 ? ring.size() - 1 : k - 1].position, ring[k].position) > 0;
-  }
-  // Behind the last corner of an open ring there is no triangle.
-  return is_sound && (is_closed || (ring.back().death == kLivesOn &&
-                                    (ring.back().flags & RingCorner::kVoid) == 0));
+  return is_sound && is_star(r, ring, heights_);
 }
 
 DescribedPage::DescribedPage(const std::string& path, PageId id,

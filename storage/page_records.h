@@ -47,8 +47,7 @@ class RecordPage {
   /// A record. Coordinates are on the grid, u, w, vl and vr differ and lie in the roi.
   /// @param place  Of a record not behind this one; becomes that of this record.
   [[nodiscard]] bool split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept;
-  /// Appends the ring of a record whose head is `r`. Its corners lie in the roi, its triangles are
-  /// counter-clockwise, none dies above the error of the record.
+  /// Appends the ring of a record whose head is `r`: is_star() is true of it.
   [[nodiscard]] bool ring(std::size_t i, RingPlace& place, const VertexSplit& r,
                           std::vector<RingCorner>& out) const;
 

@@ -253,6 +253,9 @@ const char* fault_in(const CoarsestTin& t0, const StoreFacts& facts) noexcept {
         return "a surface triangle of T0 has a corner without a height";
       }
     }
+    if (std::isnan(t.death)) {
+      return "a triangle of T0 dies at an error that is no number";
+    }
     if (t.is_void > 1) {
       return "a triangle of T0 is neither surface (0) nor void (1)";
     }

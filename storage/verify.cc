@@ -2,6 +2,7 @@
 #include "storage/verify.h"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <span>
 
@@ -53,10 +54,9 @@ class Verifier {
   [[nodiscard]] bool is_packed_so() const;
   void count(PageId id);
   void count_height(HeightBits bits);
-  const char* look_at_heights(const VertexSplit& r);
+  [[nodiscard]] bool has_heights_of_header(const VertexSplit& r) const;
   void compare_heights();
   void compare_totals();
-  bool same(const layout::NodeEntry& a, const layout::NodeEntry& b) const;
 
   ReadOnlyFile file_;
   const VerifyOptions& options_;
@@ -80,6 +80,13 @@ class Verifier {
 
 bool is_zero(std::span<const std::byte> bytes) {
   return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
+}
+
+// Whether two entries say the same of their records, bit for bit: every union has one form.
+bool same(layout::NodeEntry a, const layout::NodeEntry& b) {
+  a.records = b.records;
+  a.checksum = b.checksum;
+  return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 std::string page_name(PageId id) { return "page " + std::to_string(index_of(id)); }
@@ -205,7 +212,8 @@ std::optional<layout::NodeEntry> Verifier::look_at_node(std::uint32_t level, std
   }
   report_.index_nodes += pass_ == 0 ? 1 : 0;
   const auto unused =
-      std::as_bytes(std::span(node.entry)).subspan(entries * sizeof(layout::NodeEntry));
+      std::as_bytes(std::span(&node, 1))
+          .subspan(offsetof(layout::IndexNode, entry) + entries * sizeof(layout::NodeEntry));
   if (pass_ == 0 && !is_zero(unused)) {
     report("unused entries are not zero", where);
   }
@@ -308,6 +316,9 @@ bool Verifier::is_packed_so() const {
 // Counts the records of a page, which are in `records_`, and looks at each.
 void Verifier::count(PageId id) {
   report_.records += records_.size();
+  for (const RingCorner& c : records_.corners) {
+    makes_void_ = makes_void_ || c.flags != 0;
+  }
   for (const VertexSplit& r : records_.splits) {
     const auto where = [&] {
       return page_name(id) + ", record of vertex (" + std::to_string(r.u.x) + ", " +
@@ -316,8 +327,11 @@ void Verifier::count(PageId id) {
     errors_.add(r);
     makes_void_ = makes_void_ || (r.flags & VertexSplit::kAnyVoid) != 0;
     max_rank_ = std::max<std::uint32_t>(max_rank_, r.rank);
-    if (const char* fault = look_at_heights(r)) {
-      report(fault, where());
+    if ((r.flags & VertexSplit::kVertexVoid) == 0) {
+      count_height(r.height);
+    }
+    if (!has_heights_of_header(r)) {
+      report("an interval of heights reaches out of the least and largest in the header", where());
     }
     if (!contains(front_.facts.bounds, r.roi)) {
       report("a region of influence reaches out of the bounds", where());
@@ -331,26 +345,13 @@ void Verifier::count_height(HeightBits bits) {
   ++vertices_with_height_;
 }
 
-// Checks the record's interval of heights against the header's, and the height of u against the
-// interval. That covers the surface triangles of u, and so the height of u when u has one. Of the
-// triangles of u the record tells the classes of only the two that it makes: so the height is
-// checked where one of these is surface. Returns a fault as a sentence, or null.
-const char* Verifier::look_at_heights(const VertexSplit& r) {
+// Whether the record's interval of heights lies within the header's. That the interval holds the
+// heights of u and of the ring, the page's reader has seen.
+bool Verifier::has_heights_of_header(const VertexSplit& r) const {
   const StoreFacts& facts = front_.facts;
   const Interval codes = attributes_of(r, facts.heights).heights;
-  if (!is_empty(codes) && (facts.heights.height_of_code(codes.lo) < facts.min_height ||
-                           facts.heights.height_of_code(codes.hi) > facts.max_height)) {
-    return "an interval of heights reaches out of the least and largest in the header";
-  }
-  if ((r.flags & VertexSplit::kVertexVoid) != 0) {
-    return r.height == 0 ? nullptr : "a vertex without a height has one";
-  }
-  count_height(r.height);
-  const bool is_surface = (r.flags & (VertexSplit::kNoLeft | VertexSplit::kLeftVoid)) == 0 ||
-                          (r.flags & (VertexSplit::kNoRight | VertexSplit::kRightVoid)) == 0;
-  return is_surface && !contains(codes, static_cast<double>(facts.heights.code(r.height)))
-             ? "a height lies out of the record's own interval of heights"
-             : nullptr;
+  return is_empty(codes) || (facts.heights.height_of_code(codes.lo) >= facts.min_height &&
+                             facts.heights.height_of_code(codes.hi) <= facts.max_height);
 }
 
 void Verifier::compare_totals() {
@@ -416,12 +417,6 @@ void Verifier::compare_heights() {
         "what was left out of the file can be",
         "header");
   }
-}
-
-bool Verifier::same(const layout::NodeEntry& a, const layout::NodeEntry& b) const {
-  const HeightEncoding& heights = front_.facts.heights;
-  return attributes_of(a, heights) == attributes_of(b, heights) && a.error_min == b.error_min &&
-         star_attributes_of(a, heights) == star_attributes_of(b, heights);
 }
 
 }  // namespace

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Any bytes as a page of records: what is decoded is sound, and encodes to the same bytes again.
-// Input: kind, type of heights, number of records, then the page.
+// Any bytes as a page of records and stars: what is decoded is sound, is the same whatever is asked
+// first, and comes back when it is packed again. Input: type of heights, then the page.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/error.h"
+#include "storage/page_packer.h"
 #include "storage/page_records.h"
-#include "storage/record.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {
 
 using namespace ptin;
+
+constexpr std::uint32_t kPageBytes = 4096;
 
 void require(bool condition) {
   if (!condition) {
@@ -25,15 +29,14 @@ void require(bool condition) {
 }
 
 // Everything that a record can hold.
-layout::NodeEntry widest(HeightType type, std::uint32_t kind_and_count) {
+layout::NodeEntry widest(HeightType type, std::uint32_t records) {
   layout::NodeEntry e{};
-  e.max_x = kGridMax;
-  e.max_y = kGridMax;
-  e.height_lo = type == HeightType::int32 ? 0x80000000U : 0xFF800000U;
-  e.height_hi = type == HeightType::int32 ? 0x7FFFFFFFU : 0x7F800000U;
-  e.error_max = layout::kInfinityBits;
-  e.deviation_max = layout::kInfinityBits;
-  e.kind_and_count = kind_and_count;
+  const HeightInterval none = no_heights(type);
+  e.max_x = e.max_y = e.star_max_x = e.star_max_y = kGridMax;
+  e.height_lo = e.star_height_lo = none.hi;
+  e.height_hi = e.star_height_hi = none.lo;
+  e.error_max = e.deviation_max = kShortInfinity;
+  e.records = records;
   return e;
 }
 
@@ -42,43 +45,94 @@ class Everything final : public AttributePredicate {
   [[nodiscard]] bool holds(const Attributes&) const noexcept override { return true; }
 };
 
-void check(const VertexSplit& r, RecordKind kind, std::span<const std::byte> in) {
+void check(const VertexSplit& r, std::span<const RingCorner> ring, const HeightEncoding& heights) {
   require(on_grid(r.u) && on_grid(r.w) && on_grid(r.vl) && on_grid(r.vr) && !is_empty(r.roi));
   require(contains(r.roi, r.u) && contains(r.roi, r.w) && contains(r.roi, r.vl) &&
           contains(r.roi, r.vr));
-  require(r.error >= 0.0F && r.deviation >= 0.0F && kind_of(r) <= kind);
-  std::vector<std::byte> again(in.size());
-  encode_record(r, kind, again);
-  require(std::memcmp(again.data(), in.data(), in.size()) == 0);
+  require(r.error >= 0.0F && r.deviation >= 0.0F && ring.size() >= 3 &&
+          ring.size() <= layout::kMostDegree && is_star(r, ring, heights));
+}
+
+// Asks the page for each record and ring by itself, also for those that are not sound.
+void ask_from_the_end(const RecordPage& page, const StarredRecords& records) {
+  std::vector<RingCorner> ring;
+  for (std::size_t i = page.records(); i-- > 0;) {
+    RingPlace place;
+    VertexSplit r;
+    ring.clear();
+    const bool is_sound = page.head(i, r) && page.ring(i, place, r, ring);
+    const bool is_split = page.split(i, place, r);
+    static_cast<void>(page.roi(i));
+    static_cast<void>(page.error_bits(i));
+    if (!records.empty()) {
+      require(is_sound && is_split && r == records.splits[i] &&
+              std::ranges::equal(ring, records.ring(i)));
+    }
+  }
+}
+
+void pack_again(const StarredRecords& records, const HeightEncoding& heights) {
+  PagePacker packer(kPageBytes, heights);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (!packer.add(records.splits[i], records.ring(i))) {
+      return;  // A page that is fuller than a packer's, which leaves a byte a run of rings.
+    }
+  }
+  layout::NodeEntry entry;
+  const std::span<const std::byte> packed = packer.finish(entry);
+  StarredRecords back;
+  const std::string path = "fuzz";
+  DescribedPage(path, PageId{0}, entry, heights, kPageBytes).decode(packed, back);
+  const auto no_minus_zero = [&](HeightBits h) {
+    return heights.type == HeightType::float32 && h == 0x80000000 ? 0U : h;
+  };
+  require(back.ring_end == records.ring_end);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    VertexSplit r = records.splits[i];
+    r.height = no_minus_zero(r.height);
+    r.height_lo = no_minus_zero(r.height_lo);
+    r.height_hi = no_minus_zero(r.height_hi);
+    require(back.splits[i] == r);
+  }
+  for (std::size_t i = 0; i < records.corners.size(); ++i) {
+    RingCorner c = records.corners[i];
+    c.height = no_minus_zero(c.height);
+    require(back.corners[i] == c);
+  }
 }
 
 }  // namespace
 
 PTIN_FUZZ_TARGET(record_page, data, size) {
-  if (size < 3) {
+  if (size < 1 + sizeof(layout::PageHeader)) {
     return 0;
   }
-  const RecordKind kind = data[0] % 2 == 0 ? RecordKind::kNarrow : RecordKind::kWide;
-  const HeightEncoding heights{data[1] % 2 == 0 ? HeightType::int32 : HeightType::float32, 1.0,
+  const HeightEncoding heights{data[0] % 2 == 0 ? HeightType::int32 : HeightType::float32, 1.0,
                                0.0};
-  const std::uint32_t count = data[2];
-  std::vector<std::byte> page(4096);
-  std::memcpy(page.data(), data + 3, std::min<std::size_t>(size - 3, page.size()));
-  const std::uint32_t wide = kind == RecordKind::kWide ? layout::kWidePage : 0;
-  const std::string path = "fuzz";
-  std::vector<VertexSplit> records, matching;
-  try {
-    const DescribedPage described(path, PageId{0}, widest(heights.type, wide | count), heights,
-                                  4096);
-    described.decode(page, records);
-    require(records.size() == count);
-    for (std::size_t i = 0; i < records.size(); ++i) {
-      check(records[i], kind, std::span(page).subspan(i * record_bytes(kind), record_bytes(kind)));
+  std::vector<std::byte> page(kPageBytes);
+  std::memcpy(page.data(), data + 1, std::min<std::size_t>(size - 1, page.size()));
+  const RecordPage numbers(page, heights);
+  StarredRecords records;
+  std::vector<VertexSplit> splits;
+  if (numbers.is_sound()) {
+    const std::string path = "fuzz";
+    const DescribedPage described(path, PageId{0}, widest(heights.type, numbers.records()), heights,
+                                  kPageBytes);
+    try {
+      described.decode(page, records);
+      require(records.size() == numbers.records());
+      described.decode_matching(page, Everything(), splits);
+      require(splits == records.splits);
+    } catch (const Error& e) {
+      require(e.code() == ErrorCode::corruption && records.empty() && records.corners.empty());
     }
-    described.decode_matching(page, Everything(), matching);
-    require(matching == records);
-  } catch (const Error& e) {
-    require(e.code() == ErrorCode::corruption && records.empty());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      check(records.splits[i], records.ring(i), heights);
+    }
+    ask_from_the_end(numbers, records);
+    if (!records.empty()) {
+      pack_again(records, heights);
+    }
   }
   return 0;
 }

@@ -5,6 +5,7 @@
 // lies behind.
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <vector>
@@ -43,6 +44,11 @@ void use(const std::string& path, PageAccess access) {
     try {
       records.clear();
       store->read_records(PageId{i}, records, counters);
+      StarredRecords starred;
+      store->read_starred(PageId{i}, starred, counters);
+      if (starred.splits != records) {
+        std::abort();
+      }
       store->read_matching(PageId{i}, LargeErrors(), records, counters);
     } catch (const Error&) {
     }

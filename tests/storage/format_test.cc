@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The bytes of format 1.0 are fixed: the golden file is written as it was, is read as it was, and
+// The bytes of format 2.0 are fixed: the golden file is written as it was, is read as it was, and
 // is the worked example of FORMAT.md.
 #include <algorithm>
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 // This file's folder, from where the golden file and FORMAT.md are found.
 fs::path here() { return fs::path(__FILE__).parent_path(); }
-std::string golden() { return (here() / "golden" / "two_records_v1.0.ptin").string(); }
+std::string golden() { return (here() / "golden" / "two_records_v2.0.ptin").string(); }
 
 TEST(Format, WritesTheGoldenFileByteForByte) {
   const TestFolder folder;
@@ -35,12 +35,13 @@ TEST(Format, ReadsTheGoldenFile) {
   for (const PageAccess access : {PageAccess::kMapped, PageAccess::kPread}) {
     const auto store = StoreFile::open(golden(), access);
     EXPECT_EQ(store->facts(), content.facts);
-    EXPECT_EQ(read_all(*store), content.segments[0]);
+    EXPECT_TRUE(are_same(read_all_starred(*store), content.segments[0]));
     EXPECT_EQ(store->max_rank(), 1);
     EXPECT_EQ(store->metadata_json(), "{}");
     ASSERT_EQ(store->t0().vertices.size(), 4U);
     EXPECT_EQ(store->t0().vertices[2].position, (GridPoint{8, 8}));
-    EXPECT_EQ(store->t0().triangles.size(), 2U);
+    ASSERT_EQ(store->t0().triangles.size(), 2U);
+    EXPECT_EQ(store->t0().triangles[1].death, 4.0F);
     ASSERT_EQ(store->error_bins().size(), 3U);
     EXPECT_EQ(store->error_bins()[1].upper, 1.25F);
     EXPECT_EQ(store->error_bins()[2].max_deviation, 4.0F);
@@ -111,14 +112,14 @@ TEST(Format, DISABLED_WritesTheGoldenFileAndTheFuzzSeedsAgain) {
   none.segments.clear();
   write_store(folder.file("none"), none);
   seed("store_open", "no_records", {std::byte{1}}, read_file(folder.file("none")));
-  seed("record_page", "narrow_int32", {std::byte{0}, std::byte{0}, std::byte{2}},
-       Bytes(file.begin() + 8192, file.begin() + 8192 + 128));
+  seed("record_page", "two_records_int32", {std::byte{0}},
+       Bytes(file.end() - 4096, file.end() - 4096 + 256));
 
-  // Wide records of a large square, and a tree of two levels over them.
-  StoreContent wide = random_content({.seed = 4, .segments = 1, .records = 5000});
-  write_store(folder.file("wide"), wide);
-  const auto store = StoreFile::open(folder.file("wide"));
-  const Bytes large = read_file(folder.file("wide"));
+  // A tree of two levels.
+  const StoreContent many = random_content({.seed = 4, .segments = 1, .records = 5000});
+  write_store(folder.file("many"), many);
+  const auto store = StoreFile::open(folder.file("many"));
+  const Bytes large = read_file(folder.file("many"));
   const auto index = section_of(large, layout::SectionKind::kIndex);
   const auto at = [&](std::uint64_t offset, std::uint64_t bytes) {
     return Bytes(large.begin() + static_cast<std::ptrdiff_t>(offset),
@@ -128,17 +129,11 @@ TEST(Format, DISABLED_WritesTheGoldenFileAndTheFuzzSeedsAgain) {
   seed("packed_rtree", "two_levels",
        {static_cast<std::byte>((pages - 1) & 0xFFU), static_cast<std::byte>((pages - 1) >> 8)},
        at(index.offset, std::min<std::uint64_t>(index.bytes, 12288)));
-  seed("packed_rtree", "one_leaf", {std::byte{84}, std::byte{0}}, at(index.offset + 4096, 4096));
+  seed("packed_rtree", "one_leaf", {std::byte{55}, std::byte{0}}, at(index.offset + 4096, 4096));
   std::vector<std::byte> page(4096);
   IoCounters counters;
-  for (std::uint64_t i = 0; i < pages; ++i) {
-    if (store->page_info(PageId{i}).kind == RecordKind::kWide) {
-      const auto records = static_cast<std::byte>(store->page_info(PageId{i}).records);
-      store->pages().read(PageId{i}, page, counters);
-      seed("record_page", "wide_float32", {std::byte{1}, std::byte{1}, records}, page);
-      break;
-    }
-  }
+  store->pages().read(PageId{7}, page, counters);
+  seed("record_page", "float32", {std::byte{1}}, page);
 }
 
 }  // namespace

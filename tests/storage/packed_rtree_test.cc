@@ -20,7 +20,7 @@
 namespace ptin::test {
 namespace {
 
-// One store for all cases of a process: more than one leaf, wide and narrow pages, voids.
+// One store for all cases of a process: more than one leaf, voids.
 struct Shared {
   TestFolder folder;
   std::shared_ptr<const StoreFile> mapped, pread;
@@ -222,8 +222,8 @@ TEST(IndexShape, HoldsCountsBeyond32Bits) {
   const IndexShape shape(pages);
   EXPECT_EQ(shape.levels(), 9U);
   EXPECT_EQ(shape.nodes(shape.levels() - 1), 1U);
-  EXPECT_EQ(shape.nodes(0), (pages + 84) / 85);
-  EXPECT_EQ(shape.entries(0, shape.nodes(0) - 1), pages - (shape.nodes(0) - 1) * 85);
+  EXPECT_EQ(shape.nodes(0), (pages + 55) / 56);
+  EXPECT_EQ(shape.entries(0, shape.nodes(0) - 1), pages - (shape.nodes(0) - 1) * 56);
   std::uint64_t expected = 0;
   for (std::uint32_t level = shape.levels(); level-- > 0;) {
     EXPECT_EQ(shape.position(level, 0), expected);

@@ -8,9 +8,12 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <span>
 #include <tuple>
+
+#include "storage/short_float.h"
 
 namespace ptin::test {
 
@@ -29,10 +32,13 @@ void write_file(const std::string& path, const Bytes& bytes) {
             static_cast<std::streamsize>(bytes.size()));
 }
 
-std::vector<VertexSplit> StoreContent::all_records() const {
-  std::vector<VertexSplit> all;
-  for (const auto& s : segments) {
-    all.insert(all.end(), s.begin(), s.end());
+StarredRecords StoreContent::all_records() const {
+  StarredRecords all;
+  for (const StarredRecords& s : segments) {
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const std::span<const RingCorner> ring = s.ring(i);
+      add_star(all, s.splits[i], {ring.begin(), ring.end()});
+    }
   }
   return all;
 }
@@ -63,21 +69,25 @@ class RecordMaker {
   RecordMaker(const RandomRecords& options, const HeightEncoding& heights)
       : options_(options), heights_(heights), random_(options.seed) {}
 
-  VertexSplit make() {
+  void add_to(StarredRecords& records) {
     VertexSplit r;
     do {
       r.u = {coordinate(1, options_.side - 1), coordinate(1, options_.side - 1)};
     } while (!seen_.insert(key_of(r.u)).second);
     const auto reach = static_cast<std::int32_t>(std::exp2(real(0.0, std::log2(options_.side))));
-    r.w = near(r.u, reach);
-    r.vl = near(r.u, reach);
-    r.vr = near(r.u, reach);
-    r.roi = united(united(united(box_of(r.u), r.w), r.vl), r.vr);
-    r.roi = united(r.roi, near(r.u, reach));
-    fill_heights(r);
-    fill_errors(r);
+    const GridBox square{0, 0, options_.side, options_.side};
+    std::vector<RingCorner> ring;
+    const auto degree = static_cast<std::size_t>(coordinate(3, 9));
+    for (const GridPoint p : made_ring(r.u, square, degree, reach, random_)) {
+      ring.push_back({p, 0, kLivesOn, 0});
+    }
+    fill_heights(r, ring);
+    fill_errors(r, ring);
     r.rank = static_cast<std::uint16_t>(coordinate(0, 300));
-    return r;
+    name_by_ring(r, ring);
+    r.roi = united(box_of(r.u), near(r.u, reach));
+    hold_ring(r, ring, heights_);
+    add_star(records, r, ring);
   }
 
  private:
@@ -99,24 +109,34 @@ class RecordMaker {
   }
   HeightBits height(double h) { return heights_.bits(std::floor(h)); }
 
-  void fill_heights(VertexSplit& r) {
+  void fill_heights(VertexSplit& r, std::vector<RingCorner>& ring) {
     const double base = real(0.0, 3000.0);
-    r.height = height(base);
-    r.height_lo = height(base - real(0.0, 50.0));
-    r.height_hi = height(base + real(0.0, 50.0));
-    if (coordinate(0, 19) == 0) {
-      r.flags = VertexSplit::kVertexVoid | VertexSplit::kLeftVoid;
-      r.height = 0;
-      r.height_lo = height(1.0);  // empty: lo > hi
-      r.height_hi = height(0.0);
+    const bool is_void = coordinate(0, 19) == 0;
+    r.height = is_void ? 0 : height(base);
+    r.height_lo = height(is_void ? 1.0 : base - real(0.0, 50.0));  // empty where lo > hi
+    r.height_hi = height(is_void ? 0.0 : base + real(0.0, 50.0));
+    r.flags = is_void ? VertexSplit::kVertexVoid : 0;
+    for (RingCorner& c : ring) {
+      c.flags = is_void ? RingCorner::kVoid | RingCorner::kNoHeight : 0;
+      c.height = is_void ? 0 : height(base + real(-50.0, 50.0));
+    }
+    if (!is_void && coordinate(0, 19) == 0) {  // the border of a void
+      ring.front().flags = RingCorner::kVoid;
+      ring.back().flags = RingCorner::kVoid | RingCorner::kNoHeight;
+      ring[ring.size() - 2].flags = RingCorner::kVoid;
+      ring.back().height = 0;
     }
   }
-  void fill_errors(VertexSplit& r) {
+  void fill_errors(VertexSplit& r, std::vector<RingCorner>& ring) {
     const int kind = coordinate(0, 19);
     r.error = kind == 0   ? 0.0F
               : kind == 1 ? std::numeric_limits<float>::infinity()
-                          : static_cast<float>(std::exp2(real(-6.0, 8.0)));
-    r.deviation = r.error * static_cast<float>(real(1.0, 1.5));
+                          : shortened(static_cast<float>(std::exp2(real(-6.0, 8.0))));
+    r.deviation = shortened(r.error * static_cast<float>(real(1.0, 1.5)));
+    for (RingCorner& c : ring) {
+      const auto share = static_cast<float>(real(-1.0, 1.0));
+      c.death = share < 0.0F ? kLivesOn : share == 0.0F ? 0.0F : shortened(r.error * share);
+    }
   }
 
   RandomRecords options_;
@@ -133,7 +153,7 @@ StoreContent random_content(const RandomRecords& options) {
   for (std::size_t s = 0; s < options.segments; ++s) {
     auto& segment = c.segments.emplace_back();
     for (std::size_t i = 0; i < options.records; ++i) {
-      segment.push_back(maker.make());
+      maker.add_to(segment);
     }
   }
   c.facts.source_samples = 5 + options.segments * options.records;
@@ -143,8 +163,9 @@ StoreContent random_content(const RandomRecords& options) {
 void write_store(const std::string& path, const StoreContent& content,
                  const StoreWriterOptions& options) {
   const auto writer = StoreWriter::create(path, options);
-  for (std::vector<VertexSplit> segment : content.segments) {
-    writer->add_segment(segment, content.facts.heights);
+  for (const StarredRecords& segment : content.segments) {
+    writer->add_segment(pack_segment(segment, content.facts.heights, options.page_bytes),
+                        content.facts.heights);
   }
   writer->publish(content.facts, content.t0, content.metadata);
 }
@@ -158,10 +179,41 @@ std::vector<VertexSplit> read_all(const StoreFile& store) {
   return all;
 }
 
-void sort_by_key(std::vector<VertexSplit>& records) {
-  std::sort(records.begin(), records.end(), [](const VertexSplit& a, const VertexSplit& b) {
-    return std::tuple(a.rank, a.error, key_of(a.u)) < std::tuple(b.rank, b.error, key_of(b.u));
+StarredRecords read_all_starred(const StoreFile& store) {
+  StarredRecords all;
+  IoCounters counters;
+  for (std::uint64_t i = 0; i < store.pages().page_count(); ++i) {
+    store.read_starred(PageId{i}, all, counters);
+  }
+  return all;
+}
+
+namespace {
+
+auto sort_key_of(const VertexSplit& r) { return std::tuple(r.rank, r.error, key_of(r.u)); }
+
+}  // namespace
+
+StarredRecords in_order(const StarredRecords& records, std::span<const std::uint32_t> order) {
+  StarredRecords result;
+  for (const std::uint32_t i : order) {
+    const std::span<const RingCorner> ring = records.ring(i);
+    add_star(result, records.splits[i], std::vector<RingCorner>(ring.begin(), ring.end()));
+  }
+  return result;
+}
+
+StarredRecords sorted_by_key(const StarredRecords& records) {
+  std::vector<std::uint32_t> order(records.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return sort_key_of(records.splits[a]) < sort_key_of(records.splits[b]);
   });
+  return in_order(records, order);
+}
+
+bool are_same(const StarredRecords& a, const StarredRecords& b) {
+  return a.splits == b.splits && a.corners == b.corners && a.ring_end == b.ring_end;
 }
 
 }  // namespace ptin::test

@@ -8,12 +8,14 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "storage/layout.h"
 #include "storage/store_file.h"
 #include "storage/store_writer.h"
+#include "tests/storage/made_star.h"
 #include "tests/storage/seal.h"
 #include "tests/support/test_folder.h"
 
@@ -27,9 +29,9 @@ struct StoreContent {
   StoreFacts facts;
   CoarsestTin t0;
   std::string metadata = R"({"source": "a test"})";
-  std::vector<std::vector<VertexSplit>> segments;
+  std::vector<StarredRecords> segments;
 
-  [[nodiscard]] std::vector<VertexSplit> all_records() const;
+  [[nodiscard]] StarredRecords all_records() const;
 };
 
 /// Two triangles over a square of `side` grid units and no record; heights as float32, or as int32
@@ -44,7 +46,8 @@ struct RandomRecords {
   HeightType type = HeightType::float32;
 };
 /// Records that storage cannot tell from those of a terrain, with different u: small ones mostly, a
-/// few as wide as the square, errors over many octaves, some 0, some infinite; some void.
+/// few as wide as the square, errors over many octaves, some 0, some infinite; some void. Their stars
+/// are those of no mesh.
 [[nodiscard]] StoreContent random_content(const RandomRecords& options);
 
 /// Writes a store and publishes it.
@@ -53,9 +56,14 @@ void write_store(const std::string& path, const StoreContent& content,
 
 /// All records of a store, page by page.
 [[nodiscard]] std::vector<VertexSplit> read_all(const StoreFile& store);
+[[nodiscard]] StarredRecords read_all_starred(const StoreFile& store);
 
+/// The records `order[0]`, `order[1]`, ... with their stars.
+[[nodiscard]] StarredRecords in_order(const StarredRecords& records,
+                                      std::span<const std::uint32_t> order);
 /// By rank, error and key, so that two lists can be compared.
-void sort_by_key(std::vector<VertexSplit>& records);
+[[nodiscard]] StarredRecords sorted_by_key(const StarredRecords& records);
+[[nodiscard]] bool are_same(const StarredRecords& a, const StarredRecords& b);
 
 /// A predicate from a function.
 class FunctionPredicate final : public AttributePredicate {

@@ -130,12 +130,29 @@ TEST_F(StoreOpen, RefusesWhatIsNoStore) {
 TEST_F(StoreOpen, RefusesANewerMajorVersionWhateverTheRestIs) {
   Bytes bytes = bytes_;
   FileHeader header = header_of(bytes);
-  header.major_version = 2;
+  header.major_version = 3;
   header.header_bytes = 512;
   header.header_checksum = 99;
   set_header(bytes, header);
   EXPECT_EQ(code_of(bytes), ErrorCode::unsupported_version);
   EXPECT_THROW(static_cast<void>(verify_store(path_)), Error);
+}
+
+TEST_F(StoreOpen, RefusesAFileOfFormat1) {
+  const auto old = std::filesystem::path(__FILE__).parent_path() / "golden/two_records_v1.0.ptin";
+  for (const auto& use :
+       std::vector<std::function<void()>>{[&] { StoreFile::open(old.string()); },
+                                          [&] { static_cast<void>(verify_store(old.string())); }}) {
+    try {
+      use();
+      FAIL();
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::unsupported_version);
+      EXPECT_NE(std::string(e.what()).find("format version 1, which was provisional"),
+                std::string::npos)
+          << e.what();
+    }
+  }
 }
 
 TEST_F(StoreOpen, IgnoresSectionsOfANewerMinorVersion) {
@@ -204,7 +221,7 @@ TEST_F(StoreOpen, RejectsHeadersThatNoProgramWrote) {
     expect_header_rejected("sections", [=](FileHeader& h) { h.section_count = count; });
   }
   for (const std::uint64_t pages :
-       {std::uint64_t{0}, std::uint64_t{2}, std::uint64_t{1} << 52, UINT64_MAX}) {
+       {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{9}, std::uint64_t{1} << 52, UINT64_MAX}) {
     expect_header_rejected("pages", [=](FileHeader& h) { h.page_count = pages; });
   }
   expect_header_rejected("first page", [](FileHeader& h) { h.first_page = h.page_count; });
@@ -336,6 +353,7 @@ TEST_F(StoreOpen, RejectsT0ThatCannotBeOne) {
   triangle("corner", [](T& t) { t.v[2] = UINT32_MAX; });
   triangle("corner twice", [](T& t) { t.v[1] = t.v[0]; });
   triangle("class", [](T& t) { t.is_void = 2; });
+  triangle("death", [](T& t) { t.death = 0x7F82; });
 }
 
 TEST_F(StoreOpen, RejectsErrorTablesThatCannotBeOne) {

@@ -12,7 +12,7 @@ TEST(StoreWriterFaults, LeaveTheOldFileOrTheNewOneWithASideFileToo) {
   RandomRecords options;
   options.seed = 2;
   options.segments = 2;
-  options.records = 52000;  // 1600 pages: 19 leaves, and 16 are kept in memory
+  options.records = 52000;  // 1300 pages: 23 leaves, and 16 are kept in memory
   options.side = 30000;
   expect_old_or_new(random_content(options));
 }

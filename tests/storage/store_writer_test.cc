@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
+#include <functional>
+#include <numeric>
 #include <optional>
 #include <random>
+#include <set>
 #include <tuple>
 
 #include <gtest/gtest.h>
@@ -15,7 +17,10 @@
 
 #include "engine/geometry/hilbert.h"
 #include "storage/layout.h"
+#include "storage/packed_segment.h"
+#include "storage/page_packer.h"
 #include "storage/record_order.h"
+#include "storage/short_float.h"
 #include "storage/verify.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/store_fixture.h"
@@ -28,60 +33,84 @@ TEST(StoreWriter, GivesTheSameBytesForTheSameRecordsInAnyOrderInsideOfASegment) 
   const TestFolder folder;
   StoreContent content = random_content({.segments = 3, .records = 5000});
   write_store(folder.file("a"), content);
-  for (auto& segment : content.segments) {
-    std::reverse(segment.begin(), segment.end());
+  for (StarredRecords& segment : content.segments) {
+    std::vector<std::uint32_t> order(segment.size());
+    std::iota(order.rbegin(), order.rend(), 0U);
+    segment = in_order(segment, order);
   }
   write_store(folder.file("b"), content);
   EXPECT_EQ(read_file(folder.file("a")), read_file(folder.file("b")));
 }
 
-TEST(StoreWriter, PutsWideRecordsFirstAndStartsASegmentOnAPageOfItsOwn) {
+TEST(StoreWriter, PutsRecordsInTheOrderOfTheirSegmentAndStartsEachOnAPageOfItsOwn) {
   const TestFolder folder;
   const StoreContent content = random_content({.segments = 3, .records = 1000});
   write_store(folder.file("a"), content);
   const auto store = StoreFile::open(folder.file("a"));
-  std::vector<VertexSplit> expected;
-  for (std::vector<VertexSplit> segment : content.segments) {
-    order_segment(segment, 4096);
-    for (std::size_t i = 1; i < segment.size(); ++i) {
-      ASSERT_GE(kind_of(segment[i - 1]), kind_of(segment[i]));
+  StarredRecords expected;
+  for (const StarredRecords& segment : content.segments) {
+    const StarredRecords ordered = in_order(segment, order_of_segment(segment));
+    for (std::size_t i = 0; i < ordered.size(); ++i) {
+      const std::span<const RingCorner> ring = ordered.ring(i);
+      add_star(expected, ordered.splits[i], {ring.begin(), ring.end()});
     }
-    expected.insert(expected.end(), segment.begin(), segment.end());
   }
-  EXPECT_EQ(read_all(*store), expected);
+  EXPECT_TRUE(are_same(read_all_starred(*store), expected));
+  std::size_t begin = 0;
+  std::set<std::size_t> begins;
+  for (std::uint64_t page = 0; page < store->pages().page_count(); ++page) {
+    begins.insert(begin);
+    begin += store->page_info(PageId{page}).records;
+  }
+  EXPECT_TRUE(begins.contains(1000) && begins.contains(2000));
 }
 
-// Boxes about their vertex, small for most records and large for few, as errors are: a terrain's.
-std::vector<VertexSplit> terrain_like(std::size_t count) {
+// Stars about their vertex, small for most records and large for few, as errors are: a terrain's.
+StarredRecords terrain_like(std::size_t count) {
   std::mt19937_64 random(7);
-  const int side = 4096;
-  std::vector<VertexSplit> records(count);
-  for (VertexSplit& r : records) {
+  const GridBox square{0, 0, 4096, 4096};
+  const HeightEncoding metres{HeightType::int32, 1.0, 0.0};
+  StarredRecords records;
+  std::set<VertexKey> seen;
+  while (records.size() < count) {
     const double size = 1.0 / (1e-3 + std::uniform_real_distribution(0.0, 1.0)(random));
-    const auto reach = static_cast<std::int32_t>(4 * size);
-    r.u = {static_cast<std::int32_t>(random() % side), static_cast<std::int32_t>(random() % side)};
-    r.w = r.vl = r.vr = {r.u.x + 1, r.u.y};
-    r.roi = {std::max(r.u.x - reach, 0), std::max(r.u.y - reach, 0), r.u.x + reach + 1,
-             r.u.y + reach};
-    r.error =
-        static_cast<float>(size * std::exp2(std::uniform_real_distribution(-3.0, 3.0)(random)));
+    VertexSplit r;
+    r.u = {static_cast<std::int32_t>(1 + random() % 4095),
+           static_cast<std::int32_t>(1 + random() % 4095)};
+    if (!seen.insert(key_of(r.u)).second) {
+      continue;
+    }
+    r.error = shortened(
+        static_cast<float>(size * std::exp2(std::uniform_real_distribution(-3.0, 3.0)(random))));
+    r.deviation = r.error;
+    r.height = static_cast<HeightBits>(random() % 1000);
+    add_star(records, r, made_ring(r.u, square, 6, static_cast<std::int32_t>(4 * size), random),
+             metres);
   }
   return records;
+}
+
+GridBox box_of_star(const StarredRecords& records, std::size_t i) {
+  GridBox box = box_of(records.splits[i].u);
+  for (const RingCorner& c : records.ring(i)) {
+    box = united(box, c.position);
+  }
+  return box;
 }
 
 struct Cost {
   double point = 0, tolerance = 0;  // pages of a mean point, and of the mean of some tolerances
 };
 
-Cost cost_of(std::span<const VertexSplit> records) {
-  constexpr std::size_t kPage = 64;
+Cost cost_of(const StarredRecords& records) {
+  constexpr std::size_t kPage = 160;
   Cost cost;
   for (std::size_t i = 0; i < records.size(); i += kPage) {
     GridBox box;
     float error = 0;
-    for (const VertexSplit& r : records.subspan(i, std::min(kPage, records.size() - i))) {
-      box = united(box, r.roi);
-      error = std::max(error, r.error);
+    for (std::size_t k = i; k < std::min(i + kPage, records.size()); ++k) {
+      box = united(box, box_of_star(records, k));
+      error = std::max(error, records.splits[k].error);
     }
     cost.point += static_cast<double>(box.max_x - box.min_x + 1) * (box.max_y - box.min_y + 1) /
                   (4096.0 * 4096.0);
@@ -92,77 +121,74 @@ Cost cost_of(std::span<const VertexSplit> records) {
   return cost;
 }
 
+StarredRecords sorted(const StarredRecords& records,
+                      const std::function<bool(const VertexSplit&, const VertexSplit&)>& less) {
+  std::vector<std::uint32_t> order(records.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return less(records.splits[a], records.splits[b]);
+  });
+  return in_order(records, order);
+}
+
 // What it is for. Orders by one thing alone do one of both well; those it is held against are by
 // error, and by octave of error and then in squares.
 TEST(StoreWriter, OrdersRecordsSoThatPointsAndTolerancesReadFewPages) {
-  std::vector<VertexSplit> records = terrain_like(50'000);
-  std::sort(records.begin(), records.end(),
-            [](const VertexSplit& a, const VertexSplit& b) { return a.error > b.error; });
-  const Cost by_error = cost_of(records);
+  const StarredRecords records = terrain_like(50'000);
+  const Cost by_error = cost_of(sorted(
+      records, [](const VertexSplit& a, const VertexSplit& b) { return a.error > b.error; }));
   const auto place = [](const VertexSplit& r) {
     const auto octave = static_cast<int>(layout::to_bits(r.error) >> 23);
     return std::tuple(-octave, hilbert_position(static_cast<std::uint32_t>(r.u.x),
                                                 static_cast<std::uint32_t>(r.u.y)));
   };
-  std::sort(records.begin(), records.end(),
-            [&](const VertexSplit& a, const VertexSplit& b) { return place(a) < place(b); });
-  const Cost by_octave = cost_of(records);
-  order_segment(records, 4096);
-  const Cost ours = cost_of(records);
+  const Cost by_octave = cost_of(sorted(
+      records, [&](const VertexSplit& a, const VertexSplit& b) { return place(a) < place(b); }));
+  const Cost ours = cost_of(in_order(records, order_of_segment(records)));
   RecordProperty("point", std::to_string(ours.point) + " " + std::to_string(by_octave.point));
   EXPECT_LT(ours.point, 0.75 * by_octave.point);
-  EXPECT_LT(ours.point, 0.25 * by_error.point);
-  EXPECT_LT(ours.tolerance, 1.6 * by_error.tolerance);
-  EXPECT_LT(ours.tolerance, 1.35 * by_octave.tolerance);
+  EXPECT_LT(ours.point, 0.1 * by_error.point);
+  EXPECT_LT(ours.tolerance, 2.8 * by_error.tolerance);
+  EXPECT_LT(ours.tolerance, 2.5 * by_octave.tolerance);
 }
 
 TEST(StoreWriter, FillsPagesOfEachSizeWithAsManyRecordsAsFit) {
   const TestFolder folder;
-  RandomRecords options;
-  options.segments = 1;
-  options.records = 5000;
   for (const std::uint32_t page_bytes : {4096U, 8192U, 16384U, 65536U}) {
-    for (const bool narrow : {true, false}) {
-      options.side = narrow ? 30000 : 1 << 29;
-      StoreContent content = random_content(options);
-      if (!narrow) {
-        for (VertexSplit& r : content.segments[0]) {
-          r.w = {r.u.x < options.side / 2 ? options.side : 0, r.u.y};
-          r.roi = united(r.roi, r.w);
-          r.error = 1.0F;
-        }
-      }
-      StoreWriterOptions writer;
-      writer.overwrite = true;
-      writer.page_bytes = page_bytes;
-      write_store(folder.file("a"), content, writer);
+    for (const std::int32_t side : {30000, 1 << 29}) {
+      const StoreContent content = random_content({.segments = 1, .records = 5000, .side = side});
+      const HeightEncoding& heights = content.facts.heights;
+      write_store(folder.file("a"), content, {.overwrite = true, .page_bytes = page_bytes});
+      EXPECT_TRUE(verify_store(folder.file("a")).is_sound());
       const auto store = StoreFile::open(folder.file("a"));
       EXPECT_EQ(store->facts().page_bytes, page_bytes);
-      const std::size_t fit = page_bytes / (narrow ? kNarrowRecordBytes : kWideRecordBytes);
-      EXPECT_EQ(store->pages().page_count(), (options.records + fit - 1) / fit);
-      EXPECT_EQ(store->page_info(PageId{0}).records, fit);
-      EXPECT_EQ(store->page_info(PageId{0}).kind, narrow ? RecordKind::kNarrow : RecordKind::kWide);
-      EXPECT_TRUE(verify_store(folder.file("a")).is_sound());
+      const StarredRecords all = read_all_starred(*store);
+      std::size_t i = 0;
+      for (std::uint64_t page = 0; page < store->pages().page_count(); ++page) {
+        PagePacker packer(page_bytes, heights);
+        const std::size_t end = i + store->page_info(PageId{page}).records;
+        for (; i < end; ++i) {
+          ASSERT_TRUE(packer.add(all.splits[i], all.ring(i)));
+        }
+        EXPECT_TRUE(i == all.size() || !packer.add(all.splits[i], all.ring(i)));
+      }
     }
   }
-  EXPECT_EQ(4096 / kNarrowRecordBytes, 64U);
-  EXPECT_EQ(4096 / kWideRecordBytes, 56U);
 }
 
-TEST(StoreWriter, TakesAtMost80BytesARecordOnALargeFile) {
+TEST(StoreWriter, TakesAtMost32BytesARecordOfSmallStars) {
   const TestFolder folder;
-  RandomRecords options;
-  options.segments = 1;
-  options.records = 100000;
-  write_store(folder.file("a"), random_content(options));
-  EXPECT_LT(std::filesystem::file_size(folder.file("a")), 80U * options.records);
+  StoreContent content = flat_square(4096, HeightType::int32);
+  content.segments = {terrain_like(50'000)};
+  write_store(folder.file("a"), content);
+  EXPECT_LT(std::filesystem::file_size(folder.file("a")), 32U * 50'000U);
 }
 
 TEST(StoreWriter, KeepsALongIndexInASideFile) {
   const TestFolder folder;
   RandomRecords options;
   options.segments = 4;
-  options.records = 40000;  // 2600 pages: 31 leaves, and 16 are kept in memory
+  options.records = 40000;  // 2000 pages: 36 leaves, and 16 are kept in memory
   const StoreContent content = random_content(options);
   write_store(folder.file("a.ptin"), content);
   EXPECT_TRUE(verify_store(folder.file("a.ptin")).is_sound());
@@ -215,7 +241,8 @@ TEST(StoreWriter, LeavesNothingWhenItIsNotPublished) {
   {
     StoreContent content = random_content({});
     const auto writer = StoreWriter::create(folder.file("a.ptin"), {});
-    writer->add_segment(content.segments[0], content.facts.heights);
+    writer->add_segment(pack_segment(content.segments[0], content.facts.heights, 4096),
+                        content.facts.heights);
     EXPECT_EQ(folder.names().size(), 1U);
   }
   EXPECT_TRUE(folder.names().empty());
@@ -237,21 +264,30 @@ TEST(StoreWriter, RefusesFactsAndPageSizesThatAReaderWouldRefuse) {
   EXPECT_EQ(code_of([&] { write_store(folder.file("a"), content); }), ErrorCode::invalid_argument);
   content = random_content({.segments = 1, .records = 1});
   const auto writer = StoreWriter::create(folder.file("a"), {});
-  writer->add_segment(content.segments[0], content.facts.heights);
+  const PackedSegment packed = pack_segment(content.segments[0], content.facts.heights, 4096);
+  writer->add_segment(packed, content.facts.heights);
   EXPECT_EQ(code_of([&] {
-              writer->add_segment(content.segments[0], {HeightType::int32, 1.0, 0.0});
+              writer->add_segment(packed, {HeightType::int32, 1.0, 0.0});
             }),
             ErrorCode::invalid_argument);
 }
 
-TEST(StoreWriter, TakesRecordsThatCannotBeReadBackForAFaultOfTheProgram) {
+TEST(StoreWriter, TakesPagesThatCannotBeReadBackForAFaultOfTheProgram) {
   const TestFolder folder;
-  StoreContent content = random_content({.segments = 1, .records = 1});
-  content.segments[0][0].w = content.segments[0][0].u;
-  EXPECT_EQ(code_of([&] { write_store(folder.file("a"), content); }), ErrorCode::internal);
-  content = random_content({.segments = 1, .records = 1});
-  content.segments[0][0].height_lo = layout::to_bits(std::numeric_limits<float>::quiet_NaN());
-  EXPECT_EQ(code_of([&] { write_store(folder.file("a"), content); }), ErrorCode::internal);
+  const StoreContent content = random_content({.segments = 1, .records = 1});
+  const auto code_after = [&](const std::function<void(PackedSegment&)>& ruin) {
+    PackedSegment packed = pack_segment(content.segments[0], content.facts.heights, 4096);
+    ruin(packed);
+    return code_of([&] {
+      StoreWriter::create(folder.file("a"), {})->add_segment(packed, content.facts.heights);
+    });
+  };
+  EXPECT_EQ(code_after([](auto&) {}), std::nullopt);
+  EXPECT_EQ(code_after([](auto& p) { p.pages[0] = std::byte{2}; }), ErrorCode::internal);
+  EXPECT_EQ(code_after([](auto& p) { p.descriptors[0].records = 2; }), ErrorCode::internal);
+  EXPECT_EQ(code_after([](auto& p) { p.pages.resize(100); }), ErrorCode::internal);
+  EXPECT_EQ(code_after([](auto& p) { p.pages[7] = std::byte{0xFF}; }), ErrorCode::internal)
+      << "x beyond the grid";
   EXPECT_TRUE(folder.names().empty());
 }
 
@@ -269,8 +305,9 @@ class StoreWriterResume : public testing::Test {
     PowerCutFiles files;
     files.renames = false;
     const auto first = writer(files);
-    for (std::vector<VertexSplit> segment : content_.segments) {
-      first->add_segment(segment, content_.facts.heights);
+    for (const StarredRecords& segment : content_.segments) {
+      first->add_segment(pack_segment(segment, content_.facts.heights, 4096),
+                         content_.facts.heights);
     }
     first->sync();
     EXPECT_EQ(code_of([&] { publish(*first); }), ErrorCode::io_error);

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "storage/verify.h"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <limits>
+#include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include "engine/error.h"
 #include "storage/index_shape.h"
+#include "storage/page_packer.h"
 #include "tests/storage/store_fixture.h"
 
 namespace ptin::test {
@@ -49,7 +52,7 @@ std::uint64_t leaf_entry(const Bytes& file, std::uint64_t page) {
   const IndexShape shape(header_of(file).page_count);
   return section_of(file, SectionKind::kIndex).offset +
          shape.position(0, page / layout::kFanOut) * layout::kNodeBytes + 16 +
-         page % layout::kFanOut * 48;
+         page % layout::kFanOut * sizeof(layout::NodeEntry);
 }
 
 std::uint64_t page_offset(const Bytes& file, std::uint64_t page) {
@@ -125,16 +128,28 @@ TEST_F(Verify, ComparesEachDescriptorWithItsRecords) {
   expect_told("off the grid", [](auto& e) { e.min_x = -1; });
   expect_told("height", [](auto& e) { e.height_lo ^= 1; });
   expect_told("height no number", [](auto& e) { e.height_hi = 0x7FC00000; });
-  expect_told("error", [](auto& e) { e.error_max += 1; });
-  expect_told("error no number", [](auto& e) { e.error_max = 0x7FC00000; });
+  expect_told("minus zero", [](auto& e) { e.height_lo = 0x80000000; });
+  expect_told("larger box of stars", [](auto& e) { e.star_min_x -= 1; });
+  expect_told("smaller box of stars", [](auto& e) { e.star_max_y -= 1; });
+  expect_told("stars off the grid", [](auto& e) { e.star_max_x = kGridMax + 1; });
+  expect_told("stars out of the box", [](auto& e) { e.star_min_y = e.min_y - 1; });
+  expect_told("no stars", [](auto& e) { std::swap(e.star_min_y, e.star_max_y); });
+  expect_told("stars' height", [](auto& e) { e.star_height_hi += 1; });
+  expect_told("stars' height", [](auto& e) { e.star_height_lo += 1; });
+  expect_told("stars' height no number", [](auto& e) { e.star_height_lo = 0x7FC00000; });
+  expect_told("error", [](auto& e) { e.error_max -= 1; });
+  expect_told("error no number", [](auto& e) { e.error_max = 0x7FC0; });
   expect_told("error order", [](auto& e) { e.error_min = e.error_max + 1; });
-  expect_told("least error", [](auto& e) { e.error_min = 1; });
-  expect_told("deviation", [](auto& e) { e.deviation_max += 1; });
-  expect_told("kind", [](auto& e) { e.kind_and_count ^= layout::kWidePage; });
-  expect_told("no record", [](auto& e) { e.kind_and_count = 0; });
-  expect_told("too many records", [](auto& e) { e.kind_and_count = 65; });
-  expect_told("unknown kind", [](auto& e) { e.kind_and_count |= 1U << 20; });
-  expect_told("fewer records", [](auto& e) { e.kind_and_count -= 1; });
+  expect_told("least error", [](auto& e) { e.error_min ^= 1; });
+  expect_told("deviation", [](auto& e) { e.deviation_max -= 1; });
+  expect_told("deviation no number", [](auto& e) { e.deviation_max = 0x7F81; });
+  expect_told("death", [](auto& e) { e.death_min ^= 1; });
+  expect_told("death no number", [](auto& e) { e.death_min = 0x7F82; });
+  expect_told("reserved", [](auto& e) { e.reserved = 1; });
+  expect_told("no record", [](auto& e) { e.records = 0; });
+  expect_told("too many records", [](auto& e) { e.records = 513; });
+  expect_told("endless records", [](auto& e) { e.records = UINT32_MAX; });
+  expect_told("fewer records", [](auto& e) { e.records -= 1; });
 }
 
 TEST_F(Verify, ComparesInnerEntriesWithWhatIsBelow) {
@@ -150,7 +165,7 @@ TEST_F(Verify, ComparesInnerEntriesWithWhatIsBelow) {
                     "union"));
   EXPECT_TRUE(tells(after([&](Bytes& b) {
                       auto e = object_at<layout::NodeEntry>(b, root_entry(b));
-                      e.kind_and_count = 1;
+                      e.records = 1;
                       set_object(b, root_entry(b), e);
                     }),
                     "values that no program wrote"));
@@ -163,15 +178,51 @@ TEST_F(Verify, ComparesInnerEntriesWithWhatIsBelow) {
   EXPECT_TRUE(tells(after([&](Bytes& b) { b[root(b) + 4095] = std::byte{1}; }), "unused entries"));
 }
 
-TEST_F(Verify, FindsRecordsThatCannotBe) {
+TEST_F(Verify, FindsPagesThatCannotBe) {
   write(random_content({.segments = 1, .records = 100}));
-  EXPECT_TRUE(tells(after([](Bytes& b) { b[page_offset(b, 0) + 47] = std::byte{1}; }), "record 0"))
-      << "flags";
+  EXPECT_TRUE(tells(after([](Bytes& b) { b[page_offset(b, 0) + 47] = std::byte{1}; }),
+                    "begins with numbers"))
+      << "reserved";
   EXPECT_TRUE(tells(after([](Bytes& b) {
                       const std::uint64_t last = header_of(b).page_count - 1;
                       b[page_offset(b, last) + 4095] = std::byte{1};
                     }),
-                    "behind the last record"));
+                    "as they are to be packed"));
+}
+
+// Every bit of a page, with all checksums made right: what is not found is a page of other records
+// that a writer packs so.
+TEST_F(Verify, FindsEachFlippedBitOfAPageThatIsNoPageOfOtherRecords) {
+  write(random_content({.segments = 1, .records = 3, .side = 1000}));
+  const Bytes sound = read_file(path_);
+  const std::uint64_t begin = page_offset(sound, 0);
+  const HeightEncoding heights;
+  std::size_t other_records = 0;
+  std::size_t used = 4096;  // The bytes from `used` on are zero.
+  for (; sound[begin + used - 1] == std::byte{0}; --used) {
+  }
+  for (std::size_t bit = 0; bit < std::size_t{4096} * 8; bit += bit / 8 < used ? 1 : 61) {
+    const VerifyReport report =
+        after([&](Bytes& b) { b[begin + bit / 8] ^= static_cast<std::byte>(1U << bit % 8); });
+    if (report.is_sound()) {
+      const auto store = StoreFile::open(folder_.file("b.ptin"));
+      const StarredRecords records = read_all_starred(*store);
+      PagePacker packer(4096, heights);
+      for (std::size_t i = 0; i < records.size(); ++i) {
+        ASSERT_TRUE(packer.add(records.splits[i], records.ring(i)));
+      }
+      layout::NodeEntry entry;
+      const Bytes file = read_file(folder_.file("b.ptin"));
+      ASSERT_TRUE(std::ranges::equal(packer.finish(entry), std::span(file).subspan(begin, 4096)));
+      ASSERT_FALSE(
+          bit / 8 < offsetof(layout::PageHeader, x) ||
+          (bit / 8 >= offsetof(layout::PageHeader, width) && bit / 8 < sizeof(layout::PageHeader)))
+          << "a count or a width";
+      ++other_records;
+    }
+  }
+  EXPECT_GT(other_records, 0U);
+  EXPECT_LT(other_records, used * 8 / 2);
 }
 
 TEST_F(Verify, FindsGapsThatAreNotZero) {
@@ -236,47 +287,17 @@ TEST_F(Verify, FindsTotalsThatDoNotAddUp) {
                     "the table is not"));
 }
 
-TEST_F(Verify, FindsHeightsOutOfTheHeaderAndOutOfTheirIntervals) {
+TEST_F(Verify, FindsHeightsOutOfTheHeader) {
   StoreContent content = random_content({.segments = 1, .records = 100});
-  const auto told = [&](const std::function<void(StoreContent&)>& change, const std::string& what) {
+  const auto told = [&](const std::function<void(StoreContent&)>& change) {
     StoreContent changed = content;
     change(changed);
     write(changed);
-    return tells(verify_store(path_), what);
+    return tells(verify_store(path_), "in the header");
   };
-  EXPECT_FALSE(told([](auto&) {}, ""));
-  const std::string header = "in the header", own = "own interval";
-  EXPECT_TRUE(told([](auto& c) { c.facts.max_height = 11.5; }, header));
-  EXPECT_TRUE(told([](auto& c) { c.facts.min_height = 12.5; }, header));
-  const HeightEncoding heights = content.facts.heights;
-  EXPECT_TRUE(told(
-      [&](auto& c) {
-        VertexSplit& r = c.segments[0][3];
-        r.flags = 0;
-        r.height = heights.bits(100.0);
-        r.height_lo = heights.bits(90.0);
-        r.height_hi = heights.bits(99.0);
-      },
-      own));
-  EXPECT_TRUE(told(
-      [&](auto& c) {
-        VertexSplit& r = c.segments[0][3];
-        r.flags = VertexSplit::kLeftVoid;
-        r.height = heights.bits(100.0);
-        r.height_lo = r.height_hi = heights.bits(101.0);
-      },
-      own));
-}
-
-TEST_F(Verify, FindsAHeightOfAVertexThatHasNone) {
-  StoreContent content = random_content({.segments = 1, .records = 100});
-  VertexSplit& r = content.segments[0][3];
-  r.flags |= VertexSplit::kVertexVoid | VertexSplit::kLeftVoid | VertexSplit::kRightVoid;
-  for (const HeightBits height : {0U, 1U, 0x7F800000U}) {
-    r.height = height;
-    write(content);
-    EXPECT_EQ(tells(verify_store(path_), "without a height has one"), height != 0) << height;
-  }
+  EXPECT_FALSE(told([](auto&) {}));
+  EXPECT_TRUE(told([](auto& c) { c.facts.max_height = 11.5; }));
+  EXPECT_TRUE(told([](auto& c) { c.facts.min_height = 12.5; }));
 }
 
 TEST_F(Verify, FindsIntervalsOfHeightsOutOfTheHeader) {
@@ -284,7 +305,7 @@ TEST_F(Verify, FindsIntervalsOfHeightsOutOfTheHeader) {
     StoreContent content = random_content({.segments = 1, .records = 100});
     content.facts.min_height = low;
     content.facts.max_height = high;
-    VertexSplit& r = content.segments[0][42];
+    VertexSplit& r = content.segments[0].splits[42];
     r.height_lo = content.facts.heights.bits(-60.0);
     r.height_hi = content.facts.heights.bits(3500.0);
     write(content);
@@ -335,11 +356,12 @@ TEST_F(Verify, FindsARegionOfInfluenceThatReachesOutOfTheBounds) {
     const auto move = [](GridPoint& p) { p = {p.x + 10, p.y + 10}; };
     for (CoarsestTin::V& v : content.t0.vertices) move(v.position);
     content.facts.bounds = {10, 10, kSide + 10, kSide + 10};
-    for (VertexSplit& r : content.segments[0]) {
+    for (RingCorner& c : content.segments[0].corners) move(c.position);
+    for (VertexSplit& r : content.segments[0].splits) {
       for (GridPoint* p : {&r.u, &r.w, &r.vl, &r.vr}) move(*p);
       r.roi = {r.roi.min_x + 10, r.roi.min_y + 10, r.roi.max_x + 10, r.roi.max_y + 10};
     }
-    change(content.segments[0][42].roi);
+    change(content.segments[0].splits[42].roi);
     write(content);
     const VerifyReport report = verify_store(path_);
     EXPECT_LE(report.faults.size(), 1U);
@@ -357,7 +379,8 @@ TEST_F(Verify, FindsAVertexThatComesTwice) {
   // By one bit a position in the small square, by sorting parts in the large one.
   for (const std::int32_t side : {1000, 1 << 20}) {
     StoreContent content = random_content({.segments = 2, .records = 500, .side = side});
-    content.segments[1][7] = content.segments[0][3];
+    const std::span<const RingCorner> ring = content.segments[0].ring(3);
+    add_star(content.segments[1], content.segments[0].splits[3], {ring.begin(), ring.end()});
     write(content);
     VerifyOptions options;
     options.memory_bytes = side == 1000 ? std::uint64_t{1} << 20 : 1;
@@ -379,35 +402,37 @@ TEST_F(Verify, ComparesKeysInSeveralPassesWhenMemoryIsShort) {
 
 TEST_F(Verify, FindsAVertexOfT0AmongTheRecords) {
   StoreContent content = random_content({.segments = 1, .records = 10, .side = 1000});
-  VertexSplit& r = content.segments[0][0];
-  r.u = {0, 0};
-  r.w = {1, 0};
-  r.vl = {0, 1};
-  r.vr = {1, 1};
-  r.roi = {0, 0, 1, 1};
+  content.segments[0] = {};
+  VertexSplit r;
+  r.height = content.facts.heights.bits(12.0);
+  r.flags = VertexSplit::kNoRight;  // in the corner of the square
+  add_star(content.segments[0], r, {{1, 0}, {1, 1}, {0, 1}}, content.facts.heights);
   write(content);
   EXPECT_TRUE(tells(verify_store(path_), "comes twice"));
 }
 
 TEST_F(Verify, FindsVoidsThatTheHeaderDenies) {
   const auto told = [&](const std::function<void(StoreContent&)>& change) {
-    StoreContent content = random_content({});
+    StoreContent content = flat_square(1000);
     content.facts.free_of_voids = true;
-    for (auto& segment : content.segments) {
-      for (VertexSplit& r : segment) {
-        if ((r.flags & VertexSplit::kVertexVoid) != 0) {
-          r.height_lo = r.height_hi = r.height;  // it had no interval
-        }
-        r.flags &= ~VertexSplit::kAnyVoid;
-      }
-    }
+    VertexSplit r;
+    r.u = {500, 500};
+    r.height = content.facts.heights.bits(12.0);
+    r.error = 1.0F;
+    content.segments.resize(1);
+    std::mt19937_64 random(1);
+    add_star(content.segments[0], r, made_ring(r.u, content.facts.bounds, 6, 50, random),
+             content.facts.heights);
     change(content);
+    name_by_ring(content.segments[0].splits[0], content.segments[0].ring(0));
     write(content);
     return tells(verify_store(path_), "there are no voids");
   };
   EXPECT_FALSE(told([](auto&) {}));
   EXPECT_TRUE(told([](auto& c) { c.t0.triangles[0].is_void = 1; }));
-  EXPECT_TRUE(told([](auto& c) { c.segments[0][3].flags |= VertexSplit::kRightVoid; }));
+  for (const std::size_t corner : {0U, 3U, 5U}) {
+    EXPECT_TRUE(told([&](auto& c) { c.segments[0].corners[corner].flags = RingCorner::kVoid; }));
+  }
 }
 
 TEST_F(Verify, FindsT0ThatDoesNotCoverItsDomain) {
