@@ -203,11 +203,12 @@ class OwnPolygons {
 void check_against_store(const MadeTerrain& terrain, const Counted& counted) {
   const ScratchFolder folder;
   const std::string path = folder.file("check.ptin");
-  std::vector<VertexSplit> records = terrain.started.tile.records;
+  const Tile& tile = terrain.started.tile;
+  StarredRecords records = starred_records(std::vector(tile.records), 0, RecordStars(tile.stars));
   BuildReport report;
   StoreOutput output(path, {}, false, terrain.frame);
   output.add_segment(records);
-  output.publish(terrain.started.tile.tin, {"random"}, report);
+  output.publish(tile.tin, deaths_of(tile), {"random"}, report);
   const Terrain tin = Terrain::open(path);
   int differences = 0;
   for (int i = 0; i < kPlaces * kPlaces; i += 49) {

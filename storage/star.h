@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Stars with lifetimes: the triangles that a record's split makes, and the error at which each of
-// them goes (engine/DESIGN.md, section 2.9).
+// them goes (engine/DESIGN.md, section 2.10).
 #pragma once
 
 #include <cstddef>

@@ -254,7 +254,7 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
   const std::uint64_t inode = inode_of(pages_in(workspace)).value_or(0);
   workspace.append({{{"publishing", inode}}});
   job.inode_of_output = inode;
-  store.publish(built.t0, job.inputs, job.report);
+  store.publish(built.t0, built.t0_deaths, job.inputs, job.report);
   job.stage("writing")(1, 1);
 }
 

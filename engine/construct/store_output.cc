@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/geometry/rounding.h"
+#include "engine/check.h"
 #include "storage/file/file_questions.h"
 
 namespace ptin {
@@ -159,12 +159,25 @@ CoarsestTin coarsest_tin(const Tin& tin) {
   return t0;
 }
 
+std::vector<float> coarsest_deaths(const Tin& tin, std::span<const float> deaths,
+                                   const StoredDetail& detail) {
+  PTIN_CHECK(deaths.size() == tin.triangles.size());
+  std::vector<float> stored;
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (tin.is_alive(t)) {
+      stored.push_back(detail.death(deaths[t]));
+    }
+  }
+  return stored;
+}
+
 StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
                          const TerrainFrame& frame, FileLayer* files,
                          const std::string& work_folder)
     : path_(path),
       options_(options),
       frame_(frame),
+      detail_{frame.height_rounding, options.max_error},
       base_error_(frame.height_rounding),
       base_deviation_(frame.height_rounding) {
   StoreWriterOptions writer_options;
@@ -175,34 +188,20 @@ StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, b
   writer_ = StoreWriter::create(path, writer_options);
 }
 
-void StoreOutput::add_segment(std::span<VertexSplit> records) {
-  if (frame_.height_rounding > 0.0) {
-    for (VertexSplit& r : records) {
-      r.error = rounded_up(static_cast<double>(r.error) + frame_.height_rounding);
-      r.deviation = rounded_up(static_cast<double>(r.deviation) + frame_.height_rounding);
-    }
-  }
+void StoreOutput::add_segment(StarredRecords& records) {
+  detail_.add_rounding(records);
   // Of the source's TIN: before records are left out.
   void_records_ += static_cast<std::uint64_t>(
-      std::count_if(records.begin(), records.end(),
+      std::count_if(records.splits.begin(), records.splits.end(),
                     [](const VertexSplit& r) { return (r.flags & VertexSplit::kAnyVoid) != 0; }));
-  if (options_.max_error > 0.0) {
-    // The records kept are those of the monotone predicate error > max_error: closed under
-    // dependency.
-    const auto dropped = std::partition(
-        records.begin(), records.end(),
-        [this](const VertexSplit& r) { return static_cast<double>(r.error) > options_.max_error; });
-    for (auto r = dropped; r != records.end(); ++r) {
-      base_error_ = std::max(base_error_, static_cast<double>(r->error));
-      base_deviation_ = std::max(base_deviation_, static_cast<double>(r->deviation));
-    }
-    records = records.first(static_cast<std::size_t>(dropped - records.begin()));
-  }
-  for (const VertexSplit& r : records) {
+  const RecordBounds worst = detail_.leave_out(records);
+  base_error_ = std::max(base_error_, static_cast<double>(worst.error));
+  base_deviation_ = std::max(base_deviation_, static_cast<double>(worst.deviation));
+  for (const VertexSplit& r : records.splits) {
     max_rank_ = std::max(max_rank_, r.rank);
   }
   records_ += records.size();
-  writer_->add_segment(records, frame_.heights);
+  writer_->add_segment(records.splits, frame_.heights);
 }
 
 nlohmann::json StoreOutput::position() const {
@@ -228,9 +227,12 @@ void StoreOutput::resume(const nlohmann::json& position) {
   base_deviation_ = std::bit_cast<double>(position.at("base_deviation").get<std::uint64_t>());
 }
 
-void StoreOutput::publish(const Tin& t0, const std::vector<std::string>& inputs,
-                          BuildReport& report) {
+void StoreOutput::publish(const Tin& t0, std::span<const float> t0_deaths,
+                          const std::vector<std::string>& inputs, BuildReport& report) {
   const CoarsestTin coarsest = coarsest_tin(t0);
+  // Until the store keeps stars and deaths, these go no further than here and add_segment().
+  const std::vector<float> deaths = coarsest_deaths(t0, t0_deaths, detail_);
+  PTIN_CHECK(deaths.size() == coarsest.triangles.size());
   StoreFacts facts;
   facts.map = frame_.map;
   facts.heights = frame_.heights;

@@ -7,10 +7,12 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/construct/build.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/hierarchy/segment_output.h"
+#include "engine/construct/stored_detail.h"
 #include "engine/mesh/tin.h"
 #include "storage/store_writer.h"
 
@@ -27,23 +29,26 @@ class StoreOutput final : public SegmentOutput {
               const TerrainFrame& frame, FileLayer* files = nullptr,
               const std::string& work_folder = "");
 
-  /// One segment; reordered in place.  @throws Error as StoreWriter::add_segment
-  void add_segment(std::span<VertexSplit> records) override;
+  /// One segment; changed in place.  @throws Error as StoreWriter::add_segment
+  void add_segment(StarredRecords& records) override;
   [[nodiscard]] nlohmann::json position() const override;
   void sync() override { writer_->sync(); }
   void resume(const nlohmann::json& position) override;
 
   /// @param t0       The coarsest TIN: the alive part of a mesh in which nothing more collapses.
+  /// @param t0_deaths  Beside t0.triangles, as deaths_of().
   /// @param inputs   Names for the metadata; their folders are left out, so that the bytes do not
   /// depend on them.
   /// @param report   Counts for the metadata; receives records, t0_vertices, max_rank, file_bytes.
   /// @throws Error as StoreWriter::publish
-  void publish(const Tin& t0, const std::vector<std::string>& inputs, BuildReport& report);
+  void publish(const Tin& t0, std::span<const float> t0_deaths,
+               const std::vector<std::string>& inputs, BuildReport& report);
 
  private:
   std::string path_;
   BuildOptions options_;
   TerrainFrame frame_;
+  StoredDetail detail_;
   std::unique_ptr<StoreWriter> writer_;
   double base_error_ = 0.0;
   double base_deviation_ = 0.0;
@@ -57,5 +62,10 @@ class StoreOutput final : public SegmentOutput {
 
 /// The alive part of a mesh as the store keeps it, in the order of the vertices.
 [[nodiscard]] CoarsestTin coarsest_tin(const Tin& tin);
+
+/// Beside the triangles of coarsest_tin(): their deaths as the file has them.
+/// @param deaths  Beside tin.triangles.
+[[nodiscard]] std::vector<float> coarsest_deaths(const Tin& tin, std::span<const float> deaths,
+                                                 const StoredDetail& detail);
 
 }  // namespace ptin

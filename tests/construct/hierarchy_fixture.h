@@ -79,18 +79,30 @@ class FailingFiles final : public FileLayer {
 /// Segments as they come, and where each ends.
 class RecordsInMemory final : public SegmentOutput {
  public:
-  void add_segment(std::span<VertexSplit> records) override {
-    records_.insert(records_.end(), records.begin(), records.end());
+  void add_segment(StarredRecords& records) override {
+    const auto before = static_cast<std::uint32_t>(records_.corners.size());
+    const auto append = [](const auto& from, auto& to) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(records.splits, records_.splits);
+    append(records.corners, records_.corners);
+    for (const std::uint32_t end : records.ring_end) {
+      records_.ring_end.push_back(before + end);
+    }
   }
   [[nodiscard]] nlohmann::json position() const override { return records_.size(); }
   void sync() override {}
   void resume(const nlohmann::json& position) override {
-    records_.resize(position.get<std::size_t>());
+    const auto size = position.get<std::size_t>();
+    records_.splits.resize(size);
+    records_.ring_end.resize(size);
+    records_.corners.resize(size == 0 ? 0 : records_.ring_end.back());
   }
-  [[nodiscard]] const std::vector<VertexSplit>& records() const { return records_; }
+  [[nodiscard]] const std::vector<VertexSplit>& records() const { return records_.splits; }
+  [[nodiscard]] const StarredRecords& starred() const { return records_; }
 
  private:
-  std::vector<VertexSplit> records_;
+  StarredRecords records_;
 };
 
 }  // namespace ptin::test

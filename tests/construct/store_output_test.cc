@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -24,16 +25,32 @@ TerrainFrame frame_of(const oracle::TestTerrain& terrain, double rounding) {
   return frame;
 }
 
+/// The records of a simplified tile with their stars, as two segments.
+std::pair<StarredRecords, StarredRecords> halves(const Tile& tile) {
+  StarredRecords all = starred_records(std::vector(tile.records), 0, RecordStars(tile.stars));
+  const std::size_t half = all.size() / 2;
+  const std::uint32_t corner = half == 0 ? 0 : all.ring_end[half - 1];
+  StarredRecords second;
+  second.splits.assign(all.splits.begin() + static_cast<std::ptrdiff_t>(half), all.splits.end());
+  second.corners.assign(all.corners.begin() + corner, all.corners.end());
+  for (std::size_t i = half; i < all.size(); ++i) {
+    second.ring_end.push_back(all.ring_end[i] - corner);
+  }
+  all.splits.resize(half);
+  all.corners.resize(corner);
+  all.ring_end.resize(half);
+  return {std::move(all), std::move(second)};
+}
+
 /// Writes the records of a random terrain and returns what the store says of them.
 std::vector<VertexSplit> written(const oracle::TestTerrain& terrain, const BuildOptions& options,
                                  double rounding, StoreFacts& facts, BuildReport& report) {
   const oracle::ScratchFolder folder;
   StoreOutput output(folder.file("out.ptin"), options, false, frame_of(terrain, rounding));
-  std::vector<VertexSplit> records = terrain.tile.records;
-  const std::size_t half = records.size() / 2;
-  output.add_segment(std::span(records).first(half));
-  output.add_segment(std::span(records).subspan(half));
-  output.publish(terrain.tile.tin, {"/some/folder/dem.tif"}, report);
+  auto [first, second] = halves(terrain.tile);
+  output.add_segment(first);
+  output.add_segment(second);
+  output.publish(terrain.tile.tin, deaths_of(terrain.tile), {"/some/folder/dem.tif"}, report);
   const auto store = StoreFile::open(folder.file("out.ptin"));
   facts = store->facts();
   const nlohmann::json metadata = nlohmann::json::parse(store->metadata_json());
@@ -115,7 +132,7 @@ TEST(StoreOutput, LeavesNothingBehindWithoutPublish) {
   const oracle::ScratchFolder folder;
   {
     StoreOutput output(folder.file("out.ptin"), {}, false, frame_of(terrain, 0.0));
-    std::vector<VertexSplit> records = terrain.tile.records;
+    auto records = halves(terrain.tile).first;
     output.add_segment(records);
   }
   EXPECT_TRUE(folder.names().empty());

@@ -75,18 +75,34 @@ VertexSplit RecordMaker::make_record(const StarSamples& s, const FanError& own,
   return r;
 }
 
-/// Notes in the tile which records the next one depends on; tightening saturates along them.
-void RecordMaker::note_dependencies(const Star& star) {
-  std::vector<std::uint32_t>& all = tile_.dependencies;
-  const auto first = static_cast<std::ptrdiff_t>(all.size());
-  for (const TriangleId t : star.triangles) {
-    if (tile_.carried[t].record != kNone) {
-      all.push_back(tile_.carried[t].record);
+/// Appends the star to the stars of the tile, while its mesh and what it carries are there: w first
+/// where it is closed, else as it is walked.
+void RecordMaker::append_star(const Star& star, std::size_t j) {
+  const Tin& tin = tile_.tin;
+  RecordStars& stars = tile_.stars;
+  std::size_t i = star.closed ? j : 0;
+  for (std::size_t k = 0; k < star.degree(); ++k) {
+    const VertexId v = star.link[i];
+    RingCorner corner;
+    corner.position = tin.position(v);
+    if (tin.has_height[v] != 0) {
+      corner.height = tin.vertices[v].height;
+    } else {
+      corner.flags = RingCorner::kNoHeight;
     }
+    std::uint32_t successor = kNone;
+    if (i < star.triangles.size()) {
+      const TriangleId t = star.triangles[i];
+      successor = tile_.carried[t].record;
+      if (tin.classes[t] == TriangleClass::kVoid) {
+        corner.flags |= RingCorner::kVoid;
+      }
+    }
+    stars.corners.push_back(corner);
+    stars.successors.push_back(successor);
+    i = i + 1 == star.degree() ? 0 : i + 1;
   }
-  std::sort(all.begin() + first, all.end());
-  all.erase(std::unique(all.begin() + first, all.end()), all.end());
-  tile_.dependency_end.push_back(static_cast<std::uint32_t>(all.size()));
+  stars.ring_end.push_back(static_cast<std::uint32_t>(stars.corners.size()));
 }
 
 void RecordMaker::prefetch_records(const Star& star) const {
@@ -109,9 +125,7 @@ void RecordMaker::collapse_and_record(StarSamples& s, std::size_t j) {
   const FanError own = measure_fan(tile_, s, fan_, full_, assignment_);
   const CollapseSite site = collapse_site(s.star, j);
   const VertexSplit record = make_record(s, own, site);
-  if (full_ == nullptr) {
-    note_dependencies(s.star);
-  }
+  append_star(s.star, j);
   fan_ids_.clear();
   for (const std::uint32_t i : fan_.star_triangle) {
     fan_ids_.push_back(s.star.triangles[i]);

@@ -21,14 +21,13 @@ class RecordMaker {
   /// @param tile  Must outlive this object.
   /// @param full  The full surface under a tile that holds all samples of its window: `error` and
   ///     `deviation` of a record are measured to the end and saturated. Null for a tile that holds
-  ///     witnesses: `error` of a record is its own part alone, `deviation` is 0, and the records
-  ///     that it depends on are noted in the tile; tightening does the rest
-  ///     (construct/hierarchy/tighten.h).
+  ///     witnesses: `error` of a record is its own part alone and `deviation` is 0; tightening does
+  ///     the rest (construct/hierarchy/tighten.h).
   RecordMaker(Tile& tile, const FullSurface* full) : tile_(tile), full_(full) {}
 
   /// Collapses the centre of `s` into link[j]: appends the record (its own part, and the union and
-  /// maximum of what the star carries: engine/DESIGN.md, section 2.2), hands the samples of the
-  /// star to the fan, and changes the mesh.
+  /// maximum of what the star carries: engine/DESIGN.md, section 2.2) and its star, hands the
+  /// samples of the star to the fan, and changes the mesh.
   /// @param s  As gather_star() leaves it. REQUIRES: the collapse into link[j] is allowed.
   /// @throws Error resource_exhausted  the rank would exceed 65 535, or as SampleLists::take
   void collapse_and_record(StarSamples& s, std::size_t j);
@@ -36,7 +35,7 @@ class RecordMaker {
  private:
   [[nodiscard]] VertexSplit make_record(const StarSamples& s, const FanError& own,
                                         const CollapseSite& site);
-  void note_dependencies(const Star& star);
+  void append_star(const Star& star, std::size_t j);
   void prefetch_records(const Star& star) const;
 
   Tile& tile_;

@@ -350,6 +350,7 @@ void Simplifier::take_top() {
 
 void Simplifier::run() {
   fill_queue();
+  tile_.stars.reserve(left_ > options_.keep ? left_ - options_.keep : 0);
   while (!queue_.empty() && left_ > options_.keep) {
     check_in();
     compact_when_sparse();

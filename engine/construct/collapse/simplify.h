@@ -29,8 +29,8 @@ struct SimplifyOptions {
 };
 
 /// Collapses vertices in the order of the cost until options.keep is reached or no collapse is
-/// allowed. For each collapse a saturated record is appended to tile.records, and the samples of
-/// the star move to the fan. Locked vertices stay. Ids of vertices and triangles change when arrays
+/// allowed. For each collapse a saturated record is appended to tile.records, its star to
+/// tile.stars, and the samples of the star move to the fan. Locked vertices stay. Ids of vertices and triangles change when arrays
 /// are compacted.
 ///
 /// An entry of the queue may be older than its star: it is measured again when it reaches the top
@@ -41,8 +41,8 @@ struct SimplifyOptions {
 void simplify(Tile& tile, const FullSurface& full, const SimplifyOptions& options);
 
 /// The same for a tile that holds witnesses instead of all samples. The `error` of a record is its
-/// own part alone, measured over the witnesses; its `deviation` is 0; and the records that it
-/// depends on are noted in the tile. Tightening does the rest (construct/hierarchy/tighten.h).
+/// own part alone, measured over the witnesses, and its `deviation` is 0. Tightening does the rest
+/// (construct/hierarchy/tighten.h).
 void simplify_witnesses(Tile& tile, const SimplifyOptions& options);
 
 }  // namespace ptin

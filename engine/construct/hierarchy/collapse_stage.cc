@@ -114,7 +114,7 @@ std::function<void()> CollapseStage::collapse_batch(std::size_t number, const Le
     CollapsedLeaf leaf = collapse_leaf(id, tree_, start, options_.collapse, stop);
     segments_.add(number, leaf.records);
     result.lone_samples += leaf.lone_samples;
-    std::vector<VertexSplit>().swap(leaf.records);
+    leaf.records = {};
     leaves.push_back(std::move(leaf));
     report(tree_.window(id).samples());
   }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <stop_token>
+#include <vector>
 
 #include "engine/construct/hierarchy/segment_output.h"
 #include "engine/construct/hierarchy/stage_progress.h"
@@ -33,7 +34,8 @@ struct HierarchyOptions {
 };
 
 struct BuiltHierarchy {
-  Tin t0;                          ///< The coarsest TIN, every vertex alive.
+  Tin t0;                          ///< The coarsest TIN, every vertex and triangle alive.
+  std::vector<float> t0_deaths;    ///< Beside t0.triangles, as deaths_of().
   std::uint64_t lone_samples = 0;  ///< In all leaves; see StartedTile.
   std::uint64_t most_bytes = 0;    ///< The most that was admitted at once, by estimate.
 };

@@ -12,12 +12,15 @@ InOrderSegments::InOrderSegments(BuildLog& log, const BatchOrder& order)
 void InOrderSegments::write_waiting(std::size_t batch, const ArrayFileFacts& facts) {
   ArrayFileReader file(log_.path(top(batch), kRecordsEnding), facts);
   while (!file.at_end()) {
-    std::vector<VertexSplit> records = file.take_copy<VertexSplit>();
+    StarredRecords records;
+    records.splits = file.take_copy<VertexSplit>();
+    records.corners = file.take_copy<RingCorner>();
+    records.ring_end = file.take_copy<std::uint32_t>();
     log_.output().add_segment(records);
   }
 }
 
-void InOrderSegments::add(std::size_t batch, std::span<VertexSplit> records) {
+void InOrderSegments::add(std::size_t batch, StarredRecords& records) {
   const std::lock_guard lock(mutex_);
   std::unique_ptr<ArrayFileWriter>& file = waiting_[batch];
   if (batch == turn_) {
@@ -34,7 +37,9 @@ void InOrderSegments::add(std::size_t batch, std::span<VertexSplit> records) {
     file = std::make_unique<ArrayFileWriter>(log_.workspace().files(),
                                              log_.path(top(batch), kRecordsEnding));
   }
-  file->put(std::span<const VertexSplit>(records));
+  file->put(records.splits);
+  file->put(records.corners);
+  file->put(records.ring_end);
 }
 
 ArrayFileFacts InOrderSegments::end(std::size_t batch) {

@@ -8,7 +8,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <vector>
 
 #include "engine/construct/hierarchy/batch_order.h"
@@ -24,9 +23,9 @@ class InOrderSegments {
  public:
   InOrderSegments(BuildLog& log, const BatchOrder& order);
 
-  /// The next segment of a batch; may be reordered in place.
+  /// The next segment of a batch; may be changed in place.
   /// @throws Error as SegmentOutput::add_segment; io_error
-  void add(std::size_t batch, std::span<VertexSplit> records);
+  void add(std::size_t batch, StarredRecords& records);
   /// To be called when the segments of a batch are complete. Returns the facts of the file in which
   /// they wait; 0 bytes when all of them are in the output.
   [[nodiscard]] ArrayFileFacts end(std::size_t batch);

@@ -37,13 +37,14 @@ void SegmentBounds::set_foreign(std::size_t child, std::span<const RecordBounds>
 }
 
 std::vector<RecordBounds> SegmentBounds::saturate() {
-  std::uint32_t begin = 0;
+  std::uint32_t begin = 0;  // of the ring of record i
   for (std::size_t i = 0; i < segment_->records.size(); ++i) {
     RecordBounds& own = bounds_[segment_->foreign.size() + i];
-    for (std::uint32_t k = begin; k < segment_->dependency_end[i]; ++k) {
-      raise_to(own, bounds_[segment_->dependencies[k]]);
+    for (; begin < segment_->ring_end[i]; ++begin) {
+      if (const std::uint32_t successor = segment_->successors[begin]; successor != kNone) {
+        raise_to(own, bounds_[successor]);
+      }
     }
-    begin = segment_->dependency_end[i];
   }
   std::vector<RecordBounds> exported;
   exported.reserve(segment_->exported.size());
@@ -53,12 +54,17 @@ std::vector<RecordBounds> SegmentBounds::saturate() {
   return exported;
 }
 
-std::vector<VertexSplit> SegmentBounds::records() const {
-  std::vector<VertexSplit> records(segment_->records.begin(), segment_->records.end());
+StarredRecords SegmentBounds::records() const {
+  StarredRecords records;
+  records.splits.assign(segment_->records.begin(), segment_->records.end());
   for (std::size_t i = 0; i < records.size(); ++i) {
-    records[i].error = bounds_[segment_->foreign.size() + i].error;
-    records[i].deviation = bounds_[segment_->foreign.size() + i].deviation;
+    records.splits[i].error = bounds_[segment_->foreign.size() + i].error;
+    records.splits[i].deviation = bounds_[segment_->foreign.size() + i].deviation;
   }
+  records.corners.assign(segment_->corners.begin(), segment_->corners.end());
+  set_deaths(records.corners, segment_->successors,
+             [this](std::uint32_t successor) { return bounds_[successor].error; });
+  records.ring_end.assign(segment_->ring_end.begin(), segment_->ring_end.end());
   return records;
 }
 

@@ -7,8 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "engine/construct/tile/record_stars.h"
 #include "engine/construct/tile/tile_tree.h"
 #include "storage/record.h"
+#include "storage/star.h"
 
 namespace ptin {
 
@@ -38,10 +40,8 @@ struct InnerSegment {
   /// In the order of the collapses. Until tightening `error` is the own part over witnesses, and
   /// `deviation` is 0.
   std::vector<VertexSplit> records;
-  /// Numbers of the records that own records depend on: those of own record i lie from
-  /// dependency_end[i - 1] (for i = 0: from 0) to before dependency_end[i].
-  std::vector<std::uint32_t> dependencies;
-  std::vector<std::uint32_t> dependency_end;
+  /// Of the own records. Their triangles name successors by number: own records saturate over these.
+  RecordStars stars;
   std::vector<std::uint32_t> exported;  ///< Numbers of the records that this tile pushed up.
 };
 
@@ -51,8 +51,9 @@ struct SegmentView {
   std::span<const RecordBounds> foreign;
   std::span<const std::uint32_t> child_begin;
   std::span<const VertexSplit> records;
-  std::span<const std::uint32_t> dependencies;
-  std::span<const std::uint32_t> dependency_end;
+  std::span<const RingCorner> corners;
+  std::span<const std::uint32_t> successors;
+  std::span<const std::uint32_t> ring_end;
   std::span<const std::uint32_t> exported;
 };
 
@@ -71,10 +72,11 @@ class SegmentBounds {
 
   /// Gives each own record the maximum over itself and the records that it depends on. To be called
   /// once, when all leaves below have raised and all foreign bounds are final. Returns the bounds
-  /// of the exported records, in their order. Cost: linear in the dependencies.
+  /// of the exported records, in their order. Cost: linear in the corners.
   [[nodiscard]] std::vector<RecordBounds> saturate();
-  /// A copy of the own records, with these bounds.
-  [[nodiscard]] std::vector<VertexSplit> records() const;
+  /// A copy of the own records with these bounds, and of their stars with deaths after these bounds.
+  /// Final after saturate().
+  [[nodiscard]] StarredRecords records() const;
 
  private:
   const SegmentView* segment_;

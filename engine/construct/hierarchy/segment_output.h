@@ -3,11 +3,9 @@
 // Where finished segments go.
 #pragma once
 
-#include <span>
-
 #include <nlohmann/json_fwd.hpp>
 
-#include "storage/record.h"
+#include "storage/star.h"
 
 namespace ptin {
 
@@ -19,8 +17,9 @@ class SegmentOutput {
   SegmentOutput& operator=(const SegmentOutput&) = delete;
   virtual ~SegmentOutput() = default;
 
-  /// Takes the final records of one tile, and may reorder them in place.
-  virtual void add_segment(std::span<VertexSplit> records) = 0;
+  /// Takes the final records of one tile with their stars, and may change them in place. Rings of
+  /// records of a first pass (construct/collapse/first_pass.h) are empty.
+  virtual void add_segment(StarredRecords& records) = 0;
   /// Where the output ends, as JSON for the manifest.
   [[nodiscard]] virtual nlohmann::json position() const = 0;
   /// Makes everything up to position() durable.

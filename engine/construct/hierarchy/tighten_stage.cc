@@ -174,7 +174,7 @@ void TightenStage::write(const Batch& batch, Replayed& replayed) {
 void TightenStage::write_closed(const TileId& id) {
   Open& tile = open(id);
   const std::vector<RecordBounds> exported = tile.bounds.saturate();
-  std::vector<VertexSplit> records = tile.bounds.records();
+  StarredRecords records = tile.bounds.records();
   tile.file->require_undamaged();
   log_.output().add_segment(records);
   open_.erase(id);

@@ -43,8 +43,9 @@ CollapsedLeaf collapse_leaf(const TileId& id, const TileTree& tree, const LeafSt
   simplify(leaf.tile, *leaf.full, simplify_options(options, keep, stop));
   CollapsedLeaf result;
   result.lone_samples = leaf.lone_samples;
-  result.records = leaf.tile.records;
-  result.pushed = push_up(std::move(leaf.tile), PushedSamples::kAll).tile;
+  PushedTile pushed = push_up(std::move(leaf.tile), PushedSamples::kAll);
+  result.records = starred_records(std::move(pushed.records), 0, std::move(pushed.stars));
+  result.pushed = std::move(pushed.tile);
   result.full = std::move(leaf.full);
   result.box = leaf.box;
   return result;
@@ -60,11 +61,12 @@ CollapsedGroup collapse_group(const TileId& id, const TileTree& tree,
     parts.push_back(std::move(leaf.pushed));
   }
   Tile tile = join_tiles(std::move(parts), tree, id);
-  const auto foreign = static_cast<std::ptrdiff_t>(tile.records.size());
+  const std::size_t foreign = tile.records.size();
   simplify(tile, full, simplify_options(options, vertices_to_keep(tile, tree, id), stop));
   CollapsedGroup result;
-  result.records.assign(tile.records.begin() + foreign, tile.records.end());
-  result.pushed = push_up(std::move(tile), PushedSamples::kWitnesses).tile;
+  PushedTile pushed = push_up(std::move(tile), PushedSamples::kWitnesses);
+  result.records = starred_records(std::move(pushed.records), foreign, std::move(pushed.stars));
+  result.pushed = std::move(pushed.tile);
   return result;
 }
 
@@ -81,11 +83,12 @@ CollapsedInner collapse_inner(const TileId& id, const TileTree& tree, std::vecto
   }
   Tile tile = join_tiles(std::move(parts), tree, id);
   simplify_witnesses(tile, simplify_options(options, vertices_to_keep(tile, tree, id), stop));
-  segment.records.assign(tile.records.begin() + static_cast<std::ptrdiff_t>(segment.foreign.size()),
-                         tile.records.end());
-  segment.dependencies = std::move(tile.dependencies);
-  segment.dependency_end = std::move(tile.dependency_end);
   PushedTile pushed = push_up(std::move(tile), PushedSamples::kWitnesses);
+  pushed.records.erase(
+      pushed.records.begin(),
+      pushed.records.begin() + static_cast<std::ptrdiff_t>(segment.foreign.size()));
+  segment.records = std::move(pushed.records);
+  segment.stars = std::move(pushed.stars);
   segment.exported = std::move(pushed.exported);
   result.pushed = std::move(pushed.tile);
   return result;

@@ -14,6 +14,7 @@
 #include "engine/construct/hierarchy/tile_push.h"
 #include "engine/construct/tile/started_tile.h"
 #include "engine/construct/tile/tile_tree.h"
+#include "storage/star.h"
 
 namespace ptin {
 
@@ -32,8 +33,8 @@ struct CollapseOptions {
 
 /// A leaf after its collapses.
 struct CollapsedLeaf {
-  std::vector<VertexSplit> records;  ///< Final.
-  Tile pushed;                       ///< With all samples.
+  StarredRecords records;  ///< Final. Those of a first pass have empty rings.
+  Tile pushed;             ///< With all samples.
   std::unique_ptr<FullSurface> full;
   GridBox box;                     ///< Of all samples and the full surface.
   std::uint64_t lone_samples = 0;  ///< As StartedTile.
@@ -41,8 +42,8 @@ struct CollapsedLeaf {
 
 /// A tile of level 1 after its collapses.
 struct CollapsedGroup {
-  std::vector<VertexSplit> records;  ///< Final.
-  Tile pushed;                       ///< With witnesses.
+  StarredRecords records;  ///< Final.
+  Tile pushed;             ///< With witnesses.
 };
 
 /// A tile of level 2 or more after its collapses.

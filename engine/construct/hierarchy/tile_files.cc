@@ -87,8 +87,9 @@ void write_segment(ArrayFileWriter& out, const InnerSegment& segment) {
   out.put(segment.foreign);
   out.put(segment.child_begin);
   out.put(segment.records);
-  out.put(segment.dependencies);
-  out.put(segment.dependency_end);
+  out.put(segment.stars.corners);
+  out.put(segment.stars.successors);
+  out.put(segment.stars.ring_end);
   out.put(segment.exported);
 }
 
@@ -98,8 +99,9 @@ SegmentFile::SegmentFile(const TileId& id, const std::string& path, const ArrayF
   view_.foreign = file_.take<RecordBounds>();
   view_.child_begin = file_.take<std::uint32_t>();
   view_.records = file_.take<VertexSplit>();
-  view_.dependencies = file_.take<std::uint32_t>();
-  view_.dependency_end = file_.take<std::uint32_t>();
+  view_.corners = file_.take<RingCorner>();
+  view_.successors = file_.take<std::uint32_t>();
+  view_.ring_end = file_.take<std::uint32_t>();
   view_.exported = file_.take<std::uint32_t>();
 }
 

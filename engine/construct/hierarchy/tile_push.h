@@ -17,6 +17,9 @@ struct PushedTile {
   Tile tile;
   /// For each of tile.records: its index in `records` of the tile that was cut down.
   std::vector<std::uint32_t> exported;
+  /// What is not pushed: all records of the tile that was cut down, and the stars of its own.
+  std::vector<VertexSplit> records;
+  RecordStars stars;
 };
 
 /// The samples that a parent is given to measure by.

@@ -60,4 +60,15 @@ void start_tile(Tile& tile, const BorderWitnesses* witnesses) {
   }
 }
 
+std::vector<float> deaths_of(const Tile& tile) {
+  std::vector<float> deaths(tile.tin.triangles.size(), kLivesOn);
+  for (TriangleId t = 0; t < deaths.size(); ++t) {
+    if (const std::uint32_t successor = tile.carried[t].record;
+        tile.tin.is_alive(t) && successor != kNone) {
+      deaths[t] = tile.records[successor].error;
+    }
+  }
+  return deaths;
+}
+
 }  // namespace ptin

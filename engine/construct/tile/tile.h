@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/construct/tile/border_witnesses.h"
+#include "engine/construct/tile/record_stars.h"
 #include "engine/construct/tile/sample_lists.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
@@ -18,21 +19,21 @@
 namespace ptin {
 
 /// What a triangle carries upwards (saturation, engine/DESIGN.md, section 2.2): the attributes of
-/// its maker, the record of the collapse that created it. The box is kept here because every
+/// its successor, the record of the collapse that created it. The box is kept here because every
 /// evaluation of a collapse asks for it; the rest is read from the record.
 struct CarriedState {
   GridBox roi;  ///< Empty for a triangle of the full TIN.
-  /// Index of its maker in Tile::records; kNone for a triangle of the full TIN.
+  /// Index of its successor in Tile::records; kNone for a triangle of the full TIN.
   std::uint32_t record = kNone;
   SampleSlot samples;  ///< Removed samples inside this triangle.
-  /// Length of the longest chain of collapses that ends with its maker: the rank of that record
+  /// Length of the longest chain of collapses that ends with its successor: the rank of that record
   /// plus 1, but at most 65 535; 0 for a triangle of the full TIN.
   std::uint16_t chain = 0;
   bool holds_heights = false;  ///< Some of `samples` have a height.
   bool holds_voids = false;    ///< Some of `samples` have none.
 };
 
-/// Makes record `r`, which has index `id` in Tile::records, the maker of a triangle.
+/// Makes record `r`, which has index `id` in Tile::records, the successor of a triangle.
 inline void carry_record(CarriedState& carried, const VertexSplit& r, std::uint32_t id) noexcept {
   carried.roi = r.roi;
   carried.record = id;
@@ -72,11 +73,9 @@ struct Tile {
   /// those of a first pass (construct/collapse/first_pass.h), which no file keeps. Then its own, in
   /// the order of the collapses.
   std::vector<VertexSplit> records;
-  /// Of a tile of witnesses: the indices in `records` of what its own records depend on, each below
-  /// that of the dependent one. Those of the i-th own record lie from dependency_end[i - 1] (for
-  /// i = 0: from 0) to before dependency_end[i].
-  std::vector<std::uint32_t> dependencies;
-  std::vector<std::uint32_t> dependency_end;
+  /// Of its own records. The successors of the triangles in a star are the records that need the
+  /// star's record: it saturates over them, and each has a lower index.
+  RecordStars stars;
   MeasureUnits units;
   /// Every grid point inside is a sample, as on rasters: then samples may be joined into blocks.
   bool samples_fill_grid = false;
@@ -87,5 +86,9 @@ struct Tile {
 /// the samples of its CornerWitnesses, and room for samples and records.
 /// @param witnesses  Beside tin.vertices. Null: no border is in reach, and all reaches are +infinity.
 void start_tile(Tile& tile, const BorderWitnesses* witnesses);
+
+/// Beside tin.triangles: the error at which each triangle dies, that of its successor; kLivesOn for a
+/// triangle of the full TIN. REQUIRES: the errors of the records are final. Cost: linear.
+[[nodiscard]] std::vector<float> deaths_of(const Tile& tile);
 
 }  // namespace ptin
