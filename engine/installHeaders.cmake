@@ -105,10 +105,12 @@ set(public_headers
     storage/index.h
     storage/index_shape.h
     storage/layout.h
+    storage/packed_segment.h
     storage/page_journal.h
     storage/page_store.h
     storage/record.h
     storage/spatialindex_rtree.h
+    storage/star.h
     storage/store_file.h
     storage/store_writer.h
     storage/verify.h)

@@ -72,9 +72,10 @@ struct StarredRecords {
 }
 
 /// Whether the triangles around u can be a star of the record: the roi holds the corners, the
-/// interval of heights those of the corners, triangles are counter-clockwise, none dies above the
-/// error, a surface triangle has three heights, and of the last corner of an open ring there is no
-/// triangle. w, vl and vr are not looked at.
+/// interval of heights those of the corners, triangles are counter-clockwise and go around u
+/// once (at most a half turn where the ring is open), none dies above the error, a surface triangle
+/// has three heights, and of the last corner of an open ring there is no triangle. w, vl and vr are
+/// not looked at.
 /// REQUIRES: the roi lies on the grid and holds u; `ring` is not empty.
 [[nodiscard]] bool is_star(const VertexSplit& r, std::span<const RingCorner> ring,
                            const HeightEncoding& heights) noexcept;

@@ -312,6 +312,32 @@ RC_GTEST_PROP(ShortFloat, IsMonotoneAndChangesLessThanOneIn128, ()) {
   }
 }
 
+TEST(Star, GoesAroundItsVertexOnce) {
+  const HeightEncoding heights;
+  const auto is_one = [&](std::uint16_t flags, const std::vector<GridPoint>& ring) {
+    StarredRecords records;
+    VertexSplit r;
+    r.u = {100, 100};
+    r.flags = flags;
+    add_star(records, r, ring, heights);
+    return is_star(records.splits[0], records.ring(0), heights);
+  };
+  const std::vector<GridPoint> once{{101, 100}, {100, 101}, {99, 100}, {100, 99}};
+  std::vector<GridPoint> twice = once;
+  for (const GridPoint p : once) {
+    twice.push_back({2 * p.x - 100, 2 * p.y - 100});
+  }
+  EXPECT_TRUE(is_one(0, once));
+  EXPECT_FALSE(is_one(0, twice));
+  for (const std::uint16_t open : {VertexSplit::kNoLeft, VertexSplit::kNoRight}) {
+    EXPECT_TRUE(is_one(open, {once[0], once[1], once[2]}));
+    EXPECT_TRUE(is_one(open, {once[3], once[0], once[1]})) << "beside any side of the domain";
+    EXPECT_TRUE(is_one(open, {once[0], {101, 101}, once[1]}));
+    EXPECT_FALSE(is_one(open, once)) << "three quarters";
+    EXPECT_FALSE(is_one(open, twice));
+  }
+}
+
 // --- What cannot be packed is a fault of the program ---
 
 TEST(PagePacker, RefusesRecordsThatNoReaderWouldAccept) {
@@ -520,8 +546,8 @@ TEST_F(DamagedPage, RefusesFlagsThatCannotBe) {
   set_object(page.bytes, 0, h);
   for (const unsigned both : {0U, 1U, 2U, 3U, 4U, 8U, 12U}) {
     page.bytes[at] = static_cast<std::byte>(both);
-    // With one of the first two the last triangle is not there. It lives on, so that is possible.
-    EXPECT_EQ(is_accepted(page), both <= 2) << both;
+    // With one of the first two the star is open, and goes around more than half of u.
+    EXPECT_EQ(is_accepted(page), both == 0) << both;
   }
 }
 
