@@ -201,7 +201,7 @@ void StoreOutput::add_segment(StarredRecords& records) {
     max_rank_ = std::max(max_rank_, r.rank);
   }
   records_ += records.size();
-  writer_->add_segment(records.splits, frame_.heights);
+  writer_->add_segment(pack_segment(records, frame_.heights, options_.page_bytes), frame_.heights);
 }
 
 nlohmann::json StoreOutput::position() const {
@@ -229,10 +229,12 @@ void StoreOutput::resume(const nlohmann::json& position) {
 
 void StoreOutput::publish(const Tin& t0, std::span<const float> t0_deaths,
                           const std::vector<std::string>& inputs, BuildReport& report) {
-  const CoarsestTin coarsest = coarsest_tin(t0);
-  // Until the store keeps stars and deaths, these go no further than here and add_segment().
+  CoarsestTin coarsest = coarsest_tin(t0);
   const std::vector<float> deaths = coarsest_deaths(t0, t0_deaths, detail_);
   PTIN_CHECK(deaths.size() == coarsest.triangles.size());
+  for (std::size_t i = 0; i < deaths.size(); ++i) {
+    coarsest.triangles[i].death = deaths[i];
+  }
   StoreFacts facts;
   facts.map = frame_.map;
   facts.heights = frame_.heights;

@@ -6,11 +6,13 @@
 #include <cstdint>
 
 #include "engine/geometry/rounding.h"
+#include "storage/short_float.h"
 
 namespace ptin {
 
 float StoredDetail::rounded(float bound) const noexcept {
-  return height_rounding > 0.0 ? rounded_up(static_cast<double>(bound) + height_rounding) : bound;
+  return shortened(height_rounding > 0.0 ? rounded_up(static_cast<double>(bound) + height_rounding)
+                                         : bound);
 }
 
 bool StoredDetail::leaves_out(float error) const noexcept {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What of a build's records and deaths a file keeps: the rounding of heights is added, and the
-// finest detail is left out (engine/DESIGN.md, section 2.7).
+// What of a build's records and deaths a file keeps: the rounding of heights is added, bounds become
+// short numbers, and the finest detail is left out (engine/DESIGN.md, section 2.7).
 #pragma once
 
 #include "engine/construct/hierarchy/segment.h"
@@ -15,7 +15,7 @@ struct StoredDetail {
   double height_rounding = 0.0;  ///< Of storing heights, in the height's unit.
   double max_error = 0.0;        ///< BuildOptions::max_error; 0: nothing is left out.
 
-  /// An error or deviation with the rounding. REQUIRES: bound >= 0 or +infinity.
+  /// An error or deviation with the rounding, as a short number (storage/short_float.h). REQUIRES: bound >= 0 or +infinity.
   [[nodiscard]] float rounded(float bound) const noexcept;
   /// True for the error of a record, the rounding included, that the file leaves out.
   [[nodiscard]] bool leaves_out(float error) const noexcept;

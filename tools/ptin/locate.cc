@@ -30,6 +30,7 @@ struct LocateOptions {
   std::string points;
   InputChoice choice;
   DetailOptions detail;
+  AnswerBy by = AnswerBy::kStars;
   std::string memory;
   AnswerOptions answer;
 };
@@ -127,6 +128,7 @@ int run_locate(const LocateOptions& options, const Context& context) {
   LocateRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
+  request.by = options.by;
   const LocateResult result = terrain.locate(asked.all, request);
   if (form == AnswerForm::kLayer) write_layer(options.answer, asked, result, crs);
   if (form == AnswerForm::kCsv || !context.json) {
@@ -151,6 +153,7 @@ Action declare_locate(CLI::App& app, Context& context) {
   add_detail_options(app, options->detail, "; heights come with intervals",
                      "Ask the TIN of the terrain's N most important vertices; heights come with "
                      "intervals");
+  add_by_option(app, options->by);
   add_memory_option(app, options->memory);
   add_answer_options(app, options->answer);
   return [options, &context] { return run_locate(*options, context); };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "engine/construct/process_limits.h"
 #include "engine/error.h"
@@ -165,6 +166,17 @@ void add_memory_option(CLI::App& app, std::string& memory) {
       ->type_name("SIZE");
 }
 
+void add_by_option(CLI::App& app, AnswerBy& by) {
+  app.add_option("--by", by,
+                 "stars: look up the triangles that live at the level; splits: refine T0, as the "
+                 "paper has it. The answer is the same (default stars)")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, AnswerBy>{{"stars", AnswerBy::kStars},
+                                                                  {"splits", AnswerBy::kSplits}},
+                                  CLI::ignore_case))
+      ->type_name("stars|splits");
+}
+
 DetailRequest detail_of(const DetailOptions& options) { return {options.error, options.vertices}; }
 
 QueryLimits limits_of(const std::string& memory, const Context& context) {
@@ -180,6 +192,7 @@ nlohmann::json cost_json(const QueryCost& cost) {
   return {{"records_retrieved", cost.records_retrieved},
           {"records_examined", cost.records_examined},
           {"records_applied", cost.records_applied},
+          {"stars_read", cost.stars_read},
           {"index_nodes", cost.io.index_nodes},
           {"pages", cost.io.pages},
           {"bytes_read", cost.io.bytes_read},

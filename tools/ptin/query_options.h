@@ -89,6 +89,8 @@ void add_level_options(CLI::App& app, LevelOptions& options, const std::string& 
 
 /// Declares --memory SIZE.
 void add_memory_option(CLI::App& app, std::string& memory);
+/// --by: stars or splits.
+void add_by_option(CLI::App& app, AnswerBy& by);
 /// The bytes that --memory names. Without --memory: `otherwise`, or three quarters of what the
 /// process is allowed where that is less.  @throws Error invalid_argument as parse_bytes
 [[nodiscard]] std::uint64_t memory_limit_of(const std::string& memory,

@@ -12,6 +12,7 @@
 #include "engine/construct/measure/void_measure.h"
 #include "engine/geometry/infinity.h"
 #include "engine/mesh/collapse.h"
+#include "storage/layout.h"
 
 namespace ptin {
 
@@ -115,6 +116,9 @@ void CollapseChooser::collect(const Tile& tile, const StarSamples& s) {
   const std::size_t degree = s.star.degree();
   candidates_.clear();
   screened_ = false;
+  if (degree > layout::kMostDegree) {
+    return;  // A page holds no larger star; this one waits until its link has fewer vertices.
+  }
   if (s.star.closed && !s.is_wide()) {
     screened_ = s.surface_only || (s.surface_triangles && tile.tin.has_height[s.star.center] != 0);
     screen_all(s);
