@@ -28,6 +28,9 @@ float StoredDetail::death(float built) const noexcept {
 }
 
 void StoredDetail::add_rounding(StarredRecords& records) const noexcept {
+  if (height_rounding <= 0.0 && max_error <= 0.0) {
+    return;  // all stays as it is
+  }
   for (VertexSplit& r : records.splits) {
     r.error = rounded(r.error);
     r.deviation = rounded(r.deviation);
@@ -39,6 +42,9 @@ void StoredDetail::add_rounding(StarredRecords& records) const noexcept {
 
 RecordBounds StoredDetail::leave_out(StarredRecords& records) const noexcept {
   RecordBounds worst;
+  if (max_error <= 0.0) {
+    return worst;
+  }
   std::size_t kept = 0;
   std::uint32_t begin = 0, kept_end = 0;  // of rings: of the one at hand, of those kept
   for (std::size_t i = 0; i < records.size(); ++i) {

@@ -31,7 +31,7 @@ SourceDisk PointBuckets::disk_of(std::uint64_t points, PointMerge rule) noexcept
   return {.while_reading = points * (PointSpool::kRecordBytes + sorted),
           .spooled = points * PointSpool::kRecordBytes,
           .kept = points * kMostPackedBytes,
-          .tiles_of_vertex = 72.0};
+          .tiles_of_vertex = 79.0};
 }
 
 void PointBuckets::add_to_checksum(std::span<const std::byte> bucket) {

@@ -16,8 +16,13 @@ void RecordStars::reserve(std::size_t stars) {
 StarredRecords starred_records(std::vector<VertexSplit>&& records, std::size_t first,
                                RecordStars&& stars) {
   RecordStars own = std::move(stars);
+  std::vector<float> errors;  // close together, since they are asked for in any order
+  errors.reserve(records.size());
+  for (const VertexSplit& r : records) {
+    errors.push_back(r.error);
+  }
   set_deaths(own.corners, own.successors,
-             [&](std::uint32_t successor) { return records[successor].error; });
+             [&](std::uint32_t successor) { return errors[successor]; });
   StarredRecords result;
   result.corners = std::move(own.corners);
   records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(first));
