@@ -207,6 +207,55 @@ TEST_F(StoreOpen, NoFlippedByteGoesUnseen) {
   EXPECT_TRUE(verify_store(path_).is_sound());
 }
 
+// A byte of the front, the index or a page, with all checksums made right: an error that names the
+// file, or an answer.
+TEST_F(StoreOpen, EachChangedByteIsAnErrorOrAnAnswer) {
+  write_store(path_, random_content({.seed = 3, .segments = 1, .records = 4}), {.overwrite = true});
+  const Bytes sound = read_file(path_);
+  const FunctionPredicate all([](const Attributes&) { return true; });
+  std::size_t answers = 0, errors = 0;
+  const auto use = [&](PageAccess access) {
+    const auto store = StoreFile::open(path_, access);
+    std::vector<PageId> pages;
+    IoCounters counters;
+    store->index().search(all, pages, counters);
+    const StarredRecords starred = read_all_starred(*store);
+    EXPECT_EQ(starred.splits, read_all(*store));
+    EXPECT_EQ(starred.size(), store->record_count());
+    EXPECT_EQ(pages.size(), store->pages().page_count());
+  };
+  std::size_t zeros = 0;
+  for (std::size_t at = 0; at < sound.size(); ++at) {
+    zeros = sound[at] == std::byte{0} ? zeros + 1 : 0;
+    if (zeros > 64 && at % 97 != 0) {
+      continue;  // in the middle of a gap
+    }
+    for (const std::byte value : {sound[at] ^ std::byte{0x10}, std::byte{0}, std::byte{0xFF}}) {
+      Bytes bytes = sound;
+      bytes[at] = value;
+      seal(bytes);
+      write_file(path_, bytes);
+      const PageAccess access = at % 2 == 0 ? PageAccess::kMapped : PageAccess::kPread;
+      try {
+        use(access);
+        ++answers;
+      } catch (const Error& e) {
+        ASSERT_TRUE(e.code() == ErrorCode::corruption || e.code() == ErrorCode::unsupported_version)
+            << at << ": " << e.what();
+        ASSERT_NE(std::string(e.what()).find(path_), std::string::npos) << e.what();
+        ++errors;
+      }
+      try {
+        static_cast<void>(verify_store(path_));
+      } catch (const Error& e) {
+        ASSERT_EQ(e.code(), ErrorCode::unsupported_version) << at << ": " << e.what();
+      }
+    }
+  }
+  EXPECT_GT(errors, 500U);
+  EXPECT_GT(answers, 500U);
+}
+
 TEST_F(StoreOpen, RejectsHeadersThatNoProgramWrote) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
