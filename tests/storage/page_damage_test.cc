@@ -195,7 +195,7 @@ TEST_F(DamagedPage, RefusesDeathsThatCannotBe) {
   StarredRecords records = content_.segments[0];
   const float least = short_value(1);
   records.corners[2].death = least;
-  page_ = packed(records, heights_);
+  page_ = packed_page(records, heights_);
   ASSERT_TRUE(columns_.read(header(), page_.bytes.size()));
   const unsigned width = death_bits_of_ring();
   const std::size_t at = corner_at(2) + 2 * offset_bits() + height_bits();
