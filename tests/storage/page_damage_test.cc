@@ -51,6 +51,14 @@ class DamagedPage : public testing::Test {
     page.entry = widest_entry(heights_.type, header().records);
     EXPECT_FALSE(is_accepted(page)) << name;
   }
+  /// The same, before any number is looked at.
+  void expect_frame_refused(const char* name,
+                            const std::function<void(layout::PageHeader&)>& change) const {
+    layout::PageHeader h = header();
+    change(h);
+    EXPECT_FALSE(PageColumns().read(h, page_.bytes.size())) << name;
+    expect_header_refused(name, change);
+  }
   void expect_excluded(const char* name,
                        const std::function<void(layout::NodeEntry&)>& change) const {
     PackedPage page = page_;
@@ -101,25 +109,25 @@ TEST_F(DamagedPage, IsAcceptedAsLongAsItIsNotDamaged) {
 }
 
 TEST_F(DamagedPage, RefusesHeadersThatCannotBe) {
-  expect_header_refused("no record", [](auto& h) { h.records = 0; });
+  expect_frame_refused("no record", [](auto& h) { h.records = 0; });
   expect_header_refused("fewer records", [](auto& h) { h.records = 1; });
-  expect_header_refused("more than fit", [](auto& h) { h.records = 513; });
-  expect_header_refused("endless records", [](auto& h) { h.records = UINT16_MAX; });
+  expect_frame_refused("more than fit", [](auto& h) { h.records = 513; });
+  expect_frame_refused("endless records", [](auto& h) { h.records = UINT16_MAX; });
   for (std::size_t c = 0; c < kPageColumns; ++c) {
     for (const unsigned width : {kMostColumnBits[c] + 1U, 58U, 64U, 255U}) {
-      expect_header_refused("width", [=](auto& h) { h.width[c] = std::uint8_t(width); });
+      expect_frame_refused("width", [=](auto& h) { h.width[c] = std::uint8_t(width); });
     }
   }
   for (const unsigned width : {2U, 16U, 57U, 255U}) {
-    expect_header_refused("void bits", [=](auto& h) { h.void_bits = std::uint8_t(width); });
-    expect_header_refused("height bits", [=](auto& h) { h.no_height_bits = std::uint8_t(width); });
-    expect_header_refused("death bits", [=](auto& h) { h.death_bits = std::uint8_t(width | 16U); });
+    expect_frame_refused("void bits", [=](auto& h) { h.void_bits = std::uint8_t(width); });
+    expect_frame_refused("height bits", [=](auto& h) { h.no_height_bits = std::uint8_t(width); });
+    expect_frame_refused("death bits", [=](auto& h) { h.death_bits = std::uint8_t(width | 16U); });
   }
-  expect_header_refused("rings beyond the page", [](auto& h) { h.ring_bytes = 4060; });
-  expect_header_refused("rings beyond the page", [](auto& h) { h.ring_bytes = UINT16_MAX; });
+  expect_frame_refused("rings beyond the page", [](auto& h) { h.ring_bytes = 4060; });
+  expect_frame_refused("rings beyond the page", [](auto& h) { h.ring_bytes = UINT16_MAX; });
   expect_header_refused("no rings", [](auto& h) { h.ring_bytes = 0; });
   expect_header_refused("fewer rings", [](auto& h) { h.ring_bytes -= 1; });
-  expect_header_refused("reserved", [](auto& h) { h.reserved[1] = 1; });
+  expect_frame_refused("reserved", [](auto& h) { h.reserved[1] = 1; });
 }
 
 TEST_F(DamagedPage, RefusesNumbersThatCannotBe) {
@@ -234,8 +242,45 @@ TEST_F(DamagedPage, RefusesRecordsThatItsDescriptorExcludes) {
   expect_excluded("heights of stars", [](auto& e) { e.star_height_lo += 1; });
   expect_excluded("heights of stars", [](auto& e) { e.star_height_hi -= 1; });
   expect_excluded("death", [](auto& e) { e.death_min = 1; });
+  expect_excluded("fewer records", [](auto& e) { e.records = 1; });
   expect_excluded("more records", [](auto& e) { e.records = 3; });
   expect_excluded("no record", [](auto& e) { e.records = 0; });
+}
+
+TEST_F(DamagedPage, RefusesDescriptorsThatCannotBe) {
+  using Ruin = std::function<void(layout::NodeEntry&)>;
+  const Ruin ruins[] = {
+      [](auto& e) { e.min_x = -1; },
+      [](auto& e) { e.max_y = kGridMax + 1; },
+      [](auto& e) { e.min_x = e.max_x + 1; },
+      [](auto& e) { e.min_y = e.max_y + 1; },
+      [](auto& e) { e.star_min_x = -1; },
+      [](auto& e) { e.star_min_x = e.star_max_x + 1; },
+      [](auto& e) { e.star_min_y = e.star_max_y + 1; },
+      [](auto& e) { e.min_x = e.star_min_x + 1; },
+      [](auto& e) { e.min_y = e.star_min_y + 1; },
+      [](auto& e) { e.max_x = e.star_max_x - 1; },
+      [](auto& e) { e.max_y = e.star_max_y - 1; },
+      [](auto& e) { e.error_min = e.error_max + 1; },
+      [](auto& e) { e.error_max = kShortInfinity + 1; },
+      [](auto& e) { e.deviation_max = kShortInfinity + 1; },
+      [](auto& e) { e.death_min = kMostDeathBits + 1; },
+      [](auto& e) { e.reserved = 1; },
+  };
+  EXPECT_TRUE(is_sound(page_.entry, heights_));
+  for (const Ruin& ruin : ruins) {
+    layout::NodeEntry e = page_.entry;
+    ruin(e);
+    EXPECT_FALSE(is_sound(e, heights_)) << &ruin - ruins;
+  }
+  for (HeightBits layout::NodeEntry::*height :
+       {&layout::NodeEntry::height_lo, &layout::NodeEntry::height_hi,
+        &layout::NodeEntry::star_height_lo, &layout::NodeEntry::star_height_hi}) {
+    layout::NodeEntry e = widest_entry(HeightType::float32, 1);
+    EXPECT_TRUE(is_sound(e, {}));
+    e.*height = 0x7FC00000;
+    EXPECT_FALSE(is_sound(e, {}));
+  }
 }
 
 TEST(RecordPage, RefusesHeightsThatAreNoNumbers) {

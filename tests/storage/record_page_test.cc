@@ -142,6 +142,21 @@ TEST(RecordPage, HoldsRecordsAtBothEndsOfTheGrid) {
   EXPECT_TRUE(are_same(decoded_page(packed_page(records, heights), heights), records));
 }
 
+TEST(RecordPage, DescribesMinusZeroAsZero) {
+  const HeightEncoding heights;
+  StarredRecords records;
+  VertexSplit r;
+  r.u = {5, 5};
+  r.height = 0x80000000;
+  add_star(records, r, {{4, 4}, {6, 5}, {5, 6}}, heights);
+  const PackedPage page = packed_page(records, heights);
+  EXPECT_EQ(page.entry.height_lo, 0U);
+  EXPECT_EQ(page.entry.height_hi, 0U);
+  EXPECT_EQ(page.entry.star_height_lo, 0U);
+  EXPECT_EQ(page.entry.star_height_hi, 0U);
+  EXPECT_EQ(decoded_page(page, heights).splits[0].height, 0U);
+}
+
 TEST(ShortFloat, RoundsUpToTheUpperHalfOfAFloat) {
   EXPECT_EQ(shortened(0.0F), 0.0F);
   EXPECT_EQ(shortened(-0.0F), 0.0F);

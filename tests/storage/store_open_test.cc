@@ -402,7 +402,9 @@ TEST_F(StoreOpen, RejectsT0ThatCannotBeOne) {
   triangle("corner", [](T& t) { t.v[2] = UINT32_MAX; });
   triangle("corner twice", [](T& t) { t.v[1] = t.v[0]; });
   triangle("class", [](T& t) { t.is_void = 2; });
-  triangle("death", [](T& t) { t.death = 0x7F82; });
+  for (const unsigned death : {0x7F82U, 0x8001U, 0x8002U, 0xC081U, 0xFFFFU}) {
+    triangle("death", [=](T& t) { t.death = static_cast<std::uint16_t>(death); });
+  }
 }
 
 TEST_F(StoreOpen, RejectsErrorTablesThatCannotBeOne) {
