@@ -87,8 +87,8 @@ PTIN_FUZZ_TARGET(packed_rtree, data, size) {
   }
   const ReadOnlyFile file("/proc/self/fd/" + std::to_string(fd));
   const MappedFile mapping(file);
-  const MappedIndexNodes mapped(file, mapping, {shape, 0, root});
-  const PreadIndexNodes pread(file, {shape, 0, root});
+  const MappedIndexNodes mapped(file, mapping, {shape, 0, root}, {});
+  const PreadIndexNodes pread(file, {shape, 0, root}, {});
   const auto first = search(mapped);
   if (first != search(pread) || first != search(mapped)) {
     std::abort();

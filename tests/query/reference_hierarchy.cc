@@ -20,7 +20,9 @@
 #include "engine/mesh/collapse.h"
 #include "engine/mesh/star.h"
 #include "engine/query/select/coarsest.h"
+#include "storage/short_float.h"
 #include "storage/store_writer.h"
+#include "tests/support/replayed_stars.h"
 
 namespace ptin::reference {
 
@@ -174,8 +176,8 @@ class Simplifier {
     const bool empty = is_empty(own.heights);
     r.height_lo = kHeights.bits(empty ? 1.0 : own.heights.lo);
     r.height_hi = kHeights.bits(empty ? 0.0 : own.heights.hi);
-    r.error = rounded_up(own.error);
-    r.deviation = rounded_up(own.deviation);
+    r.error = shortened(rounded_up(own.error));
+    r.deviation = shortened(rounded_up(own.deviation));
     if (own.rank > 65535) {
       throw std::runtime_error("rank too large");
     }
@@ -395,17 +397,21 @@ TemporaryStore::TemporaryStore(const Hierarchy& hierarchy, std::uint32_t page_by
   options.overwrite = true;
   options.page_bytes = page_bytes;
   const auto writer = StoreWriter::create(path, options);
-  std::vector<VertexSplit> records = hierarchy.records;
+  CoarsestTin t0 = hierarchy.t0;
+  const StarredRecords records =
+      test::replayed_stars(mesh_of(t0, "reference"), t0, hierarchy.records);
   const std::size_t each = records.size() / static_cast<std::size_t>(segments) + 1;
   for (std::size_t begin = 0; begin < records.size(); begin += each) {
-    writer->add_segment(std::span(records).subspan(begin, std::min(each, records.size() - begin)),
-                        hierarchy.facts.heights);
+    writer->add_segment(
+        pack_segment(test::part_of(records, begin, std::min(begin + each, records.size())),
+                     hierarchy.facts.heights, page_bytes),
+        hierarchy.facts.heights);
   }
   StoreFacts facts = hierarchy.facts;
   facts.page_bytes = page_bytes;
   facts.free_of_voids = std::find(hierarchy.full.classes.begin(), hierarchy.full.classes.end(),
                                   TriangleClass::kVoid) == hierarchy.full.classes.end();
-  writer->publish(facts, hierarchy.t0, "{}");
+  writer->publish(facts, t0, "{}");
 }
 
 TemporaryStore::~TemporaryStore() {
