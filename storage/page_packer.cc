@@ -53,17 +53,26 @@ bool agrees(const VertexSplit& r, std::span<const RingCorner> ring) {
 
 }  // namespace
 
-PagePacker::PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights)
-    : page_(page_bytes), heights_(heights), descriptor_(heights) {
+PagePacker::PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights, bool is_checked)
+    : page_(page_bytes), heights_(heights), is_checked_(is_checked), descriptor_(heights) {
   frame_.least.fill(UINT32_MAX);
   frame_.most.fill(0);
 }
 
-/// The numbers of a record, and its corners at the end of corners_.
-PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingCorner> ring) {
+/// What add() REQUIRES.
+void PagePacker::check(const VertexSplit& r, std::span<const RingCorner> ring) const {
   PTIN_CHECK(ring.size() >= 3 && ring.size() <= layout::kMostDegree && agrees(r, ring));
   PTIN_CHECK(on_grid(r.u) && contains(GridBox{0, 0, kGridMax, kGridMax}, r.roi) &&
              contains(r.roi, r.u) && is_star(r, ring, heights_));
+  PTIN_CHECK(r.error >= 0 && shortened(r.error) == r.error && r.deviation >= 0 &&
+             shortened(r.deviation) == r.deviation);
+  for (const RingCorner& c : ring) {
+    PTIN_CHECK(c.death == kLivesOn || (c.death >= 0 && shortened(c.death) == c.death));
+  }
+}
+
+/// The numbers of a record, and its corners at the end of corners_.
+PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingCorner> ring) {
   const bool has_height = (r.flags & VertexSplit::kVertexVoid) == 0;
   const bool has_heights = heights_.code(r.height_lo) <= heights_.code(r.height_hi);
   const auto ordered = [&](HeightBits h) { return ordered_height(h, heights_.type); };
@@ -77,7 +86,6 @@ PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingC
   const std::size_t first = corners_.size();
   for (const RingCorner& c : ring) {
     const bool is_known = (c.flags & RingCorner::kNoHeight) == 0;
-    PTIN_CHECK(c.death == kLivesOn || (c.death >= 0 && shortened(c.death) == c.death));
     const Corner own{std::int64_t{c.position.x} - r.u.x, std::int64_t{c.position.y} - r.u.y,
                      is_known ? std::int64_t{ordered(c.height)} - height : 0,
                      stored_death(c.death, short_bits(r.error)), c.flags};
@@ -86,8 +94,6 @@ PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingC
     death_bits = std::max(death_bits, static_cast<unsigned>(std::bit_width(own.death)));
     corners_.push_back(own);
   }
-  PTIN_CHECK(r.error >= 0 && shortened(r.error) == r.error && r.deviation >= 0 &&
-             shortened(r.deviation) == r.deviation);
   return {{distance(0, r.u.x), distance(0, r.u.y), height, distance(r.roi.min_x, r.u.x),
            distance(r.roi.min_y, r.u.y), distance(r.u.x, r.roi.max_x), distance(r.u.y, r.roi.max_y),
            distance(lo, height), distance(height, hi), short_bits(r.error), short_bits(r.deviation),
@@ -166,6 +172,9 @@ bool PagePacker::fits(const Frame& frame, std::size_t records) const {
 }
 
 bool PagePacker::add(const VertexSplit& r, std::span<const RingCorner> ring) {
+  if (is_checked_) {
+    check(r, ring);
+  }
   const std::size_t corners = corners_.size();
   const Item item = item_of(r, ring);
   Frame wider = frame_;

@@ -19,7 +19,9 @@ namespace ptin {
 /// order and the size of the page alone.
 class PagePacker {
  public:
-  PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights);
+  /// @param is_checked  Whether add() looks at what it REQUIRES; not needed for records that a
+  ///     reader has accepted.
+  PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights, bool is_checked = true);
 
   /// Adds a record, unless the page would not hold it: then nothing changes, and the answer is
   /// false. An empty page holds any record.
@@ -72,8 +74,11 @@ class PagePacker {
   [[nodiscard]] std::size_t write_columns(const layout::PageHeader& header);
   void write_rings(layout::PageHeader& header, std::size_t runs);
 
+  void check(const VertexSplit& r, std::span<const RingCorner> ring) const;
+
   std::vector<std::byte> page_;
   HeightEncoding heights_;
+  bool is_checked_;
   Descriptor descriptor_;
   Frame frame_;
   std::vector<Item> items_;

@@ -303,7 +303,7 @@ bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
 // Whether page_ is what a writer makes of records_: bases and widths are the least, and what is
 // unused is zero.
 bool Verifier::is_packed_so() const {
-  PagePacker packer(front_.facts.page_bytes, front_.facts.heights);
+  PagePacker packer(front_.facts.page_bytes, front_.facts.heights, false);
   for (std::size_t i = 0; i < records_.size(); ++i) {
     if (!packer.add(records_.splits[i], records_.ring(i))) {
       return false;

@@ -28,9 +28,6 @@ float StoredDetail::death(float built) const noexcept {
 }
 
 void StoredDetail::add_rounding(StarredRecords& records) const noexcept {
-  if (height_rounding <= 0.0 && max_error <= 0.0) {
-    return;  // all stays as it is
-  }
   for (VertexSplit& r : records.splits) {
     r.error = rounded(r.error);
     r.deviation = rounded(r.deviation);

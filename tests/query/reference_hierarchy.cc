@@ -248,6 +248,8 @@ class Simplifier {
 
   void finish() {
     result_.t0 = coarsest_of(tin_);
+    result_.stars =
+        test::replayed_stars(mesh_of(result_.t0, "reference"), result_.t0, result_.records);
     StoreFacts& facts = result_.facts;
     facts.map = {1000.0, -500.0, 0.5, 0.5};
     facts.heights = kHeights;
@@ -397,21 +399,19 @@ TemporaryStore::TemporaryStore(const Hierarchy& hierarchy, std::uint32_t page_by
   options.overwrite = true;
   options.page_bytes = page_bytes;
   const auto writer = StoreWriter::create(path, options);
-  CoarsestTin t0 = hierarchy.t0;
-  const StarredRecords records =
-      test::replayed_stars(mesh_of(t0, "reference"), t0, hierarchy.records);
+  const StarredRecords records = test::changed_stars(hierarchy.stars, hierarchy.records);
   const std::size_t each = records.size() / static_cast<std::size_t>(segments) + 1;
   for (std::size_t begin = 0; begin < records.size(); begin += each) {
     writer->add_segment(
-        pack_segment(test::part_of(records, begin, std::min(begin + each, records.size())),
-                     hierarchy.facts.heights, page_bytes),
+        test::pack_unchecked(test::part_of(records, begin, std::min(begin + each, records.size())),
+                             hierarchy.facts.heights, page_bytes),
         hierarchy.facts.heights);
   }
   StoreFacts facts = hierarchy.facts;
   facts.page_bytes = page_bytes;
   facts.free_of_voids = std::find(hierarchy.full.classes.begin(), hierarchy.full.classes.end(),
                                   TriangleClass::kVoid) == hierarchy.full.classes.end();
-  writer->publish(facts, t0, "{}");
+  writer->publish(facts, hierarchy.t0, "{}");
 }
 
 TemporaryStore::~TemporaryStore() {

@@ -25,6 +25,7 @@ struct Hierarchy {
   StoreFacts facts;
   CoarsestTin t0;
   std::vector<VertexSplit> records;
+  StarredRecords stars;  ///< The same records, as they were made; tests may change the others.
 };
 
 struct Options {

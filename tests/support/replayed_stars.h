@@ -16,6 +16,10 @@
 
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
+#include "storage/packed_segment.h"
+#include "storage/page_packer.h"
+#include "storage/record_order.h"
+#include "storage/short_float.h"
 #include "storage/star.h"
 #include "storage/store_file.h"
 
@@ -109,6 +113,73 @@ inline StarredRecords part_of(const StarredRecords& records, std::size_t begin, 
     part.ring_end.push_back(static_cast<std::uint32_t>(part.corners.size()));
   }
   return part;
+}
+
+/// The stars of records of which some were changed since: rings as they were, but for the corners
+/// and classes that the record names, and for deaths above its error.
+/// @param sound  The records before the change, with their stars.
+inline StarredRecords changed_stars(const StarredRecords& sound,
+                                    std::span<const VertexSplit> records) {
+  std::map<VertexKey, std::size_t> place;
+  for (std::size_t i = 0; i < sound.size(); ++i) {
+    place[key_of(sound.splits[i].u)] = i;
+  }
+  StarredRecords result;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    VertexSplit r = records[i];
+    r.error = shortened(r.error);
+    r.deviation = shortened(r.deviation);
+    const auto found = place.find(key_of(r.u));
+    const auto was = sound.ring(found != place.end() ? found->second : i);
+    std::vector<RingCorner> ring(was.begin(), was.end());
+    const bool no_left = (r.flags & VertexSplit::kNoLeft) != 0;
+    const std::size_t last = ring.size() - 1;
+    const std::size_t vr = no_left ? last - 1 : last;
+    ring[no_left ? last : 0].position = r.w;
+    ring[no_left ? 0 : 1].position = r.vl;
+    ring[vr].position = r.vr;
+    const auto set_void = [&](RingCorner& c, VertexSplit::Flag flag) {
+      const unsigned others = c.flags & ~unsigned{RingCorner::kVoid};
+      c.flags =
+          static_cast<std::uint8_t>((r.flags & flag) != 0 ? others | RingCorner::kVoid : others);
+    };
+    if (!no_left) {
+      set_void(ring[0], VertexSplit::kLeftVoid);
+    }
+    if ((r.flags & VertexSplit::kNoRight) == 0) {
+      set_void(ring[vr], VertexSplit::kRightVoid);
+    }
+    for (RingCorner& c : ring) {
+      c.death = std::min(c.death, r.error);
+    }
+    result.splits.push_back(r);
+    result.corners.insert(result.corners.end(), ring.begin(), ring.end());
+    result.ring_end.push_back(static_cast<std::uint32_t>(result.corners.size()));
+  }
+  return result;
+}
+
+/// As pack_segment(), for records that no reader may accept.
+inline PackedSegment pack_unchecked(const StarredRecords& records, const HeightEncoding& heights,
+                                    std::uint32_t page_bytes) {
+  PackedSegment packed;
+  PagePacker page(page_bytes, heights, false);
+  const auto finish = [&] {
+    layout::NodeEntry descriptor;
+    const auto bytes = page.finish(descriptor);
+    packed.pages.insert(packed.pages.end(), bytes.begin(), bytes.end());
+    packed.descriptors.push_back(descriptor);
+  };
+  for (const std::uint32_t i : order_of_segment(records)) {
+    if (!page.add(records.splits[i], records.ring(i))) {
+      finish();
+      (void)page.add(records.splits[i], records.ring(i));
+    }
+  }
+  if (!page.empty()) {
+    finish();
+  }
+  return packed;
 }
 
 }  // namespace ptin::test

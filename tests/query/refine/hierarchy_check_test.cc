@@ -258,12 +258,11 @@ void damage_attribute(std::mt19937_64& random, VertexSplit& r, const VertexSplit
     case 2:
       r.roi = bounds;
       break;
-    case 3:
-      r.height_lo = std::exchange(r.height_hi, other.height_lo);
+    case 3:  // a page holds no interval without u's height
+      if ((r.flags & VertexSplit::kVertexVoid) == 0) r.height_lo = r.height;
       break;
     case 4:
-      r.height_lo = other.height_lo;
-      r.height_hi = other.height_hi;
+      if ((r.flags & VertexSplit::kVertexVoid) == 0) r.height_hi = r.height;
       break;
     case 5:
       r.error = other.error;
