@@ -84,6 +84,7 @@ every_question() {
        [](const Terrain& t, const QueryLimits& l) {
          LocateRequest request;
          request.limits = l;
+         request.by = AnswerBy::kSplits;  // by stars two points fit any limit
          static_cast<void>(t.locate(line, request));
        }},
       {"profile",

@@ -121,7 +121,6 @@ TEST_F(DamagedPage, RefusesHeadersThatCannotBe) {
   for (const unsigned width : {2U, 16U, 57U, 255U}) {
     expect_frame_refused("void bits", [=](auto& h) { h.void_bits = std::uint8_t(width); });
     expect_frame_refused("height bits", [=](auto& h) { h.no_height_bits = std::uint8_t(width); });
-    expect_frame_refused("death bits", [=](auto& h) { h.death_bits = std::uint8_t(width | 16U); });
   }
   expect_frame_refused("rings beyond the page", [](auto& h) { h.ring_bytes = 4060; });
   expect_frame_refused("rings beyond the page", [](auto& h) { h.ring_bytes = UINT16_MAX; });
@@ -152,6 +151,7 @@ TEST_F(DamagedPage, RefusesNumbersThatCannotBe) {
   }
   for (const unsigned base : {34U, 58U, 255U}) {
     expect_header_refused("heights", [=](auto& h) { h.height_bits = std::uint8_t(base); });
+    expect_header_refused("deaths", [=](auto& h) { h.death_bits = std::uint8_t(base); });
   }
 }
 

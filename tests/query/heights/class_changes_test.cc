@@ -89,7 +89,7 @@ TEST(ClassChanges, AreTheSameNearTheBorderAndEverywhere) {
     ASSERT_TRUE(std::isfinite(request.reach[0]));
     const ClassChanges near = terrain.class_changes(request);
     any = any || near.to_void + near.to_surface > 0;
-    request.limits.memory_bytes = std::uint64_t{4} << 20;
+    request.limits.memory_bytes = std::uint64_t{8} << 20;
     EXPECT_EQ(counts_of(terrain.class_changes(request)), counts_of(near)) << "in parts";
     request.reach = {kInfinity, kInfinity};
     EXPECT_EQ(counts_of(terrain.class_changes(request)), counts_of(near)) << "everywhere";

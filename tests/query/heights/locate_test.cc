@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -132,11 +134,75 @@ TEST(Locate, BatchesAnswerAsSinglePointsDoInTheOrderOfTheRequest) {
   }
 }
 
+void expect_same(const LocatedPoint& a, const LocatedPoint& b) {
+  EXPECT_EQ(a.state, b.state);
+  EXPECT_TRUE(same(a.height, b.height) && same(a.height_min, b.height_min) &&
+              same(a.height_max, b.height_max))
+      << a.height << " in " << a.height_min << " to " << a.height_max << ", " << b.height << " in "
+      << b.height_min << " to " << b.height_max;
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(a.triangle[i].position, b.triangle[i].position);
+    EXPECT_TRUE(same(a.triangle[i].height, b.triangle[i].height));
+  }
+}
+
+/// The paper's way is the oracle: state, height, interval and triangle are the same, bit for bit.
+TEST(Locate, AnswersByStarsAsBySplits) {
+  for (const auto& [name, max_error] : {std::pair{"mountains_257.tif", 0.0},
+                                        {"mountains_257.tif", 3.0},
+                                        {"coast_257.tif", 0.0},
+                                        {"coast_257.tif", 1.0}}) {
+    const Terrain& terrain = reference::built_terrain(name, max_error);
+    const std::vector<MapPoint> points = random_points(terrain.store().facts(), 4000, 5);
+    for (const double error : {-1.0, 0.0, 0.7, 5.0, 21.3, 1e5}) {
+      SCOPED_TRACE(testing::Message() << name << " at " << error);
+      LocateRequest request;
+      if (error >= 0) request.detail.tolerance = error;
+      const LocateResult stars = locate(terrain, points, request);
+      const LocateResult few = locate(terrain, std::span(points).first(40), request);
+      request.by = AnswerBy::kSplits;
+      const LocateResult splits = locate(terrain, points, request);
+      EXPECT_EQ(stars.certified_error, splits.certified_error);
+      EXPECT_EQ(stars.certified_deviation, splits.certified_deviation);
+      EXPECT_EQ(stars.cost.records_applied, 0U);
+      EXPECT_GT(stars.cost.stars_read, 0U);
+      EXPECT_EQ(splits.cost.stars_read, 0U);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        expect_same(stars.points[i], splits.points[i]);
+        if (i < few.points.size()) expect_same(few.points[i], splits.points[i]);
+        if (HasFailure()) return;
+      }
+    }
+  }
+}
+
+RC_GTEST_PROP(Locate, AnswersByStarsAsBySplitsOnAnyTerrain, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const Hierarchy h = reference::random_hierarchy(seed);
+  const TemporaryStore file(h);
+  const Terrain terrain(file.open(random() % 2 == 0 ? PageAccess::kMapped : PageAccess::kPread));
+  const SpotMap map(h.facts.map, h.facts.bounds);
+  std::vector<MapPoint> points(24);
+  for (MapPoint& p : points) p = map.map(nasty_spot(random, h.full));
+  LocateRequest request;
+  if (!h.records.empty() && random() % 4 != 0) {
+    request.detail.tolerance = h.records[random() % h.records.size()].error;
+  }
+  const LocateResult stars = locate(terrain, points, request);
+  request.by = AnswerBy::kSplits;
+  const LocateResult splits = locate(terrain, points, request);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    expect_same(stars.points[i], splits.points[i]);
+  }
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
 TEST(Locate, GroupsAreHalvedUntilTheyFitTheMemory) {
   const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   const std::vector<MapPoint> points = random_points(terrain.store().facts(), 3000, 4);
-  const LocateResult free = locate(terrain, points);
   LocateRequest request;
+  request.by = AnswerBy::kSplits;
+  const LocateResult free = locate(terrain, points, request);
   request.limits.memory_bytes = 3000 * 200 + (std::uint64_t{3} << 20);
   const LocateResult tight = locate(terrain, points, request);
   EXPECT_GT(tight.cost.records_applied, free.cost.records_applied);

@@ -209,7 +209,7 @@ TEST(Profile, SharesRefinementsAndKeepsTheOrderOfManyLines) {
       }
     }
     EXPECT_EQ(i, all.points.size());
-    EXPECT_LT(all.cost.records_applied, alone / 3);
+    EXPECT_LT(all.cost.records_applied, alone / 2);
   }
 }
 

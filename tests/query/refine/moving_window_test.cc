@@ -151,12 +151,12 @@ TEST(MovingWindow, ReadsNoPageTwiceWhileTheyFitTheCache) {
 TEST(MovingWindow, LeavesPagesInsideOfBothWindowsAlone) {
   std::mt19937_64 random(1);
   const Hierarchy h =
-      reference::simplify(reference::random_grid(random, 90, 90, 4, 0.0), random, {0.02, false});
+      reference::simplify(reference::random_grid(random, 180, 180, 4, 0.0), random, {0.02, false});
   const TemporaryStore file(h);
   MovingWindow window{OpenedTerrain(file.open())};
   const auto at = [&](double x) {
     const MapPoint low = h.facts.map.to_map(x, 20);
-    const MapPoint high = h.facts.map.to_map(x + 240, 260);
+    const MapPoint high = h.facts.map.to_map(x + 600, 620);
     return meets_region(Window{low.x, low.y, high.x, high.y}, h.facts.map);
   };
   const MoveResult first = window.move_to(at(40));
