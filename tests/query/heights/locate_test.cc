@@ -165,7 +165,7 @@ TEST(Locate, AnswersByStarsAsBySplits) {
       EXPECT_EQ(stars.certified_error, splits.certified_error);
       EXPECT_EQ(stars.certified_deviation, splits.certified_deviation);
       EXPECT_EQ(stars.cost.records_applied, 0U);
-      EXPECT_GT(stars.cost.stars_read, 0U);
+      EXPECT_TRUE(stars.cost.stars_read > 0 || error > 1000);  // then T0 answers
       EXPECT_EQ(splits.cost.stars_read, 0U);
       for (std::size_t i = 0; i < points.size(); ++i) {
         expect_same(stars.points[i], splits.points[i]);
