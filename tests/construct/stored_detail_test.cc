@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "storage/short_float.h"
+
 namespace ptin {
 namespace {
 
@@ -34,11 +36,11 @@ std::vector<float> deaths_in(std::span<const RingCorner> ring) {
   return deaths;
 }
 
-TEST(StoredDetail, KeepsErrorsAndDeathsWhereNothingIsLeftOut) {
+TEST(StoredDetail, ShortensErrorsAndDeathsAlikeWhereNothingIsLeftOut) {
   const StoredDetail detail;
   for (const float error : {0.0F, 0.1F, 7.0F, kInfinite}) {
-    EXPECT_EQ(detail.rounded(error), error);
-    EXPECT_EQ(detail.death(error), error);
+    EXPECT_EQ(detail.rounded(error), shortened(error));
+    EXPECT_EQ(detail.death(error), shortened(error));
     EXPECT_FALSE(detail.leaves_out(error));
   }
   EXPECT_EQ(detail.death(kLivesOn), kLivesOn);
