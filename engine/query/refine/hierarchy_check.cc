@@ -2,6 +2,7 @@
 #include "engine/query/refine/hierarchy_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <set>
 #include <span>
@@ -30,8 +31,13 @@ struct EnoughFaults {};  // thrown by report(), caught by check_hierarchy()
 /// A record of a cell.
 struct CellRecord {
   VertexSplit split;
-  std::uint32_t page;  ///< Modulo 2^32, for faults.
+  std::uint32_t page;          ///< Modulo 2^32, for faults.
+  std::uint32_t degree;        ///< Corners of its ring.
+  std::uint64_t first_corner;  ///< Of its ring, among all of the cell.
 };
+
+/// About so many corners have rings at most, over a page.
+constexpr std::uint64_t kMostCorners = 8;
 
 /// Cells are cut until they take no more than this, so that their mesh stays in the caches.
 constexpr std::uint64_t kCellBytes = std::uint64_t{64} << 20;
@@ -44,8 +50,8 @@ std::uint64_t cell_bytes(std::uint64_t records) {
   constexpr std::uint64_t kVertexBytes = sizeof(Vertex) + 1 + kValidationBytes;
   constexpr std::uint64_t kTriangleBytes =
       sizeof(Triangle) + sizeof(TriangleClass) + sizeof(std::uint32_t);
-  return records *
-             (sizeof(CellRecord) + sizeof(std::uint32_t) + kVertexBytes + 2 * kTriangleBytes) +
+  return records * (sizeof(CellRecord) + kMostCorners * sizeof(RingCorner) + sizeof(std::uint32_t) +
+                    kVertexBytes + 2 * kTriangleBytes) +
          KeyTable::bytes_for(records);
 }
 
@@ -90,11 +96,19 @@ class HierarchyCheck {
   void read(const GridBox& box);
   void apply_all(const GridCell& cell);
   [[nodiscard]] std::string apply(const VertexSplit& r, Star& star, SplitResult& made);
-  [[nodiscard]] std::string fault_in_classes(const Star& star) const;
-  [[nodiscard]] std::string fault_in_bounds(const VertexSplit& r, const Star& star) const;
   [[nodiscard]] std::string fault_in_needs(const VertexSplit& r, const Star& star,
                                            const SplitResult& made) const;
   [[nodiscard]] std::string fault_against(const VertexSplit& r, const CellRecord& needed) const;
+  [[nodiscard]] std::string fault_in_star(const CellRecord& r, const Star& star) const;
+  [[nodiscard]] std::string fault_in_deaths(const VertexSplit& r, const Star& star,
+                                            const SplitResult& made);
+  [[nodiscard]] float death_of(TriangleId t, const VertexSplit& r, const Star& star,
+                               std::size_t i) const;
+  void count_deaths(const CellRecord& r);
+  void compare_deaths();
+  [[nodiscard]] std::span<const RingCorner> ring_of(const CellRecord& r) const {
+    return std::span(corners_).subspan(r.first_corner, r.degree);
+  }
 
   const OpenedTerrain& terrain_;
   const HeightEncoding& heights_;
@@ -102,9 +116,12 @@ class HierarchyCheck {
   QueryContext context_;
   HierarchyReport& report_;
   std::set<std::string> told_;  ///< A record that is not applied is met in many cells.
+  std::uint64_t dying_ = 0;     ///< Triangles of stars and T0 that are said to die.
+  std::uint64_t deaths_ = 0;    ///< Triangles that a record replaces.
 
   // Of the cell at hand:
   std::vector<CellRecord> records_;
+  std::vector<RingCorner> corners_;
   std::vector<std::uint32_t> order_;
   Tin tin_;
   KeyTable ids_;
@@ -142,6 +159,20 @@ void HierarchyCheck::run() {
     report("records lie in no part of the domain: " + std::to_string(store.record_count()) +
                " are counted, " + std::to_string(report_.records) + " found",
            "the records");
+  }
+  compare_deaths();
+}
+
+/// Every triangle that a record replaces was found to die at its error. No star has more triangles
+/// that die when there are no more in all.
+void HierarchyCheck::compare_deaths() {
+  for (const CoarsestTin::T& t : terrain_.store().t0().triangles) {
+    dying_ += t.death != kLivesOn ? 1 : 0;
+  }
+  if (report_.is_sound() && dying_ != deaths_) {
+    report(std::to_string(dying_) + " triangles are said to die, and records replace " +
+               std::to_string(deaths_),
+           "the stars");
   }
 }
 
@@ -182,14 +213,20 @@ void HierarchyCheck::read(const GridBox& box) {
   terrain_.index().search(meets_box, pages, context_.cost.io);
   store.pages().announce(pages, context_.cost.io);
   records_.clear();
+  corners_.clear();
   reserve_large(records_, most_records(store, pages));
-  std::vector<VertexSplit> splits;
+  StarredRecords of_page;
   for (const PageId page : pages) {
     context_.check_stop();
-    splits.clear();
-    (void)store.read_matching(page, meets_box, splits, context_.cost.io);
-    for (const VertexSplit& r : splits) {
-      records_.push_back({r, static_cast<std::uint32_t>(index_of(page))});
+    of_page.clear();
+    store.read_starred(page, of_page, context_.cost.io);
+    for (std::size_t i = 0; i < of_page.size(); ++i) {
+      const VertexSplit& r = of_page.splits[i];
+      if (!meets_box.holds(attributes_of(r, heights_))) continue;
+      const auto ring = of_page.ring(i);
+      records_.push_back({r, static_cast<std::uint32_t>(index_of(page)),
+                          static_cast<std::uint32_t>(ring.size()), corners_.size()});
+      corners_.insert(corners_.end(), ring.begin(), ring.end());
     }
   }
   std::vector<std::uint32_t> next(std::size_t{UINT16_MAX} + 2, 0);
@@ -225,8 +262,10 @@ void HierarchyCheck::apply_all(const GridCell& cell) {
     }
     if (cell.holds(r.split.w)) {
       ++report_.records;
-      std::string fault = fault_in_bounds(r.split, star);
-      if (fault.empty()) fault = fault_in_needs(r.split, star, made);
+      std::string fault = fault_in_needs(r.split, star, made);
+      if (fault.empty()) fault = fault_in_star(r, star);
+      if (fault.empty()) fault = fault_in_deaths(r.split, star, made);
+      count_deaths(r);
       if (!fault.empty()) report(std::move(fault), name_of(r));
     }
     makers_.resize(tin_.triangles.size());
@@ -256,41 +295,7 @@ std::string HierarchyCheck::apply(const VertexSplit& r, Star& star, SplitResult&
            "comes, by falling rank, or a triangle would not be counter-clockwise";
   }
   walk_star(tin_, u, star);
-  return fault_in_classes(star);
-}
-
-std::string HierarchyCheck::fault_in_classes(const Star& star) const {
-  for (const TriangleId t : star.triangles) {
-    const auto& v = tin_.triangles[t].v;
-    if (tin_.classes[t] == TriangleClass::kSurface &&
-        (tin_.has_height[v[0]] & tin_.has_height[v[1]] & tin_.has_height[v[2]]) == 0) {
-      return "its classes do not fit its heights: a surface triangle gets a corner without one";
-    }
-  }
   return {};
-}
-
-/// Holds roi and heights against the polygon that the split changes.
-std::string HierarchyCheck::fault_in_bounds(const VertexSplit& r, const Star& star) const {
-  const Attributes own = attributes_of(r, heights_);
-  const auto fault_at = [&](VertexId v) -> std::string {
-    const Vertex& vertex = tin_.vertices[v];
-    if (!contains(own.roi, vertex.position)) {
-      return "its region of influence, " + text_of(own.roi) + ", does not hold " +
-             text_of(vertex.position) + ", a corner of the polygon that it changes";
-    }
-    if (tin_.has_height[v] != 0 && !contains(own.heights, heights_.code(vertex.height))) {
-      return "its heights, " + text_of(own.heights, heights_) + ", do not hold " +
-             text_of(heights_.height(vertex.height)) + ", the height at " +
-             text_of(vertex.position) + " in the polygon that it changes";
-    }
-    return {};
-  };
-  std::string fault = fault_at(star.center);
-  for (std::size_t i = 0; fault.empty() && i < star.link.size(); ++i) {
-    fault = fault_at(star.link[i]);
-  }
-  return fault;
 }
 
 /// Holds a record against the makers of its fan, which it needs.
@@ -333,6 +338,76 @@ std::string HierarchyCheck::fault_against(const VertexSplit& r, const CellRecord
     return fault("rank", std::to_string(needed.split.rank), "is not above", std::to_string(r.rank));
   }
   return {};
+}
+
+/// Holds the ring of a record against the star that its split makes.
+std::string HierarchyCheck::fault_in_star(const CellRecord& r, const Star& star) const {
+  const std::span<const RingCorner> ring = ring_of(r);
+  const std::string fault = "its star is not the one that its split makes: ";
+  if (ring.size() != star.link.size() || star.closed != has_closed_ring(r.split)) {
+    return fault + std::to_string(ring.size()) + " corners, and there are " +
+           std::to_string(star.link.size());
+  }
+  std::size_t first = 0;  // of a closed star w comes first, of an open one as it is walked
+  while (star.closed && !(tin_.position(star.link[first]) == r.split.w)) ++first;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const std::size_t i = (first + k) % ring.size();
+    const VertexId v = star.link[i];
+    const bool has_height = tin_.has_height[v] != 0;
+    if (!(ring[k].position == tin_.position(v)) ||
+        has_height != ((ring[k].flags & RingCorner::kNoHeight) == 0) ||
+        (has_height && heights_.code(ring[k].height) != heights_.code(tin_.vertices[v].height))) {
+      return fault + "its corner " + text_of(ring[k].position) + " differs from the vertex " +
+             text_of(tin_.position(v));
+    }
+    const bool is_void =
+        i < star.triangles.size() && tin_.classes[star.triangles[i]] == TriangleClass::kVoid;
+    if (is_void != ((ring[k].flags & RingCorner::kVoid) != 0)) {
+      return fault + "the class of a triangle at " + text_of(ring[k].position) + " differs";
+    }
+  }
+  return {};
+}
+
+/// Looks whether the triangles of the fan of a record die at its error.
+std::string HierarchyCheck::fault_in_deaths(const VertexSplit& r, const Star& star,
+                                            const SplitResult& made) {
+  for (std::size_t i = 0; i < star.triangles.size(); ++i) {
+    const TriangleId t = star.triangles[i];
+    if (t == made.left || t == made.right) continue;
+    ++deaths_;
+    if (const float death = death_of(t, r, star, i); !(death == r.error)) {
+      return "a triangle that it replaces, at " + text_of(tin_.position(star.link[i])) +
+             ", is said to " +
+             (death == kLivesOn ? std::string("live on") : "die at " + text_of(death)) +
+             ", and its error is " + text_of(r.error);
+    }
+  }
+  return {};
+}
+
+/// The death of a triangle of the fan as its star, or T0, has it. `t` is triangle i of the star of
+/// u now; before the split it had w in the place of u.
+float HierarchyCheck::death_of(TriangleId t, const VertexSplit& r, const Star& star,
+                               std::size_t i) const {
+  if (makers_[t] == kNone) {
+    return terrain_.store().t0().triangles[t].death;
+  }
+  const CellRecord& maker = records_[makers_[t]];
+  const std::array<GridPoint, 3> corner{
+      r.w, tin_.position(star.link[i]),
+      tin_.position(star.link[i + 1 == star.link.size() ? 0 : i + 1])};
+  const auto own = static_cast<std::size_t>(std::find(corner.begin(), corner.end(), maker.split.u) -
+                                            corner.begin());
+  const std::span<const RingCorner> ring = ring_of(maker);
+  for (const RingCorner& c : ring) {
+    if (own < 3 && c.position == corner[(own + 1) % 3]) return c.death;
+  }
+  return kLivesOn;  // its star is another than its split makes, which is told of the maker
+}
+
+void HierarchyCheck::count_deaths(const CellRecord& r) {
+  for (const RingCorner& c : ring_of(r)) dying_ += c.death != kLivesOn ? 1 : 0;
 }
 
 }  // namespace

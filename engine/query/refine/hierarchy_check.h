@@ -36,14 +36,17 @@ struct HierarchyReport {
 };
 
 /// Applies every record by falling rank, cell by cell, and looks at each whether
-/// - it finds its w, vl, vr and fan, and its triangles are counter-clockwise and of classes that
-///   fit its heights;
-/// - its roi holds P(u), and its interval of heights those of u and of the corners of P(u);
+/// - it finds its w, vl, vr and fan;
 /// - of each record that it needs, roi and heights hold its own, error and deviation are at least
-///   its own, and the rank is above its own.
+///   its own, and the rank is above its own;
+/// - its star, as the page has it, is the one that its split makes. So what every reader of stars
+///   sees to is true of the split: its triangles are counter-clockwise and of classes that fit its
+///   heights, its roi holds P(u), its interval of heights those of u and of the corners of P(u);
+/// - the triangles of its fan die at its error, by the stars and T0 that hold them; and no others
+///   die.
 /// The mesh of each cell is validated (mesh/validate.h). Where no fault is found, the theorem of
-/// engine/DESIGN.md, section 2.4, holds for the file, so that no question meets a record that does
-/// not fit. What the source alone can tell is not looked at: whether errors and deviations are
+/// engine/DESIGN.md, section 2.4, holds for the file, and that of section 2.10, so that no question
+/// meets a record that does not fit, and answers by stars are those by splits. What the source alone can tell is not looked at: whether errors and deviations are
 /// large enough.
 ///
 /// Attributes are looked at in the cell that holds w. That suffices (by induction over the order of

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <functional>
 #include <random>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -143,6 +144,17 @@ class DamagedHierarchy : public ::testing::Test {
     ADD_FAILURE() << words << " of " << name_of(named) << " is not among " << report.faults.size()
                   << " faults: " << first_of(report);
   }
+  std::span<RingCorner> ring_of(const VertexSplit& r) {
+    const auto& all = h_.stars.splits;
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const VertexSplit& s) { return s.u == r.u; });
+    return h_.stars.ring(static_cast<std::size_t>(found - all.begin()));
+  }
+  /// Whoever reads the stars of the page sees it.
+  void expect_page_refused() const {
+    const std::string first = first_of(checked(h_));
+    EXPECT_NE(first.find("holds values that no program wrote"), std::string::npos) << first;
+  }
   static bool has_heights(const VertexSplit& r) {
     return (r.flags & VertexSplit::kAnyVoid) == 0 && r.height_lo != r.height_hi;
   }
@@ -158,7 +170,7 @@ TEST_F(DamagedHierarchy, HasARegionThatDoesNotHoldItsPolygon) {
     return !(own == s.roi) && s.rank == 0;
   });
   r.roi = united(united(united(box_of(r.u), r.w), r.vl), r.vr);
-  expect_told("a corner of the polygon that it changes", r);
+  expect_page_refused();
 }
 
 TEST_F(DamagedHierarchy, HasARegionThatDoesNotHoldWhatNeedsIt) {
@@ -178,7 +190,7 @@ TEST_F(DamagedHierarchy, HasARegionBeyondThatOfWhatItNeeds) {
 TEST_F(DamagedHierarchy, HasHeightsThatDoNotHoldItsPolygon) {
   VertexSplit& r = finest([](const VertexSplit& s) { return has_heights(s) && s.rank == 0; });
   r.height_lo = r.height_hi = r.height;
-  expect_told("in the polygon that it changes", r);
+  expect_page_refused();
 }
 
 TEST_F(DamagedHierarchy, HasHeightsBeyondThoseOfWhatItNeeds) {
@@ -219,9 +231,48 @@ TEST_F(DamagedHierarchy, HasARankThatIsNotBelowThatOfWhatItNeeds) {
 }
 
 TEST_F(DamagedHierarchy, HasASplitWithoutItsFan) {
-  VertexSplit& r = h_.records.back();
-  std::swap(r.vl, r.vr);
-  expect_told("does not find its fan", r);
+  h_.records.erase(h_.records.begin());
+  const std::string first = first_of(checked(h_));
+  EXPECT_TRUE(first.find("does not find its fan") != std::string::npos ||
+              first.find("where no record that comes before it") != std::string::npos)
+      << first;
+}
+
+TEST_F(DamagedHierarchy, HasAStarThatItsSplitDoesNotMake) {
+  const auto has_middle = [&](const VertexSplit& s) {
+    const auto ring = ring_of(s);
+    return (s.flags & VertexSplit::kAnyVoid) == 0 && ring.size() > 4 && ring[2].flags == 0 &&
+           ring[2].height != s.height;
+  };
+  VertexSplit& r = finest(has_middle);
+  ring_of(r)[2].height = r.height;  // no corner that its split names
+  expect_told("its star is not the one that its split makes", r);
+}
+
+TEST_F(DamagedHierarchy, HasTrianglesThatDieAtAnotherError) {
+  const auto dies = [&](const VertexSplit& s, bool is_wanted) {
+    const auto ring = ring_of(s);
+    return std::find_if(ring.begin(), ring.end(), [&](const RingCorner& c) {
+      return (c.death > 0.0F) == is_wanted && (c.death > 0.0F || c.death == kLivesOn);
+    });
+  };
+  const auto is_closed = [&](bool is_wanted) {
+    return [&, is_wanted](const VertexSplit& s) {
+      return has_closed_ring(s) && s.error > 0.0F && dies(s, is_wanted) != ring_of(s).end();
+    };
+  };
+  dies(coarsest(is_closed(true)), true)->death = 0.0F;
+  EXPECT_NE(first_of(checked(h_)).find("is said to die at 0, and its error is"), std::string::npos);
+  h_ = made();
+  dies(coarsest(is_closed(true)), true)->death = kLivesOn;
+  EXPECT_NE(first_of(checked(h_)).find("is said to live on"), std::string::npos);
+  h_ = made();
+  dies(finest(is_closed(false)), false)->death = 0.0F;
+  EXPECT_NE(first_of(checked(h_)).find("triangles are said to die, and records replace"),
+            std::string::npos);
+  h_ = made();
+  for (CoarsestTin::T& t : h_.t0.triangles) t.death = kLivesOn;
+  EXPECT_NE(first_of(checked(h_)).find("is said to live on"), std::string::npos);
 }
 
 TEST_F(DamagedHierarchy, HasClassesThatDoNotFitItsHeights) {
@@ -231,7 +282,7 @@ TEST_F(DamagedHierarchy, HasClassesThatDoNotFitItsHeights) {
   });
   r.flags |= VertexSplit::kVertexVoid;
   r.height = 0;
-  expect_told("its classes do not fit", r);
+  expect_page_refused();
 }
 
 TEST_F(DamagedHierarchy, IsReportedUpToTheLargestNumberOfFaults) {
