@@ -40,7 +40,8 @@ class StoreFileImpl final : public StoreFile {
   [[nodiscard]] std::uint64_t fingerprint() const noexcept override {
     return front_.header.header_checksum;
   }
-  [[nodiscard]] const PackedRTree& index() const noexcept override { return *index_; }
+  [[nodiscard]] const RecordIndex& index() const noexcept override { return *index_; }
+  [[nodiscard]] const PackedRTree& star_index() const noexcept override { return *index_; }
   [[nodiscard]] const PageStore& pages() const noexcept override { return *pages_; }
   [[nodiscard]] PageInfo page_info(PageId id) const override;
   void read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const override;

@@ -14,11 +14,13 @@
 #include "engine/geometry/affine.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
-#include "storage/packed_rtree.h"
+#include "storage/index.h"
 #include "storage/page_store.h"
 #include "storage/star.h"
 
 namespace ptin {
+
+class PackedRTree;
 
 /// Facts of fixed size that a query needs; kept in the header, in binary.
 struct StoreFacts {
@@ -106,7 +108,9 @@ class StoreFile {
   /// all sections, and an index entry that of what it describes: so this one number stands for the
   /// content of the file.
   [[nodiscard]] virtual std::uint64_t fingerprint() const noexcept = 0;
-  [[nodiscard]] virtual const PackedRTree& index() const noexcept = 0;
+  [[nodiscard]] virtual const RecordIndex& index() const noexcept = 0;  ///< The packed R-tree.
+  /// The same, for searches of stars (storage/packed_rtree.h).
+  [[nodiscard]] virtual const PackedRTree& star_index() const noexcept = 0;
   [[nodiscard]] virtual const PageStore& pages() const noexcept = 0;
 
   /// What the descriptor of a page says.

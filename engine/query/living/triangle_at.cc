@@ -92,7 +92,8 @@ void Finder::search(const SpotSet& set) {
   pages_.clear();
   filter_.box = set.reach();
   const SpotStars also(set);
-  store_.index().search_stars(filter_, set.is_single() ? nullptr : &also, pages_, context_.cost.io);
+  store_.star_index().search_stars(filter_, set.is_single() ? nullptr : &also, pages_,
+                                   context_.cost.io);
   context_.check_stop();
 }
 

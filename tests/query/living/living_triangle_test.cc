@@ -14,6 +14,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/query/terrain.h"
+#include "storage/packed_rtree.h"
 #include "storage/short_float.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
@@ -105,7 +106,7 @@ TEST(LivingTriangles, OfALevelAreFoundWhereTheyMeetABox) {
     };
     IoCounters counters;
     std::vector<StarPage> pages;
-    store.index().search_stars(filter, nullptr, pages, counters);
+    store.star_index().search_stars(filter, nullptr, pages, counters);
     for (const StarPage& page : pages) {
       StarredRecords stars;
       (void)store.read_stars(page.id, filter, stars, counters);
