@@ -81,10 +81,21 @@ TEST(CliBadInput, StoreOfANewerVersion) {
   const TestFolder folder;
   const std::string store = small_store(folder);
   std::string newer = read_file(store);
-  newer[8] = 2;  // major version
+  newer[8] = 3;  // major version
   write_file(folder.file("newer.ptin"), newer);
   expect_refusal(run_ptin({"info", folder.file("newer.ptin")}), 5, "version");
   expect_refusal(run_ptin({"verify", folder.file("newer.ptin"), "-q"}), 5, "version");
+}
+
+TEST(CliBadInput, StoreOfTheProvisionalVersion) {
+  const TestFolder folder;
+  const std::string store = small_store(folder);
+  std::string older = read_file(store);
+  older[8] = 1;  // major version
+  write_file(folder.file("older.ptin"), older);
+  for (const char* question : {"info", "verify"}) {
+    expect_refusal(run_ptin({question, folder.file("older.ptin"), "-q"}), 5, "build it again");
+  }
 }
 
 }  // namespace

@@ -49,12 +49,13 @@ class DamagedMetadata : public ::testing::Test {
   void write_store(const std::string& metadata) const {
     std::filesystem::remove(bad_);
     const auto from = StoreFile::open(folder_.file("t.ptin"));
-    std::vector<VertexSplit> records;
+    StarredRecords records;
     IoCounters counters;
     for (std::uint64_t i = 0; i < from->pages().page_count(); ++i)
-      from->read_records(PageId{i}, records, counters);
+      from->read_starred(PageId{i}, records, counters);
     const auto writer = StoreWriter::create(bad_, {});
-    writer->add_segment(records, from->facts().heights);
+    const HeightEncoding& heights = from->facts().heights;
+    writer->add_segment(pack_segment(records, heights, from->facts().page_bytes), heights);
     writer->publish(from->facts(), from->t0(), metadata);
   }
   /// The stream with other metadata in its first frame.

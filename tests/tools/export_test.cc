@@ -369,7 +369,7 @@ TEST(Export, RasterDoesNotDependOnMemory) {
   const StoreFacts& facts = terrain.store().facts();
   const PixelGrid grid(facts, {facts.map.step_x * 0.37, facts.map.step_y * 0.41}, std::nullopt);
   std::string first;
-  for (const std::uint64_t limit : {std::uint64_t{1} << 30, std::uint64_t{1'000'000}}) {
+  for (const std::uint64_t limit : {std::uint64_t{1} << 30, std::uint64_t{2'000'000}}) {
     PartRequest request;
     request.limits.memory_bytes = limit;
     const PartRefiner refiner(terrain, request);
