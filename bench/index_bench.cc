@@ -28,6 +28,7 @@
 #include "bench/support/scratch.h"
 #include "engine/query/select/predicate.h"
 #include "storage/index_writer.h"
+#include "storage/short_float.h"
 #include "storage/spatialindex_rtree.h"
 #include "storage/store_file.h"
 
@@ -128,14 +129,20 @@ void BM_Search(benchmark::State& state, const std::string& index, const std::str
 /// What an index entry says of a page.
 layout::NodeEntry entry_of(const StoreFile::PageInfo& p, const HeightEncoding& heights) {
   const GridBox& b = p.attributes.roi;
+  const GridBox& star = p.stars.box;
   layout::NodeEntry e{};
   e.min_x = b.min_x, e.min_y = b.min_y, e.max_x = b.max_x, e.max_y = b.max_y;
-  e.height_lo = heights.bits(p.attributes.heights.lo),
+  e.star_min_x = star.min_x, e.star_min_y = star.min_y;
+  e.star_max_x = star.max_x, e.star_max_y = star.max_y;
+  e.height_lo = heights.bits(p.attributes.heights.lo);
   e.height_hi = heights.bits(p.attributes.heights.hi);
-  e.error_max = layout::to_bits(static_cast<float>(p.attributes.error));
-  e.error_min = layout::to_bits(static_cast<float>(p.min_error));
-  e.deviation_max = layout::to_bits(static_cast<float>(p.attributes.deviation));
-  e.kind_and_count = p.records;
+  e.star_height_lo = heights.bits(p.stars.heights.lo);
+  e.star_height_hi = heights.bits(p.stars.heights.hi);
+  e.error_max = short_bits(static_cast<float>(p.attributes.error));
+  e.error_min = short_bits(static_cast<float>(p.min_error));
+  e.deviation_max = short_bits(static_cast<float>(p.attributes.deviation));
+  e.death_min = death_bits(static_cast<float>(p.stars.death));
+  e.records = p.records;
   return e;
 }
 
