@@ -83,6 +83,18 @@ class PageColumns {
     const unsigned width = header_.width[c];
     return base_[c] + read_bits(page, begin_[c] + i * width, width);
   }
+  /// The numbers of a column for records from `first` on. REQUIRES: first + out.size() <= records().
+  void read_run(const std::byte* page, PageColumn column, std::size_t first,
+                std::span<std::uint64_t> out) const noexcept {
+    const auto c = static_cast<std::size_t>(column);
+    const unsigned width = header_.width[c];
+    const std::uint64_t base = base_[c];
+    std::size_t bit = begin_[c] + first * width;
+    for (std::uint64_t& number : out) {
+      number = base + read_bits(page, bit, width);
+      bit += width;
+    }
+  }
   /// Bits that each corner takes besides offset and height.
   [[nodiscard]] unsigned common_bits() const noexcept { return common_bits_; }
   [[nodiscard]] const layout::PageHeader& header() const noexcept { return header_; }

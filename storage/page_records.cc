@@ -122,6 +122,47 @@ std::uint32_t RecordPage::next_near(std::uint32_t i, const GridBox& box) const n
   return i;
 }
 
+/// Column by column: a number takes a load and a shift then, and nothing is looked up between.
+void RecordPage::attributes(std::uint32_t first, std::uint32_t count,
+                            AttributeRun& out) const noexcept {
+  std::array<std::array<std::uint64_t, kRun>, kPageColumns> all;  // NOLINT: written before read
+  const auto read = [&](PageColumn c) {
+    std::array<std::uint64_t, kRun>& numbers = all[static_cast<std::size_t>(c)];
+    columns_.read_run(bytes_.data(), c, first, std::span(numbers).first(count));
+  };
+  for (const PageColumn c :
+       {PageColumn::kX, PageColumn::kY, PageColumn::kHeight, PageColumn::kWest, PageColumn::kSouth,
+        PageColumn::kEast, PageColumn::kNorth, PageColumn::kBelow, PageColumn::kAbove,
+        PageColumn::kError, PageColumn::kDeviation, PageColumn::kFlags}) {
+    read(c);
+  }
+  const auto code = [&](std::uint64_t ordered) {
+    return heights_.code(height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type));
+  };
+  const auto bound = [](std::uint64_t stored, ShortBits base) {
+    return static_cast<double>(short_value(static_cast<ShortBits>(short_of_stored(stored, base))));
+  };
+  const layout::PageHeader& h = columns_.header();
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const auto at = [&](PageColumn c) { return all[static_cast<std::size_t>(c)][k]; };
+    const auto whole = [](std::uint64_t v) {
+      return static_cast<std::int32_t>(static_cast<std::uint32_t>(v));
+    };
+    Attributes& a = out[k];
+    a.roi = {whole(at(PageColumn::kX) - at(PageColumn::kWest)),
+             whole(at(PageColumn::kY) - at(PageColumn::kSouth)),
+             whole(at(PageColumn::kX) + at(PageColumn::kEast)),
+             whole(at(PageColumn::kY) + at(PageColumn::kNorth))};
+    const std::uint64_t height = at(PageColumn::kHeight);
+    a.heights = (at(PageColumn::kFlags) & kPageNoHeights) != 0
+                    ? Interval{}
+                    : Interval{code(height - at(PageColumn::kBelow)),
+                               code(height + at(PageColumn::kAbove))};
+    a.error = bound(at(PageColumn::kError), h.error);
+    a.deviation = bound(at(PageColumn::kDeviation), h.deviation);
+  }
+}
+
 bool RecordPage::head(std::size_t i, VertexSplit& r) const noexcept {
   const std::uint64_t x = number(PageColumn::kX, i);
   const std::uint64_t y = number(PageColumn::kY, i);
@@ -433,20 +474,22 @@ void DescribedPage::decode_matching(std::span<const std::byte> bytes,
   const GridBox reach = predicate.reach();
   const std::size_t before = out.size();
   RingPlace place;
-  VertexSplit r;
-  for (std::uint32_t i = 0; i < records(); ++i) {
-    if (!meets(page.roi(i), reach)) {
-      continue;
+  RecordPage::AttributeRun run;
+  for (std::uint32_t first = 0; first < records(); first += RecordPage::kRun) {
+    const std::uint32_t count = std::min<std::uint32_t>(RecordPage::kRun, records() - first);
+    page.attributes(first, count, run);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const Attributes& a = run[k];
+      if (!meets(a.roi, reach) || !predicate.holds(a)) {
+        continue;
+      }
+      VertexSplit r;
+      if (!page.split(first + k, place, r) || admitted(std::span(&r, 1)) == 0) [[unlikely]] {
+        out.resize(before);
+        report(first + k);
+      }
+      out.push_back(r);
     }
-    const bool is_sound = page.head(i, r);
-    if (is_sound && !predicate.holds(attributes_of(r, heights_))) {
-      continue;
-    }
-    if (!is_sound || !page.split(i, place, r) || admitted(std::span(&r, 1)) == 0) [[unlikely]] {
-      out.resize(before);
-      report(i);
-    }
-    out.push_back(r);
   }
 }
 

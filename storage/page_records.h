@@ -42,6 +42,11 @@ class RecordPage {
   [[nodiscard]] std::uint32_t error_bits(std::size_t i) const noexcept {
     return short_of_stored(number(PageColumn::kError, i), columns_.header().error);
   }
+  /// The attributes of so many records from `first` on. Nothing is checked: of a record that is not
+  /// sound they may be anything. REQUIRES: count <= kRun, first + count <= records().
+  static constexpr std::uint32_t kRun = 64;
+  using AttributeRun = std::array<Attributes, kRun>;
+  void attributes(std::uint32_t first, std::uint32_t count, AttributeRun& out) const noexcept;
   /// Everything of a record but w, vl, vr and what follows from its ring.
   [[nodiscard]] bool head(std::size_t i, VertexSplit& r) const noexcept;
   /// A record. Coordinates are on the grid, u, w, vl and vr differ and lie in the roi.
