@@ -87,15 +87,26 @@ TEST(CliBadInput, StoreOfANewerVersion) {
   expect_refusal(run_ptin({"verify", folder.file("newer.ptin"), "-q"}), 5, "version");
 }
 
+// A file of format 1 as it was written, and one of which nothing but the version is known.
 TEST(CliBadInput, StoreOfTheProvisionalVersion) {
   const TestFolder folder;
-  const std::string store = small_store(folder);
-  std::string older = read_file(store);
+  std::string older = read_file(small_store(folder));
   older[8] = 1;  // major version
   write_file(folder.file("older.ptin"), older);
-  for (const char* question : {"info", "verify"}) {
-    expect_refusal(run_ptin({question, folder.file("older.ptin"), "-q"}), 5, "build it again");
+  write_file(folder.file("golden.ptin"),
+             read_file(PTIN_TEST_DATA "/../storage/golden/two_records_v1.0.ptin"));
+  for (const char* file : {"older.ptin", "golden.ptin"}) {
+    const std::string path = folder.file(file);
+    for (const std::vector<std::string>& question :
+         std::vector<std::vector<std::string>>{{"info", path, "-q"},
+                                               {"verify", path, "-q"},
+                                               {"locate", path, "0", "0"},
+                                               {"refine", path, "-o", folder.file("m.ply")}}) {
+      SCOPED_TRACE(question[0] + " " + file);
+      expect_refusal(run_ptin(question), 5, "build it again");
+    }
   }
+  EXPECT_EQ(folder.names().size(), 4U);  // with hills.tif and hills.ptin
 }
 
 }  // namespace

@@ -332,40 +332,6 @@ TEST(ProfileCommand, TakesExtensionsInCapitalsAndStdout) {
   EXPECT_EQ(run_ptin({"profile", terrain, "--line", line, "-o", "-", "--json"}).status, 2);
 }
 
-TEST(PointQuestions, AreLocatedByStarsAsBySplits) {
-  const TestFolder folder;
-  const std::string terrain = testing::built(folder, "coast_257.tif");
-  const json info = answer_of({"info", terrain, "--json"});
-  const auto bound = [&](const char* name) { return info["bounds"][name].get<double>(); };
-  std::string points;
-  for (int i = 0; i <= 40; ++i) {  // outside, on vertices and between them, over voids
-    const double x = bound("min_x") + (bound("max_x") - bound("min_x")) * (i * 0.0271 - 0.02);
-    const double y = bound("min_y") + (bound("max_y") - bound("min_y")) * (i * 0.0263 - 0.01);
-    points += std::to_string(x) + " " + std::to_string(y) + "\n" +
-              std::to_string(bound("min_x") + i) + " " + std::to_string(bound("min_y") + 2 * i) +
-              "\n";
-  }
-  testing::write_file(folder.file("p.txt"), points);
-  for (const std::vector<std::string>& level : {std::vector<std::string>{}, {"--error", "3"}}) {
-    json answers[2];
-    for (const int i : {0, 1}) {
-      std::vector<std::string> arguments = {"locate",
-                                            terrain,
-                                            "--points",
-                                            folder.file("p.txt"),
-                                            "--json",
-                                            "--by",
-                                            i == 0 ? "stars" : "splits"};
-      arguments.insert(arguments.end(), level.begin(), level.end());
-      answers[i] = answer_of(arguments);
-      EXPECT_EQ(answers[i]["cost"]["stars_read"].get<int>() > 0, i == 0);
-      answers[i].erase("cost");
-    }
-    EXPECT_EQ(answers[0], answers[1]);
-  }
-  EXPECT_EQ(run_ptin({"locate", terrain, "0", "0", "--by", "sideways"}).status, 2);
-}
-
 TEST(PointQuestions, AnswerAtTheFirstVertices) {
   const TestFolder folder;
   const std::string terrain = testing::built(folder, "mountains_257.tif");
