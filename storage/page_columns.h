@@ -67,6 +67,15 @@ inline constexpr std::array<std::uint8_t, kPageColumns> kMostColumnBits = {
   return (ordered & kSign) != 0 ? ordered ^ kSign : ~ordered;
 }
 
+/// The least and the greatest ordered height; of floats those of the infinities, since a NaN is none.
+struct OrderedHeights {
+  std::uint32_t least, most;
+};
+[[nodiscard]] constexpr OrderedHeights ordered_heights(HeightType type) noexcept {
+  return type == HeightType::int32 ? OrderedHeights{0, UINT32_MAX}
+                                   : OrderedHeights{0x007FFFFF, 0xFF800000};
+}
+
 /// The frame of a page, as its header tells it.
 class PageColumns {
  public:

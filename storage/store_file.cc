@@ -10,7 +10,7 @@
 #include "storage/file/mapped_file.h"
 #include "storage/index_nodes.h"
 #include "storage/packed_rtree.h"
-#include "storage/page_records.h"
+#include "storage/described_page.h"
 #include "storage/page_stores.h"
 #include "storage/store_front.h"
 

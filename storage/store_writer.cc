@@ -23,7 +23,7 @@
 #include "storage/file/file_questions.h"
 #include "storage/index_writer.h"
 #include "storage/layout.h"
-#include "storage/page_records.h"
+#include "storage/described_page.h"
 #include "storage/page_slots.h"
 #include "storage/short_float.h"
 #include "storage/store_front.h"

@@ -16,7 +16,7 @@
 #include "storage/error_table.h"
 #include "storage/file/checksum.h"
 #include "storage/page_packer.h"
-#include "storage/page_records.h"
+#include "storage/described_page.h"
 #include "storage/store_front.h"
 #include "storage/unique_keys.h"
 #include "storage/verify_t0.h"

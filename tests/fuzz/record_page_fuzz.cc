@@ -12,9 +12,10 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "storage/described_page.h"
 #include "storage/page_packer.h"
-#include "storage/page_records.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/support/widest_entry.h"
 
 namespace {
 
@@ -26,18 +27,6 @@ void require(bool condition) {
   if (!condition) {
     std::abort();
   }
-}
-
-// Everything that a record can hold.
-layout::NodeEntry widest(HeightType type, std::uint32_t records) {
-  layout::NodeEntry e{};
-  const HeightInterval none = no_heights(type);
-  e.max_x = e.max_y = e.star_max_x = e.star_max_y = kGridMax;
-  e.height_lo = e.star_height_lo = none.hi;
-  e.height_hi = e.star_height_hi = none.lo;
-  e.error_max = e.deviation_max = kShortInfinity;
-  e.records = records;
-  return e;
 }
 
 class Everything final : public AttributePredicate {
@@ -56,11 +45,12 @@ void check(const VertexSplit& r, std::span<const RingCorner> ring, const HeightE
 // Asks the page for each record and ring by itself, also for those that are not sound.
 void ask_from_the_end(const RecordPage& page, const StarredRecords& records) {
   std::vector<RingCorner> ring;
+  RingSpan span;
   for (std::size_t i = page.records(); i-- > 0;) {
     RingPlace place;
     VertexSplit r;
     ring.clear();
-    const bool is_sound = page.head(i, r) && page.ring(i, place, r, ring);
+    const bool is_sound = page.head(i, r) && page.ring(i, place, r, ring, span);
     const bool is_split = page.split(i, place, r);
     static_cast<void>(page.roi(i));
     static_cast<void>(page.error_bits(i));
@@ -116,8 +106,8 @@ PTIN_FUZZ_TARGET(record_page, data, size) {
   std::vector<VertexSplit> splits;
   if (numbers.is_sound()) {
     const std::string path = "fuzz";
-    const DescribedPage described(path, PageId{0}, widest(heights.type, numbers.records()), heights,
-                                  kPageBytes);
+    const DescribedPage described(
+        path, PageId{0}, test::widest_entry(heights.type, numbers.records()), heights, kPageBytes);
     try {
       described.decode(page, records);
       require(records.size() == numbers.records());

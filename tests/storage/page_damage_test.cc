@@ -11,7 +11,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "storage/page_records.h"
+#include "storage/described_page.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/strange_records.h"
 #include "tests/storage/two_records.h"

@@ -13,8 +13,8 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "storage/described_page.h"
 #include "storage/page_packer.h"
-#include "storage/page_records.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/strange_records.h"
 #include "tests/storage/two_records.h"
@@ -66,6 +66,40 @@ RC_GTEST_PROP(RecordPage, GivesBackWhatWasPackedAndPacksItSoAgain, ()) {
   RC_ASSERT(std::memcmp(&again.entry, &page.entry, sizeof page.entry) == 0);
 }
 
+std::span<const RingCorner> triangles_of(const VertexSplit& r,
+                                         const std::vector<RingCorner>& ring) {
+  return std::span(ring).first(ring.size() - (has_closed_ring(r) ? 0 : 1));
+}
+
+void expect_spanned(const VertexSplit& r, const std::vector<RingCorner>& ring, const RingSpan& span,
+                    HeightType type) {
+  for (const RingCorner& c : ring) {
+    RC_ASSERT(span.min_x <= c.position.x && c.position.x <= span.max_x);
+    RC_ASSERT(span.min_y <= c.position.y && c.position.y <= span.max_y);
+    const std::uint32_t height = ordered_height(c.height, type);
+    RC_ASSERT((c.flags & RingCorner::kNoHeight) != 0 ||
+              (span.low <= height && height <= span.high));
+  }
+  const auto at = [&](auto value_of, std::int64_t wanted) {
+    return std::any_of(ring.begin(), ring.end(),
+                       [&](const RingCorner& c) { return value_of(c) == wanted; });
+  };
+  const auto x = [](const RingCorner& c) { return c.position.x; };
+  const auto y = [](const RingCorner& c) { return c.position.y; };
+  RC_ASSERT(at(x, span.min_x) && at(x, span.max_x) && at(y, span.min_y) && at(y, span.max_y));
+  std::uint32_t least = UINT32_MAX;
+  for (const RingCorner& c : triangles_of(r, ring)) {
+    least = std::min<std::uint32_t>(least, death_bits(c.death));
+  }
+  RC_ASSERT(least == span.least_death);
+}
+
+bool lives(const VertexSplit& r, const std::vector<RingCorner>& ring, std::int32_t level) {
+  const auto triangles = triangles_of(r, ring);
+  return std::any_of(triangles.begin(), triangles.end(),
+                     [&](const RingCorner& c) { return death_bits(c.death) <= level + 1; });
+}
+
 RC_GTEST_PROP(RecordPage, GivesEachRecordAndRingByItself, ()) {
   StrangeRecords strange(*rc::gen::arbitrary<std::uint64_t>(), HeightType::float32);
   StarredRecords records;
@@ -84,7 +118,12 @@ RC_GTEST_PROP(RecordPage, GivesEachRecordAndRingByItself, ()) {
     std::vector<RingCorner> ring;
     RC_ASSERT(page.split(i, place, r));
     RC_ASSERT(page.head(i, head));
-    RC_ASSERT(page.ring(i, place, head, ring));
+    RingSpan span;
+    RC_ASSERT(page.ring(i, place, head, ring, span));
+    expect_spanned(r, ring, span, strange.heights().type);
+    const auto level = *rc::gen::inRange<std::int32_t>(-1, kShortInfinity);
+    RC_ASSERT(page.error_bits(i) <= static_cast<std::uint32_t>(level) ||
+              page.may_live(i, place, page.error_bits(i), level) == lives(r, ring, level));
     RC_ASSERT(r == expected.splits[i]);
     RC_ASSERT(std::ranges::equal(ring, expected.ring(i)));
     RC_ASSERT(page.roi(i) == r.roi);

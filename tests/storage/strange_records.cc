@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "storage/described_page.h"
 #include "storage/descriptor.h"
 #include "storage/page_packer.h"
-#include "storage/page_records.h"
 #include "tests/storage/made_star.h"
 
 namespace ptin::test {
@@ -35,17 +35,6 @@ StarredRecords decoded_page(const PackedPage& page, const HeightEncoding& height
   StarredRecords records;
   DescribedPage(kPageName, PageId{0}, page.entry, heights, bytes).decode(page.bytes, records);
   return records;
-}
-
-layout::NodeEntry widest_entry(HeightType type, std::uint32_t records) {
-  layout::NodeEntry e{};
-  const HeightInterval none = no_heights(type);
-  e.max_x = e.max_y = e.star_max_x = e.star_max_y = kGridMax;
-  e.height_lo = e.star_height_lo = none.hi;
-  e.height_hi = e.star_height_hi = none.lo;
-  e.error_max = e.deviation_max = kShortInfinity;
-  e.records = records;
-  return e;
 }
 
 StrangeRecords::StrangeRecords(std::uint64_t seed, HeightType type) : random_(seed), type_(type) {

@@ -13,6 +13,7 @@
 #include "storage/layout.h"
 #include "storage/short_float.h"
 #include "storage/star.h"
+#include "tests/support/widest_entry.h"
 
 namespace ptin::test {
 
@@ -30,9 +31,6 @@ inline const std::string kPageName = "page test";
 [[nodiscard]] PackedPage packed_page(const StarredRecords& records, const HeightEncoding& heights,
                                      std::uint32_t page_bytes = 4096);
 [[nodiscard]] StarredRecords decoded_page(const PackedPage& page, const HeightEncoding& heights);
-
-/// Admits every record of a page.
-[[nodiscard]] layout::NodeEntry widest_entry(HeightType type, std::uint32_t records);
 
 /// Records at the ends of what a page can hold, by chance.
 class StrangeRecords {

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/record_page.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "storage/bit_fields.h"
+#include "storage/descriptor.h"
+#include "storage/layout.h"
+#include "storage/ring_check.h"
+
+namespace ptin {
+
+RecordPage::RecordPage(std::span<const std::byte> bytes, const HeightEncoding& heights) noexcept
+    : bytes_(bytes), heights_(heights) {
+  layout::PageHeader header;
+  if (bytes.size() >= layout::kMinPageBytes) {
+    std::memcpy(&header, bytes.data(), sizeof header);
+    is_sound_ = columns_.read(header, bytes.size());
+  }
+}
+
+GridBox RecordPage::roi(std::size_t i) const noexcept {
+  // Columns hold at most 32 bits, so sums fit 64. What leaves the grid is cut down to 32 bits, and
+  // lies off the grid still, or is found to be no roi of u.
+  const auto at = [&](PageColumn c) { return static_cast<std::int64_t>(number(c, i)); };
+  const std::int64_t x = at(PageColumn::kX);
+  const std::int64_t y = at(PageColumn::kY);
+  const auto whole = [](std::int64_t v) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, INT32_MIN, INT32_MAX));
+  };
+  return {whole(x - at(PageColumn::kWest)), whole(y - at(PageColumn::kSouth)),
+          whole(x + at(PageColumn::kEast)), whole(y + at(PageColumn::kNorth))};
+}
+
+/// Looks at the roi only where u is no farther from the box than any roi of the page reaches.
+std::uint32_t RecordPage::next_near(std::uint32_t i, const GridBox& box) const noexcept {
+  const auto reach = [&](PageColumn c) {
+    return static_cast<std::int64_t>(
+        (std::uint64_t{1} << columns_.header().width[static_cast<std::size_t>(c)]) - 1);
+  };
+  const std::int64_t low_x = box.min_x - reach(PageColumn::kEast);
+  const std::int64_t high_x = box.max_x + reach(PageColumn::kWest);
+  const std::int64_t low_y = box.min_y - reach(PageColumn::kNorth);
+  const std::int64_t high_y = box.max_y + reach(PageColumn::kSouth);
+  for (; i < records(); ++i) {
+    const auto x = static_cast<std::int64_t>(number(PageColumn::kX, i));
+    if (x < low_x || x > high_x) {
+      continue;
+    }
+    const auto y = static_cast<std::int64_t>(number(PageColumn::kY, i));
+    if (y >= low_y && y <= high_y && meets(roi(i), box)) {
+      return i;
+    }
+  }
+  return i;
+}
+
+/// Column by column: a number takes a load and a shift then, and nothing is looked up between.
+void RecordPage::attributes(std::uint32_t first, std::uint32_t count,
+                            AttributeRun& out) const noexcept {
+  std::array<std::array<std::uint64_t, kRun>, kPageColumns> all;  // NOLINT: written before read
+  const auto read = [&](PageColumn c) {
+    std::array<std::uint64_t, kRun>& numbers = all[static_cast<std::size_t>(c)];
+    columns_.read_run(bytes_.data(), c, first, std::span(numbers).first(count));
+  };
+  for (const PageColumn c :
+       {PageColumn::kX, PageColumn::kY, PageColumn::kHeight, PageColumn::kWest, PageColumn::kSouth,
+        PageColumn::kEast, PageColumn::kNorth, PageColumn::kBelow, PageColumn::kAbove,
+        PageColumn::kError, PageColumn::kDeviation, PageColumn::kFlags}) {
+    read(c);
+  }
+  const auto code = [&](std::uint64_t ordered) {
+    return heights_.code(height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type));
+  };
+  const auto bound = [](std::uint64_t stored, ShortBits base) {
+    return static_cast<double>(short_value(static_cast<ShortBits>(short_of_stored(stored, base))));
+  };
+  const layout::PageHeader& h = columns_.header();
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const auto at = [&](PageColumn c) { return all[static_cast<std::size_t>(c)][k]; };
+    const auto whole = [](std::uint64_t v) {
+      return static_cast<std::int32_t>(static_cast<std::uint32_t>(v));
+    };
+    Attributes& a = out[k];
+    a.roi = {whole(at(PageColumn::kX) - at(PageColumn::kWest)),
+             whole(at(PageColumn::kY) - at(PageColumn::kSouth)),
+             whole(at(PageColumn::kX) + at(PageColumn::kEast)),
+             whole(at(PageColumn::kY) + at(PageColumn::kNorth))};
+    const std::uint64_t height = at(PageColumn::kHeight);
+    a.heights = (at(PageColumn::kFlags) & kPageNoHeights) != 0
+                    ? Interval{}
+                    : Interval{code(height - at(PageColumn::kBelow)),
+                               code(height + at(PageColumn::kAbove))};
+    a.error = bound(at(PageColumn::kError), h.error);
+    a.deviation = bound(at(PageColumn::kDeviation), h.deviation);
+  }
+}
+
+bool RecordPage::head(std::size_t i, VertexSplit& r) const noexcept {
+  const std::uint64_t x = number(PageColumn::kX, i);
+  const std::uint64_t y = number(PageColumn::kY, i);
+  const std::uint64_t flags = number(PageColumn::kFlags, i);
+  const std::uint64_t rank = number(PageColumn::kRank, i);
+  const std::uint32_t error = error_bits(i);
+  const std::uint32_t deviation =
+      short_of_stored(number(PageColumn::kDeviation, i), columns_.header().deviation);
+  const std::uint64_t height = number(PageColumn::kHeight, i);
+  const std::uint64_t low = height - number(PageColumn::kBelow, i);  // may wrap around
+  const std::uint64_t high = height + number(PageColumn::kAbove, i);
+  r.roi = roi(i);
+  const bool has_height = (flags & kPageVertexVoid) == 0;
+  const bool has_heights = (flags & kPageNoHeights) == 0;
+  const std::uint64_t border = flags & (kPageNoLeft | kPageNoRight);
+  const auto [least, most] = ordered_heights(heights_.type);
+  if (x > kGridMax || y > kGridMax || r.roi.min_x < 0 || r.roi.min_y < 0 ||
+      r.roi.max_x > kGridMax || r.roi.max_y > kGridMax || height > most || low > height ||
+      low < least || high < height || high > most || error > kShortInfinity ||
+      deviation > kShortInfinity || rank > UINT16_MAX || (has_height && !has_heights) ||
+      border == (kPageNoLeft | kPageNoRight)) {
+    return false;
+  }
+  r.u = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+  const auto bits = [&](std::uint64_t ordered) {
+    return height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type);
+  };
+  r.height = has_height ? bits(height) : 0;
+  r.height_lo = bits(low);
+  r.height_hi = bits(high);
+  if (!has_heights) {
+    r.height_lo = no_heights(heights_.type).lo;
+    r.height_hi = no_heights(heights_.type).hi;
+  }
+  r.error = short_value(static_cast<ShortBits>(error));
+  r.deviation = short_value(static_cast<ShortBits>(deviation));
+  r.rank = static_cast<std::uint16_t>(rank);
+  const auto flag = [&](PageFlag from, VertexSplit::Flag to) {
+    return (flags & from) != 0 ? unsigned{to} : 0U;
+  };
+  r.flags = static_cast<std::uint16_t>(flag(kPageNoLeft, VertexSplit::kNoLeft) |
+                                       flag(kPageNoRight, VertexSplit::kNoRight) |
+                                       flag(kPageVertexVoid, VertexSplit::kVertexVoid));
+  return true;
+}
+
+RingShape RecordPage::shape_of(std::size_t i) const noexcept {
+  const auto degree = static_cast<unsigned>(number(PageColumn::kDegree, i));
+  const auto offset_bits = static_cast<unsigned>(number(PageColumn::kOffsetBits, i));
+  const auto height_bits = static_cast<unsigned>(number(PageColumn::kHeightBits, i));
+  const auto death_bits = static_cast<unsigned>(number(PageColumn::kDeathBits, i));
+  return {degree, offset_bits, height_bits, death_bits,
+          2 * offset_bits + height_bits + death_bits + columns_.common_bits()};
+}
+
+/// Finds the ring of record i: from `place`, where that is in the same run and not behind it, else
+/// from the begin of the run. False when the ring cannot be one, or would not lie where rings lie.
+bool RecordPage::find(std::size_t i, RingPlace& place) const noexcept {
+  if (place.record == i) {
+    return place.is_sound;
+  }
+  const std::size_t run = i / layout::kRingRun;
+  if (place.record > i || place.record < run * layout::kRingRun) {
+    place.record = run * layout::kRingRun;
+    place.bit = columns_.run_begin(bytes_.data(), run);
+    place.shape = shape_of(place.record);
+  }
+  while (place.record < i) {
+    place.bit += place.shape.bits();
+    place.shape = shape_of(++place.record);
+  }
+  const RingShape& shape = place.shape;
+  place.is_sound = shape.degree >= 3 && shape.degree <= layout::kMostDegree &&
+                   shape.offset_bits <= 32 && shape.height_bits <= 33 && shape.death_bits <= 15 &&
+                   place.bit + shape.bits() <= columns_.rings_end();
+  return place.is_sound;
+}
+
+GridPoint RecordPage::corner_position(GridPoint u, const RingShape& shape,
+                                      std::size_t bit) const noexcept {
+  const std::int64_t x =
+      u.x + with_sign(read_bits(bytes_.data(), bit, shape.offset_bits), shape.offset_bits);
+  const std::int64_t y =
+      u.y + with_sign(read_bits(bytes_.data(), bit + shape.offset_bits, shape.offset_bits),
+                      shape.offset_bits);
+  return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};  // 2^30 + 2^31 at most
+}
+
+bool RecordPage::is_void(const RingShape& shape, std::size_t bit) const noexcept {
+  const layout::PageHeader& h = columns_.header();
+  const std::size_t at = bit + 2 * shape.offset_bits + shape.height_bits + shape.death_bits;
+  return read_bits(bytes_.data(), at, h.void_bits) != 0;
+}
+
+/// Takes corner after corner apart. A corner takes up to 112 bits, nearly always fewer than 57: then
+/// one load gets all of it.
+template <class Visit>
+void RecordPage::for_each_corner(const RingPlace& place, const Visit& visit) const {
+  const layout::PageHeader& h = columns_.header();
+  const RingShape shape = place.shape;
+  const auto fields = [&](const auto& take) {
+    StoredCorner c;
+    c.x = with_sign(take(shape.offset_bits), shape.offset_bits);
+    c.y = with_sign(take(shape.offset_bits), shape.offset_bits);
+    c.height = with_sign(take(shape.height_bits), shape.height_bits);
+    c.death = static_cast<std::uint32_t>(take(shape.death_bits));
+    c.is_void = take(h.void_bits) != 0;
+    c.has_height = take(h.no_height_bits) == 0;
+    return c;
+  };
+  std::size_t bit = place.bit;
+  if (shape.corner_bits <= kMostFieldBits) [[likely]] {
+    for (unsigned k = 0; k < shape.degree; ++k, bit += shape.corner_bits) {
+      std::uint64_t bits = read_bits(bytes_.data(), bit, shape.corner_bits);
+      visit(k, fields([&](unsigned width) {
+              const std::uint64_t field = bits & ((std::uint64_t{1} << width) - 1);
+              bits >>= width;
+              return field;
+            }));
+    }
+    return;
+  }
+  for (unsigned k = 0; k < shape.degree; ++k) {
+    visit(k, fields([&](unsigned width) {
+            const std::uint64_t field = read_bits(bytes_.data(), bit, width);
+            bit += width;
+            return field;
+          }));
+  }
+}
+
+bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept {
+  if (!head(i, r) || !find(i, place)) {
+    return false;
+  }
+  const RingShape& shape = place.shape;
+  const bool no_left = (r.flags & VertexSplit::kNoLeft) != 0;
+  const bool no_right = (r.flags & VertexSplit::kNoRight) != 0;
+  const std::size_t last = shape.degree - 1;
+  const auto bit_of = [&](std::size_t k) { return place.bit + k * shape.corner_bits; };
+  r.w = corner_position(r.u, shape, bit_of(no_left ? last : 0));
+  r.vl = corner_position(r.u, shape, bit_of(no_left ? 0 : 1));
+  r.vr = corner_position(r.u, shape, bit_of(no_left ? last - 1 : last));
+  const bool left_void = !no_left && is_void(shape, bit_of(0));
+  const bool right_void = !no_right && is_void(shape, bit_of(no_left ? last - 1 : last));
+  r.flags = static_cast<std::uint16_t>(unsigned{r.flags} |
+                                       (left_void ? unsigned{VertexSplit::kLeftVoid} : 0U) |
+                                       (right_void ? unsigned{VertexSplit::kRightVoid} : 0U));
+  return contains(r.roi, r.w) && contains(r.roi, r.vl) && contains(r.roi, r.vr) && r.w != r.u &&
+         r.vl != r.u && r.vr != r.u;
+}
+
+bool RecordPage::may_live(std::size_t i, RingPlace& place, std::uint32_t error,
+                          std::int32_t level) const noexcept {
+  if (!find(i, place)) {
+    return true;
+  }
+  const RingShape& shape = place.shape;
+  // 0 lives on, 1 dies at error 0, and from `first` on deaths are at or below the level.
+  const std::uint32_t all_below = level < 0 ? 0 : 1;
+  const std::uint32_t first =
+      level < 0 ? UINT32_MAX : error - static_cast<std::uint32_t>(level) + kFirstAboveBase;
+  const std::uint64_t border = number(PageColumn::kFlags, i) & (kPageNoLeft | kPageNoRight);
+  const unsigned triangles = shape.degree - (border == 0 ? 0 : 1);
+  std::size_t bit = place.bit + 2 * shape.offset_bits + shape.height_bits;
+  bool lives = false;
+  for (unsigned k = 0; k < triangles; ++k, bit += shape.corner_bits) {
+    const auto death = static_cast<std::uint32_t>(read_bits(bytes_.data(), bit, shape.death_bits));
+    lives |= (death <= all_below) | (death >= first);
+  }
+  return lives;
+}
+
+namespace {
+
+void widen(RingSpan& span, std::int64_t x, std::int64_t y) noexcept {
+  span.min_x = std::min(span.min_x, x);
+  span.max_x = std::max(span.max_x, x);
+  span.min_y = std::min(span.min_y, y);
+  span.max_y = std::max(span.max_y, y);
+}
+
+bool contains(const GridBox& box, const RingSpan& span) noexcept {
+  return box.min_x <= span.min_x && span.max_x <= box.max_x && box.min_y <= span.min_y &&
+         span.max_y <= box.max_y;
+}
+
+}  // namespace
+
+bool RecordPage::ring(std::size_t i, RingPlace& place, const VertexSplit& r,
+                      std::vector<RingCorner>& out, RingSpan& span) const {
+  if (!find(i, place)) {
+    return false;
+  }
+  const unsigned degree = place.shape.degree;
+  const auto height = static_cast<std::int64_t>(number(PageColumn::kHeight, i));
+  const std::uint32_t error = short_bits(r.error);
+  const bool is_closed = has_closed_ring(r);
+  RingCheck check((r.flags & VertexSplit::kVertexVoid) == 0);
+  const std::size_t first = out.size();
+  out.resize(first + degree);
+  RingCorner* const ring = out.data() + first;
+  span = {};
+  bool is_sound = true;
+  for_each_corner(place, [&](unsigned k, const StoredCorner& c) {
+    check.add({c.x, c.y, c.has_height, c.is_void});
+    widen(span, r.u.x + c.x, r.u.y + c.y);
+    const std::int64_t ordered = height + c.height;
+    const std::uint32_t below = c.death < kFirstAboveBase ? error : c.death - kFirstAboveBase;
+    // A death above 0 that is written as one at 0 would be there in two forms.
+    is_sound &=
+        (ordered >= 0) & (ordered <= UINT32_MAX) & ((c.death < kFirstAboveBase) | (below < error));
+    const auto known = static_cast<std::uint32_t>(ordered);
+    span.low = c.has_height ? std::min(span.low, known) : span.low;
+    span.high = c.has_height ? std::max(span.high, known) : span.high;
+    const bool is_triangle = is_closed || k + 1 < degree;
+    is_sound &= is_triangle | (c.death == 0);
+    const std::uint32_t death = c.death == 0 ? 0 : error - below + 1;  // as death_bits()
+    span.least_death = is_triangle ? std::min(span.least_death, death) : span.least_death;
+    ring[k] = {{static_cast<std::int32_t>(r.u.x + c.x), static_cast<std::int32_t>(r.u.y + c.y)},
+               c.has_height ? height_of_ordered(known, heights_.type) : 0,
+               c.death == 0 ? kLivesOn : short_value(static_cast<ShortBits>(error - below)),
+               static_cast<std::uint8_t>((c.is_void ? unsigned{RingCorner::kVoid} : 0U) |
+                                         (c.has_height ? 0U : unsigned{RingCorner::kNoHeight}))};
+  });
+  const bool has_heights = (number(PageColumn::kFlags, i) & kPageNoHeights) == 0;
+  const bool is_within =
+      span.low > span.high ||
+      (has_heights &&
+       height - static_cast<std::int64_t>(number(PageColumn::kBelow, i)) <= span.low &&
+       span.high <= height + static_cast<std::int64_t>(number(PageColumn::kAbove, i)));
+  return is_sound && is_within && contains(r.roi, span) &&
+         (is_closed ? check.is_closed_ring() : check.is_open_ring());
+}
+
+}  // namespace ptin

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The numbers of one page of records and stars, taken out of its bytes (storage/FORMAT.md, "Pages").
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "storage/attributes.h"
+#include "storage/page_columns.h"
+#include "storage/short_float.h"
+#include "storage/star.h"
+
+namespace ptin {
+
+/// How the corners of a ring are laid out.
+struct RingShape {
+  unsigned degree = 0, offset_bits = 0, height_bits = 0, death_bits = 0, corner_bits = 0;
+  [[nodiscard]] std::size_t bits() const noexcept { return std::size_t{degree} * corner_bits; }
+};
+
+/// A ring of a page, from which the next ones are found without a look at those before it.
+struct RingPlace {
+  std::size_t record = SIZE_MAX;  ///< None yet.
+  std::size_t bit = 0;            ///< Where it begins in the page.
+  RingShape shape;
+  bool is_sound = false;  ///< It lies where rings lie.
+};
+
+/// What the corners of a ring, and its triangles, span.
+struct RingSpan {
+  std::int64_t min_x = INT64_MAX, min_y = INT64_MAX;  ///< Of the corners, grid units.
+  std::int64_t max_x = INT64_MIN, max_y = INT64_MIN;
+  std::uint32_t low = UINT32_MAX, high = 0;  ///< Ordered heights; low > high: no corner has one.
+  std::uint32_t least_death = UINT32_MAX;    ///< As death_bits().
+};
+
+/// The numbers of a page. Any bytes are safe to ask: an answer of false means that a field cannot
+/// be what was written, and then what was asked for is unspecified.
+class RecordPage {
+ public:
+  /// @param bytes  Borrowed, of a whole page.
+  RecordPage(std::span<const std::byte> bytes, const HeightEncoding& heights) noexcept;
+
+  /// Whether the header of the page can be what was written. REQUIRED by all that follows.
+  [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
+  [[nodiscard]] std::uint32_t records() const noexcept { return columns_.records(); }
+
+  /// The roi of a record. Nothing is checked. REQUIRES, as all that follows: i < records().
+  [[nodiscard]] GridBox roi(std::size_t i) const noexcept;
+  /// The first record from i on whose roi may meet a box; records() when there is none.
+  [[nodiscard]] std::uint32_t next_near(std::uint32_t i, const GridBox& box) const noexcept;
+  /// The bits of a short number (storage/short_float.h), or more than those of infinity.
+  [[nodiscard]] std::uint32_t error_bits(std::size_t i) const noexcept {
+    return short_of_stored(number(PageColumn::kError, i), columns_.header().error);
+  }
+  /// The attributes of so many records from `first` on. Nothing is checked: of a record that is not
+  /// sound they may be anything. REQUIRES: count <= kRun, first + count <= records().
+  static constexpr std::uint32_t kRun = 64;
+  using AttributeRun = std::array<Attributes, kRun>;
+  void attributes(std::uint32_t first, std::uint32_t count, AttributeRun& out) const noexcept;
+  /// Everything of a record but w, vl, vr and what follows from its ring.
+  [[nodiscard]] bool head(std::size_t i, VertexSplit& r) const noexcept;
+  /// A record. Coordinates are on the grid, u, w, vl and vr differ and lie in the roi.
+  /// @param place  Of a record not behind this one; becomes that of this record.
+  [[nodiscard]] bool split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept;
+  /// Whether a triangle of the star of a record lives at a level, as level_bits(). True also for
+  /// a ring that is not sound. @param error  error_bits(i), above the level.
+  [[nodiscard]] bool may_live(std::size_t i, RingPlace& place, std::uint32_t error,
+                              std::int32_t level) const noexcept;
+  /// Appends the ring of a record whose head is `r`: is_star() is true of it.
+  /// @param span  Becomes what the ring spans.
+  [[nodiscard]] bool ring(std::size_t i, RingPlace& place, const VertexSplit& r,
+                          std::vector<RingCorner>& out, RingSpan& span) const;
+
+ private:
+  /// The fields of a corner.
+  struct StoredCorner {
+    std::int64_t x, y, height;
+    std::uint32_t death;
+    bool is_void, has_height;
+  };
+  [[nodiscard]] std::uint64_t number(PageColumn column, std::size_t i) const noexcept {
+    return columns_.at(bytes_.data(), column, i);
+  }
+  [[nodiscard]] RingShape shape_of(std::size_t i) const noexcept;
+  [[nodiscard]] bool find(std::size_t i, RingPlace& place) const noexcept;
+  [[nodiscard]] GridPoint corner_position(GridPoint u, const RingShape& shape,
+                                          std::size_t bit) const noexcept;
+  [[nodiscard]] bool is_void(const RingShape& shape, std::size_t bit) const noexcept;
+  template <class Visit>
+  void for_each_corner(const RingPlace& place, const Visit& visit) const;
+
+  std::span<const std::byte> bytes_;
+  HeightEncoding heights_;
+  PageColumns columns_;
+  bool is_sound_ = false;
+};
+
+}  // namespace ptin
