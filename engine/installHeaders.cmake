@@ -50,6 +50,7 @@ set(public_headers
     engine/geometry/point.h
     engine/large_array.h
     engine/memory_units.h
+    engine/mesh/link.h
     engine/mesh/star.h
     engine/mesh/tin.h
     engine/mesh/validate.h
@@ -68,14 +69,16 @@ set(public_headers
     engine/query/isoline/isoline_trace.h
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
-    engine/query/refine/grid_cell.h
+    engine/query/living/grid_cell.h
+    engine/query/living/living_triangle.h
+    engine/query/living/tin_parts.h
     engine/query/refine/hierarchy_check.h
     engine/query/refine/moving_window.h
     engine/query/refine/page_cache.h
-    engine/query/refine/part_refiner.h
     engine/query/refine/refine.h
     engine/query/refine/refinement.h
     engine/query/select/accounting.h
+    engine/query/select/answer_by.h
     engine/query/select/certificate.h
     engine/query/select/detail.h
     engine/query/select/opened_terrain.h

@@ -23,6 +23,10 @@ struct Attributes {
   friend bool operator==(const Attributes&, const Attributes&) = default;
 };
 
+/// Every height, and those of stars that have none.
+inline constexpr Interval kAllHeights{-std::numeric_limits<double>::infinity(),
+                                      std::numeric_limits<double>::infinity()};
+
 /// The triangles of a star, or of those of a page or a subtree. A page's or a subtree's are the
 /// union, the largest error and the least death.
 struct StarAttributes {
@@ -32,24 +36,6 @@ struct StarAttributes {
   /// None dies below it; -infinity when one lives on.
   double death = 0.0;
   friend bool operator==(const StarAttributes&, const StarAttributes&) = default;
-
-  /// Whether a triangle may live at this error. (-infinity: in the finest TIN.)
-  [[nodiscard]] bool may_live_at(double level) const noexcept {
-    return death <= level && level < error;
-  }
-};
-
-/// What is asked of stars: a triangle that lives at a level, meets a box and has heights within an
-/// interval. Of the stars of a page all are found that have such a triangle, and some others.
-struct StarFilter {
-  GridBox box{INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
-  Interval heights{-std::numeric_limits<double>::infinity(),
-                   std::numeric_limits<double>::infinity()};  ///< Codes; this one holds voids too.
-  double level = -1.0;  ///< An error; negative: the finest TIN.
-
-  [[nodiscard]] bool may_hold(const StarAttributes& a) const noexcept {
-    return a.may_live_at(level) && meets(a.box, box) && meets(a.heights, heights);
-  }
 };
 
 /// A test of stars for the index: true for a page or a subtree when it is true for a star below.
@@ -61,6 +47,31 @@ class StarPredicate {
   StarPredicate& operator=(const StarPredicate&) = default;
   virtual ~StarPredicate() = default;
   [[nodiscard]] virtual bool may_hold(const StarAttributes& a) const noexcept = 0;
+};
+
+/// A test of heights: true for an interval when it is true for one within. Threads: as
+/// StarPredicate.
+class HeightPredicate {
+ public:
+  HeightPredicate() = default;
+  HeightPredicate(const HeightPredicate&) = default;
+  HeightPredicate& operator=(const HeightPredicate&) = default;
+  virtual ~HeightPredicate() = default;
+  [[nodiscard]] virtual bool may_hold(const Interval& codes) const noexcept = 0;
+};
+
+/// What is asked of stars: a triangle that lives at a level, meets a box and has heights within an
+/// interval. Of the stars of a page all are found that have such a triangle, and some others.
+struct StarFilter {
+  GridBox box{INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
+  Interval heights = kAllHeights;  ///< Codes.
+  double level = -1.0;             ///< An error; negative: the finest TIN.
+  /// Ask for the stars of records of the level's own error too, whatever lives of them.
+  bool with_ties = false;
+  /// Further conditions, borrowed; null: none. The first one is asked of pages and subtrees alone,
+  /// the other one of stars too.
+  const StarPredicate* also = nullptr;
+  const HeightPredicate* also_heights = nullptr;
 };
 
 /// A monotone test: once true, it stays true when the arguments grow (engine/DESIGN.md, section

@@ -168,29 +168,23 @@ void DescribedPage::decode_stars(std::span<const std::byte> bytes, const StarFil
   RingPlace place;
   VertexSplit r;
   RingSpan span;
-  const GridBox all{descriptor_.min_x, descriptor_.min_y, descriptor_.max_x, descriptor_.max_y};
-  const bool is_all_near = contains(filter.box, all);
-  const auto next = [&](std::uint32_t i) {
-    return is_all_near ? i : page.next_near(i, filter.box);
-  };
-  for (std::uint32_t i = next(0); i < records(); i = next(i + 1)) {
-    const std::uint32_t error = page.error_bits(i);
-    if (static_cast<std::int64_t>(error) <= level || !page.may_live(i, place, error, level)) {
-      continue;
+  for (std::uint32_t run = 0; run < records(); run += RecordPage::kRun) {
+    const std::uint32_t count = std::min<std::uint32_t>(RecordPage::kRun, records() - run);
+    for (std::uint64_t left = page.near_stars(run, count, filter); left != 0; left &= left - 1) {
+      const std::uint32_t i = run + static_cast<std::uint32_t>(std::countr_zero(left));
+      if (!page.may_live(i, place, level)) {
+        continue;
+      }
+      const std::size_t first = out.corners.size();
+      if (!page.head(i, r) || admitted(std::span(&r, 1)) == 0 ||
+          !page.ring(i, place, r, out.corners, span) || !admits(r, span)) [[unlikely]] {
+        out.corners.resize(first);
+        out.resize(before);
+        report(i);
+      }
+      out.splits.push_back(r);
+      out.ring_end.push_back(static_cast<std::uint32_t>(out.corners.size()));
     }
-    const bool is_sound = page.head(i, r);
-    if (is_sound && !meets(attributes_of(r, heights_).heights, filter.heights)) {
-      continue;
-    }
-    const std::size_t first = out.corners.size();
-    if (!is_sound || admitted(std::span(&r, 1)) == 0 ||
-        !page.ring(i, place, r, out.corners, span) || !admits(r, span)) [[unlikely]] {
-      out.corners.resize(first);
-      out.resize(before);
-      report(i);
-    }
-    out.splits.push_back(r);
-    out.ring_end.push_back(static_cast<std::uint32_t>(out.corners.size()));
   }
 }
 

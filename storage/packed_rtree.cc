@@ -60,19 +60,24 @@ void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId
           counters, [&](PageId id, const layout::NodeEntry&) { pages.push_back(id); });
 }
 
-void PackedRTree::search_stars(const StarFilter& filter, const StarPredicate* also,
-                               std::vector<StarPage>& pages, IoCounters& counters) const {
+void PackedRTree::search_stars(const StarFilter& filter, std::vector<StarPage>& pages,
+                               IoCounters& counters) const {
   const std::int32_t level = level_bits(filter.level);
+  const std::int32_t below = level - (filter.with_ties ? 1 : 0);
   const GridBox& box = filter.box;
-  const bool any_heights = filter.heights == StarFilter{}.heights;
+  const bool any_heights = filter.heights == kAllHeights && filter.also_heights == nullptr;
+  const auto has_heights = [&](const layout::NodeEntry& e) {
+    const Interval heights = star_attributes_of(e, heights_).heights;
+    return meets(heights, filter.heights) &&
+           (filter.also_heights == nullptr || filter.also_heights->may_hold(heights));
+  };
   descend(
       [&](const layout::NodeEntry& e) {
         // Of a node's entries few pass the first line, which looks at whole numbers alone.
         return e.star_min_x <= box.max_x && box.min_x <= e.star_max_x &&
-               e.star_min_y <= box.max_y && box.min_y <= e.star_max_y && e.error_max > level &&
-               e.death_min <= level + 1 &&
-               (any_heights || meets(star_attributes_of(e, heights_).heights, filter.heights)) &&
-               (also == nullptr || also->may_hold(star_attributes_of(e, heights_)));
+               e.star_min_y <= box.max_y && box.min_y <= e.star_max_y && e.error_max > below &&
+               e.death_min <= level + 1 && (any_heights || has_heights(e)) &&
+               (filter.also == nullptr || filter.also->may_hold(star_attributes_of(e, heights_)));
       },
       counters,
       [&](PageId id, const layout::NodeEntry& e) {

@@ -63,10 +63,9 @@ class PackedRTree final : public RecordIndex {
 
   /// Appends the pages with a star that may hold what the filter asks for, each once, ascending,
   /// with what their descriptors say of their stars. Cost: as search().
-  /// @param also  A further condition; null: none.
   /// @throws Error corruption, io_error
-  void search_stars(const StarFilter& filter, const StarPredicate* also,
-                    std::vector<StarPage>& pages, IoCounters& counters) const;
+  void search_stars(const StarFilter& filter, std::vector<StarPage>& pages,
+                    IoCounters& counters) const;
 
   /// Visits pages best first, until the bounds of all that are left lie below the cut-off.
   /// @throws Error corruption, io_error; what the visitor throws

@@ -2,6 +2,7 @@
 #include "storage/record_page.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "storage/bit_fields.h"
@@ -33,8 +34,10 @@ GridBox RecordPage::roi(std::size_t i) const noexcept {
           whole(x + at(PageColumn::kEast)), whole(y + at(PageColumn::kNorth))};
 }
 
-/// Looks at the roi only where u is no farther from the box than any roi of the page reaches.
-std::uint32_t RecordPage::next_near(std::uint32_t i, const GridBox& box) const noexcept {
+/// The records of a run whose roi meets a box: the roi is looked at where u lies outside of the box,
+/// but no farther from it than any roi of the page reaches.
+std::uint64_t RecordPage::near_box(std::uint32_t first, std::uint32_t count,
+                                   const GridBox& box) const noexcept {
   const auto reach = [&](PageColumn c) {
     return static_cast<std::int64_t>(
         (std::uint64_t{1} << columns_.header().width[static_cast<std::size_t>(c)]) - 1);
@@ -43,32 +46,73 @@ std::uint32_t RecordPage::next_near(std::uint32_t i, const GridBox& box) const n
   const std::int64_t high_x = box.max_x + reach(PageColumn::kWest);
   const std::int64_t low_y = box.min_y - reach(PageColumn::kNorth);
   const std::int64_t high_y = box.max_y + reach(PageColumn::kSouth);
-  for (; i < records(); ++i) {
-    const auto x = static_cast<std::int64_t>(number(PageColumn::kX, i));
-    if (x < low_x || x > high_x) {
-      continue;
-    }
-    const auto y = static_cast<std::int64_t>(number(PageColumn::kY, i));
-    if (y >= low_y && y <= high_y && meets(roi(i), box)) {
-      return i;
-    }
+  Run xs, ys;  // NOLINT: written before read
+  read_run(PageColumn::kX, first, count, xs);
+  read_run(PageColumn::kY, first, count, ys);
+  std::uint64_t near = 0;
+  std::uint64_t within = 0;  // u lies in the box
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const auto x = static_cast<std::int64_t>(xs[k]);
+    const auto y = static_cast<std::int64_t>(ys[k]);
+    const bool is_near = (low_x <= x) & (x <= high_x) & (low_y <= y) & (y <= high_y);
+    const bool is_within =
+        (box.min_x <= x) & (x <= box.max_x) & (box.min_y <= y) & (y <= box.max_y);
+    near |= std::uint64_t{is_near} << k;
+    within |= std::uint64_t{is_within} << k;
   }
-  return i;
+  for (std::uint64_t left = near & ~within; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+    near ^= std::uint64_t{!meets(roi(first + k), box)} << k;
+  }
+  return near;
+}
+
+/// The records of a run whose heights may be those that a filter asks for.
+std::uint64_t RecordPage::with_heights(std::uint32_t first, std::uint32_t count,
+                                       const StarFilter& filter) const noexcept {
+  Run heights, below, above, flags;  // NOLINT: written before read
+  read_run(PageColumn::kHeight, first, count, heights);
+  read_run(PageColumn::kBelow, first, count, below);
+  read_run(PageColumn::kAbove, first, count, above);
+  read_run(PageColumn::kFlags, first, count, flags);
+  const auto code = [&](std::uint64_t ordered) {
+    return heights_.code(height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type));
+  };
+  std::uint64_t wanted = 0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const Interval codes = (flags[k] & kPageNoHeights) != 0
+                               ? Interval{}
+                               : Interval{code(heights[k] - below[k]), code(heights[k] + above[k])};
+    const bool is_wanted = meets(codes, filter.heights) &&
+                           (filter.also_heights == nullptr || filter.also_heights->may_hold(codes));
+    wanted |= std::uint64_t{is_wanted} << k;
+  }
+  return wanted;
+}
+
+std::uint64_t RecordPage::near_stars(std::uint32_t first, std::uint32_t count,
+                                     const StarFilter& filter) const noexcept {
+  std::uint64_t wanted = near_box(first, count, filter.box);
+  if (wanted != 0 && (filter.also_heights != nullptr || filter.heights != kAllHeights)) {
+    wanted &= with_heights(first, count, filter);
+  }
+  const std::int64_t below = level_bits(filter.level) - (filter.with_ties ? 1 : 0);
+  for (std::uint64_t left = wanted; left != 0 && below >= 0; left &= left - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+    wanted ^= std::uint64_t{static_cast<std::int64_t>(error_bits(first + k)) <= below} << k;
+  }
+  return wanted;
 }
 
 /// Column by column: a number takes a load and a shift then, and nothing is looked up between.
 void RecordPage::attributes(std::uint32_t first, std::uint32_t count,
                             AttributeRun& out) const noexcept {
-  std::array<std::array<std::uint64_t, kRun>, kPageColumns> all;  // NOLINT: written before read
-  const auto read = [&](PageColumn c) {
-    std::array<std::uint64_t, kRun>& numbers = all[static_cast<std::size_t>(c)];
-    columns_.read_run(bytes_.data(), c, first, std::span(numbers).first(count));
-  };
+  std::array<Run, kPageColumns> all;  // NOLINT: written before read
   for (const PageColumn c :
        {PageColumn::kX, PageColumn::kY, PageColumn::kHeight, PageColumn::kWest, PageColumn::kSouth,
         PageColumn::kEast, PageColumn::kNorth, PageColumn::kBelow, PageColumn::kAbove,
         PageColumn::kError, PageColumn::kDeviation, PageColumn::kFlags}) {
-    read(c);
+    read_run(c, first, count, all[static_cast<std::size_t>(c)]);
   }
   const auto code = [&](std::uint64_t ordered) {
     return heights_.code(height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type));
@@ -249,8 +293,7 @@ bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const no
          r.vl != r.u && r.vr != r.u;
 }
 
-bool RecordPage::may_live(std::size_t i, RingPlace& place, std::uint32_t error,
-                          std::int32_t level) const noexcept {
+bool RecordPage::may_live(std::size_t i, RingPlace& place, std::int32_t level) const noexcept {
   if (!find(i, place)) {
     return true;
   }
@@ -258,7 +301,7 @@ bool RecordPage::may_live(std::size_t i, RingPlace& place, std::uint32_t error,
   // 0 lives on, 1 dies at error 0, and from `first` on deaths are at or below the level.
   const std::uint32_t all_below = level < 0 ? 0 : 1;
   const std::uint32_t first =
-      level < 0 ? UINT32_MAX : error - static_cast<std::uint32_t>(level) + kFirstAboveBase;
+      level < 0 ? UINT32_MAX : error_bits(i) - static_cast<std::uint32_t>(level) + kFirstAboveBase;
   const std::uint64_t border = number(PageColumn::kFlags, i) & (kPageNoLeft | kPageNoRight);
   const unsigned triangles = shape.degree - (border == 0 ? 0 : 1);
   std::size_t bit = place.bit + 2 * shape.offset_bits + shape.height_bits;

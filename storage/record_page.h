@@ -51,8 +51,6 @@ class RecordPage {
 
   /// The roi of a record. Nothing is checked. REQUIRES, as all that follows: i < records().
   [[nodiscard]] GridBox roi(std::size_t i) const noexcept;
-  /// The first record from i on whose roi may meet a box; records() when there is none.
-  [[nodiscard]] std::uint32_t next_near(std::uint32_t i, const GridBox& box) const noexcept;
   /// The bits of a short number (storage/short_float.h), or more than those of infinity.
   [[nodiscard]] std::uint32_t error_bits(std::size_t i) const noexcept {
     return short_of_stored(number(PageColumn::kError, i), columns_.header().error);
@@ -62,21 +60,25 @@ class RecordPage {
   static constexpr std::uint32_t kRun = 64;
   using AttributeRun = std::array<Attributes, kRun>;
   void attributes(std::uint32_t first, std::uint32_t count, AttributeRun& out) const noexcept;
+  /// Which of so many records may have a star that a filter asks for, as far as box, level and
+  /// heights tell: bit k for record `first` + k. Nothing is checked. REQUIRES: as attributes().
+  [[nodiscard]] std::uint64_t near_stars(std::uint32_t first, std::uint32_t count,
+                                         const StarFilter& filter) const noexcept;
   /// Everything of a record but w, vl, vr and what follows from its ring.
   [[nodiscard]] bool head(std::size_t i, VertexSplit& r) const noexcept;
   /// A record. Coordinates are on the grid, u, w, vl and vr differ and lie in the roi.
   /// @param place  Of a record not behind this one; becomes that of this record.
   [[nodiscard]] bool split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept;
   /// Whether a triangle of the star of a record lives at a level, as level_bits(). True also for
-  /// a ring that is not sound. @param error  error_bits(i), above the level.
-  [[nodiscard]] bool may_live(std::size_t i, RingPlace& place, std::uint32_t error,
-                              std::int32_t level) const noexcept;
+  /// a ring that is not sound. REQUIRES: error_bits(i) is at or above the level.
+  [[nodiscard]] bool may_live(std::size_t i, RingPlace& place, std::int32_t level) const noexcept;
   /// Appends the ring of a record whose head is `r`: is_star() is true of it.
   /// @param span  Becomes what the ring spans.
   [[nodiscard]] bool ring(std::size_t i, RingPlace& place, const VertexSplit& r,
                           std::vector<RingCorner>& out, RingSpan& span) const;
 
  private:
+  using Run = std::array<std::uint64_t, kRun>;
   /// The fields of a corner.
   struct StoredCorner {
     std::int64_t x, y, height;
@@ -86,6 +88,14 @@ class RecordPage {
   [[nodiscard]] std::uint64_t number(PageColumn column, std::size_t i) const noexcept {
     return columns_.at(bytes_.data(), column, i);
   }
+  void read_run(PageColumn column, std::uint32_t first, std::uint32_t count,
+                Run& out) const noexcept {
+    columns_.read_run(bytes_.data(), column, first, std::span(out).first(count));
+  }
+  [[nodiscard]] std::uint64_t near_box(std::uint32_t first, std::uint32_t count,
+                                       const GridBox& box) const noexcept;
+  [[nodiscard]] std::uint64_t with_heights(std::uint32_t first, std::uint32_t count,
+                                           const StarFilter& filter) const noexcept;
   [[nodiscard]] RingShape shape_of(std::size_t i) const noexcept;
   [[nodiscard]] bool find(std::size_t i, RingPlace& place) const noexcept;
   [[nodiscard]] GridPoint corner_position(GridPoint u, const RingShape& shape,

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "storage/described_page.h"
 #include "storage/descriptor.h"
 #include "storage/file/mapped_file.h"
 #include "storage/index_nodes.h"
 #include "storage/packed_rtree.h"
-#include "storage/described_page.h"
 #include "storage/page_stores.h"
 #include "storage/store_front.h"
 

@@ -15,6 +15,7 @@
 
 #include "engine/check.h"
 #include "engine/error.h"
+#include "storage/described_page.h"
 #include "storage/descriptor.h"
 #include "storage/error_table.h"
 #include "storage/facts.h"
@@ -23,7 +24,6 @@
 #include "storage/file/file_questions.h"
 #include "storage/index_writer.h"
 #include "storage/layout.h"
-#include "storage/described_page.h"
 #include "storage/page_slots.h"
 #include "storage/short_float.h"
 #include "storage/store_front.h"

@@ -55,7 +55,7 @@ void join_sides(std::vector<TriangleSide>& sides, const Join& join) {
 /// (mesh/validate.h) says. Triangles that do not fit together, as a damaged file may have them,
 /// become a mesh that validate() refuses.
 /// REQUIRES: no neighbour is set; corners are vertices.
-/// Cost: O(n log n); 16 bytes a side.
+/// Cost: linear, as long as no vertex has many triangles; 12 bytes a side and 8 a vertex.
 void link_tin(Tin& tin);
 
 }  // namespace ptin

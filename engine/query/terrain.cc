@@ -9,9 +9,7 @@ RefinedTin Terrain::refine(const RefineRequest& request) const {
   return ptin::refine(*this, request);
 }
 
-PartRefiner Terrain::parts(PartRequest request) const {
-  return PartRefiner(*this, std::move(request));
-}
+TinParts Terrain::parts(PartRequest request) const { return TinParts(*this, std::move(request)); }
 
 MovingWindow Terrain::moving_window(const MovingWindowOptions& options) const {
   return MovingWindow(*this, options);

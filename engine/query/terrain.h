@@ -6,7 +6,7 @@
 // | question                   | function        | request             | header                   |
 // |----------------------------|-----------------|---------------------|--------------------------|
 // | mesh at a level of detail  | refine          | RefineRequest       | refine/refine.h          |
-// | the same, in parts         | parts           | PartRequest         | refine/part_refiner.h    |
+// | the same, in parts         | parts           | PartRequest         | living/tin_parts.h       |
 // | mesh that follows a region | moving_window   | MovingWindowOptions | refine/moving_window.h   |
 // | heights at points          | locate          | LocateRequest       | heights/locate.h         |
 // | heights along lines        | profile         | ProfileRequest      | heights/profile.h        |
@@ -46,9 +46,9 @@
 #include "engine/query/isoline/isoline_bands.h"
 #include "engine/query/isoline/isoline_clip.h"
 #include "engine/query/isoline/isoline_progressive.h"
+#include "engine/query/living/tin_parts.h"
 #include "engine/query/refine/hierarchy_check.h"
 #include "engine/query/refine/moving_window.h"
-#include "engine/query/refine/part_refiner.h"
 #include "engine/query/refine/refine.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
@@ -86,9 +86,8 @@ class Terrain : public OpenedTerrain {
 
   /// The TIN at a level of detail, over the whole domain or in a region.
   [[nodiscard]] RefinedTin refine(const RefineRequest& request) const;
-  /// The TIN at a level of detail, refined part by part, each part within the memory limit. The
-  /// terrain must outlive the PartRefiner.
-  [[nodiscard]] PartRefiner parts(PartRequest request) const;
+  /// The TIN at a level of detail, part by part, each part within the memory limit.
+  [[nodiscard]] TinParts parts(PartRequest request) const;
   /// A mesh that begins as T0 and follows predicates. The window shares the file and may outlive
   /// the terrain.
   [[nodiscard]] MovingWindow moving_window(const MovingWindowOptions& options = {}) const;

@@ -48,8 +48,8 @@ void build_and_ask() {
   expect(refined.certified_error <= 5.0, "and keeps its promise");
 
   std::uint64_t cells = 0;
-  const ptin::PartRefiner parts(terrain, {});
-  ptin::walk_cells(parts, [&](const ptin::GridCell&, ptin::RefinedTin&, double) { ++cells; });
+  ptin::TinParts parts = terrain.parts({});
+  ptin::walk_cells(parts, [&](const ptin::GridCell&, const ptin::Tin&, double) { ++cells; });
   expect(cells == 1, "a small terrain is one cell");
   try {
     static_cast<void>(ptin::Terrain::open("hill.xyz"));

@@ -24,8 +24,8 @@
 #include "engine/query/heights/locate.h"
 #include "engine/query/heights/profile.h"
 #include "engine/query/isoline/isoline.h"
+#include "engine/query/living/tin_parts.h"
 #include "engine/query/refine/moving_window.h"
-#include "engine/query/refine/part_refiner.h"
 #include "engine/query/sight/sight.h"
 #include "engine/query/sight/viewshed.h"
 #include "engine/query/stream/stream_writer.h"
@@ -126,10 +126,10 @@ std::vector<KindOfQuestion> questions() {
            (void)t.refine(request);
          };
        }},
-      {"PartRefiner",
+      {"TinParts",
        [](const Terrain& t, const Store&) -> Asking {
-         const auto parts = std::make_shared<PartRefiner>(t, PartRequest{});
-         return [parts] { (void)parts->refine({0, 0, 40, 40}); };
+         const auto parts = std::make_shared<TinParts>(t, PartRequest{});
+         return [parts] { (void)parts->part({0, 0, 40, 40}); };
        }},
       {"Locate",
        [](const Terrain& t, const Store& s) -> Asking {

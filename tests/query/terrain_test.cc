@@ -73,7 +73,8 @@ every_question() {
        [](const Terrain& t, const QueryLimits& l) {
          PartRequest request;
          request.limits = l;
-         static_cast<void>(t.parts(request).refine(t.store().facts().bounds));
+         TinParts parts = t.parts(request);
+         walk_cells(parts, [](const GridCell&, const Tin&, double) {});
        }},
       {"moving_window",
        [](const Terrain& t, const QueryLimits& l) {
@@ -166,10 +167,11 @@ TEST(Terrain, EveryQuestionKeepsToTheLimitsOfItsRequest) {
   }
 }
 
-TEST(Terrain, EveryQuestionSearchesTheIndexInUse) {
+TEST(Terrain, EveryQuestionThatSplitsAnswerSearchesTheIndexInUse) {
   for (const auto& [name, ask] : every_question()) {
     SCOPED_TRACE(name);
-    Terrain terrain = mountains();  // a copy, which shares the file
+    if (name == std::string("parts")) continue;  // of stars alone, for which the file has one index
+    Terrain terrain = mountains();               // a copy, which shares the file
     const auto index = std::make_shared<const CountingIndex>(mountains().store().index());
     terrain.use_index(index);
     ask(terrain, {});

@@ -123,7 +123,7 @@ RC_GTEST_PROP(RecordPage, GivesEachRecordAndRingByItself, ()) {
     expect_spanned(r, ring, span, strange.heights().type);
     const auto level = *rc::gen::inRange<std::int32_t>(-1, kShortInfinity);
     RC_ASSERT(page.error_bits(i) <= static_cast<std::uint32_t>(level) ||
-              page.may_live(i, place, page.error_bits(i), level) == lives(r, ring, level));
+              page.may_live(i, place, level) == lives(r, ring, level));
     RC_ASSERT(r == expected.splits[i]);
     RC_ASSERT(std::ranges::equal(ring, expected.ring(i)));
     RC_ASSERT(page.roi(i) == r.roi);

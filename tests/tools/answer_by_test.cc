@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// `ptin locate --by stars` and `--by splits`: two ways, one answer.
+// `--by stars` and `--by splits`: two ways, one answer.
 #include <cstdio>
 #include <set>
 #include <string>
@@ -143,6 +143,26 @@ TEST_P(AnswerByBothWays, NamesTrianglesFromTheirSouthernmostCorner) {
       EXPECT_TRUE(north(0) < north(i) || (north(0) == north(i) && at(0) < at(i))) << corners;
     EXPECT_GT((at(1) - at(0)) * (north(2) - north(0)) - (at(2) - at(0)) * (north(1) - north(0)), 0)
         << corners;
+  }
+}
+
+TEST_P(AnswerByBothWays, IsTheSameForIsolines) {
+  const std::vector<Arguments> asked = {{"--interval", "7"},
+                                        {"--interval", "20", "--error", "3"},
+                                        {"--interval", "20", "--vertices", "900"}};
+  for (const Arguments& options : asked) {
+    std::vector<std::string> layers;
+    for (const char* way : {"stars", "splits"}) {
+      Arguments arguments = {"isoline", file_, "--by", way, "--3d", "--json", "--overwrite"};
+      arguments.insert(arguments.end(), {"-o", folder_.file("a.geojson")});
+      arguments.insert(arguments.end(), options.begin(), options.end());
+      const json answer = testing::answer_of(arguments);
+      EXPECT_GT(answer.at("lines"), 0);
+      EXPECT_EQ(answer.at("cost").at("stars_read") > 0, way == std::string("stars"));
+      EXPECT_EQ(answer.at("cost").at("records_applied") > 0, way == std::string("splits"));
+      layers.push_back(read_file(folder_.file("a.geojson")));
+    }
+    EXPECT_EQ(layers[0], layers[1]);
   }
 }
 

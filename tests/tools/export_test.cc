@@ -14,7 +14,6 @@
 #include <ogrsf_frmts.h>
 
 #include "engine/error.h"
-#include "engine/query/refine/part_refiner.h"
 #include "engine/query/terrain.h"
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
@@ -193,11 +192,11 @@ struct Joined {
 
 Joined joined_under(const Terrain& terrain, PartRequest request, std::uint64_t limit) {
   request.limits.memory_bytes = limit;
-  const PartRefiner refiner(terrain, request);
+  TinParts tin_parts(terrain, request);
   PatchMaker maker(terrain.store(), request.region);
   Joined all;
-  walk_cells(refiner, [&](const GridCell& cell, const RefinedTin& refined, double) {
-    const TinPatch patch = maker.make(cell, refined, std::uint64_t{1} << 30);
+  walk_cells(tin_parts, [&](const GridCell& cell, const Tin& part, double) {
+    const TinPatch patch = maker.make(cell, part, std::uint64_t{1} << 30);
     EXPECT_EQ(patch.first_vertex, all.vertices.size());
     all.vertices.insert(all.vertices.end(), patch.vertices.begin(), patch.vertices.end());
     for (const auto& t : patch.triangles) {
@@ -212,14 +211,18 @@ Joined joined_under(const Terrain& terrain, PartRequest request, std::uint64_t l
   return all;
 }
 
-/// A little more than the records take that concern the most crowded vertex: no cell can need less.
-std::uint64_t tightest_limit(const Terrain& terrain, const PartRequest& request) {
-  const PartRefiner refiner(terrain, request);
-  std::uint64_t most = 0;
-  for (const Vertex& v : terrain.refine({}).tin.vertices) {
-    most = std::max(most, refiner.bytes_for(united(GridBox{}, v.position)));
+/// A limit that the part of every single vertex fits, and of few larger ones.
+std::uint64_t tightest_limit(const Terrain& terrain, PartRequest request) {
+  const std::vector<Vertex> vertices = terrain.refine({}).tin.vertices;
+  request.limits.memory_bytes = 1024;
+  std::optional<TinParts> parts(std::in_place, terrain, request);
+  for (const Vertex& v : vertices) {
+    while (parts->part(united(GridBox{}, v.position)) == nullptr) {
+      request.limits.memory_bytes += request.limits.memory_bytes / 4;
+      parts.emplace(terrain, request);
+    }
   }
-  return most + most / 4;
+  return 2 * request.limits.memory_bytes;
 }
 
 TEST(Export, DoesNotDependOnTheCells) {
@@ -254,7 +257,8 @@ TEST(Export, NoticesAStoreThatIsReplacedOnTheWay) {
   request.limits.memory_bytes = 4'000'000;
   int cells = 0;
   try {
-    walk_cells(PartRefiner(terrain, request), [&](const GridCell&, const RefinedTin&, double) {
+    TinParts parts(terrain, request);
+    walk_cells(parts, [&](const GridCell&, const Tin&, double) {
       if (++cells == 2) std::filesystem::rename(folder.file("other"), file);
     });
     FAIL() << "not noticed";
@@ -372,10 +376,10 @@ TEST(Export, RasterDoesNotDependOnMemory) {
   for (const std::uint64_t limit : {std::uint64_t{1} << 30, std::uint64_t{2'000'000}}) {
     PartRequest request;
     request.limits.memory_bytes = limit;
-    const PartRefiner refiner(terrain, request);
+    TinParts parts(terrain, request);
     const RasterTarget target{folder.file("a.tif"), true, false, {}, -9999.0, {}, {}, limit / 8};
     GDALAllRegister();
-    static_cast<void>(export_raster(refiner, grid, target, {}));
+    static_cast<void>(export_raster(parts, grid, target, {}));
     const std::string bytes = read_file(target.path);
     if (first.empty()) first = bytes;
     EXPECT_TRUE(bytes == first);
@@ -417,7 +421,10 @@ TEST(Export, RasterInterpolatesTheTriangles) {
     const PixelGrid grid(facts, {facts.map.step_x * pitch, facts.map.step_y * pitch}, std::nullopt);
     const PixelRect all{0, 0, grid.columns(), grid.rows()};
     std::vector<double> heights(static_cast<std::size_t>(all.pixels()), NAN);
-    sample_heights(refined, facts, grid, all, all, heights);
+    HeightSamples samples(facts, grid, all, heights);
+    TinParts(terrain, {{}, request.detail, {}}).visit(facts.bounds, [&](const LivingTriangle& t) {
+      samples.add(t);
+    });
     std::size_t surface = 0;
     for (std::size_t i = 0; i < heights.size(); ++i) {
       const auto column = static_cast<std::int64_t>(i) % all.width;

@@ -312,7 +312,7 @@ TEST_F(SlopeExport, AddsNormalsInOneOrder) {
   const PixelRect part{10, 10, 12, 12};
   const auto normals_of = [&](const RefinedTin& refined) {
     std::vector<GridNormal> normals(144);
-    sample_normals(refined, facts, grid, part, part, normals);
+    sample_normals(refined.tin, facts, grid, part, part, normals);
     return normals;
   };
   RefinedTin refined = terrain.refine({});

@@ -94,9 +94,9 @@ void check_table(const PixelGrid& grid, const RasterTarget& target) {
 /// Fills a dataset, region by region.
 class RasterWriter {
  public:
-  RasterWriter(const PartRefiner& refiner, const PixelGrid& grid, const RasterTarget& target,
+  RasterWriter(TinParts& parts, const PixelGrid& grid, const RasterTarget& target,
                GDALDataset& dataset, const std::function<void(double)>& progress)
-      : refiner_(refiner),
+      : parts_(parts),
         grid_(grid),
         target_(target),
         band_(*dataset.GetRasterBand(1)),
@@ -140,33 +140,35 @@ class RasterWriter {
     }
     return {first, second};
   }
-  [[nodiscard]] bool fits(const PixelRect& rect) const {
-    const GridBox box = grid_.box(rect);
-    return !meets(box, refiner_.terrain().store().facts().bounds) || refiner_.fits(box);
-  }
-
-  /// Samples and writes a rectangle of blocks: together when it fits, else half by half.
+  /// Samples and writes a rectangle of blocks: together when the buffers hold it, else half by half.
   void write(const PixelRect& b) {
     const PixelRect rect = pixels_of(b);
     const std::uint64_t pixel_bytes = sizeof(double) + (of_heights() ? 0 : sizeof(GridNormal));
     const bool buffer_fits =
         static_cast<std::uint64_t>(rect.pixels()) * pixel_bytes <= target_.buffer_bytes;
-    if (b.pixels() > 1 && !(buffer_fits && fits(rect))) {
+    if (b.pixels() > 1 && !buffer_fits) {
       for (const PixelRect& half : halves(b)) write(half);
       return;
     }
     const auto pixels = static_cast<std::size_t>(rect.pixels());
-    values_.assign(pixels, target_.nodata);
-    if (!of_heights()) normals_.assign(pixels, {});
-    sample(rect, rect);
-    if (!of_heights()) turn_normals_into_values(rect);
+    if (of_heights()) {
+      values_.assign(pixels, std::numeric_limits<double>::quiet_NaN());
+      sample_heights(rect);
+      std::replace_if(
+          values_.begin(), values_.end(), [](double v) { return std::isnan(v); }, target_.nodata);
+    } else {
+      values_.assign(pixels, target_.nodata);
+      normals_.assign(pixels, {});
+      sample_normals_of(rect, rect);
+      turn_normals_into_values(rect);
+    }
     emit(b, rect);
   }
 
   [[nodiscard]] bool of_heights() const { return target_.content.value == PixelValue::kHeight; }
 
   void turn_normals_into_values(const PixelRect& rect) {
-    const StoreFacts& facts = refiner_.terrain().store().facts();
+    const StoreFacts& facts = parts_.terrain().store().facts();
     for (std::size_t i = 0; i < normals_.size(); ++i) {
       if (!(normals_[i].z > 0)) continue;
       const auto place = static_cast<std::int64_t>(i);
@@ -183,20 +185,31 @@ class RasterWriter {
     return content.in_percent ? percent_of(slope) : degrees_of(slope);
   }
 
-  void sample(const PixelRect& part, const PixelRect& rect) {
+  void sample_heights(const PixelRect& rect) {
+    const GridBox box = grid_.box(rect);
+    const StoreFacts& facts = parts_.terrain().store().facts();
+    if (!meets(box, facts.bounds)) return;
+    HeightSamples samples(facts, grid_, rect, values_);
+    parts_.visit(box, [&](const LivingTriangle& t) { samples.add(t); });
+  }
+
+  void sample_normals_of(const PixelRect& part, const PixelRect& rect) {
     const GridBox box = grid_.box(part);
-    if (!meets(box, refiner_.terrain().store().facts().bounds)) return;
-    if (part.pixels() > 1 && !refiner_.fits(box)) {
-      for (const PixelRect& half : halves(part)) sample(half, rect);
+    if (!meets(box, parts_.terrain().store().facts().bounds)) return;
+    const Tin* tin = parts_.part(box);
+    if (tin == nullptr) {
+      if (part.pixels() == 1) refuse_pixel();
+      for (const PixelRect& half : halves(part)) sample_normals_of(half, rect);
       return;
     }
-    const RefinedTin refined = refiner_.refine(box);
-    const StoreFacts& facts = refiner_.terrain().store().facts();
-    if (of_heights()) {
-      sample_heights(refined, facts, grid_, part, rect, values_);
-    } else {
-      sample_normals(refined, facts, grid_, part, rect, normals_);
-    }
+    const StoreFacts& facts = parts_.terrain().store().facts();
+    sample_normals(*tin, facts, grid_, part, rect, normals_);
+  }
+
+  [[noreturn]] void refuse_pixel() const {
+    throw Error(ErrorCode::resource_exhausted,
+                "what meets a single pixel takes more memory than a part may; give more --memory",
+                target_.path);
   }
 
   /// Writes the blocks of `b` in the order in which halving reaches them.
@@ -249,7 +262,7 @@ class RasterWriter {
     }
   }
 
-  const PartRefiner& refiner_;
+  TinParts& parts_;
   const PixelGrid& grid_;
   const RasterTarget& target_;
   GDALRasterBand& band_;
@@ -357,16 +370,16 @@ double default_nodata(const StoreFacts& facts, PixelValue value) noexcept {
   return static_cast<double>(std::numeric_limits<float>::lowest());
 }
 
-double export_raster(const PartRefiner& refiner, const PixelGrid& grid, const RasterTarget& target,
+double export_raster(TinParts& parts, const PixelGrid& grid, const RasterTarget& target,
                      const std::function<void(double)>& progress) {
   check_table(grid, target);
   const GdalCacheLimit cache(target.buffer_bytes);
   PendingFile file(target.path, target.overwrite);
-  const StoreFacts& facts = refiner.terrain().store().facts();
+  const StoreFacts& facts = parts.terrain().store().facts();
   double rounding = 0.0;
   if (!target.is_cog) {
     GDALDatasetUniquePtr dataset = create(file, grid, target, facts);
-    RasterWriter writer(refiner, grid, target, *dataset, progress);
+    RasterWriter writer(parts, grid, target, *dataset, progress);
     writer.run();
     rounding = writer.largest_rounding();
     close_checked(dataset, target.path);
@@ -376,11 +389,11 @@ double export_raster(const PartRefiner& refiner, const PixelGrid& grid, const Ra
       if (progress) progress(done / 2);
     };
     GDALDatasetUniquePtr dataset = create(raw, grid, target, facts);
-    RasterWriter writer(refiner, grid, target, *dataset, first_half);
+    RasterWriter writer(parts, grid, target, *dataset, first_half);
     writer.run();
     rounding = writer.largest_rounding();
     close_checked(dataset, target.path);
-    CopyProgress copying{progress, refiner.request().limits.stop};
+    CopyProgress copying{progress, parts.request().limits.stop};
     copy_as_cog(raw, file, target, copying);
   }
   file.publish();

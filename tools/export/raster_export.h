@@ -43,7 +43,7 @@ struct RasterTarget {
   std::uint64_t table_bytes = std::uint64_t{64} << 20;  ///< For GDAL's table of blocks.
 };
 
-/// Samples the TIN of `refiner` at the centres of `grid` and writes what `target.content` names.
+/// Samples the TIN of `parts` at the centres of `grid` and writes what `target.content` names.
 /// Heights are Float32, or Float64 where Float32 does not hold every height of a vertex. Slopes and
 /// aspects are Float32, hillshades bytes, all three of the normal that sample_normals() gives, over
 /// ground at the pixel's centre. A pixel without surface gets `nodata`, and so does the aspect of
@@ -57,8 +57,8 @@ struct RasterTarget {
 /// @throws Error  invalid_argument    GDAL refuses an option, or the output exists
 ///                resource_exhausted  what a single pixel needs does not fit the memory; the table
 ///                                    of blocks does not fit `table_bytes`; the disk is full
-///                as PartRefiner::refine; io_error; cancelled. Nothing is left behind.
-[[nodiscard]] double export_raster(const PartRefiner& refiner, const PixelGrid& grid,
+///                as TinParts::part; io_error; cancelled. Nothing is left behind.
+[[nodiscard]] double export_raster(TinParts& parts, const PixelGrid& grid,
                                    const RasterTarget& target,
                                    const std::function<void(double)>& progress);
 

@@ -127,9 +127,7 @@ std::uint64_t PatchMaker::number_of(VertexId v, const Tin& tin, const Sorted& so
   return number;
 }
 
-TinPatch PatchMaker::make(const GridCell& cell, const RefinedTin& refined,
-                          std::uint64_t border_limit_bytes) {
-  const Tin& tin = refined.tin;
+TinPatch PatchMaker::make(const GridCell& cell, const Tin& tin, std::uint64_t border_limit_bytes) {
   const Sorted sorted = sort_cell(cell, tin);
   TinPatch patch;
   patch.tin = &tin;

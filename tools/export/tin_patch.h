@@ -28,12 +28,12 @@ struct TinPatch {
   std::vector<Point> vertices;
   struct Corner {
     std::uint64_t number;  ///< Of the vertex, over the whole TIN.
-    VertexId local;        ///< In the refinement, for point().
+    VertexId local;        ///< In the part, for point().
   };
   std::vector<std::array<Corner, 3>> triangles;  ///< Counter-clockwise; the last corner first.
 
   [[nodiscard]] Point point(const Corner& corner) const;
-  const Tin* tin = nullptr;           ///< The refinement; borrowed.
+  const Tin* tin = nullptr;           ///< The part of the TIN; borrowed.
   const StoreFacts* facts = nullptr;  ///< Borrowed.
 };
 
@@ -44,12 +44,12 @@ class PatchMaker {
   /// @throws Error invalid_argument as GridRegion
   PatchMaker(const StoreFile& store, const std::optional<Region>& region);
 
-  /// The patch of the next cell. It borrows `refined`.
+  /// The patch of the next cell, of which `tin` is the part. It borrows `tin`.
   /// @throws Error corruption          cells do not join: the file is damaged
   ///               resource_exhausted  the vertices that later cells use take more than
   ///                                   `border_limit_bytes`
-  /// Cost: linear in the refinement; memory as much again as the mesh.
-  [[nodiscard]] TinPatch make(const GridCell& cell, const RefinedTin& refined,
+  /// Cost: linear in the part; memory as much again as the part.
+  [[nodiscard]] TinPatch make(const GridCell& cell, const Tin& tin,
                               std::uint64_t border_limit_bytes);
 
   [[nodiscard]] std::uint64_t vertices() const noexcept { return vertices_; }

@@ -52,18 +52,12 @@ double weighted(const std::array<Int128, 3>& w, const std::array<double, 3>& cod
 class Facet {
  public:
   Facet(const Tin& tin, TriangleId t, const HeightEncoding& heights)
-      : whole_(heights.type == HeightType::int32) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vertex& v = tin.vertices[tin.triangles[t].v[i]];
-      corner_[i] = {
-          v.position,
-          {std::int64_t{v.position.x} << kLatticeBits, std::int64_t{v.position.y} << kLatticeBits},
-          heights.code(v.height)};
-    }
-    std::sort(corner_.begin(), corner_.end(),
-              [](const Corner& a, const Corner& b) { return key_of(a.at) < key_of(b.at); });
-    is_turned_ = orient(corner_[0].at, corner_[1].at, corner_[2].at) < 0;
+      : Facet(heights,
+              [&](std::size_t i) -> const Vertex& { return tin.vertices[tin.triangles[t].v[i]]; }) {
   }
+  Facet(const LivingTriangle& t, const HeightEncoding& heights)
+      : Facet(heights,
+              [&](std::size_t i) -> const LivingTriangle::Corner& { return t.corner[i]; }) {}
 
   [[nodiscard]] std::array<std::int64_t, 2> x_range() const {
     return {std::min({corner_[0].spot.x, corner_[1].spot.x, corner_[2].spot.x}),
@@ -113,6 +107,22 @@ class Facet {
   }
 
  private:
+  /// @param corner  Gives position and height of corner 0, 1, 2.
+  template <typename CornerOf>
+  Facet(const HeightEncoding& heights, const CornerOf& corner)
+      : whole_(heights.type == HeightType::int32) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& v = corner(i);
+      corner_[i] = {
+          v.position,
+          {std::int64_t{v.position.x} << kLatticeBits, std::int64_t{v.position.y} << kLatticeBits},
+          heights.code(v.height)};
+    }
+    std::sort(corner_.begin(), corner_.end(),
+              [](const Corner& a, const Corner& b) { return key_of(a.at) < key_of(b.at); });
+    is_turned_ = orient(corner_[0].at, corner_[1].at, corner_[2].at) < 0;
+  }
+
   [[nodiscard]] std::array<Int128, 3> weights_at(Spot p) const {
     const std::array<Int128, 3> w = {area(corner_[1], corner_[2], p),
                                      area(corner_[2], corner_[0], p),
@@ -166,6 +176,19 @@ class Centres {
     }
   }
 
+  /// The first of ascending numbers that is not below `v`: about where they would be evenly spaced,
+  /// as centres nearly are.
+  [[nodiscard]] static std::size_t first_from(const std::vector<std::int64_t>& steps,
+                                              std::int64_t v) {
+    const auto last = static_cast<double>(steps.size() - 1);
+    const auto whole = static_cast<double>(steps.back() - steps.front());
+    const double share = static_cast<double>(v - steps.front()) / std::max(whole, 1.0);
+    auto i = static_cast<std::size_t>(std::clamp(share * last, 0.0, last));
+    while (i > 0 && steps[i - 1] >= v) --i;
+    while (i < steps.size() && steps[i] < v) ++i;
+    return i;
+  }
+
   /// True when the box of a triangle holds none of them.
   [[nodiscard]] bool misses(const Facet& facet) const {
     const auto [low_y, high_y] = facet.y_range();
@@ -179,16 +202,14 @@ class Centres {
   void near(const Facet& facet, const Found& found) const {
     if (misses(facet)) return;
     const auto [low_y, high_y] = facet.y_range();
-    for (auto y = std::lower_bound(ys_.begin(), ys_.end(), low_y); y != ys_.end() && *y <= high_y;
-         ++y) {
-      const auto [from, to] = facet.span(*y);
+    for (std::size_t j = first_from(ys_, low_y); j < ys_.size() && ys_[j] <= high_y; ++j) {
+      const auto [from, to] = facet.span(ys_[j]);
       constexpr double kRounding = 4.0;  // lattice units; exact tests follow
-      const auto begin = std::lower_bound(xs_.begin(), xs_.end(),
-                                          static_cast<std::int64_t>(std::floor(from - kRounding)));
-      const std::int64_t row = part_.row + (ys_.end() - y - 1) - rect_.row;
-      for (auto x = begin; x != xs_.end() && static_cast<double>(*x) <= to + kRounding; ++x) {
-        const std::int64_t column = part_.column + (x - xs_.begin()) - rect_.column;
-        found(static_cast<std::size_t>(row * rect_.width + column), Spot{*x, *y});
+      const auto row = part_.row + static_cast<std::int64_t>(ys_.size() - j - 1) - rect_.row;
+      for (std::size_t i = first_from(xs_, static_cast<std::int64_t>(std::floor(from - kRounding)));
+           i < xs_.size() && static_cast<double>(xs_[i]) <= to + kRounding; ++i) {
+        const std::int64_t column = part_.column + static_cast<std::int64_t>(i) - rect_.column;
+        found(static_cast<std::size_t>(row * rect_.width + column), Spot{xs_[i], ys_[j]});
       }
     }
   }
@@ -228,25 +249,31 @@ std::vector<TriangleId> in_order(const Tin& tin, const Centres& centres,
 
 }  // namespace
 
-void sample_heights(const RefinedTin& refined, const StoreFacts& facts, const PixelGrid& grid,
-                    const PixelRect& part, const PixelRect& rect, std::vector<double>& heights) {
-  const Tin& tin = refined.tin;
-  const Centres centres(grid, part, rect);
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    if (!is_surface(tin, t)) continue;
-    const Facet facet(tin, t, facts.heights);
-    centres.near(facet, [&](std::size_t place, Spot spot) {
-      if (const auto code = facet.code_at(spot)) {
-        heights[place] = facts.heights.height_of_code(*code);
-      }
-    });
-  }
+struct HeightSamples::Impl {
+  HeightEncoding encoding;
+  Centres centres;
+};
+
+HeightSamples::HeightSamples(const StoreFacts& facts, const PixelGrid& grid, const PixelRect& rect,
+                             std::vector<double>& heights)
+    : impl_(std::make_unique<const Impl>(Impl{facts.heights, Centres(grid, rect, rect)})),
+      heights_(heights) {}
+HeightSamples::~HeightSamples() = default;
+
+void HeightSamples::add(const LivingTriangle& t) {
+  if (t.is_void) return;
+  const Facet facet(t, impl_->encoding);
+  impl_->centres.near(facet, [&](std::size_t place, Spot spot) {
+    if (!std::isnan(heights_[place])) return;  // another triangle gives the same height
+    if (const auto code = facet.code_at(spot)) {
+      heights_[place] = impl_->encoding.height_of_code(*code);
+    }
+  });
 }
 
-void sample_normals(const RefinedTin& refined, const StoreFacts& facts, const PixelGrid& grid,
+void sample_normals(const Tin& tin, const StoreFacts& facts, const PixelGrid& grid,
                     const PixelRect& part, const PixelRect& rect,
                     std::vector<GridNormal>& normals) {
-  const Tin& tin = refined.tin;
   const Centres centres(grid, part, rect);
   for (const TriangleId t : in_order(tin, centres, facts.heights)) {
     const Facet facet(tin, t, facts.heights);

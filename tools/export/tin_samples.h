@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "engine/query/terrain.h"
@@ -13,15 +14,28 @@
 
 namespace ptin::tools {
 
-/// Samples `refined` at the pixels of `part`. The height of each centre that lies in a closed
-/// surface triangle is written to its place in `heights`, which holds the pixels of `rect` row by
-/// row from the north; other places are left alone. A centre on a vertex gets the vertex's height,
-/// one on an edge is interpolated along the edge alone: so a height depends neither on the triangle
-/// that gives it nor on the part. Weights are exact; the height is rounded where it is formed.
-/// @param part  Inside of `rect`.
-/// Cost: the triangles, and the pixels under them.
-void sample_heights(const RefinedTin& refined, const StoreFacts& facts, const PixelGrid& grid,
-                    const PixelRect& part, const PixelRect& rect, std::vector<double>& heights);
+/// Heights of a TIN at the centres of a rectangle of pixels, from its triangles in any order. The
+/// height of each centre that lies in a closed surface triangle is set; a centre on a vertex gets
+/// the vertex's height, one on an edge is interpolated along the edge alone: so a height does not
+/// depend on the triangle that gives it. Weights are exact; the height is rounded where it is
+/// formed.
+class HeightSamples {
+ public:
+  /// @param heights  Borrowed: `rect` row by row from the north. NaN where there is no height yet;
+  ///                 other places are left alone.
+  HeightSamples(const StoreFacts& facts, const PixelGrid& grid, const PixelRect& rect,
+                std::vector<double>& heights);
+  ~HeightSamples();
+  HeightSamples(const HeightSamples&) = delete;
+  HeightSamples& operator=(const HeightSamples&) = delete;
+  /// Cost: the pixels under the triangle.
+  void add(const LivingTriangle& t);
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+  std::vector<double>& heights_;
+};
 
 /// A normal that points up, as long as twice the area of its triangle on the grid: x and y in grid
 /// units times stored height numbers, z in square grid units. 0 in z: there is none.
@@ -36,7 +50,7 @@ struct GridNormal {
 /// gdaldem's differences are there. They are added in an order of their corners' keys, so a sum
 /// does not depend on the part.
 /// Cost: as sample_heights(), and the triangles are sorted; 24 bytes a triangle.
-void sample_normals(const RefinedTin& refined, const StoreFacts& facts, const PixelGrid& grid,
+void sample_normals(const Tin& tin, const StoreFacts& facts, const PixelGrid& grid,
                     const PixelRect& part, const PixelRect& rect, std::vector<GridNormal>& normals);
 
 /// The normal of a triangle; its corners counter-clockwise, from any of them on.

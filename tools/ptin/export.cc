@@ -100,7 +100,7 @@ struct ExportMemory {
   static constexpr std::uint64_t kProgram = std::uint64_t{16} << 20;
   explicit ExportMemory(std::uint64_t bytes)
       : part((bytes - kProgram) / 2), buffers(bytes / 16), index(bytes / 4) {}
-  std::uint64_t part;     ///< One refined part, and the patch made from it.
+  std::uint64_t part;     ///< One part, and the patch made from it.
   std::uint64_t buffers;  ///< For pixels; for GDAL's cache; for the open border: each.
   std::uint64_t index;    ///< A format's index of features, or of blocks.
 };
@@ -154,13 +154,13 @@ double sum_above(double a, double b) {
 
 using Report = std::function<void(double)>;
 
-Exported export_triangles(const PartRefiner& refiner, const ExportFormat& format,
-                          const SinkTarget& target, const Report& report) {
+Exported export_triangles(TinParts& parts, const ExportFormat& format, const SinkTarget& target,
+                          const Report& report) {
   Exported made;
   const std::unique_ptr<TinSink> sink = format.make_sink(target);
-  PatchMaker maker(refiner.terrain().store(), refiner.request().region);
-  walk_cells(refiner, [&](const GridCell& cell, const RefinedTin& refined, double done) {
-    sink->add(maker.make(cell, refined, target.border_bytes));
+  PatchMaker maker(parts.terrain().store(), parts.request().region);
+  walk_cells(parts, [&](const GridCell& cell, const Tin& part, double done) {
+    sink->add(maker.make(cell, part, target.border_bytes));
     ++made.cells;
     report(done);
   });
@@ -183,10 +183,10 @@ PixelGrid grid_of(const ExportOptions& options, const StoreFile& store, const Cr
   return {store.facts(), size, window};
 }
 
-Exported export_pixels(const PartRefiner& refiner, const PixelGrid& grid,
-                       const RasterTarget& target, const Report& report) {
+Exported export_pixels(TinParts& parts, const PixelGrid& grid, const RasterTarget& target,
+                       const Report& report) {
   Exported made;
-  made.rounding = export_raster(refiner, grid, target, report);
+  made.rounding = export_raster(parts, grid, target, report);
   made.columns = grid.columns();
   made.rows = grid.rows();
   const std::array<double, 6> transform = grid.geotransform();
@@ -196,17 +196,17 @@ Exported export_pixels(const PartRefiner& refiner, const PixelGrid& grid,
 
 /// The samples of what was exported that the level of detail moved across the border of voids.
 /// None where nothing bounds how far the border moved, or the ground around it does not fit the memory.
-std::optional<ClassChanges> changes_of(const PartRefiner& refiner, const ExportOptions& options,
+std::optional<ClassChanges> changes_of(const TinParts& parts, const ExportOptions& options,
                                        const CrsFacts& crs) {
-  const StoreFile& store = refiner.terrain().store();
+  const StoreFile& store = parts.terrain().store();
   ClassChangesRequest request;
   request.region = region_of(options.region, store.facts(), crs.wkt);
   request.detail = detail_of(options.detail);
-  request.reach = border_reach(store, refiner.detail().certificate().error);
-  request.limits = refiner.request().limits;
+  request.reach = border_reach(store, parts.detail().certificate().error);
+  request.limits = parts.request().limits;
   if (!std::isfinite(request.reach[0]) || !std::isfinite(request.reach[1])) return std::nullopt;
   try {
-    return class_changes(refiner.terrain(), request);
+    return class_changes(parts.terrain(), request);
   } catch (const Error& e) {
     if (e.code() == ErrorCode::resource_exhausted) return std::nullopt;
     throw;
@@ -225,8 +225,8 @@ PartRequest request_of(const ExportOptions& options, const ExportFormat& format,
 }
 
 SinkTarget sink_target(const ExportFormat& format, const ExportOptions& options,
-                       const PartRefiner& refiner) {
-  const StoreFile& store = refiner.terrain().store();
+                       const TinParts& parts) {
+  const StoreFile& store = parts.terrain().store();
   const CrsFacts crs = crs_facts(store);
   const ExportMemory memory = memory_of(options);
   return {options.output,
@@ -236,7 +236,7 @@ SinkTarget sink_target(const ExportFormat& format, const ExportOptions& options,
           content_of(options, format).in_percent,
           memory.buffers,
           memory.index,
-          2 * (refiner.records() + store.t0().vertices.size())};
+          parts.triangles()};
 }
 
 void warn_of_triangles(const Exported& made, const ExportFormat& format, const SinkTarget& target) {
@@ -273,7 +273,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   const bool is_raster = format.make_sink == nullptr;
   std::optional<PixelGrid> grid;
   if (is_raster) grid.emplace(grid_of(options, store, crs_facts(store)));
-  const PartRefiner refiner = terrain.parts(request_of(options, format, store, context));
+  TinParts parts = terrain.parts(request_of(options, format, store, context));
   Progress progress(Progress::style_for(context.quiet, stderr));
   const Report report = [&](double done) {
     constexpr double kSteps = 10'000.0;
@@ -281,14 +281,14 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   };
   report(0.0);
   // Before anything is published: what may fail for want of memory must leave nothing behind.
-  const std::optional<ClassChanges> changes = changes_of(refiner, options, crs_facts(store));
+  const std::optional<ClassChanges> changes = changes_of(parts, options, crs_facts(store));
   Exported made;
   if (is_raster) {
-    made = export_pixels(refiner, *grid, raster_target(format, options, store), report);
+    made = export_pixels(parts, *grid, raster_target(format, options, store), report);
     progress.finish();
   } else {
-    const SinkTarget target = sink_target(format, options, refiner);
-    made = export_triangles(refiner, format, target, report);
+    const SinkTarget target = sink_target(format, options, parts);
+    made = export_triangles(parts, format, target, report);
     progress.finish();
     if (!context.quiet) warn_of_triangles(made, format, target);
     if (format.make_sink == make_stl_sink) made.frame = target.frame;
@@ -299,7 +299,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   made.what = options.content.what;
   if (made.what == "slope") made.slope_unit = slope_unit_of(options.content);
   made.changes = changes;
-  made.certificate = refiner.detail().certificate();
+  made.certificate = parts.detail().certificate();
   made.certificate.error = sum_above(made.certificate.error, made.rounding);
   made.certificate.deviation = sum_above(made.certificate.deviation, made.rounding);
   made.bytes = bytes_of_file(options.output);

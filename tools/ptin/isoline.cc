@@ -9,6 +9,7 @@
 #include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
+#include "engine/mesh/link.h"
 #include "engine/query/terrain.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
@@ -36,6 +37,7 @@ struct IsolineOptions {
   bool polygons = false;
   std::uint64_t max_lines = IsolineRequest{}.most_lines;
   int threads = 0;
+  AnswerBy by = AnswerBy::kStars;
   std::string memory, output;
   bool overwrite = false;
 };
@@ -117,15 +119,41 @@ bool has_straight_border(const StoreFile& store) {
          store.t0().vertices.size() + store.record_count() == full;
 }
 
+/// The part of the TIN that the bands of a request need.
 RefinedTin refine_for_bands(const IsolineRequest& request, const LevelSet& levels,
                             const Terrain& terrain) {
+  QueryLimits limits = request.limits;
+  limits.memory_bytes /= 2;
+  if (has_straight_border(terrain.store()) && !request.detail.vertices) {
+    const PredicatePtr crossing = levels.crossing();
+    RefineRequest refine;
+    if (request.window) refine.region = *request.window;
+    refine.detail = request.detail;
+    refine.also = crossing.get();
+    refine.limits = limits;
+    return terrain.refine(refine);
+  }
   PartRequest part;
   if (request.window) part.region = *request.window;
   part.detail = request.detail;
-  part.limits.memory_bytes = request.limits.memory_bytes / 2;
-  part.limits.stop = request.limits.stop;
-  if (has_straight_border(terrain.store())) part.also = levels.crossing();
-  return terrain.parts(part).refine(terrain.store().facts().bounds);
+  part.limits = limits;
+  TinParts parts = terrain.parts(part);
+  Tin* tin = parts.part(terrain.store().facts().bounds);
+  if (tin == nullptr) {
+    throw Error(
+        ErrorCode::resource_exhausted,
+        "the TIN of the bands takes more than half of the memory: give more --memory, or ask "
+        "for a window or a larger error",
+        terrain.store().path());
+  }
+  link_tin(*tin);
+  RefinedTin result;
+  result.tin = std::move(*tin);
+  result.certified_error = parts.detail().certificate().error;
+  result.certified_deviation = parts.detail().certificate().deviation;
+  result.exact = parts.detail().is_exact(terrain.store().facts());
+  result.cost = parts.cost();
+  return result;
 }
 
 std::unique_ptr<OGRGeometry> polygon_geometry(const BandPolygon& polygon) {
@@ -229,6 +257,7 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   request.temporary_folder = folder_for_temporaries(options);
   request.threads = thread_count(options.threads);
   request.limits.stop = context.stop;
+  request.by = options.by;
   return options.polygons ? run_polygons(options, request, terrain, crs, context)
                           : run_lines(options, request, terrain, crs, context);
 }
@@ -255,6 +284,7 @@ Action declare_isoline(CLI::App& app, Context& context) {
                      known_isoline_extensions() + "; - is GeoJSON on stdout")
       ->type_name("OUT")
       ->required();
+  add_by_option(app, options->by);
   app.add_option("--max-lines", options->max_lines,
                  "Refuse, before anything is written, when there are more lines, or polygons")
       ->type_name("N")

@@ -125,7 +125,7 @@ std::vector<GridBox> Verifier::windows() {
   // A raster is cut into squares of samples; points are halved until few enough are in each window.
   std::vector<GridBox> boxes;
   std::vector<GridBox> open{facts_.bounds};
-  is_grid_ = source_.read(box_of({facts_.bounds.min_x, facts_.bounds.min_y})).is_grid;
+  is_grid_ = source_.read(box_of(GridPoint{facts_.bounds.min_x, facts_.bounds.min_y})).is_grid;
   while (!open.empty()) {
     stop_if_asked(options_.stop, "verification");
     const GridBox box = open.back();

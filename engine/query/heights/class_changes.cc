@@ -11,17 +11,17 @@
 
 #include "engine/error.h"
 #include "engine/geometry/packed_boxes.h"
-#include "engine/query/refine/grid_cell.h"
-#include "engine/query/refine/part_refiner.h"
-#include "engine/query/refine/refinement.h"
-#include "engine/query/walk/walk.h"
+#include "engine/mesh/link.h"
+#include "engine/mesh/triangle_holds.h"
+#include "engine/query/living/grid_cell.h"
+#include "engine/query/living/tin_parts.h"
 
 namespace ptin {
 
 namespace {
 
-/// Parts of the finest TIN are cut until they take no more than this beside T0, so that they cling
-/// to the border.
+/// Parts of the finest TIN are cut until they take no more than this, so that they cling to the
+/// border.
 constexpr std::uint64_t kPartBytes = std::uint64_t{1} << 20;
 
 /// Grid units that one border may be from the other, along x and y, rounded up; at most the grid.
@@ -73,17 +73,42 @@ bool any_meets(const PackedBoxes& boxes, const GridBox& box) {
   return found;
 }
 
-/// True when a sample at `place` of a level keeps its class.
-bool keeps_class(const Tin& tin, const Place& place, bool was_surface) {
-  const Triangle& triangle = tin.triangles[place.triangle];
-  const bool here = tin.classes[place.triangle] == TriangleClass::kSurface;
-  if (place.lies == Lies::kInTriangle) return here == was_surface;
-  if (place.lies == Lies::kOnVertex)
-    return was_surface ? touches_surface(tin, triangle.v[place.index])
-                       : touches_void(tin, triangle.v[place.index]);
-  const TriangleId other = triangle.n[place.index];
-  const bool there = other == kNone ? here : tin.classes[other] == TriangleClass::kSurface;
-  return was_surface ? here || there : !here || !there;
+GridBox box_of_triangle(const Tin& tin, const Triangle& t) {
+  return united(united(box_of(tin.position(t.v[0])), tin.position(t.v[1])), tin.position(t.v[2]));
+}
+
+/// The triangles of a part, to be asked which of them hold a sample.
+class ClassesAt {
+ public:
+  explicit ClassesAt(const Tin& tin) : tin_(tin) {
+    std::vector<GridBox> boxes(tin.triangles.size());
+    std::transform(tin.triangles.begin(), tin.triangles.end(), boxes.begin(),
+                   [&](const Triangle& t) { return box_of_triangle(tin, t); });
+    boxes_ = PackedBoxes(std::move(boxes));
+  }
+  /// True when a closed triangle of the class holds the position.
+  [[nodiscard]] bool holds(TriangleClass wanted, GridPoint p) const {
+    bool found = false;
+    boxes_.visit([&](const GridBox& b) { return !found && contains(b, p); },
+                 [&](std::size_t t) {
+                   found = tin_.classes[t] == wanted && triangle_holds(tin_, tin_.triangles[t], p);
+                 });
+    return found;
+  }
+
+ private:
+  const Tin& tin_;
+  PackedBoxes boxes_;
+};
+
+/// For each vertex of a part whether a surface triangle has it as a corner.
+std::vector<bool> on_surface(const Tin& tin) {
+  std::vector<bool> is_on(tin.vertices.size());
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (tin.classes[t] != TriangleClass::kSurface) continue;
+    for (const VertexId v : tin.triangles[t].v) is_on[v] = true;
+  }
+  return is_on;
 }
 
 class ChangeCount {
@@ -92,20 +117,26 @@ class ChangeCount {
       : terrain_(terrain),
         reach_{steps_above(request.reach[0], terrain.store().facts().map.step_x),
                steps_above(request.reach[1], terrain.store().facts().map.step_y)},
-        level_(terrain, {{}, request.detail, {}, half_of(request.limits)}),
-        finest_(terrain, {{}, {}, {}, half_of(request.limits)}) {
+        level_(terrain, {{}, request.detail, half_of(request.limits)}),
+        finest_(terrain, {{}, {}, part_of(request.limits)}) {
     if (request.region) region_.emplace(*request.region, terrain.store().facts().map);
   }
 
   ClassChanges run() {
     const StoreFacts& facts = terrain_.store().facts();
     if (facts.free_of_voids || level_.detail().certificate().complete) return changes_;
+    Tin* level = nullptr;
     const auto fits = [&](const GridCell& cell, double) {
-      return !is_wanted(cell.box()) || level_.fits(grown(cell.box(), reach_, 2));
+      return !is_wanted(cell.box()) ||
+             (level = level_.part(grown(cell.box(), reach_, 2))) != nullptr;
     };
     walk_fitting_cells(facts.bounds, fits, [&](const GridCell& cell, double) {
-      if (is_wanted(cell.box())) count_in(cell);
+      if (!is_wanted(cell.box())) return;
+      if (cell.level == 0) level = level_.part(grown(cell.box(), reach_, 2));
+      count_in(cell, require(level));
     });
+    changes_.cost.add_counts(level_.cost());
+    changes_.cost.add_counts(finest_.cost());
     return changes_;
   }
 
@@ -114,33 +145,47 @@ class ChangeCount {
     limits.memory_bytes /= 2;
     return limits;
   }
+  static QueryLimits part_of(QueryLimits limits) {
+    limits.memory_bytes = std::min(limits.memory_bytes / 2, kPartBytes);
+    return limits;
+  }
   [[nodiscard]] bool is_wanted(const GridBox& box) const { return !region_ || region_->meets(box); }
 
-  void count_in(const GridCell& cell) {
-    const RefinedTin level = level_.refine(grown(cell.box(), reach_, 2));
-    changes_.cost.add_counts(level.cost);
-    const PackedBoxes near = around_border(level.tin, reach_);
-    const std::uint64_t part_bytes = bytes_of(terrain_.t0()) + kPartBytes;
-    const auto is_part = [&](const GridCell& part, double) {
-      const GridBox box = part.box();
-      return !any_meets(near, box) || !is_wanted(box) || finest_.bytes_for(box) <= part_bytes;
+  /// @throws Error resource_exhausted when there is no part: one of a single position does not fit
+  [[nodiscard]] Tin& require(Tin* part) const {
+    if (part == nullptr) {
+      throw Error(
+          ErrorCode::resource_exhausted,
+          "what meets a single position of the grid takes more memory than a part may: give "
+          "more memory",
+          terrain_.store().path());
+    }
+    return *part;
+  }
+
+  void count_in(const GridCell& cell, Tin& level) {
+    link_tin(level);
+    const PackedBoxes near = around_border(level, reach_);
+    const ClassesAt at_level(level);
+    const auto is_near = [&](const GridBox& box) { return any_meets(near, box) && is_wanted(box); };
+    Tin* finest = nullptr;
+    const auto fits = [&](const GridCell& part, double) {
+      return !is_near(part.box()) || (finest = finest_.part(part.box())) != nullptr;
     };
-    walk_fitting_cells(cell.box(), is_part, [&](const GridCell& part, double) {
-      if (any_meets(near, part.box()) && is_wanted(part.box())) compare(part, level.tin);
+    walk_fitting_cells(cell.box(), fits, [&](const GridCell& part, double) {
+      if (!is_near(part.box())) return;
+      if (part.level == 0) finest = finest_.part(part.box());
+      compare(part, require(finest), at_level);
     });
   }
 
-  void compare(const GridCell& part, const Tin& level) {
-    const RefinedTin finest = finest_.refine(part.box());
-    changes_.cost.add_counts(finest.cost);
-    TriangleId start = 0;
-    for (VertexId v = 0; v < finest.tin.vertices.size(); ++v) {
-      const GridPoint p = finest.tin.position(v);
+  void compare(const GridCell& part, const Tin& finest, const ClassesAt& level) {
+    const std::vector<bool> is_on_surface = on_surface(finest);
+    for (VertexId v = 0; v < finest.vertices.size(); ++v) {
+      const GridPoint p = finest.position(v);
       if (!part.holds(p) || !is_wanted(box_of(p))) continue;
-      const Place place = find_spot(level, spot_of(p), start);
-      start = place.triangle;
-      const bool was_surface = touches_surface(finest.tin, v);
-      if (!keeps_class(level, place, was_surface))
+      const bool was_surface = is_on_surface[v];
+      if (!level.holds(was_surface ? TriangleClass::kSurface : TriangleClass::kVoid, p))
         ++(was_surface ? changes_.to_void : changes_.to_surface);
     }
   }
@@ -148,7 +193,7 @@ class ChangeCount {
   const OpenedTerrain& terrain_;
   GridReach reach_;
   std::optional<GridRegion> region_;
-  PartRefiner level_, finest_;
+  TinParts level_, finest_;
   ClassChanges changes_;
 };
 

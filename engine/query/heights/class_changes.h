@@ -40,8 +40,8 @@ struct ClassChanges {
 ///                                   NaN
 ///               resource_exhausted  what a single position needs does not fit the limit
 ///               corruption, io_error, cancelled
-/// Cost: a refinement at the level of all that is counted, and one without a tolerance of what lies
-/// within twice the reach of a border.
+/// Cost: the stars of the level where samples are counted, and those of the finest TIN within twice
+/// the reach of a border.
 [[nodiscard]] ClassChanges class_changes(const OpenedTerrain& terrain,
                                          const ClassChangesRequest& request);
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/query/select/accounting.h"
+#include "engine/query/select/answer_by.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/query_limits.h"
@@ -20,18 +21,10 @@
 
 namespace ptin {
 
-/// How an answer is found. Both ways give the same answer.
-enum class AnswerBy : std::uint8_t {
-  /// From the triangles that live at the level and meet the place (engine/DESIGN.md, section 2.10),
-  /// where the level is one of error and the packed R-tree is in use; else by splits.
-  kStars,
-  /// As the paper has it: records are retrieved, sorted topologically and applied to T0.
-  kSplits,
-};
-
 struct LocateRequest {
   DetailRequest detail;  ///< The TIN of which the heights are.
   QueryLimits limits;
+  /// By stars where the level is one of error and the packed R-tree is in use; else by splits.
   AnswerBy by = AnswerBy::kStars;
 };
 

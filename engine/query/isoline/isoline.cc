@@ -33,15 +33,9 @@ class IsolineExtraction {
         context_(request.limits, store_.path()),
         detail_(request.detail, terrain.record_source(), context_),
         result_(PointStore(request.limits.memory_bytes / 8, request.temporary_folder)) {
-    std::vector<PredicatePtr> parts{levels_.crossing()};
     if (request.window) {
       region_.emplace(*request.window, store_.facts().map);
-      parts.push_back(meets_region(*request.window, store_.facts().map));
     }
-    if (detail_.is_asked()) {
-      parts.push_back(std::make_shared<AboveError>(detail_.tolerance()));
-    }
-    predicate_ = all_of(std::move(parts));
   }
 
   Isolines run() {
@@ -70,17 +64,31 @@ class IsolineExtraction {
   /// points take the rest.
   void trace() {
     const TileTraceRequest request{levels_,
-                                   predicate_,
                                    detail_,
                                    region_ ? &*region_ : nullptr,
                                    request_.limits.memory_bytes / 2,
                                    request_.limits.memory_bytes / 8 * 3,
                                    request_.threads,
                                    request_.limits.stop};
-    TileTraces traces = trace_tiles(terrain_, request, result_.points_, context_.cost);
+    const bool by_stars = request_.by == AnswerBy::kStars && !terrain_.uses_other_index();
+    TileTraces traces = by_stars ? trace_tiles(terrain_, request, result_.points_, context_.cost)
+                                 : trace_by_splits(terrain_, request, *crossed_records(),
+                                                   result_.points_, context_.cost);
     result_.pieces_ = std::move(traces.pieces);
     result_.crossed = traces.counts;
     result_.tiles = traces.tiles;
+  }
+
+  /// True for the records that the levels may cross in the window, at the level of detail.
+  [[nodiscard]] PredicatePtr crossed_records() const {
+    std::vector<PredicatePtr> parts{levels_.crossing()};
+    if (request_.window) {
+      parts.push_back(meets_region(*request_.window, store_.facts().map));
+    }
+    if (detail_.is_asked()) {
+      parts.push_back(std::make_shared<AboveError>(detail_.tolerance()));
+    }
+    return all_of(std::move(parts));
   }
 
   /// Checks that the longest line fits. Lines are joined and written in the memory that tiles have
@@ -153,7 +161,6 @@ class IsolineExtraction {
   const IsolineRequest& request_;
   LevelSet levels_;
   std::optional<GridRegion> region_;
-  PredicatePtr predicate_;
   QueryContext context_;
   Detail detail_;
   Isolines result_;

@@ -14,6 +14,7 @@
 #include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/isoline/levels.h"
 #include "engine/query/select/accounting.h"
+#include "engine/query/select/answer_by.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/query_limits.h"
@@ -31,6 +32,8 @@ struct IsolineRequest {
   /// extraction that needs one fails (resource_exhausted).
   std::string temporary_folder;
   int threads = 1;  ///< At most; fewer where the memory is small. The lines do not depend on it.
+  /// By stars where the packed R-tree is in use; else by splits, in one mesh and on one thread.
+  AnswerBy by = AnswerBy::kStars;
 };
 
 /// A line to be read. `points` are in map units, without repetitions in a row, and lie in the
@@ -78,15 +81,14 @@ class Isolines {
   PointStore points_;
 };
 
-/// Extracts isolines. All levels share one refinement. The terrain is processed in tiles that fit
-/// the memory, by what the index tells before their pages are read; lines are joined exactly across
-/// tiles.
+/// Extracts isolines, all levels together. The terrain is processed in tiles that fit the memory;
+/// lines are joined exactly across tiles.
 /// @throws Error invalid_argument    levels, window or tolerance mean nothing; as Detail
 ///               resource_exhausted  more than most_lines lines, told before any is handed out; a
 ///                                   tile that cannot be made small enough; no room for points
 ///               corruption, io_error, cancelled
-/// Cost: the records whose height interval holds a level; O(n log n) in the lines. With `vertices`
-/// the cost of Detail is added (select/detail.h).
+/// Cost: the stars whose heights hold a level; O(n log n) in the lines. With `vertices` the cost of
+/// Detail is added (select/detail.h).
 [[nodiscard]] Isolines isolines(const OpenedTerrain& terrain, const IsolineRequest& request);
 
 }  // namespace ptin

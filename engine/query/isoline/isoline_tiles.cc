@@ -7,6 +7,9 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/mesh/link.h"
+#include "engine/query/living/living_tin.h"
+#include "engine/query/living/stars_in_region.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/tile_queue.h"
 #include "engine/query/select/predicate.h"
@@ -59,18 +62,39 @@ class Collected {
   TileTraces all_;
 };
 
-/// Refines and traces tiles, one after the other, in the same memory.
+/// Asks for heights that a level may cross.
+class CrossedHeights final : public HeightPredicate {
+ public:
+  explicit CrossedHeights(const LevelSet& levels) : levels_(levels) {}
+  [[nodiscard]] bool may_hold(const Interval& codes) const noexcept override {
+    return levels_.band_of(codes.lo) < levels_.band_of(codes.hi);
+  }
+
+ private:
+  const LevelSet& levels_;
+};
+
+/// Gathers and traces tiles, one after the other, in the same memory.
 class Worker {
  public:
   Worker(const OpenedTerrain& terrain, const TileTraceRequest& request, std::uint64_t limit,
          TileQueue& queue, Collected& collected)
-      : terrain_(terrain),
+      : store_(terrain.store()),
+        heights_(store_.facts().heights),
         request_(request),
         limit_(limit),
         queue_(queue),
         collected_(collected),
-        context_({limit, request.stop}, terrain.store().path()),
-        refinement_(terrain.t0()) {}
+        context_({limit, request.stop}, store_.path()),
+        heights_crossed_(request.levels),
+        stars_in_region_(request.region),
+        living_(terrain, request.detail) {
+    const LevelSet& levels = request.levels;
+    place_.heights = {levels.code(0), levels.code(levels.size() - 1)};
+    place_.spans = &heights_crossed_;
+    place_.stars = request.region == nullptr ? nullptr : &stars_in_region_;
+    place_.wanted = [this](const LivingTriangle& t) { return is_crossed(t); };
+  }
 
   void run() noexcept {
     queue_.run([this](const GridBox& tile) { trace(tile); });
@@ -78,83 +102,69 @@ class Worker {
   [[nodiscard]] const QueryCost& cost() const noexcept { return context_.cost; }
 
  private:
+  [[nodiscard]] bool is_crossed(const LivingTriangle& t) const {
+    const auto band = [&](std::size_t i) {
+      return request_.levels.band_of(heights_.code(t.corner[i].height));
+    };
+    const std::uint32_t a = band(0);
+    return a != band(1) || a != band(2);
+  }
+
   /// Traces the triangles of a tile, or has its halves traced when it does not fit.
   void trace(const GridBox& tile) {
     context_.check_stop();
-    const StoreFile& store = terrain_.store();
-    const PredicatePtr predicate =
-        tile == store.facts().bounds
-            ? request_.predicate
-            : all_of({std::make_shared<MeetsBox>(tile), request_.predicate});
-    pages_.clear();
-    terrain_.index().search(*predicate, pages_, context_.cost.io);
-    const std::uint64_t records = most_records(store, pages_);
-    const std::uint64_t t0_bytes = refinement_bytes(terrain_.t0().vertices.size());
-    const std::uint64_t bytes = t0_bytes + refinement_bytes(records);
-    if (bytes > limit_ || refinement_bytes(records) > std::max(request_.tile_bytes, 4 * t0_bytes)) {
-      if (may_halve(tile, bytes)) {
-        queue_.put_halves(tile);
-        return;
-      }
+    place_.box = tile;
+    const bool is_small = half_perimeter(tile) <= 2 * kSmallestTile;
+    const std::uint64_t most = is_small ? limit_ : std::min(limit_, request_.tile_bytes);
+    if (!living_.gather(place_, most, context_)) {
+      halve(tile, most);
+      return;
     }
-    refine(*predicate, records);
-    trace_mesh(tile, bytes);
+    link_tin(living_.tin());
+    const StoreFacts& facts = store_.facts();
+    const TraceScope scope{tile, request_.region};
+    const std::uint64_t mesh_bytes = LivingTin::bytes_for(living_.tin().triangles.size());
+    TracedPieces traced;
+    const TraceResult result =
+        trace_isolines({living_.tin(), request_.levels, facts.heights, facts.map}, scope,
+                       limit_ - std::min(limit_, mesh_bytes), context_, traced);
+    if (result.traced) {
+      collected_.add(std::move(traced), result.counts);
+    } else {
+      halve(tile, mesh_bytes + result.bytes);
+    }
   }
 
-  /// False for the smallest tiles when they fit as they are.
-  [[nodiscard]] bool may_halve(const GridBox& tile, std::uint64_t bytes) const {
+  /// Has the halves of a tile traced, which takes `bytes` or more.
+  void halve(const GridBox& tile, std::uint64_t bytes) {
     if (half_perimeter(tile) > 2 * kSmallestTile) {
-      return true;
-    }
-    if (bytes <= limit_) {
-      return false;
+      queue_.put_halves(tile);
+      return;
     }
     throw Error(ErrorCode::resource_exhausted,
                 "the isolines of " + std::to_string(kSmallestTile) + " x " +
                     std::to_string(kSmallestTile) + " grid units alone take " + size_text(bytes) +
-                    ", more than the " + size_text(limit_) +
-                    " that a tile may take: give more memory, or ask for fewer levels or a larger "
-                    "error",
-                terrain_.store().path());
+                    " or more, and a tile may take " + size_text(limit_) +
+                    ": give more memory, or ask for fewer levels or a larger error",
+                store_.path());
   }
 
-  void refine(const AttributePredicate& predicate, std::uint64_t records) {
-    splits_.clear();
-    splits_.reserve(records);
-    read_pages(terrain_.store(), pages_, predicate, context_, splits_);
-    request_.detail.keep(splits_);
-    refinement_.restart(terrain_.t0());
-    refinement_.apply(splits_, context_);
-  }
-
-  void trace_mesh(const GridBox& tile, std::uint64_t mesh_bytes) {
-    const StoreFacts& facts = terrain_.store().facts();
-    const TraceScope scope{tile, request_.region};
-    TracedPieces traced;
-    const TraceResult result =
-        trace_isolines({refinement_.tin(), request_.levels, facts.heights, facts.map}, scope,
-                       limit_ - std::min(limit_, mesh_bytes), context_, traced);
-    if (!result.traced && may_halve(tile, mesh_bytes + result.bytes)) {
-      queue_.put_halves(tile);
-      return;
-    }
-    collected_.add(std::move(traced), result.counts);
-  }
-
-  const OpenedTerrain& terrain_;
+  const StoreFile& store_;
+  HeightEncoding heights_;
   const TileTraceRequest& request_;
   std::uint64_t limit_;
   TileQueue& queue_;
   Collected& collected_;
   QueryContext context_;
-  Refinement refinement_;
-  std::vector<PageId> pages_;
-  std::vector<PendingSplit> splits_;
+  CrossedHeights heights_crossed_;
+  StarsInRegion stars_in_region_;
+  LivingPlace place_;
+  LivingTin living_;
 };
 
 /// As many threads as asked for, as long as each has room for a tile of a useful size.
 int threads_within(const TileTraceRequest& request, std::size_t t0_vertices) {
-  const std::uint64_t useful = 2 * refinement_bytes(t0_vertices) + request.tile_bytes / 4;
+  const std::uint64_t useful = LivingTin::bytes_for(2 * t0_vertices) + request.tile_bytes / 4;
   const std::uint64_t most = std::max<std::uint64_t>(request.memory_bytes / useful, 1);
   return static_cast<int>(std::min<std::uint64_t>(std::max(request.threads, 1), most));
 }
@@ -176,6 +186,31 @@ TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& req
   for (const auto& worker : workers) {
     cost.add_counts(worker->cost());
   }
+  return collected.release();
+}
+
+TileTraces trace_by_splits(const OpenedTerrain& terrain, const TileTraceRequest& request,
+                           const AttributePredicate& predicate, PointStore& points,
+                           QueryCost& cost) {
+  const StoreFile& store = terrain.store();
+  const StoreFacts& facts = store.facts();
+  QueryContext context({request.memory_bytes, request.stop}, store.path());
+  std::vector<PendingSplit> splits =
+      retrieve(terrain.record_source(), predicate, bytes_of(terrain.t0()), context);
+  request.detail.keep(splits);
+  Refinement refinement(terrain.t0());
+  refinement.apply(splits, context);
+  const std::uint64_t bytes = bytes_of(terrain.t0()) + refinement_bytes(splits.size());
+  TracedPieces traced;
+  const TraceResult result =
+      trace_isolines({refinement.tin(), request.levels, facts.heights, facts.map},
+                     {facts.bounds, request.region}, context.left_beside(bytes), context, traced);
+  if (!result.traced) {
+    context.admit(bytes + result.bytes);
+  }
+  Collected collected(points, request.piece_bytes, store.path());
+  collected.add(std::move(traced), result.counts);
+  cost.add_counts(context.cost);
   return collected.release();
 }
 

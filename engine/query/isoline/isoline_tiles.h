@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The pieces of a whole terrain's isolines, tile by tile: each tile is refined and traced by
-// itself, on any number of threads, within a limit on memory.
+// The pieces of a whole terrain's isolines, tile by tile: of each tile the triangles that a level
+// crosses are gathered and traced, on any number of threads, within a limit on memory. Or from one
+// mesh of splits.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +14,21 @@
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
+#include "engine/query/select/predicate.h"
 #include "engine/query/select/region.h"
 
 namespace ptin {
 
 struct TileTraceRequest {
   const LevelSet& levels;
-  /// Records that tracing needs: monotone, and above the tolerance of `detail`.
-  PredicatePtr predicate;
-  const Detail& detail;        ///< Records that it leaves out are dropped.
+  const Detail& detail;
   const GridRegion* region;    ///< Only triangles that meet it are traced; null: all.
   std::uint64_t memory_bytes;  ///< For the tiles in work, on all threads together.
   std::uint64_t piece_bytes;   ///< For the pieces, kBytesAPiece each.
   int threads;
   std::stop_token stop;
-  /// Bytes of the records and the mesh of a tile, where the memory allows. Tiles of 16 to 64 MiB
-  /// are as fast as each other within 5 %; tiles of 8 MiB are 18 % slower, tiles of 128 MiB 8 %.
-  std::uint64_t tile_bytes = std::uint64_t{32} << 20;
+  /// Bytes of the mesh of a tile, where the memory allows: small enough for the processor's caches.
+  std::uint64_t tile_bytes = std::uint64_t{8} << 20;
 };
 
 /// Bytes that a piece takes until its line is written: the piece, a line of its own, and what
@@ -42,15 +41,24 @@ struct TileTraces {
   std::uint64_t tiles = 0;
 };
 
-/// Traces a terrain tile by tile. The points go to `points`, to which the pieces refer; the pieces
-/// come in no particular order. Tiles are small enough for the processor's caches, since one mesh
-/// of everything is twice as slow. A tile is halved when its records (known from the index) or its
-/// crossings (known before it is traced) do not fit the memory.
+/// Traces a terrain tile by tile, from the triangles that live at the level and that a level
+/// crosses. The points go to `points`, to which the pieces refer; the pieces come in no particular
+/// order. A tile is halved when its triangles or its crossings do not fit the memory.
 /// @param cost  What the tiles cost is added.
 /// @throws Error resource_exhausted  a tile that cannot be made small enough, or too many pieces;
 ///                                   says what would do
 ///               corruption, io_error, cancelled; as PointStore::add
+/// Cost: the stars with heights at a level, about twice; linear in the triangles crossed.
 [[nodiscard]] TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& request,
                                      PointStore& points, QueryCost& cost);
+
+/// The same as the paper has it: the records of which `predicate` is true (all that the levels may
+/// cross above the tolerance of the level of detail) are applied to T0, and that one mesh is traced.
+/// @throws Error resource_exhausted  the mesh does not fit the memory: told before it is read
+///               as trace_tiles()
+[[nodiscard]] TileTraces trace_by_splits(const OpenedTerrain& terrain,
+                                         const TileTraceRequest& request,
+                                         const AttributePredicate& predicate, PointStore& points,
+                                         QueryCost& cost);
 
 }  // namespace ptin

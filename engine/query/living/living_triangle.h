@@ -27,6 +27,7 @@ struct LivingTriangle {
   };
   std::array<Corner, 3> corner;  ///< Counter-clockwise.
   bool is_void = false;
+  float death = kLivesOn;  ///< As RingCorner::death.
   /// Most vertical distance to the full surface where both are surface, height's unit; +infinity
   /// for a triangle of T0.
   double deviation = kInfinity;
@@ -37,15 +38,14 @@ struct LivingTriangle {
   return united(united(box_of(t.corner[0].position), t.corner[1].position), t.corner[2].position);
 }
 
-/// Calls visit(const LivingTriangle&) for each triangle of the stars that lives at a level: all
-/// errors above it are applied (negative: all records). Stars of records that the level leaves out
-/// are passed over.
-template <class Visit>
+/// Calls visit(const LivingTriangle&) for each triangle that dies at a level or below it (negative:
+/// never) of the stars whose records are kept.
+template <class Keeps, class Visit>
 void visit_living(const StarredRecords& stars, double level, const HeightEncoding& heights,
-                  const Visit& visit) {
+                  const Keeps& keeps, const Visit& visit) {
   for (std::size_t i = 0; i < stars.size(); ++i) {
     const VertexSplit& r = stars.splits[i];
-    if (!(r.error > level)) {
+    if (!keeps(r)) {
       continue;
     }
     const std::span<const RingCorner> ring = stars.ring(i);
@@ -62,10 +62,19 @@ void visit_living(const StarredRecords& stars, double level, const HeightEncodin
         t.corner[1] = corner_of_ring(ring[k]);
         t.corner[2] = corner_of_ring(ring[k + 1 == ring.size() ? 0 : k + 1]);
         t.is_void = (ring[k].flags & RingCorner::kVoid) != 0;
+        t.death = ring[k].death;
         visit(t);
       }
     }
   }
+}
+
+/// The same for the level at which all errors above it are applied.
+template <class Visit>
+void visit_living(const StarredRecords& stars, double level, const HeightEncoding& heights,
+                  const Visit& visit) {
+  visit_living(
+      stars, level, heights, [&](const VertexSplit& r) { return r.error > level; }, visit);
 }
 
 /// The same for the triangles of T0.
@@ -79,6 +88,7 @@ void visit_living(const CoarsestTin& t0, double level, const Visit& visit) {
         t.corner[i] = {v.position, v.height, v.has_height != 0};
       }
       t.is_void = triangle.is_void != 0;
+      t.death = triangle.death;
       visit(t);
     }
   }

@@ -92,8 +92,8 @@ void Finder::search(const SpotSet& set) {
   pages_.clear();
   filter_.box = set.reach();
   const SpotStars also(set);
-  store_.star_index().search_stars(filter_, set.is_single() ? nullptr : &also, pages_,
-                                   context_.cost.io);
+  filter_.also = set.is_single() ? nullptr : &also;
+  store_.star_index().search_stars(filter_, pages_, context_.cost.io);
   context_.check_stop();
 }
 

@@ -7,6 +7,9 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/mesh/link.h"
+#include "engine/query/living/living_tin.h"
+#include "engine/query/living/stars_in_region.h"
 #include "engine/query/refine/clip.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/certificate.h"
@@ -96,10 +99,48 @@ void fill_in_facts(RefinedTin& result, const OpenedTerrain& terrain, const Certi
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+namespace {
+
+/// Whether the triangles of the result are those that live at an error and meet a region.
+bool is_of_stars(const OpenedTerrain& terrain, const RefineRequest& request) {
+  return request.region && request.form == ResultForm::kMeetingRegion && !request.detail.vertices &&
+         !request.triangles && request.also == nullptr && !request.page_of_triangle &&
+         !terrain.uses_other_index();
+}
+
+/// The triangles that meet a region, without those of the rest of the domain.
+Tin gather_in_region(const OpenedTerrain& terrain, const RefineRequest& request,
+                     const Detail& detail, QueryContext& context) {
+  const GridRegion region(*request.region, terrain.store().facts().map);
+  const StarsInRegion stars(&region);
+  LivingPlace place;
+  place.box = region.bounds();
+  place.stars = &stars;
+  place.wanted = [&](const LivingTriangle& t) {
+    return region.meets(t.corner[0].position, t.corner[1].position, t.corner[2].position);
+  };
+  LivingTin living(terrain, detail);
+  if (!living.gather(place, context.left_beside(0), context)) {
+    context.admit(living.bytes_wanted());
+  }
+  link_tin(living.tin());
+  return living.release_tin();
+}
+
+}  // namespace
+
 RefinedTin refine(const OpenedTerrain& terrain, const RefineRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   const StoreFile& store = terrain.store();
   QueryContext context(request.limits, store.path());
+  if (is_of_stars(terrain, request)) {
+    const Detail detail(request.detail, terrain.record_source(), context);
+    RefinedTin result;
+    result.tin = gather_in_region(terrain, request, detail, context);
+    store.pages().check_unchanged();
+    fill_in_facts(result, terrain, detail.certificate(), context, start);
+    return result;
+  }
   const Selection selection =
       select(request, terrain.record_source(), bytes_of(terrain.t0()), context);
 

@@ -47,12 +47,18 @@ class Detail {
   /// Every record of error at or below this is left out; negative: none are. Questions put it into
   /// the predicate by which they select pages and records, and call keep() afterwards.
   [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
-  /// True when tolerance() alone tells what is left out, so that lifetimes tell which triangles
-  /// live at the level. False where a number of vertices cuts between records of one error.
+  /// True when tolerance() alone tells what is left out. False where a number of vertices cuts
+  /// between records of one error.
   [[nodiscard]] bool is_by_error() const noexcept { return !last_; }
+  /// The error up to which triangles have died at the level: tolerance(), or the error of the last
+  /// record kept. Of those that die at the latter, the records kept tell.
+  [[nodiscard]] double level() const noexcept { return last_ ? last_->error : tolerance_; }
   /// True when the level keeps the record.
+  [[nodiscard]] bool keeps(const RecordPlace& record) const noexcept {
+    return record.error > tolerance_ && (!last_ || !(*last_ < record));
+  }
   [[nodiscard]] bool keeps(const PendingSplit& split) const noexcept {
-    return split.error > tolerance_ && (!last_ || !is_behind(split));
+    return keeps(place_of(split));
   }
   /// Drops the splits that the level leaves out; the others keep their order.
   void keep(std::vector<PendingSplit>& splits) const;
@@ -68,9 +74,6 @@ class Detail {
   }
 
  private:
-  [[nodiscard]] bool is_behind(const PendingSplit& s) const noexcept {
-    return *last_ < place_of(s);
-  }
   void cut_behind(std::uint64_t records, const RecordSource& source, QueryContext& context);
   [[nodiscard]] bool cut_between(double low, double high, std::uint64_t records,
                                  const RecordSource& source, QueryContext& context);

@@ -29,6 +29,9 @@ struct RecordPlace {
 [[nodiscard]] constexpr RecordPlace place_of(const PendingSplit& s) noexcept {
   return {s.error, s.rank, s.u};
 }
+[[nodiscard]] inline RecordPlace place_of(const VertexSplit& r) noexcept {
+  return {r.error, r.rank, key_of(r.u)};
+}
 /// True when `a` comes before `b`.
 [[nodiscard]] constexpr bool is_before(const PendingSplit& a, const PendingSplit& b) noexcept {
   return place_of(a) < place_of(b);

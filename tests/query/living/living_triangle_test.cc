@@ -106,7 +106,7 @@ TEST(LivingTriangles, OfALevelAreFoundWhereTheyMeetABox) {
     };
     IoCounters counters;
     std::vector<StarPage> pages;
-    store.star_index().search_stars(filter, nullptr, pages, counters);
+    store.star_index().search_stars(filter, pages, counters);
     for (const StarPage& page : pages) {
       StarredRecords stars;
       (void)store.read_stars(page.id, filter, stars, counters);

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The triangles of a TIN that meet a place, page by page, in constant memory.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/query/living/living_triangle.h"
+#include "engine/query/select/accounting.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
+
+namespace ptin {
+
+/// Which triangles of a TIN are wanted. What is borrowed is borrowed for the call.
+struct LivingPlace {
+  GridBox box;  ///< Grid units, closed: triangles whose box meets it.
+  /// Codes: triangles whose corners span an interval that meets it. The default wants void
+  /// triangles too.
+  Interval heights = kAllHeights;
+  /// Further conditions of pages, and of heights (StarFilter), borrowed; null: none.
+  const StarPredicate* stars = nullptr;
+  const HeightPredicate* spans = nullptr;
+  /// A further condition of a triangle; none: all are wanted.
+  std::function<bool(const LivingTriangle&)> wanted;
+};
+
+/// Takes the triangles of a place.
+class LivingVisitor {
+ public:
+  LivingVisitor() = default;
+  LivingVisitor(const LivingVisitor&) = delete;
+  LivingVisitor& operator=(const LivingVisitor&) = delete;
+  virtual ~LivingVisitor() = default;
+  /// Called once, before a page is read: `records` are on the pages that will be. False ends it.
+  virtual bool expect(std::uint64_t /*records*/) { return true; }
+  /// Called before the triangles of T0, and of each page: at most so many come. False ends it.
+  virtual bool begin(std::size_t /*most_triangles*/) { return true; }
+  virtual void take(const LivingTriangle& t) = 0;
+};
+
+/// Reads places of the TIN of one level of detail, one after the other. Threads: one owner.
+class LivingReader {
+ public:
+  /// @param terrain, detail  Borrowed for the life of the reader.
+  LivingReader(const OpenedTerrain& terrain, const Detail& detail)
+      : store_(terrain.store()), heights_(store_.facts().heights), detail_(detail) {}
+
+  /// Hands each triangle of a place to the visitor once: those of T0, then page by page in the order
+  /// of the file, then those that the level tells last. False when the visitor ended it.
+  /// @throws Error corruption, io_error, cancelled; what the visitor throws
+  /// Cost: a search of the index and the pages with such stars, announced together. Memory: one
+  /// page; where a number of vertices cuts between records of one error, besides the triangles of
+  /// the place that die at that error.
+  bool read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor);
+
+ private:
+  using Keys = std::array<VertexKey, 3>;
+
+  void take_page(const LivingPlace& place, LivingVisitor& visitor);
+  void offer(const LivingTriangle& t, const LivingPlace& place, LivingVisitor& visitor);
+  void add_fan(const VertexSplit& r, std::span<const RingCorner> ring);
+  bool take_undecided(LivingVisitor& visitor);
+
+  const StoreFile& store_;
+  HeightEncoding heights_;
+  const Detail& detail_;
+  StarFilter filter_;
+  StarredRecords stars_;
+  // Where the level cuts between records of one error: triangles that die at that error, and the
+  // fans of those of its records that are kept.
+  std::vector<LivingTriangle> undecided_;
+  std::vector<Keys> fans_;
+};
+
+}  // namespace ptin

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/living/living_tin.h"
+
+#include <algorithm>
+
+namespace ptin {
+
+namespace {
+
+constexpr std::pair<VertexKey, VertexId> kNoCorner{kNoVertexKey, kNone};
+
+}  // namespace
+
+std::uint64_t LivingTin::bytes_for(std::uint64_t triangles) noexcept {
+  // A vertex has about two triangles in any part that is worth its memory, and arrays double.
+  const std::uint64_t vertices = triangles / 2 + 3;
+  return 2 * (triangles * (sizeof(Triangle) + sizeof(TriangleClass)) +
+              vertices * (sizeof(Vertex) + 1)) +
+         KeyTable::bytes_for(2 * vertices);
+}
+
+void LivingTin::clear() {
+  tin_.vertices.clear();
+  tin_.has_height.clear();
+  tin_.triangles.clear();
+  tin_.classes.clear();
+  ids_.reset(room_);
+  last_ = {kNoCorner, kNoCorner};
+}
+
+bool LivingTin::gather(const LivingPlace& place, std::uint64_t most_bytes, QueryContext& context) {
+  clear();
+  most_bytes_ = most_bytes;
+  const std::uint64_t before = context.cost.records_examined;
+  const bool fits = reader_.read(place, context, *this);
+  if (const std::uint64_t records = context.cost.records_examined - before; records > 0) {
+    triangles_of_record_ =
+        static_cast<double>(tin_.triangles.size()) / static_cast<double>(records);
+  }
+  if (!fits) {
+    clear();
+  }
+  return fits;
+}
+
+bool LivingTin::expect(std::uint64_t records) {
+  bytes_wanted_ =
+      bytes_for(static_cast<std::uint64_t>(triangles_of_record_ * static_cast<double>(records)));
+  return bytes_wanted_ <= 2 * most_bytes_;  // parts differ
+}
+
+bool LivingTin::begin(std::size_t most_triangles) {
+  const std::size_t triangles = tin_.triangles.size() + most_triangles;
+  bytes_wanted_ = bytes_for(triangles);
+  if (bytes_wanted_ > most_bytes_ || triangles >= kNone / 3) {
+    return false;
+  }
+  const std::size_t vertices = tin_.vertices.size() + 3 * most_triangles;
+  if (vertices > room_) {
+    room_ = std::max(vertices, 2 * room_);
+    ids_.reserve(room_);
+  }
+  return true;
+}
+
+void LivingTin::take(const LivingTriangle& t) {
+  const VertexId u = id_of(t.corner[0]);
+  const VertexId a = id_of(t.corner[1]);
+  const VertexId b = id_of(t.corner[2]);
+  last_ = {std::pair{key_of(t.corner[0].position), u}, std::pair{key_of(t.corner[2].position), b}};
+  tin_.triangles.push_back({{u, a, b}, {kNone, kNone, kNone}});
+  tin_.classes.push_back(t.is_void ? TriangleClass::kVoid : TriangleClass::kSurface);
+}
+
+VertexId LivingTin::id_of(const LivingTriangle::Corner& corner) {
+  const VertexKey key = key_of(corner.position);
+  for (const auto& [of, id] : last_) {
+    if (of == key) {
+      return id;
+    }
+  }
+  const auto next = static_cast<VertexId>(tin_.vertices.size());
+  if (!ids_.insert(key, next)) {
+    return ids_.find(key);
+  }
+  tin_.vertices.push_back({corner.position, corner.height, kNone});
+  tin_.has_height.push_back(corner.has_height ? 1 : 0);
+  return next;
+}
+
+}  // namespace ptin

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/living/tin_parts.h"
+
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/query/living/living_tin.h"
+#include "engine/query/living/stars_in_region.h"
+#include "engine/stop.h"
+
+namespace ptin {
+
+namespace {
+
+std::uint64_t records_above(const StoreFile& store, double tolerance) {
+  if (tolerance < 0) return store.record_count();
+  std::uint64_t records = 0;
+  for (const ErrorBin& bin : store.error_bins()) {
+    if (bin.upper > tolerance) records += bin.records;
+  }
+  return records;
+}
+
+}  // namespace
+
+struct TinParts::Impl {
+  Impl(const OpenedTerrain& of, PartRequest asked)
+      : terrain(of),
+        request(std::move(asked)),
+        context(request.limits, of.store().path()),
+        detail(request.detail, terrain.record_source(), context),
+        reader(terrain, detail),
+        living(terrain, detail) {
+    if (request.region) {
+      region.emplace(*request.region, of.store().facts().map);
+      stars.emplace(&*region);
+    }
+  }
+
+  OpenedTerrain terrain;
+  PartRequest request;
+  QueryContext context;
+  Detail detail;
+  std::optional<GridRegion> region;
+  std::optional<StarsInRegion> stars;
+  LivingReader reader;
+  LivingTin living;
+
+  [[nodiscard]] LivingPlace place_of(const GridBox& box) const {
+    LivingPlace place;
+    place.box = box;
+    place.stars = stars ? &*stars : nullptr;
+    return place;
+  }
+};
+
+namespace {
+
+class CallingVisitor final : public LivingVisitor {
+ public:
+  explicit CallingVisitor(const std::function<void(const LivingTriangle&)>& visit)
+      : visit_(visit) {}
+  void take(const LivingTriangle& t) override { visit_(t); }
+
+ private:
+  const std::function<void(const LivingTriangle&)>& visit_;
+};
+
+}  // namespace
+
+TinParts::TinParts(const OpenedTerrain& terrain, PartRequest request)
+    : impl_(std::make_unique<Impl>(terrain, std::move(request))) {}
+TinParts::~TinParts() = default;
+TinParts::TinParts(TinParts&&) noexcept = default;
+TinParts& TinParts::operator=(TinParts&&) noexcept = default;
+
+Tin* TinParts::part(const GridBox& box) {
+  const bool fits = impl_->living.gather(impl_->place_of(box), impl_->request.limits.memory_bytes,
+                                         impl_->context);
+  impl_->terrain.store().pages().check_unchanged();
+  return fits ? &impl_->living.tin() : nullptr;
+}
+
+void TinParts::visit(const GridBox& box, const std::function<void(const LivingTriangle&)>& visit) {
+  CallingVisitor visitor(visit);
+  impl_->reader.read(impl_->place_of(box), impl_->context, visitor);
+  impl_->terrain.store().pages().check_unchanged();
+}
+
+std::uint64_t TinParts::triangles() const noexcept {
+  const StoreFile& store = impl_->terrain.store();
+  return 2 * (records_above(store, impl_->detail.tolerance()) + store.t0().vertices.size());
+}
+
+const OpenedTerrain& TinParts::terrain() const noexcept { return impl_->terrain; }
+const Detail& TinParts::detail() const noexcept { return impl_->detail; }
+const PartRequest& TinParts::request() const noexcept { return impl_->request; }
+const QueryCost& TinParts::cost() const noexcept { return impl_->context.cost; }
+
+void walk_cells(TinParts& parts,
+                const std::function<void(const GridCell& cell, Tin& part, double done)>& visit) {
+  const StoreFile& store = parts.terrain().store();
+  const QueryLimits& limits = parts.request().limits;
+  Tin* part = nullptr;
+  const auto fits = [&](const GridCell& cell, double share) {
+    stop_if_asked(limits.stop, "the walk over the terrain", store.path());
+    // A search of the index lists all pages: not worth it for cells that are far too large anyway.
+    const auto expected =
+        static_cast<std::uint64_t>(static_cast<double>(parts.triangles()) * share);
+    const bool is_hopeless = LivingTin::bytes_for(expected) / 16 > limits.memory_bytes;
+    part = is_hopeless ? nullptr : parts.part(cell.box());
+    return part != nullptr;
+  };
+  walk_fitting_cells(store.facts().bounds, fits, [&](const GridCell& cell, double done) {
+    if (cell.level == 0) {  // a single position, which is not asked about
+      part = parts.part(cell.box());
+    }
+    if (part == nullptr) {
+      throw Error(ErrorCode::resource_exhausted,
+                  "what meets a single position of the grid takes more memory than the " +
+                      std::to_string(limits.memory_bytes) + " bytes of a part: give more memory",
+                  store.path());
+    }
+    visit(cell, *part, done);
+  });
+}
+
+}  // namespace ptin
