@@ -41,8 +41,8 @@ SightResult Terrain::sight(const SightPair& pair, const SightRequest& request) c
   return ptin::sight(*this, pair, request);
 }
 
-SightSolver Terrain::sight_lines(const SightRequest& request, std::uint64_t base_records) const {
-  return SightSolver(*this, request, base_records);
+SightSolver Terrain::sight_lines(const SightRequest& request, std::uint64_t coarse_records) const {
+  return SightSolver(*this, request, coarse_records);
 }
 
 Viewshed Terrain::viewshed(const ViewshedRequest& request) const {

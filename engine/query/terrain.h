@@ -107,10 +107,11 @@ class Terrain : public OpenedTerrain {
 
   /// Whether the ends of a line see each other.
   [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request = {}) const;
-  /// Sight lines of many pairs, over one coarse mesh. The terrain must outlive the SightSolver.
-  /// @param base_records  As for the constructor of SightSolver.
-  [[nodiscard]] SightSolver sight_lines(const SightRequest& request,
-                                        std::uint64_t base_records = std::uint64_t{1} << 15) const;
+  /// Sight lines of many pairs.
+  /// @param coarse_records  As for the constructor of SightSolver.
+  [[nodiscard]] SightSolver sight_lines(
+      const SightRequest& request,
+      std::uint64_t coarse_records = SightSolver::kCoarseRecords) const;
   /// What one observer sees.
   [[nodiscard]] Viewshed viewshed(const ViewshedRequest& request) const;
 

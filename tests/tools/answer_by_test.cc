@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// `--by stars` and `--by splits`: two ways, one answer.
+// `--by stars` and `--by splits` of `ptin locate`, `isoline` and `sight`: two ways, one answer.
 #include <cstdio>
 #include <set>
 #include <string>
@@ -164,6 +164,47 @@ TEST_P(AnswerByBothWays, IsTheSameForIsolines) {
     }
     EXPECT_EQ(layers[0], layers[1]);
   }
+}
+
+// Lines between vertices, middles of edges, inner points, and points outside and on the border.
+TEST_P(AnswerByBothWays, IsTheSameForLinesOfSight) {
+  const std::vector<MapPoint> points = telling_points(file_, 3, 1);
+  const std::size_t step = points.size() / 23;
+  std::string text;
+  for (std::size_t i = 0; i + step < points.size(); i += step) {
+    for (const char* height : {"0", "2", "150"}) {
+      const MapPoint& a = points[i];
+      const MapPoint& b = points[(i * 7 + 5) % points.size()];
+      text += text_of(a.x) + " " + text_of(a.y) + " " + height + " " + text_of(b.x) + " " +
+              text_of(b.y) + " " + height + "\n";
+    }
+  }
+  write_file(folder_.file("pairs.txt"), text);
+  std::set<json> verdicts;
+  for (const Arguments& more :
+       std::vector<Arguments>{{}, {"--absolute"}, {"--frequency", "1GHz"}}) {
+    const auto pairs_by = [&](const char* way) {
+      Arguments asked = {"sight",  file_,  "--pairs", folder_.file("pairs.txt"),
+                         "--json", "--by", way};
+      asked.insert(asked.end(), more.begin(), more.end());
+      json pairs = testing::answer_of(asked).at("pairs");
+      for (json& pair : pairs) {
+        EXPECT_EQ(
+            pair.at("cost").at(way == std::string("stars") ? "records_retrieved" : "stars_read"),
+            0);
+        pair.erase("cost");
+        verdicts.insert(pair.at("verdict"));
+      }
+      return pairs;
+    };
+    const json by_stars = pairs_by("stars");
+    const json by_splits = pairs_by("splits");
+    ASSERT_EQ(by_stars.size(), by_splits.size());
+    for (std::size_t i = 0; i < by_stars.size(); ++i) {
+      EXPECT_EQ(by_stars.at(i), by_splits.at(i)) << i;
+    }
+  }
+  EXPECT_TRUE(verdicts.contains("hidden") && verdicts.contains("visible"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Terrains, AnswerByBothWays,

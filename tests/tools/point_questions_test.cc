@@ -390,31 +390,36 @@ TEST(SightCommand, SeesOverAndNotThroughAWall) {
 TEST(SightCommand, KeepsToItsBudgetAlsoOverVoidsAndInTheFresnelZone) {
   const TestFolder folder;
   const std::string terrain = wall(folder);
-  const std::vector<std::string> pair = {"sight",  terrain,   east(4), south(20), "90",
-                                         east(28), south(20), "90",    "--json"};
-  const auto asked = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = pair;
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return answer_of(arguments);
-  };
-  const auto records = [](const json& answer) {
-    return answer.at("cost").at("records_retrieved").get<int>();
-  };
-  const json whole = asked({"--frequency", "1e9"});
-  EXPECT_TRUE(whole.at("exact").get<bool>());
-  EXPECT_EQ(whole.at("void_length"), 0.0);
-  const json none = asked({"--frequency", "1e9", "--budget", "0"});
-  EXPECT_EQ(records(none), 0);
-  EXPECT_EQ(none.at("verdict"), "undecided");
-  EXPECT_FALSE(none.at("exact").get<bool>());
-  EXPECT_TRUE(none.at("void_length").is_null());
-  const json few = asked({"--frequency", "1e9", "--budget", "1"});
-  EXPECT_GT(records(few), 0);
-  EXPECT_LT(records(few), records(whole));
-  EXPECT_FALSE(few.at("exact").get<bool>());
-  std::vector<std::string> negative = pair;
-  negative.insert(negative.end(), {"--budget", "-1"});
-  EXPECT_EQ(run_ptin(negative).status, 2);
+  for (const char* way : {"stars", "splits"}) {
+    SCOPED_TRACE(way);
+    const std::vector<std::string> pair = {"sight", terrain,  east(4),   south(20),
+                                           "90",    east(28), south(20), "90",
+                                           "--by",  way,      "--json"};
+    const auto asked = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> arguments = pair;
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return answer_of(arguments);
+    };
+    const auto counted = [&](const json& answer) {
+      const bool by_stars = way == std::string("stars");
+      return answer.at("cost").at(by_stars ? "stars_read" : "records_retrieved").get<int>();
+    };
+    const json whole = asked({"--frequency", "1e9"});
+    EXPECT_TRUE(whole.at("exact").get<bool>());
+    EXPECT_EQ(whole.at("void_length"), 0.0);
+    const json none = asked({"--frequency", "1e9", "--budget", "0"});
+    EXPECT_EQ(counted(none), 0);
+    EXPECT_EQ(none.at("verdict"), "undecided");
+    EXPECT_FALSE(none.at("exact").get<bool>());
+    EXPECT_TRUE(none.at("void_length").is_null());
+    const json few = asked({"--frequency", "1e9", "--budget", "1"});
+    EXPECT_GT(counted(few), 0);
+    EXPECT_LT(counted(few), counted(whole));
+    EXPECT_FALSE(few.at("exact").get<bool>());
+    std::vector<std::string> negative = pair;
+    negative.insert(negative.end(), {"--budget", "-1"});
+    EXPECT_EQ(run_ptin(negative).status, 2);
+  }
 }
 
 TEST(SightCommand, AnEndOnTheBorderStandsOnGround) {

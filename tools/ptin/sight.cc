@@ -37,7 +37,7 @@ namespace ptin::tools {
 namespace {
 
 constexpr double kSpeedOfLight = 299792458.0;  // m/s
-constexpr std::size_t kFewPairs = 16;          // Fewer pairs are not worth a coarse mesh.
+constexpr std::size_t kFewPairs = 16;          // Fewer pairs are not worth a coarse level.
 
 struct SightOptions {
   TerrainOptions terrain;
@@ -50,6 +50,7 @@ struct SightOptions {
   std::optional<std::string> frequency;
   DetailOptions detail;
   std::optional<std::uint64_t> budget;
+  AnswerBy by = AnswerBy::kStars;
   std::string memory;
   AnswerOptions answer;
 };
@@ -101,6 +102,7 @@ SightRequest request_of(const SightOptions& options, const Ground& ground, const
   request.detail = detail_of(options.detail);
   request.limits.memory_bytes = memory_limit_of(options.memory);
   request.budget = options.budget;
+  request.by = options.by;
   request.verdict_only = options.verdict_only;
   request.limits.stop = context.stop;
   return request;
@@ -275,7 +277,7 @@ int run_sight(const SightOptions& options, const Context& context) {
   if (answers.are_plotted()) require_panels(asked.all.size(), "pairs", options.answer.output);
   const std::string unit = unit_of_ground(crs);
   SightSolver solver =
-      terrain.sight_lines(request, asked.all.size() < kFewPairs ? 0 : std::uint64_t{1} << 15);
+      terrain.sight_lines(request, asked.all.size() < kFewPairs ? 0 : SightSolver::kCoarseRecords);
   for (const SightPair& pair : asked.all) {
     SightResult result = solver.solve(pair);
     if (options.pairs.empty()) result.cost.add_counts(solver.base_cost());
@@ -322,10 +324,12 @@ Action declare_sight(CLI::App& app, Context& context) {
   add_detail_options(app, options->detail, ": finer records are left out; may answer undecided",
                      "Leave out what is not among the terrain's N most important vertices; may "
                      "answer undecided");
-  app.add_option("--budget", options->budget,
-                 "Stop after this many records for a pair; may answer undecided")
-      ->type_name("RECORDS")
+  app.add_option(
+         "--budget", options->budget,
+         "Stop after this many stars (--by splits: records) for a pair; may answer undecided")
+      ->type_name("N")
       ->check(counts());
+  add_by_option(app, options->by);
   add_memory_option(app, options->memory);
   add_answer_options(app, options->answer, true);
   return [options, &context] { return run_sight(*options, context); };

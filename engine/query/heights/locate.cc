@@ -239,7 +239,7 @@ LocatedPoint Locating::answer(const TriangleAt& at, Spot spot) const {
   }
   point.state = t.is_void ? PointState::kVoid : PointState::kSurface;
   if (!t.is_void) {
-    point.height = facts_.heights.height_of_code(code_in(t, facts_.heights, spot));
+    point.height = facts_.heights.height_of_code(codes_in(t, facts_.heights, spot).mean());
     // Where the full TIN was asked for, a height is no interval.
     SurfaceBounds bounds{0.0, {-kInfinity, kInfinity}};
     if (detail_.is_asked()) {

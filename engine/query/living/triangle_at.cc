@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/query/walk/spot_set.h"
-#include "engine/query/walk/walk.h"
 #include "storage/packed_rtree.h"
 
 namespace ptin {
@@ -163,23 +162,21 @@ void find_triangles(const OpenedTerrain& terrain, double level, std::span<const 
   }
 }
 
-double code_in(const LivingTriangle& t, const HeightEncoding& heights, Spot q) {
+WeightedCodes codes_in(const LivingTriangle& t, const HeightEncoding& heights, Spot q) {
   const std::array<Int128, 3> of_corner = weights_of(t, q);
   std::array<std::size_t, 3> corners{0, 1, 2};  // by key, so that both sides of an edge agree
   std::sort(corners.begin(), corners.end(), [&](std::size_t a, std::size_t b) {
     return key_of(t.corner[a].position) < key_of(t.corner[b].position);
   });
-  int count = 0;
-  std::array<double, 3> codes{};
-  std::array<Int128, 3> weights{};
+  WeightedCodes codes;
   for (const std::size_t i : corners) {
     if (of_corner[i] != 0) {
-      const auto k = static_cast<std::size_t>(count++);
-      codes[k] = heights.code(t.corner[i].height);
-      weights[k] = of_corner[i];
+      const auto k = static_cast<std::size_t>(codes.count++);
+      codes.code[k] = heights.code(t.corner[i].height);
+      codes.weight[k] = of_corner[i];
     }
   }
-  return weighted_mean(count, codes, weights);
+  return codes;
 }
 
 }  // namespace ptin

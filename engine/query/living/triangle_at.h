@@ -8,7 +8,7 @@
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/opened_terrain.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/walk/walk.h"
 
 namespace ptin {
 
@@ -31,7 +31,8 @@ void find_triangles(const OpenedTerrain& terrain, double level, std::span<const 
                     std::span<TriangleAt> found, QueryContext& context);
 
 /// The code of the height of a surface triangle at a spot that it holds, the same from both sides
-/// of an edge; rounded as weighted_mean() says (walk/walk.h).
-[[nodiscard]] double code_in(const LivingTriangle& t, const HeightEncoding& heights, Spot q);
+/// of an edge, as the mean of the codes of its corners (walk/walk.h).
+[[nodiscard]] WeightedCodes codes_in(const LivingTriangle& t, const HeightEncoding& heights,
+                                     Spot q);
 
 }  // namespace ptin

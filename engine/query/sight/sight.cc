@@ -14,6 +14,7 @@
 #include "engine/query/select/detail.h"
 #include "engine/query/sight/fresnel.h"
 #include "engine/query/sight/sight_search.h"
+#include "engine/query/sight/sight_stars.h"
 
 namespace ptin {
 
@@ -42,34 +43,18 @@ double error_of_first(const StoreFile& store, std::uint64_t records) {
   return error;
 }
 
-class DeviationAbove final : public AttributePredicate {
- public:
-  DeviationAbove(double deviation, double tolerance)
-      : deviation_(deviation), tolerance_(tolerance) {}
-  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    return a.deviation > deviation_ && a.error > tolerance_;
-  }
-
- private:
-  double deviation_, tolerance_;
-};
-
-/// Where the clearance first falls to zero in a piece that hides the line: at its beginning, or the
-/// first root of the parabola c(t) = c0 + (c1 - c0 - bend) t + bend t^2, t from 0 to 1.
-double first_below(const SightView& view, const SightPiece& piece) {
+/// Where the clearance first falls to zero in a piece that hides the line: at its beginning, or
+/// where the parabola does.
+double first_below(const Ray& ray, const SightPiece& piece) {
   const double width = piece.to - piece.from;
-  const double c0 = view.ray().middle(piece.from) - piece.ground_from;
-  const double c1 = view.ray().middle(piece.to) - piece.ground_to;
-  const double bend = view.bend * width * width;
-  const double slope = c1 - c0 - bend;
-  const double root = std::sqrt(std::max(0.0, slope * slope - 4 * bend * c0));
-  const double t = c0 > 0 && root - slope > 0 ? std::min(1.0, 2 * c0 / (root - slope)) : 0.0;
-  return piece.from + t * width;
+  return piece.from + width * first_zero(ray.middle(piece.from) - piece.ground_from,
+                                         ray.middle(piece.to) - piece.ground_to,
+                                         ray.bend * width * width);
 }
 
 /// True when every piece before `hidden` is visible and `hidden` is what it is in the full TIN.
 /// Without a hidden piece, where a vertex alone hides the line: when all pieces are visible.
-bool is_first_for_certain(const SightView& view, const SightPiece* hidden) {
+bool is_first_for_certain(const SightLine& view, const SightPiece* hidden) {
   const auto first = std::find_if(view.pieces.begin(), view.pieces.end(), [](const auto& p) {
     return p.verdict != PieceVerdict::kVisible;
   });
@@ -77,7 +62,19 @@ bool is_first_for_certain(const SightView& view, const SightPiece* hidden) {
                                     : &*first == hidden && is_final_truth(*hidden);
 }
 
-bool is_true_everywhere(const SightView& view) {
+PointState state_of(const SightEnd& end) {
+  return !end.inside ? PointState::kOutside
+                     : (end.surface ? PointState::kSurface : PointState::kVoid);
+}
+
+SightPoint point_at(const SightPair& pair, const SightLine& line, double share, double length) {
+  return {{pair.a.x + share * (pair.b.x - pair.a.x), pair.a.y + share * (pair.b.y - pair.a.y)},
+          share,
+          share * length,
+          line.ray().middle(share)};
+}
+
+bool is_true_everywhere(const SightLine& view) {
   return std::all_of(view.pieces.begin(), view.pieces.end(), is_final_truth);
 }
 
@@ -85,43 +82,38 @@ bool is_true_everywhere(const SightView& view) {
 
 class SightSolver::Impl {
  public:
-  Impl(const OpenedTerrain& terrain, SightRequest request, std::uint64_t base_records);
+  Impl(const OpenedTerrain& terrain, SightRequest request, std::uint64_t coarse_records);
   SightResult solve(const SightPair& pair);
 
   QueryCost base_cost;
 
  private:
-  /// Meshes larger than the coarse one by this many vertices are given up.
-  static constexpr std::size_t kMostExtra = std::size_t{1} << 16;
-
+  [[nodiscard]] bool is_by_stars() const noexcept {
+    return request_.by == AnswerBy::kStars && detail_.is_by_error() && !terrain_.uses_other_index();
+  }
   [[nodiscard]] Spot spot_of_end(MapPoint p, double height) const;
   [[nodiscard]] double ground_length(const SightPair& pair) const;
-  void renew_mesh();
-  void answer(const SightPair& pair, Spot p, Spot q, QueryContext& context, SightResult& result);
-  void answer_defined(SightSearch& search, const SightPair& pair, SightResult& result);
-  void answer_upright(const SightPair& pair, SightResult& result);
-  bool measure(SightSearch& search, const SightPair& pair, SightResult& result);
-  void set_clearance(const SightView& view, const SightPair& pair, SightResult& result) const;
-  void measure_line(const SightView& view, const SightPair& pair, SightResult& result) const;
-  void state_ends(const SightView& view, SightResult& result) const;
-  [[nodiscard]] SightPoint point_at(const SightPair& pair, const SightView& view, double share,
-                                    double length) const;
+  /// @param search  SightStars or SightSearch.
+  template <class Search>
+  void answer(Search search, const SightPair& pair, SightResult& result) const;
+  template <class Search>
+  void answer_defined(Search& search, const SightPair& pair, SightResult& result) const;
+  void answer_upright(const SightPair& pair, SightResult& result) const;
+  bool measure(const SightLine& line, const SightPair& pair, SightResult& result) const;
+  bool set_clearance(const SightLine& line, const SightPair& pair, SightResult& result) const;
+  void measure_line(const SightLine& line, const SightPair& pair, SightResult& result) const;
 
   const OpenedTerrain terrain_;
   SightRequest request_;
   StoreFacts store_facts_;
   SightFacts facts_;
   SpotMap map_;
-  double step_ = 0.0;
   Detail detail_;
-  std::optional<BoundedMesh> base_;  ///< The coarse mesh, as it was built.
-  std::optional<BoundedMesh> mesh_;
-  std::size_t base_vertices_ = 0;
-  bool is_spoilt_ = false;  ///< An error came while the mesh was changed.
+  std::optional<CoarseGround> coarse_;
 };
 
 SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
-                        std::uint64_t base_records)
+                        std::uint64_t coarse_records)
     : terrain_(terrain),
       request_(std::move(request)),
       store_facts_(terrain.store().facts()),
@@ -132,39 +124,22 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   QueryContext context(request_.limits, store.path());
   detail_ = Detail(request_.detail, terrain.record_source(), context);
   facts_.tolerance = detail_.tolerance();
-  facts_.is_level_asked = detail_.is_asked();
+  facts_.is_level_asked = detail_.is_asked() && !detail_.certificate().complete;
   facts_.heights = store_facts_.heights;
   const Certificate finest = detail_.certificate();
   facts_.file_deviation = store_facts_.base_deviation;
   facts_.finest_deviation = finest.deviation;
+  facts_.min_height = store_facts_.min_height;
   facts_.max_height = store_facts_.max_height;
-  facts_.has_voids = !store.facts().free_of_voids;
+  facts_.has_voids = !store_facts_.free_of_voids;
   // A certified error of 0 does not settle the voids: they may differ between samples.
   facts_.exact_settles = !facts_.has_voids || store_facts_.base_error == 0;
   facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);
-  facts_.base_deviation = kInfinity;
-  const double range = std::max(0.0, store_facts_.max_height - store_facts_.min_height);
-  step_ =
-      std::max(range / 4096,
-               store_facts_.heights.type == HeightType::int32 ? store_facts_.heights.step : 0.0);
-  base_.emplace(terrain_, detail_);
-  if (base_records > 0) {
-    facts_.base_deviation = error_of_first(store, base_records);
-    base_->refine(DeviationAbove(facts_.base_deviation, facts_.tolerance), context);
-    if (detail_.is_asked()) {
-      facts_.base_deviation = std::max(facts_.base_deviation, facts_.finest_deviation);
-    }
+  if (coarse_records > 0 && request_.verdict_only && is_by_stars()) {
+    coarse_.emplace(store, std::max(error_of_first(store, coarse_records), facts_.tolerance),
+                    context);
   }
   base_cost = context.cost;
-  base_vertices_ = base_->tin().vertices.size();
-  mesh_.emplace(*base_);
-}
-
-void SightSolver::Impl::renew_mesh() {
-  if (is_spoilt_ || mesh_->tin().vertices.size() > base_vertices_ + kMostExtra) {
-    mesh_.emplace(*base_);
-    is_spoilt_ = false;
-  }
 }
 
 Spot SightSolver::Impl::spot_of_end(MapPoint p, double height) const {
@@ -200,10 +175,16 @@ SightResult SightSolver::Impl::solve(const SightPair& pair) {
   if (p == q) {
     answer_upright(pair, result);
   } else {
-    renew_mesh();
-    is_spoilt_ = true;
-    answer(pair, p, q, context, result);
-    is_spoilt_ = false;
+    result.length = ground_length(pair);
+    const double bend = request_.curvature.drop_at(result.length);
+    if (is_by_stars()) {
+      const SightLine line(facts_, p, q, pair, request_.absolute, bend);
+      answer(SightStars(terrain_, facts_, request_, coarse_ ? &*coarse_ : nullptr, line, context),
+             pair, result);
+    } else {
+      const SightView line(facts_, p, q, pair, request_.absolute, bend);
+      answer(SightSearch(terrain_, facts_, request_, detail_, line, context), pair, result);
+    }
     result.cost = context.cost;
   }
   terrain_.store().pages().check_unchanged();
@@ -212,18 +193,15 @@ SightResult SightSolver::Impl::solve(const SightPair& pair) {
   return result;
 }
 
-void SightSolver::Impl::answer(const SightPair& pair, Spot p, Spot q, QueryContext& context,
-                               SightResult& result) {
-  result.length = ground_length(pair);
-  const double bend = request_.curvature.drop_at(result.length);
-  SightSearch search(facts_, request_, *mesh_, context, step_);
-  search.begin(p, q, pair, bend, 0);
-  if (facts_.has_voids) {
+template <class Search>
+void SightSolver::Impl::answer(Search search, const SightPair& pair, SightResult& result) const {
+  if (facts_.has_voids || !request_.verdict_only) {
     search.finish_ends();
   }
-  state_ends(search.view(), result);
   const bool is_certain = !facts_.has_voids || search.ends_known();
-  if (search.view().ends_defined() && (is_certain || request_.absolute)) {
+  result.state_a = state_of(search.line().a);
+  result.state_b = state_of(search.line().b);
+  if (search.line().ends_defined() && (is_certain || request_.absolute)) {
     answer_defined(search, pair, result);
   } else if (is_certain) {
     result.verdict = SightVerdict::kUndefined;
@@ -233,22 +211,21 @@ void SightSolver::Impl::answer(const SightPair& pair, Spot p, Spot q, QueryConte
   }
 }
 
-void SightSolver::Impl::answer_defined(SightSearch& search, const SightPair& pair,
-                                       SightResult& result) {
-  const bool whole_line = !request_.verdict_only && (facts_.has_voids || request_.wavelength > 0);
-  if (whole_line) {
+template <class Search>
+void SightSolver::Impl::answer_defined(Search& search, const SightPair& pair,
+                                       SightResult& result) const {
+  if (!request_.verdict_only) {
     search.finish_line();
   }
   result.verdict = search.decide();
+  const SightLine& line = search.line();
   bool measured = true;
-  if (request_.verdict_only) {
-    if (const SightPiece* hidden = search.hidden_piece(); hidden != nullptr) {
-      result.obstruction = point_at(pair, search.view(), hidden->guess_at, result.length);
-    }
-  } else {
-    measured = measure(search, pair, result);
+  if (!request_.verdict_only) {
+    measured = measure(line, pair, result) && (!facts_.has_voids || search.ends_known());
+  } else if (const SightPiece* hidden = line.hidden_piece(); hidden != nullptr) {
+    result.obstruction = point_at(pair, line, hidden->guess_at, result.length);
   }
-  for (const SightPiece& piece : search.view().pieces) {
+  for (const SightPiece& piece : line.pieces) {
     if (result.verdict == SightVerdict::kUndecided && piece.verdict == PieceVerdict::kUndecided) {
       result.certified_deviation = std::max(result.certified_deviation, piece.deviation);
     }
@@ -258,13 +235,14 @@ void SightSolver::Impl::answer_defined(SightSearch& search, const SightPair& pai
 }
 
 /// Both ends at one place: the line is upright, and hidden as far as it lies under ground.
-void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& result) {
+void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& result) const {
   if (request_.budget && *request_.budget == 0) {
     result.certified_deviation = kInfinity;
     return;
   }
   LocateRequest request;  // no level of detail: the ground below ends is always exact
   request.limits = request_.limits;
+  request.by = request_.by;
   const LocateResult located = locate(terrain_, {&pair.a, 1}, request);
   const LocatedPoint& ground = located.points[0];
   result.cost = located.cost;
@@ -291,104 +269,90 @@ void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& resul
   }
 }
 
-void SightSolver::Impl::state_ends(const SightView& view, SightResult& result) const {
-  const auto state = [](const SightEnd& end) {
-    return !end.inside ? PointState::kOutside
-                       : (end.surface ? PointState::kSurface : PointState::kVoid);
-  };
-  result.state_a = state(view.a);
-  result.state_b = state(view.b);
-}
-
-SightPoint SightSolver::Impl::point_at(const SightPair& pair, const SightView& view, double share,
-                                       double length) const {
-  return {{pair.a.x + share * (pair.b.x - pair.a.x), pair.a.y + share * (pair.b.y - pair.a.y)},
-          share,
-          share * length,
-          view.ray().middle(share)};
-}
-
 /// Measures the first obstruction, the smallest clearance, and what runs along the whole line
 /// (voids, the Fresnel zone).
 /// @returns whether all of that is as in the full TIN
-bool SightSolver::Impl::measure(SightSearch& search, const SightPair& pair, SightResult& result) {
-  search.finish_ends();
-  bool is_true = !facts_.has_voids || search.ends_known();
+bool SightSolver::Impl::measure(const SightLine& line, const SightPair& pair,
+                                SightResult& result) const {
+  bool is_true = true;
   if (result.verdict == SightVerdict::kHidden) {
-    const SightPiece* hidden = search.find_first_hidden();
-    const SightView& view = search.view();
-    const double share = hidden != nullptr ? first_below(view, *hidden) : 2.0;
-    is_true = is_true && is_first_for_certain(view, hidden) && view.knows_levels();
-    if (std::min(share, view.touched_at()) <= 1.0) {
-      result.obstruction = point_at(pair, view, std::min(share, view.touched_at()), result.length);
+    const SightPiece* hidden = line.hidden_piece();
+    const double share = hidden != nullptr ? first_below(line.ray(), *hidden) : 2.0;
+    is_true = is_first_for_certain(line, hidden) && line.knows_levels();
+    if (std::min(share, line.touched_at()) <= 1.0) {
+      result.obstruction = point_at(pair, line, std::min(share, line.touched_at()), result.length);
     }
   }
   if (request_.wavelength > 0 || facts_.has_voids) {
-    measure_line(search.view(), pair, result);
+    measure_line(line, pair, result);
   } else {
     result.void_length = 0.0;
   }
-  search.find_least_clearance();
-  set_clearance(search.view(), pair, result);
-  return is_true && !(result.clearance_min < result.clearance_max) &&
-         std::isfinite(result.void_length) &&
-         (request_.wavelength == 0 || is_true_everywhere(search.view()));
+  return set_clearance(line, pair, result) && is_true && std::isfinite(result.void_length) &&
+         (request_.wavelength == 0 || is_true_everywhere(line));
 }
 
-void SightSolver::Impl::set_clearance(const SightView& view, const SightPair& pair,
+/// @returns whether the clearance is that of the full TIN
+bool SightSolver::Impl::set_clearance(const SightLine& line, const SightPair& pair,
                                       SightResult& result) const {
-  Lowest lowest = view.least_touch();
-  double least = lowest.value;
-  double most = lowest.value;
-  for (const SightPiece& p : view.pieces) {
+  Lowest lowest{kInfinity, 0.0};
+  double least = line.least_touch().value;
+  double most = least;
+  for (const SightPiece& p : line.pieces) {
     least = std::min(least, p.least);
     most = std::min(most, p.most);
     if (p.surface && p.guess < lowest.value) {
       lowest = {p.guess, p.guess_at};
     }
   }
-  if (view.pieces.empty() || !std::isfinite(lowest.value)) {
-    return;
+  if (line.least_touch().value < lowest.value) {
+    lowest = line.least_touch();
   }
-  const bool known = view.ray().is_known() &&
-                     std::none_of(view.pieces.begin(), view.pieces.end(), [&](const auto& p) {
+  if (line.pieces.empty() || !std::isfinite(lowest.value)) {
+    return std::all_of(line.pieces.begin(), line.pieces.end(), [](const auto& p) {
+      return p.final;  // what was read has no surface
+    });
+  }
+  const bool known = line.ray().is_known() &&
+                     std::none_of(line.pieces.begin(), line.pieces.end(), [&](const auto& p) {
                        return p.least < most && !is_final_truth(p);
                      });
   result.clearance_min = known ? lowest.value : least;
   result.clearance_max = known ? lowest.value : most;
-  result.clearance_at = point_at(pair, view, lowest.at, result.length);
+  result.clearance_at = point_at(pair, line, lowest.at, result.length);
+  return !(result.clearance_min < result.clearance_max);
 }
 
-void SightSolver::Impl::measure_line(const SightView& view, const SightPair& pair,
+void SightSolver::Impl::measure_line(const SightLine& line, const SightPair& pair,
                                      SightResult& result) const {
   double voids = 0.0;
   bool whole = true;  // every piece is final; else the budget ended first
   LeastRatio least{kInfinity, 0.0};
-  for (const SightPiece& p : view.pieces) {
+  for (const SightPiece& p : line.pieces) {
     if (facts_.has_voids && !p.settled) {
       voids = std::numeric_limits<double>::quiet_NaN();
     }
     whole = whole && p.final;
     if (!p.surface) {
-      voids += (p.to - p.from) * result.length;
+      voids += facts_.has_voids ? (p.to - p.from) * result.length : 0.0;  // else it was not read
       continue;
     }
     const LeastRatio ratio =
-        least_fresnel_ratio(p.from, view.ray().middle(p.from) - p.ground_from, p.to,
-                            view.ray().middle(p.to) - p.ground_to, view.bend);
+        least_fresnel_ratio(p.from, line.ray().middle(p.from) - p.ground_from, p.to,
+                            line.ray().middle(p.to) - p.ground_to, line.ray().bend);
     least = ratio.ratio < least.ratio ? ratio : least;
   }
   result.void_length = voids;
   if (request_.wavelength > 0 && whole && least.ratio < kInfinity) {
     // The zone's radius is sqrt(wavelength d1 d2 / (d1 + d2)) with d1 = s L, d2 = (1 - s) L.
     result.fresnel_ratio = least.ratio / std::sqrt(request_.wavelength * result.length);
-    result.fresnel_at = point_at(pair, view, least.at, result.length);
+    result.fresnel_at = point_at(pair, line, least.at, result.length);
   }
 }
 
 SightSolver::SightSolver(const OpenedTerrain& terrain, SightRequest request,
-                         std::uint64_t base_records)
-    : impl_(std::make_unique<Impl>(terrain, std::move(request), base_records)) {}
+                         std::uint64_t coarse_records)
+    : impl_(std::make_unique<Impl>(terrain, std::move(request), coarse_records)) {}
 SightSolver::~SightSolver() = default;
 SightSolver::SightSolver(SightSolver&&) noexcept = default;
 SightSolver& SightSolver::operator=(SightSolver&&) noexcept = default;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Line of sight (paper, section 5.3): coarse first, refined only where the answer is undecided.
+// Lines of sight (paper, section 5.3): only what may decide the answer is looked at.
 #pragma once
 
 #include <cstdint>
@@ -36,13 +36,14 @@ struct SightRequest {
   /// ends is exact all the same. And where a single point hides the line unless it is a void, the
   /// surface at that point is exact.
   DetailRequest detail;
-  /// Stop once this many records were retrieved for one pair. Checked before each step, so the last
-  /// step may overrun it.
+  /// Stop once so many stars were read for one pair, or, by splits, records retrieved. Checked
+  /// before each step, so the last step may overrun it.
   std::optional<std::uint64_t> budget;
   /// Only the verdict is wanted. The obstruction is then any point below ground that deciding
   /// showed, and clearances are NaN unless both ends have one position.
   bool verdict_only = false;
   QueryLimits limits;
+  AnswerBy by = AnswerBy::kStars;
 };
 
 /// Hidden: some inner point of the straight line (bent by curvature) lies strictly below the closed
@@ -88,28 +89,29 @@ struct SightResult {
   QueryCost cost;
 };
 
-/// Answers pairs one after the other over one mesh. The mesh begins as a coarse one of the whole
-/// terrain, in which most lines are decided. What single lines had refined stays for the next ones,
-/// until the mesh grows too large and begins anew.
+/// Answers pairs one after the other. By stars it keeps a coarse level of the whole terrain in
+/// memory: where no full surface can lie so low that the line passes above it, a verdict reads
+/// nothing, and elsewhere the level tells where to look first.
 ///
 /// The path is straight in the file's CRS, and distances are proportional along it. (In a
 /// geographic CRS that is true to a thousandth at 100 km and middle latitudes.) Threads: one owner;
 /// several solvers may work over one terrain.
 class SightSolver {
  public:
-  /// @param terrain       A copy of it is kept, which shares the file.
-  /// @param base_records  About how many records the coarse mesh has. More of them decide more
-  ///                      lines without reading, but each line walks farther. 0: none, best for one
-  ///                      pair.
+  static constexpr std::uint64_t kCoarseRecords = std::uint64_t{1} << 14;
+
+  /// @param terrain         A copy of it is kept, which shares the file.
+  /// @param coarse_records  About how many records make the coarse level. More of them decide more
+  ///                        lines without reading, but are read first. 0: none, best for few pairs.
   /// @throws Error invalid_argument (as Detail too), resource_exhausted, corruption, io_error,
   /// cancelled
   SightSolver(const OpenedTerrain& terrain, SightRequest request,
-              std::uint64_t base_records = std::uint64_t{1} << 15);
+              std::uint64_t coarse_records = kCoarseRecords);
   ~SightSolver();
   SightSolver(SightSolver&&) noexcept;
   SightSolver& operator=(SightSolver&&) noexcept;
 
-  /// Cost of the coarse mesh, and of finding the last of `vertices`; no result's cost includes it.
+  /// Cost of the coarse level, and of finding the last of `vertices`; no result's cost includes it.
   [[nodiscard]] const QueryCost& base_cost() const noexcept;
 
   /// Answers one pair. After an error the solver can be asked again.

@@ -52,7 +52,7 @@ bool SightPredicate::holds(const Attributes& a) const noexcept {
   for (std::size_t i = 0; i < stretches_.size(); ++i) {
     const Stretch& s = stretches_[i];
     if (a.deviation > s.deviation && (a.error > tolerance_ || s.beyond) &&
-        a.heights.hi >= s.lowest_code && meets(a.roi, around_[i])) {
+        meets(a.roi, around_[i])) {
       return true;
     }
   }

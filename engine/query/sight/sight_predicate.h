@@ -13,8 +13,7 @@
 namespace ptin {
 
 /// True for a record in two cases. Near a stretch: the roi meets the stretch, the deviation is too
-/// large for it, the surface may reach up to it, and the error is above the tolerance unless the
-/// stretch goes beyond it. At an end: the roi holds the end, and the deviation is too large for the
+/// large for it, and the error is above the tolerance unless the stretch goes beyond it. At an end: the roi holds the end, and the deviation is too large for the
 /// ends, whatever the tolerance. Monotone: exact integers and comparisons.
 class SightPredicate final : public AttributePredicate {
  public:
@@ -22,8 +21,7 @@ class SightPredicate final : public AttributePredicate {
     double from = 0.0, to = 0.0;  ///< Shares of the way.
     /// Records of at most this deviation are left out; negative: none are.
     double deviation = -1.0;
-    double lowest_code = 0.0;  ///< Records whose heights end below this code are left out too.
-    bool beyond = false;       ///< Records within the tolerance are wanted too.
+    bool beyond = false;  ///< Records within the tolerance are wanted too.
   };
 
   /// @param p, q           The ends of the line.

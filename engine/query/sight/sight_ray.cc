@@ -19,43 +19,43 @@ Rational rational(Int128 v) {
   return sum * kDigit + static_cast<std::int64_t>(v % kDigit);
 }
 
-Rational share_of(const Crossing& c) { return rational(c.numerator) / rational(c.denominator); }
+Rational share_of(const LinePoint& p) { return rational(p.numerator) / rational(p.denominator); }
 
-Rational ground_at(const Tin& tin, const HeightEncoding& heights, const Footing& f) {
+Rational ground_at(const HeightEncoding& heights, const WeightedCodes& codes) {
   Rational sum = 0;
   Rational whole = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(f.count); ++i) {
-    const Rational weight = rational(f.weight[i]);
-    sum += weight * Rational(heights.code(tin.vertices[f.vertex[i]].height));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(codes.count); ++i) {
+    const Rational weight = rational(codes.weight[i]);
+    sum += weight * Rational(codes.code[i]);
     whole += weight;
   }
   return Rational(heights.offset) + Rational(heights.step) * sum / whole;
 }
 
-Rational height_of(const Tin& tin, const HeightEncoding& heights, const ExactEnd& end) {
+Rational height_of(const HeightEncoding& heights, const ExactEnd& end) {
   const Rational above(end.height);
-  return end.ground == nullptr ? above : above + ground_at(tin, heights, *end.ground);
+  return end.ground == nullptr ? above : above + ground_at(heights, *end.ground);
 }
 
-Rational clearance_at(const Tin& tin, const HeightEncoding& heights, const Crossing& c,
-                      const ExactEnd& a, const ExactEnd& b, double bend) {
-  const Rational s = share_of(c);
-  const Rational line = height_of(tin, heights, a) * (1 - s) + height_of(tin, heights, b) * s -
-                        Rational(bend) * s * (1 - s);
-  return line - ground_at(tin, heights, c.footing);
+Rational clearance_at(const HeightEncoding& heights, const LinePoint& p, const ExactEnd& a,
+                      const ExactEnd& b, double bend) {
+  const Rational s = share_of(p);
+  const Rational line =
+      height_of(heights, a) * (1 - s) + height_of(heights, b) * s - Rational(bend) * s * (1 - s);
+  return line - ground_at(heights, p.ground);
 }
 
 }  // namespace
 
-int ExactRay::sign_at(const Crossing& c) const {
-  return clearance_at(tin_, heights_, c, a_, b_, bend_).sign();
+int ExactRay::sign_at(const LinePoint& at) const {
+  return clearance_at(heights_, at, a_, b_, bend_).sign();
 }
 
-int ExactRay::sign_over(const LinePiece& piece) const {
-  const Rational s0 = share_of(piece.from);
-  const Rational s1 = share_of(piece.to);
-  const Rational c0 = clearance_at(tin_, heights_, piece.from, a_, b_, bend_);
-  const Rational c1 = clearance_at(tin_, heights_, piece.to, a_, b_, bend_);
+int ExactRay::sign_over(const LinePoint& from, const LinePoint& to) const {
+  const Rational s0 = share_of(from);
+  const Rational s1 = share_of(to);
+  const Rational c0 = clearance_at(heights_, from, a_, b_, bend_);
+  const Rational c1 = clearance_at(heights_, to, a_, b_, bend_);
   const int ends = std::min(c0.sign(), c1.sign());
   if (!(bend_ > 0) || ends < 0) {
     return ends;

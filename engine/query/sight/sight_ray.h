@@ -4,6 +4,7 @@
 // rationals.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/geometry/height.h"
@@ -32,6 +33,14 @@ struct Lowest {
   return {std::min(v0 - bend * (at - s0) * (at - s0), ends.value), at};
 }
 
+/// Where the convex parabola with leading coefficient `bend` >= 0 through (0, v0) and (1, v1) first
+/// falls to zero: 0 where it begins below, and where it does not fall so far.
+[[nodiscard]] inline double first_zero(double v0, double v1, double bend) noexcept {
+  const double slope = v1 - v0 - bend;
+  const double root = std::sqrt(std::max(0.0, slope * slope - 4 * bend * v0));
+  return v0 > 0 && root - slope > 0 ? std::min(1.0, 2 * v0 / (root - slope)) : 0.0;
+}
+
 /// Heights of the line at share s of the way: z(s) = z_a + s (z_b - z_a) - bend s (1 - s), where
 /// the heights of the ends are known within intervals.
 struct Ray {
@@ -55,28 +64,25 @@ struct Ray {
   }
 };
 
-/// An end, for exact comparisons: `height` above the ground at a footing, or absolute.
+/// An end, for exact comparisons: `height` above the ground, or absolute.
 struct ExactEnd {
   double height = 0.0;
-  const Footing* ground = nullptr;  ///< Null: absolute.
+  const WeightedCodes* ground = nullptr;  ///< Borrowed. Null: absolute.
 };
 
-/// Decides in rationals what doubles cannot. Borrows mesh and footings.
+/// Decides in rationals what doubles cannot.
 class ExactRay {
  public:
-  ExactRay(const Tin& tin, const HeightEncoding& heights, const ExactEnd& a, const ExactEnd& b,
-           double bend)
-      : tin_(tin), heights_(heights), a_(a), b_(b), bend_(bend) {}
+  ExactRay(const HeightEncoding& heights, const ExactEnd& a, const ExactEnd& b, double bend)
+      : heights_(heights), a_(a), b_(b), bend_(bend) {}
 
-  /// Sign of the line's height above the surface at a crossing. REQUIRES: its vertices have
-  /// heights.
-  [[nodiscard]] int sign_at(const Crossing& c) const;
-  /// Sign of the line's least height above the surface over a piece, ends included. REQUIRES: as
-  /// sign_at().
-  [[nodiscard]] int sign_over(const LinePiece& piece) const;
+  /// Sign of the line's height above the surface at a point. REQUIRES: there is surface.
+  [[nodiscard]] int sign_at(const LinePoint& at) const;
+  /// Sign of the line's least height above the surface over a stretch on which the surface is
+  /// straight, ends included. REQUIRES: as sign_at().
+  [[nodiscard]] int sign_over(const LinePoint& from, const LinePoint& to) const;
 
  private:
-  const Tin& tin_;
   HeightEncoding heights_;
   ExactEnd a_, b_;
   double bend_;

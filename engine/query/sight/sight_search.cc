@@ -15,34 +15,17 @@ constexpr double kEverything = -1.0;  ///< As a deviation: no record is left out
 
 }  // namespace
 
-SightSearch::SightSearch(const SightFacts& facts, const SightRequest& request, BoundedMesh& mesh,
-                         QueryContext& context, double step)
+SightSearch::SightSearch(const OpenedTerrain& terrain, const SightFacts& facts,
+                         const SightRequest& request, const Detail& detail, const SightView& line,
+                         QueryContext& context)
     : facts_(facts),
       request_(request),
-      mesh_(mesh),
       context_(context),
-      step_(step),
-      view_(facts, {}, {}) {}
-
-void SightSearch::begin(Spot p, Spot q, const SightPair& pair, double bend, TriangleId start) {
-  p_ = p;
-  q_ = q;
-  start_ = start;
-  view_ = SightView(facts_, p, q);
-  view_.bend = bend;
-  for (SightEnd* end : {&view_.a, &view_.b}) {
-    end->absolute = request_.absolute;
-    end->deviation = kInfinity;
-  }
-  view_.a.height = pair.height_a;
-  view_.b.height = pair.height_b;
-  look();
-}
-
-void SightSearch::look() {
-  view_.look(mesh_, start_);
-  start_ = view_.start();  // triangles keep their numbers
-  view_.decide(mesh_);
+      step_(std::max((facts.max_height - facts.min_height) / 4096,
+                     facts.heights.type == HeightType::int32 ? facts.heights.step : 0.0)),
+      mesh_(terrain, detail),
+      view_(line) {
+  view_.look(mesh_);
 }
 
 /// Of absolute ends only the states are asked, and only voids can change a state.
@@ -57,58 +40,44 @@ bool SightSearch::out_of_budget() const noexcept {
 
 void SightSearch::finish_ends() {
   if (!ends_known() && !out_of_budget()) {
-    refine({}, kEverything, 0.0);
+    refine({}, kEverything);
   }
 }
 
+/// With all records at once, or with a budget step by step, so that the last step alone overruns
+/// it.
 void SightSearch::finish_line() {
   while (!out_of_budget()) {
-    std::vector<Stretch> stretches = unfinished_stretches();
+    std::vector<Stretch> stretches;
+    for (const SightPiece& p : view_.pieces) {
+      if (!p.final) {
+        add(stretches, p.from, p.to,
+            request_.budget ? target(kInfinity, p.deviation / 2) : kEverything);
+      }
+    }
     if (stretches.empty()) {
       return;
     }
-    refine(std::move(stretches), kEverything, kInfinity);
+    refine(std::move(stretches), kEverything);
   }
-}
-
-/// The stretches where the line is not final: with all their records at once, or with a budget step
-/// by step, so that the last step alone overruns it.
-std::vector<SightPredicate::Stretch> SightSearch::unfinished_stretches() const {
-  std::vector<Stretch> stretches;
-  for (const SightPiece& p : view_.pieces) {
-    if (!p.final) {
-      add(stretches, p.from, p.to, request_.budget ? quarter_of(p.deviation) : kEverything);
-    }
-  }
-  return stretches;
-}
-
-/// Refines the one point in which the line meets the domain, as far as the file goes.
-void SightSearch::settle_touch() {
-  refine({{0.0, 1.0, kEverything, -kInfinity, true}}, kEverything, kInfinity);
 }
 
 /// Adds the records that the stretches and ends ask for, notes in `known` what is applied, and
-/// looks again. `margin` tells what cut_below_line() left out of the stretches: records whose
-/// surface ends lower than `margin` below the lowest height of the line there.
-void SightSearch::refine(std::vector<Stretch> stretches, double end_deviation, double margin) {
+/// looks again.
+void SightSearch::refine(std::vector<Stretch> stretches, double end_deviation) {
   const bool asks_ends = !ends_known();
   const double ends = asks_ends ? end_deviation : kInfinity;
   for (const Stretch& s : stretches) {
-    view_.known.push_back({s.from, s.to, s.deviation,
-                           std::isinf(s.lowest_code) ? kInfinity : margin,
-                           s.beyond || !facts_.is_level_asked});
+    view_.known.push_back({s.from, s.to, s.deviation, s.beyond || !facts_.is_level_asked});
   }
-  const SightPredicate wanted(p_, q_, std::move(stretches), ends, facts_.tolerance);
+  const SightPredicate wanted(view_.p(), view_.q(), std::move(stretches), ends, facts_.tolerance);
   const SightPredicate beyond = wanted.beyond();
   mesh_.refine(wanted, context_, facts_.is_level_asked ? &beyond : nullptr);
   if (asks_ends) {
-    for (SightEnd* end : {&view_.a, &view_.b}) {
-      end->deviation = std::min(end->deviation, ends);
-      end->known = end->known || ends < 0;
-    }
+    view_.end_deviation = std::min(view_.end_deviation, ends);
+    view_.a.known = view_.b.known = view_.end_deviation < 0;
   }
-  look();
+  view_.look(mesh_);
 }
 
 /// The deviation to ask for, so that a piece is likely to be decided whose clearance is `margin`
@@ -123,11 +92,6 @@ double SightSearch::target(double margin, double deviation) const noexcept {
   return wanted > std::max(step_, facts_.finest_deviation) ? wanted : kEverything;
 }
 
-double SightSearch::quarter_of(double deviation) const noexcept {
-  const double quarter = std::min(deviation / 4, 256 * step_);
-  return quarter > std::max(step_, facts_.finest_deviation) ? quarter : kEverything;
-}
-
 /// Adds a stretch; joins it to the last one where it follows that.
 void SightSearch::add(std::vector<Stretch>& stretches, double from, double to,
                       double deviation) const {
@@ -136,34 +100,13 @@ void SightSearch::add(std::vector<Stretch>& stretches, double from, double to,
     last.to = to;
     last.deviation = std::min(last.deviation, deviation);
   } else {
-    stretches.push_back({from, to, deviation, -kInfinity});
+    stretches.push_back({from, to, deviation});
   }
-}
-
-/// Leaves out of each stretch the records whose surface ends lower than `margin` below the lowest
-/// height of the line there. With voids it leaves out none, since such a record may still say what
-/// is void above.
-void SightSearch::cut_below_line(std::vector<Stretch>& stretches, double margin) const {
-  if (facts_.has_voids) {
-    return;
-  }
-  for (Stretch& s : stretches) {
-    const double lowest = view_.ray().lowest(s.from, s.to) - margin;
-    const double code = (lowest - facts_.heights.offset) / facts_.heights.step;
-    s.lowest_code = std::isfinite(code) ? code - 1e-9 * (1 + std::abs(code)) : -kInfinity;
-  }
-}
-
-const SightPiece* SightSearch::hidden_piece() const noexcept {
-  const auto hidden = std::find_if(view_.pieces.begin(), view_.pieces.end(), [](const auto& p) {
-    return p.verdict == PieceVerdict::kHidden;
-  });
-  return hidden == view_.pieces.end() ? nullptr : &*hidden;
 }
 
 SightVerdict SightSearch::decide() {
   while (true) {
-    if (hidden_piece() != nullptr || view_.is_touched_from_below()) {
+    if (view_.hidden_piece() != nullptr || view_.is_touched_from_below()) {
       return SightVerdict::kHidden;
     }
     const bool undecided = std::any_of(view_.pieces.begin(), view_.pieces.end(), [](const auto& p) {
@@ -175,15 +118,13 @@ SightVerdict SightSearch::decide() {
     if (out_of_budget()) {
       return SightVerdict::kUndecided;
     }
-    if (view_.is_touch_open()) {
+    std::vector<Stretch> stretches = undecided_stretches();
+    if (view_.is_touch_open()) {  // the one point in which the line meets the domain
       if (!view_.known.empty()) {
         return SightVerdict::kUndecided;  // the file does not know its voids
       }
-      settle_touch();
-      continue;
-    }
-    std::vector<Stretch> stretches = undecided_stretches();
-    if (stretches.empty() && ends_known()) {
+      stretches = {{0.0, 1.0, kEverything, true}};
+    } else if (stretches.empty() && ends_known()) {
       stretches = unsettled_stretch();
       if (stretches.empty()) {
         return SightVerdict::kUndecided;  // neither the file nor the level of detail says more
@@ -193,7 +134,7 @@ SightVerdict SightSearch::decide() {
     for (const Stretch& s : stretches) {
       ends = std::min(ends, s.deviation);
     }
-    refine(std::move(stretches), std::isinf(ends) ? kEverything : ends, 0.0);
+    refine(std::move(stretches), std::isinf(ends) ? kEverything : ends);
   }
 }
 
@@ -207,20 +148,16 @@ std::vector<SightPredicate::Stretch> SightSearch::undecided_stretches() const {
       likely = &p;
     }
   }
-  std::vector<Stretch> stretches;
   if (likely != nullptr) {
     const double deviation =
         facts_.has_voids ? kEverything : target(likely->guess, likely->deviation);
-    stretches.push_back({likely->guess_at, likely->guess_at, deviation, -kInfinity});
-  } else {
-    for (const SightPiece& p : view_.pieces) {
-      if (p.verdict == PieceVerdict::kUndecided && !p.final) {
-        add(stretches, p.from, p.to, p.surface ? target(p.guess, p.deviation) : kEverything);
-      }
-    }
+    return {{likely->guess_at, likely->guess_at, deviation}};
   }
-  if (likely == nullptr) {
-    cut_below_line(stretches, 0.0);
+  std::vector<Stretch> stretches;
+  for (const SightPiece& p : view_.pieces) {
+    if (p.verdict == PieceVerdict::kUndecided && !p.final) {
+      add(stretches, p.from, p.to, p.surface ? target(p.guess, p.deviation) : kEverything);
+    }
   }
   return stretches;
 }
@@ -238,78 +175,7 @@ std::vector<SightPredicate::Stretch> SightSearch::unsettled_stretch() const {
   if (likely == nullptr) {
     return {};
   }
-  return {{likely->guess_at, likely->guess_at, kEverything, -kInfinity, true}};
-}
-
-const SightPiece* SightSearch::find_first_hidden() {
-  while (true) {
-    const auto first = std::find_if(view_.pieces.begin(), view_.pieces.end(), [](const auto& p) {
-      return p.verdict != PieceVerdict::kVisible;
-    });
-    if (first == view_.pieces.end() || out_of_budget()) {
-      return first == view_.pieces.end() ? nullptr : hidden_piece();
-    }
-    if (first->final && ends_known()) {
-      // The first one, unless a level of detail leaves a piece before it undecided.
-      return hidden_piece();
-    }
-    std::vector<Stretch> stretches = stretch_to_first_hidden();
-    refine(std::move(stretches), kEverything, 0.0);
-  }
-}
-
-/// The stretches from the first piece that may hide the line to the first piece that does.
-/// Deviations are asked for in steps of a quarter, so that little is refined behind the place that
-/// is looked for.
-std::vector<SightPredicate::Stretch> SightSearch::stretch_to_first_hidden() const {
-  std::vector<Stretch> stretches;
-  for (const SightPiece& p : view_.pieces) {
-    if (p.verdict == PieceVerdict::kVisible) {
-      continue;
-    }
-    if (!p.final) {
-      add(stretches, p.from, p.to,
-          p.verdict == PieceVerdict::kHidden ? quarter_of(p.deviation)
-                                             : target(p.guess, p.deviation));
-    }
-    if (p.verdict == PieceVerdict::kHidden) {
-      break;
-    }
-  }
-  cut_below_line(stretches, 0.0);
-  return stretches;
-}
-
-void SightSearch::find_least_clearance() {
-  double most = kInfinity;
-  // Records that were left out because they end below the line may matter now. Where the line is
-  // hidden they do not: then only what is above the line does.
-  if (hidden_piece() == nullptr) {
-    std::erase_if(view_.known, [](const KnownStretch& k) { return k.margin < kInfinity; });
-    look();
-  }
-  while (true) {
-    for (const SightPiece& p : view_.pieces) {
-      most = std::min(most, p.most);
-    }
-    std::vector<Stretch> stretches = stretches_of_least(most);
-    if (stretches.empty() || out_of_budget()) {
-      return;
-    }
-    refine(std::move(stretches), kEverything, std::max(most, 0.0));
-  }
-}
-
-/// The stretches of the pieces that may hold a smaller clearance than `most`.
-std::vector<SightPredicate::Stretch> SightSearch::stretches_of_least(double most) const {
-  std::vector<Stretch> stretches;
-  for (const SightPiece& p : view_.pieces) {
-    if (!p.final && p.least < most) {
-      add(stretches, p.from, p.to, p.surface ? quarter_of(p.deviation) : kEverything);
-    }
-  }
-  cut_below_line(stretches, most);
-  return stretches;
+  return {{likely->guess_at, likely->guess_at, kEverything, true}};
 }
 
 }  // namespace ptin

@@ -205,13 +205,13 @@ double weighted_mean(int count, const std::array<double, 3>& z,
   return std::clamp(mean, std::min({z[0], z[1], z[2]}), std::max({z[0], z[1], z[2]}));
 }
 
-double code_at(const Tin& tin, const HeightEncoding& heights, const Footing& f) {
-  std::array<double, 3> codes{};
+WeightedCodes codes_at(const Tin& tin, const HeightEncoding& heights, const Footing& f) {
+  WeightedCodes codes{f.count, {}, f.weight};
   for (int i = 0; i < f.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    codes[k] = heights.code(tin.vertices[f.vertex[k]].height);
+    codes.code[k] = heights.code(tin.vertices[f.vertex[k]].height);
   }
-  return weighted_mean(f.count, codes, f.weight);
+  return codes;
 }
 
 LineWalk::LineWalk(const Tin& tin, Spot p, Spot q, TriangleId start) : tin_(&tin), p_(p), q_(q) {

@@ -70,9 +70,27 @@ struct Footing {
 [[nodiscard]] double weighted_mean(int count, const std::array<double, 3>& z,
                                    const std::array<Int128, 3>& weight);
 
+/// The height code at a point as a weighted mean of codes, apart from a mesh.
+struct WeightedCodes {
+  int count = 0;
+  std::array<double, 3> code{};
+  std::array<Int128, 3> weight{};
+
+  [[nodiscard]] double mean() const { return weighted_mean(count, code, weight); }
+  /// True when all codes are the same: the mean is then exact.
+  [[nodiscard]] bool is_level() const noexcept {
+    return (count < 2 || code[1] == code[0]) && (count < 3 || code[2] == code[0]);
+  }
+};
+
 /// The height code at a footing: the weighted mean of the codes of its vertices. REQUIRES: all
 /// vertices of the footing have heights.
-[[nodiscard]] double code_at(const Tin& tin, const HeightEncoding& heights, const Footing& f);
+[[nodiscard]] WeightedCodes codes_at(const Tin& tin, const HeightEncoding& heights,
+                                     const Footing& f);
+[[nodiscard]] inline double code_at(const Tin& tin, const HeightEncoding& heights,
+                                    const Footing& f) {
+  return codes_at(tin, heights, f).mean();
+}
 
 /// Where a line crosses the mesh.
 struct Crossing {
@@ -85,6 +103,19 @@ struct Crossing {
   [[nodiscard]] double share() const noexcept {
     return static_cast<double>(numerator) / static_cast<double>(denominator);
   }
+};
+
+/// A point of a line, and the surface there, apart from a mesh.
+struct LinePoint {
+  WeightedCodes ground;  ///< Of no vertex where there is no surface.
+  Int128 numerator = 0;  ///< As Crossing.
+  Int128 denominator = 1;
+
+  [[nodiscard]] double share() const noexcept {
+    return static_cast<double>(numerator) / static_cast<double>(denominator);
+  }
+  /// Neither the beginning of the line nor its end.
+  [[nodiscard]] bool is_inner() const noexcept { return numerator > 0 && numerator < denominator; }
 };
 
 /// A stretch of a line between two crossings: inside of one triangle, or along one edge.

@@ -4,8 +4,11 @@
 #include "engine/query/sight/sight.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -202,6 +205,126 @@ RC_GTEST_PROP(Sight, IsNeverWrongOfAFileThatIsNotExact, (std::uint64_t seed)) {
     check_certificate(truth, sight(*rough.terrain, asked.pair, asked.request));
   }
 }
+
+/// The same question by splits.
+SightResult by_splits(const Terrain& t, const SightPair& pair, SightRequest request) {
+  request.by = AnswerBy::kSplits;
+  return sight(t, pair, request);
+}
+
+/// The same number, up to the last bits of what is weighed in another triangle beside an edge.
+bool is_same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b)) ||
+         std::abs(a - b) <= 1e-12 * (1 + std::abs(a) + std::abs(b));
+}
+bool is_same(const std::optional<SightPoint>& a, const std::optional<SightPoint>& b) {
+  return a.has_value() == b.has_value() &&
+         (!a || (is_same(a->share, b->share) && is_same(a->height, b->height)));
+}
+
+void check_same(const SightResult& stars, const SightResult& splits) {
+  RC_ASSERT(stars.verdict == splits.verdict);
+  RC_ASSERT(stars.exact == splits.exact);
+  RC_ASSERT(stars.state_a == splits.state_a);
+  RC_ASSERT(stars.state_b == splits.state_b);
+  RC_ASSERT(stars.certified_deviation == splits.certified_deviation);
+  RC_ASSERT(is_same(stars.clearance_min, splits.clearance_min));
+  RC_ASSERT(is_same(stars.clearance_max, splits.clearance_max));
+  RC_ASSERT(is_same(stars.void_length, splits.void_length));
+  RC_ASSERT(stars.fresnel_ratio.has_value() == splits.fresnel_ratio.has_value());
+  if (stars.fresnel_ratio) RC_ASSERT(is_same(*stars.fresnel_ratio, *splits.fresnel_ratio));
+}
+
+RC_GTEST_PROP(Sight, ByStarsIsBySplits, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const SmallTerrain t(seed);
+  for (int i = 0; i < 20; ++i) {
+    SightCase asked = random_question(random, t);
+    asked.request.wavelength = random() % 3 == 0 ? 1.0 : 0.0;
+    asked.request.verdict_only = asked.request.wavelength == 0 && random() % 3 == 0;
+    const SightResult stars = sight(*t.terrain, asked.pair, asked.request);
+    const SightResult splits = by_splits(*t.terrain, asked.pair, asked.request);
+    RC_ASSERT(stars.cost.records_retrieved == 0u);
+    RC_ASSERT(splits.cost.stars_read == 0u);
+    check_same(stars, splits);
+    if (!asked.request.verdict_only) {
+      RC_ASSERT(is_same(stars.obstruction, splits.obstruction));
+    }
+  }
+}
+
+/// Where something is left out, what one way tells does not contradict what the other tells.
+RC_GTEST_PROP(Sight, ByStarsAtALevelAgreesWithSplits, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const SmallTerrain t(seed, random() % 3 == 0 ? 2.0 : 0.0);
+  const auto is_decided = [](const SightResult& r) {
+    return r.verdict != SightVerdict::kUndecided;
+  };
+  const auto agree = [](double a, double b) {
+    return std::isnan(a) || std::isnan(b) || is_same(a, b);
+  };
+  for (int i = 0; i < 20; ++i) {
+    SightCase asked = random_question(random, t);
+    asked.request.wavelength = random() % 3 == 0 ? 1.0 : 0.0;
+    asked.request.detail.tolerance = static_cast<double>(random() % 8);
+    const SightResult stars = sight(*t.terrain, asked.pair, asked.request);
+    const SightResult splits = by_splits(*t.terrain, asked.pair, asked.request);
+    RC_ASSERT(stars.state_a == splits.state_a);
+    RC_ASSERT(stars.state_b == splits.state_b);
+    RC_ASSERT(!is_decided(stars) || !is_decided(splits) || stars.verdict == splits.verdict);
+    RC_ASSERT(!(stars.clearance_min > splits.clearance_max + 1e-9));
+    RC_ASSERT(!(splits.clearance_min > stars.clearance_max + 1e-9));
+    RC_ASSERT(agree(stars.void_length, splits.void_length));
+  }
+}
+
+/// Real pairs: from points on sides and vertices too, over a solver with a coarse level.
+class SightByBothWays : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SightByBothWays, IsTheSame) {
+  const Terrain& t = reference::built_terrain(GetParam());
+  const StoreFacts& f = t.store().facts();
+  std::mt19937_64 random(7);
+  const auto place = [&] {
+    const auto at = [&](std::int32_t low, std::int32_t high, std::uint64_t kind) {
+      const double v = std::uniform_real_distribution<double>(low, high)(random);
+      return kind == 0 ? v : (kind == 1 ? std::round(v) : std::round(2 * v) / 2);
+    };
+    const std::uint64_t kind = random() % 3;
+    const double x = at(f.bounds.min_x, f.bounds.max_x, kind);
+    return f.map.to_map(x, at(f.bounds.min_y, f.bounds.max_y, kind));
+  };
+  std::array<int, 4> verdicts{};
+  for (const bool verdict_only : {true, false}) {
+    SightRequest request;
+    request.verdict_only = verdict_only;
+    SightSolver stars(t, request, 300);
+    request.by = AnswerBy::kSplits;
+    SightSolver splits(t, request);
+    for (int i = 0; i < 400; ++i) {
+      const double height = static_cast<double>(random() % 5 * (random() % 3) * 20);
+      const SightPair pair{place(), height, place(), height};
+      const SightResult a = stars.solve(pair);
+      const SightResult b = splits.solve(pair);
+      ++verdicts[static_cast<std::size_t>(a.verdict)];
+      ASSERT_EQ(a.verdict, b.verdict) << i;
+      ASSERT_EQ(a.exact, b.exact) << i;
+      ASSERT_TRUE(is_same(a.clearance_min, b.clearance_min)) << i;
+      ASSERT_TRUE(is_same(a.clearance_max, b.clearance_max)) << i;
+      ASSERT_TRUE(is_same(a.void_length, b.void_length)) << i;
+      ASSERT_TRUE(verdict_only || is_same(a.obstruction, b.obstruction)) << i;
+    }
+  }
+  EXPECT_GT(verdicts[static_cast<std::size_t>(SightVerdict::kVisible)], 50);
+  EXPECT_GT(verdicts[static_cast<std::size_t>(SightVerdict::kHidden)], 50);
+}
+
+INSTANTIATE_TEST_SUITE_P(Terrains, SightByBothWays,
+                         ::testing::Values("mountains_257.tif", "coast_257.tif"),
+                         [](const auto& of) {
+                           const std::string name = of.param;
+                           return name.substr(0, name.find('_'));
+                         });
 
 }  // namespace
 }  // namespace ptin

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight/coarse_ground.h"
+
+#include "engine/geometry/hilbert.h"
+#include "engine/geometry/infinity.h"
+#include "storage/packed_rtree.h"
+
+namespace ptin {
+
+CoarseGround::CoarseGround(const StoreFile& store, double level, QueryContext& context) {
+  StarFilter filter;
+  filter.level = level;
+  std::vector<StarPage> pages;
+  store.star_index().search_stars(filter, pages, context.cost.io);
+  const auto take = [&](const LivingTriangle& t) {
+    if (!t.is_void) {
+      triangles_.push_back(t);
+    }
+  };
+  const HeightEncoding& heights = store.facts().heights;
+  visit_living(store.t0(), level, take);
+  StarredRecords stars;
+  for (const StarPage& page : pages) {
+    context.check_stop();
+    stars.clear();
+    context.cost.records_examined += store.read_stars(page.id, filter, stars, context.cost.io);
+    context.cost.stars_read += stars.size();
+    visit_living(stars, level, heights, take);
+    context.admit(3 * triangles_.size() * sizeof(LivingTriangle));  // they are sorted by copying
+  }
+  build(heights);
+}
+
+void CoarseGround::build(const HeightEncoding& heights) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  order.reserve(triangles_.size());
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const GridBox box = box_of(triangles_[i]);
+    const auto middle = [](std::int32_t a, std::int32_t b) {
+      return static_cast<std::uint32_t>((std::int64_t{a} + b) / 2);
+    };
+    order.emplace_back(hilbert_position(middle(box.min_x, box.max_x), middle(box.min_y, box.max_y)),
+                       i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<LivingTriangle> sorted;
+  sorted.reserve(triangles_.size());
+  std::vector<Node> nodes;
+  nodes.reserve(triangles_.size());
+  for (const auto& [position, i] : order) {
+    const LivingTriangle& t = triangles_[i];
+    double top = -kInfinity;
+    for (const LivingTriangle::Corner& c : t.corner) {
+      top = std::max(top, heights.height(c.height));
+    }
+    sorted.push_back(t);
+    nodes.push_back({box_of(t), {top, top - t.deviation}});
+  }
+  triangles_ = std::move(sorted);
+  while (!nodes.empty()) {
+    std::vector<Node> above;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (i % kFanOut == 0) {
+        above.push_back(nodes[i]);
+        continue;
+      }
+      Node& node = above.back();
+      node.box = united(node.box, nodes[i].box);
+      node.top = {std::max(node.top.surface, nodes[i].top.surface),
+                  std::max(node.top.certain, nodes[i].top.certain)};
+    }
+    const bool is_root = nodes.size() <= kFanOut;
+    levels_.push_back(std::move(nodes));
+    nodes = is_root ? std::vector<Node>{} : std::move(above);
+  }
+}
+
+std::uint64_t CoarseGround::bytes() const noexcept {
+  return triangles_.capacity() * (sizeof(LivingTriangle) + 2 * sizeof(Node));
+}
+
+const LivingTriangle* CoarseGround::find(Spot q) const {
+  const LivingTriangle* found = nullptr;
+  search([&](const GridBox& box, const Top& /*top*/) { return contains(box, q) ? 1.0 : 0.0; },
+         [&](const LivingTriangle& t) {
+           const auto& c = t.corner;
+           if (side(c[0].position, c[1].position, q) >= 0 &&
+               side(c[1].position, c[2].position, q) >= 0 &&
+               side(c[2].position, c[0].position, q) >= 0) {
+             found = &t;
+           }
+           return found == nullptr;
+         });
+  return found;
+}
+
+}  // namespace ptin

@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/sight/sight_stars.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+#include "engine/geometry/infinity.h"
+
+namespace ptin {
+
+namespace {
+
+constexpr double kFullDetail = -1.0;  ///< As a level.
+
+/// Shares of the way that are computed in doubles are off by less than this: coordinates are exact
+/// doubles, so a difference, a quotient and their use round a share of at most 1 by some 2^-51.
+constexpr double kShareSlack = 0x1p-40;
+
+}  // namespace
+
+SightStars::SightStars(const OpenedTerrain& terrain, const SightFacts& facts,
+                       const SightRequest& request, const CoarseGround* coarse,
+                       const SightLine& line, QueryContext& context)
+    : terrain_(terrain),
+      facts_(facts),
+      request_(request),
+      coarse_(coarse),
+      context_(context),
+      line_(line),
+      origin_(grid_of(line.p())) {
+  const MapPoint end = grid_of(line.q());
+  way_ = {end.x - origin_.x, end.y - origin_.y};
+  state_domain(line_.a, line_.p());
+  state_domain(line_.b, line_.q());
+}
+
+/// Before the ground below an end is known: T0 covers the domain, and is ground where the terrain
+/// has no void.
+void SightStars::state_domain(SightEnd& end, Spot spot) const {
+  const CoarsestTin& t0 = terrain_.store().t0();
+  for (const CoarsestTin::T& t : t0.triangles) {
+    const auto at = [&](std::size_t i) { return t0.vertices[t.v[i]].position; };
+    if (side(at(0), at(1), spot) >= 0 && side(at(1), at(2), spot) >= 0 &&
+        side(at(2), at(0), spot) >= 0) {
+      end.inside = true;
+      end.surface = end.surface || t.is_void == 0;
+    }
+  }
+}
+
+bool SightStars::ends_known() const noexcept {
+  return (line_.a.known && line_.b.known) ||
+         (request_.absolute && (!facts_.has_voids || request_.verdict_only));
+}
+
+bool SightStars::out_of_budget() const noexcept {
+  return request_.budget && context_.cost.stars_read >= *request_.budget;
+}
+
+void SightStars::finish_ends() {
+  if (ends_known() || out_of_budget()) {
+    return;
+  }
+  const std::array<Spot, 2> spots{line_.p(), line_.q()};
+  const std::array<SightEnd*, 2> ends{&line_.a, &line_.b};
+  std::array<TriangleAt, 2> at;
+  for (std::size_t i = 0; i < 2; ++i) {
+    SightEnd& end = *ends[i];
+    end.known = true;
+    if (end.inside) {
+      find_triangles(terrain_, kFullDetail, {&spots[i], 1}, {&at[i], 1}, context_);
+    }
+    end.surface = at[i].is_found && !at[i].triangle.is_void;
+    if (end.surface) {
+      line_.stand_on(end, codes_in(at[i].triangle, facts_.heights, spots[i]),
+                     facts_.file_deviation);
+    }
+  }
+  line_.take_levels();
+  for (std::size_t i = 0; i < 2 && facts_.is_level_asked && line_.ends_defined(); ++i) {
+    if (at[i].is_found) {  // the full TIN there is at hand
+      begin_search(Aim::kWhole, {0.0, 1.0}, kFullDetail);
+      take(at[i].triangle);
+    }
+  }
+}
+
+/// The part of the way whose points may lie in a box, none missing.
+std::optional<SightStars::Part> SightStars::part_in(const GridBox& box) const noexcept {
+  Part part = part_;
+  const auto cut = [&](double begin, double way, double low, double high) {
+    if (way == 0) {
+      return low <= begin && begin <= high;
+    }
+    const double s0 = (low - begin) / way;
+    const double s1 = (high - begin) / way;
+    part.from = std::max(part.from, std::min(s0, s1) - kShareSlack);
+    part.to = std::min(part.to, std::max(s0, s1) + kShareSlack);
+    return part.from <= part.to;
+  };
+  if (!cut(origin_.x, way_.x, box.min_x, box.max_x) ||
+      !cut(origin_.y, way_.y, box.min_y, box.max_y)) {
+    return std::nullopt;
+  }
+  return part;
+}
+
+/// A box that meets every box of whole coordinates that meets the part.
+GridBox SightStars::box_of(const Part& part) const noexcept {
+  const double x0 = origin_.x + part.from * way_.x;
+  const double x1 = origin_.x + part.to * way_.x;
+  const double y0 = origin_.y + part.from * way_.y;
+  const double y1 = origin_.y + part.to * way_.y;
+  const auto whole = [](double v) {
+    return static_cast<std::int32_t>(std::clamp(v, -0x1p31, 0x1p31 - 1));
+  };
+  return {whole(std::floor(std::min(x0, x1))), whole(std::floor(std::min(y0, y1))),
+          whole(std::ceil(std::max(x0, x1))), whole(std::ceil(std::max(y0, y1)))};
+}
+
+double SightStars::bound(const StarAttributes& a) {
+  const std::optional<Part> part = part_in(a.box);
+  if (!part) {
+    return -kInfinity;
+  }
+  if (aim_ == Aim::kWhole) {
+    return 0.0;
+  }
+  const double top =
+      facts_.heights.height_of_code(a.heights.hi) + facts_.finest_deviation + line_.rounding();
+  const Ray& ray = line_.ray();
+  const double above = top - ray.lowest(part->from, part->to);
+  if (aim_ != Aim::kFirst) {
+    return above;
+  }
+  if (above < 0) {
+    return -kInfinity;
+  }
+  const double width = part->to - part->from;
+  const double t =
+      first_zero(ray.low(part->from) - top, ray.low(part->to) - top, ray.bend * width * width);
+  return -(part->from + t * width - kShareSlack);
+}
+
+/// Pages and subtrees of smaller bounds do not matter any more.
+double SightStars::cut_off() const noexcept {
+  switch (aim_) {
+    case Aim::kVerdict:
+      return first_hidden_ <= 1.0 ? kInfinity : 0.0;
+    case Aim::kLeast:
+      return -most_;
+    case Aim::kFirst:
+      return -first_hidden_;
+    case Aim::kWhole:
+      break;
+  }
+  return 0.0;
+}
+
+/// Sets what matters of a page whose stars the line passes on a part of the way.
+void SightStars::look_at(const Part& part) {
+  filter_.box = box_of(part);
+  filter_.heights = kAllHeights;
+  lowest_ = -kInfinity;
+  if (aim_ == Aim::kWhole) {
+    return;
+  }
+  lowest_ = line_.ray().lowest(part.from, part.to) - facts_.finest_deviation - line_.rounding() -
+            (aim_ == Aim::kLeast ? most_ : 0.0);
+  const double code = (lowest_ - facts_.heights.offset) / facts_.heights.step;
+  if (std::isfinite(code)) {
+    filter_.heights.lo = code - 1e-9 * (1 + std::abs(code));
+  }
+}
+
+double SightStars::visit(PageId page, const StarAttributes& a) {
+  if (out_of_budget()) {
+    is_cut_ = true;
+    cut_bound_ = bound(a);
+    return kInfinity;
+  }
+  context_.check_stop();
+  look_at(part_in(a.box).value_or(part_));
+  stars_.clear();
+  context_.cost.records_examined +=
+      terrain_.store().read_stars(page, filter_, stars_, context_.cost.io);
+  context_.cost.stars_read += stars_.size();
+  visit_living(stars_, filter_.level, facts_.heights, [&](const LivingTriangle& t) { take(t); });
+  context_.admit(2 * line_.pieces.capacity() * sizeof(SightPiece) +
+                 (coarse_ == nullptr ? 0 : coarse_->bytes()));
+  return cut_off();
+}
+
+void SightStars::begin_search(Aim aim, Part part, double level) {
+  aim_ = aim;
+  part_ = part;
+  filter_.level = level;
+  is_cut_ = false;
+  look_at(part);
+}
+
+/// Looks for triangles of a level along a part of the way.
+void SightStars::search(Aim aim, Part part, double level) {
+  begin_search(aim, part, level);
+  visit_living(terrain_.store().t0(), level, [&](const LivingTriangle& t) { take(t); });
+  StarFilter filter;
+  filter.level = level;
+  filter.box = box_of(part);
+  terrain_.store().star_index().search_stars_best_first(filter, *this, cut_off(), context_.cost.io);
+}
+
+/// Where the budget ends a search, all that was not read is one piece of which nothing is known but
+/// the highest ground of the terrain.
+void SightStars::search_whole_line(Aim aim) {
+  search(aim, {0.0, 1.0}, facts_.tolerance);
+  if (!is_cut_) {
+    return;
+  }
+  SightPiece unread;
+  unread.to = 1.0;
+  unread.deviation = kInfinity;
+  unread.highest = facts_.max_height;
+  line_.certify(unread);
+  line_.decide_by_bounds(unread);
+  if (aim == Aim::kLeast) {  // pages were read in the order of their bounds
+    unread.least = std::max(unread.least, -cut_bound_);
+  } else if (aim == Aim::kFirst) {
+    unread.least = std::max(unread.least, most_);
+  }
+  line_.pieces.push_back(unread);
+}
+
+SightPiece SightStars::piece_of(const LivingTriangle& t, const SharedStretch& on,
+                                bool is_final) const {
+  SightPiece piece;
+  piece.from = on.from.share();
+  piece.to = on.to.share();
+  piece.along_edge = on.along_edge;
+  piece.surface = !t.is_void;
+  piece.final = is_final;
+  piece.exact = is_final && (filter_.level < 0 || !facts_.is_level_asked);
+  piece.deviation = t.deviation;
+  piece.highest = facts_.heights.height_of_code(t.heights.hi);
+  line_.certify(piece);
+  if (piece.surface) {
+    piece.ground_from = line_.ground_of(on.from.ground);
+    piece.ground_to = line_.ground_of(on.to.ground);
+    // The ground at an end is one number, also where the end lies on an edge.
+    if (piece.exact && on.from.numerator == 0 && line_.a.known) {
+      piece.ground_from = line_.ground_of(line_.a.ground);
+    }
+    if (piece.exact && on.to.numerator == on.to.denominator && line_.b.known) {
+      piece.ground_to = line_.ground_of(line_.b.ground);
+    }
+  }
+  line_.decide_by_bounds(piece);
+  return piece;
+}
+
+void SightStars::take_touch(const LivingTriangle& t, const LinePoint& at) {
+  const bool is_exact = filter_.level < 0 || !facts_.is_level_asked;
+  if (!facts_.final_settles && !(is_exact && facts_.exact_settles)) {
+    open_touch_ = at.is_inner() ? at.share() : open_touch_;
+  } else if (!t.is_void && (is_exact || at.ground.count == 1)) {  // a vertex is as in the full TIN
+    line_.take_touch(at);
+    first_hidden_ = std::min(first_hidden_, line_.touched_at());
+  }
+}
+
+void SightStars::take(const LivingTriangle& t) {
+  if (!meets(ptin::box_of(t), filter_.box)) {
+    return;
+  }
+  if (aim_ != Aim::kWhole) {  // what is void is void in the full TIN, and hides nothing
+    const auto is_low = [&](const LivingTriangle::Corner& c) {
+      return facts_.heights.height(c.height) < lowest_;
+    };
+    if (t.is_void || std::all_of(t.corner.begin(), t.corner.end(), is_low)) {
+      return;
+    }
+  }
+  const std::optional<SharedStretch> on = shared_stretch(t, facts_.heights, line_.p(), line_.q());
+  if (!on) {
+    return;
+  }
+  if (on->is_point) {
+    take_touch(t, on->from);
+    return;
+  }
+  SightPiece piece = piece_of(t, *on, true);
+  line_.decide_exactly(piece, on->from, on->to);
+  most_ = std::min(most_, piece.most);
+  if (piece.verdict == PieceVerdict::kHidden) {
+    first_hidden_ = std::min(first_hidden_, piece.from);
+  }
+  line_.pieces.push_back(piece);
+}
+
+/// With ends that are as certain as the coarse level is, unless they are known already. True when
+/// the full surface hides the line for certain.
+bool SightStars::is_hidden_by_coarse() {
+  if (coarse_ == nullptr || facts_.has_voids) {
+    return false;
+  }
+  const std::array<Spot, 2> spots{line_.p(), line_.q()};
+  const std::array<SightEnd*, 2> ends{&line_.a, &line_.b};
+  for (std::size_t i = 0; i < 2 && !ends_known(); ++i) {
+    if (const LivingTriangle* t = coarse_->find(spots[i]); t != nullptr) {
+      line_.stand_on(*ends[i], codes_in(*t, facts_.heights, spots[i]),
+                     std::max(t->deviation, facts_.file_deviation));
+    }
+  }
+  line_.take_levels();
+  part_ = {0.0, 1.0};
+  const Ray& ray = line_.ray();
+  const Ray upper{{ray.a.hi, ray.a.hi}, {ray.b.hi, ray.b.hi}, ray.bend};
+  bool is_hidden = false;
+  coarse_->search(
+      [&](const GridBox& box, const CoarseGround::Top& top) {
+        const std::optional<Part> part = part_in(box);
+        return part ? top.certain - upper.lowest(part->from, part->to) : 0.0;
+      },
+      [&](const LivingTriangle& t) {
+        if (const auto on = shared_stretch(t, facts_.heights, line_.p(), line_.q());
+            on && !on->is_point) {
+          const SightPiece piece = piece_of(t, *on, false);
+          is_hidden = piece.verdict == PieceVerdict::kHidden;
+          if (is_hidden) {
+            line_.pieces.push_back(piece);
+          }
+        }
+        return !is_hidden;
+      });
+  return is_hidden;
+}
+
+/// Where the coarse level rises highest above the line; none where it does not.
+std::optional<double> SightStars::likely_share() const {
+  std::optional<double> share;
+  if (coarse_ == nullptr) {
+    return share;
+  }
+  double least = 0.0;
+  const Ray& ray = line_.ray();
+  coarse_->search(
+      [&](const GridBox& box, const CoarseGround::Top& top) {
+        const std::optional<Part> part = part_in(box);
+        return part ? top.surface - ray.lowest(part->from, part->to) + least : 0.0;
+      },
+      [&](const LivingTriangle& t) {
+        if (const auto on = shared_stretch(t, facts_.heights, line_.p(), line_.q());
+            on && !on->is_point) {
+          if (const SightPiece piece = piece_of(t, *on, false); piece.guess < least) {
+            least = piece.guess;
+            share = piece.guess_at;
+          }
+        }
+        return true;
+      });
+  return share;
+}
+
+void SightStars::decide_by_search() {
+  if (!facts_.final_settles) {
+    search_whole_line(Aim::kWhole);
+    return;
+  }
+  if (is_hidden_by_coarse()) {
+    return;
+  }
+  if (!ends_known()) {
+    finish_ends();
+    if (is_hidden_by_coarse()) {
+      return;
+    }
+  }
+  if (const std::optional<double> share = likely_share()) {
+    search(Aim::kVerdict, {*share, *share}, facts_.tolerance);
+  }
+  if (first_hidden_ > 1.0) {
+    search_whole_line(Aim::kVerdict);
+  }
+}
+
+void SightStars::finish_line() {
+  if (facts_.has_voids || request_.wavelength > 0) {
+    search_whole_line(Aim::kWhole);
+    return;
+  }
+  for (const SightEnd* end : {&line_.a, &line_.b}) {
+    if (end->known && end->surface) {
+      most_ = std::min(most_, end->level.hi - line_.ground_of(end->ground) +
+                                  facts_.finest_deviation + 2 * line_.rounding());
+    }
+  }
+  search_whole_line(Aim::kLeast);
+  if (first_hidden_ <= 1.0) {
+    search_whole_line(Aim::kFirst);
+  }
+}
+
+/// Where the full TIN may have a void in the place of a piece that hides the line, or of the one
+/// point in which the line meets the domain: looks at the full TIN there, at the point that is most
+/// likely to hide the line first.
+void SightStars::settle() {
+  if (!facts_.has_voids || facts_.final_settles || !facts_.exact_settles) {
+    return;
+  }
+  std::vector<std::pair<double, double>> likely;
+  for (const SightPiece& p : line_.pieces) {
+    if (p.verdict == PieceVerdict::kUndecided && p.surface && p.guess < -p.deviation) {
+      likely.emplace_back(p.guess, p.guess_at);
+    }
+  }
+  std::sort(likely.begin(), likely.end());
+  if (line_.pieces.empty() && open_touch_) {
+    likely.emplace_back(0.0, *open_touch_);
+  }
+  for (const auto& [guess, share] : likely) {
+    if (first_hidden_ <= 1.0 || out_of_budget()) {
+      return;
+    }
+    search(Aim::kWhole, {share, share}, kFullDetail);
+    open_touch_.reset();
+  }
+}
+
+/// Puts the pieces in their order, each once. What holds of either triangle holds on their common
+/// edge.
+void SightStars::order_pieces() {
+  std::vector<SightPiece>& pieces = line_.pieces;
+  std::sort(pieces.begin(), pieces.end(), [](const SightPiece& x, const SightPiece& y) {
+    return std::tie(x.from, x.to, x.exact) < std::tie(y.from, y.to, y.exact);
+  });
+  std::size_t kept = 0;
+  for (const SightPiece& p : pieces) {
+    if (kept > 0) {
+      SightPiece& last = pieces[kept - 1];
+      if (last == p) {
+        continue;
+      }
+      if (last.along_edge && p.along_edge && last.from == p.from && last.to == p.to &&
+          last.exact == p.exact) {
+        last = line_.united_on_edge(last, p);
+        continue;
+      }
+    }
+    pieces[kept++] = p;
+  }
+  pieces.resize(kept);
+}
+
+/// Where the full TIN was looked at beside a level of detail, it stands in the place of the level.
+void SightStars::prefer_exact() {
+  std::vector<SightPiece> all;
+  all.swap(line_.pieces);
+  std::vector<SightPiece> exact;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(exact),
+               [](const SightPiece& p) { return p.exact; });
+  for (const SightPiece& p : all) {
+    double from = p.from;
+    for (const SightPiece& e : exact) {
+      if (!p.exact && !is_final_truth(p) && e.from < p.to && e.to > from) {
+        if (e.from > from) {
+          line_.pieces.push_back(line_.part_of(p, from, e.from));
+        }
+        from = e.to;
+      }
+    }
+    if (from < p.to) {
+      line_.pieces.push_back(line_.part_of(p, from, p.to));
+    }
+  }
+}
+
+SightVerdict SightStars::decide() {
+  if (request_.verdict_only) {
+    decide_by_search();
+  }
+  settle();
+  order_pieces();
+  if (facts_.is_level_asked) {
+    prefer_exact();
+    order_pieces();
+  }
+  if (line_.hidden_piece() != nullptr || line_.is_touched_from_below()) {
+    return SightVerdict::kHidden;
+  }
+  const bool is_open =
+      (line_.pieces.empty() && open_touch_) ||
+      std::any_of(line_.pieces.begin(), line_.pieces.end(),
+                  [](const SightPiece& p) { return p.verdict == PieceVerdict::kUndecided; });
+  return is_open ? SightVerdict::kUndecided : SightVerdict::kVisible;
+}
+
+}  // namespace ptin

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One line of sight by stars: which pages to read next, until the answer is there.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/query/living/triangle_at.h"
+#include "engine/query/living/triangle_on_line.h"
+#include "engine/query/sight/coarse_ground.h"
+#include "engine/query/sight/sight_line.h"
+#include "storage/packed_rtree.h"
+
+namespace ptin {
+
+/// Looks up the triangles that live at the level and may decide the line, those that most likely do
+/// so first. Pages whose stars end below the line are never read. Threads: one owner.
+class SightStars final : private BestStarVisitor {
+ public:
+  /// All borrowed for the life of the search.
+  /// @param coarse  A coarse level of the terrain; null: none.
+  /// @param line    Where to begin: before anything is known.
+  SightStars(const OpenedTerrain& terrain, const SightFacts& facts, const SightRequest& request,
+             const CoarseGround* coarse, const SightLine& line, QueryContext& context);
+
+  /// finish_ends() makes the ground below the ends exact. finish_line() finds what is asked of the
+  /// line beside the verdict: the pieces that may have the smallest clearance and the first
+  /// obstruction, or, for what runs along the line, all. Both stop when the budget is spent.
+  void finish_ends();
+  void finish_line();
+  /// REQUIRES: finish_line() came before, unless the verdict alone is asked for.
+  [[nodiscard]] SightVerdict decide();
+
+  [[nodiscard]] const SightLine& line() const noexcept { return line_; }
+  /// True when all that is asked of the ends is known.
+  [[nodiscard]] bool ends_known() const noexcept;
+
+ private:
+  /// What a search is for.
+  enum class Aim : std::uint8_t {
+    kVerdict,  ///< Any piece that hides the line, the highest stars first; else none is left out
+               ///< that is not certainly visible.
+    kLeast,    ///< The pieces that may have the smallest clearance, the highest stars first.
+    kFirst,    ///< The pieces up to the first one that hides the line, in their order.
+    kWhole,    ///< All pieces.
+  };
+  /// A part of the way.
+  struct Part {
+    double from, to;
+  };
+
+  double bound(const StarAttributes& a) override;
+  double visit(PageId page, const StarAttributes& a) override;
+
+  void state_domain(SightEnd& end, Spot spot) const;
+  [[nodiscard]] bool out_of_budget() const noexcept;
+  [[nodiscard]] std::optional<Part> part_in(const GridBox& box) const noexcept;
+  [[nodiscard]] GridBox box_of(const Part& part) const noexcept;
+  [[nodiscard]] double cut_off() const noexcept;
+  void look_at(const Part& part);
+  void begin_search(Aim aim, Part part, double level);
+  void search(Aim aim, Part part, double level);
+  void search_whole_line(Aim aim);
+  void take(const LivingTriangle& t);
+  void take_touch(const LivingTriangle& t, const LinePoint& at);
+  [[nodiscard]] SightPiece piece_of(const LivingTriangle& t, const SharedStretch& on,
+                                    bool is_final) const;
+  [[nodiscard]] bool is_hidden_by_coarse();
+  [[nodiscard]] std::optional<double> likely_share() const;
+  void settle();
+  void order_pieces();
+  void prefer_exact();
+  void decide_by_search();
+
+  const OpenedTerrain& terrain_;
+  const SightFacts& facts_;
+  const SightRequest& request_;
+  const CoarseGround* coarse_;
+  QueryContext& context_;
+  SightLine line_;
+  MapPoint origin_, way_;  ///< The line's beginning, and from there to its end, grid units.
+  StarredRecords stars_;
+  // Of the search at hand.
+  Aim aim_ = Aim::kVerdict;
+  Part part_{0.0, 1.0};  ///< Of the way; nothing else is looked at.
+  StarFilter filter_;    ///< Of the page at hand.
+  double lowest_ = 0.0;  ///< What ends below this height on the page does not matter.
+  bool is_cut_ = false;  ///< The budget ended the search.
+  double cut_bound_ = 0.0;
+  // Of all searches.
+  double most_ = kInfinity;           ///< The smallest clearance is no more.
+  double first_hidden_ = 2.0;         ///< Share of the way at which a hidden piece begins; 2: none.
+  std::optional<double> open_touch_;  ///< Where the line has one point, which may be a void or not.
+};
+
+}  // namespace ptin
