@@ -68,10 +68,12 @@ struct StarFilter {
   double level = -1.0;             ///< An error; negative: the finest TIN.
   /// Ask for the stars of records of the level's own error too, whatever lives of them.
   bool with_ties = false;
-  /// Further conditions, borrowed; null: none. The first one is asked of pages and subtrees alone,
-  /// the other one of stars too.
+  /// Further conditions, borrowed; null: none. The first one is asked of pages and subtrees, the
+  /// other one of stars too.
   const StarPredicate* also = nullptr;
   const HeightPredicate* also_heights = nullptr;
+  /// Ask `also` of stars too, where it looks at nothing but the box: with the roi of their record.
+  bool also_of_stars = false;
 };
 
 /// A monotone test: once true, it stays true when the arguments grow (engine/DESIGN.md, section

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 
+#include "engine/geometry/infinity.h"
 #include "storage/bit_fields.h"
 #include "storage/descriptor.h"
 #include "storage/layout.h"
@@ -95,6 +96,11 @@ std::uint64_t RecordPage::near_stars(std::uint32_t first, std::uint32_t count,
   std::uint64_t wanted = near_box(first, count, filter.box);
   if (wanted != 0 && (filter.also_heights != nullptr || filter.heights != kAllHeights)) {
     wanted &= with_heights(first, count, filter);
+  }
+  for (std::uint64_t left = filter.also_of_stars ? wanted : 0; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+    const StarAttributes star{roi(first + k), {}, kInfinity, -kInfinity};
+    wanted ^= std::uint64_t{!filter.also->may_hold(star)} << k;
   }
   const std::int64_t below = level_bits(filter.level) - (filter.with_ties ? 1 : 0);
   for (std::uint64_t left = wanted; left != 0 && below >= 0; left &= left - 1) {

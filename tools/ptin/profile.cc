@@ -262,7 +262,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
 
 Action declare_profile(CLI::App& app, Context& context) {
   const auto options = std::make_shared<ProfileOptions>();
-  add_terrain_options(app, options->terrain, true);
+  add_terrain_options(app, options->terrain, false);
   auto* line =
       app.add_option("--line", options->line,
                      "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector "

@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
+#include "engine/geometry/infinity.h"
+#include "engine/query/heights/ground_stretches.h"
 #include "engine/query/heights/stations.h"
-#include "engine/query/refine/refinement.h"
 #include "engine/query/select/detail.h"
-#include "engine/query/select/retrieval.h"
 #include "engine/query/walk/spot_path.h"
-#include "engine/query/walk/walk.h"
 
 namespace ptin {
 
@@ -81,62 +81,78 @@ SpotLine spot_line(std::span<const MapPoint> line, std::size_t number, std::size
   return made;
 }
 
+/// A share of the way of a segment with ground at it.
+struct GroundPoint {
+  double share, code;
+  friend bool operator<(const GroundPoint& a, const GroundPoint& b) noexcept {
+    return a.share != b.share ? a.share < b.share : a.code < b.code;
+  }
+};
+
 /// Appends the points of one segment. Where a point of the same line and distance is there already,
 /// it is brought up to date instead.
 class SegmentWriter {
  public:
-  SegmentWriter(const Tin& tin, const StoreFacts& facts, const SpotLine& line,
-                std::vector<ProfilePoint>& points)
-      : tin_(tin), facts_(facts), line_(line), points_(points) {}
+  SegmentWriter(const StoreFacts& facts, const SpotLine& line, std::vector<ProfilePoint>& points)
+      : facts_(facts), line_(line), points_(points) {}
 
-  TriangleId write(std::uint32_t part, TriangleId near) {
+  /// @param stretches  What triangles hold of the segment, as GroundStretches::of() has them.
+  void write(std::uint32_t part, std::span<const GroundStretch> stretches) {
     part_ = part;
-    LineWalk walk(tin_, line_.spots[part], line_.spots[part + 1], near);
+    find_ground(stretches);
+    const auto any = [&](auto is_so) {
+      return std::any_of(stretches.begin(), stretches.end(), is_so);
+    };
+    if (!any([](const GroundStretch& s) { return s.from == 0.0; })) {
+      put(0.0, std::nullopt, PointState::kOutside);
+    }
     double reached = 0.0;
-    if (!walk.begins_inside()) {
-      put(0.0, nullptr, PointState::kOutside);
+    const GroundStretch* last = nullptr;
+    for (const GroundStretch& s : stretches) {
+      // Along an edge two triangles hold the same stretch, the surface one of them first.
+      if (s.is_point || (last != nullptr && s.from == last->from && s.to == last->to)) continue;
+      const PointState state = s.is_surface ? PointState::kSurface : PointState::kVoid;
+      put(s.from, ground_at(s.from), state);
+      put(s.to, ground_at(s.to), state);
+      reached = s.to;
+      last = &s;
     }
-    while (walk.next()) {
-      const LinePiece& piece = walk.piece();
-      const PointState state = piece.is_surface(tin_) ? PointState::kSurface : PointState::kVoid;
-      put(piece.from.share(), ground_at(piece, piece.from), state);
-      put(piece.to.share(), ground_at(piece, piece.to), state);
-      reached = piece.to.share();
-      near = piece.triangle;
-    }
-    if (walk.ends_inside()) {  // no piece when the line only touches the domain with its end
-      put(1.0, touched(walk.entry(), part + 1, near), points_.back().state);
+    if (any([](const GroundStretch& s) { return s.to == 1.0; })) {
+      // Without a stretch the line touches the domain with its end alone.
+      put(1.0, last == nullptr ? touched(stretches) : std::nullopt,
+          points_.empty() ? PointState::kOutside : points_.back().state);
     } else {
-      put(reached, nullptr, PointState::kOutside);
-      put(1.0, nullptr, PointState::kOutside);
+      put(reached, std::nullopt, PointState::kOutside);
+      put(1.0, std::nullopt, PointState::kOutside);
     }
-    return near;
   }
 
  private:
-  /// `end`, which is an end of `piece`, when there is ground at it: the piece is surface, or `end`
-  /// is a vertex that touches surface. Else null.
-  [[nodiscard]] const Crossing* ground_at(const LinePiece& piece, const Crossing& end) const {
-    const Footing& f = end.footing;
-    const bool surface = piece.is_surface(tin_) ||
-                         (f.lies() == Lies::kOnVertex && touches_surface(tin_, f.vertex[0]));
-    return surface ? &end : nullptr;
-  }
-
-  /// `entry` when the segment only touches the domain with its end, and that end stands on surface.
-  /// Else null.
-  [[nodiscard]] const Crossing* touched(const Crossing& entry, std::size_t end,
-                                        TriangleId near) const {
-    if (entry.share() != 1.0) {
-      return nullptr;  // the last piece has told the height of the end
+  /// Ground is where surface is beside the point, and at a vertex that touches surface.
+  void find_ground(std::span<const GroundStretch> stretches) {
+    ground_.clear();
+    for (const GroundStretch& s : stretches) {
+      if (s.is_surface && (!s.is_point || s.is_vertex)) {
+        ground_.push_back({s.from, s.from_code});
+        ground_.push_back({s.to, s.to_code});
+      }
     }
-    const Place place = find_spot(tin_, line_.spots[end], near);
-    const TriangleId triangle = answering_triangle(tin_, place);
-    const bool surface = triangle != kNone && tin_.classes[triangle] == TriangleClass::kSurface;
-    return surface ? &entry : nullptr;
+    std::sort(ground_.begin(), ground_.end());
+  }
+  [[nodiscard]] std::optional<double> ground_at(double share) const {
+    const auto found =
+        std::lower_bound(ground_.begin(), ground_.end(), GroundPoint{share, -kInfinity});
+    return found == ground_.end() || found->share != share ? std::nullopt
+                                                           : std::optional(found->code);
+  }
+  /// The ground where the segment touches the surface with its end alone.
+  static std::optional<double> touched(std::span<const GroundStretch> stretches) {
+    const auto found = std::find_if(stretches.begin(), stretches.end(),
+                                    [](const GroundStretch& s) { return s.is_surface; });
+    return found == stretches.end() ? std::nullopt : std::optional(found->to_code);
   }
 
-  void put(double share, const Crossing* ground, PointState state) {
+  void put(double share, std::optional<double> ground, PointState state) {
     const MapPoint& a = line_.positions[part_];
     const MapPoint& b = line_.positions[part_ + 1];
     const double from = line_.distances[part_];
@@ -153,15 +169,15 @@ class SegmentWriter {
     point.state = state;
     point.part = part_;
     point.line = line_.number;
-    if (ground != nullptr) {
-      point.height = facts_.heights.height_of_code(code_at(tin_, facts_.heights, ground->footing));
+    if (ground) {
+      point.height = facts_.heights.height_of_code(*ground);
     }
   }
 
-  const Tin& tin_;
   const StoreFacts& facts_;
   const SpotLine& line_;
   std::vector<ProfilePoint>& points_;
+  std::vector<GroundPoint> ground_;  ///< Of the segment at hand, along it.
   std::uint32_t part_ = 0;
 };
 
@@ -177,7 +193,7 @@ struct LinePart {
   std::size_t first, end;
 };
 
-/// Walks along lines, in groups whose records fit the memory.
+/// Walks along lines, in groups whose stretches fit the memory.
 class Profiling {
  public:
   Profiling(const OpenedTerrain& terrain, const ProfileRequest& request)
@@ -185,7 +201,7 @@ class Profiling {
         request_(request),
         context_(request.limits, terrain.store().path()),
         detail_(request.detail, terrain.record_source(), context_),
-        refinement_(terrain.t0()) {}
+        reader_(terrain, detail_) {}
 
   ProfileResult run(std::span<const std::span<const MapPoint>> lines) {
     const std::vector<OrderedLine> order = order_of(lines);
@@ -215,9 +231,9 @@ class Profiling {
   }
 
  private:
-  /// Segments refined together at most: their boxes stay in the processor's caches.
+  /// Segments looked up together at most: their boxes stay in the processor's caches.
   static constexpr std::size_t kGroupSegments = 8192;
-  static constexpr std::uint64_t kGroupRecords = std::uint64_t{1} << 18;
+  static constexpr std::uint64_t kGroupBytes = std::uint64_t{64} << 20;
 
   [[nodiscard]] const StoreFacts& facts() const noexcept { return terrain_.store().facts(); }
 
@@ -270,28 +286,28 @@ class Profiling {
         segments.push_back({part.line->spots[i], part.line->spots[i + 1]});
       }
     }
-    const SpotPath path(std::move(segments), detail_.tolerance());
-    std::vector<PageId> pages;
-    terrain_.index().search(path, pages, context_.cost.io);
-    context_.check_stop();
-    const std::uint64_t records = most_records(terrain_.store(), pages);
-    const std::uint64_t bytes = bytes_of(terrain_.t0()) + refinement_bytes(records) + held();
-    const bool fits = bytes <= request_.limits.memory_bytes && records <= kGroupRecords;
-    if (!fits && may_halve(parts, bytes)) {
-      walk_halves(parts);
+    const SpotPath path(std::move(segments));
+    LivingPlace place;
+    place.box = path.bounds();
+    place.stars = &path;
+    place.asks_each_star = true;
+    const std::uint64_t left = context_.left_beside(held());
+    GroundStretches stretches(path, facts().heights,
+                              may_halve(parts) ? std::min(left, kGroupBytes) : left);
+    const bool fits = reader_.read(place, context_, stretches);
+    stretches.sort();
+    if (fits && write(parts, stretches)) {
       return;
     }
-    context_.admit(bytes);
-    refine(path, pages);
-    if (!write(parts)) {
-      walk_halves(parts);
+    if (!may_halve(parts)) {
+      context_.admit(held() + stretches.bytes());
     }
+    walk_halves(parts);
   }
 
-  /// A single line is halved for its memory alone, and a segment never.
-  [[nodiscard]] bool may_halve(std::span<const LinePart> parts, std::uint64_t bytes) const {
-    return parts.size() > 1 ||
-           (parts.front().end - parts.front().first > 1 && bytes > request_.limits.memory_bytes);
+  /// A segment is never halved.
+  [[nodiscard]] static bool may_halve(std::span<const LinePart> parts) noexcept {
+    return parts.size() > 1 || parts.front().end - parts.front().first > 1;
   }
 
   void walk_halves(std::span<const LinePart> parts) {
@@ -307,30 +323,22 @@ class Profiling {
     walk({&halves[1], 1});
   }
 
-  void refine(const SpotPath& path, std::span<const PageId> pages) {
-    std::vector<PendingSplit> splits;
-    read_pages(terrain_.store(), pages, path, context_, splits);
-    detail_.keep(splits);
-    refinement_.restart(terrain_.t0());
-    refinement_.apply(splits, context_);
-  }
-
-  /// Writes the points of the parts. Returns false, and has written nothing, when mesh and points
-  /// do not fit together but halves may.
-  [[nodiscard]] bool write(std::span<const LinePart> parts) {
+  /// Writes the points of the parts. Returns false, and has written nothing, when stretches and
+  /// points do not fit together but halves may.
+  [[nodiscard]] bool write(std::span<const LinePart> parts, const GroundStretches& stretches) {
     const std::size_t before = result_.points.size();
-    TriangleId near = 0;
+    std::size_t segment = 0;
     for (const LinePart& part : parts) {
       if (part.first == 0) {
         begins_[part.line->number] = result_.points.size();
       }
-      SegmentWriter writer(refinement_.tin(), facts(), *part.line, result_.points);
+      SegmentWriter writer(facts(), *part.line, result_.points);
       for (std::size_t i = part.first; i < part.end; ++i) {
         context_.check_stop();
         make_room();
-        near = writer.write(static_cast<std::uint32_t>(i), near);
-        const std::uint64_t bytes = bytes_of(refinement_.tin()) + held();
-        if (bytes > request_.limits.memory_bytes && may_halve(parts, bytes)) {
+        writer.write(static_cast<std::uint32_t>(i), stretches.of(segment++));
+        const std::uint64_t bytes = stretches.bytes() + held();
+        if (bytes > request_.limits.memory_bytes && may_halve(parts)) {
           result_.points.resize(before);
           return false;
         }
@@ -386,7 +394,7 @@ class Profiling {
   const ProfileRequest& request_;
   QueryContext context_;
   Detail detail_;
-  Refinement refinement_;  ///< Of the group at hand.
+  LivingReader reader_;
   std::vector<std::size_t>
       begins_;  ///< First point of each line of the request, once it is walked.
   std::uint64_t station_bytes_ = 0;  ///< What the points of all stations take.

@@ -24,7 +24,7 @@ struct ProfileRequest {
   /// beginning, and its ends count as stations. In the unit of `ground_distance`.
   double station_step = 0.0;
   DetailRequest detail;  ///< The TIN along which the profile runs.
-  /// Lines whose records do not fit the memory together are walked one by one, or in pieces.
+  /// Lines that do not fit the memory together are walked one by one, or in pieces.
   QueryLimits limits;
 };
 
@@ -58,14 +58,13 @@ struct ProfileResult {
 /// @throws Error invalid_argument    no line has a length; a coordinate that is not finite, or more
 ///                                   than 2^31 grid units away (names the line); a step between
 ///                                   stations that is negative or not finite; as Detail
-///               resource_exhausted  the records of one segment, or the points of the result,
+///               resource_exhausted  what one segment crosses, or the points of the result,
 ///                                   exceed the memory limit; more stations than fit it, before
 ///                                   anything is read
 ///               corruption, io_error, cancelled
-/// Cost: the records whose region of influence meets a line, where each test takes the logarithm of
-/// the number of segments; and the triangles on the way. Lines are taken along the Hilbert curve,
-/// in groups that share one refinement each, so a record that several lines need is read and
-/// applied once a group. With `vertices` the cost of Detail is added.
+/// Cost: the pages whose stars meet a line, where each test takes the logarithm of the number of
+/// segments; and the triangles on the way. Lines are taken along the Hilbert curve, in groups that
+/// share their pages. With `vertices` the cost of Detail is added.
 [[nodiscard]] ProfileResult profile(const OpenedTerrain& terrain, std::span<const MapPoint> line,
                                     const ProfileRequest& request = {});
 [[nodiscard]] ProfileResult profile(const OpenedTerrain& terrain,

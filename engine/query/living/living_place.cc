@@ -32,8 +32,8 @@ bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
 bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor) {
   undecided_.clear();
   fans_.clear();
-  filter_ = {place.box,   place.heights, detail_.level(), !detail_.is_by_error(),
-             place.stars, place.spans};
+  filter_ = {place.box,   place.heights, detail_.level(),     !detail_.is_by_error(),
+             place.stars, place.spans,   place.asks_each_star};
   std::vector<StarPage> pages;
   store_.star_index().search_stars(filter_, pages, context.cost.io);
   std::vector<PageId> ids(pages.size());

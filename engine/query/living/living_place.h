@@ -24,6 +24,7 @@ struct LivingPlace {
   Interval heights = kAllHeights;
   /// Further conditions of pages, and of heights (StarFilter), borrowed; null: none.
   const StarPredicate* stars = nullptr;
+  bool asks_each_star = false;  ///< StarFilter::also_of_stars.
   const HeightPredicate* spans = nullptr;
   /// A further condition of a triangle; none: all are wanted.
   std::function<bool(const LivingTriangle&)> wanted;

@@ -11,23 +11,7 @@
 
 namespace ptin {
 
-namespace {
-
-std::vector<SpotSegment> segments_of(std::span<const Spot> spots) {
-  std::vector<SpotSegment> segments;
-  for (std::size_t i = 1; i < spots.size(); ++i) {
-    segments.push_back({spots[i - 1], spots[i]});
-  }
-  return segments;
-}
-
-}  // namespace
-
-SpotPath::SpotPath(std::span<const Spot> spots, double tolerance)
-    : SpotPath(segments_of(spots), tolerance) {}
-
-SpotPath::SpotPath(std::vector<SpotSegment> given, double tolerance)
-    : tolerance_(tolerance), segments_(std::move(given)) {
+SpotPath::SpotPath(std::vector<SpotSegment> given) : segments_(std::move(given)) {
   PTIN_CHECK(!segments_.empty());
   const std::size_t segments = segments_.size();
   const std::size_t leaves = std::bit_ceil(segments);
@@ -48,32 +32,19 @@ SpotPath::SpotPath(std::vector<SpotSegment> given, double tolerance)
   }
 }
 
-bool SpotPath::meets(const GridBox& grid) const noexcept {
-  const Spot low = spot_of(GridPoint{grid.min_x, grid.min_y});
-  const Spot high = spot_of(GridPoint{grid.max_x, grid.max_y});
-  const SpotBox box{low.x, low.y, high.x, high.y};
-  std::array<std::size_t, 128> waiting;  // At most two nodes of a level wait.
-  std::size_t count = 0;
-  waiting[count++] = 0;
-  while (count != 0) {
-    const std::size_t i = waiting[--count];
-    const SpotBox& b = around_[i];
-    if (b.max_x < box.min_x || box.max_x < b.min_x || b.max_y < box.min_y || box.max_y < b.min_y) {
-      continue;  // ends here for a node without segments too: its box is inverted
-    }
-    if (box.min_x <= b.min_x && b.max_x <= box.max_x && box.min_y <= b.min_y &&
-        b.max_y <= box.max_y) {
-      return true;
-    }
-    if (i >= first_leaf_) {
-      if (segment_meets(i - first_leaf_, box, grid)) return true;
-      continue;
-    }
-    for (const std::size_t child : {2 * i + 2, 2 * i + 1}) {
-      if (child < around_.size()) waiting[count++] = child;
-    }
-  }
-  return false;
+bool SpotPath::meets(const GridBox& box) const noexcept {
+  return descend(
+      box, [](const SpotBox&) { return true; }, [](std::size_t) { return true; });
+}
+
+GridBox SpotPath::bounds() const noexcept {
+  const auto grid = [](std::int64_t v) {  // spots reach farther than the grid
+    return static_cast<std::int32_t>(
+        std::clamp<std::int64_t>(v >> kSpotBits, -1, std::int64_t{kGridMax} + 1));
+  };
+  const SpotBox& all = around_.front();
+  return {grid(all.min_x), grid(all.min_y), grid(all.max_x + (std::int64_t{1} << kSpotBits) - 1),
+          grid(all.max_y + (std::int64_t{1} << kSpotBits) - 1)};
 }
 
 /// Whether a segment meets the box, which is given in spot units and in grid units. REQUIRES: the
