@@ -54,8 +54,8 @@ void DescribedPageStore::announce(std::span<const PageId> ids,
   RangeJoiner range(slots_.page_bytes);
   const auto send = [&] {
     if (range.size() > 0) {
-      will_need(slots_.offset + range.begin() * slots_.page_bytes,
-                range.size() * slots_.page_bytes);
+      file_.will_need(slots_.offset + range.begin() * slots_.page_bytes,
+                      range.size() * slots_.page_bytes);
       ++counters.ranges_announced;
     }
   };
@@ -127,10 +127,6 @@ void PreadPageStore::read_described(PageId id, const layout::NodeEntry& descript
   counters.bytes_read += out.size();
   verify(id, descriptor, out);
   ++counters.pages_verified;
-}
-
-void PreadPageStore::will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept {
-  file_.will_need(offset, bytes);
 }
 
 }  // namespace ptin

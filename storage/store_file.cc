@@ -20,7 +20,7 @@ namespace {
 
 class StoreFileImpl final : public StoreFile {
  public:
-  StoreFileImpl(const std::string& path, PageAccess access);
+  StoreFileImpl(const std::string& path, PageAccess access, std::shared_ptr<Announcer> announcer);
 
   [[nodiscard]] const std::string& path() const noexcept override { return file_.path(); }
   [[nodiscard]] const StoreFacts& facts() const noexcept override { return front_.facts; }
@@ -65,8 +65,9 @@ class StoreFileImpl final : public StoreFile {
   std::unique_ptr<PackedRTree> index_;
 };
 
-StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access)
-    : file_(path), front_(read_front(file_)) {
+StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access,
+                             std::shared_ptr<Announcer> announcer)
+    : file_(path, std::move(announcer)), front_(read_front(file_)) {
   const IndexNodes::Root place{front_.index, front_.index_offset, front_.root_checksum};
   if (access == PageAccess::kMapped) {
     mapping_.emplace(file_);
@@ -172,8 +173,9 @@ bool has_void(const CoarsestTin& t0) noexcept {
                      [](const CoarsestTin::V& v) { return v.has_height == 0; });
 }
 
-std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access) {
-  return std::make_shared<const StoreFileImpl>(path, access);
+std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access,
+                                                 std::shared_ptr<Announcer> announcer) {
+  return std::make_shared<const StoreFileImpl>(path, access, std::move(announcer));
 }
 
 }  // namespace ptin
