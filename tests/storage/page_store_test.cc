@@ -159,7 +159,10 @@ class NotingAnnouncer final : public Announcer {
 TEST_P(PageStoreTest, TellsAnAnnouncerWhatIsReadNext) {
   const auto announcer = std::make_shared<NotingAnnouncer>();
   const auto store = StoreFile::open(path_, GetParam(), announcer);
-  EXPECT_TRUE(announcer->told.empty());
+  ASSERT_EQ(announcer->told.size(), 1U);
+  EXPECT_EQ(announcer->told.back(), std::pair(std::uint64_t{0}, std::uint64_t{16} << 10))
+      << "the front";
+  announcer->told.clear();
   const FunctionPredicate all([](const Attributes&) { return true; });
   std::vector<PageId> ids;
   IoCounters counters;
