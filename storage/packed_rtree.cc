@@ -19,6 +19,26 @@ struct Found {
   std::vector<std::uint64_t> numbers, checksums;
 };
 
+/// Whether the stars that an entry describes may hold what a filter asks for.
+class StarTest {
+ public:
+  StarTest(const StarFilter& filter, const HeightEncoding& heights)
+      : filter_(filter), heights_(heights), level_(level_bits(filter.level)) {}
+  [[nodiscard]] bool operator()(const layout::NodeEntry& e) const {
+    // Of a node's entries few pass the first two lines, which look at whole numbers alone.
+    const GridBox& box = filter_.box;
+    return e.star_min_x <= box.max_x && box.min_x <= e.star_max_x && e.star_min_y <= box.max_y &&
+           box.min_y <= e.star_max_y && e.error_max > level_ && e.death_min <= level_ + 1 &&
+           (any_heights_ || meets(star_attributes_of(e, heights_).heights, filter_.heights));
+  }
+
+ private:
+  const StarFilter& filter_;
+  const HeightEncoding& heights_;
+  std::int32_t level_;
+  bool any_heights_ = filter_.heights == StarFilter{}.heights;
+};
+
 }  // namespace
 
 /// Searches level by level, and announces the nodes of each level before it reads them: so a search
@@ -62,17 +82,10 @@ void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId
 
 void PackedRTree::search_stars(const StarFilter& filter, const StarPredicate* also,
                                std::vector<StarPage>& pages, IoCounters& counters) const {
-  const std::int32_t level = level_bits(filter.level);
-  const GridBox& box = filter.box;
-  const bool any_heights = filter.heights == StarFilter{}.heights;
+  const StarTest test(filter, heights_);
   descend(
       [&](const layout::NodeEntry& e) {
-        // Of a node's entries few pass the first line, which looks at whole numbers alone.
-        return e.star_min_x <= box.max_x && box.min_x <= e.star_max_x &&
-               e.star_min_y <= box.max_y && box.min_y <= e.star_max_y && e.error_max > level &&
-               e.death_min <= level + 1 &&
-               (any_heights || meets(star_attributes_of(e, heights_).heights, filter.heights)) &&
-               (also == nullptr || also->may_hold(star_attributes_of(e, heights_)));
+        return test(e) && (also == nullptr || also->may_hold(star_attributes_of(e, heights_)));
       },
       counters,
       [&](PageId id, const layout::NodeEntry& e) {
@@ -116,6 +129,51 @@ void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& count
         std::push_heap(heap.begin(), heap.end());
       }
     }
+  }
+  nodes_.require_undamaged();
+}
+
+void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor,
+                                          double cut_off, IoCounters& counters) const {
+  struct Waiting {
+    double bound;
+    std::uint32_t level;  // above that of its descriptor; 0: a page
+    std::uint64_t number;
+    std::uint64_t checksum;  // of a page: its place in `pages`
+    bool operator<(const Waiting& other) const {
+      return bound != other.bound
+                 ? bound < other.bound
+                 : (level != other.level ? level < other.level : number > other.number);
+    }
+  };
+  const IndexShape& shape = nodes_.shape();
+  if (shape.levels() == 0) {
+    return;
+  }
+  const StarTest test(filter, heights_);
+  std::vector<StarAttributes> pages;
+  std::vector<Waiting> heap{{kInfinity, shape.levels(), 0, nodes_.root_checksum()}};
+  while (!heap.empty() && !(heap.front().bound < cut_off)) {
+    std::pop_heap(heap.begin(), heap.end());
+    const Waiting at = heap.back();
+    heap.pop_back();
+    if (at.level == 0) {
+      cut_off = visitor.visit(PageId{at.number}, pages[at.checksum]);
+      continue;
+    }
+    const NodePlace place{at.level - 1, at.number, at.checksum};
+    visit(place, test, counters, [&](std::uint64_t child, const layout::NodeEntry& entry) {
+      const StarAttributes a = star_attributes_of(entry, heights_);
+      const double bound = visitor.bound(a);
+      if (!(bound < cut_off)) {
+        const bool is_page = place.level == 0;
+        heap.push_back({bound, place.level, child, is_page ? pages.size() : entry.checksum});
+        std::push_heap(heap.begin(), heap.end());
+        if (is_page) {
+          pages.push_back(a);
+        }
+      }
+    });
   }
   nodes_.require_undamaged();
 }

@@ -48,6 +48,20 @@ struct StarPage {
   std::uint32_t records = 0;
 };
 
+/// As BestFirstVisitor, of stars.
+class BestStarVisitor {
+ public:
+  BestStarVisitor() = default;
+  BestStarVisitor(const BestStarVisitor&) = delete;
+  BestStarVisitor& operator=(const BestStarVisitor&) = delete;
+  virtual ~BestStarVisitor() = default;
+  /// An upper bound of the merit of any star within these attributes.
+  [[nodiscard]] virtual double bound(const StarAttributes& a) = 0;
+  /// Called for pages in the order of falling bounds. Returns the cut-off.
+  /// @param a  What the descriptor says of the page's stars.
+  virtual double visit(PageId page, const StarAttributes& a) = 0;
+};
+
 class PackedRTree final : public RecordIndex {
  public:
   /// @param nodes    Borrowed for the life of the index.
@@ -72,6 +86,11 @@ class PackedRTree final : public RecordIndex {
   /// @throws Error corruption, io_error; what the visitor throws
   /// Cost: the nodes and pages whose bound is at least the final cut-off, times a logarithm.
   void search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const;
+
+  /// The same for pages with a star that may hold what the filter asks for.
+  /// Cost: as search_best_first(); the visitor is asked about entries that pass the filter alone.
+  void search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor, double cut_off,
+                               IoCounters& counters) const;
 
  private:
   struct NodePlace {
