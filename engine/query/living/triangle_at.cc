@@ -130,16 +130,22 @@ bool Finder::is_dense(const GridBox& reach, std::size_t spots) const {
          kRecordsOfSpot * static_cast<double>(spots);
 }
 
-/// Takes the pages that may hold one spot, those with small boxes and small errors of stars first: the
-/// smaller the box, the more of it do its triangles cover. So few nodes of the index are looked at,
-/// and few pages. Nothing is cut off before a triangle is found, so the order is free.
+/// Takes the pages that may hold one spot, those with the smallest boxes of stars first: the smaller
+/// a box, the more of it do its triangles cover. So few nodes of the index are looked at, and few
+/// pages. Nothing is cut off before a triangle is found, so the order is free.
 class Finder::SmallestFirst final : public BestStarVisitor {
  public:
   SmallestFirst(Finder& finder, Spot spot, TriangleAt& found)
       : finder_(finder), spot_(spot), found_(found) {}
-  [[nodiscard]] double bound(const StarAttributes& a) override {
-    constexpr double kLargest = 1e30;  // in the place of an infinite error
-    return -area_of(a.box) * std::min(a.error, kLargest);
+  [[nodiscard]] double bound(const StarAttributes& a) override { return -area_of(a.box); }
+  [[nodiscard]] double bound_of_node(const StarAttributes& a, std::uint32_t level) override {
+    // Of a node's children the larger ones hold the spot: their boxes are about an eighth of its own.
+    constexpr double kShareOfChild = 1.0 / 8;
+    double area = area_of(a.box) * kShareOfChild;
+    for (; level > 0; --level) {
+      area *= kShareOfChild;
+    }
+    return -area;
   }
   double visit(PageId page, const StarAttributes&) override {
     finder_.context_.check_stop();
