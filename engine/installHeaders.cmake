@@ -101,6 +101,7 @@ set(public_headers
     engine/query/walk/point_state.h
     engine/stop.h
     storage/attributes.h
+    storage/file/announcer.h
     storage/file/file_layer.h
     storage/file/file_questions.h
     storage/file/io_counters.h

@@ -93,7 +93,7 @@ void MappedIndexNodes::announce(std::uint32_t level, std::span<const std::uint64
   join_ranges(
       level, numbers, [&](std::uint64_t position) { return verified_.test(position); },
       [&](std::uint64_t offset, std::uint64_t bytes) {
-        mapping_.will_need(offset, bytes);
+        file_.will_need(offset, bytes);
         ++counters.ranges_announced;
       });
 }

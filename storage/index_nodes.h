@@ -17,6 +17,7 @@
 #include "storage/index_shape.h"
 #include "storage/layout.h"
 #include "storage/page_store.h"
+#include "storage/range_joiner.h"
 #include "storage/touch_bits.h"
 
 namespace ptin {
@@ -81,26 +82,20 @@ class IndexNodes {
   template <class IsKnown, class Start>
   void join_ranges(std::uint32_t level, std::span<const std::uint64_t> numbers,
                    const IsKnown& is_known, const Start& start) const noexcept {
-    // Ranges fewer nodes apart, 32 KiB in all, are joined: reading those nodes along takes no
-    // further request.
-    constexpr std::uint64_t kGap = 8;
-    std::uint64_t begin = 0;
-    std::uint64_t end = 0;
+    RangeJoiner range(layout::kNodeBytes);
+    const auto send = [&] {
+      if (range.size() > 0) {
+        start(offset_of(range.begin()), range.size() * layout::kNodeBytes);
+      }
+    };
     for (const std::uint64_t number : numbers) {
       const std::uint64_t position = place_.shape.position(level, number);
-      if (is_known(position)) {
-        continue;
+      if (!is_known(position) && !range.join(position)) {
+        send();
+        range.restart(position);
       }
-      if (end != 0 && position >= end + kGap) {
-        start(offset_of(begin), (end - begin) * layout::kNodeBytes);
-        end = 0;
-      }
-      begin = end == 0 ? position : begin;
-      end = position + 1;
     }
-    if (end != 0) {
-      start(offset_of(begin), (end - begin) * layout::kNodeBytes);
-    }
+    send();
   }
   /// The entry of a page in its leaf, found from the root down.
   [[nodiscard]] layout::NodeEntry descend_to(PageId page) const;

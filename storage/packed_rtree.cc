@@ -166,9 +166,9 @@ void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisi
     const NodePlace place{at.level - 1, at.number, at.checksum};
     visit(place, test, counters, [&](std::uint64_t child, const layout::NodeEntry& entry) {
       const StarAttributes a = star_attributes_of(entry, heights_);
-      const double bound = visitor.bound(a);
+      const bool is_page = place.level == 0;
+      const double bound = is_page ? visitor.bound(a) : visitor.bound_of_node(a, place.level - 1);
       if (!(bound < cut_off)) {
-        const bool is_page = place.level == 0;
         heap.push_back({bound, place.level, child, is_page ? pages.size() : entry.checksum});
         std::push_heap(heap.begin(), heap.end());
         if (is_page) {

@@ -57,6 +57,12 @@ class BestStarVisitor {
   virtual ~BestStarVisitor() = default;
   /// An upper bound of the merit of any star within these attributes.
   [[nodiscard]] virtual double bound(const StarAttributes& a) = 0;
+  /// The same for a node, whose turn among the pages this decides.
+  /// @param level  Of the node: 0 is a leaf, above pages.
+  [[nodiscard]] virtual double bound_of_node(const StarAttributes& a, std::uint32_t level) {
+    static_cast<void>(level);
+    return bound(a);
+  }
   /// Called for pages in the order of falling bounds. Returns the cut-off.
   /// @param a  What the descriptor says of the page's stars.
   virtual double visit(PageId page, const StarAttributes& a) = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The page store: the one way to the record pages. storage/page_stores.h has two implementations
-// (mapped, pread); bench/support/uring_pages.h reads through io_uring.
+// (mapped, pread). How pages that are read next are announced is storage/file/announcer.h's.
 #pragma once
 
 #include <cstddef>

@@ -6,56 +6,17 @@
 #include "engine/check.h"
 #include "engine/error.h"
 #include "storage/file/checksum.h"
+#include "storage/range_joiner.h"
 
 namespace ptin {
-
-namespace {
-
-// Unwanted pages between two wanted ones are read along when they are no more than this: one more
-// request to the disk costs as much.
-constexpr std::uint64_t kGapBytes = std::uint64_t{32} << 10;
-// Yet at most a third of what a run of requests reads is unwanted.
-constexpr std::uint64_t kWantedPerWaste = 2;
-
-// Makes ranges of slots from the slots of wanted pages; ranges that lie near each other are joined.
-class RangeJoiner {
- public:
-  explicit RangeJoiner(std::uint64_t page_bytes) : gap_(kGapBytes / page_bytes) {}
-
-  // True when `slot` was joined to the current range; otherwise the range is complete and `slot`
-  // begins the next.
-  bool join(std::uint64_t slot) {
-    ++wanted_;
-    if (begin_ == end_ || slot < end_ || slot - end_ > gap_ ||
-        (wasted_ + (slot - end_)) * kWantedPerWaste > wanted_) {
-      return false;
-    }
-    wasted_ += slot - end_;
-    end_ = slot + 1;
-    return true;
-  }
-  void restart(std::uint64_t slot) {
-    begin_ = slot;
-    end_ = slot + 1;
-  }
-  [[nodiscard]] std::uint64_t begin() const { return begin_; }
-  [[nodiscard]] std::uint64_t size() const { return end_ - begin_; }
-
- private:
-  std::uint64_t gap_;
-  std::uint64_t begin_ = 0, end_ = 0;
-  std::uint64_t wanted_ = 0, wasted_ = 0;
-};
-
-}  // namespace
 
 void DescribedPageStore::announce(std::span<const PageId> ids,
                                   IoCounters& counters) const noexcept {
   RangeJoiner range(slots_.page_bytes);
   const auto send = [&] {
     if (range.size() > 0) {
-      will_need(slots_.offset + range.begin() * slots_.page_bytes,
-                range.size() * slots_.page_bytes);
+      file_.will_need(slots_.offset + range.begin() * slots_.page_bytes,
+                      range.size() * slots_.page_bytes);
       ++counters.ranges_announced;
     }
   };
@@ -127,10 +88,6 @@ void PreadPageStore::read_described(PageId id, const layout::NodeEntry& descript
   counters.bytes_read += out.size();
   verify(id, descriptor, out);
   ++counters.pages_verified;
-}
-
-void PreadPageStore::will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept {
-  file_.will_need(offset, bytes);
 }
 
 }  // namespace ptin

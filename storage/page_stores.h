@@ -44,8 +44,6 @@ class DescribedPageStore : public PageStore {
  protected:
   DescribedPageStore(const ReadOnlyFile& file, const PageSlots& slots, const IndexNodes& nodes)
       : file_(file), slots_(slots), nodes_(nodes) {}
-  /// Starts reading a range of the file.
-  virtual void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept = 0;
   /// @throws Error corruption
   void verify(PageId id, const layout::NodeEntry& descriptor,
               std::span<const std::byte> copy) const;
@@ -72,10 +70,6 @@ class MappedPageStore final : public DescribedPageStore {
   void check_unchanged() const override;
 
  private:
-  void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept override {
-    mapping_.will_need(offset, bytes);
-  }
-
   const MappedFile& mapping_;
   TouchBits verified_;
 };
@@ -88,9 +82,6 @@ class PreadPageStore final : public DescribedPageStore {
   void read_described(PageId id, const layout::NodeEntry& descriptor, std::span<std::byte> out,
                       IoCounters& counters) const override;
   void check_unchanged() const override { file_.check_unchanged(); }
-
- private:
-  void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept override;
 };
 
 }  // namespace ptin

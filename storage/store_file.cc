@@ -20,7 +20,7 @@ namespace {
 
 class StoreFileImpl final : public StoreFile {
  public:
-  StoreFileImpl(const std::string& path, PageAccess access);
+  StoreFileImpl(const std::string& path, PageAccess access, std::shared_ptr<Announcer> announcer);
 
   [[nodiscard]] const std::string& path() const noexcept override { return file_.path(); }
   [[nodiscard]] const StoreFacts& facts() const noexcept override { return front_.facts; }
@@ -65,15 +65,24 @@ class StoreFileImpl final : public StoreFile {
   std::unique_ptr<PackedRTree> index_;
 };
 
-StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access)
-    : file_(path), front_(read_front(file_)) {
+/// Reads the front of a file. Reads of a store jump about: the read-ahead of the kernel would read
+/// several times what is wanted, of the front and of the nodes behind it.
+StoreFront opened_front(const ReadOnlyFile& file) {
+  constexpr std::uint64_t kFrontBytes = std::uint64_t{16} << 10;  // of most files, and more
+  file.expect_jumps();
+  file.will_need(0, std::min(kFrontBytes, file.bytes()));
+  return read_front(file);
+}
+
+StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access,
+                             std::shared_ptr<Announcer> announcer)
+    : file_(path, std::move(announcer)), front_(opened_front(file_)) {
   const IndexNodes::Root place{front_.index, front_.index_offset, front_.root_checksum};
   if (access == PageAccess::kMapped) {
     mapping_.emplace(file_);
     nodes_ = std::make_unique<MappedIndexNodes>(file_, *mapping_, place, front_.facts.heights);
     pages_ = std::make_unique<MappedPageStore>(file_, *mapping_, front_.slots, *nodes_);
   } else {
-    file_.expect_jumps();
     nodes_ = std::make_unique<PreadIndexNodes>(file_, place, front_.facts.heights);
     pages_ = std::make_unique<PreadPageStore>(file_, front_.slots, *nodes_);
   }
@@ -172,8 +181,9 @@ bool has_void(const CoarsestTin& t0) noexcept {
                      [](const CoarsestTin::V& v) { return v.has_height == 0; });
 }
 
-std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access) {
-  return std::make_shared<const StoreFileImpl>(path, access);
+std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access,
+                                                 std::shared_ptr<Announcer> announcer) {
+  return std::make_shared<const StoreFileImpl>(path, access, std::move(announcer));
 }
 
 }  // namespace ptin

@@ -14,6 +14,7 @@
 #include "engine/geometry/affine.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
+#include "storage/file/announcer.h"
 #include "storage/index.h"
 #include "storage/page_store.h"
 #include "storage/star.h"
@@ -86,10 +87,12 @@ class StoreFile {
   /// checksums of header, tables, metadata and T0. Index nodes and record pages are verified when
   /// they are first visited, or by verify(). Cost: a few reads at the front of the file; O(|T0|),
   /// whatever the number of records.
+  /// @param announcer  Is told what is read next; null: the kernel is. The store shares it.
   /// @throws Error not_found, io_error, corruption, unsupported_version; invalid_argument when it
   ///               is no regular file, or a stream
   static std::shared_ptr<const StoreFile> open(const std::string& path,
-                                               PageAccess access = PageAccess::kMapped);
+                                               PageAccess access = PageAccess::kMapped,
+                                               std::shared_ptr<Announcer> announcer = nullptr);
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
   virtual ~StoreFile() = default;

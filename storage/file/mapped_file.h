@@ -31,8 +31,6 @@ class MappedFile {
       report_damage();
     }
   }
-  /// Starts reading a range from the disk. A hint: never fails.
-  void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept;
 
  private:
   [[noreturn]] void report_damage() const;

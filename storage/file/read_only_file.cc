@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include <boost/interprocess/exceptions.hpp>
 #include <fcntl.h>
@@ -44,7 +45,8 @@ ip::file_mapping opened(const std::string& path) {
 
 }  // namespace
 
-ReadOnlyFile::ReadOnlyFile(const std::string& path) : path_(path), file_(opened(path)) {
+ReadOnlyFile::ReadOnlyFile(const std::string& path, std::shared_ptr<Announcer> announcer)
+    : path_(path), file_(opened(path)), announcer_(std::move(announcer)) {
   ::fcntl(descriptor(), F_SETFD, FD_CLOEXEC);
   seen_ = look();
 }
@@ -89,7 +91,12 @@ void ReadOnlyFile::expect_jumps() const noexcept {
 }
 
 void ReadOnlyFile::will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept {
-  // The kernel cuts one call short at its read-ahead limit, commonly 128 KiB.
+  if (announcer_) {
+    announcer_->announce(descriptor(), offset, bytes);
+    return;
+  }
+  // The kernel cuts one call short at its read-ahead limit, commonly 128 KiB. What it leaves out of
+  // a mapping is then faulted in page by page.
   constexpr std::uint64_t kStep = std::uint64_t{128} << 10;
   for (std::uint64_t at = 0; at < bytes; at += kStep) {
     ::posix_fadvise(descriptor(), static_cast<off_t>(offset + at),

@@ -5,10 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 
 #include <boost/interprocess/file_mapping.hpp>
+
+#include "storage/file/announcer.h"
 
 namespace ptin {
 
@@ -16,8 +19,9 @@ namespace ptin {
 /// once.
 class ReadOnlyFile {
  public:
+  /// @param announcer  Is told what is read next; null: the kernel is.
   /// @throws Error not_found, io_error, invalid_argument (no regular file)
-  explicit ReadOnlyFile(const std::string& path);
+  explicit ReadOnlyFile(const std::string& path, std::shared_ptr<Announcer> announcer = nullptr);
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return seen_.bytes; }
@@ -50,6 +54,7 @@ class ReadOnlyFile {
   std::string path_;
   boost::interprocess::file_mapping file_;
   Seen seen_{};
+  std::shared_ptr<Announcer> announcer_;
 };
 
 }  // namespace ptin

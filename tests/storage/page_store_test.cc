@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -143,6 +145,42 @@ TEST_P(PageStoreTest, AnnouncesNearPagesAsOneRange) {
   EXPECT_EQ(ranges({50, 51, 53, 54}), 1U) << "one page of waste for four";
   EXPECT_EQ(ranges({50, 200}), 2U);
   EXPECT_EQ(ranges({50, 60, 70, 80}), 4U) << "would be mostly waste";
+}
+
+/// Notes what it is told, and starts nothing.
+class NotingAnnouncer final : public Announcer {
+ public:
+  void announce(int, std::uint64_t offset, std::uint64_t bytes) noexcept override {
+    told.emplace_back(offset, bytes);
+  }
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> told;
+};
+
+TEST_P(PageStoreTest, TellsAnAnnouncerWhatIsReadNext) {
+  const auto announcer = std::make_shared<NotingAnnouncer>();
+  const auto store = StoreFile::open(path_, GetParam(), announcer);
+  ASSERT_EQ(announcer->told.size(), 1U);
+  EXPECT_EQ(announcer->told.back(), std::pair(std::uint64_t{0}, std::uint64_t{16} << 10))
+      << "the front";
+  announcer->told.clear();
+  const FunctionPredicate all([](const Attributes&) { return true; });
+  std::vector<PageId> ids;
+  IoCounters counters;
+  store->index().search(all, ids, counters);
+  const std::uint64_t leaves = IndexShape(ids.size()).nodes(0);
+  const std::uint64_t index = section(layout::SectionKind::kIndex);
+  EXPECT_EQ(announcer->told.back(),
+            std::pair(index + layout::kNodeBytes, leaves * layout::kNodeBytes));
+  const std::size_t before = announcer->told.size();
+  store->pages().announce(ids, counters);
+  std::uint64_t bytes = 0;
+  for (const auto& [offset, length] : std::span(announcer->told).subspan(before)) {
+    EXPECT_GE(offset, section(layout::SectionKind::kPages));
+    bytes += length;
+  }
+  EXPECT_EQ(bytes, ids.size() * 4096);
+  EXPECT_EQ(announcer->told.size(), counters.ranges_announced);
+  EXPECT_EQ(read_everything(*store), std::nullopt);
 }
 
 TEST_P(PageStoreTest, NoticesThatTheFileWasReplaced) {

@@ -173,6 +173,17 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin render dem.ptin --window 385000 3790000 390000 3795000 --pages --size 1600 1200 -o "
      "pages.png\n",
      declare_render},
+    {"bench", "Measure how fast this disk answers questions, and which way of reading is best",
+     "Points, sight lines, windows and isolines at seeded places, cold (dropped from the page "
+     "cache) and warm: announced\n"
+     "pages of a mapping, faults, pread, io_uring; several threads; the packed R-tree beside "
+     "libspatialindex's. FILE is\n"
+     "only read. A machine that does other things meanwhile measures those too.\n\n"
+     "Examples:\n"
+     "  ptin bench dem.ptin\n"
+     "  ptin bench /mnt/usb/dem.ptin --seconds 300 -o usb.png\n"
+     "  ptin bench dem.ptin --error 5 --threads 16 --json | jq .best\n",
+     declare_bench},
     {"completion", "Print a completion script for a shell, or the manual page",
      "Example:\n"
      "  ptin completion bash > ~/.local/share/bash-completion/completions/ptin\n"

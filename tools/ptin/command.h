@@ -49,6 +49,7 @@ Action declare_isoline(CLI::App& app, Context& context);
 Action declare_highest(CLI::App& app, Context& context);
 Action declare_volume(CLI::App& app, Context& context);
 Action declare_viewshed(CLI::App& app, Context& context);
+Action declare_bench(CLI::App& app, Context& context);
 Action declare_completion(CLI::App& app, Context& context);
 
 }  // namespace ptin::tools

@@ -64,6 +64,11 @@ class SpotStars final : public StarPredicate {
   const SpotSet& spots_;
 };
 
+double area_of(const GridBox& b) {
+  return (static_cast<double>(b.max_x) - b.min_x + 1) *
+         (static_cast<double>(b.max_y) - b.min_y + 1);
+}
+
 class Finder {
  public:
   Finder(const OpenedTerrain& terrain, double level, QueryContext& context)
@@ -73,8 +78,14 @@ class Finder {
   void find(std::span<const Spot> spots, std::span<TriangleAt> found);
 
  private:
+  class SmallestFirst;
+  void find_one(Spot spot, TriangleAt& found);
   void search(const SpotSet& set);
   void read(PageId page);
+  template <class Take>
+  void visit_read(const Take& take) const {
+    visit_living(stars_, filter_.level, store_.facts().heights, take);
+  }
   [[nodiscard]] bool is_dense(const GridBox& reach, std::size_t spots) const;
   template <class Source>
   void offer_all(const SpotSet& set, const Source& source, std::span<const Spot> spots,
@@ -91,8 +102,9 @@ void Finder::search(const SpotSet& set) {
   pages_.clear();
   filter_.box = set.reach();
   const SpotStars also(set);
-  filter_.also = set.is_single() ? nullptr : &also;
+  filter_.also = &also;
   store_.star_index().search_stars(filter_, pages_, context_.cost.io);
+  filter_.also = nullptr;
   context_.check_stop();
 }
 
@@ -114,38 +126,68 @@ void Finder::offer_all(const SpotSet& set, const Source& source, std::span<const
 
 /// Whether so many spots are many for the records of their box, were the records spread evenly.
 bool Finder::is_dense(const GridBox& reach, std::size_t spots) const {
-  const auto area = [](const GridBox& b) {
-    return (static_cast<double>(b.max_x) - b.min_x + 1) *
-           (static_cast<double>(b.max_y) - b.min_y + 1);
-  };
-  const double share = area(reach) / area(store_.facts().bounds);
+  const double share = area_of(reach) / area_of(store_.facts().bounds);
   return static_cast<double>(store_.record_count()) * share <
          kRecordsOfSpot * static_cast<double>(spots);
 }
 
+/// Takes the pages that may hold one spot, those with the smallest boxes of stars first: the smaller
+/// a box, the more of it do its triangles cover. So few nodes of the index are looked at, and few
+/// pages. Nothing is cut off before a triangle is found, so the order is free.
+class Finder::SmallestFirst final : public BestStarVisitor {
+ public:
+  SmallestFirst(Finder& finder, Spot spot, TriangleAt& found)
+      : finder_(finder), spot_(spot), found_(found) {}
+  [[nodiscard]] double bound(const StarAttributes& a) override { return -area_of(a.box); }
+  [[nodiscard]] double bound_of_node(const StarAttributes& a, std::uint32_t level) override {
+    // Of a node's children the larger ones hold the spot: their boxes are about an eighth of its own.
+    constexpr double kShareOfChild = 1.0 / 8;
+    double area = area_of(a.box) * kShareOfChild;
+    for (; level > 0; --level) {
+      area *= kShareOfChild;
+    }
+    return -area;
+  }
+  double visit(PageId page, const StarAttributes&) override {
+    finder_.context_.check_stop();
+    finder_.read(page);
+    finder_.visit_read([&](const LivingTriangle& t) {
+      if (contains(box_of(t), spot_)) {
+        offer(t, spot_, found_);
+      }
+    });
+    return found_.is_inside ? kInfinity : -kInfinity;
+  }
+
+ private:
+  Finder& finder_;
+  Spot spot_;
+  TriangleAt& found_;
+};
+
+void Finder::find_one(Spot spot, TriangleAt& found) {
+  visit_living(store_.t0(), filter_.level, [&](const LivingTriangle& t) { offer(t, spot, found); });
+  if (found.is_inside) {
+    return;
+  }
+  filter_.box = SpotSet(std::span(&spot, 1), filter_.level).reach();
+  SmallestFirst visitor(*this, spot, found);
+  store_.star_index().search_stars_best_first(filter_, visitor, -kInfinity, context_.cost.io);
+}
+
 void Finder::find(std::span<const Spot> spots, std::span<TriangleAt> found) {
   const SpotSet set(spots, filter_.level);
-  if (spots.size() > 1 && !is_dense(set.reach(), spots.size())) {
+  if (spots.size() == 1 || !is_dense(set.reach(), spots.size())) {
     for (std::size_t i = 0; i < spots.size(); ++i) {
-      find(spots.subspan(i, 1), found.subspan(i, 1));
+      find_one(spots[i], found[i]);
     }
     return;
   }
   const auto from_t0 = [&](const auto& take) { visit_living(store_.t0(), filter_.level, take); };
-  const auto from_page = [&](const auto& take) {
-    visit_living(stars_, filter_.level, store_.facts().heights, take);
-  };
+  const auto from_page = [&](const auto& take) { visit_read(take); };
   offer_all(set, from_t0, spots, found);
   search(set);
-  if (spots.size() == 1) {
-    std::sort(pages_.begin(), pages_.end(), [](const StarPage& a, const StarPage& b) {
-      return a.error != b.error ? a.error < b.error : index_of(a.id) < index_of(b.id);
-    });
-  }
   for (const StarPage& page : pages_) {
-    if (spots.size() == 1 && found[0].is_inside) {
-      return;
-    }
     context_.check_stop();
     read(page.id);
     offer_all(set, from_page, spots, found);

@@ -25,8 +25,8 @@ struct TriangleAt {
 /// @param spots  In the bounds of the terrain. Spots that lie close together cost less.
 /// @param found  As many; receives the answers. One that is not found lies outside of the domain.
 /// @throws Error corruption, io_error, cancelled
-/// Cost: of one spot the pages whose stars may hold it, those of small errors first, until a
-/// triangle holds it within; of many spots in a small region the pages of the region.
+/// Cost: of one spot the nodes and pages whose stars may hold it, those of small boxes first, until
+/// a triangle holds it within; of many spots in a small region the pages of the region.
 void find_triangles(const OpenedTerrain& terrain, double level, std::span<const Spot> spots,
                     std::span<TriangleAt> found, QueryContext& context);
 

@@ -124,6 +124,48 @@ TEST(LivingTriangles, OfALevelAreFoundWhereTheyMeetABox) {
   }
 }
 
+/// Takes every page, or the first few: the widest ones first.
+class Collector final : public BestStarVisitor {
+ public:
+  explicit Collector(std::size_t most) : most_(most) {}
+  [[nodiscard]] double bound(const StarAttributes& a) override {
+    return static_cast<double>(a.box.max_x) - a.box.min_x;
+  }
+  double visit(PageId page, const StarAttributes& a) override {
+    EXPECT_EQ(bounds.empty() || bounds.back() >= bound(a), true) << "pages come best first";
+    bounds.push_back(bound(a));
+    pages.push_back(page);
+    return pages.size() == most_ ? kInfinity : -kInfinity;
+  }
+  std::vector<PageId> pages;
+  std::vector<double> bounds;
+
+ private:
+  std::size_t most_;
+};
+
+TEST(LivingTriangles, AreFoundBestFirstOnTheSamePages) {
+  const StoreFile& store = reference::built_terrain("mountains_257.tif").store();
+  for (const double level : {-1.0, 3.0}) {
+    StarFilter filter;
+    filter.box = {100, 90, 140, 120};
+    filter.level = level;
+    IoCounters counters, of_all, of_few;
+    std::vector<StarPage> found;
+    store.star_index().search_stars(filter, found, counters);
+    Collector all(0), few(3);
+    store.star_index().search_stars_best_first(filter, all, -kInfinity, of_all);
+    store.star_index().search_stars_best_first(filter, few, -kInfinity, of_few);
+    ASSERT_GT(found.size(), 10U);
+    EXPECT_EQ(of_all.index_nodes, counters.index_nodes);
+    EXPECT_LT(of_few.index_nodes, counters.index_nodes);
+    EXPECT_EQ(few.pages, std::vector<PageId>(all.pages.begin(), all.pages.begin() + 3));
+    std::sort(all.pages.begin(), all.pages.end());
+    ASSERT_EQ(all.pages.size(), found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(all.pages[i], found[i].id);
+  }
+}
+
 TEST(ShortNumbers, TellALevelAsTheErrorsThemselvesDo) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 20000; ++i) {
