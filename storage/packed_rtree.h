@@ -55,8 +55,9 @@ class BestStarVisitor {
   BestStarVisitor(const BestStarVisitor&) = delete;
   BestStarVisitor& operator=(const BestStarVisitor&) = delete;
   virtual ~BestStarVisitor() = default;
-  /// An upper bound of the merit of any star within these attributes.
-  [[nodiscard]] virtual double bound(const StarAttributes& a) = 0;
+  /// An upper bound of the merit of any star within these attributes: larger ones have no smaller
+  /// bound.
+  [[nodiscard]] virtual double bound(const StarAttributes& a) const = 0;
   /// Called for pages in the order of falling bounds. Returns the cut-off.
   /// @param a  What the descriptor says of the page's stars.
   virtual double visit(PageId page, const StarAttributes& a) = 0;
@@ -88,6 +89,7 @@ class PackedRTree final : public RecordIndex {
   void search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const;
 
   /// The same for pages with a star that may hold what the filter asks for.
+  /// @param cut_off  Until the first page is visited.
   /// Cost: as search_best_first(); the visitor is asked about entries that pass the filter alone.
   void search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor, double cut_off,
                                IoCounters& counters) const;

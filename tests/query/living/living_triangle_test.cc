@@ -124,6 +124,50 @@ TEST(LivingTriangles, OfALevelAreFoundWhereTheyMeetABox) {
   }
 }
 
+/// Takes pages by the highest of their stars, until `pages_wanted` are found.
+class Highest final : public BestStarVisitor {
+ public:
+  explicit Highest(std::size_t pages_wanted) : pages_wanted_(pages_wanted) {}
+  [[nodiscard]] double bound(const StarAttributes& a) const override { return a.heights.hi; }
+  double visit(PageId page, const StarAttributes& a) override {
+    pages.push_back(page);
+    bounds.push_back(a.heights.hi);
+    return pages.size() < pages_wanted_ ? -kInfinity : a.heights.hi + 1;
+  }
+  std::vector<PageId> pages;
+  std::vector<double> bounds;
+
+ private:
+  std::size_t pages_wanted_;
+};
+
+TEST(StarsBestFirst, AreVisitedByFallingBoundsUntilTheCutOff) {
+  const Terrain& terrain = reference::built_terrain("coast_257.tif");
+  const PackedRTree& index = terrain.store().star_index();
+  for (const double level : {-1.0, 3.0}) {
+    StarFilter filter;
+    filter.level = level;
+    filter.box = {10, 20, 200, 190};
+    IoCounters counters;
+    std::vector<StarPage> known;
+    index.search_stars(filter, nullptr, known, counters);
+    Highest all(SIZE_MAX);
+    index.search_stars_best_first(filter, all, -1e9, counters);
+    EXPECT_TRUE(std::is_sorted(all.bounds.rbegin(), all.bounds.rend()));
+    EXPECT_GT(all.bounds.front(), all.bounds.back());
+    std::vector<PageId> sorted = all.pages;
+    std::sort(sorted.begin(), sorted.end());
+    ASSERT_EQ(sorted.size(), known.size());
+    for (std::size_t i = 0; i < known.size(); ++i) EXPECT_EQ(sorted[i], known[i].id);
+    Highest few(3);
+    index.search_stars_best_first(filter, few, -1e9, counters);
+    EXPECT_EQ(few.pages, std::vector<PageId>(all.pages.begin(), all.pages.begin() + 3));
+    Highest none(3);
+    index.search_stars_best_first(filter, none, all.bounds.front() + 1, counters);
+    EXPECT_TRUE(none.pages.empty());
+  }
+}
+
 TEST(ShortNumbers, TellALevelAsTheErrorsThemselvesDo) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 20000; ++i) {
