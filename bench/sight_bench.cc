@@ -2,11 +2,11 @@
 //
 // Lines of sight (paper, section 5.3). The store: PTIN_BENCH_STORE, else srtm1_bigtujunga.
 //
-// SightVerdict   random pairs over the whole terrain, ends 2 units above ground, exact verdict, one
-//                solver: pairs a second, the share hidden, records applied a pair
-// SightFull      the same with first obstruction and smallest clearance
-// SightSingle    the same pairs, each from T0 by itself: records applied over those that refining
-//                along the whole segment applies (`of_refining`)
+// SightVerdict     random pairs over the whole terrain, ends 2 units above ground, exact verdict, one
+//                  solver: pairs a second, the share hidden, stars and pages read a pair
+// SightFull        the same with first obstruction and smallest clearance
+// SightSingle...   the same pairs, each by itself, by stars and by splits: stars or records of a pair
+//                  over the records that refining along the whole segment applies (`of_refining`)
 //
 // Pairs are uniform over the domain, and seeded. Distances are plane in map units, so in a
 // geographic CRS the Earth's curvature plays no part here.
@@ -42,39 +42,43 @@ void solve_pairs(benchmark::State& state, bool verdict_only) {
   SightRequest request;
   request.verdict_only = verdict_only;
   std::uint64_t hidden = 0;
-  std::uint64_t applied = 0;
+  QueryCost cost;
   for (auto _ : state) {
-    hidden = applied = 0;
+    hidden = 0;
+    cost = {};
     SightSolver solver(*terrain(), request);
     for (const SightPair& pair : pairs) {
       const SightResult r = solver.solve(pair);
       hidden += r.verdict == SightVerdict::kHidden ? 1 : 0;
-      applied += r.cost.records_applied;
+      cost.add_counts(r.cost);
     }
   }
   const auto count = static_cast<double>(pairs.size());
   state.counters["pairs/s"] =
       benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["hidden"] = static_cast<double>(hidden) / count;
-  state.counters["records/pair"] = static_cast<double>(applied) / count;
+  state.counters["stars/pair"] = static_cast<double>(cost.stars_read) / count;
+  state.counters["pages/pair"] = static_cast<double>(cost.io.pages) / count;
 }
 
 void SightVerdict(benchmark::State& state) { solve_pairs(state, true); }
-BENCHMARK(SightVerdict)->Arg(2000)->Unit(benchmark::kMillisecond);
+BENCHMARK(SightVerdict)->Arg(2000)->Arg(20000)->Unit(benchmark::kMillisecond);
 
 void SightFull(benchmark::State& state) { solve_pairs(state, false); }
 BENCHMARK(SightFull)->Arg(500)->Unit(benchmark::kMillisecond);
 
-void single_pairs(benchmark::State& state, bool verdict_only) {
+void single_pairs(benchmark::State& state, bool verdict_only, AnswerBy by) {
   if (skipped(state)) return;
   const std::vector<SightPair> pairs = random_pairs(200);
   SightRequest request;
   request.verdict_only = verdict_only;
-  std::uint64_t applied = 0;
+  request.by = by;
+  std::uint64_t used = 0;
   for (auto _ : state) {
-    applied = 0;
+    used = 0;
     for (const SightPair& pair : pairs) {
-      applied += sight(*terrain(), pair, request).cost.records_applied;
+      const QueryCost cost = sight(*terrain(), pair, request).cost;
+      used += by == AnswerBy::kStars ? cost.stars_read : cost.records_applied;
     }
   }
   std::uint64_t refined = 0;
@@ -85,14 +89,17 @@ void single_pairs(benchmark::State& state, bool verdict_only) {
   }
   state.counters["pairs/s"] = benchmark::Counter(static_cast<double>(pairs.size()),
                                                  benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["records/pair"] = static_cast<double>(applied) / static_cast<double>(pairs.size());
-  state.counters["of_refining"] = static_cast<double>(applied) / static_cast<double>(refined);
+  state.counters["used/pair"] = static_cast<double>(used) / static_cast<double>(pairs.size());
+  state.counters["of_refining"] = static_cast<double>(used) / static_cast<double>(refined);
 }
 
-void SightSingleVerdict(benchmark::State& state) { single_pairs(state, true); }
-BENCHMARK(SightSingleVerdict)->Unit(benchmark::kMillisecond);
-
-void SightSingleFull(benchmark::State& state) { single_pairs(state, false); }
-BENCHMARK(SightSingleFull)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(single_pairs, SightSingleVerdict, true, AnswerBy::kStars)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(single_pairs, SightSingleFull, false, AnswerBy::kStars)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(single_pairs, SightSingleVerdictBySplits, true, AnswerBy::kSplits)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(single_pairs, SightSingleFullBySplits, false, AnswerBy::kSplits)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

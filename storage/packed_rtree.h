@@ -55,11 +55,12 @@ class BestStarVisitor {
   BestStarVisitor(const BestStarVisitor&) = delete;
   BestStarVisitor& operator=(const BestStarVisitor&) = delete;
   virtual ~BestStarVisitor() = default;
-  /// An upper bound of the merit of any star within these attributes.
-  [[nodiscard]] virtual double bound(const StarAttributes& a) = 0;
+  /// An upper bound of the merit of any star within these attributes: larger ones have no smaller
+  /// bound.
+  [[nodiscard]] virtual double bound(const StarAttributes& a) const = 0;
   /// The same for a node, whose turn among the pages this decides.
   /// @param level  Of the node: 0 is a leaf, above pages.
-  [[nodiscard]] virtual double bound_of_node(const StarAttributes& a, std::uint32_t level) {
+  [[nodiscard]] virtual double bound_of_node(const StarAttributes& a, std::uint32_t level) const {
     static_cast<void>(level);
     return bound(a);
   }
@@ -93,6 +94,7 @@ class PackedRTree final : public RecordIndex {
   void search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const;
 
   /// The same for pages with a star that may hold what the filter asks for.
+  /// @param cut_off  Until the first page is visited.
   /// Cost: as search_best_first(); the visitor is asked about entries that pass the filter alone.
   void search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor, double cut_off,
                                IoCounters& counters) const;

@@ -138,8 +138,8 @@ class Finder::SmallestFirst final : public BestStarVisitor {
  public:
   SmallestFirst(Finder& finder, Spot spot, TriangleAt& found)
       : finder_(finder), spot_(spot), found_(found) {}
-  [[nodiscard]] double bound(const StarAttributes& a) override { return -area_of(a.box); }
-  [[nodiscard]] double bound_of_node(const StarAttributes& a, std::uint32_t level) override {
+  [[nodiscard]] double bound(const StarAttributes& a) const override { return -area_of(a.box); }
+  [[nodiscard]] double bound_of_node(const StarAttributes& a, std::uint32_t level) const override {
     // Of a node's children the larger ones hold the spot: their boxes are about an eighth of its own.
     constexpr double kShareOfChild = 1.0 / 8;
     double area = area_of(a.box) * kShareOfChild;

@@ -17,9 +17,9 @@ struct SharedStretch {
   bool is_point = false;    ///< `from` and `to` are one point.
 };
 
-/// What the triangle holds of the line from p to q; none when they share no point. Exact: a point is
-/// the mean of the same codes, by the same weights, as LineWalk has it in either triangle beside
-/// it, except for an end of the line that lies on an edge, where weights are those of this triangle.
+/// What the triangle holds of the line from p to q; none when they share no point. Exact: a point
+/// is the mean of the same codes, by the same weights, as LineWalk has it in either triangle beside
+/// it. Only where an end of the line lies on an edge are the weights those of this triangle.
 /// REQUIRES: p != q.
 [[nodiscard]] std::optional<SharedStretch> shared_stretch(const LivingTriangle& t,
                                                           const HeightEncoding& heights, Spot p,

@@ -49,7 +49,6 @@ class CoarseGround {
     Top top;
   };
 
-  void take(const StarredRecords& stars, double level, const HeightEncoding& heights);
   void build(const HeightEncoding& heights);
 
   /// The nodes below node `number` of a level; of level 0 its triangle.

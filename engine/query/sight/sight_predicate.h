@@ -13,8 +13,9 @@
 namespace ptin {
 
 /// True for a record in two cases. Near a stretch: the roi meets the stretch, the deviation is too
-/// large for it, and the error is above the tolerance unless the stretch goes beyond it. At an end: the roi holds the end, and the deviation is too large for the
-/// ends, whatever the tolerance. Monotone: exact integers and comparisons.
+/// large for it, and the error is above the tolerance unless the stretch goes beyond it. At an end:
+/// the roi holds the end, and the deviation is too large for the ends, whatever the tolerance.
+/// Monotone: exact integers and comparisons.
 class SightPredicate final : public AttributePredicate {
  public:
   struct Stretch {

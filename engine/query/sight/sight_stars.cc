@@ -54,7 +54,7 @@ void SightStars::state_domain(SightEnd& end, Spot spot) const {
 
 bool SightStars::ends_known() const noexcept {
   return (line_.a.known && line_.b.known) ||
-         (request_.absolute && (!facts_.has_voids || request_.verdict_only));
+         (request_.absolute && !facts_.has_voids);
 }
 
 bool SightStars::out_of_budget() const noexcept {
@@ -122,7 +122,7 @@ GridBox SightStars::box_of(const Part& part) const noexcept {
           whole(std::ceil(std::max(x0, x1))), whole(std::ceil(std::max(y0, y1)))};
 }
 
-double SightStars::bound(const StarAttributes& a) {
+double SightStars::bound(const StarAttributes& a) const {
   const std::optional<Part> part = part_in(a.box);
   if (!part) {
     return -kInfinity;

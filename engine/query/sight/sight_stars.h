@@ -51,7 +51,7 @@ class SightStars final : private BestStarVisitor {
     double from, to;
   };
 
-  double bound(const StarAttributes& a) override;
+  [[nodiscard]] double bound(const StarAttributes& a) const override;
   double visit(PageId page, const StarAttributes& a) override;
 
   void state_domain(SightEnd& end, Spot spot) const;

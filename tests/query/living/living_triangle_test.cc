@@ -128,7 +128,7 @@ TEST(LivingTriangles, OfALevelAreFoundWhereTheyMeetABox) {
 class Collector final : public BestStarVisitor {
  public:
   explicit Collector(std::size_t most) : most_(most) {}
-  [[nodiscard]] double bound(const StarAttributes& a) override {
+  [[nodiscard]] double bound(const StarAttributes& a) const override {
     return static_cast<double>(a.box.max_x) - a.box.min_x;
   }
   double visit(PageId page, const StarAttributes& a) override {

@@ -64,6 +64,8 @@ SightCase random_question(std::mt19937_64& random, const SmallTerrain& t) {
 }
 
 void check_verdict(const TrueSight& truth, const SightResult& found) {
+  RC_ASSERT(found.state_a == truth.state_p);
+  RC_ASSERT(found.state_b == truth.state_q);
   if (!truth.defined) {
     RC_ASSERT(found.verdict == SightVerdict::kUndefined);
     return;
@@ -73,8 +75,6 @@ void check_verdict(const TrueSight& truth, const SightResult& found) {
 }
 
 void check_measures(const TrueSight& truth, const SightResult& found) {
-  RC_ASSERT(found.state_a == truth.state_p);
-  RC_ASSERT(found.state_b == truth.state_q);
   if (!truth.defined) {
     return;
   }
