@@ -64,6 +64,9 @@ class PriorityScale {
   /// @param vertices  Their number.
   PriorityScale(CostModel cost, const GridBox& bounds, std::uint64_t vertices) noexcept;
   [[nodiscard]] std::uint64_t operator()(const CollapseMeasure& measure) const noexcept;
+  /// The same with the class of the priority `former`, whatever error `measure` has.
+  [[nodiscard]] std::uint64_t in_class_of(std::uint64_t former,
+                                          const CollapseMeasure& measure) const noexcept;
 
  private:
   [[nodiscard]] std::uint64_t neighbourhood(GridPoint p, int octave) const noexcept;
@@ -74,6 +77,10 @@ class PriorityScale {
 
 /// Bits of the class, the highest of a priority.
 inline constexpr int kClassBits = 10;
+/// The class of a priority: with CostModel::kError an error class.
+[[nodiscard]] inline std::uint32_t class_of(std::uint64_t priority) noexcept {
+  return static_cast<std::uint32_t>(priority >> (64 - kClassBits));
+}
 
 /// A queue of vertices, least entry first. A vertex is in it at most once; the caller sees to that.
 ///
