@@ -14,8 +14,8 @@
 namespace ptin {
 
 /// The number of samples of a star is padded to a multiple of this with copies of u, so that the
-/// measuring loops have no tail.
-inline constexpr std::size_t kSampleLanes = 4;
+/// measuring loops have no tail. One vector of AVX-512, two of AVX2.
+inline constexpr std::size_t kSampleLanes = 8;
 
 /// A star with a link coordinate above this, relative to u, is **wide**: products of its
 /// coordinates are not exact in doubles, and go through 64-bit integers. In a narrow star
