@@ -112,9 +112,9 @@ void CollapseQueue::push(const QueueEntry& entry) {
     ahead_.insert(std::upper_bound(from, ahead_.end(), entry), entry);
     return;
   }
-  const std::size_t c = entry.priority >> kClassShift;
-  if (c > present_) {
-    waiting_[c].push_back(entry);
+  const std::size_t bucket = entry.priority >> (64 - kBucketBits);
+  if (bucket > present_) {
+    waiting_[bucket].push_back(entry);
     return;
   }
   late_.push_back(entry);
@@ -127,7 +127,7 @@ void CollapseQueue::draw_ahead() {
   first_ = 0;
   while (ahead_.size() < 2 * kLookahead) {
     if (next_ == run_.size() && late_.empty()) {
-      if (present_ == kLastClass) {
+      if (present_ + 1 == waiting_.size()) {
         return;
       }
       ++present_;
