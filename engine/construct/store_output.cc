@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/check.h"
 #include "storage/file/file_questions.h"
+#include "storage/packed_segment.h"
 
 namespace ptin {
 
@@ -188,20 +190,65 @@ StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, b
   writer_ = StoreWriter::create(path, writer_options);
 }
 
-void StoreOutput::add_segment(StarredRecords& records) {
+namespace {
+
+/// What add() is told of a segment beside its pages. Pages and descriptors follow it in the bytes.
+struct PreparedFacts {
+  std::uint64_t records, void_records;
+  std::uint64_t page_bytes, descriptors;
+  RecordBounds worst;  ///< Of what was left out.
+  std::uint32_t max_rank;
+  std::uint32_t reserved;
+};
+
+}  // namespace
+
+std::vector<std::byte> StoreOutput::prepare(StarredRecords& records) const {
   detail_.add_rounding(records);
+  PreparedFacts facts{};
   // Of the source's TIN: before records are left out.
-  void_records_ += static_cast<std::uint64_t>(
+  facts.void_records = static_cast<std::uint64_t>(
       std::count_if(records.splits.begin(), records.splits.end(),
                     [](const VertexSplit& r) { return (r.flags & VertexSplit::kAnyVoid) != 0; }));
-  const RecordBounds worst = detail_.leave_out(records);
-  base_error_ = std::max(base_error_, static_cast<double>(worst.error));
-  base_deviation_ = std::max(base_deviation_, static_cast<double>(worst.deviation));
+  facts.worst = detail_.leave_out(records);
   for (const VertexSplit& r : records.splits) {
-    max_rank_ = std::max(max_rank_, r.rank);
+    facts.max_rank = std::max<std::uint32_t>(facts.max_rank, r.rank);
   }
-  records_ += records.size();
-  writer_->add_segment(pack_segment(records, frame_.heights, options_.page_bytes), frame_.heights);
+  facts.records = records.size();
+  const PackedSegment packed = pack_segment(records, frame_.heights, options_.page_bytes);
+  facts.page_bytes = packed.pages.size();
+  facts.descriptors = packed.descriptors.size();
+  std::vector<std::byte> prepared;
+  const auto append = [&](std::span<const std::byte> bytes) {
+    prepared.insert(prepared.end(), bytes.begin(), bytes.end());
+  };
+  prepared.reserve(sizeof facts + packed.pages.size() +
+                   packed.descriptors.size() * sizeof(layout::NodeEntry));
+  append(std::as_bytes(std::span(&facts, 1)));
+  append(packed.pages);
+  append(std::as_bytes(std::span(packed.descriptors)));
+  return prepared;
+}
+
+void StoreOutput::add(std::span<const std::byte> prepared) {
+  PreparedFacts facts{};
+  PTIN_CHECK(prepared.size() >= sizeof facts);
+  std::memcpy(&facts, prepared.data(), sizeof facts);
+  prepared = prepared.subspan(sizeof facts);
+  PTIN_CHECK(prepared.size() == facts.page_bytes + facts.descriptors * sizeof(layout::NodeEntry));
+  const auto pages = prepared.first(facts.page_bytes);
+  PackedSegment packed;
+  packed.pages.assign(pages.begin(), pages.end());
+  packed.descriptors.resize(facts.descriptors);
+  const auto descriptors = prepared.subspan(facts.page_bytes);
+  std::copy(descriptors.begin(), descriptors.end(),
+            std::as_writable_bytes(std::span(packed.descriptors)).begin());
+  void_records_ += facts.void_records;
+  base_error_ = std::max(base_error_, static_cast<double>(facts.worst.error));
+  base_deviation_ = std::max(base_deviation_, static_cast<double>(facts.worst.deviation));
+  max_rank_ = std::max(max_rank_, static_cast<std::uint16_t>(facts.max_rank));
+  records_ += facts.records;
+  writer_->add_segment(packed, frame_.heights);
 }
 
 nlohmann::json StoreOutput::position() const {

@@ -29,8 +29,10 @@ class StoreOutput final : public SegmentOutput {
               const TerrainFrame& frame, FileLayer* files = nullptr,
               const std::string& work_folder = "");
 
-  /// One segment; changed in place.  @throws Error as StoreWriter::add_segment
-  void add_segment(StarredRecords& records) override;
+  /// Packs one segment, which is changed in place, into pages, and notes what is told of it.
+  [[nodiscard]] std::vector<std::byte> prepare(StarredRecords& records) const override;
+  /// @throws Error as StoreWriter::add_segment
+  void add(std::span<const std::byte> prepared) override;
   [[nodiscard]] nlohmann::json position() const override;
   void sync() override { writer_->sync(); }
   void resume(const nlohmann::json& position) override;

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -79,15 +80,39 @@ class FailingFiles final : public FileLayer {
 /// Segments as they come, and where each ends.
 class RecordsInMemory final : public SegmentOutput {
  public:
-  void add_segment(StarredRecords& records) override {
-    const auto before = static_cast<std::uint32_t>(records_.corners.size());
-    const auto append = [](const auto& from, auto& to) {
-      to.insert(to.end(), from.begin(), from.end());
+  /// The three arrays behind their sizes.
+  [[nodiscard]] std::vector<std::byte> prepare(StarredRecords& records) const override {
+    std::vector<std::byte> bytes;
+    const auto append = [&](const auto& array) {
+      const std::size_t size = array.size();
+      for (const auto part :
+           {std::as_bytes(std::span(&size, 1)), std::as_bytes(std::span(array))}) {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+      }
     };
-    append(records.splits, records_.splits);
-    append(records.corners, records_.corners);
-    for (const std::uint32_t end : records.ring_end) {
-      records_.ring_end.push_back(before + end);
+    append(records.splits);
+    append(records.corners);
+    append(records.ring_end);
+    return bytes;
+  }
+  void add(std::span<const std::byte> prepared) override {
+    const auto before = static_cast<std::uint32_t>(records_.corners.size());
+    const auto first = records_.ring_end.size();
+    const auto take = [&](auto& to) {
+      std::size_t size = 0;
+      std::memcpy(&size, prepared.data(), sizeof size);
+      const std::size_t had = to.size();
+      to.resize(had + size);
+      const auto bytes = prepared.subspan(sizeof size, size * sizeof to[0]);
+      std::copy(bytes.begin(), bytes.end(),
+                std::as_writable_bytes(std::span(to).subspan(had)).begin());
+      prepared = prepared.subspan(sizeof size + bytes.size());
+    };
+    take(records_.splits);
+    take(records_.corners);
+    take(records_.ring_end);
+    for (std::size_t i = first; i < records_.ring_end.size(); ++i) {
+      records_.ring_end[i] += before;
     }
   }
   [[nodiscard]] nlohmann::json position() const override { return records_.size(); }

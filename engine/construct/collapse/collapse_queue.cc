@@ -100,15 +100,21 @@ std::uint64_t PriorityScale::operator()(const CollapseMeasure& measure) const no
   return 0;
 }
 
+std::uint64_t PriorityScale::in_class_of(std::uint64_t former,
+                                         const CollapseMeasure& measure) const noexcept {
+  constexpr std::uint64_t kBelowClass = (std::uint64_t{1} << kClassShift) - 1;
+  return (former & ~kBelowClass) | ((*this)(measure)&kBelowClass);
+}
+
 void CollapseQueue::push(const QueueEntry& entry) {
   if (first_ != ahead_.size() && entry < ahead_.back()) {
     const auto from = ahead_.begin() + static_cast<std::ptrdiff_t>(first_);
     ahead_.insert(std::upper_bound(from, ahead_.end(), entry), entry);
     return;
   }
-  const std::size_t c = entry.priority >> kClassShift;
-  if (c > present_) {
-    waiting_[c].push_back(entry);
+  const std::size_t bucket = entry.priority >> (64 - kBucketBits);
+  if (bucket > present_) {
+    waiting_[bucket].push_back(entry);
     return;
   }
   late_.push_back(entry);
@@ -121,7 +127,7 @@ void CollapseQueue::draw_ahead() {
   first_ = 0;
   while (ahead_.size() < 2 * kLookahead) {
     if (next_ == run_.size() && late_.empty()) {
-      if (present_ == kLastClass) {
+      if (present_ + 1 == waiting_.size()) {
         return;
       }
       ++present_;

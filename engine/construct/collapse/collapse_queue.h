@@ -64,6 +64,9 @@ class PriorityScale {
   /// @param vertices  Their number.
   PriorityScale(CostModel cost, const GridBox& bounds, std::uint64_t vertices) noexcept;
   [[nodiscard]] std::uint64_t operator()(const CollapseMeasure& measure) const noexcept;
+  /// The same with the class of the priority `former`, whatever error `measure` has.
+  [[nodiscard]] std::uint64_t in_class_of(std::uint64_t former,
+                                          const CollapseMeasure& measure) const noexcept;
 
  private:
   [[nodiscard]] std::uint64_t neighbourhood(GridPoint p, int octave) const noexcept;
@@ -74,12 +77,19 @@ class PriorityScale {
 
 /// Bits of the class, the highest of a priority.
 inline constexpr int kClassBits = 10;
+/// Bits that the queue tells entries apart by before it sorts them: the class and, with
+/// CostModel::kError, the octave.
+inline constexpr int kBucketBits = 15;
+/// The class of a priority: with CostModel::kError an error class.
+[[nodiscard]] inline std::uint32_t class_of(std::uint64_t priority) noexcept {
+  return static_cast<std::uint32_t>(priority >> (64 - kClassBits));
+}
 
 /// A queue of vertices, least entry first. A vertex is in it at most once; the caller sees to that.
 ///
-/// Entries of later classes wait unsorted. A class is sorted when its turn comes; an entry that
-/// arrives later for this class, or for an earlier one, goes through a heap. So most entries cost
-/// one append and a part of one sort, instead of a walk through a large heap. The next few dozen
+/// Entries wait unsorted in buckets by their highest bits. A bucket is sorted when its turn comes; an
+/// entry that arrives later for this bucket, or for an earlier one, goes through a heap. So most entries
+/// cost one append and a part of one sort, instead of a walk through a large heap. The next few dozen
 /// entries are drawn ahead, so that a caller sees what will come and can ask for its memory
 /// (upcoming()).
 class CollapseQueue {
@@ -107,11 +117,11 @@ class CollapseQueue {
 
   std::vector<QueueEntry> ahead_;  ///< Ascending, from first_; no entry elsewhere is less.
   std::size_t first_ = 0;
-  std::vector<QueueEntry> run_;  ///< The present class, ascending, from next_.
+  std::vector<QueueEntry> run_;  ///< The present bucket, ascending, from next_.
   std::size_t next_ = 0;
-  std::vector<QueueEntry> late_;  ///< Heap: entries of class present_ and below that came late.
-  std::size_t present_ = 0;       ///< Class of run_; classes below are used up.
-  std::array<std::vector<QueueEntry>, std::size_t{1} << kClassBits> waiting_;  ///< By class.
+  std::vector<QueueEntry> late_;  ///< Heap: entries of bucket present_ and below that came late.
+  std::size_t present_ = 0;       ///< Bucket of run_; buckets below are used up.
+  std::vector<std::vector<QueueEntry>> waiting_{std::size_t{1} << kBucketBits};  ///< By bucket.
 };
 
 }  // namespace ptin

@@ -10,7 +10,8 @@
 // 2. take_top() looks at the least entry. A clean one is collapsed into the w that it was measured
 //    with. A stale one is measured again: it is collapsed if it is still the least, and else goes
 //    back as a clean one. So a star that changes several times is measured once, when its turn
-//    comes.
+//    comes. In the lowest classes, where most vertices are, the box and the chain are looked at
+//    first: where they have grown so that others come before it, a stale one goes back unmeasured.
 // 3. collapse() has the record made, the samples handed over and the mesh changed (RecordMaker), in
 //    this order, since the record is measured on the star. Then it sets the degrees, and makes the
 //    entries of the link stale. A link vertex that no collapse was allowed for gets a new chance at
@@ -23,12 +24,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/check.h"
 #include "engine/construct/collapse/collapse_choice.h"
 #include "engine/construct/collapse/collapse_queue.h"
+#include "engine/construct/collapse/grid_stars.h"
 #include "engine/construct/collapse/record_maker.h"
 #include "engine/construct/collapse/tile_compact.h"
 #include "engine/construct/collapse/witness.h"
@@ -48,6 +51,11 @@ enum class QueueState : std::uint8_t {
   kStale,   ///< In the queue, but its star has changed since.
 };
 
+/// The last class in which the box of a stale entry is looked at before its error: that of one
+/// quantum. In higher classes vertices at a tolerance would be more by up to 1.5 %, since there many
+/// errors have changed (engine/DECISIONS.md, section 2.4).
+constexpr std::uint32_t kLastClassByBox = 1;
+
 class Simplifier {
  public:
   Simplifier(Tile& tile, const FullSurface* full, const SimplifyOptions& options)
@@ -66,10 +74,17 @@ class Simplifier {
     CollapseChoice choice;
     std::uint64_t priority = 0;
   };
+  struct FirstMeasure {
+    VertexId w;
+    std::uint64_t priority;
+  };
   [[nodiscard]] static PriorityScale scale_of(const Tile& tile, CostModel cost);
+  [[nodiscard]] std::optional<FirstMeasure> measure_on_grid(const GridStars& grid,
+                                                            VertexId u) const;
   void fill_queue();
   void check_in();
-  [[nodiscard]] Evaluation evaluate(VertexId u);
+  [[nodiscard]] CollapseMeasure carried_around(VertexId u);
+  [[nodiscard]] Evaluation evaluate(CollapseMeasure carried);
   void take_top();
   void collapse(VertexId u, std::size_t j);
   [[nodiscard]] std::size_t most_samples() const;
@@ -123,17 +138,12 @@ void Simplifier::check_in() {
   }
 }
 
-/// Measures the star of `u`, which stays in star_.
-Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
-  gather_star(tile_, u, star_);
-  Evaluation e;
-  e.choice = chooser_.choose(tile_, full_, star_);
-  if (e.choice.j == CollapseChoice::kNoNeighbour) {
-    return e;
-  }
+/// Walks the star of `u`, which stays in star_, and sums up what it carries: all of the measure but
+/// the error.
+CollapseMeasure Simplifier::carried_around(VertexId u) {
+  walk_star(tile_.tin, u, star_.star);
   CollapseMeasure measure;
   measure.vertex = tile_.tin.position(u);
-  measure.error_quanta = e.choice.error / tile_.units.quantum_code;
   measure.roi = saturated_box(tile_, star_.star);
   measure.chain = saturated_chain(tile_, star_.star);
   if (options_.cost == CostModel::kElevation) {
@@ -141,11 +151,41 @@ Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
     measure.height_quanta =
         is_empty(heights) ? 0.0 : (heights.hi - heights.lo) / tile_.units.quantum_code;
   }
-  e.priority = scale_(measure);
+  return measure;
+}
+
+/// Measures the star in star_, as carried_around() leaves it with `carried`.
+Simplifier::Evaluation Simplifier::evaluate(CollapseMeasure carried) {
+  gather_walked_star(tile_, star_);
+  Evaluation e;
+  e.choice = chooser_.choose(tile_, full_, star_);
+  if (e.choice.j != CollapseChoice::kNoNeighbour) {
+    carried.error_quanta = e.choice.error / tile_.units.quantum_code;
+    e.priority = scale_(carried);
+  }
   return e;
 }
 
+/// The first measure of a star of the full TIN of a raster; nothing where the table does not tell.
+std::optional<Simplifier::FirstMeasure> Simplifier::measure_on_grid(const GridStars& grid,
+                                                                    VertexId u) const {
+  const auto choice = grid.choose(u);
+  if (!choice) {
+    return std::nullopt;
+  }
+  const GridPoint p = tile_.tin.position(u);
+  CollapseMeasure measure;
+  measure.vertex = p;
+  measure.error_quanta = choice->error / tile_.units.quantum_code;
+  measure.roi = {p.x - 1, p.y - 1, p.x + 1, p.y + 1};
+  return FirstMeasure{choice->w, scale_(measure)};
+}
+
 void Simplifier::fill_queue() {
+  std::optional<GridStars> grid;
+  if (options_.full_raster && options_.cost == CostModel::kError) {
+    grid.emplace(tile_, *options_.full_raster);
+  }
   const std::size_t n = tile_.tin.vertices.size();
   state_.assign(n, QueueState::kAbsent);
   target_.assign(n, kNone);
@@ -159,12 +199,17 @@ void Simplifier::fill_queue() {
     }
     ++left_;
     check_in();
-    const Evaluation e = evaluate(v);
-    if (e.choice.j != CollapseChoice::kNoNeighbour) {
-      queue_.push({e.priority, v});
-      state_[v] = QueueState::kClean;
-      target_[v] = star_.star.link[e.choice.j];
+    std::optional<FirstMeasure> first = grid ? measure_on_grid(*grid, v) : std::nullopt;
+    if (!first) {
+      const Evaluation e = evaluate(carried_around(v));
+      if (e.choice.j == CollapseChoice::kNoNeighbour) {
+        continue;
+      }
+      first = FirstMeasure{star_.star.link[e.choice.j], e.priority};
     }
+    queue_.push({first->priority, v});
+    state_[v] = QueueState::kClean;
+    target_[v] = first->w;
   }
 }
 
@@ -333,7 +378,15 @@ void Simplifier::take_top() {
     collapse(top.vertex, j);
     return;
   }
-  const Evaluation e = evaluate(top.vertex);
+  const CollapseMeasure carried = carried_around(top.vertex);
+  if (options_.cost == CostModel::kError && class_of(top.priority) <= kLastClassByBox) {
+    const QueueEntry grown{scale_.in_class_of(top.priority, carried), top.vertex};
+    if (!queue_.empty() && queue_.top() < grown) {
+      queue_.push(grown);  // as stale as it was
+      return;
+    }
+  }
+  const Evaluation e = evaluate(carried);
   if (e.choice.j == CollapseChoice::kNoNeighbour) {
     state_[top.vertex] = QueueState::kAbsent;
     return;

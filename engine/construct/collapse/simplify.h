@@ -6,11 +6,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stop_token>
 
 #include "engine/construct/collapse/cost.h"
 #include "engine/construct/tile/full_surface.h"
 #include "engine/construct/tile/tile.h"
+#include "engine/geometry/box.h"
 
 namespace ptin {
 
@@ -23,6 +25,9 @@ struct SimplifyOptions {
   /// when lists of samples are sparse (construct/collapse/tile_compact.h). Vertices keep their
   /// order, so records do not depend on it. The largest value: nothing is compacted.
   std::size_t compact_above = 4096;
+  /// Where the tile is the full TIN of a raster, and nothing was collapsed: the box whose samples
+  /// fill tile.tin.vertices row by row. Its first stars are measured by a table (GridStars).
+  std::optional<GridBox> full_raster;
   std::stop_token stop;
   /// Called every few thousand steps. May be empty.
   std::function<void(std::uint64_t collapsed)> progress;

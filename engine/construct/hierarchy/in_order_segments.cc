@@ -12,15 +12,12 @@ InOrderSegments::InOrderSegments(BuildLog& log, const BatchOrder& order)
 void InOrderSegments::write_waiting(std::size_t batch, const ArrayFileFacts& facts) {
   ArrayFileReader file(log_.path(top(batch), kRecordsEnding), facts);
   while (!file.at_end()) {
-    StarredRecords records;
-    records.splits = file.take_copy<VertexSplit>();
-    records.corners = file.take_copy<RingCorner>();
-    records.ring_end = file.take_copy<std::uint32_t>();
-    log_.output().add_segment(records);
+    log_.output().add(file.take_copy<std::byte>());
   }
 }
 
 void InOrderSegments::add(std::size_t batch, StarredRecords& records) {
+  const std::vector<std::byte> prepared = log_.output().prepare(records);
   const std::lock_guard lock(mutex_);
   std::unique_ptr<ArrayFileWriter>& file = waiting_[batch];
   if (batch == turn_) {
@@ -30,16 +27,14 @@ void InOrderSegments::add(std::size_t batch, StarredRecords& records) {
       write_waiting(batch, facts);
       written_.push_back(top(batch));
     }
-    log_.output().add_segment(records);
+    log_.output().add(prepared);
     return;
   }
   if (!file) {
     file = std::make_unique<ArrayFileWriter>(log_.workspace().files(),
                                              log_.path(top(batch), kRecordsEnding));
   }
-  file->put(records.splits);
-  file->put(records.corners);
-  file->put(records.ring_end);
+  file->put(prepared);
 }
 
 ArrayFileFacts InOrderSegments::end(std::size_t batch) {

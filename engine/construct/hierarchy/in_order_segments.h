@@ -23,8 +23,9 @@ class InOrderSegments {
  public:
   InOrderSegments(BuildLog& log, const BatchOrder& order);
 
-  /// The next segment of a batch; may be changed in place.
-  /// @throws Error as SegmentOutput::add_segment; io_error
+  /// The next segment of a batch; may be changed in place. Its thread prepares it, beside those of
+  /// other batches.
+  /// @throws Error as SegmentOutput::add; io_error
   void add(std::size_t batch, StarredRecords& records);
   /// To be called when the segments of a batch are complete. Returns the facts of the file in which
   /// they wait; 0 bytes when all of them are in the output.

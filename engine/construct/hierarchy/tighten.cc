@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "engine/construct/collapse/tile_compact.h"
 #include "engine/construct/measure/fan_deviation.h"
 #include "engine/construct/measure/fan_error.h"
+#include "engine/construct/measure/plane_blocks.h"
 #include "engine/construct/measure/sample_blocks.h"
 #include "engine/construct/measure/star_samples.h"
 #include "engine/geometry/hilbert.h"
@@ -28,10 +30,26 @@ namespace {
 /// not charged again: the reach is (nearly) 0, and its sign tells the class alone.
 float no_reach(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
 
+/// True where the samples of a leaf can be measured as blocks: over a raster with whole codes, without
+/// voids in and near it, below a T0 that is all surface and not wide.
+bool suits_blocks(const Tin& t0, const StartedTile& leaf) {
+  GridBox bounds;
+  for (const Vertex& v : t0.vertices) {
+    bounds = united(bounds, v.position);
+  }
+  const double extent = std::max(static_cast<double>(bounds.max_x) - bounds.min_x,
+                                 static_cast<double>(bounds.max_y) - bounds.min_y);
+  const bool is_surface =
+      std::find(t0.classes.begin(), t0.classes.end(), TriangleClass::kVoid) == t0.classes.end();
+  return leaf.tile.samples_fill_grid && leaf.tile.units.exact_codes && !leaf.tile.has_voids &&
+         leaf.tile.samples.used() == 0 && is_surface && extent <= kExactRadius;
+}
+
 /// The mesh of one replay: T0, refined around one leaf, with the leaf's samples in its triangles.
 class Replay {
  public:
-  Replay(const Tin& t0, StartedTile&& leaf);
+  /// @param only_surface  The records to be applied make no void triangle or vertex.
+  Replay(const Tin& t0, StartedTile&& leaf, bool only_surface);
   /// Splits as the record says. Returns what the leaf shows of the record.
   RecordBounds apply(const VertexSplit& record);
 
@@ -43,7 +61,9 @@ class Replay {
   void place(Sample sample, std::vector<std::vector<Sample>>& lists);
   [[nodiscard]] VertexId vertex_at(GridPoint p) const;
   [[nodiscard]] VertexId add_vertex(const VertexSplit& record);
-  RecordBounds measure(VertexId w);
+  RecordBounds measure(const VertexSplit& record, VertexId w);
+  RecordBounds measure_samples(double gap);
+  RecordBounds measure_blocks(const VertexSplit& record, double gap);
   void hand_to_star();
 
   Tile tile_;
@@ -52,13 +72,18 @@ class Replay {
   std::vector<TriangleId> near_;  ///< Triangles of T0 that the leaf may touch.
   PackedBoxes near_boxes_;        ///< Of the triangles in near_.
   std::unordered_map<VertexKey, VertexId> vertices_;
+  std::optional<PlaneBlocks> blocks_;  ///< In the place of lists of samples, where that suits.
   StarSamples star_;
   FanFrame fan_, spokes_;
   FanAssignment assignment_;
   SampleHandOver hand_over_;
 };
 
-Replay::Replay(const Tin& t0, StartedTile&& leaf) : full_(std::move(leaf.full)), box_(leaf.box) {
+Replay::Replay(const Tin& t0, StartedTile&& leaf, bool only_surface) : box_(leaf.box) {
+  if (only_surface && suits_blocks(t0, leaf)) {
+    blocks_.emplace(leaf.tile, leaf.box);
+  }
+  full_ = std::move(leaf.full);
   tile_.units = leaf.tile.units;
   tile_.samples_fill_grid = leaf.tile.samples_fill_grid;
   tile_.has_voids = true;  // T0 may have void triangles where the leaf has none
@@ -68,7 +93,10 @@ Replay::Replay(const Tin& t0, StartedTile&& leaf) : full_(std::move(leaf.full)),
     vertices_.emplace(key_of(t0.position(v)), v);
     tile_.vertex_state.push_back({no_reach(t0.has_height[v] != 0), 0, false});
   }
-  take_samples(std::exchange(leaf.tile, {}));  // the leaf's mesh goes
+  const Tile started = std::exchange(leaf.tile, {});  // the leaf's mesh goes
+  if (!blocks_) {
+    take_samples(started);
+  }
 }
 
 /// Finds the triangles of T0 that the leaf may touch. T0 is two triangles over a raster without
@@ -207,16 +235,20 @@ RecordBounds Replay::apply(const VertexSplit& record) {
     lay_out_samples(tile_);
   }
   gather_star_and_samples(tile_, site.u, star_);
-  return measure(site.w);
+  return measure(record, site.w);
 }
 
 /// The star of u is there again (star_), and its triangles hold the samples of the former fan.
 /// Measures these samples against the fan from w, and hands them to the triangles of the star.
-RecordBounds Replay::measure(VertexId w) {
+RecordBounds Replay::measure(const VertexSplit& record, VertexId w) {
   const auto j = static_cast<std::size_t>(
       std::find(star_.star.link.begin(), star_.star.link.end(), w) - star_.star.link.begin());
   PTIN_CHECK(make_fan(star_, j, fan_));
   const double gap = fan_deviation(tile_, star_, fan_, *full_, box_);
+  return blocks_ ? measure_blocks(record, gap) : measure_samples(gap);
+}
+
+RecordBounds Replay::measure_samples(double gap) {
   const double fixed = fan_fixed_gap(tile_, star_, fan_, {*full_, box_});
   if (star_.count == 1 && star_.surface_triangles) {  // u alone: construction has measured it
     return {height_bound(fixed, tile_.units.heights), height_bound(gap, tile_.units.heights)};
@@ -225,6 +257,22 @@ RecordBounds Replay::measure(VertexId w) {
   hand_to_star();
   return {height_bound(std::max(own.error, fixed), tile_.units.heights),
           height_bound(std::max(own.deviation, gap), tile_.units.heights)};
+}
+
+/// What the record says already, its error over witnesses, is not looked for again. Some sample has
+/// that error, in this leaf or in another one, so the deviation of the record is that at least.
+RecordBounds Replay::measure_blocks(const VertexSplit& record, double gap) {
+  const HeightEncoding& heights = tile_.units.heights;
+  const PlaneBlocks::Centre u{record.u, heights.code(record.height), star_.star.closed};
+  // A little less, since the error of the record was rounded up.
+  const double known = static_cast<double>(record.error) / heights.step * (1.0 - 0x1p-20);
+  const double worst = blocks_->largest_residual(fan_, u, known);
+  star_.largest_z = std::max(star_.largest_z, blocks_->largest_z(u));
+  float error = record.error;
+  if (worst > known) {
+    error = std::max(error, height_bound(certified_residual(worst, star_, tile_.units), heights));
+  }
+  return {error, std::max(error, height_bound(gap, heights))};
 }
 
 /// Hands the samples to the triangles around u. The sample of u itself, if the leaf has it, is
@@ -242,7 +290,12 @@ void Replay::hand_to_star() {
 }  // namespace
 
 void replay_over_leaf(std::span<const ReplaySegment> chain, const Tin& t0, StartedTile&& leaf) {
-  Replay replay(t0, std::move(leaf));
+  const bool only_surface = std::all_of(chain.begin(), chain.end(), [&](const ReplaySegment& s) {
+    return std::none_of(s.records.begin(), s.records.end(), [&](const VertexSplit& r) {
+      return (r.flags & VertexSplit::kAnyVoid) != 0 && meets(r.roi, leaf.box);
+    });
+  });
+  Replay replay(t0, std::move(leaf), only_surface);
   for (const ReplaySegment& segment : chain) {
     for (std::size_t i = segment.records.size(); i-- > 0;) {
       const VertexSplit& record = segment.records[i];

@@ -34,7 +34,11 @@ struct ReplaySegment {
 /// @param leaf   The leaf as start_raster_tile(), PointTileStarter or start_tin_tile() gives it.
 ///     Used up.
 /// @throws Error resource_exhausted  as SampleLists::take
-/// Cost: about 2.5 residuals a sample for each halving of the vertices above the leaf.
+/// Over a raster with whole codes and no void near, samples are not handed on at all: each fan asks
+/// a pyramid of the leaf (construct/measure/plane_blocks.h), and looks at those squares of samples
+/// alone that might show more than the record says already.
+/// Cost: about 2.5 residuals a sample for each halving of the vertices above the leaf; with the
+/// pyramid a few squares for each triangle of a fan.
 void replay_over_leaf(std::span<const ReplaySegment> chain, const Tin& t0, StartedTile&& leaf);
 
 }  // namespace ptin

@@ -37,10 +37,15 @@ CollapsedLeaf collapse_leaf(const TileId& id, const TileTree& tree, const LeafSt
   StartedTile leaf = start(tree.window(id));
   lock_seams(leaf.tile, tree, id);
   const std::uint64_t keep = vertices_to_keep(leaf.tile, tree, id);  // before the first pass
-  if (options.first_pass > 0.0 && leaf.tile.samples_fill_grid) {
-    run_first_pass(leaf.tile, *leaf.full, leaf.box, options.first_pass);
+  SimplifyOptions simplifying = simplify_options(options, keep, stop);
+  if (leaf.tile.samples_fill_grid) {
+    if (options.first_pass > 0.0) {
+      run_first_pass(leaf.tile, *leaf.full, leaf.box, options.first_pass);
+    } else {
+      simplifying.full_raster = leaf.box;
+    }
   }
-  simplify(leaf.tile, *leaf.full, simplify_options(options, keep, stop));
+  simplify(leaf.tile, *leaf.full, simplifying);
   CollapsedLeaf result;
   result.lone_samples = leaf.lone_samples;
   PushedTile pushed = push_up(std::move(leaf.tile), PushedSamples::kAll);

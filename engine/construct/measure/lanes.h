@@ -40,8 +40,8 @@ PTIN_LANES Lanes larger(const Lanes& a, const Lanes& b) noexcept { return b > a 
 PTIN_LANES Lanes magnitude(const Lanes& a) noexcept { return a < 0.0 ? -a : a; }
 
 PTIN_LANES double largest_lane(Lanes v) noexcept {
-  const Lanes other = __builtin_shuffle(v, LaneIndices{2, 3, 0, 1});
-  v = larger(other, v);
+  v = larger(__builtin_shuffle(v, LaneIndices{4, 5, 6, 7, 0, 1, 2, 3}), v);
+  v = larger(__builtin_shuffle(v, LaneIndices{2, 3, 0, 1, 6, 7, 4, 5}), v);
   return v[0] > v[1] ? v[0] : v[1];
 }
 

@@ -14,8 +14,8 @@
 namespace ptin {
 
 /// The number of samples of a star is padded to a multiple of this with copies of u, so that the
-/// measuring loops have no tail.
-inline constexpr std::size_t kSampleLanes = 4;
+/// measuring loops have no tail. One vector of AVX-512, two of AVX2.
+inline constexpr std::size_t kSampleLanes = 8;
 
 /// A star with a link coordinate above this, relative to u, is **wide**: products of its
 /// coordinates are not exact in doubles, and go through 64-bit integers. In a narrow star
@@ -72,6 +72,9 @@ struct StarSamples {
 /// such a star every residual is 0, so lakes, seas and voids, whose triangles cover many samples,
 /// cost no more than other ground. Cost: its degree and its samples.
 void gather_star(const Tile& tile, VertexId u, StarSamples& out);
+
+/// The same for a star that has been walked: `out.star` is that of its centre.
+void gather_walked_star(const Tile& tile, StarSamples& out);
 
 /// Gathers the samples of a star where gather_star() left them out.
 void gather_samples(const Tile& tile, StarSamples& out);

@@ -86,6 +86,8 @@ class Finder {
   }
   void find_kinds();
   void list_triangles();
+  template <class Visit>
+  void for_each_neighbour(VertexId v, const Visit& visit) const;
   void find_nearest();
   void find_regions();
   void find_doubts();
@@ -119,9 +121,16 @@ class Finder {
   [[nodiscard]] Place place_of_node(const Node& node) const;
   [[nodiscard]] Place middle_of(std::uint32_t side) const;
   [[nodiscard]] WayIn way_of(TriangleId t) const;
-  [[nodiscard]] bool is_deeper(std::uint32_t a, std::uint32_t b) const {
-    return nodes_[a].key != nodes_[b].key ? nodes_[a].key > nodes_[b].key
-                                          : nodes_[a].at < nodes_[b].at;
+  /// What nodes are ordered by: deeper ones first.
+  struct Depth {
+    double key;
+    std::uint32_t at, node;
+    [[nodiscard]] bool is_deeper(const Depth& other) const noexcept {
+      return key != other.key ? key > other.key : at < other.at;
+    }
+  };
+  [[nodiscard]] Depth depth_of_node(std::uint32_t node) const {
+    return {nodes_[node].key, nodes_[node].at, node};
   }
   std::uint32_t node_at(std::uint32_t at);
   template <class Visit>
@@ -188,6 +197,20 @@ void Finder::list_triangles() {
   }
 }
 
+/// Calls visit(vertex) once for each neighbour: the next corner of each triangle around v, and the
+/// previous one where nothing lies beyond the side between it and v.
+template <class Visit>
+void Finder::for_each_neighbour(VertexId v, const Visit& visit) const {
+  for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) {
+    const Triangle& triangle = tin_.triangles[around_[i]];
+    const int c = corner_of(triangle, v);
+    visit(triangle.v[next_corner(c)]);
+    if (triangle.n[next_corner(c)] == kNone) {
+      visit(triangle.v[previous_corner(c)]);
+    }
+  }
+}
+
 void Finder::find_nearest() {
   found_.nearest.assign(n_, BorderWitnesses::kNoBorder);
   std::vector<double> best(n_, kInfinity);
@@ -210,19 +233,15 @@ void Finder::find_nearest() {
       continue;
     }
     const GridPoint source = found_.nearest[v];
-    for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) {
-      for (const VertexId to : tin_.triangles[around_[i]].v) {
-        const double there = distance(tin_.position(to), source, part_.step);
-        if (there > part_.farthest) {
-          continue;
-        }
-        if (there < best[to] || (there == best[to] && key < key_of(found_.nearest[to]))) {
-          best[to] = there;
-          found_.nearest[to] = source;
-          queue.emplace(there, key, to);
-        }
+    for_each_neighbour(v, [&](VertexId to) {
+      const double there = distance(tin_.position(to), source, part_.step);
+      if (there <= part_.farthest &&
+          (there < best[to] || (there == best[to] && key < key_of(found_.nearest[to])))) {
+        best[to] = there;
+        found_.nearest[to] = source;
+        queue.emplace(there, key, to);
       }
-    }
+    });
   }
 }
 
@@ -405,17 +424,17 @@ void Finder::link_nodes() {
 }
 
 void Finder::grow_trees() {
-  const auto after = [this](std::uint32_t a, std::uint32_t b) { return is_deeper(b, a); };
-  std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, decltype(after)> queue(after);
+  const auto after = [](const Depth& a, const Depth& b) { return b.is_deeper(a); };
+  std::priority_queue<Depth, std::vector<Depth>, decltype(after)> queue(after);
   const auto put = [&](std::uint32_t node) {
     if (!nodes_[node].queued) {
       nodes_[node].queued = true;
-      queue.push(node);
+      queue.push(depth_of_node(node));
     }
   };
   const auto grow = [&] {
     while (!queue.empty()) {
-      const std::uint32_t id = queue.top();
+      const std::uint32_t id = queue.top().node;
       queue.pop();
       Node& node = nodes_[id];
       node.taken = true;
@@ -424,24 +443,27 @@ void Finder::grow_trees() {
         const Link& link = links_[i];
         if (!nodes_[link.node].taken) {
           put(link.node);
-        } else if (!is_far(node.at) &&
-                   (node.parent == kNone || is_deeper(link.node, node.parent))) {
+        } else if (!is_far(node.at) && (node.parent == kNone || depth_of_node(link.node).is_deeper(
+                                                                    depth_of_node(node.parent)))) {
           node.parent = link.node;
           node.parent_side = link.side;
         }
       }
     }
   };
-  std::vector<std::uint32_t> roots(nodes_.size());
-  std::iota(roots.begin(), roots.end(), 0U);
+  std::vector<Depth> roots;
+  roots.reserve(nodes_.size());
+  for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+    roots.push_back(depth_of_node(i));
+  }
   std::sort(roots.begin(), roots.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return is_deeper(a, b); });
-  const auto near = std::find_if(roots.begin(), roots.end(),
-                                 [&](std::uint32_t i) { return !is_far(nodes_[i].at); });
-  std::for_each(roots.begin(), near, put);
+            [](const Depth& a, const Depth& b) { return a.is_deeper(b); });
+  const auto near =
+      std::find_if(roots.begin(), roots.end(), [&](const Depth& root) { return !is_far(root.at); });
+  std::for_each(roots.begin(), near, [&](const Depth& root) { put(root.node); });
   grow();
-  std::for_each(near, roots.end(), [&](std::uint32_t root) {
-    put(root);
+  std::for_each(near, roots.end(), [&](const Depth& root) {
+    put(root.node);
     grow();
   });
 }
