@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "engine/geometry/orient.h"
 
@@ -13,6 +14,9 @@ namespace {
 
 /// A sample as a candidate. The heaviest of each corner and side is taken first.
 struct Candidate {
+  [[nodiscard]] std::size_t place() const {
+    return static_cast<std::size_t>(2 * corner + (above ? 1 : 0));
+  }
   Sample sample;
   int corner = 0;       ///< The corner of its largest barycentric coordinate.
   bool above = false;   ///< Above the triangle; where there is no residual: it has a height.
@@ -61,6 +65,34 @@ class Judge {
   double inverse_ = 0.0;
 };
 
+bool is_heavier(const Candidate& a, const Candidate& b) {
+  if (a.weight != b.weight) {
+    return a.weight > b.weight;
+  }
+  const VertexKey of_a = key_of(a.sample.position), of_b = key_of(b.sample.position);
+  return of_a != of_b ? of_a < of_b : a.sample.direction < b.sample.direction;
+}
+
+/// Moves the heaviest of each corner and sign to the front. Returns the end of these.
+std::vector<Candidate>::iterator heaviest_of_places(std::vector<Candidate>& candidates) {
+  std::array<std::size_t, 6> heaviest{};
+  heaviest.fill(candidates.size());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    std::size_t& best = heaviest[candidates[i].place()];
+    if (best == candidates.size() || is_heavier(candidates[i], candidates[best])) {
+      best = i;
+    }
+  }
+  std::sort(heaviest.begin(), heaviest.end());  // so that no swap moves one that is still to come
+  auto end = candidates.begin();
+  for (const std::size_t i : heaviest) {
+    if (i < candidates.size()) {
+      std::swap(*end++, candidates[i]);
+    }
+  }
+  return end;
+}
+
 }  // namespace
 
 void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
@@ -77,21 +109,16 @@ void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& sampl
   for (const Sample& s : samples) {
     candidates.push_back(judge.judge(s));
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.weight != b.weight ? a.weight > b.weight
-                                : key_of(a.sample.position) < key_of(b.sample.position);
-  });
   // First the heaviest of each corner and sign, then the heaviest of the rest.
+  const auto rest = heaviest_of_places(candidates);
+  const auto taken = static_cast<std::size_t>(rest - candidates.begin());
+  const auto end = rest + static_cast<std::ptrdiff_t>(std::min(candidates.size(), most) - taken);
+  std::nth_element(rest, end, candidates.end(), is_heavier);  // cheaper than to sort them all
+  std::sort(candidates.begin(), rest, is_heavier);
+  std::sort(rest, end, is_heavier);
   samples.clear();
-  std::array<bool, 6> taken{};
-  std::vector<Sample> rest;
-  for (const Candidate& c : candidates) {
-    bool& place = taken[static_cast<std::size_t>(2 * c.corner + (c.above ? 1 : 0))];
-    (place ? rest : samples).push_back(c.sample);
-    place = true;
-  }
-  rest.resize(std::min(rest.size(), most - samples.size()));
-  samples.insert(samples.end(), rest.begin(), rest.end());
+  std::transform(candidates.begin(), end, std::back_inserter(samples),
+                 [](const Candidate& c) { return c.sample; });
 }
 
 }  // namespace ptin

@@ -30,7 +30,7 @@ RasterSpec noisy_raster(const char* name, std::uint32_t heights) {
 }
 
 std::vector<RasterSpec> grid_specs() {
-  std::vector<RasterSpec> all{noisy_raster("steps", 3),         noisy_raster("rough", 1000),
+  std::vector<RasterSpec> all{noisy_raster("steps", 3),   noisy_raster("rough", 1000),
                               noisy_raster("a plain", 1), noisy_raster("fractions", 1000),
                               noisy_raster("voids", 7),   noisy_raster("far from the origin", 5)};
   all[3].heights = oracle::kFloat;
