@@ -30,7 +30,7 @@ struct GridStarShape {
 };
 
 double cross_of_places(std::uint8_t a, std::uint8_t b) noexcept {
-  return double{kPlaces[a].x} * kPlaces[b].y - double{kPlaces[a].y} * kPlaces[b].x;
+  return static_cast<double>(kPlaces[a].x * kPlaces[b].y - kPlaces[a].y * kPlaces[b].x);
 }
 
 /// The link of a star: east, north, west and south, and the corners of those cells whose diagonal
