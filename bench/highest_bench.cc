@@ -5,7 +5,7 @@
 //   Highest/ppm:N  one random window of N millionths of the terrain, exact, warm: microseconds;
 //                  pages, index nodes and records a window
 //
-// Windows are uniform and seeded. What this cannot show: a cold disk (bench/io).
+// Windows are uniform and seeded. What this cannot show: a cold disk (ptin bench).
 #include <cmath>
 #include <random>
 #include <vector>

@@ -14,7 +14,7 @@
 //     error_5 the whole terrain at 5 units of height; both is the window of 1/25 at that error.
 //     64 seeded places, one after the other.
 // libspatialindex keeps its nodes in an LRU buffer of its own and takes a lock; boxes of its nodes
-// are doubles of four dimensions. Cannot show: cold nodes (bench/io), several threads, trees higher
+// are doubles of four dimensions. Cannot show: cold nodes (ptin bench), several threads, trees higher
 // than two or three levels.
 #include <cmath>
 #include <functional>

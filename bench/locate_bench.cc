@@ -7,7 +7,7 @@
 // LocateOneAtError   the same at a tolerance of 5 height units, with its interval
 // LocateBatch/N      N random points over the whole terrain in one call, exact: points a second
 //
-// Points are uniform over the domain, and seeded. What this cannot show: a cold disk (bench/io),
+// Points are uniform over the domain, and seeded. What this cannot show: a cold disk (ptin bench),
 // points that lie as people's do, in clusters.
 #include <random>
 #include <vector>

@@ -7,7 +7,7 @@
 //                              close
 //   BM_Point/access:a          the same on a store that stays open
 // Counters: records and pages a point, worst_us the slowest single call. Times are of the clock.
-// Cannot show: cold pages (bench/io), other sizes (give PTIN_BENCH_STORE), the walk to the
+// Cannot show: cold pages (ptin bench), other sizes (give PTIN_BENCH_STORE), the walk to the
 // triangle.
 #include <algorithm>
 #include <chrono>

@@ -6,7 +6,7 @@
 //                               search, read, apply
 //   BM_Retrieve/area_ppm:n      the same, search and read alone
 //   BM_Apply/area_ppm:n         the same, counting sort and splits alone
-// Cannot show: cold pages (bench/io); several queries at once.
+// Cannot show: cold pages (ptin bench); several queries at once.
 #include <cmath>
 #include <memory>
 #include <vector>

@@ -204,7 +204,8 @@ std::string head_text(const IoRequest& request, const IoReport& report) {
   std::string text = "file      " + printable(request.file) + ", " + human_bytes(report.file_bytes);
   if (!report.file_system.empty()) text += ", " + report.file_system;
   text += "\n";
-  if (report.device) {
+  constexpr std::uint64_t kFewBytes = std::uint64_t{8} << 20;  // of which no rate is of the device
+  if (report.device && report.file_bytes >= kFewBytes) {
     text += "device    " + figure(report.device->sequential_mb_s) + " MB/s in order, " +
             figure(report.device->random_4k_ms) + " ms for 4 KiB anywhere (O_DIRECT)\n";
   }
