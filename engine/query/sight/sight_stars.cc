@@ -53,8 +53,7 @@ void SightStars::state_domain(SightEnd& end, Spot spot) const {
 }
 
 bool SightStars::ends_known() const noexcept {
-  return (line_.a.known && line_.b.known) ||
-         (request_.absolute && !facts_.has_voids);
+  return (line_.a.known && line_.b.known) || (request_.absolute && !facts_.has_voids);
 }
 
 bool SightStars::out_of_budget() const noexcept {

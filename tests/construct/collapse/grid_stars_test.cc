@@ -34,7 +34,9 @@ std::vector<RasterSpec> grid_specs() {
                               noisy_raster("a plain", 1), noisy_raster("fractions", 1000),
                               noisy_raster("voids", 7),   noisy_raster("far from the origin", 5)};
   all[3].heights = oracle::kFloat;
-  all[3].code = [](int x, int y) { return static_cast<float>(oracle::noise({x, y}) % 1000) / 7.0F; };
+  all[3].code = [](int x, int y) {
+    return static_cast<float>(oracle::noise({x, y}) % 1000) / 7.0F;
+  };
   all[4].valid = [](int x, int y) { return std::hypot(x - 20, y - 20) > 6; };
   all[5].origin = {kGridMax - 100, kGridMax - 100};
   return all;
