@@ -2,12 +2,13 @@
 //
 // Isolines (paper, section 5.2). The store: PTIN_BENCH_STORE, else srtm1_bigtujunga.
 //
-// IsolineOne/T      the middle height of the whole terrain, T threads: levels a second of wall
-//                   time, records retrieved per vertex of a crossing triangle
-// IsolineTwenty/T   twenty levels at once
-// IsolineOneMesh    twenty levels where all is one mesh instead of tiles: what tiles are worth
-// ProgressiveSplit  the records of one level applied one by one, isolines kept up to date after
-//                   each: splits a second, triangles looked at a split
+// IsolineOne/T       the middle height of the whole terrain, T threads: levels a second of wall
+//                    time, stars read per vertex of a crossing triangle
+// IsolineTwenty/T    twenty levels at once
+// IsolineBySplits/L  one level and twenty by splits, in one mesh: records retrieved per vertex of a
+//                    crossing triangle
+// ProgressiveSplit   the records of one level applied one by one, isolines kept up to date after
+//                    each: splits a second, triangles looked at a split
 #include <algorithm>
 #include <vector>
 
@@ -48,46 +49,48 @@ std::vector<double> levels_between(int count) {
   return levels;
 }
 
-void extract(benchmark::State& state, int levels) {
+void extract(benchmark::State& state, int levels, AnswerBy by, int threads) {
   if (skipped(state)) return;
   IsolineRequest request;
   request.levels = levels_between(levels);
-  request.threads = static_cast<int>(state.range(0));
-  double per_vertex = 0;
-  double segments = 0;
+  request.threads = threads;
+  request.by = by;
+  QueryCost cost;
+  TraceCounts crossed;
   for (auto _ : state) {
     const Isolines lines = isolines(*terrain(), request);
-    segments = static_cast<double>(lines.crossed.segments);
-    per_vertex = static_cast<double>(lines.cost.records_retrieved) /
-                 static_cast<double>(std::max<std::uint64_t>(lines.crossed.vertices, 1));
+    cost = lines.cost;
+    crossed = lines.crossed;
   }
-  state.counters["records/vertex"] = per_vertex;
+  const auto a_vertex = [&](std::uint64_t count) {
+    return static_cast<double>(count) /
+           static_cast<double>(std::max<std::uint64_t>(crossed.vertices, 1));
+  };
+  if (by == AnswerBy::kStars) {
+    state.counters["stars/vertex"] = a_vertex(cost.stars_read);
+  } else {
+    state.counters["records/vertex"] = a_vertex(cost.records_retrieved);
+  }
+  const auto segments = static_cast<double>(crossed.segments);
   state.counters["segments"] = segments;
   state.counters["segments/s"] =
       benchmark::Counter(segments, benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void IsolineOne(benchmark::State& state) { extract(state, 1); }
+void IsolineOne(benchmark::State& state) {
+  extract(state, 1, AnswerBy::kStars, static_cast<int>(state.range(0)));
+}
 BENCHMARK(IsolineOne)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-void IsolineTwenty(benchmark::State& state) { extract(state, 20); }
+void IsolineTwenty(benchmark::State& state) {
+  extract(state, 20, AnswerBy::kStars, static_cast<int>(state.range(0)));
+}
 BENCHMARK(IsolineTwenty)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-void IsolineOneMesh(benchmark::State& state) {
-  if (skipped(state)) return;
-  const StoreFacts& facts = terrain()->store().facts();
-  const LevelSet levels(levels_between(20), facts.heights);
-  const PredicatePtr crossing = levels.crossing();
-  for (auto _ : state) {
-    RefineRequest request;
-    request.also = crossing.get();
-    const RefinedTin refined = terrain()->refine(request);
-    const ProgressiveIsolines lines(refined.tin, levels, facts.heights, facts.map);
-    benchmark::DoNotOptimize(
-        lines.lines(refined.tin, QueryContext({.memory_bytes = ~0ULL}, "")).size());
-  }
+void IsolineBySplits(benchmark::State& state) {
+  extract(state, static_cast<int>(state.range(0)), AnswerBy::kSplits, 1);
 }
-BENCHMARK(IsolineOneMesh)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(IsolineBySplits)->Arg(1)->Arg(20)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void ProgressiveSplit(benchmark::State& state) {
   if (skipped(state)) return;
