@@ -186,6 +186,36 @@ double meridian(double from, double to) {
   return sum * h / 3 * M_PI / 180;
 }
 
+// A wall with a gap of void, which a level closes by surface: what is not settled hides nothing.
+TEST(SightThroughAGap, IsNeverHiddenByALevelThatClosesTheGap) {
+  const TestFolder folder;
+  testing::RasterRecipe recipe;
+  recipe.nodata = -9999.0;
+  recipe.value = [](int column, int row) {
+    const bool in_gap = column >= 14 && column <= 18 && row >= 18 && row <= 22;
+    const bool in_lake = column >= 10 && column <= 22 && row >= 25;  // else the gap is never lost
+    return in_gap || in_lake ? -9999.0 : (column == 16 ? 5000.0 : 10.0);
+  };
+  testing::make_raster(folder.file("gap.tif"), recipe);
+  testing::expect_done({"build", folder.file("gap.tif"), "-o", folder.file("gap.ptin"), "-q"});
+  for (const char* way : {"stars", "splits"}) {
+    const std::vector<std::string> line = {
+        "sight", folder.file("gap.ptin"), x_of(2), kRowY, "9", x_of(30), kRowY, "9", "--by", way,
+        "--json"};
+    const json exact = answer_of(line);
+    EXPECT_EQ(exact.at("verdict"), "visible");
+    EXPECT_GT(exact.at("void_length").get<double>(), 0.0);
+    for (const char* error : {"30", "60", "90", "120", "200", "400", "1000"}) {
+      for (const bool verdict_only : {false, true}) {
+        std::vector<std::string> asked = line;
+        asked.insert(asked.end(), {"--error", error});
+        if (verdict_only) asked.push_back("--verdict");
+        EXPECT_NE(answer_of(asked).at("verdict"), "hidden") << way << " at " << error;
+      }
+    }
+  }
+}
+
 TEST(SightInDegrees, MeasuresAlongTheEllipsoid) {
   const TestFolder folder;
   testing::RasterRecipe recipe;

@@ -83,7 +83,8 @@ struct SightResult {
   /// Length of the line over voids, height's unit. NaN when not known: with `verdict_only`, or when
   /// records left out may change it.
   double void_length = std::numeric_limits<double>::quiet_NaN();
-  /// Most that the surface may deviate where the line is undecided; 0 when it is decided.
+  /// Most that the surface may deviate where the line is undecided; 0 when it is decided, infinite
+  /// where the budget left the line unread.
   double certified_deviation = 0.0;
   bool exact = false;  ///< All that the result tells holds of the source.
   QueryCost cost;
