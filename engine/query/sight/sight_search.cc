@@ -30,8 +30,7 @@ SightSearch::SightSearch(const OpenedTerrain& terrain, const SightFacts& facts,
 
 /// Of absolute ends only the states are asked, and only voids can change a state.
 bool SightSearch::ends_known() const noexcept {
-  return (view_.a.known && view_.b.known) ||
-         (request_.absolute && !facts_.has_voids);
+  return (view_.a.known && view_.b.known) || (request_.absolute && !facts_.has_voids);
 }
 
 bool SightSearch::out_of_budget() const noexcept {
