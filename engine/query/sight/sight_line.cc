@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <tuple>
 
 #include "engine/geometry/infinity.h"
 
@@ -127,6 +129,50 @@ SightPiece SightLine::part_of(const SightPiece& piece, double from, double to) c
   decide_by_bounds(part);
   part.least = std::max(part.least, piece.least);
   return part;
+}
+
+void SightLine::order_pieces() {
+  std::sort(pieces.begin(), pieces.end(), [](const SightPiece& x, const SightPiece& y) {
+    return std::tie(x.from, x.to, x.exact) < std::tie(y.from, y.to, y.exact);
+  });
+  std::size_t kept = 0;
+  for (const SightPiece& p : pieces) {
+    if (kept > 0) {
+      SightPiece& last = pieces[kept - 1];
+      if (last == p) {
+        continue;
+      }
+      if (last.along_edge && p.along_edge && last.from == p.from && last.to == p.to &&
+          last.exact == p.exact) {
+        last = united_on_edge(last, p);
+        continue;
+      }
+    }
+    pieces[kept++] = p;
+  }
+  pieces.resize(kept);
+}
+
+void SightLine::prefer_exact() {
+  std::vector<SightPiece> all;
+  all.swap(pieces);
+  std::vector<SightPiece> exact;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(exact),
+               [](const SightPiece& p) { return p.exact; });
+  for (const SightPiece& p : all) {
+    double from = p.from;
+    for (const SightPiece& e : exact) {
+      if (!p.exact && !is_final_truth(p) && e.from < p.to && e.to > from) {
+        if (e.from > from) {
+          pieces.push_back(part_of(p, from, e.from));
+        }
+        from = e.to;
+      }
+    }
+    if (from < p.to) {
+      pieces.push_back(part_of(p, from, p.to));
+    }
+  }
 }
 
 ExactRay SightLine::exact_ray() const {

@@ -102,10 +102,12 @@ class SightLine {
   void certify(SightPiece& piece) const;
   /// Sets bounds, guess and verdict.
   void decide_by_bounds(SightPiece& piece) const;
-  /// One piece for two that lie on the common edge of two triangles: what holds of either holds.
-  [[nodiscard]] SightPiece united_on_edge(const SightPiece& x, const SightPiece& y) const;
-  /// The piece over a part of its way. REQUIRES: piece.from <= from < to <= piece.to.
-  [[nodiscard]] SightPiece part_of(const SightPiece& piece, double from, double to) const;
+  /// Puts the pieces in their order, each once. What holds of either triangle holds on their common
+  /// edge.
+  void order_pieces();
+  /// Where pieces of the full TIN are there beside those of a level of detail, they stand in the
+  /// place of these. REQUIRES: order_pieces() came before.
+  void prefer_exact();
   /// Decides a piece of surface in rationals, where its bounds do not tell and nothing is left out.
   void decide_exactly(SightPiece& piece, const LinePoint& from, const LinePoint& to) const;
   /// Looks at a point in which the line meets the closed surface beside a void, or from outside of
@@ -128,6 +130,10 @@ class SightLine {
   [[nodiscard]] bool can_be_exact() const noexcept {
     return facts_.file_deviation == 0 && knows_levels();
   }
+  /// One piece for two that lie on the common edge of two triangles.
+  [[nodiscard]] SightPiece united_on_edge(const SightPiece& x, const SightPiece& y) const;
+  /// The piece over a part of its way. REQUIRES: piece.from <= from < to <= piece.to.
+  [[nodiscard]] SightPiece part_of(const SightPiece& piece, double from, double to) const;
   [[nodiscard]] ExactRay exact_ray() const;
 
   const SightFacts& facts_;

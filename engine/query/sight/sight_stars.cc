@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
-#include <tuple>
 #include <utility>
 
 #include "engine/geometry/infinity.h"
@@ -428,63 +426,15 @@ void SightStars::settle() {
   }
 }
 
-/// Puts the pieces in their order, each once. What holds of either triangle holds on their common
-/// edge.
-void SightStars::order_pieces() {
-  std::vector<SightPiece>& pieces = line_.pieces;
-  std::sort(pieces.begin(), pieces.end(), [](const SightPiece& x, const SightPiece& y) {
-    return std::tie(x.from, x.to, x.exact) < std::tie(y.from, y.to, y.exact);
-  });
-  std::size_t kept = 0;
-  for (const SightPiece& p : pieces) {
-    if (kept > 0) {
-      SightPiece& last = pieces[kept - 1];
-      if (last == p) {
-        continue;
-      }
-      if (last.along_edge && p.along_edge && last.from == p.from && last.to == p.to &&
-          last.exact == p.exact) {
-        last = line_.united_on_edge(last, p);
-        continue;
-      }
-    }
-    pieces[kept++] = p;
-  }
-  pieces.resize(kept);
-}
-
-/// Where the full TIN was looked at beside a level of detail, it stands in the place of the level.
-void SightStars::prefer_exact() {
-  std::vector<SightPiece> all;
-  all.swap(line_.pieces);
-  std::vector<SightPiece> exact;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(exact),
-               [](const SightPiece& p) { return p.exact; });
-  for (const SightPiece& p : all) {
-    double from = p.from;
-    for (const SightPiece& e : exact) {
-      if (!p.exact && !is_final_truth(p) && e.from < p.to && e.to > from) {
-        if (e.from > from) {
-          line_.pieces.push_back(line_.part_of(p, from, e.from));
-        }
-        from = e.to;
-      }
-    }
-    if (from < p.to) {
-      line_.pieces.push_back(line_.part_of(p, from, p.to));
-    }
-  }
-}
-
 SightVerdict SightStars::decide() {
   if (request_.verdict_only) {
     decide_by_search();
   }
   settle();
-  order_pieces();
+  line_.order_pieces();
   if (facts_.is_level_asked) {
-    prefer_exact();
-    order_pieces();
+    line_.prefer_exact();
+    line_.order_pieces();
   }
   if (line_.hidden_piece() != nullptr || line_.is_touched_from_below()) {
     return SightVerdict::kHidden;

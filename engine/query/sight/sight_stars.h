@@ -70,8 +70,6 @@ class SightStars final : private BestStarVisitor {
   [[nodiscard]] bool is_hidden_by_coarse();
   [[nodiscard]] std::optional<double> likely_share() const;
   void settle();
-  void order_pieces();
-  void prefer_exact();
   void decide_by_search();
 
   const OpenedTerrain& terrain_;

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "engine/geometry/infinity.h"
 #include "engine/query/refine/bounded_mesh.h"
 #include "engine/query/sight/sight_line.h"
 
