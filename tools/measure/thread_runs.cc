@@ -55,6 +55,7 @@ class ThreadRuns {
   }
 
   void run() {
+    run_.tell("threads", std::min(1.0, deadline_.elapsed() / soft_));
     try {
       for (std::uint64_t round = 0; goes_on(round); ++round) {
         for (std::size_t i = 0; i < report_.threads.size(); ++i) {
