@@ -183,7 +183,7 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   tools::testing::write_file(file("points.txt"), "id x y\nA 500100 3999900\n");
   ask({"locate", store, "--points", file("points.txt"), "-o", file("points.geojson")});
   ask({"profile", store, "--line", file("seen.geojson"), "--id", "id"});
-  ask({"bench", store, "-q", "--count", "1", "--seconds", "2", "-o", file("bench.png")});
+  ask({"bench", store, "-q", "--count", "1", "--seconds", "4", "-o", file("bench.png")});
   ask({"completion", "bash"});
 
   std::map<std::string, Names> lists = documented_names();
