@@ -92,17 +92,19 @@ class Counter {
   void count_windows(const std::string& what, double side) {
     constexpr int kWindows = 20;
     Places places(terrain_.store().facts());
-    QueryCost sum;
+    QueryCost by_splits, by_stars;
     IoCounters packed, second;
-    std::uint64_t vertices = 0;
+    std::uint64_t vertices = 0, triangles = 0;
     for (int i = 0; i < kWindows; ++i) {
       RefineRequest request;
       const Window window = places.window(side);
       request.region = window;
+      by_splits.add_counts(terrain_.refine(request).cost);
       request.form = ResultForm::kMeetingRegion;
       const RefinedTin tin = terrain_.refine(request);
-      sum.add_counts(tin.cost);
+      by_stars.add_counts(tin.cost);
       vertices += tin.vertices;
+      triangles += tin.triangles;
       const PredicatePtr asked = meets_region(window, terrain_.store().facts().map);
       std::vector<PageId> pages, same;
       terrain_.index().search(*asked, pages, packed);
@@ -110,8 +112,11 @@ class Counter {
       if (pages != same) throw std::runtime_error("the two indexes find different pages");
     }
     add(what + "records a vertex",
-        static_cast<double>(sum.records_retrieved) / static_cast<double>(vertices));
-    add(what + "pages", static_cast<double>(sum.io.pages) / kWindows);
+        static_cast<double>(by_splits.records_retrieved) / static_cast<double>(vertices));
+    add(what + "pages by splits", static_cast<double>(by_splits.io.pages) / kWindows);
+    add(what + "stars a triangle",
+        static_cast<double>(by_stars.stars_read) / static_cast<double>(triangles));
+    add(what + "pages by stars", static_cast<double>(by_stars.io.pages) / kWindows);
     add(what + "nodes, packed", static_cast<double>(packed.index_nodes) / kWindows);
     add(what + "nodes, libspatialindex", static_cast<double>(second.index_nodes) / kWindows);
   }
