@@ -11,12 +11,19 @@ constexpr std::pair<VertexKey, VertexId> kNoCorner{kNoVertexKey, kNone};
 
 }  // namespace
 
-std::uint64_t LivingTin::bytes_for(std::uint64_t triangles) noexcept {
-  // A vertex has about two triangles in any part that is worth its memory, and arrays double.
-  const std::uint64_t vertices = triangles / 2 + 3;
+namespace {
+
+/// Arrays double while they grow.
+std::uint64_t bytes_of(std::uint64_t triangles, std::uint64_t vertices) noexcept {
   return 2 * (triangles * (sizeof(Triangle) + sizeof(TriangleClass)) +
               vertices * (sizeof(Vertex) + 1)) +
          KeyTable::bytes_for(2 * vertices);
+}
+
+}  // namespace
+
+std::uint64_t LivingTin::bytes_for(std::uint64_t triangles) noexcept {
+  return bytes_of(triangles, triangles / 2 + 3);
 }
 
 void LivingTin::clear() {
@@ -51,7 +58,8 @@ bool LivingTin::expect(std::uint64_t records) {
 
 bool LivingTin::begin(std::size_t most_triangles) {
   const std::size_t triangles = tin_.triangles.size() + most_triangles;
-  bytes_wanted_ = bytes_for(triangles);
+  // Triangles that lie apart have more vertices than those of a whole part.
+  bytes_wanted_ = bytes_of(triangles, tin_.vertices.size() + most_triangles / 2 + 3);
   if (bytes_wanted_ > most_bytes_ || triangles >= kNone / 3) {
     return false;
   }

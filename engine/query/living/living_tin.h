@@ -37,7 +37,8 @@ class LivingTin : private LivingVisitor {
 
   /// What the last gather() that did not fit would have taken, as far as it came.
   [[nodiscard]] std::uint64_t bytes_wanted() const noexcept { return bytes_wanted_; }
-  /// Bytes that the arrays of so many triangles take while they grow.
+  /// Bytes that the arrays of so many triangles take while they grow, where they make up a part
+  /// without gaps.
   [[nodiscard]] static std::uint64_t bytes_for(std::uint64_t triangles) noexcept;
 
  private:
