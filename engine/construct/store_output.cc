@@ -218,12 +218,12 @@ std::vector<std::byte> StoreOutput::prepare(StarredRecords& records) const {
   const PackedSegment packed = pack_segment(records, frame_.heights, options_.page_bytes);
   facts.page_bytes = packed.pages.size();
   facts.descriptors = packed.descriptors.size();
-  std::vector<std::byte> prepared;
+  std::vector<std::byte> prepared(sizeof facts + packed.pages.size() +
+                                  packed.descriptors.size() * sizeof(layout::NodeEntry));
+  auto end = prepared.begin();
   const auto append = [&](std::span<const std::byte> bytes) {
-    prepared.insert(prepared.end(), bytes.begin(), bytes.end());
+    end = std::copy(bytes.begin(), bytes.end(), end);
   };
-  prepared.reserve(sizeof facts + packed.pages.size() +
-                   packed.descriptors.size() * sizeof(layout::NodeEntry));
   append(std::as_bytes(std::span(&facts, 1)));
   append(packed.pages);
   append(std::as_bytes(std::span(packed.descriptors)));

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/geometry/infinity.h"
+
 namespace ptin {
 
 /// A fan triangle as samples are held against it, by column and row. `before` and `after` are the
@@ -50,7 +52,7 @@ PlaneBlocks::Node PlaneBlocks::make_node(const Block& block) const {
   node.slope_y =
       static_cast<float>(((north[0] - south[0]) + (north[last] - south[last])) / (2.0 * last));
   const double middle = last / 2.0;
-  double low = greatest_ + 1e300, high = -low;
+  double low = kInfinity, high = -kInfinity;
   for (std::int32_t y = 0; y <= last; ++y) {
     const double* samples = row(block.x, block.y + y);
     const double beside = double{node.slope_y} * (y - middle);

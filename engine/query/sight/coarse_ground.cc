@@ -3,32 +3,40 @@
 
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/infinity.h"
-#include "storage/packed_rtree.h"
+#include "engine/query/living/living_place.h"
+#include "engine/query/select/detail.h"
 
 namespace ptin {
 
-CoarseGround::CoarseGround(const StoreFile& store, double level, QueryContext& context) {
-  StarFilter filter;
-  filter.level = level;
-  std::vector<StarPage> pages;
-  store.star_index().search_stars(filter, pages, context.cost.io);
-  const auto take = [&](const LivingTriangle& t) {
+class CoarseGround::Gatherer final : public LivingVisitor {
+ public:
+  Gatherer(std::vector<LivingTriangle>& triangles, const QueryContext& context)
+      : triangles_(triangles), context_(context) {}
+  bool begin(std::size_t most_triangles) override {
+    // They are sorted by copying.
+    context_.admit(3 * (triangles_.size() + most_triangles) * sizeof(LivingTriangle));
+    return true;
+  }
+  void take(const LivingTriangle& t) override {
     if (!t.is_void) {
       triangles_.push_back(t);
     }
-  };
-  const HeightEncoding& heights = store.facts().heights;
-  visit_living(store.t0(), level, take);
-  StarredRecords stars;
-  for (const StarPage& page : pages) {
-    context.check_stop();
-    stars.clear();
-    context.cost.records_examined += store.read_stars(page.id, filter, stars, context.cost.io);
-    context.cost.stars_read += stars.size();
-    visit_living(stars, level, heights, take);
-    context.admit(3 * triangles_.size() * sizeof(LivingTriangle));  // they are sorted by copying
   }
-  build(heights);
+
+ private:
+  std::vector<LivingTriangle>& triangles_;
+  const QueryContext& context_;
+};
+
+CoarseGround::CoarseGround(const OpenedTerrain& terrain, double level, QueryContext& context) {
+  DetailRequest request;
+  request.tolerance = level;
+  const Detail detail(request, terrain.record_source(), context);
+  LivingPlace everywhere;
+  everywhere.box = terrain.store().facts().bounds;
+  Gatherer gatherer(triangles_, context);
+  LivingReader(terrain, detail).read(everywhere, context, gatherer);
+  build(terrain.store().facts().heights);
 }
 
 void CoarseGround::build(const HeightEncoding& heights) {

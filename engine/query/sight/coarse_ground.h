@@ -12,6 +12,7 @@
 
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/accounting.h"
+#include "engine/query/select/opened_terrain.h"
 #include "engine/query/walk/spot.h"
 
 namespace ptin {
@@ -25,9 +26,9 @@ class CoarseGround {
     double certain;  ///< Less the deviation of each: so high the full surface rises for certain.
   };
 
-  /// Reads the stars of a level.
+  /// Reads the stars of a level.  @param level  An error, >= 0 or infinite.
   /// @throws Error resource_exhausted, corruption, io_error, cancelled
-  CoarseGround(const StoreFile& store, double level, QueryContext& context);
+  CoarseGround(const OpenedTerrain& terrain, double level, QueryContext& context);
 
   [[nodiscard]] std::uint64_t bytes() const noexcept;
   /// A triangle that holds the spot; null where there is none. Cost: logarithmic in practice.
@@ -43,6 +44,7 @@ class CoarseGround {
   }
 
  private:
+  class Gatherer;
   static constexpr std::size_t kFanOut = 8;
   struct Node {
     GridBox box;

@@ -136,7 +136,7 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   facts_.exact_settles = !facts_.has_voids || store_facts_.base_error == 0;
   facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);
   if (coarse_records > 0 && request_.verdict_only && is_by_stars()) {
-    coarse_.emplace(store, std::max(error_of_first(store, coarse_records), facts_.tolerance),
+    coarse_.emplace(terrain_, std::max(error_of_first(store, coarse_records), facts_.tolerance),
                     context);
   }
   base_cost = context.cost;
