@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "storage/box_lanes.h"
+#include "storage/living_page.h"
 #include "storage/record_page.h"
 #include "storage/short_float.h"
 
@@ -185,6 +186,17 @@ void DescribedPage::decode_stars(std::span<const std::byte> bytes, const StarFil
       out.splits.push_back(r);
       out.ring_end.push_back(static_cast<std::uint32_t>(out.corners.size()));
     }
+  }
+}
+
+void DescribedPage::decode_living(std::span<const std::byte> bytes, const StarFilter& filter,
+                                  LivingStars& out) const {
+  const RecordPage page = open(bytes);
+  const std::size_t before = out.stars.size();
+  const std::uint32_t sound = LivingPage(page, descriptor_, heights_, filter).take(out);
+  if (sound < records()) [[unlikely]] {
+    out.keep(before);
+    report(sound);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "storage/descriptor.h"
+#include "storage/living_stars.h"
 #include "storage/page_store.h"
 #include "storage/record_page.h"
 #include "storage/star.h"
@@ -52,6 +53,11 @@ class DescribedPage {
   /// @throws Error as decode()
   void decode_stars(std::span<const std::byte> bytes, const StarFilter& filter,
                     StarredRecords& out) const;
+
+  /// Appends what lives at the filter's level (StoreFile::read_living).
+  /// @throws Error as decode()
+  void decode_living(std::span<const std::byte> bytes, const StarFilter& filter,
+                     LivingStars& out) const;
 
   /// @throws Error corruption  always: `record` is not sound
   [[noreturn]] void report(std::size_t record) const;

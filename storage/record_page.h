@@ -48,6 +48,8 @@ class RecordPage {
   /// Whether the header of the page can be what was written. REQUIRED by all that follows.
   [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
   [[nodiscard]] std::uint32_t records() const noexcept { return columns_.records(); }
+  [[nodiscard]] const PageColumns& columns() const noexcept { return columns_; }
+  [[nodiscard]] const std::byte* bytes() const noexcept { return bytes_.data(); }
 
   /// The roi of a record. Nothing is checked. REQUIRES, as all that follows: i < records().
   [[nodiscard]] GridBox roi(std::size_t i) const noexcept;

@@ -48,6 +48,8 @@ class StoreFileImpl final : public StoreFile {
   void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const override;
   std::uint32_t read_stars(PageId id, const StarFilter& filter, StarredRecords& out,
                            IoCounters& counters) const override;
+  std::uint32_t read_living(PageId id, const StarFilter& filter, LivingStars& out,
+                            IoCounters& counters) const override;
   std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
                               std::vector<VertexSplit>& out, IoCounters& counters) const override;
 
@@ -170,6 +172,17 @@ std::uint32_t StoreFileImpl::read_stars(PageId id, const StarFilter& filter, Sta
         page.decode_stars(bytes, filter, out);
       },
       [&] { out.resize(before); });
+}
+
+std::uint32_t StoreFileImpl::read_living(PageId id, const StarFilter& filter, LivingStars& out,
+                                         IoCounters& counters) const {
+  const std::size_t before = out.stars.size();
+  return read_in_place(
+      id, counters,
+      [&](const DescribedPage& page, std::span<const std::byte> bytes) {
+        page.decode_living(bytes, filter, out);
+      },
+      [&] { out.keep(before); });
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "engine/geometry/height.h"
 #include "storage/file/announcer.h"
 #include "storage/index.h"
+#include "storage/living_stars.h"
 #include "storage/page_store.h"
 #include "storage/star.h"
 
@@ -141,6 +142,15 @@ class StoreFile {
   /// @throws Error corruption, io_error
   virtual std::uint32_t read_stars(PageId id, const StarFilter& filter, StarredRecords& out,
                                    IoCounters& counters) const = 0;
+
+  /// Appends what lives of the stars of a page at the filter's level, where a triangle's box meets
+  /// the filter's: each star and triangle is checked against the page's descriptor. Whether a whole
+  /// ring is one is not (is_star()). Returns the number of records examined: all records of the
+  /// page.
+  /// REQUIRES: !filter.with_ties
+  /// @throws Error corruption, io_error
+  virtual std::uint32_t read_living(PageId id, const StarFilter& filter, LivingStars& out,
+                                    IoCounters& counters) const = 0;
 
   /// As read_records(), for those records alone whose attributes satisfy `predicate`. The others
   /// are not decoded, and not checked. Returns the number of records examined: all records of the

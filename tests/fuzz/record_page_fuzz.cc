@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/geometry/orient.h"
 #include "storage/described_page.h"
 #include "storage/page_packer.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -57,6 +58,29 @@ void ask_from_the_end(const RecordPage& page, const StarredRecords& records) {
     if (!records.empty()) {
       require(is_sound && is_split && r == records.splits[i] &&
               std::ranges::equal(ring, records.ring(i)));
+    }
+  }
+}
+
+// Takes out what lives at a level below all others and at 0: triangles on the grid.
+void ask_for_living(const DescribedPage& page, std::span<const std::byte> bytes) {
+  for (const double level : {-1.0, 0.0}) {
+    StarFilter filter;
+    filter.level = level;
+    LivingStars living;
+    try {
+      page.decode_living(bytes, filter, living);
+    } catch (const Error& e) {
+      require(e.code() == ErrorCode::corruption && living.corners.size() == 0);
+    }
+    const LivingCorner* c = living.corners.data();
+    for (std::size_t i = 0; i < living.stars.size(); ++i) {
+      const LivingStar& star = living.stars.data()[i];
+      for (; c != living.corners.data() + star.corner_end; ++c) {
+        require((c->flags & LivingCorner::kLives) == 0 ||
+                (on_grid(star.u) && on_grid(c[0].position) && on_grid(c[1].position) &&
+                 orient(star.u, c[0].position, c[1].position) > 0));
+      }
     }
   }
 }
@@ -116,6 +140,7 @@ PTIN_FUZZ_TARGET(record_page, data, size) {
     } catch (const Error& e) {
       require(e.code() == ErrorCode::corruption && records.empty() && records.corners.empty());
     }
+    ask_for_living(described, page);
     for (std::size_t i = 0; i < records.size(); ++i) {
       check(records.splits[i], records.ring(i), heights);
     }

@@ -50,36 +50,59 @@ bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingV
   store_.pages().announce(ids, context.cost.io);
   for (const PageId page : ids) {
     context.check_stop();
-    stars_.clear();
-    context.cost.records_examined += store_.read_stars(page, filter_, stars_, context.cost.io);
-    context.cost.stars_read += stars_.size();
-    if (!visitor.begin(stars_.corners.size())) {
+    if (!(filter_.with_ties ? take_tied_page(page, place, context, visitor)
+                            : take_page(page, place, context, visitor))) {
       return false;
     }
-    take_page(place, visitor);
   }
   return take_undecided(visitor);
 }
 
-void LivingReader::take_page(const LivingPlace& place, LivingVisitor& visitor) {
-  if (filter_.with_ties) {
-    for (std::size_t i = 0; i < stars_.size(); ++i) {
-      const VertexSplit& r = stars_.splits[i];
-      if (static_cast<double>(r.error) == filter_.level && detail_.keeps(place_of(r))) {
-        add_fan(r, stars_.ring(i));
-      }
+bool LivingReader::take_page(PageId page, const LivingPlace& place, QueryContext& context,
+                             LivingVisitor& visitor) {
+  living_.clear();
+  context.cost.records_examined += store_.read_living(page, filter_, living_, context.cost.io);
+  context.cost.stars_read += living_.stars.size();
+  if (!visitor.begin(living_.corners.size())) {
+    return false;
+  }
+  visit_living(living_, heights_, [&](const LivingTriangle& t) {
+    if (is_wanted(t, place)) {
+      visitor.take(t);
+    }
+  });
+  return true;
+}
+
+/// The same where the level cuts between records of one error.
+bool LivingReader::take_tied_page(PageId page, const LivingPlace& place, QueryContext& context,
+                                  LivingVisitor& visitor) {
+  stars_.clear();
+  context.cost.records_examined += store_.read_stars(page, filter_, stars_, context.cost.io);
+  context.cost.stars_read += stars_.size();
+  if (!visitor.begin(stars_.corners.size())) {
+    return false;
+  }
+  for (std::size_t i = 0; i < stars_.size(); ++i) {
+    const VertexSplit& r = stars_.splits[i];
+    if (static_cast<double>(r.error) == filter_.level && detail_.keeps(place_of(r))) {
+      add_fan(r, stars_.ring(i));
     }
   }
   visit_living(
       stars_, filter_.level, heights_,
       [&](const VertexSplit& r) { return detail_.keeps(place_of(r)); },
       [&](const LivingTriangle& t) { offer(t, place, visitor); });
+  return true;
+}
+
+bool LivingReader::is_wanted(const LivingTriangle& t, const LivingPlace& place) const {
+  return meets_heights(t, place, heights_) && (!place.wanted || place.wanted(t));
 }
 
 void LivingReader::offer(const LivingTriangle& t, const LivingPlace& place,
                          LivingVisitor& visitor) {
-  if (!meets(box_of(t), place.box) || !meets_heights(t, place, heights_) ||
-      (place.wanted && !place.wanted(t))) {
+  if (!meets(box_of(t), place.box) || !is_wanted(t, place)) {
     return;
   }
   if (filter_.with_ties && static_cast<double>(t.death) == filter_.level) {

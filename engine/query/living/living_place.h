@@ -62,7 +62,11 @@ class LivingReader {
  private:
   using Keys = std::array<VertexKey, 3>;
 
-  void take_page(const LivingPlace& place, LivingVisitor& visitor);
+  bool take_page(PageId page, const LivingPlace& place, QueryContext& context,
+                 LivingVisitor& visitor);
+  bool take_tied_page(PageId page, const LivingPlace& place, QueryContext& context,
+                      LivingVisitor& visitor);
+  [[nodiscard]] bool is_wanted(const LivingTriangle& t, const LivingPlace& place) const;
   void offer(const LivingTriangle& t, const LivingPlace& place, LivingVisitor& visitor);
   void add_fan(const VertexSplit& r, std::span<const RingCorner> ring);
   bool take_undecided(LivingVisitor& visitor);
@@ -71,9 +75,10 @@ class LivingReader {
   HeightEncoding heights_;
   const Detail& detail_;
   StarFilter filter_;
+  LivingStars living_;
+  // Where the level cuts between records of one error: whole stars, triangles that die at that
+  // error, and the fans of those of its records that are kept.
   StarredRecords stars_;
-  // Where the level cuts between records of one error: triangles that die at that error, and the
-  // fans of those of its records that are kept.
   std::vector<LivingTriangle> undecided_;
   std::vector<Keys> fans_;
 };

@@ -12,6 +12,7 @@
 #include "engine/geometry/box.h"
 #include "engine/geometry/infinity.h"
 #include "engine/geometry/interval.h"
+#include "storage/living_stars.h"
 #include "storage/star.h"
 #include "storage/store_file.h"
 
@@ -63,6 +64,31 @@ void visit_living(const StarredRecords& stars, double level, const HeightEncodin
         t.corner[2] = corner_of_ring(ring[k + 1 == ring.size() ? 0 : k + 1]);
         t.is_void = (ring[k].flags & RingCorner::kVoid) != 0;
         t.death = ring[k].death;
+        visit(t);
+      }
+    }
+  }
+}
+
+/// Calls visit(const LivingTriangle&) for each triangle that lives. Of them `death` is not known.
+template <class Visit>
+void visit_living(const LivingStars& living, const HeightEncoding& heights, const Visit& visit) {
+  const LivingCorner* corner = living.corners.data();
+  for (std::size_t i = 0; i < living.stars.size(); ++i) {
+    const LivingStar& star = living.stars.data()[i];
+    LivingTriangle t;
+    t.corner[0] = {star.u, star.height, star.has_height};
+    t.deviation = star.deviation;
+    t.heights = {heights.code(star.height_lo), heights.code(star.height_hi)};
+    const auto corner_of = [](const LivingCorner& c) {
+      return LivingTriangle::Corner{c.position, c.height, (c.flags & LivingCorner::kNoHeight) == 0};
+    };
+    const LivingCorner* const end = living.corners.data() + star.corner_end;
+    for (; corner != end; ++corner) {
+      if ((corner->flags & LivingCorner::kLives) != 0) {
+        t.corner[1] = corner_of(corner[0]);
+        t.corner[2] = corner_of(corner[1]);
+        t.is_void = (corner->flags & LivingCorner::kVoid) != 0;
         visit(t);
       }
     }

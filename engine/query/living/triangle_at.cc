@@ -84,7 +84,7 @@ class Finder {
   void read(PageId page);
   template <class Take>
   void visit_read(const Take& take) const {
-    visit_living(stars_, filter_.level, store_.facts().heights, take);
+    visit_living(living_, store_.facts().heights, take);
   }
   [[nodiscard]] bool is_dense(const GridBox& reach, std::size_t spots) const;
   template <class Source>
@@ -95,7 +95,7 @@ class Finder {
   QueryContext& context_;
   StarFilter filter_;
   std::vector<StarPage> pages_;
-  StarredRecords stars_;
+  LivingStars living_;
 };
 
 void Finder::search(const SpotSet& set) {
@@ -109,9 +109,9 @@ void Finder::search(const SpotSet& set) {
 }
 
 void Finder::read(PageId page) {
-  stars_.clear();
-  context_.cost.records_examined += store_.read_stars(page, filter_, stars_, context_.cost.io);
-  context_.cost.stars_read += stars_.size();
+  living_.clear();
+  context_.cost.records_examined += store_.read_living(page, filter_, living_, context_.cost.io);
+  context_.cost.stars_read += living_.stars.size();
 }
 
 /// Offers each triangle of a source to the spots in its box.
@@ -151,11 +151,7 @@ class Finder::SmallestFirst final : public BestStarVisitor {
   double visit(PageId page, const StarAttributes&) override {
     finder_.context_.check_stop();
     finder_.read(page);
-    finder_.visit_read([&](const LivingTriangle& t) {
-      if (contains(box_of(t), spot_)) {
-        offer(t, spot_, found_);
-      }
-    });
+    finder_.visit_read([&](const LivingTriangle& t) { offer(t, spot_, found_); });
     return found_.is_inside ? kInfinity : -kInfinity;
   }
 

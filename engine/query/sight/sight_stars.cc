@@ -182,11 +182,11 @@ double SightStars::visit(PageId page, const StarAttributes& a) {
   }
   context_.check_stop();
   look_at(part_in(a.box).value_or(part_));
-  stars_.clear();
+  living_.clear();
   context_.cost.records_examined +=
-      terrain_.store().read_stars(page, filter_, stars_, context_.cost.io);
-  context_.cost.stars_read += stars_.size();
-  visit_living(stars_, filter_.level, facts_.heights, [&](const LivingTriangle& t) { take(t); });
+      terrain_.store().read_living(page, filter_, living_, context_.cost.io);
+  context_.cost.stars_read += living_.stars.size();
+  visit_living(living_, facts_.heights, [&](const LivingTriangle& t) { take(t); });
   context_.admit(2 * line_.pieces.capacity() * sizeof(SightPiece) +
                  (coarse_ == nullptr ? 0 : coarse_->bytes()));
   return cut_off();

@@ -79,7 +79,7 @@ class SightStars final : private BestStarVisitor {
   QueryContext& context_;
   SightLine line_;
   MapPoint origin_, way_;  ///< The line's beginning, and from there to its end, grid units.
-  StarredRecords stars_;
+  LivingStars living_;
   // Of the search at hand.
   Aim aim_ = Aim::kVerdict;
   Part part_{0.0, 1.0};  ///< Of the way; nothing else is looked at.
