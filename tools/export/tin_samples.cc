@@ -174,6 +174,7 @@ class Centres {
     for (std::size_t j = 0; j < ys_.size(); ++j) {
       ys_[ys_.size() - 1 - j] = grid.y(part.row + static_cast<std::int64_t>(j));
     }
+    are_grid_positions_ = are_whole_steps(xs_) && are_whole_steps(ys_);
   }
 
   /// The first of ascending numbers that is not below `v`: about where they would be evenly spaced,
@@ -188,6 +189,21 @@ class Centres {
     while (i < steps.size() && steps[i] < v) ++i;
     return i;
   }
+
+  /// Whether they are the positions of the grid, each one within their box: then a triangle's
+  /// corners are centres, and the smallest triangles hold no other ones.
+  [[nodiscard]] bool are_grid_positions() const { return are_grid_positions_; }
+
+  /// The place in the buffer of a position of the grid, or kNowhere.
+  /// REQUIRES: are_grid_positions()
+  [[nodiscard]] std::size_t place_of(GridPoint p) const {
+    const std::int64_t column = p.x - (xs_.front() >> kLatticeBits);
+    const std::int64_t row = (ys_.back() >> kLatticeBits) - p.y;
+    if (column < 0 || column >= part_.width || row < 0 || row >= part_.height) return kNowhere;
+    return static_cast<std::size_t>((part_.row + row - rect_.row) * rect_.width + part_.column +
+                                    column - rect_.column);
+  }
+  static constexpr std::size_t kNowhere = SIZE_MAX;
 
   /// True when the box of a triangle holds none of them.
   [[nodiscard]] bool misses(const Facet& facet) const {
@@ -215,7 +231,16 @@ class Centres {
   }
 
  private:
+  /// Whether numbers are whole grid units, each one more than that before it.
+  static bool are_whole_steps(const std::vector<std::int64_t>& steps) {
+    constexpr std::int64_t kUnit = std::int64_t{1} << kLatticeBits;
+    const auto is_off = [](std::int64_t a, std::int64_t b) { return b - a != kUnit; };
+    return steps.front() % kUnit == 0 &&
+           std::adjacent_find(steps.begin(), steps.end(), is_off) == steps.end();
+  }
+
   PixelRect part_, rect_;
+  bool are_grid_positions_ = false;
   /// Both ascend: the row j from the north stands at ys_.size() - 1 - j.
   std::vector<std::int64_t> xs_, ys_;
 };
@@ -261,7 +286,7 @@ HeightSamples::HeightSamples(const StoreFacts& facts, const PixelGrid& grid, con
 HeightSamples::~HeightSamples() = default;
 
 void HeightSamples::add(const LivingTriangle& t) {
-  if (t.is_void) return;
+  if (t.is_void || (impl_->centres.are_grid_positions() && !add_corners(t))) return;
   const Facet facet(t, impl_->encoding);
   impl_->centres.near(facet, [&](std::size_t place, Spot spot) {
     if (!std::isnan(heights_[place])) return;  // another triangle gives the same height
@@ -269,6 +294,23 @@ void HeightSamples::add(const LivingTriangle& t) {
       heights_[place] = impl_->encoding.height_of_code(*code);
     }
   });
+}
+
+/// Sets the heights of the corners. Returns whether the triangle may hold other positions of the
+/// grid: not when it is half a square unit, by Pick's theorem.
+bool HeightSamples::add_corners(const LivingTriangle& t) {
+  for (const LivingTriangle::Corner& c : t.corner) {
+    const std::size_t place = impl_->centres.place_of(c.position);
+    if (place != Centres::kNowhere && std::isnan(heights_[place])) {
+      heights_[place] = impl_->encoding.height(c.height);
+    }
+  }
+  const GridPoint a = t.corner[0].position;
+  const GridPoint b = t.corner[1].position;
+  const GridPoint c = t.corner[2].position;
+  return (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
+             (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x) !=
+         1;
 }
 
 void sample_normals(const Tin& tin, const StoreFacts& facts, const PixelGrid& grid,

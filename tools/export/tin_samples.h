@@ -32,6 +32,8 @@ class HeightSamples {
   void add(const LivingTriangle& t);
 
  private:
+  bool add_corners(const LivingTriangle& t);
+
   struct Impl;
   std::unique_ptr<const Impl> impl_;
   std::vector<double>& heights_;
