@@ -24,9 +24,10 @@ namespace ptin {
 
 namespace {
 
-/// Points refined together: so many that they share coarse records, so few that their mesh stays in
-/// the processor's caches.
-constexpr std::size_t kGroupPoints = 8192;
+/// Points looked for together: so many that few pages are read for two groups, and half as much
+/// memory as there is.
+constexpr std::size_t kMostGroupPoints = 131072;
+constexpr std::size_t kLeastGroupPoints = 8192;
 constexpr std::uint64_t kGroupRecords = std::uint64_t{1} << 18;
 
 /// A point of the request on its way along the curve.
@@ -60,8 +61,9 @@ class Locating {
   LocateResult run(std::span<const MapPoint> points) {
     result_.points.resize(points.size());
     const std::vector<Ordered> ordered = order(points);
-    for (std::size_t begin = 0; begin < ordered.size(); begin += kGroupPoints) {
-      const std::size_t count = std::min(kGroupPoints, ordered.size() - begin);
+    const std::size_t most = group_points();
+    for (std::size_t begin = 0; begin < ordered.size(); begin += most) {
+      const std::size_t count = std::min(most, ordered.size() - begin);
       locate_group(std::span(ordered).subspan(begin, count));
     }
     terrain_.store().pages().check_unchanged();
@@ -74,6 +76,12 @@ class Locating {
 
  private:
   [[nodiscard]] std::vector<Ordered> order(std::span<const MapPoint> points) const;
+  [[nodiscard]] std::size_t group_points() const {
+    const std::uint64_t fit =
+        context_.left_beside(result_.points.size() * (sizeof(LocatedPoint) + sizeof(Ordered))) / 2 /
+        (sizeof(Spot) + sizeof(TriangleAt));
+    return std::clamp<std::uint64_t>(fit, kLeastGroupPoints, kMostGroupPoints);
+  }
   void locate_group(std::span<const Ordered> group);
   [[nodiscard]] bool is_by_stars() const noexcept {
     return request_.by == AnswerBy::kStars && detail_.is_by_error() && !terrain_.uses_other_index();

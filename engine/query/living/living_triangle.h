@@ -70,9 +70,11 @@ void visit_living(const StarredRecords& stars, double level, const HeightEncodin
   }
 }
 
-/// Calls visit(const LivingTriangle&) for each triangle that lives. Of them `death` is not known.
-template <class Visit>
-void visit_living(const LivingStars& living, const HeightEncoding& heights, const Visit& visit) {
+/// Calls visit(const LivingTriangle&) for each triangle that lives and whose box is wanted:
+/// wants(const GridBox&). Of them `death` is not known.
+template <class Wants, class Visit>
+void visit_living(const LivingStars& living, const HeightEncoding& heights, const Wants& wants,
+                  const Visit& visit) {
   const LivingCorner* corner = living.corners.data();
   for (std::size_t i = 0; i < living.stars.size(); ++i) {
     const LivingStar& star = living.stars.data()[i];
@@ -85,7 +87,8 @@ void visit_living(const LivingStars& living, const HeightEncoding& heights, cons
     };
     const LivingCorner* const end = living.corners.data() + star.corner_end;
     for (; corner != end; ++corner) {
-      if ((corner->flags & LivingCorner::kLives) != 0) {
+      if ((corner->flags & LivingCorner::kLives) != 0 &&
+          wants(united(united(box_of(star.u), corner[0].position), corner[1].position))) {
         t.corner[1] = corner_of(corner[0]);
         t.corner[2] = corner_of(corner[1]);
         t.is_void = (corner->flags & LivingCorner::kVoid) != 0;
@@ -93,6 +96,13 @@ void visit_living(const LivingStars& living, const HeightEncoding& heights, cons
       }
     }
   }
+}
+
+/// The same for each triangle that lives.
+template <class Visit>
+void visit_living(const LivingStars& living, const HeightEncoding& heights, const Visit& visit) {
+  visit_living(
+      living, heights, [](const GridBox&) { return true; }, visit);
 }
 
 /// The same for the level at which all errors above it are applied.

@@ -16,6 +16,8 @@ namespace {
 /// With fewer records of the region for each of its spots, the region is read as a whole. Else the
 /// pages of each spot are: a spot reads a few pages and leaves out most of their stars.
 constexpr double kRecordsOfSpot = 128;
+/// So few spots of a region that is not dense are looked for one by one.
+constexpr std::size_t kFewSpots = 16;
 
 std::array<VertexKey, 3> keys_of(const LivingTriangle& t) {
   std::array<VertexKey, 3> keys{};
@@ -64,6 +66,15 @@ class SpotStars final : public StarPredicate {
   const SpotSet& spots_;
 };
 
+/// The smallest grid box around spots.
+GridBox reach_of(std::span<const Spot> spots) {
+  GridBox reach;
+  for (const Spot s : spots) {
+    reach = united(reach, box_around(s));
+  }
+  return reach;
+}
+
 double area_of(const GridBox& b) {
   return (static_cast<double>(b.max_x) - b.min_x + 1) *
          (static_cast<double>(b.max_y) - b.min_y + 1);
@@ -80,11 +91,12 @@ class Finder {
  private:
   class SmallestFirst;
   void find_one(Spot spot, TriangleAt& found);
+  void find_together(std::span<const Spot> spots, std::span<TriangleAt> found);
   void search(const SpotSet& set);
   void read(PageId page);
-  template <class Take>
-  void visit_read(const Take& take) const {
-    visit_living(living_, store_.facts().heights, take);
+  template <class Wants, class Take>
+  void visit_read(const Wants& wants, const Take& take) const {
+    visit_living(living_, store_.facts().heights, wants, take);
   }
   [[nodiscard]] bool is_dense(const GridBox& reach, std::size_t spots) const;
   template <class Source>
@@ -151,7 +163,8 @@ class Finder::SmallestFirst final : public BestStarVisitor {
   double visit(PageId page, const StarAttributes&) override {
     finder_.context_.check_stop();
     finder_.read(page);
-    finder_.visit_read([&](const LivingTriangle& t) { offer(t, spot_, found_); });
+    finder_.visit_read([&](const GridBox& box) { return contains(box, spot_); },
+                       [&](const LivingTriangle& t) { offer(t, spot_, found_); });
     return found_.is_inside ? kInfinity : -kInfinity;
   }
 
@@ -166,21 +179,31 @@ void Finder::find_one(Spot spot, TriangleAt& found) {
   if (found.is_inside) {
     return;
   }
-  filter_.box = SpotSet(std::span(&spot, 1), filter_.level).reach();
+  filter_.box = box_around(spot);
   SmallestFirst visitor(*this, spot, found);
   store_.star_index().search_stars_best_first(filter_, visitor, -kInfinity, context_.cost.io);
 }
 
+/// Looks for the spots of a dense region together; else for those of its parts.
 void Finder::find(std::span<const Spot> spots, std::span<TriangleAt> found) {
-  const SpotSet set(spots, filter_.level);
-  if (spots.size() == 1 || !is_dense(set.reach(), spots.size())) {
+  if (spots.size() > 1 && is_dense(reach_of(spots), spots.size())) {
+    find_together(spots, found);
+  } else if (spots.size() > kFewSpots) {
+    const std::size_t half = spots.size() / 2;
+    find(spots.first(half), found.first(half));
+    find(spots.subspan(half), found.subspan(half));
+  } else {
     for (std::size_t i = 0; i < spots.size(); ++i) {
       find_one(spots[i], found[i]);
     }
-    return;
   }
+}
+
+void Finder::find_together(std::span<const Spot> spots, std::span<TriangleAt> found) {
+  const SpotSet set(spots, filter_.level);
   const auto from_t0 = [&](const auto& take) { visit_living(store_.t0(), filter_.level, take); };
-  const auto from_page = [&](const auto& take) { visit_read(take); };
+  const auto may_hold_one = [&](const GridBox& box) { return set.may_hold_spot(box); };
+  const auto from_page = [&](const auto& take) { visit_read(may_hold_one, take); };
   offer_all(set, from_t0, spots, found);
   search(set);
   for (const StarPage& page : pages_) {

@@ -42,6 +42,13 @@ struct Spot {
   return low.x <= s.x && s.x <= high.x && low.y <= s.y && s.y <= high.y;
 }
 
+/// The smallest grid box that holds the spot. REQUIRES: it lies on the grid.
+[[nodiscard]] constexpr GridBox box_around(Spot s) noexcept {
+  const auto below = [](std::int64_t v) { return static_cast<std::int32_t>(v >> kSpotBits); };
+  const auto above = [](std::int64_t v) { return static_cast<std::int32_t>(-(-v >> kSpotBits)); };
+  return {below(s.x), below(s.y), above(s.x), above(s.y)};
+}
+
 /// Twice the signed area of (a, b, q), in units of 2^-22 of a grid unit squared: > 0 where q lies
 /// to the left of a -> b. Exact: differences of at most 2^30 and 2^54, products below 2^85.
 [[nodiscard]] constexpr Int128 side(GridPoint a, GridPoint b, Spot q) noexcept {

@@ -2,27 +2,25 @@
 #include "engine/query/walk/spot_set.h"
 
 #include <algorithm>
+#include <array>
 
 namespace ptin {
 
 namespace {
 
-std::int64_t floor_grid(std::int64_t s) noexcept { return s >> kSpotBits; }
-std::int64_t ceil_grid(std::int64_t s) noexcept { return -((-s) >> kSpotBits); }
-
 constexpr std::uint64_t kMostCells = std::uint64_t{1} << 18;
+constexpr std::uint64_t kPatchesOfSpot = 64;
 
 }  // namespace
 
 SpotSet::SpotSet(std::span<const Spot> spots, double tolerance)
     : tolerance_(tolerance), single_(spots.size() == 1) {
-  std::int64_t min_x = INT64_MAX, min_y = INT64_MAX, max_x = INT64_MIN, max_y = INT64_MIN;
+  GridBox reach;
   for (const Spot& s : spots) {
-    min_x = std::min(min_x, s.x), max_x = std::max(max_x, s.x);
-    min_y = std::min(min_y, s.y), max_y = std::max(max_y, s.y);
+    reach = united(reach, box_around(s));
   }
-  low_x_ = floor_grid(min_x), low_y_ = floor_grid(min_y);
-  high_x_ = ceil_grid(max_x), high_y_ = ceil_grid(max_y);
+  low_x_ = reach.min_x, low_y_ = reach.min_y;
+  high_x_ = reach.max_x, high_y_ = reach.max_y;
   if (single_) {
     return;
   }
@@ -34,12 +32,13 @@ SpotSet::SpotSet(std::span<const Spot> spots, double tolerance)
   while (cells(cell_shift_) > most) {
     ++cell_shift_;
   }
+  mark_patches(spots);
   columns_ = static_cast<std::uint32_t>(((high_x_ - low_x_) >> cell_shift_) + 1);
   rows_ = static_cast<std::uint32_t>(((high_y_ - low_y_) >> cell_shift_) + 1);
   begin_.assign(std::size_t{columns_} * rows_ + 1, 0);
   const auto cell = [&](const Spot& s) {
-    return std::size_t{cell_of(floor_grid(s.y), low_y_)} * columns_ +
-           cell_of(floor_grid(s.x), low_x_);
+    return std::size_t{cell_of(s.y >> kSpotBits, low_y_)} * columns_ +
+           cell_of(s.x >> kSpotBits, low_x_);
   };
   for (const Spot& s : spots) {
     ++begin_[cell(s) + 1];
@@ -61,6 +60,33 @@ SpotSet::SpotSet(std::span<const Spot> spots, double tolerance)
     for (std::uint32_t column = 0; column < columns_; ++column) {
       sums_[std::size_t{row + 1} * (columns_ + 1) + column + 1] =
           spots_below(column + 1, row) + begin_[first + column + 1] - begin_[first];
+    }
+  }
+}
+
+/// Squares are closed: a spot on a side that two of them share lies in both.
+void SpotSet::mark_patches(std::span<const Spot> spots) {
+  const auto patches = [&](int shift) {
+    return static_cast<std::uint64_t>(((high_x_ - low_x_) >> shift) + 1) *
+           static_cast<std::uint64_t>(((high_y_ - low_y_) >> shift) + 1);
+  };
+  while (patches(patch_shift_) > kPatchesOfSpot * spots.size()) {
+    ++patch_shift_;
+  }
+  patch_columns_ = ((high_x_ - low_x_) >> patch_shift_) + 1;
+  patches_.assign(patches(patch_shift_) / 64 + 1, 0);
+  // Of the squares that hold a number along one axis, the first and the last.
+  const auto squares = [&](std::int64_t below, std::int64_t above, std::int64_t low) {
+    const std::int64_t first = std::max<std::int64_t>(above - 1 - low, 0) >> patch_shift_;
+    return std::array{first, (below - low) >> patch_shift_};
+  };
+  for (const Spot& s : spots) {
+    const GridBox box = box_around(s);
+    for (const std::int64_t row : squares(box.min_y, box.max_y, low_y_)) {
+      for (const std::int64_t column : squares(box.min_x, box.max_x, low_x_)) {
+        const auto bit = static_cast<std::size_t>(row * patch_columns_ + column);
+        patches_[bit / 64] |= std::uint64_t{1} << (bit % 64);
+      }
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/query/walk/spot.h"
@@ -32,6 +33,28 @@ class SpotSet final : public AttributePredicate {
   /// Whether a spot lies in the closed box. Cost: as holds().
   [[nodiscard]] bool holds_spot(const GridBox& b) const noexcept {
     return meets(b) && (single_ || holds_one(b));
+  }
+  /// False when no spot lies in the closed box, which is at least one unit wide and high; true when
+  /// one does, or may. Cost: a bit or a few for a box of the size of the distance between spots.
+  [[nodiscard]] bool may_hold_spot(const GridBox& b) const noexcept {
+    if (single_ || !meets(b)) {
+      return meets(b);
+    }
+    // Of the closed squares of a side those that the box has more of than a line.
+    const auto squares = [&](std::int64_t from, std::int64_t to, std::int64_t low,
+                             std::int64_t high) {
+      const std::int64_t first = (std::max(from, low) - low) >> patch_shift_;
+      return std::pair{first, std::max(first, (std::min(to, high) - 1 - low) >> patch_shift_)};
+    };
+    const auto [left, right] = squares(b.min_x, b.max_x, low_x_, high_x_);
+    const auto [bottom, top] = squares(b.min_y, b.max_y, low_y_, high_y_);
+    bool is_any = (right - left + 1) * (top - bottom + 1) > kMostPatches;
+    for (std::int64_t row = bottom; row <= top && !is_any; ++row) {
+      for (std::int64_t column = left; column <= right; ++column) {
+        is_any |= has_spot(row, column);
+      }
+    }
+    return is_any;
   }
   /// Calls visit(index) for each spot in the closed box, by its index among those given. Cost: the
   /// cells that the box meets, and the spots in them.
@@ -80,6 +103,13 @@ class SpotSet final : public AttributePredicate {
     return sums_[std::size_t{row} * (columns_ + 1) + column];
   }
 
+  static constexpr std::int64_t kMostPatches = 8;
+  [[nodiscard]] bool has_spot(std::int64_t row, std::int64_t column) const noexcept {
+    const auto bit = static_cast<std::size_t>(row * patch_columns_ + column);
+    return (patches_[bit / 64] >> (bit % 64) & 1) != 0;
+  }
+  void mark_patches(std::span<const Spot> spots);
+
   double tolerance_;
   bool single_;
   std::int64_t low_x_, low_y_, high_x_, high_y_;  ///< Smallest grid box around all spots.
@@ -90,6 +120,10 @@ class SpotSet final : public AttributePredicate {
   std::vector<std::uint32_t> sums_;
   /// First spot of each cell in spots_, row by row; one more at the end.
   std::vector<std::uint32_t> begin_;
+  /// A bit for each closed square of 2^patch_shift_ grid units, row by row: a spot lies in it.
+  std::vector<std::uint64_t> patches_;
+  int patch_shift_ = 0;
+  std::int64_t patch_columns_ = 1;
   std::vector<Spot> spots_;           ///< Cell by cell.
   std::vector<std::uint32_t> index_;  ///< Of each of them among those given.
 };
