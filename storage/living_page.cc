@@ -109,8 +109,6 @@ LivingPage::LivingPage(const RecordPage& page, const layout::NodeEntry& d,
       filter_(filter),
       level_(level_bits(filter.level)),
       is_within_(contains(filter.box, {d.star_min_x, d.star_min_y, d.star_max_x, d.star_max_y})),
-      wants_all_(is_within_ && filter.heights == kAllHeights && filter.also_heights == nullptr &&
-                 !filter.also_of_stars && d.error_min > level_),
       low_(ordered_height(d.height_lo, heights.type)),
       high_(ordered_height(d.height_hi, heights.type)),
       star_low_(ordered_height(d.star_height_lo, heights.type)),
@@ -123,8 +121,7 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
   Star star;
   for (std::uint32_t first = 0; first < page_.records(); first += kRun) {
     const std::uint32_t count = std::min(kRun, page_.records() - first);
-    std::uint64_t left =
-        wants_all_ ? ~std::uint64_t{0} >> (kRun - count) : page_.near_stars(first, count, filter_);
+    std::uint64_t left = page_.near_stars(first, count, filter_, is_within_);
     if (left == 0) {
       continue;
     }

@@ -60,8 +60,7 @@ class LivingPage {
   const HeightEncoding& heights_;
   const StarFilter& filter_;
   std::int32_t level_;
-  bool is_within_;  ///< All stars lie in the filter's box.
-  bool wants_all_;  ///< Nothing but deaths tells which stars are asked for.
+  bool is_within_;                                  ///< All stars lie in the filter's box.
   std::int64_t low_, high_, star_low_, star_high_;  ///< Heights of the descriptor, ordered.
   HeightInterval no_heights_;
 };

@@ -92,8 +92,9 @@ std::uint64_t RecordPage::with_heights(std::uint32_t first, std::uint32_t count,
 }
 
 std::uint64_t RecordPage::near_stars(std::uint32_t first, std::uint32_t count,
-                                     const StarFilter& filter) const noexcept {
-  std::uint64_t wanted = near_box(first, count, filter.box);
+                                     const StarFilter& filter, bool is_within) const noexcept {
+  std::uint64_t wanted =
+      is_within ? ~std::uint64_t{0} >> (kRun - count) : near_box(first, count, filter.box);
   if (wanted != 0 && (filter.also_heights != nullptr || filter.heights != kAllHeights)) {
     wanted &= with_heights(first, count, filter);
   }

@@ -64,8 +64,9 @@ class RecordPage {
   void attributes(std::uint32_t first, std::uint32_t count, AttributeRun& out) const noexcept;
   /// Which of so many records may have a star that a filter asks for, as far as box, level and
   /// heights tell: bit k for record `first` + k. Nothing is checked. REQUIRES: as attributes().
+  /// @param is_within  All stars of the page lie in the filter's box.
   [[nodiscard]] std::uint64_t near_stars(std::uint32_t first, std::uint32_t count,
-                                         const StarFilter& filter) const noexcept;
+                                         const StarFilter& filter, bool is_within) const noexcept;
   /// Everything of a record but w, vl, vr and what follows from its ring.
   [[nodiscard]] bool head(std::size_t i, VertexSplit& r) const noexcept;
   /// A record. Coordinates are on the grid, u, w, vl and vr differ and lie in the roi.

@@ -80,7 +80,6 @@ class Worker {
   Worker(const OpenedTerrain& terrain, const TileTraceRequest& request, std::uint64_t limit,
          TileQueue& queue, Collected& collected)
       : store_(terrain.store()),
-        heights_(store_.facts().heights),
         request_(request),
         limit_(limit),
         queue_(queue),
@@ -93,7 +92,6 @@ class Worker {
     place_.heights = {levels.code(0), levels.code(levels.size() - 1)};
     place_.spans = &heights_crossed_;
     place_.stars = request.region == nullptr ? nullptr : &stars_in_region_;
-    place_.wanted = [this](const LivingTriangle& t) { return is_crossed(t); };
   }
 
   void run() noexcept {
@@ -102,14 +100,6 @@ class Worker {
   [[nodiscard]] const QueryCost& cost() const noexcept { return context_.cost; }
 
  private:
-  [[nodiscard]] bool is_crossed(const LivingTriangle& t) const {
-    const auto band = [&](std::size_t i) {
-      return request_.levels.band_of(heights_.code(t.corner[i].height));
-    };
-    const std::uint32_t a = band(0);
-    return a != band(1) || a != band(2);
-  }
-
   /// Traces the triangles of a tile, or has its halves traced when it does not fit.
   void trace(const GridBox& tile) {
     context_.check_stop();
@@ -150,7 +140,6 @@ class Worker {
   }
 
   const StoreFile& store_;
-  HeightEncoding heights_;
   const TileTraceRequest& request_;
   std::uint64_t limit_;
   TileQueue& queue_;

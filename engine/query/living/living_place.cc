@@ -17,14 +17,17 @@ std::array<VertexKey, 3> ascending(VertexKey a, VertexKey b, VertexKey c) {
 
 bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
                    const HeightEncoding& heights) {
-  if (place.heights == kAllHeights) {
+  if (place.heights == kAllHeights && place.spans == nullptr) {
     return true;
   }
-  Interval spanned;
-  for (const LivingTriangle::Corner& c : t.corner) {
-    spanned = c.has_height ? united(spanned, heights.code(c.height)) : spanned;
+  if (t.is_void) {
+    return false;
   }
-  return !t.is_void && meets(spanned, place.heights);
+  const auto code = [&](std::size_t i) { return heights.code(t.corner[i].height); };
+  const Interval spanned{std::min({code(0), code(1), code(2)}),
+                         std::max({code(0), code(1), code(2)})};
+  return meets(spanned, place.heights) &&
+         (place.spans == nullptr || place.spans->may_hold(spanned));
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ struct LivingPlace {
   /// Codes: triangles whose corners span an interval that meets it. The default wants void
   /// triangles too.
   Interval heights = kAllHeights;
-  /// Further conditions of pages, and of heights (StarFilter), borrowed; null: none.
+  /// Further conditions of pages (StarFilter::also), and of heights, asked of what the corners of a
+  /// triangle span; borrowed; null: none.
   const StarPredicate* stars = nullptr;
   bool asks_each_star = false;  ///< StarFilter::also_of_stars.
   const HeightPredicate* spans = nullptr;
