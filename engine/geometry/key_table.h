@@ -60,6 +60,16 @@ class KeyTable {
     return true;
   }
 
+  /// The value of a key; where it is not there, adds it with `value` first. REQUIRES: as insert().
+  std::uint32_t find_or_insert(VertexKey key, std::uint32_t value) noexcept {
+    Slot& slot = slots_[place(key)];
+    if (slot.key != key) {
+      slot = {key, value};
+      ++size_;
+    }
+    return slot.value;
+  }
+
   /// Removes a key. Returns its value, or kAbsent when it is not there. Keys behind it in its run
   /// move up (Knuth, TAOCP 3, algorithm 6.4R), so no slot is spent. Cost: the run's length.
   std::uint32_t erase(VertexKey key) noexcept {

@@ -67,7 +67,8 @@ class CrossedHeights final : public HeightPredicate {
  public:
   explicit CrossedHeights(const LevelSet& levels) : levels_(levels) {}
   [[nodiscard]] bool may_hold(const Interval& codes) const noexcept override {
-    return levels_.band_of(codes.lo) < levels_.band_of(codes.hi);
+    const std::uint32_t above = levels_.band_of(codes.lo);  // the first level above the lowest
+    return above < levels_.size() && levels_.code(above) <= codes.hi;
   }
 
  private:

@@ -2,14 +2,10 @@
 #include "engine/query/living/living_tin.h"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 namespace ptin {
-
-namespace {
-
-constexpr std::pair<VertexKey, VertexId> kNoCorner{kNoVertexKey, kNone};
-
-}  // namespace
 
 namespace {
 
@@ -32,7 +28,7 @@ void LivingTin::clear() {
   tin_.triangles.clear();
   tin_.classes.clear();
   ids_.reset(room_);
-  last_ = {kNoCorner, kNoCorner};
+  waiting_ = 0;
 }
 
 bool LivingTin::gather(const LivingPlace& place, std::uint64_t most_bytes, QueryContext& context) {
@@ -40,6 +36,7 @@ bool LivingTin::gather(const LivingPlace& place, std::uint64_t most_bytes, Query
   most_bytes_ = most_bytes;
   const std::uint64_t before = context.cost.records_examined;
   const bool fits = reader_.read(place, context, *this);
+  add_waiting();
   if (const std::uint64_t records = context.cost.records_examined - before; records > 0) {
     triangles_of_record_ =
         static_cast<double>(tin_.triangles.size()) / static_cast<double>(records);
@@ -57,6 +54,7 @@ bool LivingTin::expect(std::uint64_t records) {
 }
 
 bool LivingTin::begin(std::size_t most_triangles) {
+  add_waiting();
   const std::size_t triangles = tin_.triangles.size() + most_triangles;
   // Triangles that lie apart have more vertices than those of a whole part.
   bytes_wanted_ = bytes_of(triangles, tin_.vertices.size() + most_triangles / 2 + 3);
@@ -72,24 +70,28 @@ bool LivingTin::begin(std::size_t most_triangles) {
 }
 
 void LivingTin::take(const LivingTriangle& t) {
-  const VertexId u = id_of(t.corner[0]);
-  const VertexId a = id_of(t.corner[1]);
-  const VertexId b = id_of(t.corner[2]);
-  last_ = {std::pair{key_of(t.corner[0].position), u}, std::pair{key_of(t.corner[2].position), b}};
-  tin_.triangles.push_back({{u, a, b}, {kNone, kNone, kNone}});
-  tin_.classes.push_back(t.is_void ? TriangleClass::kVoid : TriangleClass::kSurface);
+  if (waiting_ == taken_.size()) {
+    add_waiting();
+  }
+  for (const LivingTriangle::Corner& c : t.corner) {
+    ids_.prefetch(key_of(c.position));
+  }
+  taken_[waiting_++] = t;
+}
+
+void LivingTin::add_waiting() {
+  for (const LivingTriangle& t : std::span(taken_).first(std::exchange(waiting_, 0))) {
+    tin_.triangles.push_back(
+        {{id_of(t.corner[0]), id_of(t.corner[1]), id_of(t.corner[2])}, {kNone, kNone, kNone}});
+    tin_.classes.push_back(t.is_void ? TriangleClass::kVoid : TriangleClass::kSurface);
+  }
 }
 
 VertexId LivingTin::id_of(const LivingTriangle::Corner& corner) {
   const VertexKey key = key_of(corner.position);
-  for (const auto& [of, id] : last_) {
-    if (of == key) {
-      return id;
-    }
-  }
   const auto next = static_cast<VertexId>(tin_.vertices.size());
-  if (!ids_.insert(key, next)) {
-    return ids_.find(key);
+  if (const VertexId id = ids_.find_or_insert(key, next); id != next) {
+    return id;
   }
   tin_.vertices.push_back({corner.position, corner.height, kNone});
   tin_.has_height.push_back(corner.has_height ? 1 : 0);

@@ -47,6 +47,7 @@ class LivingTin : private LivingVisitor {
   void take(const LivingTriangle& t) override;
 
   void clear();
+  void add_waiting();
   [[nodiscard]] VertexId id_of(const LivingTriangle::Corner& corner);
 
   LivingReader reader_;
@@ -56,8 +57,9 @@ class LivingTin : private LivingVisitor {
   double triangles_of_record_ = 0.5;  ///< About, by what was gathered last.
   std::uint64_t bytes_wanted_ = 0;
   std::size_t room_ = 0;  ///< Of vertices, in the table.
-  /// The corners looked up last, which the next triangle of a star has too.
-  std::array<std::pair<VertexKey, VertexId>, 2> last_;
+  /// Triangles whose corners are being fetched from the table: a look-up by key misses the caches.
+  std::array<LivingTriangle, 32> taken_;
+  std::size_t waiting_ = 0;
 };
 
 }  // namespace ptin
