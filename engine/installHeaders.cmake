@@ -48,6 +48,7 @@ set(public_headers
     engine/geometry/key_table.h
     engine/geometry/orient.h
     engine/geometry/point.h
+    engine/growing_array.h
     engine/large_array.h
     engine/memory_units.h
     engine/mesh/link.h
@@ -109,6 +110,7 @@ set(public_headers
     storage/index.h
     storage/index_shape.h
     storage/layout.h
+    storage/living_stars.h
     storage/packed_segment.h
     storage/page_journal.h
     storage/page_store.h
