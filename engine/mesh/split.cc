@@ -36,11 +36,11 @@ struct Around {
   TriangleId turn;          ///< The next triangle around w, counter-clockwise.
 };
 Around around(const Triangle& t, VertexId w) noexcept {
-  const bool is_1 = t.v[1] == w;
-  const bool is_2 = t.v[2] == w;
+  const std::uint32_t m1 = 0U - static_cast<std::uint32_t>(t.v[1] == w);
+  const std::uint32_t m2 = 0U - static_cast<std::uint32_t>(t.v[2] == w);
+  const std::uint32_t m0 = ~(m1 | m2);
   const auto select = [=](std::uint32_t if_0, std::uint32_t if_1, std::uint32_t if_2) {
-    const std::uint32_t other = is_1 ? if_1 : if_2;
-    return is_1 || is_2 ? other : if_0;
+    return (if_0 & m0) | (if_1 & m1) | (if_2 & m2);
   };
   return {select(t.v[1], t.v[2], t.v[0]), select(t.v[2], t.v[0], t.v[1]),
           select(t.n[1], t.n[2], t.n[0])};
