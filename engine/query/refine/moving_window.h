@@ -48,7 +48,7 @@ struct MoveResult {
 /// Why it works: for monotone predicates p and q the records with p and q are closed under
 /// dependency, so those with p alone can be undone in reverse order, and those with q alone applied
 /// on top. Which records change is found through the index: a page is left alone when both
-/// predicates are false for all of it, or true for all of it (BoundedPredicate).
+/// predicates are false for all of it, or true for all of it (holds_for_all()).
 ///
 /// Threads: one owner. Several windows may move over one store at once.
 class MovingWindow {
