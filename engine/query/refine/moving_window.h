@@ -73,7 +73,7 @@ class MovingWindow {
   /// The mesh. Removed vertices and triangles stand among the others, and later moves use their
   /// places again. A move does not change the ids of what stays.
   [[nodiscard]] const Tin& tin() const noexcept { return refinement_.tin(); }
-  /// Local index of a vertex, or KeyTable::kAbsent.
+  /// Local index of a vertex, or kNone.
   [[nodiscard]] VertexId find(VertexKey key) const noexcept { return refinement_.find(key); }
   /// A copy without removed vertices and triangles. Cost: linear.
   [[nodiscard]] Tin compact_tin() const;
