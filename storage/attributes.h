@@ -91,6 +91,17 @@ class AttributePredicate {
   [[nodiscard]] virtual GridBox reach() const noexcept {
     return {INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
   }
+  /// True only when holds(r) is certain for every record r whose roi is not empty and lies in
+  /// `all.roi`, whose heights lie in `all.heights` (or are empty), and whose error is at least
+  /// `least_error`. False where that is not certain. Once false, it stays false while `all` grows
+  /// or `least_error` falls. Of a page for which it is true no record is asked, and a moving window
+  /// skips the pages on which its old and its new predicate agree (engine/query/refine).
+  [[nodiscard]] virtual bool holds_for_all(const Attributes& all,
+                                           double least_error) const noexcept {
+    static_cast<void>(all);
+    static_cast<void>(least_error);
+    return false;
+  }
 };
 
 }  // namespace ptin

@@ -203,21 +203,37 @@ void DescribedPage::decode_living(std::span<const std::byte> bytes, const StarFi
 void DescribedPage::decode_matching(std::span<const std::byte> bytes,
                                     const AttributePredicate& predicate,
                                     std::vector<VertexSplit>& out) const {
+  if (heights_.type == HeightType::int32) {
+    decode_within(bytes, Bounds<std::int32_t>(descriptor_), predicate, out);
+  } else {
+    decode_within(bytes, Bounds<float>(descriptor_), predicate, out);
+  }
+}
+
+/// @param bounds  Those of the descriptor. A page of which all records are wanted is not asked for
+///     its attributes record by record.
+template <class Bounds>
+void DescribedPage::decode_within(std::span<const std::byte> bytes, const Bounds& bounds,
+                                  const AttributePredicate& predicate,
+                                  std::vector<VertexSplit>& out) const {
   const RecordPage page = open(bytes);
   const GridBox reach = predicate.reach();
+  const bool wants_all = predicate.holds_for_all(attributes_of(descriptor_, heights_),
+                                                 short_value(descriptor_.error_min));
   const std::size_t before = out.size();
   RingPlace place;
-  RecordPage::AttributeRun run;
+  RecordPage::RecordRun run;
   for (std::uint32_t first = 0; first < records(); first += RecordPage::kRun) {
-    const std::uint32_t count = std::min<std::uint32_t>(RecordPage::kRun, records() - first);
-    page.attributes(first, count, run);
-    for (std::uint32_t k = 0; k < count; ++k) {
-      const Attributes& a = run[k];
-      if (!meets(a.roi, reach) || !predicate.holds(a)) {
-        continue;
+    page.read_run(first, std::min<std::uint32_t>(RecordPage::kRun, records() - first), run);
+    for (std::uint32_t k = 0; k < run.count; ++k) {
+      if (!wants_all) {
+        const Attributes a = page.attributes(run, k);
+        if (!meets(a.roi, reach) || !predicate.holds(a)) {
+          continue;
+        }
       }
       VertexSplit r;
-      if (!page.split(first + k, place, r) || admitted(std::span(&r, 1)) == 0) [[unlikely]] {
+      if (!page.split(run, k, place, r) || bounds.excludes(r)) [[unlikely]] {
         out.resize(before);
         report(first + k);
       }

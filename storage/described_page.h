@@ -67,6 +67,9 @@ class DescribedPage {
   [[nodiscard]] bool admits(const VertexSplit& r, const RingSpan& span) const noexcept;
   /// The number of records before the first one that the descriptor excludes.
   [[nodiscard]] std::size_t admitted(std::span<const VertexSplit> records) const noexcept;
+  template <class Bounds>
+  void decode_within(std::span<const std::byte> bytes, const Bounds& bounds,
+                     const AttributePredicate& predicate, std::vector<VertexSplit>& out) const;
 
   const std::string& path_;
   PageId id_;

@@ -11,7 +11,42 @@ namespace {
 
 constexpr std::size_t bytes_of_bits(std::size_t bits) { return (bits + 7) / 8; }
 
+/// Takes numbers of a width apart, `kTogether` of them out of one load.
+template <unsigned kTogether>
+void take_apart(const std::byte* page, std::size_t bit, unsigned width, std::uint64_t base,
+                std::span<std::uint64_t> out) noexcept {
+  const std::uint64_t mask = (std::uint64_t{1} << width) - 1;
+  std::size_t i = 0;
+  for (; i + kTogether <= out.size(); i += kTogether, bit += std::size_t{kTogether} * width) {
+    std::uint64_t word = read_bits(page, bit, kTogether * width);
+    for (unsigned k = 0; k < kTogether; ++k, word >>= width) {
+      out[i + k] = base + (word & mask);
+    }
+  }
+  for (; i < out.size(); ++i, bit += width) {
+    out[i] = base + read_bits(page, bit, width);
+  }
+}
+
 }  // namespace
+
+void PageColumns::read_run(const std::byte* page, PageColumn column, std::size_t first,
+                           std::span<std::uint64_t> out) const noexcept {
+  const auto c = static_cast<std::size_t>(column);
+  const unsigned width = header_.width[c];
+  const std::size_t bit = begin_[c] + first * width;
+  if (width == 0) {
+    std::fill(out.begin(), out.end(), base_[c]);
+  } else if (width * 8 <= kMostFieldBits) {
+    take_apart<8>(page, bit, width, base_[c], out);
+  } else if (width * 4 <= kMostFieldBits) {
+    take_apart<4>(page, bit, width, base_[c], out);
+  } else if (width * 2 <= kMostFieldBits) {
+    take_apart<2>(page, bit, width, base_[c], out);
+  } else {
+    take_apart<1>(page, bit, width, base_[c], out);
+  }
+}
 
 std::array<std::uint32_t, kPageColumns> bases_of(const layout::PageHeader& h) noexcept {
   return {h.x,      h.y,           h.height,      0,           0, 0, 0, 0, 0, 0, 0, h.rank, 0,

@@ -94,16 +94,7 @@ class PageColumns {
   }
   /// The numbers of a column for records from `first` on. REQUIRES: first + out.size() <= records().
   void read_run(const std::byte* page, PageColumn column, std::size_t first,
-                std::span<std::uint64_t> out) const noexcept {
-    const auto c = static_cast<std::size_t>(column);
-    const unsigned width = header_.width[c];
-    const std::uint64_t base = base_[c];
-    std::size_t bit = begin_[c] + first * width;
-    for (std::uint64_t& number : out) {
-      number = base + read_bits(page, bit, width);
-      bit += width;
-    }
-  }
+                std::span<std::uint64_t> out) const noexcept;
   /// Bits that each corner takes besides offset and height.
   [[nodiscard]] unsigned common_bits() const noexcept { return common_bits_; }
   [[nodiscard]] const layout::PageHeader& header() const noexcept { return header_; }

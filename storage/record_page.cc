@@ -111,70 +111,77 @@ std::uint64_t RecordPage::near_stars(std::uint32_t first, std::uint32_t count,
   return wanted;
 }
 
-/// Column by column: a number takes a load and a shift then, and nothing is looked up between.
-void RecordPage::attributes(std::uint32_t first, std::uint32_t count,
-                            AttributeRun& out) const noexcept {
-  std::array<Run, kPageColumns> all;  // NOLINT: written before read
-  for (const PageColumn c :
-       {PageColumn::kX, PageColumn::kY, PageColumn::kHeight, PageColumn::kWest, PageColumn::kSouth,
-        PageColumn::kEast, PageColumn::kNorth, PageColumn::kBelow, PageColumn::kAbove,
-        PageColumn::kError, PageColumn::kDeviation, PageColumn::kFlags}) {
-    read_run(c, first, count, all[static_cast<std::size_t>(c)]);
+void RecordPage::read_run(std::uint32_t first, std::uint32_t count, RecordRun& run) const noexcept {
+  run.first = first;
+  run.count = count;
+  for (std::size_t c = 0; c < kPageColumns; ++c) {
+    read_run(static_cast<PageColumn>(c), first, count, run.numbers[c]);
   }
+}
+
+Attributes RecordPage::attributes(const RecordRun& run, std::uint32_t k) const noexcept {
+  const auto at = [&](PageColumn c) { return run.numbers[static_cast<std::size_t>(c)][k]; };
   const auto code = [&](std::uint64_t ordered) {
     return heights_.code(height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type));
   };
   const auto bound = [](std::uint64_t stored, ShortBits base) {
     return static_cast<double>(short_value(static_cast<ShortBits>(short_of_stored(stored, base))));
   };
-  const layout::PageHeader& h = columns_.header();
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const auto at = [&](PageColumn c) { return all[static_cast<std::size_t>(c)][k]; };
-    const auto whole = [](std::uint64_t v) {
-      return static_cast<std::int32_t>(static_cast<std::uint32_t>(v));
-    };
-    Attributes& a = out[k];
-    a.roi = {whole(at(PageColumn::kX) - at(PageColumn::kWest)),
-             whole(at(PageColumn::kY) - at(PageColumn::kSouth)),
-             whole(at(PageColumn::kX) + at(PageColumn::kEast)),
-             whole(at(PageColumn::kY) + at(PageColumn::kNorth))};
-    const std::uint64_t height = at(PageColumn::kHeight);
-    a.heights = (at(PageColumn::kFlags) & kPageNoHeights) != 0
-                    ? Interval{}
-                    : Interval{code(height - at(PageColumn::kBelow)),
-                               code(height + at(PageColumn::kAbove))};
-    a.error = bound(at(PageColumn::kError), h.error);
-    a.deviation = bound(at(PageColumn::kDeviation), h.deviation);
+  const auto whole = [](std::uint64_t v) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(v));
+  };
+  const std::uint64_t height = at(PageColumn::kHeight);
+  Attributes a;
+  a.roi = {whole(at(PageColumn::kX) - at(PageColumn::kWest)),
+           whole(at(PageColumn::kY) - at(PageColumn::kSouth)),
+           whole(at(PageColumn::kX) + at(PageColumn::kEast)),
+           whole(at(PageColumn::kY) + at(PageColumn::kNorth))};
+  if ((at(PageColumn::kFlags) & kPageNoHeights) == 0) {
+    a.heights = {code(height - at(PageColumn::kBelow)), code(height + at(PageColumn::kAbove))};
   }
+  a.error = bound(at(PageColumn::kError), columns_.header().error);
+  a.deviation = bound(at(PageColumn::kDeviation), columns_.header().deviation);
+  return a;
 }
 
-bool RecordPage::head(std::size_t i, VertexSplit& r) const noexcept {
-  const std::uint64_t x = number(PageColumn::kX, i);
-  const std::uint64_t y = number(PageColumn::kY, i);
-  const std::uint64_t flags = number(PageColumn::kFlags, i);
-  const std::uint64_t rank = number(PageColumn::kRank, i);
-  const std::uint32_t error = error_bits(i);
+/// The head of a record whose numbers are at(column).
+template <class NumberOf>
+inline bool RecordPage::head_of(const NumberOf& at, VertexSplit& r) const noexcept {
+  static_assert(VertexSplit::kNoLeft == kPageNoLeft << 2 &&
+                VertexSplit::kNoRight == kPageNoRight << 2 &&
+                VertexSplit::kVertexVoid == kPageVertexVoid << 2);
+  const std::uint64_t x = at(PageColumn::kX);
+  const std::uint64_t y = at(PageColumn::kY);
+  // Numbers of 33 bits at most, and those that wrap around are the largest ones.
+  const std::uint64_t west = x - at(PageColumn::kWest);
+  const std::uint64_t south = y - at(PageColumn::kSouth);
+  const std::uint64_t east = x + at(PageColumn::kEast);
+  const std::uint64_t north = y + at(PageColumn::kNorth);
+  const std::uint64_t flags = at(PageColumn::kFlags);
+  const std::uint64_t rank = at(PageColumn::kRank);
+  const std::uint32_t error = short_of_stored(at(PageColumn::kError), columns_.header().error);
   const std::uint32_t deviation =
-      short_of_stored(number(PageColumn::kDeviation, i), columns_.header().deviation);
-  const std::uint64_t height = number(PageColumn::kHeight, i);
-  const std::uint64_t low = height - number(PageColumn::kBelow, i);  // may wrap around
-  const std::uint64_t high = height + number(PageColumn::kAbove, i);
-  r.roi = roi(i);
+      short_of_stored(at(PageColumn::kDeviation), columns_.header().deviation);
+  const std::uint64_t height = at(PageColumn::kHeight);
+  const std::uint64_t low = height - at(PageColumn::kBelow);
+  const std::uint64_t high = height + at(PageColumn::kAbove);
   const bool has_height = (flags & kPageVertexVoid) == 0;
   const bool has_heights = (flags & kPageNoHeights) == 0;
-  const std::uint64_t border = flags & (kPageNoLeft | kPageNoRight);
+  constexpr std::uint64_t kBothSides = kPageNoLeft | kPageNoRight;
   const auto [least, most] = ordered_heights(heights_.type);
-  if (x > kGridMax || y > kGridMax || r.roi.min_x < 0 || r.roi.min_y < 0 ||
-      r.roi.max_x > kGridMax || r.roi.max_y > kGridMax || height > most || low > height ||
-      low < least || high < height || high > most || error > kShortInfinity ||
-      deviation > kShortInfinity || rank > UINT16_MAX || (has_height && !has_heights) ||
-      border == (kPageNoLeft | kPageNoRight)) {
+  constexpr std::uint64_t kEnd = kGridMax;
+  if ((x > kEnd) | (y > kEnd) | (west > kEnd) | (south > kEnd) | (east > kEnd) | (north > kEnd) |
+      (low > height) | (low < least) | (high > most) | (error > kShortInfinity) |
+      (deviation > kShortInfinity) | (rank > UINT16_MAX) | (has_height & !has_heights) |
+      ((flags & kBothSides) == kBothSides)) {
     return false;
   }
-  r.u = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
   const auto bits = [&](std::uint64_t ordered) {
     return height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type);
   };
+  r.u = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+  r.roi = {static_cast<std::int32_t>(west), static_cast<std::int32_t>(south),
+           static_cast<std::int32_t>(east), static_cast<std::int32_t>(north)};
   r.height = has_height ? bits(height) : 0;
   r.height_lo = bits(low);
   r.height_hi = bits(high);
@@ -185,27 +192,30 @@ bool RecordPage::head(std::size_t i, VertexSplit& r) const noexcept {
   r.error = short_value(static_cast<ShortBits>(error));
   r.deviation = short_value(static_cast<ShortBits>(deviation));
   r.rank = static_cast<std::uint16_t>(rank);
-  const auto flag = [&](PageFlag from, VertexSplit::Flag to) {
-    return (flags & from) != 0 ? unsigned{to} : 0U;
-  };
-  r.flags = static_cast<std::uint16_t>(flag(kPageNoLeft, VertexSplit::kNoLeft) |
-                                       flag(kPageNoRight, VertexSplit::kNoRight) |
-                                       flag(kPageVertexVoid, VertexSplit::kVertexVoid));
+  r.flags = static_cast<std::uint16_t>((flags & (kBothSides | kPageVertexVoid)) << 2);
   return true;
 }
 
-RingShape RecordPage::shape_of(std::size_t i) const noexcept {
-  const auto degree = static_cast<unsigned>(number(PageColumn::kDegree, i));
-  const auto offset_bits = static_cast<unsigned>(number(PageColumn::kOffsetBits, i));
-  const auto height_bits = static_cast<unsigned>(number(PageColumn::kHeightBits, i));
-  const auto death_bits = static_cast<unsigned>(number(PageColumn::kDeathBits, i));
+bool RecordPage::head(std::size_t i, VertexSplit& r) const noexcept {
+  return head_of([&](PageColumn c) { return number(c, i); }, r);
+}
+
+template <class NumberOf>
+inline RingShape RecordPage::shape_of(const NumberOf& at) const noexcept {
+  const auto degree = static_cast<unsigned>(at(PageColumn::kDegree));
+  const auto offset_bits = static_cast<unsigned>(at(PageColumn::kOffsetBits));
+  const auto height_bits = static_cast<unsigned>(at(PageColumn::kHeightBits));
+  const auto death_bits = static_cast<unsigned>(at(PageColumn::kDeathBits));
   return {degree, offset_bits, height_bits, death_bits,
           2 * offset_bits + height_bits + death_bits + columns_.common_bits()};
 }
 
 /// Finds the ring of record i: from `place`, where that is in the same run and not behind it, else
 /// from the begin of the run. False when the ring cannot be one, or would not lie where rings lie.
-bool RecordPage::find(std::size_t i, RingPlace& place) const noexcept {
+/// @param shape  Tells the shape of a record's ring.
+template <class ShapeOf>
+inline bool RecordPage::find(std::size_t i, RingPlace& place,
+                             const ShapeOf& shape_of_record) const noexcept {
   if (place.record == i) {
     return place.is_sound;
   }
@@ -213,11 +223,11 @@ bool RecordPage::find(std::size_t i, RingPlace& place) const noexcept {
   if (place.record > i || place.record < run * layout::kRingRun) {
     place.record = run * layout::kRingRun;
     place.bit = columns_.run_begin(bytes_.data(), run);
-    place.shape = shape_of(place.record);
+    place.shape = shape_of_record(place.record);
   }
   while (place.record < i) {
     place.bit += place.shape.bits();
-    place.shape = shape_of(++place.record);
+    place.shape = shape_of_record(++place.record);
   }
   const RingShape& shape = place.shape;
   place.is_sound = shape.degree >= 3 && shape.degree <= layout::kMostDegree &&
@@ -226,14 +236,26 @@ bool RecordPage::find(std::size_t i, RingPlace& place) const noexcept {
   return place.is_sound;
 }
 
-GridPoint RecordPage::corner_position(GridPoint u, const RingShape& shape,
-                                      std::size_t bit) const noexcept {
-  const std::int64_t x =
-      u.x + with_sign(read_bits(bytes_.data(), bit, shape.offset_bits), shape.offset_bits);
-  const std::int64_t y =
-      u.y + with_sign(read_bits(bytes_.data(), bit + shape.offset_bits, shape.offset_bits),
-                      shape.offset_bits);
-  return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};  // 2^30 + 2^31 at most
+bool RecordPage::find(std::size_t i, RingPlace& place) const noexcept {
+  return find(i, place, [this](std::size_t record) {
+    return shape_of([&](PageColumn c) { return number(c, record); });
+  });
+}
+
+inline GridPoint RecordPage::corner_position(GridPoint u, const RingShape& shape,
+                                             std::size_t bit) const noexcept {
+  const unsigned width = shape.offset_bits;
+  std::uint64_t x, y;
+  if (2 * width <= kMostFieldBits) [[likely]] {
+    const std::uint64_t both = read_bits(bytes_.data(), bit, 2 * width);
+    x = both & ((std::uint64_t{1} << width) - 1);
+    y = both >> width;
+  } else {
+    x = read_bits(bytes_.data(), bit, width);
+    y = read_bits(bytes_.data(), bit + width, width);
+  }
+  return {static_cast<std::int32_t>(u.x + with_sign(x, width)),
+          static_cast<std::int32_t>(u.y + with_sign(y, width))};  // 2^30 + 2^31 at most
 }
 
 bool RecordPage::is_void(const RingShape& shape, std::size_t bit) const noexcept {
@@ -279,10 +301,8 @@ void RecordPage::for_each_corner(const RingPlace& place, const Visit& visit) con
   }
 }
 
-bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept {
-  if (!head(i, r) || !find(i, place)) {
-    return false;
-  }
+/// The vertices of a split and the classes of its sides, from the ring of a record whose head is `r`.
+inline bool RecordPage::ends_of(const RingPlace& place, VertexSplit& r) const noexcept {
   const RingShape& shape = place.shape;
   const bool no_left = (r.flags & VertexSplit::kNoLeft) != 0;
   const bool no_right = (r.flags & VertexSplit::kNoRight) != 0;
@@ -291,13 +311,32 @@ bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const no
   r.w = corner_position(r.u, shape, bit_of(no_left ? last : 0));
   r.vl = corner_position(r.u, shape, bit_of(no_left ? 0 : 1));
   r.vr = corner_position(r.u, shape, bit_of(no_left ? last - 1 : last));
-  const bool left_void = !no_left && is_void(shape, bit_of(0));
-  const bool right_void = !no_right && is_void(shape, bit_of(no_left ? last - 1 : last));
-  r.flags = static_cast<std::uint16_t>(unsigned{r.flags} |
-                                       (left_void ? unsigned{VertexSplit::kLeftVoid} : 0U) |
-                                       (right_void ? unsigned{VertexSplit::kRightVoid} : 0U));
+  if (columns_.header().void_bits != 0) {
+    const bool left_void = !no_left && is_void(shape, bit_of(0));
+    const bool right_void = !no_right && is_void(shape, bit_of(no_left ? last - 1 : last));
+    r.flags = static_cast<std::uint16_t>(unsigned{r.flags} |
+                                         (left_void ? unsigned{VertexSplit::kLeftVoid} : 0U) |
+                                         (right_void ? unsigned{VertexSplit::kRightVoid} : 0U));
+  }
   return contains(r.roi, r.w) && contains(r.roi, r.vl) && contains(r.roi, r.vr) && r.w != r.u &&
          r.vl != r.u && r.vr != r.u;
+}
+
+bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept {
+  return head(i, r) && find(i, place) && ends_of(place, r);
+}
+
+bool RecordPage::split(const RecordRun& run, std::uint32_t k, RingPlace& place,
+                       VertexSplit& r) const noexcept {
+  const auto at = [&](std::size_t j) {
+    return [&run, j](PageColumn c) { return run.numbers[static_cast<std::size_t>(c)][j]; };
+  };
+  // Runs begin where runs of rings begin, so every record that find() looks at is in this one.
+  static_assert(kRun % layout::kRingRun == 0);
+  return head_of(at(k), r) &&
+         find(run.first + k, place,
+              [&](std::size_t record) { return shape_of(at(record - run.first)); }) &&
+         ends_of(place, r);
 }
 
 bool RecordPage::may_live(std::size_t i, RingPlace& place, std::int32_t level) const noexcept {

@@ -57,13 +57,24 @@ class RecordPage {
   [[nodiscard]] std::uint32_t error_bits(std::size_t i) const noexcept {
     return short_of_stored(number(PageColumn::kError, i), columns_.header().error);
   }
-  /// The attributes of so many records from `first` on. Nothing is checked: of a record that is not
-  /// sound they may be anything. REQUIRES: count <= kRun, first + count <= records().
+  /// Most records of a run.
   static constexpr std::uint32_t kRun = 64;
-  using AttributeRun = std::array<Attributes, kRun>;
-  void attributes(std::uint32_t first, std::uint32_t count, AttributeRun& out) const noexcept;
+  /// The numbers of records one behind the other, taken out of the page column by column: a number
+  /// takes a load and a shift for some of them then, and nothing is looked up between.
+  struct RecordRun {
+    std::uint32_t first = 0, count = 0;
+    std::array<std::array<std::uint64_t, kRun>, kPageColumns> numbers;
+  };
+  /// Takes so many records from `first` on. REQUIRES: count <= kRun, first + count <= records().
+  void read_run(std::uint32_t first, std::uint32_t count, RecordRun& run) const noexcept;
+  /// The attributes of record `first` + k of a run. Nothing is checked: of a record that is not sound
+  /// they may be anything. REQUIRES, as below: k < run.count.
+  [[nodiscard]] Attributes attributes(const RecordRun& run, std::uint32_t k) const noexcept;
+  /// The same as split() of record `first` + k.
+  [[nodiscard]] bool split(const RecordRun& run, std::uint32_t k, RingPlace& place,
+                           VertexSplit& r) const noexcept;
   /// Which of so many records may have a star that a filter asks for, as far as box, level and
-  /// heights tell: bit k for record `first` + k. Nothing is checked. REQUIRES: as attributes().
+  /// heights tell: bit k for record `first` + k. Nothing is checked. REQUIRES: as read_run().
   /// @param is_within  All stars of the page lie in the filter's box.
   [[nodiscard]] std::uint64_t near_stars(std::uint32_t first, std::uint32_t count,
                                          const StarFilter& filter, bool is_within) const noexcept;
@@ -99,8 +110,14 @@ class RecordPage {
                                        const GridBox& box) const noexcept;
   [[nodiscard]] std::uint64_t with_heights(std::uint32_t first, std::uint32_t count,
                                            const StarFilter& filter) const noexcept;
-  [[nodiscard]] RingShape shape_of(std::size_t i) const noexcept;
+  template <class NumberOf>
+  [[nodiscard]] bool head_of(const NumberOf& at, VertexSplit& r) const noexcept;
+  template <class NumberOf>
+  [[nodiscard]] RingShape shape_of(const NumberOf& at) const noexcept;
+  template <class ShapeOf>
+  [[nodiscard]] bool find(std::size_t i, RingPlace& place, const ShapeOf& shape) const noexcept;
   [[nodiscard]] bool find(std::size_t i, RingPlace& place) const noexcept;
+  [[nodiscard]] bool ends_of(const RingPlace& place, VertexSplit& r) const noexcept;
   [[nodiscard]] GridPoint corner_position(GridPoint u, const RingShape& shape,
                                           std::size_t bit) const noexcept;
   [[nodiscard]] bool is_void(const RingShape& shape, std::size_t bit) const noexcept;

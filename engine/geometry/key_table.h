@@ -70,27 +70,6 @@ class KeyTable {
     return slot.value;
   }
 
-  /// Removes a key. Returns its value, or kAbsent when it is not there. Keys behind it in its run
-  /// move up (Knuth, TAOCP 3, algorithm 6.4R), so no slot is spent. Cost: the run's length.
-  std::uint32_t erase(VertexKey key) noexcept {
-    std::size_t hole = place(key);
-    if (slots_[hole].key != key) {
-      return kAbsent;
-    }
-    const std::uint32_t value = slots_[hole].value;
-    for (std::size_t i = after(hole); slots_[i].key != kNoVertexKey; i = after(i)) {
-      // The key at i may move into the hole unless its home lies behind the hole, cyclically.
-      const std::size_t from = home(slots_[i].key);
-      if (hole <= i ? (from <= hole || from > i) : (from <= hole && from > i)) {
-        slots_[hole] = slots_[i];
-        hole = i;
-      }
-    }
-    slots_[hole] = {};
-    --size_;
-    return value;
-  }
-
   /// The value of a key, or kAbsent.
   [[nodiscard]] std::uint32_t find(VertexKey key) const noexcept {
     const Slot& slot = slots_[place(key)];

@@ -21,6 +21,7 @@ constexpr Triangle kRemoved{{kNone, kNone, kNone}, {kNone, kNone, kNone}};
 struct Fan {
   TriangleId first = kNone, last = kNone;
   TriangleId outer_left = kNone, outer_right = kNone;  ///< Beyond the edges (w, vl) and (vr, w).
+  VertexId vl = kNone, vr = kNone;
   bool holds_triangle_of_w = false;
   bool fits = false;
 };
@@ -36,29 +37,48 @@ struct Around {
   TriangleId turn;          ///< The next triangle around w, counter-clockwise.
 };
 Around around(const Triangle& t, VertexId w) noexcept {
-  const bool is_1 = t.v[1] == w;
-  const bool is_2 = t.v[2] == w;
+  const std::uint32_t m1 = 0U - static_cast<std::uint32_t>(t.v[1] == w);
+  const std::uint32_t m2 = 0U - static_cast<std::uint32_t>(t.v[2] == w);
+  const std::uint32_t m0 = ~(m1 | m2);
   const auto select = [=](std::uint32_t if_0, std::uint32_t if_1, std::uint32_t if_2) {
-    const std::uint32_t other = is_1 ? if_1 : if_2;
-    return is_1 || is_2 ? other : if_0;
+    return (if_0 & m0) | (if_1 & m1) | (if_2 & m2);
   };
   return {select(t.v[1], t.v[2], t.v[0]), select(t.v[2], t.v[0], t.v[1]),
           select(t.n[1], t.n[2], t.n[0])};
 }
 
-/// First triangle of w whose next corner is `vl`, or kNone.
-TriangleId find_first(const Tin& tin, VertexId w, VertexId vl) {
+/// How a split names vl and vr: by their ids, or by their keys.
+struct EndIds {
+  VertexId vl, vr;
+  [[nodiscard]] bool is_vl(const Vertex* /*all*/, VertexId v) const noexcept { return v == vl; }
+  [[nodiscard]] bool is_vr(const Vertex* /*all*/, VertexId v) const noexcept { return v == vr; }
+};
+struct EndKeys {
+  VertexKey vl, vr;
+  [[nodiscard]] bool is_vl(const Vertex* all, VertexId v) const noexcept {
+    return key_of(all[v].position) == vl;
+  }
+  [[nodiscard]] bool is_vr(const Vertex* all, VertexId v) const noexcept {
+    return key_of(all[v].position) == vr;
+  }
+};
+
+/// Finds the first triangle of w whose next corner is vl, and vl.
+template <class Ends>
+void find_first(const Tin& tin, VertexId w, const Ends& ends, Fan& fan) {
   const Triangle* const triangles = tin.triangles.data();
-  const TriangleId start = tin.vertices[w].triangle;
+  const Vertex* const vertices = tin.vertices.data();
+  const TriangleId start = vertices[w].triangle;
   TriangleId t = start;
   do {
     const Around here = around(triangles[t], w);
-    if (here.next == vl) {
-      return t;
+    if (ends.is_vl(vertices, here.next)) {
+      fan.first = t;
+      fan.vl = here.next;
+      return;
     }
     t = here.turn;
   } while (t != kNone && t != start);
-  return kNone;
 }
 
 /// Puts `now` in the place of `was` from triangle `t` counter-clockwise up to and with `last`.
@@ -77,9 +97,10 @@ void replace_corner(Tin& tin, TriangleId t, TriangleId last, VertexId was, Verte
 /// Walks the fan and puts u in w's place, as long as each triangle stays counter-clockwise. Where
 /// the fan does not fit, the triangles from `first` to `last` have been changed already, and the
 /// caller changes them back.
-Fan move_fan(Tin& tin, const SplitSite& site) {
+template <class Ends>
+Fan move_fan(Tin& tin, const SplitSite& site, const Ends& ends) {
   Fan fan;
-  fan.first = find_first(tin, site.w, site.vl);
+  find_first(tin, site.w, ends, fan);
   if (fan.first == kNone) {
     return fan;
   }
@@ -88,7 +109,7 @@ Fan move_fan(Tin& tin, const SplitSite& site) {
   const GridPoint u = vertices[site.u].position;
   const TriangleId known = vertices[site.w].triangle;
   fan.outer_left = triangles[fan.first].n[kPrevious[place_of(triangles[fan.first].v, site.w)]];
-  GridPoint a = vertices[site.vl].position;
+  GridPoint a = vertices[fan.vl].position;
   TriangleId t = fan.first;
   do {
     Triangle& triangle = triangles[t];
@@ -102,7 +123,8 @@ Fan move_fan(Tin& tin, const SplitSite& site) {
     fan.holds_triangle_of_w |= known == t;
     fan.last = t;
     t = here.turn;
-    if (here.previous == site.vr) {
+    if (ends.is_vr(vertices, here.previous)) {
+      fan.vr = here.previous;
       fan.outer_right = t;
       fan.fits = true;
       return fan;
@@ -130,10 +152,11 @@ void put(Tin& tin, TriangleId id, const Triangle& triangle, TriangleClass c) {
   tin.classes[id] = c;
 }
 
-}  // namespace
-
-bool split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId right) {
-  const Fan fan = move_fan(tin, site);
+template <class Ends>
+bool split_between(Tin& tin, SplitSite& site, const Ends& ends, TriangleId left, TriangleId right) {
+  const Fan fan = move_fan(tin, site, ends);
+  site.vl = fan.vl;
+  site.vr = fan.vr;
   if (!fan.fits || !sides_fit(tin, site, fan)) [[unlikely]] {
     if (fan.last != kNone) {
       replace_corner(tin, fan.first, fan.last, site.u, site.w);
@@ -166,12 +189,20 @@ bool split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId rig
   return true;
 }
 
+}  // namespace
+
+bool split_into(Tin& tin, SplitSite& site, const SplitEnds& ends, TriangleId left,
+                TriangleId right) {
+  return split_between(tin, site, EndKeys{ends.vl, ends.vr}, left, right);
+}
+
 SplitResult split(Tin& tin, const SplitSite& site) {
   const auto before = static_cast<TriangleId>(tin.triangles.size());
   const TriangleId right = before + (site.has_left ? 1 : 0);
   tin.triangles.resize(right + (site.has_right ? 1 : 0), kRemoved);
   tin.classes.resize(tin.triangles.size(), TriangleClass::kSurface);
-  if (!split_into(tin, site, before, right)) {
+  SplitSite found = site;
+  if (!split_between(tin, found, EndIds{site.vl, site.vr}, before, right)) {
     tin.triangles.resize(before);
     tin.classes.resize(before);
     return {};

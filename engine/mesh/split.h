@@ -33,11 +33,19 @@ struct SplitResult {
 /// the degree of w.
 SplitResult split(Tin& tin, const SplitSite& site);
 
-/// As split(), but the triangles (u, w, vl) and (u, vr, w) get the ids `left` and `right`. So a
-/// caller that knows all splits beforehand decides which triangles lie near each other in memory.
+/// The ends of a fan by their keys.
+struct SplitEnds {
+  VertexKey vl, vr;
+};
+
+/// As split(), but the triangles (u, w, vl) and (u, vr, w) get the ids `left` and `right`, so that a
+/// caller that knows all splits beforehand decides which triangles lie near each other in memory; and
+/// vl and vr are known by their keys, so that nobody has to look them up: they are around w.
 /// Returns whether the split was applied, in one word, since the caller waits for it and a
 /// SplitResult would go through memory (engine/DECISIONS.md, section 7.3).
 /// REQUIRES: both ids are of removed triangles. The id of a side that does not exist is not used.
-[[nodiscard]] bool split_into(Tin& tin, const SplitSite& site, TriangleId left, TriangleId right);
+/// @param site  Its vl and vr are not looked at. They become what was found.
+[[nodiscard]] bool split_into(Tin& tin, SplitSite& site, const SplitEnds& ends, TriangleId left,
+                              TriangleId right);
 
 }  // namespace ptin

@@ -169,13 +169,19 @@ TEST(Split, AppendsLeftThenRightAndChangesNothingElse) {
   }
 }
 
-TEST(SplitInto, TakesThePlacesItIsGiven) {
+TEST(SplitInto, TakesThePlacesItIsGivenAndFindsTheEndsByTheirKeys) {
   Drawing d = square();
   const std::string before = d.triangles();
   const Star star = star_of(d, 'U');
   const CollapseSite site = collapse(d.tin, star, place(d, star, 'C'));
   const std::size_t size = d.tin.triangles.size();
-  ASSERT_TRUE(split_into(d.tin, undo(d, site), site.left, site.right));
+  const SplitSite wanted = undo(d, site);
+  SplitSite found = wanted;
+  found.vl = found.vr = kNone;
+  const SplitEnds ends{key_of(d.tin.position(wanted.vl)), key_of(d.tin.position(wanted.vr))};
+  ASSERT_TRUE(split_into(d.tin, found, ends, site.left, site.right));
+  EXPECT_EQ(found.vl, wanted.vl);
+  EXPECT_EQ(found.vr, wanted.vr);
   EXPECT_EQ(d.tin.triangles.size(), size);
   EXPECT_EQ(d.triangles(), before);
   EXPECT_EQ(validate(d.tin), "");

@@ -57,7 +57,7 @@ std::size_t BoundedMesh::refine(std::span<const PageId> pages, const AttributePr
       const PendingSplit split = pending_of(r, page);
       const bool is_wanted =
           detail_.keeps(split) || (beyond != nullptr && beyond->holds(attributes_of(r, heights)));
-      if (!is_wanted || refinement_.find(split.u) != KeyTable::kAbsent) {
+      if (!is_wanted || refinement_.find(split.u) != kNone) {
         continue;
       }
       splits_.push_back(split);

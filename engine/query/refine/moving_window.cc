@@ -13,21 +13,6 @@ namespace ptin {
 
 namespace {
 
-/// A predicate, and what it says of many records at once.
-class Asked {
- public:
-  explicit Asked(const AttributePredicate& predicate)
-      : predicate_(predicate), bounded_(dynamic_cast<const BoundedPredicate*>(&predicate)) {}
-  [[nodiscard]] bool any(const Attributes& a) const noexcept { return predicate_.holds(a); }
-  [[nodiscard]] bool all(const Attributes& a, double least_error) const noexcept {
-    return bounded_ != nullptr && bounded_->holds_for_all(a, least_error);
-  }
-
- private:
-  const AttributePredicate& predicate_;
-  const BoundedPredicate* bounded_;
-};
-
 /// True where two predicates may differ: for every page and subtree with a record for which exactly
 /// one of them is true. That one is true for the record, and so for the page that holds it; the
 /// other one is false for the record, and so not true for all records of the page.
@@ -35,15 +20,13 @@ class MayDiffer final : public AttributePredicate {
  public:
   MayDiffer(const AttributePredicate& was, const AttributePredicate& now) : was_(was), now_(now) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    const bool now = now_.any(a);
-    if (now && !was_.all(a, 0.0)) {
-      return true;
-    }
-    return was_.any(a) && !now_.all(a, 0.0);
+    return (now_.holds(a) && !was_.holds_for_all(a, 0.0)) ||
+           (was_.holds(a) && !now_.holds_for_all(a, 0.0));
   }
 
  private:
-  Asked was_, now_;
+  const AttributePredicate& was_;
+  const AttributePredicate& now_;
 };
 
 }  // namespace
@@ -106,15 +89,14 @@ std::vector<PageId> MovingWindow::search(const AttributePredicate& predicate,
 /// change may take.
 std::vector<MovingWindow::Candidate> MovingWindow::candidates(const AttributePredicate& predicate,
                                                               QueryContext& context) const {
-  const Asked asked(predicate);
   std::vector<Candidate> result;
   std::uint64_t most = refinement_.alive_vertices();
   for (const PageId page : search(predicate, context)) {
     const StoreFile::PageInfo info = terrain_.store().page_info(page);
     const auto held = held_.find(index_of(page));
     const std::uint32_t count = held == held_.end() ? 0 : held->second.count;
-    const bool any = asked.any(info.attributes);
-    const bool all = any && asked.all(info.attributes, info.min_error);
+    const bool any = predicate.holds(info.attributes);
+    const bool all = any && predicate.holds_for_all(info.attributes, info.min_error);
     if ((!any && count == 0) || (all && count == info.records)) {
       continue;
     }

@@ -48,7 +48,7 @@ struct MoveResult {
 /// Why it works: for monotone predicates p and q the records with p and q are closed under
 /// dependency, so those with p alone can be undone in reverse order, and those with q alone applied
 /// on top. Which records change is found through the index: a page is left alone when both
-/// predicates are false for all of it, or true for all of it (BoundedPredicate).
+/// predicates are false for all of it, or true for all of it (holds_for_all()).
 ///
 /// Threads: one owner. Several windows may move over one store at once.
 class MovingWindow {
@@ -73,7 +73,7 @@ class MovingWindow {
   /// The mesh. Removed vertices and triangles stand among the others, and later moves use their
   /// places again. A move does not change the ids of what stays.
   [[nodiscard]] const Tin& tin() const noexcept { return refinement_.tin(); }
-  /// Local index of a vertex, or KeyTable::kAbsent.
+  /// Local index of a vertex, or kNone.
   [[nodiscard]] VertexId find(VertexKey key) const noexcept { return refinement_.find(key); }
   /// A copy without removed vertices and triangles. Cost: linear.
   [[nodiscard]] Tin compact_tin() const;

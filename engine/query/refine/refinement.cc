@@ -21,7 +21,8 @@ bool has_heights(const Tin& tin, VertexId a, VertexId b, VertexId c) noexcept {
   return (tin.has_height[a] & tin.has_height[b] & tin.has_height[c]) != 0;
 }
 
-/// Invariant I5 around a new vertex: only a vertex with a height stands in surface triangles.
+/// Invariant I5 around a new vertex: only a vertex with a height stands in surface triangles. To be
+/// asked where a vertex of the mesh has none.
 bool classes_fit(const Tin& tin, const SplitSite& s) {
   if (tin.has_height[s.u] == 0) {
     Star star;
@@ -43,6 +44,10 @@ bool classes_fit(const Tin& tin, const SplitSite& s) {
               context.file());
 }
 
+[[noreturn]] void throw_not_made(const PendingSplit& s, const QueryContext& context) {
+  throw_refused(s, "it names a vertex that no retrieved record makes before it", context);
+}
+
 /// Refuses splits that 32 bits cannot number.
 void refuse_too_many(std::span<const PendingSplit> splits, const QueryContext& context) {
   if (splits.size() >= kNone) {
@@ -51,7 +56,7 @@ void refuse_too_many(std::span<const PendingSplit> splits, const QueryContext& c
 }
 
 /// Fetches into the caches, ahead of the splits, what they will touch: the record, its slots in the
-/// table of keys, and one step along the star of w at a time, so that no step waits for memory.
+/// table of vertices, w, the triangle known of w, and what lies around that.
 /// Looks at the mesh as it is now: where the mesh changes before the split comes, the split misses
 /// the cache, and nothing else happens.
 class StarFetcher {
@@ -60,58 +65,36 @@ class StarFetcher {
 
   /// Steps of the pipeline: how many splits after the fetch of its record a split reaches each of
   /// them. The last one applies the split.
-  static constexpr std::size_t kSlots = 8, kEnter = 16, kTriangle = 24, kNeighbours = 30,
-                               kBeyond = 35, kApply = 40;
+  static constexpr std::size_t kSlots = 8, kEnter = 16, kTriangle = 24, kNeighbours = 32,
+                               kApply = 40;
 
   static void fetch_record(const PendingSplit& s) noexcept {
     const auto* const bytes = reinterpret_cast<const char*>(&s);  // may lie across two lines
     prefetch(bytes);
     prefetch(bytes + sizeof s - 1);
   }
-  static void fetch_slots(const PendingSplit& s, const KeyTable& ids) noexcept {
+  static void fetch_slots(const PendingSplit& s, const VertexTable& ids) noexcept {
     ids.prefetch(s.u);
     ids.prefetch(s.w);
-    ids.prefetch(s.vl);
-    ids.prefetch(s.vr);
   }
-  void fetch_vertices(VertexId w, VertexId vl, VertexId vr) const noexcept {
-    prefetch(&tin_.vertices[w]);
-    prefetch(&tin_.vertices[vl]);
-    prefetch(&tin_.vertices[vr]);
-  }
+  void fetch_vertex(VertexId w) const noexcept { prefetch(&tin_.vertices[w]); }
   void fetch_triangle(VertexId w) const noexcept { fetch(tin_.vertices[w].triangle); }
+  // Fetches the neighbour and the corner that are not around w too: finding out which they are would
+  // cost more.
   void fetch_neighbours(VertexId w) const noexcept {
-    const TriangleId t = tin_.vertices[w].triangle;
-    if (t != kNone) {
-      fetch_around(tin_.triangles[t]);
-    }
-  }
-  void fetch_beyond(VertexId w) const noexcept {
     const TriangleId t = tin_.vertices[w].triangle;
     if (t == kNone) {
       return;
     }
-    const Triangle& triangle = tin_.triangles[t];
-    const int c = static_cast<int>(triangle.v[1] == w) + 2 * static_cast<int>(triangle.v[2] == w);
-    for (int side = 0; side < 3; ++side) {
-      const TriangleId n = triangle.n[side];
-      if (side != c && n != kNone) {
-        fetch_around(tin_.triangles[n]);
-      }
+    for (const TriangleId n : tin_.triangles[t].n) {
+      fetch(n);
+    }
+    for (const VertexId v : tin_.triangles[t].v) {
+      prefetch(&tin_.vertices[v]);
     }
   }
 
  private:
-  // Fetches neighbours and corners that are not around w too: finding out which are would cost
-  // more.
-  void fetch_around(const Triangle& triangle) const noexcept {
-    for (const TriangleId n : triangle.n) {
-      fetch(n);
-    }
-    for (const VertexId v : triangle.v) {
-      prefetch(&tin_.vertices[v]);
-    }
-  }
   void fetch(TriangleId t) const noexcept {
     // For kNone it fetches triangle 0.
     prefetch(&tin_.triangles[t == kNone ? 0 : t]);
@@ -124,18 +107,21 @@ class StarFetcher {
 
 std::uint64_t bytes_of(const Tin& tin) noexcept {
   return tin.vertices.size() * (sizeof(Vertex) + 1) +
-         tin.triangles.size() * (sizeof(Triangle) + 1) + KeyTable::bytes_for(tin.vertices.size());
+         tin.triangles.size() * (sizeof(Triangle) + 1) +
+         VertexTable::bytes_for(tin.vertices.size());
 }
 
 Refinement::Refinement(const Tin& t0, bool track_pages) : track_pages_(track_pages) { restart(t0); }
 
 void Refinement::restart(const Tin& t0) {
   tin_ = t0;
+  has_void_vertex_ =
+      std::find(tin_.has_height.begin(), tin_.has_height.end(), 0) != tin_.has_height.end();
   free_vertices_.clear();
   free_triangles_.clear();
   ids_.reset(tin_.vertices.capacity());
   for (VertexId v = 0; v < tin_.vertices.size(); ++v) {
-    ids_.insert(key_of(tin_.position(v)), v);
+    ids_.insert(tin_, v);
   }
   if (track_pages_) {
     vertex_pages_.assign(tin_.vertices.size(), kNone);
@@ -162,15 +148,16 @@ void Refinement::apply_one_by_one(std::span<const PendingSplit> splits, const Ba
   context.check_stop();
   std::uint32_t triangles = 0;
   for (std::size_t i = 0; i < splits.size(); ++i) {
-    Resolved r = enter(splits[order_[i]], vertex_place(batch, i), context);
+    const PendingSplit& s = splits[order_[i]];
+    Resolved r = enter(s, vertex_place(batch, i), context);
     r.triangle = triangles;
-    triangles += triangles_of(r.flags);
-    apply_one(r, batch, splits, context);
+    triangles += triangles_of(s.flags);
+    apply_one(s, r, batch, context);
   }
 }
 
-/// While one split is applied, the splits behind it are looked up and fetched. The w, vl and vr of
-/// a split are looked up after all splits before it were entered, so they are found.
+/// While one split is applied, the splits behind it are looked up and fetched. The w of a split is
+/// looked up after all splits before it were entered, so it is found.
 void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const Batch& batch,
                                    const QueryContext& context) {
   const StarFetcher fetcher(tin_);
@@ -195,10 +182,11 @@ void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const B
     }
     if (const std::size_t i = at(F::kEnter); i < count) {
       Resolved& r = ring[i % kRing];
-      r = enter(splits[order_[i]], vertex_place(batch, i), context);
+      const PendingSplit& s = splits[order_[i]];
+      r = enter(s, vertex_place(batch, i), context);
       r.triangle = triangles;
-      triangles += triangles_of(r.flags);
-      fetcher.fetch_vertices(r.w, r.vl, r.vr);
+      triangles += triangles_of(s.flags);
+      fetcher.fetch_vertex(r.w);
     }
     if (const std::size_t i = at(F::kTriangle); i < count) {
       fetcher.fetch_triangle(ring[i % kRing].w);
@@ -206,11 +194,8 @@ void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const B
     if (const std::size_t i = at(F::kNeighbours); i < count) {
       fetcher.fetch_neighbours(ring[i % kRing].w);
     }
-    if (const std::size_t i = at(F::kBeyond); i < count) {
-      fetcher.fetch_beyond(ring[i % kRing].w);
-    }
     if (const std::size_t i = at(F::kApply); i < count) {
-      apply_one(ring[i % kRing], batch, splits, context);
+      apply_one(splits[order_[i]], ring[i % kRing], batch, context);
     }
   }
 }
@@ -237,7 +222,7 @@ Refinement::Batch Refinement::reserve(std::span<const PendingSplit> splits,
   };
   reserve_large(tin_.vertices, grown(vertices, tin_.vertices.capacity()));
   reserve_large(tin_.triangles, grown(triangles, tin_.triangles.capacity()));
-  ids_.reserve(tin_.vertices.capacity());
+  ids_.reserve(tin_, tin_.vertices.capacity());
   tin_.vertices.resize(vertices);
   tin_.has_height.resize(vertices);
   tin_.triangles.resize(triangles, {{kNone, kNone, kNone}, {kNone, kNone, kNone}});
@@ -259,47 +244,48 @@ void Refinement::forget_places(const Batch& batch) {
   drop(free_triangles_, batch.triangles);
 }
 
-/// Puts the new vertex in its place, in no triangle yet, and looks up the vertices w, vl and vr of
-/// its split.
+/// Puts the new vertex in its place, in no triangle yet, and looks up the vertex w of its split.
 Refinement::Resolved Refinement::enter(const PendingSplit& s, VertexId u,
                                        const QueryContext& context) {
-  if (!ids_.insert(s.u, u)) [[unlikely]] {
+  tin_.vertices[u] = {point_of(s.u), s.height, kNone};
+  const bool is_void = (s.flags & VertexSplit::kVertexVoid) != 0;
+  tin_.has_height[u] = is_void ? 0 : 1;
+  has_void_vertex_ |= is_void;
+  if (!ids_.insert(tin_, u)) [[unlikely]] {
     throw_refused(s, "its vertex is in the mesh already", context);
   }
-  tin_.vertices[u] = {point_of(s.u), s.height, kNone};
-  tin_.has_height[u] = (s.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0;
   if (track_pages_) {
     vertex_pages_[u] = s.page;
   }
-  const Resolved r{u, ids_.find(s.w), ids_.find(s.vl), ids_.find(s.vr), 0, s.flags};
-  if (r.w == KeyTable::kAbsent || r.vl == KeyTable::kAbsent || r.vr == KeyTable::kAbsent)
-      [[unlikely]] {
-    throw_refused(s, "it names a vertex that no retrieved record makes before it", context);
+  const VertexId w = ids_.find(tin_, s.w);
+  if (w == kNone) [[unlikely]] {
+    throw_not_made(s, context);
   }
-  return r;
+  return {u, w, 0};
 }
 
-void Refinement::apply_one(const Resolved& s, const Batch& batch,
-                           std::span<const PendingSplit> splits, const QueryContext& context) {
-  const SplitSite site = site_of(s.u, s.w, s.vl, s.vr, s.flags);
-  const bool w_is_there = tin_.vertices[s.w].triangle != kNone;
+void Refinement::apply_one(const PendingSplit& s, const Resolved& r, const Batch& batch,
+                           const QueryContext& context) {
+  SplitSite site = site_of(r.u, r.w, kNone, kNone, s.flags);
+  const bool w_is_there = tin_.vertices[r.w].triangle != kNone;
   // A record with one side (or, damaged, with none) does not use the other place, which may not
   // exist.
-  const TriangleId left = triangle_place(batch, s.triangle);
-  const TriangleId right = triangle_place(batch, s.triangle + (site.has_left ? 1 : 0));
-  const bool is_applied = w_is_there && split_into(tin_, site, left, right);
-  if (!is_applied || !classes_fit(tin_, site)) [[unlikely]] {
-    const VertexKey key = key_of(tin_.position(s.u));
-    throw_refused(*std::find_if(splits.begin(), splits.end(),
-                                [key](const PendingSplit& p) { return p.u == key; }),
-                  is_applied ? "its classes do not fit its heights" : "it does not fit the mesh",
-                  context);
+  const TriangleId left = triangle_place(batch, r.triangle);
+  const TriangleId right = triangle_place(batch, r.triangle + (site.has_left ? 1 : 0));
+  if (!w_is_there || !split_into(tin_, site, {s.vl, s.vr}, left, right)) [[unlikely]] {
+    if (ids_.find(tin_, s.vl) == kNone || ids_.find(tin_, s.vr) == kNone) {
+      throw_not_made(s, context);
+    }
+    throw_refused(s, "it does not fit the mesh", context);
+  }
+  if (has_void_vertex_ && !classes_fit(tin_, site)) [[unlikely]] {
+    throw_refused(s, "its classes do not fit its heights", context);
   }
   if (track_pages_) {
     Star star;
-    walk_star(tin_, s.u, star);
+    walk_star(tin_, r.u, star);
     for (const TriangleId t : star.triangles) {
-      triangle_pages_[t] = vertex_pages_[s.u];
+      triangle_pages_[t] = vertex_pages_[r.u];
     }
   }
 }

@@ -9,15 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "engine/geometry/key_table.h"
 #include "engine/mesh/star.h"
 #include "engine/mesh/tin.h"
+#include "engine/mesh/vertex_table.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/retrieval.h"
 
 namespace ptin {
 
-/// Bytes of a mesh and its key table. For T0: what a refinement begins with.
+/// Bytes of a mesh and its table of vertices. For T0: what a refinement begins with.
 [[nodiscard]] std::uint64_t bytes_of(const Tin& tin) noexcept;
 
 /// A mesh that splits are applied to and taken back from. A moving window keeps one, applies what
@@ -68,8 +68,8 @@ class Refinement {
   [[nodiscard]] std::size_t alive_triangles() const noexcept {
     return tin_.triangles.size() - free_triangles_.size();
   }
-  /// Local index of a vertex, or KeyTable::kAbsent.
-  [[nodiscard]] VertexId find(VertexKey key) const noexcept { return ids_.find(key); }
+  /// Local index of a vertex, or kNone.
+  [[nodiscard]] VertexId find(VertexKey key) const noexcept { return ids_.find(tin_, key); }
   /// Gives the mesh away; the refinement is not used afterwards.
   [[nodiscard]] Tin release_tin() noexcept { return std::move(tin_); }
   /// For each triangle the page of the record that made it, kNone for T0. Empty when pages are not
@@ -79,11 +79,10 @@ class Refinement {
   }
 
  private:
-  /// A split in local indices.
+  /// What is known of a split before it is applied.
   struct Resolved {
-    VertexId u, w, vl, vr;
+    VertexId u, w;
     std::uint32_t triangle;  ///< Number of its first new triangle among those of its batch.
-    std::uint32_t flags;
   };
   /// Where a batch puts its new vertices and triangles: first in the places of removed ones, then
   /// from `first_vertex` and `first_triangle` on.
@@ -104,7 +103,7 @@ class Refinement {
   }
   [[nodiscard]] Batch reserve(std::span<const PendingSplit> splits, const QueryContext& context);
   [[nodiscard]] Resolved enter(const PendingSplit& split, VertexId u, const QueryContext& context);
-  void apply_one(const Resolved& split, const Batch& batch, std::span<const PendingSplit> splits,
+  void apply_one(const PendingSplit& split, const Resolved& resolved, const Batch& batch,
                  const QueryContext& context);
   void apply_one_by_one(std::span<const PendingSplit> splits, const Batch& batch,
                         const QueryContext& context);
@@ -114,10 +113,11 @@ class Refinement {
   void undo_one(const PendingSplit& split, Star& star, const QueryContext& context);
 
   Tin tin_;
-  KeyTable ids_;
+  VertexTable ids_;
   std::vector<std::uint32_t> order_;
   std::vector<VertexId> free_vertices_;  ///< Removed: their places are used again.
   std::vector<TriangleId> free_triangles_;
+  bool has_void_vertex_ = false;  ///< Since the restart a vertex without a height was there.
   bool track_pages_;
   std::vector<std::uint32_t> vertex_pages_,
       triangle_pages_;  ///< Beside the mesh's arrays, when tracked.

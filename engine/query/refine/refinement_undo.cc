@@ -42,9 +42,9 @@ void Refinement::undo(std::span<const PendingSplit> splits, QueryContext& contex
 /// Undoes one split. Before it changes anything it checks that the collapse is the inverse of the
 /// split, down to the ends vl and vr: a record that applied records still need has another star.
 void Refinement::undo_one(const PendingSplit& s, Star& star, const QueryContext& context) {
-  const VertexId u = ids_.find(s.u);
-  const VertexId w = ids_.find(s.w);
-  if (u == KeyTable::kAbsent || w == KeyTable::kAbsent) {
+  const VertexId u = ids_.find(tin_, s.u);
+  const VertexId w = ids_.find(tin_, s.w);
+  if (u == kNone || w == kNone) {
     throw_refused(s, "it cannot be undone, it or its w is not in the mesh", context);
   }
   walk_star(tin_, u, star);
@@ -57,7 +57,7 @@ void Refinement::undo_one(const PendingSplit& s, Star& star, const QueryContext&
     throw_refused(s, "it cannot be undone, since records that stay need it", context);
   }
   collapse(tin_, star, at);
-  ids_.erase(s.u);
+  ids_.erase(tin_, s.u);
   free_vertices_.push_back(u);
   for (const TriangleId t : {site.left, site.right}) {
     if (t != kNone) {

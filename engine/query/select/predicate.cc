@@ -13,7 +13,7 @@ namespace ptin {
 
 namespace {
 
-class Everything final : public BoundedPredicate {
+class Everything final : public AttributePredicate {
  public:
   [[nodiscard]] bool holds(const Attributes&) const noexcept override { return true; }
   [[nodiscard]] bool holds_for_all(const Attributes&, double) const noexcept override {
@@ -21,7 +21,7 @@ class Everything final : public BoundedPredicate {
   }
 };
 
-class MeetsRegion final : public BoundedPredicate {
+class MeetsRegion final : public AttributePredicate {
  public:
   MeetsRegion(const Region& region, const AffineMap& map) : region_(region, map) {}
   [[nodiscard]] GridBox reach() const noexcept override { return region_.bounds(); }
@@ -38,7 +38,7 @@ class MeetsRegion final : public BoundedPredicate {
 
 /// Compares decoded heights, which are what callers see at vertices. Decoding is monotone in the
 /// code, so the predicate is monotone too.
-class HeightsMeet final : public BoundedPredicate {
+class HeightsMeet final : public AttributePredicate {
  public:
   HeightsMeet(double low, double high, const HeightEncoding& heights)
       : low_(low), high_(high), heights_(heights) {}
@@ -56,7 +56,7 @@ class HeightsMeet final : public BoundedPredicate {
   HeightEncoding heights_;
 };
 
-class SeenFrom final : public BoundedPredicate {
+class SeenFrom final : public AttributePredicate {
  public:
   SeenFrom(const View& view, const AffineMap& map, const HeightEncoding& heights)
       : view_(view), heights_(heights), eye_(map.to_grid(view.eye)) {
@@ -110,20 +110,9 @@ class SeenFrom final : public BoundedPredicate {
   double ground_x_ = 1, ground_y_ = 1, slack_x_ = 0, slack_y_ = 0;
 };
 
-/// For each part the part as a BoundedPredicate, or null where it is none.
-std::vector<const BoundedPredicate*> bounded_parts(const std::vector<PredicatePtr>& parts) {
-  std::vector<const BoundedPredicate*> result;
-  result.reserve(parts.size());
-  for (const PredicatePtr& p : parts) {
-    result.push_back(dynamic_cast<const BoundedPredicate*>(p.get()));
-  }
-  return result;
-}
-
-class AllOf final : public BoundedPredicate {
+class AllOf final : public AttributePredicate {
  public:
-  explicit AllOf(std::vector<PredicatePtr> parts)
-      : parts_(std::move(parts)), bounded_(bounded_parts(parts_)) {}
+  explicit AllOf(std::vector<PredicatePtr> parts) : parts_(std::move(parts)) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return std::all_of(parts_.begin(), parts_.end(),
                        [&](const PredicatePtr& p) { return p->holds(a); });
@@ -141,34 +130,29 @@ class AllOf final : public BoundedPredicate {
   }
   [[nodiscard]] bool holds_for_all(const Attributes& all,
                                    double least_error) const noexcept override {
-    return std::all_of(bounded_.begin(), bounded_.end(), [&](const BoundedPredicate* p) {
-      return p != nullptr && p->holds_for_all(all, least_error);
-    });
+    return std::all_of(parts_.begin(), parts_.end(),
+                       [&](const PredicatePtr& p) { return p->holds_for_all(all, least_error); });
   }
 
  private:
   std::vector<PredicatePtr> parts_;
-  std::vector<const BoundedPredicate*> bounded_;  ///< Beside the parts.
 };
 
-class AnyOf final : public BoundedPredicate {
+class AnyOf final : public AttributePredicate {
  public:
-  explicit AnyOf(std::vector<PredicatePtr> parts)
-      : parts_(std::move(parts)), bounded_(bounded_parts(parts_)) {}
+  explicit AnyOf(std::vector<PredicatePtr> parts) : parts_(std::move(parts)) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
     return std::any_of(parts_.begin(), parts_.end(),
                        [&](const PredicatePtr& p) { return p->holds(a); });
   }
   [[nodiscard]] bool holds_for_all(const Attributes& all,
                                    double least_error) const noexcept override {
-    return std::any_of(bounded_.begin(), bounded_.end(), [&](const BoundedPredicate* p) {
-      return p != nullptr && p->holds_for_all(all, least_error);
-    });
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [&](const PredicatePtr& p) { return p->holds_for_all(all, least_error); });
   }
 
  private:
   std::vector<PredicatePtr> parts_;
-  std::vector<const BoundedPredicate*> bounded_;  ///< Beside the parts.
 };
 
 void check_parts(const std::vector<PredicatePtr>& parts) {

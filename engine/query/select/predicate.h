@@ -21,23 +21,10 @@
 
 namespace ptin {
 
-/// A monotone predicate that can also tell that it is true for all records of a page or a subtree.
-/// A moving window skips the pages on which its old and its new predicate agree in this way
-/// (refine/moving_window.h). All predicates below but MeetsBox are bounded.
-class BoundedPredicate : public AttributePredicate {
- public:
-  /// True only when holds(r) is certain for every record r whose roi is not empty and lies in
-  /// `all.roi`, whose heights lie in `all.heights` (or are empty), and whose error is at least
-  /// `least_error`. False where that is not certain. Once false, it stays false while `all` grows
-  /// or `least_error` falls.
-  [[nodiscard]] virtual bool holds_for_all(const Attributes& all,
-                                           double least_error) const noexcept = 0;
-};
-
 /// True for records of an error above a bound (height's unit). Unlike the tolerance of
 /// error_above(), the bound may be negative (always true) or infinite (never true). Monotone,
 /// exact. Threads: immutable.
-class AboveError final : public BoundedPredicate {
+class AboveError final : public AttributePredicate {
  public:
   explicit AboveError(double bound) : bound_(bound) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override { return a.error > bound_; }
@@ -58,6 +45,9 @@ class MeetsBox final : public AttributePredicate {
     return meets(a.roi, box_);
   }
   [[nodiscard]] GridBox reach() const noexcept override { return box_; }
+  [[nodiscard]] bool holds_for_all(const Attributes& all, double) const noexcept override {
+    return contains(box_, all.roi);
+  }
 
  private:
   GridBox box_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/select/retrieval.h"
 
-#include "engine/geometry/key_table.h"
 #include "engine/large_array.h"
 #include "engine/mesh/tin.h"
+#include "engine/mesh/vertex_table.h"
 
 namespace ptin {
 
@@ -12,7 +12,7 @@ std::uint64_t refinement_bytes(std::uint64_t records) noexcept {
   constexpr std::uint64_t kTriangleBytes = sizeof(Triangle) + sizeof(TriangleClass);
   constexpr std::uint64_t kRecordBytes =
       sizeof(PendingSplit) + 4 * sizeof(std::uint32_t) + kVertexBytes + 2 * kTriangleBytes;
-  return records * kRecordBytes + KeyTable::bytes_for(records);
+  return records * kRecordBytes + VertexTable::bytes_for(records);
 }
 
 std::uint64_t most_records(const StoreFile& store, std::span<const PageId> pages) {

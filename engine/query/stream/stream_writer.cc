@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
+#include "engine/geometry/key_table.h"
 #include "engine/mesh/split.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/split_site.h"
@@ -228,8 +229,7 @@ Tin Writer::base_mesh() {
         retrieve(source_, *predicate, refinement_bytes(refinement.tin().vertices.size()), context_);
     // Before cutting, since a serving counts the splits that it sent, without those that the
     // receiver had by then.
-    std::erase_if(splits,
-                  [&](const PendingSplit& s) { return refinement.find(s.u) != KeyTable::kAbsent; });
+    std::erase_if(splits, [&](const PendingSplit& s) { return refinement.find(s.u) != kNone; });
     if (held.splits < splits.size()) {
       const auto last = splits.begin() + static_cast<std::ptrdiff_t>(held.splits);
       std::nth_element(splits.begin(), last, splits.end(), is_before);

@@ -189,8 +189,7 @@ RC_GTEST_PROP(Refine, TwoClosedSetsOneAfterTheOtherGiveTheUnion, (std::uint64_t 
   Refinement refinement(mesh_of(store.t0(), store.path()));
   refinement.apply(retrieve(source, *first, 0, context), context);
   std::vector<PendingSplit> more = retrieve(source, *both, 0, context);
-  std::erase_if(more,
-                [&](const PendingSplit& s) { return refinement.find(s.u) != KeyTable::kAbsent; });
+  std::erase_if(more, [&](const PendingSplit& s) { return refinement.find(s.u) != kNone; });
   refinement.apply(more, context);
   RC_ASSERT(validate(refinement.tin()).empty());
   RC_ASSERT(canonical(refinement.tin()) == canonical(asked.refine(*both).tin));
