@@ -75,6 +75,7 @@ class Simplifier {
   [[nodiscard]] static PriorityScale scale_of(const Tile& tile, CostModel cost);
   [[nodiscard]] std::optional<FirstMeasure> measure_on_grid(const GridStars& grid,
                                                             VertexId u) const;
+  void count();
   void fill_queue();
   void check_in();
   [[nodiscard]] Evaluation evaluate(VertexId u);
@@ -168,6 +169,16 @@ std::optional<Simplifier::FirstMeasure> Simplifier::measure_on_grid(const GridSt
   return FirstMeasure{choice->w, scale_(measure)};
 }
 
+/// Counts the vertices that are there.
+void Simplifier::count() {
+  for (VertexId v = 0; v < tile_.tin.vertices.size(); ++v) {
+    if (tile_.tin.vertices[v].triangle != kNone) {
+      ++alive_;
+      left_ += tile_.vertex_state[v].locked ? 0 : 1;
+    }
+  }
+}
+
 void Simplifier::fill_queue() {
   std::optional<GridStars> grid;
   if (options_.full_raster && options_.cost == CostModel::kError) {
@@ -177,14 +188,9 @@ void Simplifier::fill_queue() {
   state_.assign(n, QueueState::kAbsent);
   target_.assign(n, kNone);
   for (VertexId v = 0; v < n; ++v) {
-    if (tile_.tin.vertices[v].triangle == kNone) {
+    if (tile_.tin.vertices[v].triangle == kNone || tile_.vertex_state[v].locked) {
       continue;
     }
-    ++alive_;
-    if (tile_.vertex_state[v].locked) {
-      continue;
-    }
-    ++left_;
     check_in();
     std::optional<FirstMeasure> first = grid ? measure_on_grid(*grid, v) : std::nullopt;
     if (!first) {
@@ -381,8 +387,12 @@ void Simplifier::take_top() {
 }
 
 void Simplifier::run() {
+  count();
+  if (left_ <= options_.keep) {  // as of leaves of which a first pass left less
+    return;
+  }
   fill_queue();
-  tile_.stars.reserve(left_ > options_.keep ? left_ - options_.keep : 0);
+  tile_.stars.reserve(left_ - options_.keep);
   while (!queue_.empty() && left_ > options_.keep) {
     check_in();
     compact_when_sparse();
