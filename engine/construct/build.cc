@@ -35,13 +35,15 @@ void build_raster(Job& job) {
   job.report.vertices =
       static_cast<std::uint64_t>(source.width()) * static_cast<std::uint64_t>(source.height());
   const MeasureUnits units = measure_units(source.frame(), job.options.void_slope);
-  const auto make_starter = [&source, units]() -> LeafStarter {
-    const auto own = std::make_shared<const RasterSource>(source.duplicate());
-    return
-        [own, units](const SampleRange& window) { return start_raster_tile(*own, window, units); };
-  };
   const std::int64_t side =
       job.options.tile.value_or(TileTree::default_side(source.width(), source.height()));
+  const bool thins_sides = job.options.max_error > 0.0 && side % 32 == 0 && side >= 64;
+  const auto make_starter = [&source, units, thins_sides]() -> LeafStarter {
+    const auto own = std::make_shared<const RasterSource>(source.duplicate());
+    return [own, units, thins_sides](const SampleRange& window) {
+      return start_raster_tile(*own, window, units, thins_sides);
+    };
+  };
   const TiledSource tiled{source.frame(), units, TileTree(source.width(), source.height(), side),
                           make_starter};
   const BuildPlan plan = plan_build(tiled.tree, job.plan_request({}));

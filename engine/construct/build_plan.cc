@@ -16,10 +16,8 @@ namespace ptin {
 
 namespace {
 
-// Measured on terrains of 4097 to 16385 samples a side, with some room (engine/DECISIONS.md, section
-// 6.2, and bench/results/builds.md).
-constexpr double kOutputBytesOfVertex = 66.0;
-constexpr double kVerticesPerSecond = 150000.0;  ///< A thread's, both halves of the build.
+// A thread's, both halves of the build: measured, with some room (bench/results/builds.md).
+constexpr double kVerticesPerSecond = 150000.0;
 
 /// Of the largest leaf: the last one of a row may be half a side longer than the others.
 std::uint64_t samples_of_leaf(const TileTree& tree) {
@@ -141,7 +139,7 @@ void plan_disk(BuildPlan& plan, const PlanRequest& request) {
   const BuildResources& resources = request.resources;
   const SourceDisk& source = request.disk;
   const auto vertices = static_cast<double>(plan.vertices);
-  plan.output_bytes = static_cast<std::uint64_t>(vertices * kOutputBytesOfVertex) + kMiB;
+  plan.output_bytes = static_cast<std::uint64_t>(vertices * source.output_of_vertex) + kMiB;
   const std::uint64_t tiles =
       plan.leaves == 1 ? 0 : static_cast<std::uint64_t>(vertices * source.tiles_of_vertex) + kMiB;
   plan.temporary_bytes = std::max(source.while_reading, source.kept + tiles);

@@ -10,12 +10,14 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "engine/construct/build_plan.h"
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/mesh/validate.h"
@@ -360,6 +362,43 @@ TEST(Build, SaysThatTheFolderIsMissing) {
   const ScratchFolder folder;
   EXPECT_EQ(error_of([&] { build({raster.path()}, folder.file("no/out.ptin"), {}, {}); }).code(),
             ErrorCode::not_found);
+}
+
+/// Builds `input`, which is noise: the output fits into what was planned for it, and nearly needs it.
+void expect_planned_output(const std::string& input) {
+  const ScratchFolder folder;
+  std::uint64_t planned = 0;
+  oracle::ToldBuild told;
+  told.on_plan = [&](const BuildPlan& plan) { planned = plan.output_bytes; };
+  BuildResources resources;
+  resources.observer = &told;
+  build({input}, folder.file("out.ptin"), {}, resources);
+  const std::uint64_t taken = std::filesystem::file_size(folder.file("out.ptin"));
+  EXPECT_LE(taken, planned);
+  EXPECT_GE(taken, (planned - (std::uint64_t{1} << 20)) * 85 / 100);  // a MiB is for small files
+}
+
+TEST(Build, PlansForTheOutputOfNoise) {
+  std::mt19937_64 random(1);
+  RasterFile file;
+  file.columns = 400;
+  file.rows = 300;
+  file.type = GDT_Int32;
+  file.value = [&](int, int) { return static_cast<double>(random() >> 34); };
+  const WrittenRaster raster(file);
+  expect_planned_output(raster.path());
+
+  const ScratchFolder folder;
+  std::string points = "x,y,z\n";
+  const auto number = [&] {
+    return std::to_string(random() % 1000) + '.' +
+           std::to_string(1000000 + random() % 1000000).substr(1);
+  };
+  for (int i = 0; i < 50000; ++i) {
+    points += number() + ',' + number() + ',' + number() + '\n';
+  }
+  oracle::write_text(folder.file("points.csv"), points);
+  expect_planned_output(folder.file("points.csv"));
 }
 
 TEST(Build, IsCancelledAtEveryStageAndKeepsWhatIsDone) {

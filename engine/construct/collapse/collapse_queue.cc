@@ -100,12 +100,6 @@ std::uint64_t PriorityScale::operator()(const CollapseMeasure& measure) const no
   return 0;
 }
 
-std::uint64_t PriorityScale::in_class_of(std::uint64_t former,
-                                         const CollapseMeasure& measure) const noexcept {
-  constexpr std::uint64_t kBelowClass = (std::uint64_t{1} << kClassShift) - 1;
-  return (former & ~kBelowClass) | ((*this)(measure)&kBelowClass);
-}
-
 void CollapseQueue::push(const QueueEntry& entry) {
   if (first_ != ahead_.size() && entry < ahead_.back()) {
     const auto from = ahead_.begin() + static_cast<std::ptrdiff_t>(first_);

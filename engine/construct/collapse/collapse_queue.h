@@ -64,9 +64,6 @@ class PriorityScale {
   /// @param vertices  Their number.
   PriorityScale(CostModel cost, const GridBox& bounds, std::uint64_t vertices) noexcept;
   [[nodiscard]] std::uint64_t operator()(const CollapseMeasure& measure) const noexcept;
-  /// The same with the class of the priority `former`, whatever error `measure` has.
-  [[nodiscard]] std::uint64_t in_class_of(std::uint64_t former,
-                                          const CollapseMeasure& measure) const noexcept;
 
  private:
   [[nodiscard]] std::uint64_t neighbourhood(GridPoint p, int octave) const noexcept;
@@ -80,10 +77,6 @@ inline constexpr int kClassBits = 10;
 /// Bits that the queue tells entries apart by before it sorts them: the class and, with
 /// CostModel::kError, the octave.
 inline constexpr int kBucketBits = 15;
-/// The class of a priority: with CostModel::kError an error class.
-[[nodiscard]] inline std::uint32_t class_of(std::uint64_t priority) noexcept {
-  return static_cast<std::uint32_t>(priority >> (64 - kClassBits));
-}
 
 /// A queue of vertices, least entry first. A vertex is in it at most once; the caller sees to that.
 ///

@@ -90,9 +90,11 @@ class FirstPass {
     }
   }
 
-  Tile run(double tolerance);
+  Tile run(const SurroundingSamples& around, double tolerance);
 
  private:
+  [[nodiscard]] std::vector<std::uint8_t> needed_within(const SurroundingSamples& around,
+                                                        double tolerance) const;
   void take_vertices(const std::vector<std::uint8_t>& needed);
   void take_triangles(const std::vector<RightTriangle>& triangles);
   void link();
@@ -116,10 +118,41 @@ class FirstPass {
   double worst_ = 0.0;                                   ///< The largest residual in list_, codes.
 };
 
-Tile FirstPass::run(double tolerance) {
+/// The samples that stay as corners.
+std::vector<std::uint8_t> FirstPass::needed_within(const SurroundingSamples& around,
+                                                   double tolerance) const {
+  if (around.heights.empty()) {
+    return needed_corners({samples_.grid, samples_.grid}, tolerance);
+  }
+  const GridBox part{std::max(box_.min_x - kDecidingMargin, around.box.min_x),
+                     std::max(box_.min_y - kDecidingMargin, around.box.min_y),
+                     std::min(box_.max_x + kDecidingMargin, around.box.max_x),
+                     std::min(box_.max_y + kDecidingMargin, around.box.max_y)};
+  const auto pitch = static_cast<std::size_t>(around.box.max_x - around.box.min_x + 1);
+  const auto columns = static_cast<std::size_t>(part.max_x - part.min_x + 1);
+  std::vector<double> codes;
+  std::vector<std::uint8_t> valid;
+  for (std::int32_t y = part.min_y; y <= part.max_y; ++y) {
+    const std::size_t first = static_cast<std::size_t>(y - around.box.min_y) * pitch +
+                              static_cast<std::size_t>(part.min_x - around.box.min_x);
+    for (std::size_t i = first; i < first + columns; ++i) {
+      codes.push_back(full_.units.heights.code(around.heights[i]));
+      valid.push_back(around.valid[i]);
+    }
+  }
+  SampleGrid outer;
+  outer.codes = codes;
+  outer.valid = valid;
+  outer.width = part.max_x - part.min_x + 1;
+  outer.height = part.max_y - part.min_y + 1;
+  return needed_corners({samples_.grid, outer, box_.min_x - part.min_x, box_.min_y - part.min_y},
+                        tolerance);
+}
+
+Tile FirstPass::run(const SurroundingSamples& around, double tolerance) {
   tile_.units = full_.units;
   tile_.samples_fill_grid = true;
-  const std::vector<std::uint8_t> needed = needed_corners(samples_.grid, tolerance);
+  const std::vector<std::uint8_t> needed = needed_within(around, tolerance);
   take_vertices(needed);
   take_triangles(right_triangles(samples_.grid, needed));
   link();
@@ -168,14 +201,22 @@ void FirstPass::link() {
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
     for (int i = 0; i < 3; ++i) {
       const EdgeMiddles::Side other = middles.match(tin, {t, i});
-      if (other.triangle == kNone) {
-        continue;
+      if (other.triangle != kNone) {
+        tin.triangles[t].n[i] = other.triangle;
+        tin.triangles[other.triangle].n[other.side] = t;
       }
-      tin.triangles[t].n[i] = other.triangle;
-      tin.triangles[other.triangle].n[other.side] = t;
-      const double gap = gap_along(t, i);
-      gap_[t] = std::max(gap_[t], gap);
-      gap_[other.triangle] = std::max(gap_[other.triangle], gap);
+    }
+  }
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const TriangleId beyond = tin.triangles[t].n[i];
+      if (beyond == kNone || beyond > t) {  // once for each edge, on the window's sides too
+        const double gap = gap_along(t, i);
+        gap_[t] = std::max(gap_[t], gap);
+        if (beyond != kNone) {
+          gap_[beyond] = std::max(gap_[beyond], gap);
+        }
+      }
     }
   }
   point_vertices(tin);
@@ -315,8 +356,9 @@ void FirstPass::store(TriangleId t) {
 
 }  // namespace
 
-void run_first_pass(Tile& tile, const FullSurface& full, const GridBox& box, double tolerance) {
-  tile = FirstPass(tile, full, box).run(tolerance);
+void run_first_pass(Tile& tile, const FullSurface& full, const GridBox& box,
+                    const SurroundingSamples& around, double tolerance) {
+  tile = FirstPass(tile, full, box).run(around, tolerance);
 }
 
 }  // namespace ptin

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "engine/construct/tile/full_surface.h"
+#include "engine/construct/tile/started_tile.h"
 #include "engine/construct/tile/tile.h"
 #include "engine/geometry/box.h"
 
@@ -19,10 +20,14 @@ inline constexpr double kFirstPassShare = 0.7;
 /// with residuals of at most `tolerance`. A triangle that leaves something out carries a record
 /// with its error, its deviation and its heights, as if a collapse had made it. The error of such a
 /// record is below --max-error, so no file keeps it.
+/// @param around     With the samples of `box`, of a margin of kDecidingMargin and of voids as
+///     SurroundedGrid asks for them: neighbouring tiles leave the same samples on their common sides.
+///     Empty: all samples on the border of `box` stay.
 /// @param tolerance  In height codes.
 /// REQUIRES: the samples of `box` fill tile.tin.vertices row by row (start_raster_tile()); nothing
 /// was collapsed; locked vertices are on the border of `box`.
 /// Cost: linear. Memory: about 200 bytes for each vertex that is left.
-void run_first_pass(Tile& tile, const FullSurface& full, const GridBox& box, double tolerance);
+void run_first_pass(Tile& tile, const FullSurface& full, const GridBox& box,
+                    const SurroundingSamples& around, double tolerance);
 
 }  // namespace ptin

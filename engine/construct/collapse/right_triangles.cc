@@ -13,6 +13,11 @@ namespace {
 /// How often a cell is doubled to the square in which the halving begins.
 constexpr int kDoublings = 5;
 constexpr std::int32_t kSquare = std::int32_t{1} << kDoublings;
+/// Corners at multiples of this stay on sides of a window. Whether one between them is needed is
+/// decided within 7 samples of it: a corner of squares of side s asks for samples up to s away, and
+/// for finer corners up to s away, which ask for less. So kDecidingMargin is enough, and being twice
+/// this it leaves the diagonals of squares as they are.
+constexpr std::int32_t kKeptOnSides = 8;
 
 struct Position {
   std::int32_t x, y;
@@ -83,15 +88,14 @@ bool is_within(const SampleGrid& grid, const Shape& shape, double tolerance) {
 /// Marks corners as not needed, from the finest squares to the coarsest.
 class Thinning {
  public:
-  Thinning(const SampleGrid& grid, double tolerance, std::vector<std::uint8_t>& needed)
-      : grid_(grid),
-        tolerance_(tolerance),
-        needed_(needed),
-        width_(covered(grid.width)),
-        height_(covered(grid.height)) {}
+  /// @param end  Corners in columns and rows below are thinned, but for column and row 0.
+  Thinning(const SampleGrid& grid, Position end, double tolerance,
+           std::vector<std::uint8_t>& needed)
+      : grid_(grid), tolerance_(tolerance), needed_(needed), width_(end.x), height_(end.y) {}
 
-  void run() {
-    for (std::int32_t side = 1; side < kSquare; side *= 2) {
+  /// Thins the corners of squares from `first` up to less than `last`.
+  void run(std::int32_t first, std::int32_t last) {
+    for (std::int32_t side = first; side < last; side *= 2) {
       thin_sides(side);
       thin_centres(side);
     }
@@ -314,9 +318,30 @@ std::vector<RightTriangle> Halving::run() {
 
 }  // namespace
 
-std::vector<std::uint8_t> needed_corners(const SampleGrid& grid, double tolerance) {
-  std::vector<std::uint8_t> needed(grid.codes.size(), 1);
-  Thinning(grid, tolerance, needed).run();
+namespace {
+
+/// Where thinning ends along one axis: where the window's squares end, if that is before its side;
+/// else with the last whole square of kKeptOnSides.
+std::int32_t end_of_thinning(std::int32_t window, std::int32_t before, std::int32_t around) {
+  return covered(window) < window - 1 ? before + covered(window)
+                                      : (around - 1) / kKeptOnSides * kKeptOnSides;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> needed_corners(const SurroundedGrid& grid, double tolerance) {
+  const SampleGrid& window = grid.window;
+  const SampleGrid& around = grid.around;
+  std::vector<std::uint8_t> finest(around.codes.size(), 1);
+  const Position end{end_of_thinning(window.width, grid.x, around.width),
+                     end_of_thinning(window.height, grid.y, around.height)};
+  Thinning(around, end, tolerance, finest).run(1, kKeptOnSides);
+  std::vector<std::uint8_t> needed(window.codes.size());
+  for (std::int32_t y = 0; y < window.height; ++y) {
+    std::copy_n(&finest[around.at(grid.x, grid.y + y)], window.width, &needed[window.at(0, y)]);
+  }
+  Thinning(window, {covered(window.width), covered(window.height)}, tolerance, needed)
+      .run(kKeptOnSides, kSquare);
   return needed;
 }
 

@@ -33,14 +33,29 @@ struct SampleGrid {
 /// The corners, as numbers of samples; counter-clockwise.
 using RightTriangle = std::array<std::uint32_t, 3>;
 
-/// For each sample 1 where it is needed as a corner, else 0. Of a triangle that is larger than half
-/// a cell either all samples have a height and residuals of at most `tolerance` (up to rounding),
-/// or none has a height. The border of the window keeps all of its samples, so that windows join
-/// without cracks. The rest at the northern and eastern sides that squares of 32 cells leave
-/// uncovered keeps all of its samples too.
+/// A window with what lies around it, as far as there is any.
+struct SurroundedGrid {
+  SampleGrid window;
+  SampleGrid around;          ///< Holds the window. `rising` is not asked for.
+  std::int32_t x = 0, y = 0;  ///< The window's first sample in `around`: multiples of 16.
+};
+
+/// As far beyond a side of the window, samples decide which corners on it are needed.
+inline constexpr std::int32_t kDecidingMargin = 16;
+
+/// For each sample of the window 1 where it is needed as a corner, else 0. Of a triangle that is
+/// larger than half a cell either all samples have a height and residuals of at most `tolerance` (up
+/// to rounding), or none has a height. So that windows join without cracks, a side of the window
+/// keeps its samples where nothing lies around it. Else it keeps every eighth, and of the others those
+/// that are needed on either side of it: of these the window beyond, whose surroundings hold the same
+/// samples, decides the same. The rest at the northern and eastern sides that squares of 32 cells
+/// leave uncovered keeps all of its samples.
+/// REQUIRES: where samples lie around a side they reach kDecidingMargin beyond it, the window's places
+/// in the raster are multiples of 16, and it has more than 32 samples a side.
 /// @param tolerance  In height codes.
 /// Cost: linear; each sample is looked at up to ten times.
-[[nodiscard]] std::vector<std::uint8_t> needed_corners(const SampleGrid& grid, double tolerance);
+[[nodiscard]] std::vector<std::uint8_t> needed_corners(const SurroundedGrid& grid,
+                                                       double tolerance);
 
 /// The triangles over these corners. Where both halves of a cell are there, the cell is cut as in
 /// the full TIN. Cost: their number.

@@ -10,8 +10,7 @@
 // 2. take_top() looks at the least entry. A clean one is collapsed into the w that it was measured
 //    with. A stale one is measured again: it is collapsed if it is still the least, and else goes
 //    back as a clean one. So a star that changes several times is measured once, when its turn
-//    comes. In the lowest classes, where most vertices are, the box and the chain are looked at
-//    first: where they have grown so that others come before it, a stale one goes back unmeasured.
+//    comes.
 // 3. collapse() has the record made, the samples handed over and the mesh changed (RecordMaker), in
 //    this order, since the record is measured on the star. Then it sets the degrees, and makes the
 //    entries of the link stale. A link vertex that no collapse was allowed for gets a new chance at
@@ -51,11 +50,6 @@ enum class QueueState : std::uint8_t {
   kStale,   ///< In the queue, but its star has changed since.
 };
 
-/// The last class in which the box of a stale entry is looked at before its error: that of one
-/// quantum. In higher classes vertices at a tolerance would be more by up to 1.5 %, since there many
-/// errors have changed (engine/DECISIONS.md, section 2.4).
-constexpr std::uint32_t kLastClassByBox = 1;
-
 class Simplifier {
  public:
   Simplifier(Tile& tile, const FullSurface* full, const SimplifyOptions& options)
@@ -81,10 +75,10 @@ class Simplifier {
   [[nodiscard]] static PriorityScale scale_of(const Tile& tile, CostModel cost);
   [[nodiscard]] std::optional<FirstMeasure> measure_on_grid(const GridStars& grid,
                                                             VertexId u) const;
+  void count();
   void fill_queue();
   void check_in();
-  [[nodiscard]] CollapseMeasure carried_around(VertexId u);
-  [[nodiscard]] Evaluation evaluate(CollapseMeasure carried);
+  [[nodiscard]] Evaluation evaluate(VertexId u);
   void take_top();
   void collapse(VertexId u, std::size_t j);
   [[nodiscard]] std::size_t most_samples() const;
@@ -138,12 +132,17 @@ void Simplifier::check_in() {
   }
 }
 
-/// Walks the star of `u`, which stays in star_, and sums up what it carries: all of the measure but
-/// the error.
-CollapseMeasure Simplifier::carried_around(VertexId u) {
-  walk_star(tile_.tin, u, star_.star);
+/// Measures the star of `u`, which stays in star_.
+Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
+  gather_star(tile_, u, star_);
+  Evaluation e;
+  e.choice = chooser_.choose(tile_, full_, star_);
+  if (e.choice.j == CollapseChoice::kNoNeighbour) {
+    return e;
+  }
   CollapseMeasure measure;
   measure.vertex = tile_.tin.position(u);
+  measure.error_quanta = e.choice.error / tile_.units.quantum_code;
   measure.roi = saturated_box(tile_, star_.star);
   measure.chain = saturated_chain(tile_, star_.star);
   if (options_.cost == CostModel::kElevation) {
@@ -151,18 +150,7 @@ CollapseMeasure Simplifier::carried_around(VertexId u) {
     measure.height_quanta =
         is_empty(heights) ? 0.0 : (heights.hi - heights.lo) / tile_.units.quantum_code;
   }
-  return measure;
-}
-
-/// Measures the star in star_, as carried_around() leaves it with `carried`.
-Simplifier::Evaluation Simplifier::evaluate(CollapseMeasure carried) {
-  gather_walked_star(tile_, star_);
-  Evaluation e;
-  e.choice = chooser_.choose(tile_, full_, star_);
-  if (e.choice.j != CollapseChoice::kNoNeighbour) {
-    carried.error_quanta = e.choice.error / tile_.units.quantum_code;
-    e.priority = scale_(carried);
-  }
+  e.priority = scale_(measure);
   return e;
 }
 
@@ -181,6 +169,16 @@ std::optional<Simplifier::FirstMeasure> Simplifier::measure_on_grid(const GridSt
   return FirstMeasure{choice->w, scale_(measure)};
 }
 
+/// Counts the vertices that are there.
+void Simplifier::count() {
+  for (VertexId v = 0; v < tile_.tin.vertices.size(); ++v) {
+    if (tile_.tin.vertices[v].triangle != kNone) {
+      ++alive_;
+      left_ += tile_.vertex_state[v].locked ? 0 : 1;
+    }
+  }
+}
+
 void Simplifier::fill_queue() {
   std::optional<GridStars> grid;
   if (options_.full_raster && options_.cost == CostModel::kError) {
@@ -190,18 +188,13 @@ void Simplifier::fill_queue() {
   state_.assign(n, QueueState::kAbsent);
   target_.assign(n, kNone);
   for (VertexId v = 0; v < n; ++v) {
-    if (tile_.tin.vertices[v].triangle == kNone) {
+    if (tile_.tin.vertices[v].triangle == kNone || tile_.vertex_state[v].locked) {
       continue;
     }
-    ++alive_;
-    if (tile_.vertex_state[v].locked) {
-      continue;
-    }
-    ++left_;
     check_in();
     std::optional<FirstMeasure> first = grid ? measure_on_grid(*grid, v) : std::nullopt;
     if (!first) {
-      const Evaluation e = evaluate(carried_around(v));
+      const Evaluation e = evaluate(v);
       if (e.choice.j == CollapseChoice::kNoNeighbour) {
         continue;
       }
@@ -378,15 +371,7 @@ void Simplifier::take_top() {
     collapse(top.vertex, j);
     return;
   }
-  const CollapseMeasure carried = carried_around(top.vertex);
-  if (options_.cost == CostModel::kError && class_of(top.priority) <= kLastClassByBox) {
-    const QueueEntry grown{scale_.in_class_of(top.priority, carried), top.vertex};
-    if (!queue_.empty() && queue_.top() < grown) {
-      queue_.push(grown);  // as stale as it was
-      return;
-    }
-  }
-  const Evaluation e = evaluate(carried);
+  const Evaluation e = evaluate(top.vertex);
   if (e.choice.j == CollapseChoice::kNoNeighbour) {
     state_[top.vertex] = QueueState::kAbsent;
     return;
@@ -402,8 +387,12 @@ void Simplifier::take_top() {
 }
 
 void Simplifier::run() {
+  count();
+  if (left_ <= options_.keep) {  // as of leaves of which a first pass left less
+    return;
+  }
   fill_queue();
-  tile_.stars.reserve(left_ > options_.keep ? left_ - options_.keep : 0);
+  tile_.stars.reserve(left_ - options_.keep);
   while (!queue_.empty() && left_ > options_.keep) {
     check_in();
     compact_when_sparse();

@@ -40,7 +40,7 @@ CollapsedLeaf collapse_leaf(const TileId& id, const TileTree& tree, const LeafSt
   SimplifyOptions simplifying = simplify_options(options, keep, stop);
   if (leaf.tile.samples_fill_grid) {
     if (options.first_pass > 0.0) {
-      run_first_pass(leaf.tile, *leaf.full, leaf.box, options.first_pass);
+      run_first_pass(leaf.tile, *leaf.full, leaf.box, leaf.around, options.first_pass);
     } else {
       simplifying.full_raster = leaf.box;
     }

@@ -246,8 +246,9 @@ void gather_samples(const Tile& tile, StarSamples& out) {
 
 namespace {
 
-void gather_shape(const Tile& tile, StarSamples& out) {
-  const GridPoint origin = tile.tin.position(out.star.center);
+void gather_shape(const Tile& tile, VertexId u, StarSamples& out) {
+  walk_star(tile.tin, u, out.star);
+  const GridPoint origin = tile.tin.position(u);
   const double origin_code = origin_code_of(tile, out.star);
   if (tile.units.heights.type == HeightType::int32) {
     gather_link<HeightType::int32>(tile, origin, origin_code, out);
@@ -263,12 +264,7 @@ void gather_shape(const Tile& tile, StarSamples& out) {
 }  // namespace
 
 void gather_star(const Tile& tile, VertexId u, StarSamples& out) {
-  walk_star(tile.tin, u, out.star);
-  gather_walked_star(tile, out);
-}
-
-void gather_walked_star(const Tile& tile, StarSamples& out) {
-  gather_shape(tile, out);
+  gather_shape(tile, u, out);
   out.flat = is_flat(tile, out);
   if (!out.flat && !out.void_only) {
     gather_samples(tile, out);
@@ -276,8 +272,7 @@ void gather_walked_star(const Tile& tile, StarSamples& out) {
 }
 
 void gather_star_and_samples(const Tile& tile, VertexId u, StarSamples& out) {
-  walk_star(tile.tin, u, out.star);
-  gather_shape(tile, out);
+  gather_shape(tile, u, out);
   out.flat = false;
   gather_samples(tile, out);
   gather_sources(tile, out);

@@ -73,9 +73,6 @@ struct StarSamples {
 /// cost no more than other ground. Cost: its degree and its samples.
 void gather_star(const Tile& tile, VertexId u, StarSamples& out);
 
-/// The same for a star that has been walked: `out.star` is that of its centre.
-void gather_walked_star(const Tile& tile, StarSamples& out);
-
 /// Gathers the samples of a star where gather_star() left them out.
 void gather_samples(const Tile& tile, StarSamples& out);
 

@@ -31,7 +31,8 @@ SourceDisk PointBuckets::disk_of(std::uint64_t points, PointMerge rule) noexcept
   return {.while_reading = points * (PointSpool::kRecordBytes + sorted),
           .spooled = points * PointSpool::kRecordBytes,
           .kept = points * kMostPackedBytes,
-          .tiles_of_vertex = 79.0};
+          .tiles_of_vertex = 79.0,
+          .output_of_vertex = kPointOutputOfVertex};
 }
 
 void PointBuckets::add_to_checksum(std::span<const std::byte> bucket) {

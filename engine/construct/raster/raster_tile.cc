@@ -156,16 +156,17 @@ SampleRange range_around(const SampleRange& raster, const SampleRange& window) {
 }
 
 StartedTile start_raster_tile(const RasterSource& source, const SampleRange& window,
-                              const MeasureUnits& units) {
+                              const MeasureUnits& units, bool keep_around) {
   RasterSamples samples;
   samples.raster = {0, 0, source.width(), source.height()};
-  samples.range = source.void_samples() == 0 ? window : range_around(samples.raster, window);
+  samples.has_voids = source.void_samples() != 0;
+  samples.keep_around = keep_around;
+  samples.range = samples.has_voids || keep_around ? range_around(samples.raster, window) : window;
   const auto n = static_cast<std::size_t>(samples.range.samples());
   samples.heights.resize(n);
   samples.valid.resize(n);
   source.read(samples.range.x0, samples.range.y0, samples.range.width, samples.range.height,
               samples.heights, samples.valid);
-  samples.has_voids = source.void_samples() != 0;
   if (samples.has_voids) {
     samples.step = largest_step(GroundMetric(source.frame()), box_of_window(samples.range));
   }
@@ -182,6 +183,9 @@ StartedTile start_raster_tile(RasterSamples&& samples, const SampleRange& window
     if (has_border(around)) {
       witnesses = witnesses_of(around, samples, window);
     }
+  }
+  if (samples.keep_around) {
+    started.around = {box_of_window(samples.range), samples.heights, samples.valid};
   }
   std::vector<HeightBits> heights = cut_out(samples.heights, samples.range, window);
   std::vector<std::uint8_t> valid = cut_out(samples.valid, samples.range, window);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/terrain_frame.h"
@@ -16,12 +17,20 @@
 
 namespace ptin {
 
+/// Samples of a raster in and around a window, row by row from the south-west.
+struct SurroundingSamples {
+  GridBox box;
+  std::vector<HeightBits> heights;
+  std::vector<std::uint8_t> valid;  ///< Beside `heights`; 0 for a sample without a height.
+};
+
 /// A leaf with the full TIN of its window, and the full surface under it.
 struct StartedTile {
   Tile tile;
   std::unique_ptr<FullSurface> full;
   GridBox box;                     ///< Of all samples and the full surface.
   std::uint64_t lone_samples = 0;  ///< Samples that touch no surface triangle; treated as void.
+  SurroundingSamples around;       ///< Where they were asked for; else empty.
 };
 
 /// The lengths of grid steps on the ground, at least those of each row of the box.

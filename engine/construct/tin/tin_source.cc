@@ -250,7 +250,10 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
 SourceDisk TinTriangles::disk_of(std::uint64_t vertices) noexcept {
   // What is kept: for each vertex two triangles of 56 bytes and its place; and void triangles.
   // Tiles take what those of points take.
-  return {.while_reading = vertices * 500, .kept = vertices * 130, .tiles_of_vertex = 79.0};
+  return {.while_reading = vertices * 500,
+          .kept = vertices * 130,
+          .tiles_of_vertex = 79.0,
+          .output_of_vertex = kPointOutputOfVertex};
 }
 
 /// Where part `i` begins along the curve.
