@@ -39,15 +39,12 @@ SightStars::SightStars(const OpenedTerrain& terrain, const SightFacts& facts,
 /// Before the ground below an end is known: T0 covers the domain, and is ground where the terrain
 /// has no void.
 void SightStars::state_domain(SightEnd& end, Spot spot) const {
-  const CoarsestTin& t0 = terrain_.store().t0();
-  for (const CoarsestTin::T& t : t0.triangles) {
-    const auto at = [&](std::size_t i) { return t0.vertices[t.v[i]].position; };
-    if (side(at(0), at(1), spot) >= 0 && side(at(1), at(2), spot) >= 0 &&
-        side(at(2), at(0), spot) >= 0) {
+  visit_living(terrain_.store().t0(), kInfinity, [&](const LivingTriangle& t) {
+    if (holds(t, spot)) {
       end.inside = true;
-      end.surface = end.surface || t.is_void == 0;
+      end.surface = end.surface || !t.is_void;
     }
-  }
+  });
 }
 
 bool SightStars::ends_known() const noexcept {
