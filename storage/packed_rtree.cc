@@ -95,57 +95,18 @@ void PackedRTree::search_stars(const StarFilter& filter, std::vector<StarPage>& 
   });
 }
 
-void PackedRTree::search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const {
+void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor,
+                                          Merit cut_off, IoCounters& counters) const {
   struct Waiting {
     Merit bound;
-    bool is_page;
-    std::uint32_t level;  // of a node
-    std::uint64_t number, checksum;
-    bool operator<(const Waiting& other) const { return bound.is_below(other.bound); }
-  };
-  const IndexShape& shape = nodes_.shape();
-  if (shape.levels() == 0) {
-    return;
-  }
-  std::vector<Waiting> heap{{{kInfinity, 0}, false, shape.levels() - 1, 0, nodes_.root_checksum()}};
-  Merit cut_off = kNoMerit;
-  while (!heap.empty() && !heap.front().bound.is_below(cut_off)) {
-    std::pop_heap(heap.begin(), heap.end());
-    const Waiting at = heap.back();
-    heap.pop_back();
-    if (at.is_page) {
-      cut_off = visitor.visit(PageId{at.number});
-      continue;
-    }
-    layout::IndexNode scratch;  // stays untouched when nodes are mapped
-    const layout::IndexNode& node = nodes_.node(at.level, at.number, at.checksum, scratch);
-    ++counters.index_nodes;
-    counters.bytes_read += layout::kNodeBytes;
-    const std::uint32_t entries = shape.entries(at.level, at.number);
-    for (std::uint32_t i = 0; i < entries; ++i) {
-      const layout::NodeEntry& entry = node.entry[i];
-      const Merit bound = visitor.bound(attributes_of(entry, heights_));
-      if (bound.value > -kInfinity && !bound.is_below(cut_off)) {
-        heap.push_back(
-            {bound, at.level == 0, at.level - 1, at.number * layout::kFanOut + i, entry.checksum});
-        std::push_heap(heap.begin(), heap.end());
-      }
-    }
-  }
-  nodes_.require_undamaged();
-}
-
-void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor,
-                                          double cut_off, IoCounters& counters) const {
-  struct Waiting {
-    double bound;
     std::uint32_t level;  // above that of its descriptor; 0: a page
     std::uint64_t number;
     std::uint64_t checksum;  // of a page: its place in `pages`
     bool operator<(const Waiting& other) const {
-      return bound != other.bound
-                 ? bound < other.bound
-                 : (level != other.level ? level < other.level : number > other.number);
+      if (bound.is_below(other.bound) || other.bound.is_below(bound)) {
+        return bound.is_below(other.bound);
+      }
+      return level != other.level ? level < other.level : number > other.number;
     }
   };
   const IndexShape& shape = nodes_.shape();
@@ -154,8 +115,8 @@ void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisi
   }
   const StarTest test(filter, heights_);
   std::vector<StarAttributes> pages;
-  std::vector<Waiting> heap{{kInfinity, shape.levels(), 0, nodes_.root_checksum()}};
-  while (!heap.empty() && !(heap.front().bound < cut_off)) {
+  std::vector<Waiting> heap{{kBestMerit, shape.levels(), 0, nodes_.root_checksum()}};
+  while (!heap.empty() && !heap.front().bound.is_below(cut_off)) {
     std::pop_heap(heap.begin(), heap.end());
     const Waiting at = heap.back();
     heap.pop_back();
@@ -167,8 +128,8 @@ void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisi
     visit(place, test, counters, [&](std::uint64_t child, const layout::NodeEntry& entry) {
       const StarAttributes a = star_attributes_of(entry, heights_);
       const bool is_page = place.level == 0;
-      const double bound = is_page ? visitor.bound(a) : visitor.bound_of_node(a, place.level - 1);
-      if (!(bound < cut_off)) {
+      const Merit bound = is_page ? visitor.bound(a) : visitor.bound_of_node(a, place.level - 1);
+      if (!bound.is_below(cut_off)) {
         heap.push_back({bound, place.level, child, is_page ? pages.size() : entry.checksum});
         std::push_heap(heap.begin(), heap.end());
         if (is_page) {

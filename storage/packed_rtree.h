@@ -14,32 +14,19 @@
 
 namespace ptin {
 
-/// How good a record is in a best-first search: by its value, larger is better, and among equal
+/// How good a star is in a best-first search: by its value, larger is better, and among equal
 /// values by its place, smaller is better.
 struct Merit {
   double value;  ///< Not NaN.
-  std::uint64_t place;
+  std::uint64_t place = 0;
   [[nodiscard]] bool is_below(const Merit& other) const noexcept {
     return value != other.value ? value < other.value : place > other.place;
   }
 };
-/// Below the merit of every record, and that of none.
+/// Below the merit of every star, and that of none.
 inline constexpr Merit kNoMerit{-kInfinity, ~std::uint64_t{0}};
-
-/// The caller's part of a best-first search: bounds, and what is done with each page.
-class BestFirstVisitor {
- public:
-  BestFirstVisitor() = default;
-  BestFirstVisitor(const BestFirstVisitor&) = delete;
-  BestFirstVisitor& operator=(const BestFirstVisitor&) = delete;
-  virtual ~BestFirstVisitor() = default;
-  /// An upper bound of the merit of any record with these attributes or smaller ones; a value of
-  /// -infinity when no such record is wanted. Monotone: larger attributes have no smaller bound.
-  [[nodiscard]] virtual Merit bound(const Attributes& a) const = 0;
-  /// Called for pages in the order of falling bounds. Returns the cut-off, which never falls: pages
-  /// and nodes whose bound is below it are not visited.
-  virtual Merit visit(PageId page) = 0;
-};
+/// Above the merit of every star: as a cut-off it ends a search.
+inline constexpr Merit kBestMerit{kInfinity, 0};
 
 /// A page of stars that a search found.
 struct StarPage {
@@ -48,7 +35,7 @@ struct StarPage {
   std::uint32_t records = 0;
 };
 
-/// As BestFirstVisitor, of stars.
+/// The caller's part of a best-first search: bounds, and what is done with each page.
 class BestStarVisitor {
  public:
   BestStarVisitor() = default;
@@ -57,16 +44,17 @@ class BestStarVisitor {
   virtual ~BestStarVisitor() = default;
   /// An upper bound of the merit of any star within these attributes: larger ones have no smaller
   /// bound.
-  [[nodiscard]] virtual double bound(const StarAttributes& a) const = 0;
+  [[nodiscard]] virtual Merit bound(const StarAttributes& a) const = 0;
   /// The same for a node, whose turn among the pages this decides.
   /// @param level  Of the node: 0 is a leaf, above pages.
-  [[nodiscard]] virtual double bound_of_node(const StarAttributes& a, std::uint32_t level) const {
+  [[nodiscard]] virtual Merit bound_of_node(const StarAttributes& a, std::uint32_t level) const {
     static_cast<void>(level);
     return bound(a);
   }
-  /// Called for pages in the order of falling bounds. Returns the cut-off.
+  /// Called for pages in the order of falling bounds. Returns the cut-off: pages and nodes whose
+  /// bound is below it are not visited.
   /// @param a  What the descriptor says of the page's stars.
-  virtual double visit(PageId page, const StarAttributes& a) = 0;
+  virtual Merit visit(PageId page, const StarAttributes& a) = 0;
 };
 
 class PackedRTree final : public RecordIndex {
@@ -88,15 +76,13 @@ class PackedRTree final : public RecordIndex {
   void search_stars(const StarFilter& filter, std::vector<StarPage>& pages,
                     IoCounters& counters) const;
 
-  /// Visits pages best first, until the bounds of all that are left lie below the cut-off.
-  /// @throws Error corruption, io_error; what the visitor throws
-  /// Cost: the nodes and pages whose bound is at least the final cut-off, times a logarithm.
-  void search_best_first(BestFirstVisitor& visitor, IoCounters& counters) const;
-
-  /// The same for pages with a star that may hold what the filter asks for.
+  /// Visits pages with a star that may hold what the filter asks for, best first, until the bounds
+  /// of all that are left lie below the cut-off.
   /// @param cut_off  Until the first page is visited.
-  /// Cost: as search_best_first(); the visitor is asked about entries that pass the filter alone.
-  void search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor, double cut_off,
+  /// @throws Error corruption, io_error; what the visitor throws
+  /// Cost: the nodes and pages whose bound is at least the final cut-off, times a logarithm; the
+  /// visitor is asked about entries that pass the filter alone.
+  void search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor, Merit cut_off,
                                IoCounters& counters) const;
 
  private:

@@ -313,7 +313,7 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
   refuse({"volume", "--level", "nan"}, 2, "finite");
   refuse({"volume", "--level", "1", "--memory", "1K"}, 7, "more than the limit of 1 KiB");
   refuse({"volume", "--against", folder.file("none.ptin")}, 3, "none.ptin");
-  refuse({"highest", "--memory", "1K"}, 7, "more than the limit of 1 KiB");
+  refuse({"highest", "-k", "1000", "--memory", "1K"}, 7, "more than the limit of 1 KiB");
   refuse({"highest", "-k", "0"}, 2, "-k");
   refuse({"highest", "--window", "3", "2", "1", "4"}, 2, "inverted");
   refuse({"viewshed", "0", "0", "1", "--radius", "9", "-o", folder.file("v.png")}, 2,

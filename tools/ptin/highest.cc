@@ -91,7 +91,7 @@ int run_highest(const HighestOptions& options, const Context& context) {
 
 Action declare_highest(CLI::App& app, Context& context) {
   const auto options = std::make_shared<HighestOptions>();
-  add_terrain_options(app, options->terrain, true);
+  add_terrain_options(app, options->terrain, false);
   add_region_options(app, options->region, RegionKinds::kWindow);
   app.add_flag("--lowest", options->lowest, "The lowest point instead");
   app.add_option("-k", options->listed, "How many of the highest vertices to list")

@@ -211,7 +211,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
 
 Action declare_volume(CLI::App& app, Context& context) {
   const auto options = std::make_shared<VolumeOptions>();
-  add_terrain_options(app, options->terrain, true);
+  add_terrain_options(app, options->terrain, false);
   auto* level = app.add_option("--level", options->level, "A height, in the height's unit");
   level->type_name("H");
   app.add_option("--against", options->against,

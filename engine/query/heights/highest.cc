@@ -6,22 +6,19 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
-#include "engine/query/heights/highest_gather.h"
-#include "engine/query/heights/locate.h"
-#include "engine/query/refine/refinement.h"
+#include "engine/query/living/living_ties.h"
 #include "engine/query/select/detail.h"
-#include "engine/query/select/predicate.h"
 #include "engine/query/walk/spot.h"
+#include "storage/packed_rtree.h"
 
 namespace ptin {
 
 namespace {
-
-constexpr std::size_t kFirstSpare = 16;  // vertices located beyond those asked for
 
 /// A rectangle on the grid, in real numbers.
 struct Rectangle {
@@ -70,151 +67,162 @@ Spot spot_of_clamped(double x, double y, const GridBox& b) {
   return {spot(x, b.min_x, b.max_x), spot(y, b.min_y, b.max_y)};
 }
 
-class Search {
+/// A vertex that may be among the highest.
+struct HighCandidate {
+  double value;  ///< Its height's code, negated when the lowest are wanted.
+  VertexKey key;
+  /// The order of the best vertices, which no file's layout changes.
+  bool operator<(const HighCandidate& other) const noexcept {
+    return value != other.value ? value > other.value : key < other.key;
+  }
+};
+
+/// What a candidate takes in a set.
+constexpr std::uint64_t kBytesACandidate = 64;
+
+/// Takes the triangles that live at the level, those of the highest stars first. "Above" means
+/// below when the lowest are wanted.
+class HighestSearch final : private BestStarVisitor {
  public:
-  Search(const OpenedTerrain& terrain, const HighestRequest& request)
+  HighestSearch(const OpenedTerrain& terrain, const HighestRequest& request)
       : terrain_(terrain),
         store_(terrain.store()),
         facts_(store_.facts()),
         request_(request),
-        context_(request.limits, store_.path()) {
-    if (request.listed == 0) {
-      throw Error(ErrorCode::invalid_argument, "no vertex is asked for: expected at least one");
-    }
+        context_(request.limits, store_.path()),
+        detail_(checked(request).detail, terrain.record_source(), context_),
+        ties_(detail_) {
+    filter_.box = facts_.bounds;
     if (request.window) {
       region_.emplace(*request.window, facts_.map);
+      filter_.box = region_->bounds();
     }
+    set_level(detail_, filter_);
+    window_ = rectangle();
   }
 
   HighestResult run() {
-    const Detail detail(request_.detail, terrain_.record_source(), context_);
     HighestResult result;
-    result.certified_error = detail.certificate().error;
-    result.certified_deviation = detail.certificate().deviation;
-    result.exact = detail.is_exact(facts_);
+    result.certified_error = detail_.certificate().error;
+    result.certified_deviation = detail_.certificate().deviation;
+    result.exact = detail_.is_exact(facts_);
     if (region_ && !region_->meets(facts_.bounds)) {
-      store_.pages().check_unchanged();  // the bounds of a file that was replaced say nothing
       result.state = PointState::kOutside;
-      result.cost = context_.cost;
-      return result;
+    } else {
+      search();
+      for (const HighCandidate& c : best_) {
+        const GridPoint p = point_of(c.key);
+        result.vertices.push_back(at(p.x, p.y, c.value));
+      }
+      set_point(result);
     }
-    const PredicatePtr predicate = predicate_of(detail);
-    HighGatherer gatherer(store_, *predicate, detail, region_ ? &*region_ : nullptr,
-                          request_.lowest, context_);
-    // At a level of detail a vertex may stand in void triangles alone, and touch the surface in a
-    // finer TIN.
-    const bool any_rejected = detail.is_asked() || !facts_.free_of_voids;
-    const std::vector<HighCandidate> best =
-        any_rejected ? find_on_surface(gatherer) : find(gatherer, request_.listed);
-    for (const HighCandidate& c : best) {
-      const GridPoint p = point_of(c.key);
-      result.vertices.push_back(at(p.x, p.y, c.value));
-    }
-    const std::vector<PendingSplit> splits = gatherer.take_splits();
-    context_.admit(bytes_of(terrain_.t0()) + refinement_bytes(splits.size()));
-    Refinement refinement(terrain_.t0());
-    refinement.apply(splits, context_);
-    find_point(refinement.tin(), best, result);
-    store_.pages().check_unchanged();
+    store_.pages().check_unchanged();  // the bounds of a file that was replaced say nothing
     result.cost = context_.cost;
     return result;
   }
 
  private:
+  static const HighestRequest& checked(const HighestRequest& request) {
+    if (request.listed == 0) {
+      throw Error(ErrorCode::invalid_argument, "no vertex is asked for: expected at least one");
+    }
+    return request;
+  }
+
   [[nodiscard]] HeightAt at(double x, double y, double value) const {
     return {facts_.map.to_map(x, y),
             facts_.heights.height_of_code(request_.lowest ? -value : value)};
   }
 
-  [[nodiscard]] PredicatePtr predicate_of(const Detail& detail) const {
-    std::vector<PredicatePtr> parts;
-    if (request_.window) {
-      parts.push_back(meets_region(*request_.window, facts_.map));
-    }
-    if (detail.is_asked()) {
-      parts.push_back(std::make_shared<AboveError>(detail.tolerance()));
-    }
-    return all_of(std::move(parts));
+  void search() {
+    visit_living(store_.t0(), detail_.level(), [&](const LivingTriangle& t) { take(t); });
+    store_.star_index().search_stars_best_first(filter_, *this, cut_off(), context_.cost.io);
+    ties_.settle([&](const LivingTriangle& t) { look_at(t); });
   }
 
-  std::vector<HighCandidate> find(HighGatherer& gatherer, std::size_t wanted) {
-    gatherer.start(wanted);
-    if (const auto* tree = dynamic_cast<const PackedRTree*>(&terrain_.index())) {
-      tree->search_best_first(gatherer, context_.cost.io);
-    } else {
-      search_in_order(gatherer);
+  /// The highest vertex of these stars, at the least key in their box.
+  [[nodiscard]] Merit bound(const StarAttributes& a) const override {
+    if (is_empty(a.heights)) {
+      return kNoMerit;
     }
-    return gatherer.take_best();
+    return {request_.lowest ? -a.heights.lo : a.heights.hi, key_of({a.box.min_x, a.box.min_y})};
   }
 
-  /// For another index: visits the pages in the same order, after a search of all of them.
-  void search_in_order(HighGatherer& gatherer) {
-    std::vector<PageId> pages;
-    terrain_.index().search(*predicate_of_pages(), pages, context_.cost.io);
-    std::vector<std::pair<Merit, PageId>> order;
-    for (const PageId page : pages) {
-      order.emplace_back(gatherer.bound(store_.page_info(page).attributes), page);
+  Merit visit(PageId page, const StarAttributes& /*a*/) override {
+    context_.check_stop();
+    if (best_.size() == request_.listed) {
+      const double last = best_.rbegin()->value;
+      filter_.heights = request_.lowest ? Interval{-kInfinity, -last} : Interval{last, kInfinity};
     }
-    std::stable_sort(order.begin(), order.end(),
-                     [](const auto& a, const auto& b) { return b.first.is_below(a.first); });
-    Merit cut_off = kNoMerit;
-    for (const auto& [bound, page] : order) {
-      if (bound.is_below(cut_off) || bound.value == -kInfinity) {
-        break;
+    stars_.clear();
+    context_.cost.records_examined += store_.read_stars(page, filter_, stars_, context_.cost.io);
+    context_.cost.stars_read += stars_.size();
+    context_.admit(best_.size() * kBytesACandidate + stars_.splits.size() * sizeof(VertexSplit) +
+                   stars_.corners.size() * sizeof(RingCorner));
+    ties_.note_fans(stars_);
+    visit_living(stars_, detail_, facts_.heights, [&](const LivingTriangle& t) { take(t); });
+    return cut_off();
+  }
+
+  /// Nothing below this is wanted: it is the last of the best vertices. What a page may hold
+  /// without a height is below all of it.
+  [[nodiscard]] Merit cut_off() const noexcept {
+    return best_.size() == request_.listed ? Merit{best_.rbegin()->value, best_.rbegin()->key}
+                                           : Merit{-kInfinity, 0};
+  }
+
+  void take(const LivingTriangle& t) {
+    if (!t.is_void && meets(box_of(t), filter_.box) && !ties_.set_aside(t)) {
+      look_at(t);
+    }
+  }
+
+  [[nodiscard]] double value_of(const LivingTriangle::Corner& c) const {
+    const double code = facts_.heights.code(c.height);
+    return request_.lowest ? -code : code;
+  }
+
+  /// Takes the vertices of a surface triangle that lie in the window, and its highest point there
+  /// if that lies above all vertices.
+  void look_at(const LivingTriangle& t) {
+    double highest = -kInfinity;
+    for (const LivingTriangle::Corner& c : t.corner) {
+      highest = std::max(highest, value_of(c));
+      offer({value_of(c), key_of(c.position)});
+    }
+    const double most = best_.empty() ? -kInfinity : best_.begin()->value;
+    if (region_ && highest > most && highest >= on_border_[2]) {
+      look_at_border(t);
+    }
+  }
+
+  void offer(const HighCandidate& c) {
+    const bool is_full = best_.size() == request_.listed;
+    if ((is_full && !(c < *best_.rbegin())) ||
+        (region_ && !region_->meets(box_of(point_of(c.key))))) {
+      return;
+    }
+    if (best_.insert(c).second && is_full) {
+      best_.erase(std::prev(best_.end()));
+    }
+  }
+
+  /// Of equally high points takes the one farthest south, then farthest west.
+  void look_at_border(const LivingTriangle& t) {
+    std::vector<Corner> corners;
+    for (const LivingTriangle::Corner& c : t.corner) {
+      const GridPoint p = c.position;
+      corners.push_back({static_cast<double>(p.x), static_cast<double>(p.y), value_of(c)});
+    }
+    const auto is_before = [](const Corner& a, const Corner& b) {
+      return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
+    };
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_before),
+                corners.end());
+    for (const Corner& c : clipped(std::move(corners), window_)) {
+      if (c[2] > on_border_[2] || (c[2] == on_border_[2] && is_before(c, on_border_))) {
+        on_border_ = c;
       }
-      cut_off = gatherer.visit(page);
-    }
-  }
-
-  [[nodiscard]] PredicatePtr predicate_of_pages() const {
-    return request_.window ? meets_region(*request_.window, facts_.map) : everything();
-  }
-
-  /// A vertex whose triangles are all void has a height, but is not of the surface. So it searches
-  /// again, each time for more spare vertices, until enough vertices of the surface are found and
-  /// the very best vertex is one of them: the records were gathered that reach above that vertex.
-  std::vector<HighCandidate> find_on_surface(HighGatherer& gatherer) {
-    std::size_t spare = 0;
-    while (true) {
-      std::vector<HighCandidate> best = find(gatherer, request_.listed + spare);
-      const bool are_all = best.size() < request_.listed + spare;
-      const VertexKey first = best.empty() ? kNoVertexKey : best.front().key;
-      look_up(best, gatherer);
-      std::erase_if(best, [&](const HighCandidate& c) { return gatherer.is_rejected(c.key); });
-      if ((are_all || best.size() >= request_.listed) && !gatherer.is_rejected(first)) {
-        best.resize(std::min<std::size_t>(best.size(), request_.listed));
-        return best;
-      }
-      spare = std::max<std::size_t>(2 * spare, kFirstSpare);
-    }
-  }
-
-  /// Locates the candidates that the gatherer was not told of before, and tells it which of them
-  /// are of the surface.
-  void look_up(const std::vector<HighCandidate>& best, HighGatherer& gatherer) {
-    std::vector<VertexKey> keys;
-    for (const HighCandidate& c : best) {
-      if (!gatherer.is_told(c.key)) {
-        keys.push_back(c.key);
-      }
-    }
-    std::vector<MapPoint> points;
-    points.reserve(keys.size());
-    for (const VertexKey key : keys) {
-      const GridPoint p = point_of(key);
-      points.push_back(facts_.map.to_map(p.x, p.y));
-    }
-    gatherer.reserve_told(keys.size());
-    LocateRequest request;
-    request.detail = request_.detail;
-    request.limits.memory_bytes = context_.left_beside(
-        gatherer.held_bytes() + best.capacity() * sizeof(HighCandidate) +
-        keys.capacity() * sizeof(VertexKey) + points.capacity() * sizeof(MapPoint));
-    request.limits.stop = request_.limits.stop;
-    const LocateResult located = locate_at(terrain_, points, request, gatherer.detail());
-    context_.cost.add_counts(located.cost);
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      gatherer.tell(keys[i], located.points[i].state == PointState::kSurface);
     }
   }
 
@@ -230,44 +238,15 @@ class Search {
   }
 
   /// Sets the point of `result`: the highest vertex, or a higher point on the border of the window.
-  void find_point(const Tin& tin, const std::vector<HighCandidate>& best, HighestResult& result) {
-    double most = best.empty() ? -kInfinity : best.front().value;
-    if (!best.empty()) {
-      result.point = result.vertices.front();
-      result.at_vertex = true;
-    }
-    const Rectangle window = rectangle();
-    for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-      if (t % kStopInterval == 0) {
-        context_.check_stop();
-      }
-      if (!tin.is_alive(t) || tin.classes[t] != TriangleClass::kSurface) {
-        continue;
-      }
-      std::vector<Corner> corners;
-      double highest = -kInfinity;
-      for (const VertexId v : tin.triangles[t].v) {
-        const double code = facts_.heights.code(tin.vertices[v].height);
-        const GridPoint p = tin.position(v);
-        corners.push_back(
-            {static_cast<double>(p.x), static_cast<double>(p.y), request_.lowest ? -code : code});
-        highest = std::max(highest, corners.back()[2]);
-      }
-      if (!(highest > most)) {
-        continue;
-      }
-      for (const Corner& c : clipped(std::move(corners), window)) {
-        if (c[2] > most) {
-          most = c[2];
-          result.point = at(c[0], c[1], c[2]);
-          result.at_vertex = false;
-        }
-      }
-    }
-    if (most == -kInfinity) {
+  void set_point(HighestResult& result) const {
+    const double most = best_.empty() ? -kInfinity : best_.begin()->value;
+    if (std::max(most, on_border_[2]) == -kInfinity) {
       result.state = meets_domain() ? PointState::kVoid : PointState::kOutside;
       return;
     }
+    result.at_vertex = !(on_border_[2] > most);
+    result.point = result.at_vertex ? result.vertices.front()
+                                    : at(on_border_[0], on_border_[1], on_border_[2]);
     // The deviation, widened by the rounding of the height and of the sum.
     const double deviation = result.certified_deviation;
     const double rounding =
@@ -312,14 +291,21 @@ class Search {
   const StoreFacts& facts_;
   const HighestRequest& request_;
   QueryContext context_;
+  Detail detail_;
+  LivingTies ties_;
   std::optional<GridRegion> region_;
+  Rectangle window_{};
+  StarFilter filter_;
+  StarredRecords stars_;
+  std::set<HighCandidate> best_;
+  Corner on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.
 };
 
 }  // namespace
 
 HighestResult highest(const OpenedTerrain& terrain, const HighestRequest& request) {
   const auto start = std::chrono::steady_clock::now();
-  HighestResult result = Search(terrain, request).run();
+  HighestResult result = HighestSearch(terrain, request).run();
   result.cost.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

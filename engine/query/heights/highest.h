@@ -58,12 +58,9 @@ struct HighestResult {
 /// @throws Error invalid_argument    the window is inverted or not finite; no vertex is asked for;
 ///                                   as Detail
 ///               resource_exhausted, corruption, io_error, cancelled
-/// Cost: the nodes and pages whose height interval reaches above the last vertex listed, or just to
-/// it and with the box farther south: those around the vertices listed, and coarse records that
-/// reach out to higher ground outside of the window; n log n for n vertices. With voids, or at a level of detail, each vertex is located too
-/// (heights/locate.h), in batches; where V vertices are higher but touch no surface, in O(log V)
-/// searches. An index other than the packed R-tree reads the same pages, after a search of all
-/// pages that meet the window. With `vertices` the cost of Detail is added (select/detail.h).
+/// Cost: the nodes and pages with a star that reaches above the last vertex listed, or just to it
+/// and with the box farther south; n log n for n vertices. Memory: the vertices listed, and a page.
+/// With `vertices` the cost of Detail is added (select/detail.h).
 [[nodiscard]] HighestResult highest(const OpenedTerrain& terrain, const HighestRequest& request);
 
 }  // namespace ptin

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/living/living_place.h"
 
-#include <algorithm>
+#include <vector>
 
 #include "storage/packed_rtree.h"
 
 namespace ptin {
 
 namespace {
-
-std::array<VertexKey, 3> ascending(VertexKey a, VertexKey b, VertexKey c) {
-  std::array<VertexKey, 3> keys{a, b, c};
-  std::sort(keys.begin(), keys.end());
-  return keys;
-}
 
 bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
                    const HeightEncoding& heights) {
@@ -33,10 +27,13 @@ bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
 }  // namespace
 
 bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor) {
-  undecided_.clear();
-  fans_.clear();
-  filter_ = {place.box,   place.heights, detail_.level(),     !detail_.is_by_error(),
-             place.stars, place.spans,   place.asks_each_star};
+  ties_.clear();
+  filter_ = {.box = place.box,
+             .heights = place.heights,
+             .also = place.stars,
+             .also_heights = place.spans,
+             .also_of_stars = place.asks_each_star};
+  set_level(detail_, filter_);
   std::vector<StarPage> pages;
   store_.star_index().search_stars(filter_, pages, context.cost.io);
   std::vector<PageId> ids(pages.size());
@@ -58,7 +55,11 @@ bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingV
       return false;
     }
   }
-  return take_undecided(visitor);
+  if (!visitor.begin(ties_.count())) {
+    return false;
+  }
+  ties_.settle([&](const LivingTriangle& t) { visitor.take(t); });
+  return true;
 }
 
 bool LivingReader::take_page(PageId page, const LivingPlace& place, QueryContext& context,
@@ -86,16 +87,9 @@ bool LivingReader::take_tied_page(PageId page, const LivingPlace& place, QueryCo
   if (!visitor.begin(stars_.corners.size())) {
     return false;
   }
-  for (std::size_t i = 0; i < stars_.size(); ++i) {
-    const VertexSplit& r = stars_.splits[i];
-    if (static_cast<double>(r.error) == filter_.level && detail_.keeps(place_of(r))) {
-      add_fan(r, stars_.ring(i));
-    }
-  }
-  visit_living(
-      stars_, filter_.level, heights_,
-      [&](const VertexSplit& r) { return detail_.keeps(place_of(r)); },
-      [&](const LivingTriangle& t) { offer(t, place, visitor); });
+  ties_.note_fans(stars_);
+  visit_living(stars_, detail_, heights_,
+               [&](const LivingTriangle& t) { offer(t, place, visitor); });
   return true;
 }
 
@@ -108,40 +102,9 @@ void LivingReader::offer(const LivingTriangle& t, const LivingPlace& place,
   if (!meets(box_of(t), place.box) || !is_wanted(t, place)) {
     return;
   }
-  if (filter_.with_ties && static_cast<double>(t.death) == filter_.level) {
-    undecided_.push_back(t);
-  } else {
+  if (!ties_.set_aside(t)) {
     visitor.take(t);
   }
-}
-
-/// Notes the triangles that a record replaces: those of w and two neighbours on the ring. Where a
-/// ring begins: storage/star.h.
-void LivingReader::add_fan(const VertexSplit& r, std::span<const RingCorner> ring) {
-  const bool ends_at_w = (r.flags & VertexSplit::kNoLeft) != 0;
-  const VertexKey w = key_of((ends_at_w ? ring.back() : ring.front()).position);
-  const std::span<const RingCorner> others =
-      ends_at_w ? ring.first(ring.size() - 1) : ring.subspan(1);
-  for (std::size_t k = 0; k + 1 < others.size(); ++k) {
-    fans_.push_back(ascending(w, key_of(others[k].position), key_of(others[k + 1].position)));
-  }
-}
-
-/// Hands out the triangles that die at the level's own error, but for those that a record kept
-/// replaces.
-bool LivingReader::take_undecided(LivingVisitor& visitor) {
-  if (!visitor.begin(undecided_.size())) {
-    return false;
-  }
-  std::sort(fans_.begin(), fans_.end());
-  for (const LivingTriangle& t : undecided_) {
-    const Keys keys = ascending(key_of(t.corner[0].position), key_of(t.corner[1].position),
-                                key_of(t.corner[2].position));
-    if (!std::binary_search(fans_.begin(), fans_.end(), keys)) {
-      visitor.take(t);
-    }
-  }
-  return true;
 }
 
 }  // namespace ptin

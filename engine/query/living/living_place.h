@@ -3,13 +3,10 @@
 // The triangles of a TIN that meet a place, page by page, in constant memory.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
-#include <span>
-#include <vector>
 
-#include "engine/query/living/living_triangle.h"
+#include "engine/query/living/living_ties.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
@@ -50,7 +47,7 @@ class LivingReader {
  public:
   /// @param terrain, detail  Borrowed for the life of the reader.
   LivingReader(const OpenedTerrain& terrain, const Detail& detail)
-      : store_(terrain.store()), heights_(store_.facts().heights), detail_(detail) {}
+      : store_(terrain.store()), heights_(store_.facts().heights), detail_(detail), ties_(detail) {}
 
   /// Hands each triangle of a place to the visitor once: those of T0, then page by page in the order
   /// of the file, then those that the level tells last. False when the visitor ended it.
@@ -61,27 +58,20 @@ class LivingReader {
   bool read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor);
 
  private:
-  using Keys = std::array<VertexKey, 3>;
-
   bool take_page(PageId page, const LivingPlace& place, QueryContext& context,
                  LivingVisitor& visitor);
   bool take_tied_page(PageId page, const LivingPlace& place, QueryContext& context,
                       LivingVisitor& visitor);
   [[nodiscard]] bool is_wanted(const LivingTriangle& t, const LivingPlace& place) const;
   void offer(const LivingTriangle& t, const LivingPlace& place, LivingVisitor& visitor);
-  void add_fan(const VertexSplit& r, std::span<const RingCorner> ring);
-  bool take_undecided(LivingVisitor& visitor);
 
   const StoreFile& store_;
   HeightEncoding heights_;
   const Detail& detail_;
   StarFilter filter_;
   LivingStars living_;
-  // Where the level cuts between records of one error: whole stars, triangles that die at that
-  // error, and the fans of those of its records that are kept.
-  StarredRecords stars_;
-  std::vector<LivingTriangle> undecided_;
-  std::vector<Keys> fans_;
+  StarredRecords stars_;  ///< Whole, where the level cuts between records of one error.
+  LivingTies ties_;
 };
 
 }  // namespace ptin

@@ -150,22 +150,22 @@ class Finder::SmallestFirst final : public BestStarVisitor {
  public:
   SmallestFirst(Finder& finder, Spot spot, TriangleAt& found)
       : finder_(finder), spot_(spot), found_(found) {}
-  [[nodiscard]] double bound(const StarAttributes& a) const override { return -area_of(a.box); }
-  [[nodiscard]] double bound_of_node(const StarAttributes& a, std::uint32_t level) const override {
+  [[nodiscard]] Merit bound(const StarAttributes& a) const override { return {-area_of(a.box)}; }
+  [[nodiscard]] Merit bound_of_node(const StarAttributes& a, std::uint32_t level) const override {
     // Of a node's children the larger ones hold the spot: their boxes are about an eighth of its own.
     constexpr double kShareOfChild = 1.0 / 8;
     double area = area_of(a.box) * kShareOfChild;
     for (; level > 0; --level) {
       area *= kShareOfChild;
     }
-    return -area;
+    return {-area};
   }
-  double visit(PageId page, const StarAttributes&) override {
+  Merit visit(PageId page, const StarAttributes&) override {
     finder_.context_.check_stop();
     finder_.read(page);
     finder_.visit_read([&](const GridBox& box) { return contains(box, spot_); },
                        [&](const LivingTriangle& t) { offer(t, spot_, found_); });
-    return found_.is_inside ? kInfinity : -kInfinity;
+    return found_.is_inside ? kBestMerit : kNoMerit;
   }
 
  private:
@@ -181,7 +181,7 @@ void Finder::find_one(Spot spot, TriangleAt& found) {
   }
   filter_.box = box_around(spot);
   SmallestFirst visitor(*this, spot, found);
-  store_.star_index().search_stars_best_first(filter_, visitor, -kInfinity, context_.cost.io);
+  store_.star_index().search_stars_best_first(filter_, visitor, kNoMerit, context_.cost.io);
 }
 
 /// Looks for the spots of a dense region together; else for those of its parts.

@@ -12,6 +12,11 @@
 
 namespace ptin {
 
+/// True when the closed triangle holds the spot. Exact.
+[[nodiscard]] inline bool holds(const LivingTriangle& t, Spot q) noexcept {
+  return triangle_holds(t.corner[0].position, t.corner[1].position, t.corner[2].position, q);
+}
+
 /// The closed triangle of a level that answers for a spot: of several a surface one before a void
 /// one, then the one whose corners' keys, in ascending order, come first.
 struct TriangleAt {

@@ -4,6 +4,7 @@
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/infinity.h"
 #include "engine/query/living/living_place.h"
+#include "engine/query/living/triangle_at.h"
 #include "engine/query/select/detail.h"
 
 namespace ptin {
@@ -91,10 +92,7 @@ const LivingTriangle* CoarseGround::find(Spot q) const {
   const LivingTriangle* found = nullptr;
   search([&](const GridBox& box, const Top& /*top*/) { return contains(box, q) ? 1.0 : 0.0; },
          [&](const LivingTriangle& t) {
-           const auto& c = t.corner;
-           if (side(c[0].position, c[1].position, q) >= 0 &&
-               side(c[1].position, c[2].position, q) >= 0 &&
-               side(c[2].position, c[0].position, q) >= 0) {
+           if (holds(t, q)) {
              found = &t;
            }
            return found == nullptr;

@@ -39,15 +39,12 @@ SightStars::SightStars(const OpenedTerrain& terrain, const SightFacts& facts,
 /// Before the ground below an end is known: T0 covers the domain, and is ground where the terrain
 /// has no void.
 void SightStars::state_domain(SightEnd& end, Spot spot) const {
-  const CoarsestTin& t0 = terrain_.store().t0();
-  for (const CoarsestTin::T& t : t0.triangles) {
-    const auto at = [&](std::size_t i) { return t0.vertices[t.v[i]].position; };
-    if (side(at(0), at(1), spot) >= 0 && side(at(1), at(2), spot) >= 0 &&
-        side(at(2), at(0), spot) >= 0) {
+  visit_living(terrain_.store().t0(), kInfinity, [&](const LivingTriangle& t) {
+    if (holds(t, spot)) {
       end.inside = true;
-      end.surface = end.surface || t.is_void == 0;
+      end.surface = end.surface || !t.is_void;
     }
-  }
+  });
 }
 
 bool SightStars::ends_known() const noexcept {
@@ -119,28 +116,28 @@ GridBox SightStars::box_of(const Part& part) const noexcept {
           whole(std::ceil(std::max(x0, x1))), whole(std::ceil(std::max(y0, y1)))};
 }
 
-double SightStars::bound(const StarAttributes& a) const {
+Merit SightStars::bound(const StarAttributes& a) const {
   const std::optional<Part> part = part_in(a.box);
   if (!part) {
-    return -kInfinity;
+    return {-kInfinity};
   }
   if (aim_ == Aim::kWhole) {
-    return 0.0;
+    return {0.0};
   }
   const double top =
       facts_.heights.height_of_code(a.heights.hi) + facts_.finest_deviation + line_.rounding();
   const Ray& ray = line_.ray();
   const double above = top - ray.lowest(part->from, part->to);
   if (aim_ != Aim::kFirst) {
-    return above;
+    return {above};
   }
   if (above < 0) {
-    return -kInfinity;
+    return {-kInfinity};
   }
   const double width = part->to - part->from;
   const double t =
       first_zero(ray.low(part->from) - top, ray.low(part->to) - top, ray.bend * width * width);
-  return -(part->from + t * width - kShareSlack);
+  return {-(part->from + t * width - kShareSlack)};
 }
 
 /// Pages and subtrees of smaller bounds do not matter any more.
@@ -174,11 +171,11 @@ void SightStars::look_at(const Part& part) {
   }
 }
 
-double SightStars::visit(PageId page, const StarAttributes& a) {
+Merit SightStars::visit(PageId page, const StarAttributes& a) {
   if (out_of_budget()) {
     is_cut_ = true;
-    cut_bound_ = bound(a);
-    return kInfinity;
+    cut_bound_ = bound(a).value;
+    return kBestMerit;
   }
   context_.check_stop();
   look_at(part_in(a.box).value_or(part_));
@@ -189,7 +186,7 @@ double SightStars::visit(PageId page, const StarAttributes& a) {
   visit_living(living_, facts_.heights, [&](const LivingTriangle& t) { take(t); });
   context_.admit(2 * line_.pieces.capacity() * sizeof(SightPiece) +
                  (coarse_ == nullptr ? 0 : coarse_->bytes()));
-  return cut_off();
+  return {cut_off()};
 }
 
 void SightStars::begin_search(Aim aim, Part part, double level) {
@@ -207,7 +204,8 @@ void SightStars::search(Aim aim, Part part, double level) {
   StarFilter filter;
   filter.level = level;
   filter.box = box_of(part);
-  terrain_.store().star_index().search_stars_best_first(filter, *this, cut_off(), context_.cost.io);
+  terrain_.store().star_index().search_stars_best_first(filter, *this, {cut_off()},
+                                                        context_.cost.io);
 }
 
 /// Where the budget ends a search, all that was not read is one piece of which nothing is known but

@@ -51,8 +51,8 @@ class SightStars final : private BestStarVisitor {
     double from, to;
   };
 
-  [[nodiscard]] double bound(const StarAttributes& a) const override;
-  double visit(PageId page, const StarAttributes& a) override;
+  [[nodiscard]] Merit bound(const StarAttributes& a) const override;
+  Merit visit(PageId page, const StarAttributes& a) override;
 
   void state_domain(SightEnd& end, Spot spot) const;
   [[nodiscard]] bool out_of_budget() const noexcept;

@@ -7,9 +7,10 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "engine/error.h"
-#include "engine/query/refine/bounded_mesh.h"
+#include "engine/query/refine/refine.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/predicate.h"
 #include "engine/query/sight/viewshed_sweep.h"
@@ -118,21 +119,27 @@ double deviation_of_left_out(const StoreFacts& facts) {
   return facts.base_deviation <= kSlack * rounding ? 0.0 : facts.base_deviation;
 }
 
+/// Bytes of the arrays of a mesh, with what they have grown beyond it.
+std::uint64_t held_bytes(const Tin& tin) noexcept {
+  return tin.vertices.capacity() * sizeof(Vertex) + tin.has_height.capacity() +
+         tin.triangles.capacity() * sizeof(Triangle) +
+         tin.classes.capacity() * sizeof(TriangleClass);
+}
+
 /// Refines the mesh of a request, sweeps it, and tells which answers are certain.
 class ViewshedSearch {
  public:
   ViewshedSearch(const OpenedTerrain& terrain, const ViewshedRequest& request)
-      : store_(terrain.store()),
+      : terrain_(terrain),
+        store_(terrain.store()),
         request_(request),
         context_(request.limits, store_.path()),
         detail_(request.detail, terrain.record_source(), context_),
-        mesh_(terrain, detail_),
         left_out_(deviation_of_left_out(store_.facts())) {}
 
   Viewshed run() {
     const bool is_coarse = detail_.is_asked() && !detail_.certificate().complete;
-    refine(is_coarse);
-    mesh_.release_records();
+    refine_mesh(is_coarse);
     const bool leaves_open = is_coarse || left_out_ > 0;
     results_held_ = leaves_open && std::isfinite(left_out_) ? 2 : 1;
     Viewshed result = sweep({});
@@ -164,25 +171,30 @@ class ViewshedSearch {
     }
   }
 
-  void refine(bool is_coarse) {
-    const AffineMap& map = store_.facts().map;
+  void refine_mesh(bool is_coarse) {
     const double reach_x = request_.radius / request_.ground_per_map_x;
     const double reach_y = request_.radius / request_.ground_per_map_y;
     const MapPoint eye = request_.eye;
-    const PredicatePtr near = meets_region(
-        Window{eye.x - reach_x, eye.y - reach_y, eye.x + reach_x, eye.y + reach_y}, map);
-    if (!is_coarse) {
-      mesh_.refine(*all_of({near, std::make_shared<AboveError>(detail_.tolerance())}), context_);
-      return;
-    }
+    RefineRequest wanted;
+    wanted.region = Window{eye.x - reach_x, eye.y - reach_y, eye.x + reach_x, eye.y + reach_y};
+    wanted.limits = request_.limits;
+    const PredicatePtr finer = is_coarse ? finer_towards_eye() : nullptr;
+    wanted.also = finer.get();
+    RefinedTin refined = refine(terrain_, wanted);
+    context_.cost.add_counts(refined.cost);
+    tin_ = std::move(refined.tin);
+  }
+
+  [[nodiscard]] PredicatePtr finer_towards_eye() {
+    const AffineMap& map = store_.facts().map;
     slope_ = allowed() / request_.radius;
-    const auto spot = SpotMap(map, store_.facts().bounds).spot(eye);
+    const auto spot = SpotMap(map, store_.facts().bounds).spot(request_.eye);
     // find_eye() refuses an eye outside
-    const MapPoint at = spot ? grid_of(*spot) : map.to_grid(eye);
-    const auto towards = std::make_shared<DeviationTowards>(
-        at, map.step_x * request_.ground_per_map_x, map.step_y * request_.ground_per_map_y, slope_);
-    const auto level = std::make_shared<AboveError>(detail_.tolerance());
-    mesh_.refine(*all_of({near, any_of({level, towards})}), context_, towards.get());
+    const MapPoint at = spot ? grid_of(*spot) : map.to_grid(request_.eye);
+    return any_of(
+        {std::make_shared<AboveError>(detail_.tolerance()),
+         std::make_shared<DeviationTowards>(at, map.step_x * request_.ground_per_map_x,
+                                            map.step_y * request_.ground_per_map_y, slope_)});
   }
 
   /// The deviation allowed at the radius: the tolerance asked for, or the certified error of the
@@ -192,15 +204,16 @@ class ViewshedSearch {
   }
 
   Viewshed sweep(const SightBias& bias) {
-    return sweep_viewshed(mesh_.tin(), store_.facts(), request_, context_, bias,
-                          {mesh_.bytes(), results_held_});
+    return sweep_viewshed(tin_, store_.facts(), request_, context_, bias,
+                          {held_bytes(tin_), results_held_});
   }
 
+  const OpenedTerrain& terrain_;
   const StoreFile& store_;
   const ViewshedRequest& request_;
   QueryContext context_;
   Detail detail_;
-  BoundedMesh mesh_;
+  Tin tin_;
   double left_out_;  ///< Deviation of the file's full TIN from the source's.
   double slope_ = 0;
   /// Results at once: that of the plain sweep, and of a biased one.

@@ -36,7 +36,8 @@ struct ViewshedRequest {
   bool pixels = true;         ///< Fill the raster.
   bool list_vertices = true;  ///< List the vertices.
   /// At a level of detail the TIN that is swept is finer towards the eye: it also has the records
-  /// of a deviation above Viewshed::certified_deviation * distance / radius.
+  /// of a deviation above Viewshed::certified_deviation * distance / radius. A number of vertices
+  /// stands for the error of the last of them: it has all records of that error.
   DetailRequest detail;
   QueryLimits limits;
 };

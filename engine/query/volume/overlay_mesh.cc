@@ -13,6 +13,9 @@ namespace ptin {
 
 namespace {
 
+/// Of a triangle, while the array of them grows, or while they are put in order.
+constexpr std::uint64_t kBytesATriangle = 2 * sizeof(LivingTriangle) + 72;
+
 /// Along the Hilbert curve by the middle of the box.
 std::uint64_t position_along(const GridBox& box) noexcept {
   const auto middle = [](std::int32_t low, std::int32_t high) {
@@ -43,29 +46,49 @@ double GridToGrid::rounding(const GridBox& box) const noexcept {
   return 8 * std::numeric_limits<double>::epsilon() * farthest;
 }
 
-void OverlayMesh::take(const Tin& tin, const GridBox& near) {
-  positions_.clear();
-  for (const Vertex& v : tin.vertices) positions_.push_back(map_.at(v.position.x, v.position.y));
-  std::vector<std::pair<std::uint64_t, TriangleId>> along;
-  const auto box_of_triangle = [&](TriangleId t) {
-    const Triangle& triangle = tin.triangles[t];
-    const MapPoint corners[] = {positions_[triangle.v[0]], positions_[triangle.v[1]],
-                                positions_[triangle.v[2]]};
-    return box_around(corners);
+std::array<MapPoint, 3> OverlayMesh::corners(const LivingTriangle& t) const noexcept {
+  const auto at = [&](std::size_t i) {
+    return map_.at(t.corner[i].position.x, t.corner[i].position.y);
   };
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    const GridBox box = box_of_triangle(t);
-    if (meets(box, near)) along.emplace_back(position_along(box), t);
+  return {at(0), at(1), at(2)};
+}
+
+bool OverlayMesh::gather(const LivingPlace& place, const GridBox& near, std::uint64_t most_bytes,
+                         QueryContext& context) {
+  near_ = near;
+  most_bytes_ = most_bytes;
+  triangles_.clear();
+  if (!reader_.read(place, context, *this)) return false;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> along;
+  along.reserve(triangles_.size());
+  for (const LivingTriangle& t : triangles_) {
+    along.emplace_back(position_along(box_around(corners(t))),
+                       static_cast<std::uint32_t>(along.size()));
   }
   std::sort(along.begin(), along.end());
-  triangles_.clear();
+  order_.clear();
   std::vector<GridBox> boxes;
   boxes.reserve(along.size());
-  for (const auto& [place, t] : along) {
-    triangles_.push_back(t);
-    boxes.push_back(box_of_triangle(t));
+  for (const auto& [position, i] : along) {
+    order_.push_back(i);
+    boxes.push_back(box_around(corners(triangles_[i])));
   }
   boxes_ = PackedBoxes(std::move(boxes));
+  return true;
+}
+
+bool OverlayMesh::expect(std::uint64_t records) {
+  bytes_wanted_ = 2 * records * kBytesATriangle;  // a full TIN has two triangles a record
+  return bytes_wanted_ <= most_bytes_;
+}
+
+bool OverlayMesh::begin(std::size_t most_triangles) {
+  bytes_wanted_ = (triangles_.size() + most_triangles) * kBytesATriangle;
+  return bytes_wanted_ <= most_bytes_;
+}
+
+void OverlayMesh::take(const LivingTriangle& t) {
+  if (meets(box_around(corners(t)), near_)) triangles_.push_back(t);
 }
 
 }  // namespace ptin

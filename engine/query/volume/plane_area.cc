@@ -59,12 +59,6 @@ PlaneArea::PlaneArea(const AffineMap& map, const GroundScale& scale)
   }
 }
 
-MapPoint PlaneArea::unit_at(double grid_y) const {
-  if (scale_.is_uniform) return uniform_;
-  const MapPoint unit = scale_.per_map_unit(map_.to_map(0, grid_y));
-  return {map_.step_x * unit.x, map_.step_y * unit.y};
-}
-
 double PlaneArea::integral(const Facet& t) const {
   if (scale_.is_uniform) {
     return t.area * (uniform_.x * uniform_.y) * ((t.f[0] + t.f[1] + t.f[2]) / 3);

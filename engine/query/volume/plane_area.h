@@ -59,7 +59,11 @@ class PlaneArea {
 
  private:
   /// The length over ground of one grid unit along x and along y.
-  [[nodiscard]] MapPoint unit_at(double grid_y) const;
+  [[nodiscard]] MapPoint unit_at(double grid_y) const {
+    if (scale_.is_uniform) return uniform_;
+    const MapPoint unit = scale_.per_map_unit(map_.to_map(0, grid_y));
+    return {map_.step_x * unit.x, map_.step_y * unit.y};
+  }
   [[nodiscard]] double density(double grid_y) const {
     const MapPoint unit = unit_at(grid_y);
     return unit.x * unit.y;

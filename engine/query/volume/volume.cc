@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/query/volume/tile_mesh.h"
 #include "engine/query/volume/volume_tiles.h"
 
 namespace ptin {

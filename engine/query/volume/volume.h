@@ -32,7 +32,7 @@ struct VolumeRequest {
   std::function<double(const StoreFile&, double certified_error)> border_move;
   QueryLimits limits;
   int threads = 1;  ///< At most; fewer where the memory is small. The result does not depend on it.
-  /// Bytes of the mesh of a tile, where the memory allows. The result does not depend on it.
+  /// Bytes of what a tile keeps, where the memory allows. The result does not depend on it.
   std::uint64_t tile_bytes = std::uint64_t{32} << 20;
 };
 
@@ -75,8 +75,9 @@ struct VolumeResult {
 ///                                   GridRegion and Detail
 ///               resource_exhausted  the smallest tile does not fit
 ///               corruption, io_error, cancelled
-/// Cost: each record of the region is read and applied once, twice when there is another terrain;
-/// a triangle that meets several tiles is made in each of them. The overlay takes O(n log n).
+/// Cost: the pages with living triangles in the region, twice when there is another terrain; those
+/// that meet several tiles are read for each of them. The overlay takes O(n log n). Memory: a page
+/// for a level where no border matters; else what a tile keeps.
 [[nodiscard]] VolumeResult volume(const OpenedTerrain& terrain, const VolumeRequest& request);
 
 }  // namespace ptin

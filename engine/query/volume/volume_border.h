@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/geometry/box.h"
-#include "engine/mesh/tin.h"
+#include "engine/geometry/point.h"
 #include "engine/query/select/region.h"
 #include "engine/query/volume/fixed_sum.h"
 #include "engine/query/volume/plane_area.h"
@@ -36,10 +36,16 @@ struct BorderScope {
   MapPoint reach;
 };
 
-/// Adds the edges of `tin` between surface and void whose lower end (by key) lies in `tile`, and the
-/// parts of the border that begin there. REQUIRES: triangles that meet the tile are those of the
-/// level.
-void add_border(const Tin& tin, const GridBox& tile, const PlaneArea& plane,
+/// A side of a triangle.
+struct BorderSide {
+  VertexKey low, high;  ///< Its ends.
+  bool is_void;         ///< The triangle's class.
+};
+
+/// Adds the edges between surface and void whose lower end (by key) lies in `tile`, and the parts of
+/// the border that begin there.
+/// @param sides  Of the triangles of the level, at least those with an end in the tile. Sorted.
+void add_border(std::vector<BorderSide>& sides, const GridBox& tile, const PlaneArea& plane,
                 const BorderScope& scope, BorderLength& border);
 
 }  // namespace ptin

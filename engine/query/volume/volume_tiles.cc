@@ -2,6 +2,7 @@
 #include "engine/query/volume/volume_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -9,10 +10,10 @@
 #include <vector>
 
 #include "engine/geometry/infinity.h"
+#include "engine/query/living/stars_in_region.h"
 #include "engine/query/refine/tile_queue.h"
 #include "engine/query/volume/grid_box.h"
 #include "engine/query/volume/overlay_mesh.h"
-#include "engine/query/volume/tile_mesh.h"
 #include "engine/stop.h"
 
 namespace ptin {
@@ -26,17 +27,17 @@ constexpr double kSlack = 16;              // of the bounds of sums, for what ro
 struct Walk {
   const VolumeRequest& request;
   const GridBox& domain;
-  std::uint64_t t0_bytes;     ///< Of the terrains together.
   const VolumeTotals& empty;  ///< Sums of the right bounds.
 };
 
-/// A worker's own meshes and sums.
+/// A worker's own triangles and sums.
 class TileWorker {
  public:
   virtual ~TileWorker() = default;
-  /// Most bytes that the tile takes; count() then does that tile.
-  virtual std::uint64_t announce(const GridBox& tile) = 0;
-  virtual void count(const GridBox& tile) = 0;
+  /// Counts a tile. False when that takes more than `most_bytes`: nothing of it is counted then.
+  virtual bool count(const GridBox& tile, std::uint64_t most_bytes) = 0;
+  /// What the last tile that did not fit would have taken, as far as it came.
+  [[nodiscard]] virtual std::uint64_t bytes_wanted() const = 0;
 
   VolumeTotals totals;
   QueryContext context;
@@ -51,34 +52,32 @@ class TileWorker {
 using MakeWorker = std::function<std::unique_ptr<TileWorker>(std::uint64_t limit)>;
 
 /// As many threads as asked for, as long as each has room for a tile of a useful size.
-int threads_within(const Walk& walk) {
-  const std::uint64_t useful = 2 * walk.t0_bytes + walk.request.tile_bytes / 4;
-  const std::uint64_t most = std::max<std::uint64_t>(walk.request.limits.memory_bytes / useful, 1);
-  return static_cast<int>(std::min<std::uint64_t>(std::max(walk.request.threads, 1), most));
+int threads_within(const VolumeRequest& request) {
+  const std::uint64_t useful = std::max<std::uint64_t>(request.tile_bytes / 4, 1);
+  const std::uint64_t most = std::max<std::uint64_t>(request.limits.memory_bytes / useful, 1);
+  return static_cast<int>(std::min<std::uint64_t>(std::max(request.threads, 1), most));
 }
 
 VolumeTotals walk_tiles(const Walk& walk, const MakeWorker& make) {
   VolumeTotals totals = walk.empty;
   if (is_empty(walk.domain)) return totals;
   TileQueue queue(walk.domain);
-  const int count = threads_within(walk);
+  const int count = threads_within(walk.request);
   const std::uint64_t limit = walk.request.limits.memory_bytes / static_cast<std::uint64_t>(count);
-  const std::uint64_t wanted =
-      std::min(limit, std::max(walk.request.tile_bytes, 4 * walk.t0_bytes));
   std::vector<std::unique_ptr<TileWorker>> workers;
   for (int i = 0; i < count; ++i) workers.push_back(make(limit));
   run_on_threads(count, [&](int i) {
     TileWorker& worker = *workers[static_cast<std::size_t>(i)];
     queue.run([&](const GridBox& tile) {
       worker.context.check_stop();
-      const std::uint64_t bytes = worker.announce(tile);
-      if (bytes > wanted && half_perimeter(tile) > 2 * kSmallestTile) {
+      const bool is_small = half_perimeter(tile) <= 2 * kSmallestTile;
+      if (worker.count(tile, is_small ? limit : std::min(limit, walk.request.tile_bytes))) {
+        ++worker.totals.tiles;
+      } else if (is_small) {
+        worker.context.admit(std::max(worker.bytes_wanted(), limit + 1));
+      } else {
         queue.put_halves(tile);
-        return;
       }
-      worker.context.admit(bytes);
-      worker.count(tile);
-      ++worker.totals.tiles;
     });
   });
   queue.rethrow();
@@ -90,15 +89,11 @@ VolumeTotals walk_tiles(const Walk& walk, const MakeWorker& make) {
 }
 
 /// Heights of a triangle above a level.
-LinearHeight above_level(const Tin& tin, TriangleId t, const HeightEncoding& heights,
-                         double level) {
+LinearHeight above_level(const LivingTriangle& t, const HeightEncoding& heights, double level) {
   LinearHeight above;
   for (std::size_t i = 0; i < 3; ++i) {
-    const VertexId v = tin.triangles[t].v[i];
-    above.corners[i] = position_of(tin.position(v));
-    if (tin.has_height[v] != 0) {
-      above.heights[i] = heights.height(tin.vertices[v].height) - level;
-    }
+    above.corners[i] = position_of(t.corner[i].position);
+    if (t.corner[i].has_height) above.heights[i] = heights.height(t.corner[i].height) - level;
   }
   return above;
 }
@@ -113,54 +108,74 @@ double shift_of(const VolumeSide& side) {
   return 8 * std::numeric_limits<double>::epsilon() * farthest;
 }
 
-/// Counts the triangles of a terrain against a level.
-class LevelWorker final : public TileWorker {
+/// Counts the triangles of a terrain against a level, as they are read.
+class LevelWorker final : public TileWorker, private LivingVisitor {
  public:
-  LevelWorker(const Walk& walk, std::uint64_t limit, const VolumeSide& side, double level)
+  /// @param is_alone  No other thread waits for halves of a tile.
+  LevelWorker(const Walk& walk, std::uint64_t limit, const VolumeSide& side, double level,
+              bool is_alone)
       : TileWorker(walk, limit, side.terrain),
         side_(side),
         level_(level),
-        mesh_(side.terrain, side.detail, side.wanted()),
+        is_alone_(is_alone),
+        reader_(side.terrain, side.detail),
         border_(side.border_scope()) {}
 
-  std::uint64_t announce(const GridBox& tile) override { return mesh_.announce(tile, context); }
-
-  void count(const GridBox& tile) override {
-    mesh_.refine(context);
-    const Tin& tin = mesh_.tin();
-    for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-      if (t % kStopInterval == 0) context.check_stop();
-      if (is_in(tile, tin, t)) count_triangle(tin, t);
+  bool count(const GridBox& tile, std::uint64_t most_bytes) override {
+    tile_ = tile;
+    most_bytes_ = most_bytes;
+    sides_.clear();
+    const VolumeTotals before = totals;
+    if (!reader_.read(side_.place(tile), context, *this)) {
+      totals = before;
+      return false;
     }
-    if (border_) add_border(tin, tile, side_.plane, *border_, totals.border);
+    if (border_) add_border(sides_, tile, side_.plane, *border_, totals.border);
+    return true;
   }
+  [[nodiscard]] std::uint64_t bytes_wanted() const override { return bytes_wanted_; }
 
  private:
-  static bool is_in(const GridBox& tile, const Tin& tin, TriangleId t) {
-    GridPoint lowest = tin.position(tin.triangles[t].v[0]);
-    for (int i = 1; i < 3; ++i) {
-      const GridPoint p = tin.position(tin.triangles[t].v[i]);
-      if (key_of(p) < key_of(lowest)) lowest = p;
+  /// Of the sides of a triangle, while their array grows.
+  static constexpr std::uint64_t kBytesATriangle = 2 * 3 * sizeof(BorderSide);
+
+  /// Without a border nothing is kept; tiles are cut for other threads alone.
+  bool expect(std::uint64_t records) override {
+    bytes_wanted_ = 2 * records * kBytesATriangle;
+    return bytes_wanted_ <= most_bytes_ || (is_alone_ && !border_);
+  }
+  bool begin(std::size_t most_triangles) override {
+    bytes_wanted_ = most_triangles * sizeof(RingCorner);  // of the page at hand
+    if (border_) bytes_wanted_ += (sides_.size() / 3 + most_triangles) * kBytesATriangle;
+    return bytes_wanted_ <= most_bytes_;
+  }
+  void take(const LivingTriangle& t) override {
+    std::array<VertexKey, 3> keys{};
+    for (std::size_t i = 0; i < 3; ++i) keys[i] = key_of(t.corner[i].position);
+    if (contains(tile_, point_of(*std::min_element(keys.begin(), keys.end())))) count_triangle(t);
+    for (std::size_t i = 0; i < 3 && border_; ++i) {
+      const auto [low, high] = std::minmax(keys[i], keys[i == 2 ? 0 : i + 1]);
+      if (contains(tile_, point_of(low)) || contains(tile_, point_of(high))) {
+        sides_.push_back({low, high, t.is_void});
+      }
     }
-    return contains(tile, lowest);
   }
 
-  void count_triangle(const Tin& tin, TriangleId t) {
-    const LinearHeight above = above_level(tin, t, side_.facts().heights, level_);
+  void count_triangle(const LivingTriangle& t) {
+    const LinearHeight above = above_level(t, side_.facts().heights, level_);
     const ConvexPiece whole(above.corners[0], above.corners[1], above.corners[2]);
     if (!side_.cutter) {
-      count_piece(tin, t, above, whole);
+      count_piece(t, above, whole);
       return;
     }
     parts_.clear();
     side_.cutter->cut(whole, parts_);
-    for (const ConvexPiece& part : parts_) count_piece(tin, t, above, part);
+    for (const ConvexPiece& part : parts_) count_piece(t, above, part);
   }
 
-  void count_piece(const Tin& tin, TriangleId t, const LinearHeight& above,
-                   const ConvexPiece& piece) {
-    if (tin.classes[t] == TriangleClass::kVoid) {
-      const Interval heights = mesh_.is_exact() ? Interval{} : mesh_.heights(t);
+  void count_piece(const LivingTriangle& t, const LinearHeight& above, const ConvexPiece& piece) {
+    if (t.is_void) {
+      const Interval heights = side_.is_exact ? Interval{} : side_.heights(t);
       totals.sums.add_void(side_.plane, piece, {heights.lo - level_, heights.hi - level_});
       return;
     }
@@ -168,7 +183,7 @@ class LevelWorker final : public TileWorker {
     const double noise =
         above.noise(0.0) + std::numeric_limits<double>::epsilon() * std::abs(level_);
     totals.sums.add_surface(side_.plane, piece, values_at(piece, above),
-                            {mesh_.deviation(t), noise, shift});
+                            {side_.deviation(t), noise, shift});
   }
 
   std::span<const double> values_at(const ConvexPiece& piece, const LinearHeight& above) {
@@ -179,23 +194,28 @@ class LevelWorker final : public TileWorker {
 
   const VolumeSide& side_;
   double level_;
-  TileMesh mesh_;
+  bool is_alone_;
+  LivingReader reader_;
   std::optional<BorderScope> border_;
+  GridBox tile_;
+  std::uint64_t most_bytes_ = 0;
+  std::uint64_t bytes_wanted_ = 0;
+  std::vector<BorderSide> sides_;  ///< With an end in the tile.
   std::vector<ConvexPiece> parts_;
   std::vector<double> values_;
 };
 
-/// A mesh, one triangle of it, and its heights on the grid of the overlay.
+/// A triangle, and its heights on the grid of the overlay.
 struct Overlaid {
-  TriangleId triangle;
-  bool is_surface;
+  const LivingTriangle& triangle;
   LinearHeight height;
   ConvexPiece shape;
   double noise;
 };
 
-/// Counts the pairs of triangles of two terrains.
-class OverlayWorker final : public TileWorker {
+/// Counts the pairs of triangles of two terrains: those of the other one are gathered, those of the
+/// first are taken as they are read.
+class OverlayWorker final : public TileWorker, private LivingVisitor {
  public:
   OverlayWorker(const Walk& walk, std::uint64_t limit, const VolumeSide& side,
                 const VolumeSide& other)
@@ -205,71 +225,41 @@ class OverlayWorker final : public TileWorker {
         scale_(walk.request.other_height_scale),
         to_other_(side.facts().map, other.facts().map),
         from_other_(other.facts().map, side.facts().map),
-        mesh_(side.terrain, side.detail, side.wanted()),
-        other_mesh_(other.terrain, other.detail, other.wanted()),
-        overlay_(from_other_),
+        reader_(side.terrain, side.detail),
+        overlay_(other.terrain, other.detail, from_other_),
         shift_(shift_of(side) + from_other_.rounding(other.facts().bounds)) {}
 
-  std::uint64_t announce(const GridBox& tile) override {
-    near_ = widened(tile, {2, 2});  // what rounding shares lies within a grid unit
-    const GridBox there = to_other_.box_around(near_, other_.facts().bounds);
-    is_beside_ = is_empty(there);
-    if (is_beside_) return 0;
-    const std::uint64_t bytes =
-        mesh_.announce(near_, context) + other_mesh_.announce(there, context);
-    return bytes + OverlayMesh::kBytesATriangle * other_mesh_.most_triangles();
+  bool count(const GridBox& tile, std::uint64_t most_bytes) override {
+    tile_ = tile;
+    const GridBox near = widened(tile, {2, 2});  // what rounding shares lies within a grid unit
+    const GridBox there = to_other_.box_around(near, other_.facts().bounds);
+    if (is_empty(there)) return true;
+    if (!overlay_.gather(other_.place(there), near, most_bytes, context)) return false;
+    return reader_.read(side_.place(near), context, *this);
   }
-
-  void count(const GridBox& tile) override {
-    if (is_beside_) return;
-    mesh_.refine(context);
-    other_mesh_.refine(context);
-    overlay_.take(other_mesh_.tin(), near_);
-    const Tin& tin = mesh_.tin();
-    for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-      if (t % kStopInterval == 0) context.check_stop();
-      const GridBox box = united(
-          united(box_of(tin.position(tin.triangles[t].v[0])), tin.position(tin.triangles[t].v[1])),
-          tin.position(tin.triangles[t].v[2]));
-      if (!meets(box, near_)) continue;
-      const Overlaid here = of_here(t);
-      overlay_.visit(box, [&](TriangleId u) { count_pair(tile, here, u); });
-    }
-  }
+  [[nodiscard]] std::uint64_t bytes_wanted() const override { return overlay_.bytes_wanted(); }
 
  private:
-  [[nodiscard]] Overlaid of_here(TriangleId t) const {
-    const Tin& tin = mesh_.tin();
-    Overlaid o{t,
-               tin.classes[t] == TriangleClass::kSurface,
-               above_level(tin, t, side_.facts().heights, 0.0),
-               {},
-               0.0};
-    const auto& c = o.height.corners;
-    o.shape = ConvexPiece(c[0], c[1], c[2]);
-    o.noise = o.height.noise(0.0);
-    return o;
+  void take(const LivingTriangle& t) override {
+    Overlaid here{t, above_level(t, side_.facts().heights, 0.0), {}, 0.0};
+    const auto& c = here.height.corners;
+    here.shape = ConvexPiece(c[0], c[1], c[2]);
+    here.noise = here.height.noise(0.0);
+    overlay_.visit(box_of(t), [&](std::size_t i) { count_pair(here, overlay_.triangle(i)); });
   }
 
-  [[nodiscard]] ConvexPiece shape_of_other(TriangleId u) const {
-    const Triangle& triangle = other_mesh_.tin().triangles[u];
-    return {overlay_.position(triangle.v[0]), overlay_.position(triangle.v[1]),
-            overlay_.position(triangle.v[2])};
-  }
-
-  [[nodiscard]] LinearHeight height_of_other(TriangleId u) const {
-    LinearHeight height = above_level(other_mesh_.tin(), u, other_.facts().heights, 0.0);
-    for (std::size_t i = 0; i < 3; ++i) {
-      height.corners[i] = overlay_.position(other_mesh_.tin().triangles[u].v[i]);
-      height.heights[i] *= scale_;
-    }
+  [[nodiscard]] LinearHeight height_of_other(const LivingTriangle& u) const {
+    LinearHeight height = above_level(u, other_.facts().heights, 0.0);
+    height.corners = overlay_.corners(u);
+    for (double& h : height.heights) h *= scale_;
     return height;
   }
 
-  void count_pair(const GridBox& tile, const Overlaid& here, TriangleId u) {
+  void count_pair(const Overlaid& here, const LivingTriangle& u) {
+    const std::array<MapPoint, 3> c = overlay_.corners(u);
     ConvexPiece shared = here.shape;
-    shared.keep_in(shape_of_other(u));
-    if (shared.is_empty() || !is_in(tile, shared)) return;
+    shared.keep_in({c[0], c[1], c[2]});
+    if (shared.is_empty() || !is_in_tile(shared)) return;
     parts_.clear();
     if (side_.cutter) {
       side_.cutter->cut(shared, parts_);
@@ -277,16 +267,16 @@ class OverlayWorker final : public TileWorker {
       parts_.push_back(shared);
     }
     if (parts_.empty()) return;
-    if (!here.is_surface || other_mesh_.tin().classes[u] == TriangleClass::kVoid) {
+    if (here.triangle.is_void || u.is_void) {
       count_void(here, u);
     } else {
       count_surface(here, u);
     }
   }
 
-  void count_surface(const Overlaid& here, TriangleId u) {
+  void count_surface(const Overlaid& here, const LivingTriangle& u) {
     const LinearHeight there = height_of_other(u);
-    const double deviation = mesh_.deviation(here.triangle) + scale_ * other_mesh_.deviation(u);
+    const double deviation = side_.deviation(here.triangle) + scale_ * other_.deviation(u);
     const double noise = here.noise + there.noise(from_other_.rounding(other_.facts().bounds));
     for (const ConvexPiece& part : parts_) {
       values_.clear();
@@ -295,10 +285,10 @@ class OverlayWorker final : public TileWorker {
     }
   }
 
-  void count_void(const Overlaid& here, TriangleId u) {
+  void count_void(const Overlaid& here, const LivingTriangle& u) {
     Interval possible;
-    if (!mesh_.is_exact() || !other_mesh_.is_exact()) {
-      const Interval a = mesh_.heights(here.triangle), b = other_mesh_.heights(u);
+    if (!side_.is_exact || !other_.is_exact) {
+      const Interval a = side_.heights(here.triangle), b = other_.heights(u);
       if (!is_empty(a) && !is_empty(b)) possible = {a.lo - scale_ * b.hi, a.hi - scale_ * b.lo};
     }
     for (const ConvexPiece& part : parts_) {
@@ -308,7 +298,7 @@ class OverlayWorker final : public TileWorker {
 
   /// Whether the tile holds the corner that comes first by y, then x; positions between those of
   /// the grid belong to the one at their lower left.
-  [[nodiscard]] bool is_in(const GridBox& tile, const ConvexPiece& piece) const {
+  [[nodiscard]] bool is_in_tile(const ConvexPiece& piece) const {
     MapPoint first = piece.corners().front();
     for (const MapPoint p : piece.corners()) {
       if (p.y < first.y || (p.y == first.y && p.x < first.x)) first = p;
@@ -317,20 +307,31 @@ class OverlayWorker final : public TileWorker {
     const GridPoint at{
         std::clamp(static_cast<std::int32_t>(std::floor(first.x)), all.min_x, all.max_x),
         std::clamp(static_cast<std::int32_t>(std::floor(first.y)), all.min_y, all.max_y)};
-    return contains(tile, at);
+    return contains(tile_, at);
   }
 
   const VolumeSide& side_;
   const VolumeSide& other_;
   double scale_;
   GridToGrid to_other_, from_other_;
-  TileMesh mesh_, other_mesh_;
+  LivingReader reader_;
   OverlayMesh overlay_;
   double shift_;
-  GridBox near_;
-  bool is_beside_ = false;
+  GridBox tile_;
   std::vector<ConvexPiece> parts_;
   std::vector<double> values_;
+};
+
+/// Asks for stars whose box meets a box.
+class StarsInBox final : public StarPredicate {
+ public:
+  explicit StarsInBox(const GridBox& box) : box_(box) {}
+  [[nodiscard]] bool may_hold(const StarAttributes& a) const noexcept override {
+    return meets(a.box, box_);
+  }
+
+ private:
+  GridBox box_;
 };
 
 /// The sums of a walk: bounds of all that can be added to them.
@@ -350,16 +351,21 @@ VolumeSide::VolumeSide(const OpenedTerrain& opened, const VolumeRequest& request
                        QueryContext& context)
     : terrain(opened),
       detail(request.detail, opened.record_source(), context),
-      plane(opened.store().facts().map, request.ground) {
-  if (request.region) {
-    cutter.emplace(*request.region, facts().map);
-    in_region = meets_region(*request.region, facts().map);
+      plane(opened.store().facts().map, request.ground),
+      is_exact(detail.is_exact(facts())) {
+  if (request.region) cutter.emplace(*request.region, facts().map);
+  if (!is_exact && !facts().free_of_voids) {
+    border_move = request.border_move
+                      ? request.border_move(terrain.store(), detail.certificate().error)
+                      : kInfinity;
+    border_reach = plane.grid_reach(2 * border_move, facts().bounds);
   }
-  if (detail.is_exact(facts()) || facts().free_of_voids) return;
-  border_move = request.border_move
-                    ? request.border_move(terrain.store(), detail.certificate().error)
-                    : kInfinity;
-  border_reach = plane.grid_reach(2 * border_move, facts().bounds);
+  if (!cutter) return;
+  if (border_scope()) {
+    stars_ = std::make_unique<StarsInBox>(widened(cutter->region().bounds(), border_reach));
+  } else {
+    stars_ = std::make_unique<StarsInRegion>(&cutter->region());
+  }
 }
 
 std::optional<BorderScope> VolumeSide::border_scope() const {
@@ -367,10 +373,32 @@ std::optional<BorderScope> VolumeSide::border_scope() const {
   return BorderScope{cutter ? &cutter->region() : nullptr, border_reach};
 }
 
-PredicatePtr VolumeSide::wanted() const {
-  if (!border_scope() || !cutter) return in_region;
-  const GridBox box = widened(cutter->region().bounds(), border_reach);
-  return std::make_shared<MeetsBox>(box);
+LivingPlace VolumeSide::place(const GridBox& box) const {
+  LivingPlace place;
+  place.box = box;
+  place.stars = stars_.get();
+  return place;
+}
+
+double VolumeSide::deviation(const LivingTriangle& t) const noexcept {
+  if (is_exact) return 0.0;
+  const Interval all = source_heights(facts());
+  const double certified = std::min(t.deviation, detail.certificate().deviation);
+  return std::min(std::max(certified, facts().base_deviation), std::max(all.hi - all.lo, 0.0));
+}
+
+Interval VolumeSide::heights(const LivingTriangle& t) const noexcept {
+  const Interval all = source_heights(facts());
+  if (is_exact) return all;
+  if (t.heights.lo > t.heights.hi) return {1, 0};
+  const double base = facts().base_deviation;
+  return {std::max(all.lo, facts().heights.height_of_code(t.heights.lo) - base),
+          std::min(all.hi, facts().heights.height_of_code(t.heights.hi) + base)};
+}
+
+Interval source_heights(const StoreFacts& facts) noexcept {
+  if (facts.min_height > facts.max_height) return {1, 0};
+  return {facts.min_height - facts.base_deviation, facts.max_height + facts.base_deviation};
 }
 
 void VolumeTotals::add(const VolumeTotals& other) {
@@ -389,9 +417,10 @@ VolumeTotals volume_above_level(const VolumeSide& side, double level,
           ? 0.0
           : std::max({std::abs(all.lo - level), std::abs(all.hi - level), all.hi - all.lo});
   const VolumeTotals empty = totals_for(side, most);
-  const Walk walk{request, side.facts().bounds, bytes_of(side.terrain.t0()), empty};
+  const Walk walk{request, side.facts().bounds, empty};
+  const bool is_alone = threads_within(request) == 1;
   return walk_tiles(walk, [&](std::uint64_t limit) {
-    return std::make_unique<LevelWorker>(walk, limit, side, level);
+    return std::make_unique<LevelWorker>(walk, limit, side, level, is_alone);
   });
 }
 
@@ -404,8 +433,7 @@ VolumeTotals volume_of_overlay(const VolumeSide& side, const VolumeSide& other,
     if (!is_empty(all)) most += 2 * scale * std::max(std::abs(all.lo), std::abs(all.hi));
   }
   const VolumeTotals empty = totals_for(side, most);
-  const Walk walk{request, side.facts().bounds,
-                  bytes_of(side.terrain.t0()) + bytes_of(other.terrain.t0()), empty};
+  const Walk walk{request, side.facts().bounds, empty};
   return walk_tiles(walk, [&](std::uint64_t limit) {
     return std::make_unique<OverlayWorker>(walk, limit, side, other);
   });

@@ -5,12 +5,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
+#include "engine/query/living/living_place.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
-#include "engine/query/select/predicate.h"
 #include "engine/query/volume/plane_area.h"
 #include "engine/query/volume/region_cutter.h"
 #include "engine/query/volume/volume.h"
@@ -24,20 +25,30 @@ struct VolumeSide {
   VolumeSide(const OpenedTerrain& terrain, const VolumeRequest& request, QueryContext& context);
 
   [[nodiscard]] const StoreFacts& facts() const noexcept { return terrain.store().facts(); }
-  /// Where records are wanted: those of the region, and as far around as borders matter. Null:
-  /// everywhere.
-  [[nodiscard]] PredicatePtr wanted() const;
+  /// The triangles in a box that matter: those of the region, and as far around as borders do.
+  [[nodiscard]] LivingPlace place(const GridBox& box) const;
+  /// Height's unit, finite. The full TIN is no farther from the triangle where both are surface.
+  [[nodiscard]] double deviation(const LivingTriangle& t) const noexcept;
+  /// The heights that the full TIN can have below the triangle; empty: it is void there.
+  [[nodiscard]] Interval heights(const LivingTriangle& t) const noexcept;
   /// Which edges of borders matter; none do where the move is 0 or nothing bounds it.
   [[nodiscard]] std::optional<BorderScope> border_scope() const;
 
   const OpenedTerrain& terrain;
   Detail detail;
   PlaneArea plane;
+  bool is_exact;                       ///< The level is the full TIN of the source.
   std::optional<RegionCutter> cutter;  ///< On the terrain's grid.
-  PredicatePtr in_region;              ///< Null: no region.
   double border_move = 0.0;            ///< Ground units.
   MapPoint border_reach;  ///< Twice that, grid units; infinite where nothing bounds it.
+
+ private:
+  std::unique_ptr<const StarPredicate> stars_;  ///< Of places; null: everywhere.
 };
+
+/// The heights of a terrain's source, its base deviation added on either side; empty where there is
+/// no surface.
+[[nodiscard]] Interval source_heights(const StoreFacts& facts) noexcept;
 
 /// What a walk over tiles adds up. Threads: one owner.
 struct VolumeTotals {

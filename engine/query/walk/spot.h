@@ -57,6 +57,12 @@ struct Spot {
          Int128{std::int64_t{b.y} - a.y} * (q.x - from.x);
 }
 
+/// True when the closed triangle (a, b, c), counter-clockwise, holds the spot. Exact.
+[[nodiscard]] constexpr bool triangle_holds(GridPoint a, GridPoint b, GridPoint c,
+                                            Spot q) noexcept {
+  return side(a, b, q) >= 0 && side(b, c, q) >= 0 && side(c, a, q) >= 0;
+}
+
 /// Twice the signed area of (p, q, v), in units of 2^-44: > 0 where v lies to the left of p -> q.
 /// Exact: differences of at most 2^54, products of 2^108.
 [[nodiscard]] constexpr Int128 side(Spot p, Spot q, GridPoint v) noexcept {

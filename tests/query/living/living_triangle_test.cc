@@ -128,17 +128,17 @@ TEST(LivingTriangles, OfALevelAreFoundWhereTheyMeetABox) {
 class Collector final : public BestStarVisitor {
  public:
   explicit Collector(std::size_t most) : most_(most) {}
-  [[nodiscard]] double bound(const StarAttributes& a) const override {
-    return static_cast<double>(a.box.max_x) - a.box.min_x;
+  [[nodiscard]] Merit bound(const StarAttributes& a) const override {  // of few different values
+    return {static_cast<double>((a.box.max_x - a.box.min_x) / 16), key_of({a.box.min_x, 0})};
   }
-  double visit(PageId page, const StarAttributes& a) override {
-    EXPECT_EQ(bounds.empty() || bounds.back() >= bound(a), true) << "pages come best first";
+  Merit visit(PageId page, const StarAttributes& a) override {
+    EXPECT_FALSE(!bounds.empty() && bounds.back().is_below(bound(a))) << "pages come best first";
     bounds.push_back(bound(a));
     pages.push_back(page);
-    return pages.size() == most_ ? kInfinity : -kInfinity;
+    return pages.size() == most_ ? kBestMerit : kNoMerit;
   }
   std::vector<PageId> pages;
-  std::vector<double> bounds;
+  std::vector<Merit> bounds;
 
  private:
   std::size_t most_;
@@ -154,8 +154,8 @@ TEST(LivingTriangles, AreFoundBestFirstOnTheSamePages) {
     std::vector<StarPage> found;
     store.star_index().search_stars(filter, found, counters);
     Collector all(0), few(3);
-    store.star_index().search_stars_best_first(filter, all, -kInfinity, of_all);
-    store.star_index().search_stars_best_first(filter, few, -kInfinity, of_few);
+    store.star_index().search_stars_best_first(filter, all, kNoMerit, of_all);
+    store.star_index().search_stars_best_first(filter, few, kNoMerit, of_few);
     ASSERT_GT(found.size(), 10U);
     EXPECT_EQ(of_all.index_nodes, counters.index_nodes);
     EXPECT_LT(of_few.index_nodes, counters.index_nodes);

@@ -10,7 +10,6 @@
 
 #include "engine/error.h"
 #include "engine/query/select/predicate.h"
-#include "engine/query/sight/viewshed.h"
 #include "engine/query/terrain.h"
 #include "tests/query/least_memory.h"
 #include "tests/query/reference_hierarchy.h"
@@ -90,33 +89,6 @@ TEST(BoundedMesh, IsRefusedBelowWhatItsRecordsAndArraysTake) {
   });
   EXPECT_GE(least, held);
   EXPECT_LE(least, 4 * held);
-}
-
-TEST(BoundedMesh, IsCountedByAViewshedBesideItsSweep) {
-  const HeldTerrain t;
-  const StoreFacts& f = t.hierarchy.facts;
-  ViewshedRequest request;
-  request.eye = f.map.to_map(0.5 * (f.bounds.min_x + f.bounds.max_x),
-                             0.5 * (f.bounds.min_y + f.bounds.max_y));
-  request.eye_height = 20;
-  request.radius = (f.bounds.max_x - f.bounds.min_x) * f.map.step_x;  // all of it
-  QueryContext context({.memory_bytes = std::uint64_t{1} << 30}, "a test");
-  BoundedMesh mesh(t.terrain);
-  mesh.refine(*everything(), context);
-  const std::uint64_t with_records = mesh.bytes();
-  mesh.release_records();
-  for (const bool listed : {false, true}) {
-    request.list_vertices = listed;
-    Viewshed seen;
-    const std::uint64_t least = reference::least_memory([&](std::uint64_t limit) {
-      request.limits.memory_bytes = limit;
-      seen = viewshed(t.terrain, request);
-    });
-    EXPECT_EQ(seen.vertices.size(), listed ? t.hierarchy.full.vertices.size() : 0U);
-    EXPECT_GE(least, with_records) << "held while it is refined";
-    EXPECT_GE(least,
-              mesh.bytes() + seen.pixels.size() + seen.vertices.size() * sizeof(Viewshed::Target));
-  }
 }
 
 }  // namespace

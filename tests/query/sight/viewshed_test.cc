@@ -445,6 +445,31 @@ TEST(Viewshed, CountsTheRastersThatAFileWithoutItsDetailsNeeds) {
   EXPECT_NEAR(double(least(left_out)), double(least(exact) + raster), 1U << 15U);
 }
 
+TEST(Viewshed, CountsItsMeshBesideItsResults) {
+  std::mt19937_64 random(8);
+  const Hierarchy h =
+      reference::simplify_unmeasured(reference::random_grid(random, 40, 40, 4, 0.0), random);
+  const TemporaryStore file(h);
+  const Terrain terrain(file.open());
+  const GridBox& b = h.facts.bounds;
+  ViewshedRequest request;
+  request.eye = h.facts.map.to_map(0.5 * (b.min_x + b.max_x), 0.5 * (b.min_y + b.max_y));
+  request.eye_height = 20;
+  request.radius = (b.max_x - b.min_x) * h.facts.map.step_x;  // all of it
+  const std::uint64_t mesh = h.full.vertices.size() * (sizeof(Vertex) + 1) +
+                             h.full.triangles.size() * (sizeof(Triangle) + 1);
+  for (const bool listed : {false, true}) {
+    request.list_vertices = listed;
+    Viewshed seen;
+    const std::uint64_t least = reference::least_memory([&](std::uint64_t limit) {
+      request.limits.memory_bytes = limit;
+      seen = viewshed(terrain, request);
+    });
+    EXPECT_EQ(seen.vertices.size(), listed ? h.full.vertices.size() : 0U);
+    EXPECT_GE(least, mesh + seen.pixels.size() + seen.vertices.size() * sizeof(Viewshed::Target));
+  }
+}
+
 TEST(Viewshed, RefusesWhatMeansNothing) {
   const Hierarchy h = plain_with_wall(0.0);
   const TemporaryStore file(h);
