@@ -55,6 +55,7 @@ set(public_headers
     engine/mesh/star.h
     engine/mesh/tin.h
     engine/mesh/validate.h
+    engine/mesh/vertex_table.h
     engine/prefetch.h
     engine/query/heights/class_changes.h
     engine/query/heights/highest.h
