@@ -17,45 +17,18 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "engine/construct/tile/ground_place.h"
+#include "engine/construct/tile/witnessed_triangle.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/infinity.h"
-#include "engine/geometry/orient.h"
 #include "engine/geometry/rounding.h"
 
 namespace ptin {
 
 namespace {
 
-/// A point that need not be a vertex, in grid units.
-struct Place {
-  double x, y;
-};
-
-Place place_of(GridPoint p) noexcept {
-  return {static_cast<double>(p.x), static_cast<double>(p.y)};
-}
-
-double distance(Place a, Place b, GroundStep step) noexcept {
-  const double x = (a.x - b.x) * step.x, y = (a.y - b.y) * step.y;
-  return std::sqrt(x * x + y * y);
-}
-
-double distance(GridPoint a, GridPoint b, GroundStep step) noexcept {
-  return distance(place_of(a), place_of(b), step);
-}
-
-/// The distance on the ground from p to the straight edge a-b.
-double distance_to_edge(Place p, Place a, Place b, GroundStep step) noexcept {
-  const double ux = (b.x - a.x) * step.x, uy = (b.y - a.y) * step.y;
-  const double vx = (p.x - a.x) * step.x, vy = (p.y - a.y) * step.y;
-  const double length = ux * ux + uy * uy;
-  const double t = length > 0.0 ? std::clamp((ux * vx + uy * vy) / length, 0.0, 1.0) : 0.0;
-  const double x = vx - t * ux, y = vy - t * uy;
-  return std::sqrt(x * x + y * y);
-}
-
 /// The farthest distance on the ground from `p` to a point of the box.
-double farthest(const GridBox& box, Place p, GroundStep step) noexcept {
+double farthest(const GridBox& box, GroundPlace p, GroundStep step) noexcept {
   if (is_empty(box)) {
     return 0.0;
   }
@@ -118,8 +91,8 @@ class Finder {
   [[nodiscard]] bool is_far(std::uint32_t at) const {
     return at < n_ && found_.nearest[at] == BorderWitnesses::kNoBorder;
   }
-  [[nodiscard]] Place place_of_node(const Node& node) const;
-  [[nodiscard]] Place middle_of(std::uint32_t side) const;
+  [[nodiscard]] GroundPlace place_of_node(const Node& node) const;
+  [[nodiscard]] GroundPlace middle_of(std::uint32_t side) const;
   [[nodiscard]] WayIn way_of(TriangleId t) const;
   /// What nodes are ordered by: deeper ones first.
   struct Depth {
@@ -294,30 +267,6 @@ void Finder::find_regions() {
   }
 }
 
-/// The greatest depth within a triangle: by the best of what its corners know. The distance to a
-/// point or an edge is convex, so greatest at a corner.
-double greatest_depth(const WitnessedTriangle& t, std::span<const Place> piece, GroundStep step) {
-  double least = kInfinity;
-  for (int i = 0; i < 3; ++i) {
-    if (t.nearest[i] != BorderWitnesses::kNoBorder) {
-      double most = 0.0;
-      for (const Place p : piece) {
-        most = std::max(most, distance(p, place_of(t.nearest[i]), step));
-      }
-      least = std::min(least, most);
-    }
-    if (t.is_known_side[i]) {
-      double most = 0.0;
-      for (const Place p : piece) {
-        most = std::max(most, distance_to_edge(p, place_of(t.corners[(i + 1) % 3]),
-                                               place_of(t.corners[(i + 2) % 3]), step));
-      }
-      least = std::min(least, most);
-    }
-  }
-  return least;
-}
-
 std::uint32_t Finder::node_at(std::uint32_t at) {
   const auto next = static_cast<std::uint32_t>(nodes_.size());
   std::uint32_t* known = nullptr;
@@ -359,8 +308,8 @@ void Finder::measure_triangles() {
       continue;
     }
     Node& node = nodes_[node_at(witness_[t])];
-    const std::array<Place, 3> whole{place_of(w.corners[0]), place_of(w.corners[1]),
-                                     place_of(w.corners[2])};
+    const std::array<GroundPlace, 3> whole{place_of(w.corners[0]), place_of(w.corners[1]),
+                                           place_of(w.corners[2])};
     node.depth =
         std::max(node.depth, length_bound(std::max(w.gap, greatest_depth(w, whole, part_.step))));
     for (int i = 0; i < 3; ++i) {
@@ -372,7 +321,7 @@ void Finder::measure_triangles() {
   }
 }
 
-Place Finder::place_of_node(const Node& node) const {
+GroundPlace Finder::place_of_node(const Node& node) const {
   if (node.at < n_) {
     return place_of(tin_.position(node.at));
   }
@@ -380,11 +329,11 @@ Place Finder::place_of_node(const Node& node) const {
   return place_of(tin_.position(tin_.triangles[t].v[way_of(t).corner]));
 }
 
-Place Finder::middle_of(std::uint32_t side) const {
+GroundPlace Finder::middle_of(std::uint32_t side) const {
   const Triangle& triangle = tin_.triangles[side / 3];
   const int i = static_cast<int>(side % 3);
-  const Place a = place_of(tin_.position(triangle.v[next_corner(i)]));
-  const Place b = place_of(tin_.position(triangle.v[previous_corner(i)]));
+  const GroundPlace a = place_of(tin_.position(triangle.v[next_corner(i)]));
+  const GroundPlace b = place_of(tin_.position(triangle.v[previous_corner(i)]));
   return {(a.x + b.x) / 2.0, (a.y + b.y) / 2.0};
 }
 
@@ -475,7 +424,7 @@ void Finder::find_reaches() {
     if (node.parent != kNone) {
       Node& next = nodes_[node.parent];
       double most = 0.0;
-      for (const Place p :
+      for (const GroundPlace p :
            {place_of_node(node), middle_of(node.parent_side), place_of_node(next)}) {
         most = std::max(most, farthest(node.border, p, part_.step));
       }
@@ -511,121 +460,5 @@ BorderWitnesses Finder::run() {
 }  // namespace
 
 BorderWitnesses find_border_witnesses(const PartOfTerrain& part) { return Finder(part).run(); }
-
-WitnessedTriangle witnessed_triangle(const PartOfTerrain& part, const BorderWitnesses& witnesses,
-                                     TriangleId t) {
-  const Tin& tin = part.tin;
-  const Triangle& triangle = tin.triangles[t];
-  WitnessedTriangle w;
-  double deepest = -1.0;
-  for (int i = 0; i < 3; ++i) {
-    const VertexId v = triangle.v[i];
-    w.corners[i] = tin.position(v);
-    w.nearest[i] = witnesses.nearest[v];
-    const TriangleId beyond = triangle.n[i];
-    w.is_known_side[i] = beyond != kNone && tin.classes[beyond] != tin.classes[t];
-    w.is_border_side[i] =
-        w.is_known_side[i] ||
-        (beyond == kNone && part.goes_on(tin.position(triangle.v[next_corner(i)]),
-                                         tin.position(triangle.v[previous_corner(i)])));
-    if (witnesses.kind[v] != BorderWitnesses::Kind::kInner) {
-      continue;
-    }
-    const double depth = w.nearest[i] == BorderWitnesses::kNoBorder
-                             ? kInfinity
-                             : distance(w.corners[i], w.nearest[i], part.step);
-    if (depth > deepest ||
-        (depth == deepest && key_of(w.corners[i]) < key_of(w.corners[w.witness]))) {
-      deepest = depth;
-      w.witness = i;
-    }
-  }
-  const std::size_t other = tin.classes[t] == TriangleClass::kSurface ? 1 : 0;
-  for (int i = 0; i < 3; ++i) {
-    const VertexId a = triangle.v[i], b = triangle.v[next_corner(i)];
-    const std::uint32_t of_a = witnesses.region[a][other], of_b = witnesses.region[b][other];
-    if (of_a != kNone && of_b != kNone && of_a != of_b) {
-      w.gap = std::max(w.gap, distance(witnesses.nearest[a], witnesses.nearest[b], part.step));
-    }
-    w.gap = std::max(w.gap, static_cast<double>(witnesses.doubt[a]));
-  }
-  if (w.witness != WitnessedTriangle::kCornerWitness && !witnesses.reach.empty()) {
-    w.reach = witnesses.reach[triangle.v[w.witness]];
-  }
-  return w;
-}
-
-namespace {
-
-/// What an edge cuts off a triangle.
-struct CutOff {
-  std::array<Place, 8> piece;  ///< The corners of the piece, in no order.
-  std::size_t corners = 0;
-  std::array<Place, 2> cut{};  ///< The ends of the edge's part within the triangle.
-  std::size_t ends = 0;
-};
-
-/// @param side     For each corner: its side of the edge, as a sign.
-/// @param witness  The side of the witness; 0: it is on the edge, and all of the triangle counts.
-CutOff cut_off(const WitnessedTriangle& t, const std::array<std::int64_t, 3>& side, int witness) {
-  CutOff result;
-  for (int i = 0; i < 3; ++i) {
-    const int sign = side[i] > 0 ? 1 : (side[i] < 0 ? -1 : 0);
-    if (sign == 0 && result.ends < 2) {
-      result.cut[result.ends++] = place_of(t.corners[i]);
-    }
-    if (sign == 0 || sign != witness) {
-      result.piece[result.corners++] = place_of(t.corners[i]);
-    }
-    const int k = (i + 1) % 3;
-    if ((side[i] > 0 && side[k] < 0) || (side[i] < 0 && side[k] > 0)) {
-      const double f = static_cast<double>(side[i]) /
-                       (static_cast<double>(side[i]) - static_cast<double>(side[k]));
-      const Place a = place_of(t.corners[i]), b = place_of(t.corners[k]);
-      const Place at{a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f};
-      result.piece[result.corners++] = at;
-      if (result.ends < 2) {
-        result.cut[result.ends++] = at;
-      }
-    }
-  }
-  return result;
-}
-
-}  // namespace
-
-double border_crossing(const WitnessedTriangle& t, GridPoint a, GridPoint b,
-                       GroundStep step) noexcept {
-  std::array<std::int64_t, 3> side{};
-  for (int i = 0; i < 3; ++i) {
-    side[i] = orient(a, b, t.corners[i]);
-  }
-  std::int64_t of_witness = 0;
-  if (t.witness == WitnessedTriangle::kCornerWitness) {
-    const WayIn way = way_into(t.corners);
-    of_witness = orient_towards(a, b, t.corners[way.corner], way.direction);
-  } else {
-    of_witness = side[t.witness];
-    if (of_witness == 0) {
-      return t.reach;
-    }
-  }
-  const int sign = of_witness > 0 ? 1 : (of_witness < 0 ? -1 : 0);
-  const CutOff off = cut_off(t, side, sign);
-  double moved = std::max(t.gap, greatest_depth(t, {off.piece.data(), off.corners}, step));
-  for (int i = 0; i < 3; ++i) {
-    if (!t.is_border_side[i]) {
-      continue;
-    }
-    for (const int end : {(i + 1) % 3, (i + 2) % 3}) {
-      const bool is_cut_off = side[end] != 0 && (sign == 0 || (side[end] > 0) != (sign > 0));
-      if (is_cut_off) {
-        moved = std::max(moved,
-                         distance_to_edge(place_of(t.corners[end]), off.cut[0], off.cut[1], step));
-      }
-    }
-  }
-  return std::min(moved * (1.0 + 0x1p-40), static_cast<double>(t.reach));
-}
 
 }  // namespace ptin

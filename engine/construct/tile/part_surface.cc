@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/construct/tile/witnessed_triangle.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/orient.h"
 
