@@ -357,7 +357,7 @@ TEST_F(Measured, AStopEndsItWithNothingLeftBehind) {
 }
 
 TEST_F(Measured, WhatDoesNotFitTheMemoryIsLeftOutWithASentence) {
-  request_.memory_bytes = 80 << 10;
+  request_.memory_bytes = 64 << 10;
   const IoReport report = measure_io(request_);
   for (const QuestionFigures& f : report.questions) {
     // Points, lines of sight and the smallest windows keep hardly anything in memory.

@@ -123,6 +123,9 @@ class SegmentWriter {
           points_.empty() ? PointState::kOutside : points_.back().state);
     } else {
       put(reached, std::nullopt, PointState::kOutside);
+      if (last == nullptr && !stretches.empty()) {  // The line touches a corner of the domain.
+        put(stretches.front().from, touched(stretches), PointState::kOutside);
+      }
       put(1.0, std::nullopt, PointState::kOutside);
     }
   }
@@ -145,7 +148,7 @@ class SegmentWriter {
     return found == ground_.end() || found->share != share ? std::nullopt
                                                            : std::optional(found->code);
   }
-  /// The ground where the segment touches the surface with its end alone.
+  /// The ground where the segment touches the surface in one point alone.
   static std::optional<double> touched(std::span<const GroundStretch> stretches) {
     const auto found = std::find_if(stretches.begin(), stretches.end(),
                                     [](const GroundStretch& s) { return s.is_surface; });

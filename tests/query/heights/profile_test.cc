@@ -13,6 +13,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/heights/locate.h"
 #include "engine/query/terrain.h"
 #include "engine/query/walk/spot_path.h"
 #include "tests/query/built_terrain.h"
@@ -59,6 +60,30 @@ RC_GTEST_PROP(Profile, BreaksWhereTheFullTinDoesAtItsHeights, (std::uint64_t see
         }
       }
     }
+  }
+}
+
+TEST(Profile, StopsWhereALineTouchesACornerOfTheDomain) {
+  const Hierarchy h = reference::random_hierarchy(11);
+  const reference::TemporaryStore file(h);
+  const Terrain terrain(file.open());
+  const GridBox& b = h.facts.bounds;
+  const auto map_of = [&](std::int32_t x, std::int32_t y) { return h.facts.map.to_map(x, y); };
+  const MapPoint corner = map_of(b.min_x, b.min_y);
+  const LocatedPoint ground = locate(terrain, std::span(&corner, 1)).points[0];
+  for (const std::int32_t before : {0, 3, 6}) {  // the corner stands before, within, behind
+    const MapPoint line[] = {map_of(b.min_x - before, b.min_y + before),
+                             map_of(b.min_x - before + 6, b.min_y + before - 6)};
+    const ProfileResult found = profile(terrain, line);
+    ASSERT_EQ(found.points.size(), before == 3 ? 3U : 2U);
+    const ProfilePoint& at = found.points[before == 0 ? 0 : 1];
+    EXPECT_EQ(at.state, PointState::kOutside);
+    EXPECT_DOUBLE_EQ(at.position.x, corner.x);
+    EXPECT_DOUBLE_EQ(at.position.y, corner.y);
+    EXPECT_EQ(at.height, ground.height);
+    EXPECT_EQ(std::count_if(found.points.begin(), found.points.end(),
+                            [](const ProfilePoint& p) { return std::isnan(p.height); }),
+              static_cast<std::ptrdiff_t>(found.points.size()) - 1);
   }
 }
 
