@@ -171,7 +171,8 @@ void DescribedPage::decode_stars(std::span<const std::byte> bytes, const StarFil
   RingSpan span;
   for (std::uint32_t run = 0; run < records(); run += RecordPage::kRun) {
     const std::uint32_t count = std::min<std::uint32_t>(RecordPage::kRun, records() - run);
-    for (std::uint64_t left = page.near_stars(run, count, filter, false); left != 0; left &= left - 1) {
+    for (std::uint64_t left = page.near_stars(run, count, filter, false); left != 0;
+         left &= left - 1) {
       const std::uint32_t i = run + static_cast<std::uint32_t>(std::countr_zero(left));
       if (!page.may_live(i, place, level)) {
         continue;
