@@ -226,6 +226,7 @@ HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
       source.frame.heights.step;
   options.threads = plan.threads;
   options.memory_for_tiles = plan.memory_for_tiles;
+  options.memory_for_reading = plan.memory.gdal_cache;
   options.tile_bytes = plan.tile_bytes;
   options.give_back = [&job](std::uint64_t bytes) {
     // Memory that is given back is taken again a page at a time: a fifth of the time, where it

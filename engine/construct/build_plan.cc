@@ -33,10 +33,11 @@ std::uint64_t samples_of_leaf(const TileTree& tree) {
 
 std::string in_mib(std::uint64_t bytes) { return std::to_string((bytes + kMiB - 1) / kMiB) + "M"; }
 
-/// What the largest piece of work takes: a batch of leaves, or the join of four tiles, which holds
-/// as many vertices as a leaf and those of the seams around it and in it.
+/// What the largest piece of work takes beside the memory for reading: a batch of leaves, or the
+/// last join of four tiles, which holds as many vertices as a leaf and those of the seams around it
+/// and in it, and takes the memory for reading too.
 std::uint64_t bytes_of_largest(std::uint64_t leaf_samples, const TileTree& tree,
-                               const TileBytes& tile_bytes) {
+                               const TileBytes& tile_bytes, std::uint64_t reading) {
   const std::uint64_t leaf =
       std::max(tile_bytes.of_batch(leaf_samples), tile_bytes.of_replay(leaf_samples));
   if (tree.levels() < 3) {  // joined within the batch
@@ -44,16 +45,18 @@ std::uint64_t bytes_of_largest(std::uint64_t leaf_samples, const TileTree& tree,
   }
   const SampleRange whole = tree.window(tree.root());
   const auto seams = static_cast<std::uint64_t>(whole.width + whole.height);
-  return std::max(leaf, tile_bytes.of_join((leaf_samples + seams) * tile_bytes.pushed_of_vertex));
+  const std::uint64_t join =
+      tile_bytes.of_join((leaf_samples + seams) * tile_bytes.pushed_of_vertex);
+  return std::max(leaf, join - std::min(join, reading));
 }
 
 /// The longest side below the tree's whose tiles fit into `bytes`; 0 when none of 32 or more does.
-std::int64_t side_that_fits(std::uint64_t bytes, const TileTree& tree,
-                            const TileBytes& tile_bytes) {
+std::int64_t side_that_fits(std::uint64_t bytes, const TileTree& tree, const TileBytes& tile_bytes,
+                            std::uint64_t reading) {
   std::int64_t side = tree.side();
   const auto fits = [&] {  // the last tile of a row may be half a side longer
     const auto longest = static_cast<std::uint64_t>(side + side / 2);
-    return bytes_of_largest(longest * longest, tree, tile_bytes) <= bytes;
+    return bytes_of_largest(longest * longest, tree, tile_bytes, reading) <= bytes;
   };
   while (side >= 32 && (side == tree.side() || !fits())) {
     side -= 16;
@@ -68,7 +71,7 @@ void plan_threads(BuildPlan& plan, const TileTree& tree, const PlanRequest& requ
   const MemoryPlan& memory = request.memory;
   const std::uint64_t present = anonymous_bytes_now();
   const std::uint64_t samples = samples_of_leaf(tree);
-  const std::uint64_t one = bytes_of_largest(samples, tree, tile_bytes);
+  const std::uint64_t one = bytes_of_largest(samples, tree, tile_bytes, memory.gdal_cache);
   plan.memory = memory;
   plan.tile_bytes = tile_bytes;
   plan.threads_wanted =
@@ -87,7 +90,7 @@ void plan_threads(BuildPlan& plan, const TileTree& tree, const PlanRequest& requ
     while (enough.for_tiles(present, 1) < one) {
       enough = memory.within(enough.limit + kMiB);
     }
-    const std::int64_t side = side_that_fits(share, tree, tile_bytes);
+    const std::int64_t side = side_that_fits(share, tree, tile_bytes, memory.gdal_cache);
     throw Error(ErrorCode::resource_exhausted,
                 "a tile of " + std::to_string(plan.tile_side) + " samples a side needs " +
                     in_mib(enough.limit) + " of memory in all and the limit is " +

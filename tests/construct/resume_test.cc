@@ -512,6 +512,38 @@ TEST(Workspace, TakesUpAndDiscardsOnlyAFolderThatIsItsOwn) {
   EXPECT_TRUE(tmp.names().empty());
 }
 
+/// The output is named from its folder first, then from the root, and then from another folder.
+TEST(Workspace, IsTakenUpHoweverItsOutputIsNamed) {
+  namespace fs = std::filesystem;
+  FileLayer& files = FileLayer::system();
+  const fs::path before = fs::current_path();
+  for (const bool is_moved : {false, true}) {
+    const ScratchFolder folder, other;
+    const fs::path home = fs::path(folder.file("a.ptin")).parent_path();
+    fs::current_path(home);
+    {
+      Workspace workspace(files, "a.ptin", "", Unfinished::kRefuse, {{"of", 1}});
+      workspace.append({{{"work", 1}}});
+    }
+    fs::path now = home;
+    if (is_moved) {
+      now = fs::path(other.file("moved"));
+      fs::rename(home, now);
+      fs::create_directory(home);
+    }
+    fs::current_path("/");
+    const std::string whole = (now / "a.ptin").string();
+    {
+      const Workspace workspace(files, whole, "", Unfinished::kResume, {{"of", 1}});
+      EXPECT_EQ(workspace.lines().size(), 1U);
+    }
+    fs::current_path(now.parent_path());
+    EXPECT_TRUE(Workspace::discard(files, now.filename().string() + "/a.ptin"));
+    EXPECT_TRUE(fs::is_empty(now));
+    fs::current_path(before);
+  }
+}
+
 TEST(ArrayFile, SaysThatItWasCutShortWhileItWasRead) {
   install_sigbus_guard();
   const ScratchFolder folder;

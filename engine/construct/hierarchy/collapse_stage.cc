@@ -58,8 +58,10 @@ std::optional<std::uint64_t> CollapseStage::next_bytes() {
       pushed += log_.collapsed().at(child).pushed.bytes;
     }
     const std::uint64_t bytes = options_.tile_bytes.of_join(pushed);
-    if (bytes > options_.memory_for_tiles) {  // the terrain keeps more than the plan expected
-      refuse_join(bytes);
+    const std::uint64_t most = options_.memory_for_tiles +
+                               (*ready_.begin() == tree_.root() ? options_.memory_for_reading : 0);
+    if (bytes > most) {  // the terrain keeps more than the plan expected
+      refuse_join(bytes - most);
     }
     return bytes;
   }
@@ -70,10 +72,9 @@ std::optional<std::uint64_t> CollapseStage::next_bytes() {
       BatchOrder::largest_leaf(tree_, order_.batches()[next_batch_]));
 }
 
-void CollapseStage::refuse_join(std::uint64_t bytes) const {
+void CollapseStage::refuse_join(std::uint64_t missing) {
   throw Error(ErrorCode::resource_exhausted,
-              "a join of four tiles needs " +
-                  std::to_string((bytes - options_.memory_for_tiles) / kMiB + 1) +
+              "a join of four tiles needs " + std::to_string(missing / kMiB + 1) +
                   " MiB more than --memory leaves for it; go on with that much more");
 }
 
@@ -96,6 +97,9 @@ Piece CollapseStage::take_inner() {
   const std::uint64_t bytes = *next_bytes();
   const TileId id = *ready_.begin();
   ready_.erase(ready_.begin());
+  if (id == tree_.root()) {
+    starters_.clear();  // All leaves are done: what they were read by is closed.
+  }
   std::vector<ArrayFileFacts> children;
   for (const TileId& child : tree_.children(id)) {
     children.push_back(log_.collapsed().at(child).pushed);

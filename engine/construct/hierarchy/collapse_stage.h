@@ -48,7 +48,7 @@ class CollapseStage final : public PieceSource {
   void commit(const TileId& id, const CollapsedTile& tile);
   void look_for_parent(const TileId& id);
   void skip_done_batches();
-  [[noreturn]] void refuse_join(std::uint64_t bytes) const;
+  [[noreturn]] static void refuse_join(std::uint64_t missing);
   void report(std::uint64_t samples);
 
   const TileTree& tree_;

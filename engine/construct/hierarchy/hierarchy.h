@@ -24,7 +24,9 @@ struct HierarchyOptions {
   CollapseOptions collapse;
   int threads = 1;
   std::uint64_t memory_for_tiles = ~std::uint64_t{0};  ///< Bytes, for all work at once.
-  TileBytes tile_bytes;  ///< What each kind of work takes of them, by estimate.
+  /// Bytes for reading the source, besides. The last join takes them too: nothing is read beside it.
+  std::uint64_t memory_for_reading = 0;
+  TileBytes tile_bytes;  ///< What each kind of work takes, by estimate.
   std::function<void(std::uint64_t bytes)> give_back;   ///< PieceLimits::give_back.
   std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
   std::stop_token stop;

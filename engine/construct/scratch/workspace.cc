@@ -68,6 +68,13 @@ std::uint64_t owner_of(const nlohmann::json& first, const std::string& folder) {
   return first.value("owner", checksum_of_text(whole_path(folder)));
 }
 
+/// The folder of temporary files that a manifest names. Where there is none in `--tmp`, it is the
+/// folder of the manifest, however the output was named, and wherever that is now.
+std::string tmp_of(const nlohmann::json& first, const std::string& folder) {
+  const std::string tmp = first.value("tmp", folder);
+  return checksum_of_text(whole_path(tmp)) == owner_of(first, folder) ? folder : tmp;
+}
+
 void write_owner(FileLayer& files, const std::string& tmp, const std::string& folder) {
   const std::string owner = whole_path(folder);
   const int failure = files.unlink(owner_in(tmp));  // of a build that was killed early
@@ -127,7 +134,7 @@ nlohmann::json first_line(const nlohmann::json& fingerprint, const std::string& 
                           const std::string& folder) {
   return {{"ptin_build", 1},
           {"of", fingerprint},
-          {"tmp", tmp},
+          {"tmp", whole_path(tmp)},
           {"owner", checksum_of_text(whole_path(folder))}};
 }
 
@@ -194,7 +201,7 @@ bool Workspace::discard(FileLayer& files, const std::string& output) {
     if (manifest.entries().empty()) {
       require_ours(is_empty_but_for(folder, manifest_in(folder)), folder);
     } else {
-      tmp = manifest.entries().front().value("tmp", folder);
+      tmp = tmp_of(manifest.entries().front(), folder);
       owner = owner_of(manifest.entries().front(), folder);
     }
   }
@@ -302,7 +309,7 @@ void Workspace::take_up(const nlohmann::json& fingerprint) {
                 "--discard",
                 folder_);
   }
-  tmp_ = first.value("tmp", folder_);
+  tmp_ = tmp_of(first, folder_);
   has_work_ = manifest_->entries().size() > 1;
   if (tmp_ == folder_) {
     return;
