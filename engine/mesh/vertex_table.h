@@ -22,7 +22,7 @@ class VertexTable {
  public:
   VertexTable() { reset(0); }
 
-  /// Makes room for `capacity` vertices, fewer than 2^31, in all. Cost: linear when it grows.
+  /// Makes room for `capacity` vertices, fewer than 2^32 / 3, in all. Cost: linear when it grows.
   void reserve(const Tin& tin, std::size_t capacity) {
     if (slots_for(capacity) <= slots_.size()) {
       return;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 
 #include "engine/construct/process_limits.h"
 #include "engine/error.h"
@@ -167,14 +166,15 @@ void add_memory_option(CLI::App& app, std::string& memory) {
 }
 
 void add_by_option(CLI::App& app, AnswerBy& by) {
-  app.add_option("--by", by,
-                 "stars: look up the triangles that live at the level; splits: refine T0, as the "
-                 "paper has it. The answer is the same (default stars)")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, AnswerBy>{{"stars", AnswerBy::kStars},
-                                                                  {"splits", AnswerBy::kSplits}},
-                                  CLI::ignore_case))
-      ->type_name("stars|splits");
+  app.add_option_function<std::string>(
+         "--by",
+         [&by](const std::string& name) {
+           by = name == "splits" ? AnswerBy::kSplits : AnswerBy::kStars;
+         },
+         "stars: look up the triangles that live at the level; splits: refine T0, as the paper has "
+         "it. An exact answer is the same, at a level both are true (default stars)")
+      ->transform(CLI::IsMember({"stars", "splits"}, CLI::ignore_case))
+      ->type_name("TEXT");
 }
 
 DetailRequest detail_of(const DetailOptions& options) { return {options.error, options.vertices}; }

@@ -115,6 +115,7 @@ class ChangeCount {
  public:
   ChangeCount(const OpenedTerrain& terrain, const ClassChangesRequest& request)
       : terrain_(terrain),
+        is_unbounded_(std::isinf(request.reach[0]) || std::isinf(request.reach[1])),
         reach_{steps_above(request.reach[0], terrain.store().facts().map.step_x),
                steps_above(request.reach[1], terrain.store().facts().map.step_y)},
         level_(terrain, {{}, request.detail, half_of(request.limits)}),
@@ -167,7 +168,10 @@ class ChangeCount {
     link_tin(level);
     const PackedBoxes near = around_border(level, reach_);
     const ClassesAt at_level(level);
-    const auto is_near = [&](const GridBox& box) { return any_meets(near, box) && is_wanted(box); };
+    // Without a bound of its move the whole border may have gone.
+    const auto is_near = [&](const GridBox& box) {
+      return (is_unbounded_ || any_meets(near, box)) && is_wanted(box);
+    };
     Tin* finest = nullptr;
     const auto fits = [&](const GridCell& part, double) {
       return !is_near(part.box()) || (finest = finest_.part(part.box())) != nullptr;
@@ -191,6 +195,7 @@ class ChangeCount {
   }
 
   const OpenedTerrain& terrain_;
+  bool is_unbounded_;
   GridReach reach_;
   std::optional<GridRegion> region_;
   TinParts level_, finest_;

@@ -137,6 +137,7 @@ class HighestSearch final : private BestStarVisitor {
   void search() {
     visit_living(store_.t0(), detail_.level(), [&](const LivingTriangle& t) { take(t); });
     store_.star_index().search_stars_best_first(filter_, *this, cut_off(), context_.cost.io);
+    // What was set aside raised no cut-off, so nothing was left out for its sake.
     ties_.settle([&](const LivingTriangle& t) { look_at(t); });
   }
 
@@ -154,13 +155,24 @@ class HighestSearch final : private BestStarVisitor {
       const double last = best_.rbegin()->value;
       filter_.heights = request_.lowest ? Interval{-kInfinity, -last} : Interval{last, kInfinity};
     }
-    stars_.clear();
-    context_.cost.records_examined += store_.read_stars(page, filter_, stars_, context_.cost.io);
-    context_.cost.stars_read += stars_.size();
-    context_.admit(best_.size() * kBytesACandidate + stars_.splits.size() * sizeof(VertexSplit) +
-                   stars_.corners.size() * sizeof(RingCorner));
-    ties_.note_fans(stars_);
-    visit_living(stars_, detail_, facts_.heights, [&](const LivingTriangle& t) { take(t); });
+    const auto take_it = [&](const LivingTriangle& t) { take(t); };
+    if (filter_.with_ties) {
+      stars_.clear();
+      context_.cost.records_examined += store_.read_stars(page, filter_, stars_, context_.cost.io);
+      context_.cost.stars_read += stars_.size();
+      ties_.note_fans(stars_);
+      visit_living(stars_, detail_, facts_.heights, take_it);
+    } else {
+      living_.clear();
+      context_.cost.records_examined +=
+          store_.read_living(page, filter_, living_, context_.cost.io);
+      context_.cost.stars_read += living_.stars.size();
+      visit_living(living_, facts_.heights, take_it);
+    }
+    context_.admit(
+        best_.size() * kBytesACandidate + ties_.bytes() +
+        stars_.splits.size() * sizeof(VertexSplit) + stars_.corners.size() * sizeof(RingCorner) +
+        living_.stars.size() * sizeof(LivingStar) + living_.corners.size() * sizeof(LivingCorner));
     return cut_off();
   }
 
@@ -296,7 +308,8 @@ class HighestSearch final : private BestStarVisitor {
   std::optional<GridRegion> region_;
   Rectangle window_{};
   StarFilter filter_;
-  StarredRecords stars_;
+  LivingStars living_;
+  StarredRecords stars_;  ///< Whole, where the level cuts between records of one error.
   std::set<HighCandidate> best_;
   Corner on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.
 };

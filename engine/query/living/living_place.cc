@@ -84,10 +84,11 @@ bool LivingReader::take_tied_page(PageId page, const LivingPlace& place, QueryCo
   stars_.clear();
   context.cost.records_examined += store_.read_stars(page, filter_, stars_, context.cost.io);
   context.cost.stars_read += stars_.size();
-  if (!visitor.begin(stars_.corners.size())) {
+  ties_.note_fans(stars_);
+  context.admit(ties_.bytes());
+  if (!visitor.begin(stars_.corners.size() + ties_.bytes() / sizeof(LivingTriangle))) {
     return false;
   }
-  ties_.note_fans(stars_);
   visit_living(stars_, detail_, heights_,
                [&](const LivingTriangle& t) { offer(t, place, visitor); });
   return true;

@@ -37,7 +37,8 @@ class LivingVisitor {
   virtual ~LivingVisitor() = default;
   /// Called once, before a page is read: `records` are on the pages that will be. False ends it.
   virtual bool expect(std::uint64_t /*records*/) { return true; }
-  /// Called before the triangles of T0, and of each page: at most so many come. False ends it.
+  /// Called before the triangles of T0, and of each page: at most so many come, and those that the
+  /// level has not decided yet. False ends it.
   virtual bool begin(std::size_t /*most_triangles*/) { return true; }
   virtual void take(const LivingTriangle& t) = 0;
 };
@@ -51,7 +52,8 @@ class LivingReader {
 
   /// Hands each triangle of a place to the visitor once: those of T0, then page by page in the order
   /// of the file, then those that the level tells last. False when the visitor ended it.
-  /// @throws Error corruption, io_error, cancelled; what the visitor throws
+  /// @throws Error corruption, io_error, cancelled; resource_exhausted where a number of vertices cuts
+  ///     between more records of one error than fit the memory; what the visitor throws
   /// Cost: a search of the index and the pages with such stars, announced together. Memory: one
   /// page; where a number of vertices cuts between records of one error, besides the triangles of
   /// the place that die at that error.

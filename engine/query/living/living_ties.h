@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "engine/query/living/living_triangle.h"
@@ -53,6 +54,10 @@ class LivingTies {
     return true;
   }
   [[nodiscard]] std::size_t count() const noexcept { return undecided_.size(); }
+  /// Bytes that are held until settle().
+  [[nodiscard]] std::uint64_t bytes() const noexcept {
+    return undecided_.capacity() * sizeof(LivingTriangle) + fans_.capacity() * sizeof(Keys);
+  }
   /// Calls visit(const LivingTriangle&) for each triangle set aside that lives, and forgets all.
   template <class Visit>
   void settle(const Visit& visit) {

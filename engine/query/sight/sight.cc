@@ -203,6 +203,7 @@ void SightSolver::Impl::answer(Search search, const SightPair& pair, SightResult
   result.state_b = state_of(search.line().b);
   if (search.line().ends_defined() && (is_certain || request_.absolute)) {
     answer_defined(search, pair, result);
+    result.exact = result.exact && is_certain;  // the states of the ends are a part of the answer
   } else if (is_certain) {
     result.verdict = SightVerdict::kUndefined;
     result.exact = store_facts_.base_error == 0;

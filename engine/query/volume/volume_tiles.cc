@@ -418,7 +418,8 @@ VolumeTotals volume_above_level(const VolumeSide& side, double level,
           : std::max({std::abs(all.lo - level), std::abs(all.hi - level), all.hi - all.lo});
   const VolumeTotals empty = totals_for(side, most);
   const Walk walk{request, side.facts().bounds, empty};
-  const bool is_alone = threads_within(request) == 1;
+  // A level that cuts between records of one error keeps triangles until the tile has been read.
+  const bool is_alone = threads_within(request) == 1 && side.detail.is_by_error();
   return walk_tiles(walk, [&](std::uint64_t limit) {
     return std::make_unique<LevelWorker>(walk, limit, side, level, is_alone);
   });
