@@ -105,11 +105,33 @@ Outcome run_ptin(const std::vector<std::string>& arguments) {
   return outcome;
 }
 
+namespace {
+
+/// A set of signals that /proc tells of a process; 0 when it has ended.
+std::uint64_t signals_of(const std::string& status, const std::string& set) {
+  const std::size_t at = status.find(set);
+  return at == std::string::npos ? 0 : std::stoull(status.substr(at + set.size(), 18), nullptr, 16);
+}
+
+/// Waits until a process takes a signal in its own way, by a handler or by a thread that waits for
+/// it: before that the signal would end it untidily.
+void await_readiness(pid_t child, int signal) {
+  for (int tries = 0; signal != SIGKILL && tries < 5000; ++tries) {
+    const std::string status = read_file("/proc/" + std::to_string(child) + "/status");
+    const std::uint64_t taken = signals_of(status, "SigCgt:") | signals_of(status, "SigBlk:");
+    if ((taken >> (signal - 1) & 1) != 0) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+}  // namespace
+
 Outcome spawn_ptin(const std::vector<std::string>& arguments, std::optional<int> signal,
                    std::chrono::milliseconds after) {
   const TestFolder folder;
   const pid_t child = start_ptin(arguments, folder.file("out"), folder.file("err"));
   if (signal) {
+    await_readiness(child, *signal);
     std::this_thread::sleep_for(after);
     kill(child, *signal);
   }

@@ -32,7 +32,7 @@ struct Outcome {
 /// REQUIRES: nothing else of this process writes to stdout or stderr meanwhile.
 Outcome run_ptin(const std::vector<std::string>& arguments);
 
-/// Runs the program that was built. With `signal`, sends it `after` the start.
+/// Runs the program that was built. With `signal`, sends it `after` the program is ready to take it.
 Outcome spawn_ptin(const std::vector<std::string>& arguments,
                    std::optional<int> signal = std::nullopt,
                    std::chrono::milliseconds after = std::chrono::milliseconds(0));
