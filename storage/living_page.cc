@@ -26,8 +26,8 @@ struct LivingPage::Shapes {
     return bit[k] + degree[k] * corner_bits(k);
   }
   [[nodiscard]] bool is_sound(std::uint32_t k, std::size_t rings_end) const noexcept {
-    return degree[k] >= 3 && degree[k] <= layout::kMostDegree && offset_bits[k] <= 32 &&
-           height_bits[k] <= 33 && death_bits[k] <= 15 && end(k) <= rings_end;
+    return is_ring_shape(degree[k], offset_bits[k], height_bits[k], death_bits[k]) &&
+           end(k) <= rings_end;
   }
 };
 

@@ -46,9 +46,23 @@ enum PageFlag : std::uint8_t {
 };
 inline constexpr std::uint8_t kAllPageFlags = 15;
 
+/// The most bits that a short number takes in a column, or a death in a ring.
+inline constexpr std::uint8_t kMostShortWidth = 15;
 /// The most bits that a number of each column takes.
 inline constexpr std::array<std::uint8_t, kPageColumns> kMostColumnBits = {
-    31, 31, 32, 31, 31, 31, 31, 32, 32, 15, 15, 16, 4, 8, 5, 6, 4};
+    31, 31, 32, 31, 31, 31, 31, 32, 32, kMostShortWidth, kMostShortWidth, 16, 4, 8, 5, 6, 4};
+/// The most bits of a corner's offset: the difference of two coordinates, with its sign.
+inline constexpr std::uint8_t kMostOffsetWidth = 32;
+/// The most bits of a corner's height: the difference of two ordered heights, with its sign.
+inline constexpr std::uint8_t kMostHeightWidth = 33;
+
+/// Whether a ring of so many corners, with fields of these widths, can be what was written.
+[[nodiscard]] constexpr bool is_ring_shape(std::uint64_t degree, std::uint64_t offset_bits,
+                                           std::uint64_t height_bits,
+                                           std::uint64_t death_bits) noexcept {
+  return degree >= 3 && degree <= layout::kMostDegree && offset_bits <= kMostOffsetWidth &&
+         height_bits <= kMostHeightWidth && death_bits <= kMostShortWidth;
+}
 
 /// A height as a number whose order is that of heights, -0 and 0 being one.
 [[nodiscard]] constexpr std::uint32_t ordered_height(HeightBits bits, HeightType type) noexcept {

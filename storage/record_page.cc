@@ -230,9 +230,9 @@ inline bool RecordPage::find(std::size_t i, RingPlace& place,
     place.shape = shape_of_record(++place.record);
   }
   const RingShape& shape = place.shape;
-  place.is_sound = shape.degree >= 3 && shape.degree <= layout::kMostDegree &&
-                   shape.offset_bits <= 32 && shape.height_bits <= 33 && shape.death_bits <= 15 &&
-                   place.bit + shape.bits() <= columns_.rings_end();
+  place.is_sound =
+      is_ring_shape(shape.degree, shape.offset_bits, shape.height_bits, shape.death_bits) &&
+      place.bit + shape.bits() <= columns_.rings_end();
   return place.is_sound;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Pages that no packer made (FORMAT.md, "A reader must reject"), with each of their numbers changed.
+#include <bit>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -185,6 +186,22 @@ TEST_F(DamagedPage, RefusesFlagsThatCannotBe) {
     // With one of the first two the star is open, and goes around more than half of u.
     EXPECT_EQ(is_accepted(page), both == 0) << both;
   }
+}
+
+/// The widest fields that a corner may have, and one bit more of each.
+TEST(RingShape, HasTheWidthsOfNumbersOnTheGrid) {
+  EXPECT_TRUE(is_ring_shape(3, 0, 0, 0));
+  EXPECT_TRUE(
+      is_ring_shape(layout::kMostDegree, kMostOffsetWidth, kMostHeightWidth, kMostShortWidth));
+  EXPECT_FALSE(is_ring_shape(2, 0, 0, 0));
+  EXPECT_FALSE(is_ring_shape(layout::kMostDegree + 1, 0, 0, 0));
+  EXPECT_FALSE(is_ring_shape(3, kMostOffsetWidth + 1, 0, 0));
+  EXPECT_FALSE(is_ring_shape(3, 0, kMostHeightWidth + 1, 0));
+  EXPECT_FALSE(is_ring_shape(3, 0, 0, kMostShortWidth + 1));
+  const std::int64_t farthest = kGridMax;
+  EXPECT_EQ(std::bit_width(static_cast<std::uint64_t>(farthest)) + 1, kMostOffsetWidth);
+  EXPECT_EQ(std::bit_width(std::uint64_t{UINT32_MAX}) + 1, kMostHeightWidth);
+  EXPECT_EQ(std::bit_width(std::uint64_t{kShortInfinity}), kMostShortWidth);
 }
 
 TEST_F(DamagedPage, RefusesCornersThatCannotBe) {
