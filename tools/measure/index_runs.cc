@@ -15,7 +15,7 @@
 #include "storage/index_shape.h"
 #include "storage/spatialindex_rtree.h"
 #include "tools/facts/human.h"
-#include "tools/measure/deadline.h"
+#include "tools/measure/part_time.h"
 #include "tools/output/temporary_path.h"
 
 namespace ptin::tools {
@@ -81,10 +81,7 @@ class SecondIndex {
 class IndexRuns {
  public:
   IndexRuns(IoRun& run, double seconds, IoReport& report)
-      : run_(run),
-        report_(report.index),
-        soft_(seconds),
-        deadline_(2 * seconds, run.request().stop) {
+      : run_(run), report_(report.index), time_(run.request(), seconds) {
     const std::uint64_t pages = run_.unmapped().store().pages().page_count();
     report_.packed_bytes = IndexShape(pages).total_bytes();
     make_second(pages);
@@ -97,14 +94,14 @@ class IndexRuns {
 
   void run() {
     const auto goes_on = [&](std::uint64_t round) {
-      return round == 0 || (round < run_.request().most_times && deadline_.elapsed() < soft_);
+      return round == 0 || (round < run_.request().most_times && !time_.is_late());
     };
-    for (std::uint64_t round = 0; !deadline_.is_over() && goes_on(round); ++round) {
-      for (std::size_t i = 0; i < report_.searches.size() && !deadline_.is_over(); ++i) {
+    for (std::uint64_t round = 0; !time_.is_over() && goes_on(round); ++round) {
+      for (std::size_t i = 0; i < report_.searches.size() && !time_.is_over(); ++i) {
         stop_if_asked(run_.request().stop, "the benchmark", run_.request().file);
         search(report_.searches[i], 2 * round + (report_.searches[i].is_second ? 1 : 0));
         run_.check_unchanged();
-        run_.tell("indexes", std::min(1.0, deadline_.elapsed() / soft_));
+        run_.tell("indexes", time_.share());
       }
     }
     stop_if_asked(run_.request().stop, "the benchmark", run_.request().file);
@@ -116,8 +113,7 @@ class IndexRuns {
 
   IoRun& run_;
   IndexFigures& report_;
-  double soft_;
-  Deadline deadline_;
+  PartTime time_;
   std::optional<SecondIndex> second_;
 };
 

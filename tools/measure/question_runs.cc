@@ -5,7 +5,7 @@
 
 #include "engine/error.h"
 #include "engine/stop.h"
-#include "tools/measure/deadline.h"
+#include "tools/measure/part_time.h"
 
 namespace ptin::tools {
 
@@ -23,11 +23,7 @@ struct Rounds {
 class QuestionRuns {
  public:
   QuestionRuns(IoRun& run, double seconds, IoReport& report)
-      : run_(run),
-        report_(report),
-        soft_(seconds),
-        deadline_(2 * seconds, run.request().stop),
-        limits_{run.request().memory_bytes, deadline_.token()} {
+      : run_(run), report_(report), time_(run.request(), seconds) {
     for (const ReadWay way : run_.ways()) report_.opening.push_back({way, {}});
     for (const QuestionKind kind : kQuestionKinds) {
       kinds_.push_back({kind, report_.questions.size()});
@@ -37,10 +33,10 @@ class QuestionRuns {
 
   void run() {
     while (Rounds* const next = next_kind()) {
-      const double before = deadline_.elapsed();
+      const double before = time_.elapsed();
       round(*next);
-      next->seconds += deadline_.elapsed() - before;
-      run_.tell("questions", std::min(1.0, deadline_.elapsed() / soft_));
+      next->seconds += time_.elapsed() - before;
+      run_.tell("questions", time_.share());
     }
     tell_what_is_missing();
   }
@@ -54,16 +50,14 @@ class QuestionRuns {
 
   IoRun& run_;
   IoReport& report_;
-  double soft_;
-  Deadline deadline_;
-  QueryLimits limits_;
+  PartTime time_;
   std::vector<Rounds> kinds_;
 };
 
 /// Every kind has a first round, however late it is.
 Rounds* QuestionRuns::next_kind() {
-  if (deadline_.is_over()) return nullptr;
-  const bool is_late = deadline_.elapsed() > soft_;
+  if (time_.is_over()) return nullptr;
+  const bool is_late = time_.is_late();
   Rounds* next = nullptr;
   for (Rounds& k : kinds_) {
     const bool is_open = !k.is_over && k.done < run_.request().most_times;
@@ -85,7 +79,7 @@ void QuestionRuns::round(Rounds& rounds) {
     }
   } catch (const Error& e) {
     const bool is_too_large = e.code() == ErrorCode::resource_exhausted;
-    const bool is_too_long = e.code() == ErrorCode::cancelled && deadline_.is_over();
+    const bool is_too_long = e.code() == ErrorCode::cancelled && time_.is_over();
     if (!is_too_large && !is_too_long) throw;
     if (is_too_large) leave_out(rounds, "it needs more memory than --memory gives");
     rounds.is_over = true;
@@ -100,7 +94,7 @@ void QuestionRuns::read(const Question& question, std::size_t way, QuestionFigur
   is_cold = is_cold && run_.came_from_device(opened.reading);
   Answer answer, again;
   const auto ask = [&](Answer& into) {
-    into = run_.questions().ask(question, opened.terrain, limits_);
+    into = run_.questions().ask(question, opened.terrain, time_.limits());
     return into.cost.io;
   };
   const Reading first = run_.timed([&] { return ask(answer); });

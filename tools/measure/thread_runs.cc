@@ -13,7 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/stop.h"
-#include "tools/measure/deadline.h"
+#include "tools/measure/part_time.h"
 
 namespace ptin::tools {
 
@@ -37,11 +37,7 @@ std::uint64_t questions_of_run(const IoReport& report, QuestionKind kind) {
 class ThreadRuns {
  public:
   ThreadRuns(IoRun& run, double seconds, IoReport& report)
-      : run_(run),
-        report_(report),
-        soft_(seconds),
-        deadline_(2 * seconds, run.request().stop),
-        limits_{run.request().memory_bytes, deadline_.token()} {
+      : run_(run), report_(report), time_(run.request(), seconds) {
     for (const QuestionKind kind : kKindsOnThreads) {
       const std::uint64_t questions = questions_of_run(report, kind);
       if (questions == 0) continue;
@@ -55,7 +51,7 @@ class ThreadRuns {
   }
 
   void run() {
-    run_.tell("threads", std::min(1.0, deadline_.elapsed() / soft_));
+    run_.tell("threads", time_.share());
     try {
       for (std::uint64_t round = 0; goes_on(round); ++round) {
         for (std::size_t i = 0; i < report_.threads.size(); ++i) {
@@ -63,11 +59,11 @@ class ThreadRuns {
           run_once(report_.threads[at], kFirstNumber + numbers_);
           numbers_ += report_.threads[at].questions;
           run_.check_unchanged();
-          run_.tell("threads", std::min(1.0, deadline_.elapsed() / soft_));
+          run_.tell("threads", time_.share());
         }
       }
     } catch (const Error& e) {
-      const bool is_too_long = e.code() == ErrorCode::cancelled && deadline_.is_over();
+      const bool is_too_long = e.code() == ErrorCode::cancelled && time_.is_over();
       if (!is_too_long && e.code() != ErrorCode::resource_exhausted) throw;
     }
     stop_if_asked(run_.request().stop, "the benchmark", run_.request().file);
@@ -75,8 +71,8 @@ class ThreadRuns {
 
  private:
   [[nodiscard]] bool goes_on(std::uint64_t round) const {
-    if (deadline_.is_over() || report_.threads.empty()) return false;
-    return round == 0 || (round < run_.request().most_times && deadline_.elapsed() < soft_);
+    if (time_.is_over() || report_.threads.empty()) return false;
+    return round == 0 || (round < run_.request().most_times && !time_.is_late());
   }
   void run_once(ThreadFigures& figures, std::uint64_t first_number);
   double ask_all(const ThreadFigures& figures, std::span<const Question> questions,
@@ -84,9 +80,7 @@ class ThreadRuns {
 
   IoRun& run_;
   IoReport& report_;
-  double soft_;
-  Deadline deadline_;
-  QueryLimits limits_;
+  PartTime time_;
   std::uint64_t numbers_ = 0;  ///< Of questions that were asked.
 };
 
@@ -123,7 +117,8 @@ double ThreadRuns::ask_all(const ThreadFigures& figures, std::span<const Questio
     all_here.arrive_and_wait();
     try {
       for (std::uint64_t i = next++; i < times * questions.size(); i = next++) {
-        static_cast<void>(run_.questions().ask(questions[i % questions.size()], terrain, limits_));
+        static_cast<void>(
+            run_.questions().ask(questions[i % questions.size()], terrain, time_.limits()));
       }
     } catch (...) {
       next = times * questions.size();
