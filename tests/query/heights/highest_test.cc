@@ -16,8 +16,8 @@
 #include "engine/query/heights/locate.h"
 #include "engine/query/terrain.h"
 #include "tests/query/built_terrain.h"
-#include "tests/query/least_memory.h"
 #include "tests/query/reference_hierarchy.h"
+#include "tests/support/least_memory.h"
 
 namespace ptin {
 namespace {

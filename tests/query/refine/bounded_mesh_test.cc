@@ -11,8 +11,8 @@
 #include "engine/error.h"
 #include "engine/query/select/predicate.h"
 #include "engine/query/terrain.h"
-#include "tests/query/least_memory.h"
 #include "tests/query/reference_hierarchy.h"
+#include "tests/support/least_memory.h"
 
 namespace ptin {
 namespace {

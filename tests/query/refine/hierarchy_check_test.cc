@@ -18,9 +18,9 @@
 #include "engine/error.h"
 #include "engine/query/terrain.h"
 #include "tests/query/built_terrain.h"
-#include "tests/query/least_memory.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
+#include "tests/support/least_memory.h"
 
 namespace ptin {
 namespace {
