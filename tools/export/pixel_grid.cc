@@ -14,13 +14,13 @@ namespace {
 constexpr double kLattice = 1048576.0;  // 2^20
 constexpr std::int64_t kMostPixels = INT32_MAX;
 
-/// Whole multiples of `size` from `origin` in [low, high], as the first and their number; the number
-/// may be 0.
-std::array<std::int64_t, 2> multiples_in(double origin, double size, double low, double high) {
-  // The window's own rounding must not lose a centre that lies on its border.
+/// Whole numbers in [low, high], as the first and how many there are; that may be 0.
+std::array<std::int64_t, 2> whole_numbers_in(double low, double high) {
+  // A centre that lies on the border of the window up to rounding, after which on_grid() looks, and up
+  // to what decides nothing.
   const double slack = 1e-9;
-  const double first = std::ceil((low - origin) / size - slack);
-  const double last = std::floor((high - origin) / size + slack);
+  const double first = std::ceil(low - slack);
+  const double last = std::floor(high + slack);
   if (!(last >= first)) return {0, 0};
   if (last - first >= static_cast<double>(kMostPixels) || std::abs(first) > 0x1p53) {
     throw Error(ErrorCode::invalid_argument,
@@ -54,8 +54,9 @@ PixelGrid::PixelGrid(const StoreFacts& facts, std::array<double, 2> size,
   const MapPoint low = facts.map.to_map(b.min_x, b.min_y);
   const MapPoint high = facts.map.to_map(b.max_x, b.max_y);
   const Window w = window.value_or(Window{low.x, low.y, high.x, high.y});
-  const auto across = multiples_in(low.x, size_[0], w.min_x, w.max_x);
-  const auto up = multiples_in(low.y, size_[1], w.min_y, w.max_y);
+  const GridWindow in_pixels = on_grid(w, {low.x, low.y, size_[0], size_[1]});
+  const auto across = whole_numbers_in(in_pixels.min_x, in_pixels.max_x);
+  const auto up = whole_numbers_in(in_pixels.min_y, in_pixels.max_y);
   first_column_ = across[0];
   columns_ = across[1];
   first_row_ = up[0];

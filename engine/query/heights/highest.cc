@@ -2,70 +2,23 @@
 #include "engine/query/heights/highest.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
+#include "engine/query/heights/window_clip.h"
 #include "engine/query/living/living_ties.h"
 #include "engine/query/select/detail.h"
-#include "engine/query/walk/spot.h"
 #include "storage/packed_rtree.h"
 
 namespace ptin {
 
 namespace {
-
-/// A rectangle on the grid, in real numbers.
-struct Rectangle {
-  double min_x, min_y, max_x, max_y;
-  [[nodiscard]] bool holds(double x, double y) const noexcept {
-    return min_x <= x && x <= max_x && min_y <= y && y <= max_y;
-  }
-};
-
-/// The part of a triangle in a rectangle: at most seven corners.
-using Corner = std::array<double, 3>;
-std::vector<Corner> clipped(std::vector<Corner> polygon, const Rectangle& r) {
-  const std::array<std::array<double, 4>, 4> sides = {
-      {{0, r.min_x, 1, 0}, {0, r.max_x, -1, 0}, {1, r.min_y, 1, 0}, {1, r.max_y, -1, 0}}};
-  for (const auto& side : sides) {
-    const auto axis = static_cast<std::size_t>(side[0]);
-    const auto inside = [&](const Corner& c) { return (c[axis] - side[1]) * side[2] >= 0; };
-    std::vector<Corner> kept;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Corner& a = polygon[i];
-      const Corner& b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
-      if (inside(a)) {
-        kept.push_back(a);
-      }
-      if (inside(a) != inside(b)) {
-        const double t = (side[1] - a[axis]) / (b[axis] - a[axis]);
-        Corner cut{};
-        for (std::size_t k = 0; k < 3; ++k) {
-          cut[k] = a[k] + t * (b[k] - a[k]);
-        }
-        cut[axis] = side[1];
-        kept.push_back(cut);
-      }
-    }
-    polygon = std::move(kept);
-  }
-  return polygon;
-}
-
-/// A corner of the window as a spot. A corner beyond the domain's box is moved to two grid units
-/// beyond it.
-Spot spot_of_clamped(double x, double y, const GridBox& b) {
-  const auto spot = [](double v, std::int32_t low, std::int32_t high) {
-    return std::llround(std::ldexp(std::clamp(v, low - 2.0, high + 2.0), kSpotBits));
-  };
-  return {spot(x, b.min_x, b.max_x), spot(y, b.min_y, b.max_y)};
-}
 
 /// A vertex that may be among the highest.
 struct HighCandidate {
@@ -98,7 +51,7 @@ class HighestSearch final : private BestStarVisitor {
       filter_.box = region_->bounds();
     }
     set_level(detail_, filter_);
-    window_ = rectangle();
+    window_ = window_on_grid();
   }
 
   HighestResult run() {
@@ -221,39 +174,38 @@ class HighestSearch final : private BestStarVisitor {
 
   /// Of equally high points takes the one farthest south, then farthest west.
   void look_at_border(const LivingTriangle& t) {
-    std::vector<Corner> corners;
+    std::vector<ClippedCorner> corners;
     for (const LivingTriangle::Corner& c : t.corner) {
       const GridPoint p = c.position;
       corners.push_back({static_cast<double>(p.x), static_cast<double>(p.y), value_of(c)});
     }
-    const auto is_before = [](const Corner& a, const Corner& b) {
+    const auto is_before = [](const ClippedCorner& a, const ClippedCorner& b) {
       return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
     };
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_before),
                 corners.end());
-    for (const Corner& c : clipped(std::move(corners), window_)) {
+    for (const ClippedCorner& c : clipped(std::move(corners), window_)) {
       if (c[2] > on_border_[2] || (c[2] == on_border_[2] && is_before(c, on_border_))) {
         on_border_ = c;
       }
     }
   }
 
-  [[nodiscard]] Rectangle rectangle() const {
-    if (!request_.window) {
-      const GridBox& b = facts_.bounds;
-      return {static_cast<double>(b.min_x), static_cast<double>(b.min_y),
-              static_cast<double>(b.max_x), static_cast<double>(b.max_y)};
+  [[nodiscard]] GridWindow window_on_grid() const {
+    if (request_.window) {
+      return on_grid(*request_.window, facts_.map);
     }
-    const MapPoint low = facts_.map.to_grid({request_.window->min_x, request_.window->min_y});
-    const MapPoint high = facts_.map.to_grid({request_.window->max_x, request_.window->max_y});
-    return {low.x, low.y, high.x, high.y};
+    const GridBox& b = facts_.bounds;
+    return {static_cast<double>(b.min_x), static_cast<double>(b.min_y),
+            static_cast<double>(b.max_x), static_cast<double>(b.max_y)};
   }
 
   /// Sets the point of `result`: the highest vertex, or a higher point on the border of the window.
   void set_point(HighestResult& result) const {
     const double most = best_.empty() ? -kInfinity : best_.begin()->value;
     if (std::max(most, on_border_[2]) == -kInfinity) {
-      result.state = meets_domain() ? PointState::kVoid : PointState::kOutside;
+      const bool is_met = meets_domain(window_, terrain_.t0(), facts_.bounds);
+      result.state = is_met ? PointState::kVoid : PointState::kOutside;
       return;
     }
     result.at_vertex = !(on_border_[2] > most);
@@ -269,35 +221,6 @@ class HighestSearch final : private BestStarVisitor {
     result.height_max = result.point.height + reach;
   }
 
-  /// Whether the window and the domain, which the triangles of T0 cover, share a point. Exact for
-  /// the corners of the window as spots.
-  [[nodiscard]] bool meets_domain() const {
-    const GridBox& b = facts_.bounds;
-    const Rectangle r = rectangle();
-    const Spot low = spot_of_clamped(r.min_x, r.min_y, b);
-    const Spot high = spot_of_clamped(r.max_x, r.max_y, b);
-    const std::array<Spot, 4> corners{low, Spot{high.x, low.y}, high, Spot{low.x, high.y}};
-    const Tin& t0 = terrain_.t0();
-    return std::any_of(t0.triangles.begin(), t0.triangles.end(), [&](const Triangle& t) {
-      GridBox box = box_of(t0.position(t.v[0]));
-      box = united(united(box, box_of(t0.position(t.v[1]))), box_of(t0.position(t.v[2])));
-      const Spot box_low = spot_of(GridPoint{box.min_x, box.min_y});
-      const Spot box_high = spot_of(GridPoint{box.max_x, box.max_y});
-      if (high.x < box_low.x || high.y < box_low.y || box_high.x < low.x || box_high.y < low.y) {
-        return false;
-      }
-      for (int i = 0; i < 3; ++i) {  // apart when one side has the whole window beyond it
-        const GridPoint from = t0.position(t.v[i]);
-        const GridPoint to = t0.position(t.v[next_corner(i)]);
-        if (std::all_of(corners.begin(), corners.end(),
-                        [&](Spot s) { return side(from, to, s) < 0; })) {
-          return false;
-        }
-      }
-      return true;
-    });
-  }
-
   const OpenedTerrain& terrain_;
   const StoreFile& store_;
   const StoreFacts& facts_;
@@ -306,12 +229,12 @@ class HighestSearch final : private BestStarVisitor {
   Detail detail_;
   LivingTies ties_;
   std::optional<GridRegion> region_;
-  Rectangle window_{};
+  GridWindow window_{};
   StarFilter filter_;
   LivingStars living_;
   StarredRecords stars_;  ///< Whole, where the level cuts between records of one error.
   std::set<HighCandidate> best_;
-  Corner on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.
+  ClippedCorner on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.
 };
 
 }  // namespace

@@ -35,6 +35,7 @@ class IsolineExtraction {
         result_(PointStore(request.limits.memory_bytes / 8, request.temporary_folder)) {
     if (request.window) {
       region_.emplace(*request.window, store_.facts().map);
+      window_ = snapped(*request.window, store_.facts().map);
     }
   }
 
@@ -43,8 +44,8 @@ class IsolineExtraction {
     trace();
     result_.lines_ = join_pieces(result_.pieces_, context_);
     admit_lines();
-    if (request_.window) {
-      cut_at_window();
+    if (window_) {
+      cut_at_window(*window_);
     }
     drop_single_points(result_.lines_, result_.pieces_, result_.points_);
     if (result_.size() > request_.most_lines) {
@@ -114,7 +115,7 @@ class IsolineExtraction {
     }
   }
 
-  void cut_at_window() {
+  void cut_at_window(const Window& window) {
     PointStore points(request_.limits.memory_bytes / 8, request_.temporary_folder);
     std::vector<IsolinePiece> pieces;
     JoinedLines lines;
@@ -122,7 +123,7 @@ class IsolineExtraction {
     for (const JoinedLine& joined : result_.lines_.lines) {
       context_.check_stop();
       points_of(joined, result_.lines_, result_.pieces_, result_.points_, line);
-      const ClippedParts clipped = clip_line(line, *request_.window);
+      const ClippedParts clipped = clip_line(line, window);
       for (const std::vector<MapPoint>& part : clipped.parts) {
         IsolinePiece piece;
         piece.level = joined.level;
@@ -161,6 +162,7 @@ class IsolineExtraction {
   const IsolineRequest& request_;
   LevelSet levels_;
   std::optional<GridRegion> region_;
+  std::optional<Window> window_;  ///< Where lines are cut.
   QueryContext context_;
   Detail detail_;
   Isolines result_;

@@ -48,6 +48,23 @@ GridBox box_of(const GridPoint (&t)[3]) noexcept {
 
 }  // namespace
 
+GridWindow on_grid(const Window& window, const AffineMap& map) noexcept {
+  return {snapped_to_grid(window.min_x, map.origin_x, map.step_x),
+          snapped_to_grid(window.min_y, map.origin_y, map.step_y),
+          snapped_to_grid(window.max_x, map.origin_x, map.step_x),
+          snapped_to_grid(window.max_y, map.origin_y, map.step_y)};
+}
+
+Window snapped(const Window& window, const AffineMap& map) noexcept {
+  const auto at = [](double map_value, double origin, double step) {
+    const double grid = snapped_to_grid(map_value, origin, step);
+    return grid == std::round(grid) && std::abs(grid) <= kGridMax ? origin + step * grid
+                                                                  : map_value;
+  };
+  return {at(window.min_x, map.origin_x, map.step_x), at(window.min_y, map.origin_y, map.step_y),
+          at(window.max_x, map.origin_x, map.step_x), at(window.max_y, map.origin_y, map.step_y)};
+}
+
 GridRegion::GridRegion(const Region& region, const AffineMap& map) {
   if (const auto* window = std::get_if<Window>(&region)) {
     if (!(window->min_x <= window->max_x && window->min_y <= window->max_y)) {
@@ -55,6 +72,7 @@ GridRegion::GridRegion(const Region& region, const AffineMap& map) {
     }
     set_rectangle(widened({window->min_x, window->min_y}, map),
                   widened({window->max_x, window->max_y}, map));
+    hold(on_grid(*window, map));
   } else if (const auto* point = std::get_if<MapPoint>(&region)) {
     set_rectangle(widened(*point, map), widened(*point, map));
   } else if (const auto* segment = std::get_if<Segment>(&region)) {
@@ -87,6 +105,11 @@ void GridRegion::set_rectangle(const WidenedPoint& low, const WidenedPoint& high
   min_y_ = low.y - low.slack_y;
   max_x_ = high.x + high.slack_x;
   max_y_ = high.y + high.slack_y;
+}
+
+void GridRegion::hold(const GridWindow& window) noexcept {
+  min_x_ = std::min(min_x_, window.min_x), max_x_ = std::max(max_x_, window.max_x);
+  min_y_ = std::min(min_y_, window.min_y), max_y_ = std::max(max_y_, window.max_y);
 }
 
 /// The line function's rounding, for corners on the grid: with t1 = nx (x - ax) and t2 = ny (y -

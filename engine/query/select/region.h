@@ -29,6 +29,17 @@ struct Segment {
 };
 using Region = std::variant<Window, MapPoint, Segment, Polygon>;
 
+/// A window in grid units, as real numbers.
+struct GridWindow {
+  double min_x, min_y, max_x, max_y;
+};
+/// A side that was given at vertices, as the centres of pixels are, goes through them: it is moved
+/// to their grid coordinate, from which rounding may have it (snapped_to_grid()).
+[[nodiscard]] GridWindow on_grid(const Window& window, const AffineMap& map) noexcept;
+/// The same in map units: a side that is moved has the map coordinate of vertices, and any other
+/// stays as it is.
+[[nodiscard]] Window snapped(const Window& window, const AffineMap& map) noexcept;
+
 /// A region on the grid, ready to be tested against boxes (of records, pages, nodes) and triangles.
 ///
 /// Map coordinates become grid coordinates once, as doubles. All rounding errs outward, so a box or
@@ -36,7 +47,7 @@ using Region = std::variant<Window, MapPoint, Segment, Polygon>;
 /// of that conversion (a few units in the last place of the map coordinates, 1e-9 grid units for
 /// UTM metres on a 1 m grid) and, for slanted edges, by that of the test (about 1e-6 grid units;
 /// more only for edges that reach far beyond the grid). So a vertex whose rounded map position lies
-/// on the region's border is inside.
+/// on the region's border is inside. A window holds what on_grid() makes of it, too.
 ///
 /// Laws, for boxes on the grid (0 to kGridMax):
 /// - Monotone: contains(b, a) and meets(a) imply meets(b), in floating point too. An edge is tested
@@ -98,6 +109,7 @@ class GridRegion {
   static bool touches(const Edge& e, const GridPoint (&triangle)[3]) noexcept;
 
   void set_rectangle(const WidenedPoint& low, const WidenedPoint& high);
+  void hold(const GridWindow& window) noexcept;
   void add_edge(const WidenedPoint& a, const WidenedPoint& b);
   void add_ring(const std::vector<MapPoint>& ring, const AffineMap& map);
   void sort_edges_into_slabs();

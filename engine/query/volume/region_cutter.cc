@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/geometry/affine_rounding.h"
 #include "engine/query/volume/grid_box.h"
 
 namespace ptin {
@@ -73,9 +74,13 @@ void RegionCutter::cancel_pairs() {
 }
 
 void RegionCutter::add_ring(std::span<const MapPoint> ring, const AffineMap& map) {
+  const auto grid_of = [&](MapPoint p) {
+    return MapPoint{snapped_to_grid(p.x, map.origin_x, map.step_x),
+                    snapped_to_grid(p.y, map.origin_y, map.step_y)};
+  };
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    MapPoint a = map.to_grid(ring[i]);
-    MapPoint b = map.to_grid(ring[(i + 1) % ring.size()]);
+    MapPoint a = grid_of(ring[i]);
+    MapPoint b = grid_of(ring[(i + 1) % ring.size()]);
     if (a.y > b.y) std::swap(a, b);
     edges_.push_back({a, b});
   }

@@ -110,6 +110,29 @@ RC_GTEST_PROP(GridRegion, AgreesWithExactArithmeticOnBoxes, (std::uint64_t seed)
   }
 }
 
+/// Sides at vertices of a fine grid far from its origin, as programs compute them and write them.
+TEST(GridRegion, AWindowHoldsTheVerticesOnItsSides) {
+  for (const double step : {1e-4, 1e-5}) {
+    const AffineMap map{151.20005, -33.9, step, step};
+    for (int i = 1; i < 200; ++i) {
+      const double side = 151.2 + (i + 0.5) * step + (step == 1e-4 ? 0 : 4.5e-5);
+      for (const double at : {side, side * (1 - 4e-15), side * (1 + 4e-15)}) {
+        const auto column = static_cast<std::int32_t>(std::lround((side - map.origin_x) / step));
+        const Window east{at, -34, 152, -33}, west{151, -34, at, -33};
+        for (const Window& window : {east, west}) {
+          EXPECT_TRUE(GridRegion(window, map).meets(GridBox{column, 5, column, 5})) << at;
+        }
+        EXPECT_FALSE(GridRegion(east, map).meets(GridBox{column - 1, 5, column - 1, 5}));
+        EXPECT_FALSE(GridRegion(west, map).meets(GridBox{column + 1, 5, column + 1, 5}));
+        EXPECT_EQ(on_grid(east, map).min_x, column);
+        EXPECT_EQ(snapped(west, map).max_x, map.to_map(column, 0).x);
+      }
+      const double between = map.to_map(i + 0.25, 0).x;
+      EXPECT_EQ(snapped({between, -34, 152, -33}, map).min_x, between);
+    }
+  }
+}
+
 RC_GTEST_PROP(GridRegion, AgreesWithExactArithmeticOnTriangles, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const Region region = reference::random_region(random, small_domain());
