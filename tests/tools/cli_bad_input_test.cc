@@ -3,6 +3,9 @@
 // Bad input: the documented exit status, one clear sentence, and nothing left behind.
 #include <filesystem>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -133,7 +136,8 @@ TEST(CliBadInput, RastersThatAreNoTerrain) {
   expect_no_build(folder, folder.file("hills.tif"), 2, "--max-error", {"--max-error", "-1"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "--void-slope", {"--void-slope", "-1"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "--resolution", {"--resolution", "0"});
-  expect_no_build(folder, folder.file("hills.tif"), 2, "must be a finite", {"--void-slope", "nan"});
+  expect_no_build(folder, folder.file("hills.tif"), 2, "--void-slope: must be a finite",
+                  {"--void-slope", "nan"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "inverted", {"--bbox", "2", "1", "1", "2"});
   expect_no_build(folder, folder.file("hills.tif"), 2, "EPSG:999999", {"--a-srs", "EPSG:999999"});
 }
@@ -306,18 +310,79 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
     refuse(with({"--error", "1", "--vertices", "9"}), 2, "--vertices");
     refuse(with({"--vertices", "1"}), 2, "ask for at least that many");
     refuse(with({"--vertices", "-1"}), 2, "--vertices");
-    refuse(with({"--memory", "0"}), 2, "not a size");
+    for (const char* size : {"0", "nan", "inf", "-1M"}) {
+      refuse(with({"--memory", size}), 2, std::string("--memory: not a size: ") + size);
+    }
   }
   refuse({"volume"}, 2, "--level H or --against OTHER");
   refuse({"volume", "--level", "1", "--against", store}, 2, "--against");
-  refuse({"volume", "--level", "nan"}, 2, "finite");
-  refuse({"volume", "--level", "1", "--memory", "1K"}, 7, "more than the limit of 1 KiB");
+  refuse({"volume", "--level", "nan"}, 2, "--level: must be a finite number");
+  refuse({"volume", "--level", "1", "--memory", "1"}, 7, "more than the limit of 1 KiB");
   refuse({"volume", "--against", folder.file("none.ptin")}, 3, "none.ptin");
-  refuse({"highest", "-k", "1000", "--memory", "1K"}, 7, "more than the limit of 1 KiB");
+  refuse({"highest", "-k", "1000", "--memory", "1"}, 7, "more than the limit of 1 KiB");
   refuse({"highest", "-k", "0"}, 2, "-k");
   refuse({"highest", "--window", "3", "2", "1", "4"}, 2, "inverted");
   refuse({"viewshed", "0", "0", "1", "--radius", "9", "-o", folder.file("v.png")}, 2,
          "must end in .tif for a raster");
+}
+
+/// Every number that a subcommand takes: what is none is refused by its option's or argument's name.
+TEST(CliBadInput, NumbersThatAreNone) {
+  const TestFolder folder;
+  const std::string store = small_store(folder), raster = folder.file("hills.tif");
+  const std::string tif = folder.file("a.tif"), layer = folder.file("a.gpkg");
+  const std::string sent = folder.file("a.pts"), picture = folder.file("a.png");
+  using Words = std::vector<std::string>;
+  const Words build = {"build", raster, "-o", folder.file("b.ptin")};
+  const Words viewshed = {"viewshed", store, "500100", "3999900", "1", "-o", tif};
+  const Words sight = {"sight", store, "0", "0", "1", "9", "9", "1"};
+  const Words isoline = {"isoline", store, "-o", layer};
+  const Words stream = {"stream", store, "-o", sent};
+  const Words unstream = {"unstream", sent, "-o", layer};
+  const std::vector<std::pair<Words, std::string>> finite = {
+      {build, "--max-error"},
+      {build, "--void-slope"},
+      {build, "--resolution"},
+      {build, "--max-edge"},
+      {viewshed, "--radius"},
+      {viewshed, "--target-height"},
+      {viewshed, "--curvature"},
+      {sight, "--curvature"},
+      {isoline, "--level"},
+      {isoline, "--interval"},
+      {stream, "--level"},
+      {stream, "--have-level"},
+      {unstream, "--level"},
+      {unstream, "--interval"},
+      {{"volume", store}, "--level"},
+      {{"bench", store}, "--seconds"},
+      {{"verify", store, "--against", raster}, "--tolerance"},
+      {{"export", store, "-o", tif, "--what", "hillshade"}, "--azimuth"},
+      {{"export", store, "-o", tif, "--what", "hillshade"}, "--altitude"},
+      {{"export", store, "-o", tif}, "--pixel-size"},
+      {{"isoline", store, "-o", layer, "--interval", "9"}, "--base"}};
+  const auto before = folder.names();
+  const auto refuse = [&](Words words, const std::string& option, const std::string& number) {
+    words.insert(words.end(), {option, number});
+    expect_refusal(run_ptin(words), 2, option + ": ");
+  };
+  for (const char* number : {"nan", "inf", "1e999"}) {
+    for (const auto& [words, option] : finite) refuse(words, option, number);
+    expect_refusal(run_ptin({"locate", store, number, "3"}), 2,
+                   std::string("X_Y: must be a finite number, in map units; ") + number);
+    expect_refusal(run_ptin({"sight", store, "1", "2", "3", "4", "5", number}), 2, "PAIR: must be");
+    expect_refusal(run_ptin({"viewshed", store, "1", number, "2", "--radius", "9", "-o", tif}), 2,
+                   "Y: must be a finite number, in map units");
+    Words words = build;
+    words.insert(words.end(), {"--bbox", "0", "0", number, "9"});
+    expect_refusal(run_ptin(words), 2, "--bbox: must be");
+  }
+  // As coarse as can be is a tolerance.
+  for (const char* number : {"nan", "-1"}) {
+    refuse(stream, "--error", number);
+    refuse(stream, "--have-error", number);
+  }
+  EXPECT_EQ(folder.names(), before);
 }
 
 TEST(CliBadInput, OptionsThatMeanNothingToARaster) {
@@ -327,7 +392,7 @@ TEST(CliBadInput, OptionsThatMeanNothingToARaster) {
   expect_no_build(folder, raster, 2, "--resolution is for points", {"--resolution", "2"});
   expect_no_build(folder, raster, 2, "--class is for LAS", {"--class", "2"});
   expect_no_build(folder, raster, 2, "--repair is for TINs", {"--repair"});
-  expect_no_build(folder, raster, 2, "no less than 0 is wanted, and -1 is less; see",
+  expect_no_build(folder, raster, 2, "--progress-fd: must be a finite number >= 0; -1 is none; see",
                   {"--progress-fd", "-1"});
 }
 

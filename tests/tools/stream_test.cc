@@ -181,7 +181,7 @@ TEST_F(StreamCli, SaysWhatIsWrong) {
   const std::string t = file("t.ptin");
   refused({"stream", t, "-o", file("s.pts")}, 2, "--overwrite");
   refused({"stream", t, "-o", "-", "--json"}, 2, "--json");
-  refused({"stream", t, "--error", "-1", "-o", file("x.pts")}, 2, "tolerance");
+  refused({"stream", t, "--error", "-1", "-o", file("x.pts")}, 2, "--error: must be a number >= 0");
   refused({"stream", t, "--window", "9", "9", "1", "1", "-o", file("x.pts")}, 2, "inverted");
   refused({"stream", t, "--have", "{]", "-o", file("x.pts")}, 2, "JSON");
   refused({"stream", t, "--have", "[{\"windows\":1}]", "-o", file("x.pts")}, 2, "windows");

@@ -80,7 +80,7 @@ std::string exact_number(double value) {
   return {text.data(), end};
 }
 
-std::uint64_t parse_bytes(const std::string& text) {
+std::uint64_t parse_bytes(const std::string& text, const std::string& option) {
   std::size_t used = 0;
   double value = -1.0;
   try {
@@ -99,7 +99,8 @@ std::uint64_t parse_bytes(const std::string& text) {
   }
   if (used == std::string::npos || !(value > 0) || factor < 0 || value * factor > 1e18) {
     throw Error(ErrorCode::invalid_argument,
-                std::string("not a size: ").append(text).append("; write it as 512M or 2G"));
+                std::string("not a size: ").append(text).append("; write it as 512M or 2G"),
+                option);
   }
   return static_cast<std::uint64_t>(value * factor);
 }

@@ -28,7 +28,8 @@ namespace ptin::tools {
 /// The fewest digits that read back as the same number.
 [[nodiscard]] std::string exact_number(double value);
 /// A size in bytes from "512M", "2G", "4096": suffixes K, M, G, T are powers of 1024.
+/// @param option  Gave the text; named in errors.
 /// @throws Error invalid_argument
-[[nodiscard]] std::uint64_t parse_bytes(const std::string& text);
+[[nodiscard]] std::uint64_t parse_bytes(const std::string& text, const std::string& option);
 
 }  // namespace ptin::tools

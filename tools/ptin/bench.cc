@@ -10,7 +10,7 @@
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/counts.h"
+#include "tools/facts/numbers.h"
 #include "tools/measure/measure_io.h"
 #include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
@@ -79,6 +79,7 @@ Action declare_bench(CLI::App& app, Context& context) {
   app.add_option("FILE", request.file, "The .ptin file")->required();
   app.add_option("--seconds", request.seconds,
                  "How long to measure, about; questions that take long may double it")
+      ->check(numbers(NumberRange::kPositive, ""))
       ->type_name("S")
       ->capture_default_str();
   app.add_option("--count", request.most_times, "How often each question is asked, at most")

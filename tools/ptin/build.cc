@@ -21,8 +21,8 @@
 #include "storage/file/file_questions.h"
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
-#include "tools/facts/counts.h"
 #include "tools/facts/human.h"
+#include "tools/facts/numbers.h"
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
 #include "tools/progress_fd.h"
@@ -363,7 +363,7 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
   BuildResources resources;
   resources.overwrite = command.overwrite;
   resources.stop = context.stop;
-  if (!command.memory.empty()) resources.memory_bytes = parse_bytes(command.memory);
+  if (!command.memory.empty()) resources.memory_bytes = parse_bytes(command.memory, "--memory");
   resources.threads = command.threads;
   resources.tmp = command.tmp;
   resources.unfinished = command.resume    ? Unfinished::kResume
@@ -436,7 +436,7 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
                  "This stored value (before scale and offset) means void; overrides the source's")
       ->type_name("V");
   app.add_option("--resolution", options.resolution, "Points, TINs: the grid unit, in CRS units")
-      ->check(CLI::PositiveNumber)
+      ->check(numbers(NumberRange::kPositive, "in CRS units"))
       ->type_name("R");
   app.add_option("--class", options.classes,
                  "LAS: keep points of these classes, such as 2 for ground; 2,9 for several")
@@ -471,6 +471,7 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
                  "Points, --repair: triangles with an edge longer than this become void; CRS "
                  "units, or metres\n"
                  "where those are degrees")
+      ->check(numbers(NumberRange::kPositive, "in CRS units, or metres where those are degrees"))
       ->type_name("L");
   app.add_option("--breaklines", options.breaklines,
                  "Points, --repair: lines with heights that become edges of the TIN, from layers "
@@ -490,6 +491,7 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
       ->type_name("NAME");
   app.add_option("--bbox", command.bbox, "Leave out samples outside of this box, in CRS units")
       ->expected(4)
+      ->check(numbers(NumberRange::kFinite, "in CRS units"))
       ->type_name("XMIN YMIN XMAX YMAX");
   app.add_option("--a-srs,--a_srs", options.a_srs,
                  "The CRS; overrides the source's (EPSG code, WKT, PROJ string)")
@@ -525,7 +527,7 @@ void add_work_options(CLI::App& app, BuildCommand& command) {
   app.add_flag("--dry-run", command.dry_run, "Say what the build would need, and stop");
   app.add_option("--progress-fd", command.progress_fd,
                  "Write progress as lines of JSON to this file descriptor")
-      ->check(not_negative())
+      ->check(numbers(NumberRange::kNotNegative, ""))
       ->type_name("FD");
 }
 
@@ -544,13 +546,13 @@ Action declare_build(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"error", "roi", "elevation"}));
   app.add_option("--max-error", options.max_error,
                  "Leave out detail below this error, in the height's unit")
-      ->check(not_negative())
+      ->check(numbers(NumberRange::kNotNegative, "in the height's unit"))
       ->type_name("E");
   app.add_option(
          "--void-slope", options.void_slope,
          "Error charged for each ground unit that the border of a void moves: at an error E it\n"
          "moves by E / S at most")
-      ->check(not_negative())
+      ->check(numbers(NumberRange::kNotNegative, ""))
       ->type_name("S")
       ->capture_default_str();
   add_work_options(app, *command);

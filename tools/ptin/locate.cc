@@ -13,6 +13,7 @@
 #include "engine/query/terrain.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
+#include "tools/facts/numbers.h"
 #include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
 #include "tools/formats/vector_file.h"
@@ -143,7 +144,10 @@ int run_locate(const LocateOptions& options, const Context& context) {
 Action declare_locate(CLI::App& app, Context& context) {
   const auto options = std::make_shared<LocateOptions>();
   add_terrain_options(app, options->terrain, true);
-  app.add_option("X_Y", options->point, "A point in map units")->expected(2)->type_name("X Y");
+  app.add_option("X_Y", options->point, "A point in map units")
+      ->expected(2)
+      ->check(numbers(NumberRange::kFinite, "in map units"))
+      ->type_name("X Y");
   auto* points = app.add_option(
       "--points", options->points,
       "Points: text with x and y in the first columns, or in those that a header names so (- "

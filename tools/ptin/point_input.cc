@@ -239,7 +239,11 @@ Asked<MapPoint> read_points(const std::string& path, const InputChoice& choice,
     const std::size_t before = asked.all.size();
     const auto add = [&](const OGRGeometry& part) {
       if (wkbFlatten(part.getGeometryType()) != wkbPoint) refuse_feature(f, "is no point", path);
-      asked.all.push_back({part.toPoint()->getX(), part.toPoint()->getY()});
+      const MapPoint at{part.toPoint()->getX(), part.toPoint()->getY()};
+      if (!std::isfinite(at.x) || !std::isfinite(at.y)) {
+        refuse_feature(f, "has a coordinate that is not a finite number", path);
+      }
+      asked.all.push_back(at);
     };
     if (f.GetGeometryRef() != nullptr) for_each_part(*f.GetGeometryRef(), add);
     if (asked.all.size() == before) refuse_feature(f, "is no point", path);

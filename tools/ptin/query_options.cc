@@ -10,8 +10,8 @@
 #include "engine/query/terrain.h"
 #include "storage/file/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"
-#include "tools/facts/counts.h"
 #include "tools/facts/human.h"
+#include "tools/facts/numbers.h"
 #include "tools/output/standard_output.h"
 #include "tools/region/on_terrain.h"
 #include "tools/region/region_input.h"
@@ -106,6 +106,7 @@ std::optional<Region> region_of(const RegionOptions& options, const StoreFacts& 
 void add_curvature_option(CLI::App& app, double& coefficient) {
   app.add_option("--curvature", coefficient,
                  "The Earth's curvature less refraction: GDAL's coefficient; 0 is a flat Earth")
+      ->check(numbers(NumberRange::kNotNegative, "from 0 (a flat Earth) to 1 (no refraction)"))
       ->type_name("C")
       ->capture_default_str();
 }
@@ -139,11 +140,15 @@ void warn_of_base_error(const StoreFile& store, const std::optional<double>& err
 
 void add_level_options(CLI::App& app, LevelOptions& options, const std::string& level_help,
                        const std::string& interval_help) {
-  auto* level = app.add_option("--level,--fl", options.levels, level_help)->type_name("H...");
+  auto* level = app.add_option("--level,--fl", options.levels, level_help)
+                    ->check(numbers(NumberRange::kFinite, "in the height's unit"))
+                    ->type_name("H...");
   auto* interval = app.add_option("-i,--interval", options.interval, interval_help)
+                       ->check(numbers(NumberRange::kPositive, "in the height's unit"))
                        ->type_name("D")
                        ->excludes(level);
   app.add_option("--base,--off", options.base, "Where the intervals are counted from (default 0)")
+      ->check(numbers(NumberRange::kFinite, "in the height's unit"))
       ->type_name("B")
       ->needs(interval);
 }
@@ -184,7 +189,7 @@ QueryLimits limits_of(const std::string& memory, const Context& context) {
 }
 
 std::uint64_t memory_limit_of(const std::string& memory, std::uint64_t otherwise) {
-  if (!memory.empty()) return parse_bytes(memory);
+  if (!memory.empty()) return parse_bytes(memory, "--memory");
   return std::min(otherwise, allowed_memory() / 4 * 3);  // as builds do by themselves
 }
 

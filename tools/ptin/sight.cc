@@ -20,8 +20,8 @@
 #include "engine/query/terrain.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/counts.h"
 #include "tools/facts/human.h"
+#include "tools/facts/numbers.h"
 #include "tools/facts/quantity.h"
 #include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
@@ -304,6 +304,7 @@ Action declare_sight(CLI::App& app, Context& context) {
   app.add_option("PAIR", options->pair,
                  "The two ends in map units, each with its height above ground")
       ->expected(6)
+      ->check(numbers(NumberRange::kFinite, "in map units, or a height in the height's unit"))
       ->type_name("X1 Y1 H1 X2 Y2 H2");
   auto* pairs = app.add_option(
       "--pairs", options->pairs,

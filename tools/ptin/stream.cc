@@ -10,8 +10,8 @@
 #include "engine/query/terrain.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/counts.h"
 #include "tools/facts/human.h"
+#include "tools/facts/numbers.h"
 #include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/query_options.h"
@@ -146,10 +146,12 @@ void add_serving(CLI::App& app, Serving& serving, const std::string& prefix,
       ->type_name("XMIN YMIN XMAX YMAX");
   app.add_option("--" + prefix + "error", serving.error,
                  what + " certified error, in the height's unit")
+      ->check(numbers(NumberRange::kTolerance, "in the height's unit"))
       ->type_name("E");
   app.add_option("--" + prefix + "level", serving.levels,
                  what + " heights: only what isolines at them need")
       ->expected(1, 1000)
+      ->check(numbers(NumberRange::kFinite, "in the height's unit"))
       ->type_name("H...");
   app.add_option("--" + prefix + "splits", serving.splits,
                  what + " number of splits: only the first so many, the most important ones")

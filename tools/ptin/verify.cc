@@ -17,8 +17,8 @@
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/counts.h"
 #include "tools/facts/human.h"
+#include "tools/facts/numbers.h"
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
 #include "tools/ptin/error_stats.h"
@@ -253,7 +253,7 @@ Action declare_verify(CLI::App& app, Context& context) {
   app.add_option("--tolerance", command->tolerances,
                  "Tolerances to check against the source (default: 0 and four more)")
       ->needs(against)
-      ->check(not_negative())
+      ->check(numbers(NumberRange::kNotNegative, "in the height's unit"))
       ->type_name("E");
   app.add_option("--memory", command->memory,
                  "Memory to check the splits in, and to sort the points of the source in, as "

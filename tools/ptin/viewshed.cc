@@ -20,6 +20,7 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
+#include "tools/facts/numbers.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/file_name.h"
 #include "tools/output/gdal_output.h"
@@ -256,15 +257,23 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
 Action declare_viewshed(CLI::App& app, Context& context) {
   const auto options = std::make_shared<ViewshedOptions>();
   add_terrain_options(app, options->terrain, true);
-  app.add_option("X", options->x, "The observer's position, in map units")->required();
-  app.add_option("Y", options->y, "")->required();
-  app.add_option("H", options->height, "The observer's height above the surface")->required();
+  const CLI::Validator position = numbers(NumberRange::kFinite, "in map units");
+  const CLI::Validator height = numbers(NumberRange::kFinite, "in the height's unit");
+  app.add_option("X", options->x, "The observer's position, in map units")
+      ->required()
+      ->check(position);
+  app.add_option("Y", options->y, "")->required()->check(position);
+  app.add_option("H", options->height, "The observer's height above the surface")
+      ->required()
+      ->check(height);
   app.add_option("--radius", options->radius,
                  "How far to look: map units; metres in a geographic CRS")
+      ->check(numbers(NumberRange::kPositive, "in map units, or metres in a geographic CRS"))
       ->type_name("R")
       ->required();
   app.add_flag("--absolute", options->absolute, "H is a height of itself, not above the surface");
   app.add_option("--target-height", options->target_height, "Height of targets above the surface")
+      ->check(height)
       ->type_name("T");
   add_curvature_option(app, options->curvature);
   app.add_option(

@@ -15,6 +15,7 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
+#include "tools/facts/numbers.h"
 #include "tools/ptin/query_options.h"
 #include "tools/thread_count.h"
 
@@ -213,7 +214,7 @@ Action declare_volume(CLI::App& app, Context& context) {
   const auto options = std::make_shared<VolumeOptions>();
   add_terrain_options(app, options->terrain, false);
   auto* level = app.add_option("--level", options->level, "A height, in the height's unit");
-  level->type_name("H");
+  level->check(numbers(NumberRange::kFinite, "in the height's unit"))->type_name("H");
   app.add_option("--against", options->against,
                  "A second .ptin file, on any grid, in the same CRS; cut is where FILE is above it")
       ->type_name("OTHER")

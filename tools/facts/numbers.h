@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Checks of options that are numbers. CLI11 puts the name of the option, or of the argument, before
+// what they say.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace ptin::tools {
+
+/// Refuses a number with a minus sign: CLI11 would read the count -5 as 2^64 - 5.
+[[nodiscard]] inline CLI::Validator counts() {
+  return {[](const std::string& text) {
+            return text.starts_with('-') ? "a count is no less than 0, and " + text + " is"
+                                         : std::string();
+          },
+          ""};
+}
+
+/// Which real numbers mean something.
+enum class NumberRange : std::uint8_t {
+  kFinite,
+  kNotNegative,  ///< Finite, and no less than 0.
+  kPositive,     ///< Finite, and above 0.
+  kTolerance,    ///< No less than 0; infinite is as coarse as it can be.
+};
+
+[[nodiscard]] inline bool is_in(NumberRange range, double number) noexcept {
+  switch (range) {
+    case NumberRange::kNotNegative:
+      return std::isfinite(number) && number >= 0;
+    case NumberRange::kPositive:
+      return std::isfinite(number) && number > 0;
+    case NumberRange::kTolerance:
+      return number >= 0;
+    default:
+      return std::isfinite(number);
+  }
+}
+
+/// Refuses a number beyond the range: "--level: must be a finite number, in the height's unit; nan is
+/// none". What is no number CLI11 refuses.
+/// @param unit  "in map units"; may be empty.
+[[nodiscard]] inline CLI::Validator numbers(NumberRange range, const std::string& unit) {
+  constexpr const char* kWords[] = {"a finite number", "a finite number >= 0",
+                                    "a finite number > 0", "a number >= 0"};
+  const std::string expected = kWords[static_cast<std::size_t>(range)];
+  return {[range, expected, unit](const std::string& text) {
+            char* end = nullptr;
+            const double number = std::strtod(text.c_str(), &end);
+            const bool is_number = end != text.c_str() && *end == '\0';
+            if (!is_number || is_in(range, number)) return std::string();
+            return "must be " + expected + (unit.empty() ? "" : ", " + unit) + "; " + text +
+                   " is none";
+          },
+          ""};
+}
+
+}  // namespace ptin::tools
