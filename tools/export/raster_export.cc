@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 
@@ -111,8 +112,7 @@ class RasterWriter {
 
   void run() { write({0, 0, blocks(grid_.columns(), block_width_), rows_of_blocks()}); }
 
-  /// How far a written height is from that of the TIN, at most.
-  [[nodiscard]] double largest_rounding() const noexcept { return largest_rounding_; }
+  [[nodiscard]] const WrittenRaster& written() const noexcept { return written_; }
 
  private:
   static std::int64_t blocks(std::int64_t pixels, std::int64_t side) {
@@ -154,8 +154,10 @@ class RasterWriter {
     if (of_heights()) {
       values_.assign(pixels, std::numeric_limits<double>::quiet_NaN());
       sample_heights(rect);
-      std::replace_if(
-          values_.begin(), values_.end(), [](double v) { return std::isnan(v); }, target_.nodata);
+      const auto is_none = [](double v) { return std::isnan(v); };
+      written_.surface_pixels += static_cast<std::uint64_t>(
+          std::count_if(values_.begin(), values_.end(), std::not_fn(is_none)));
+      std::replace_if(values_.begin(), values_.end(), is_none, target_.nodata);
     } else {
       values_.assign(pixels, target_.nodata);
       normals_.assign(pixels, {});
@@ -171,6 +173,7 @@ class RasterWriter {
     const StoreFacts& facts = parts_.terrain().store().facts();
     for (std::size_t i = 0; i < normals_.size(); ++i) {
       if (!(normals_[i].z > 0)) continue;
+      ++written_.surface_pixels;
       const auto place = static_cast<std::int64_t>(i);
       const MapPoint centre =
           grid_.centre(rect.column + place % rect.width, rect.row + place / rect.width);
@@ -258,7 +261,7 @@ class RasterWriter {
   void note_rounding(double height, double written) noexcept {
     if (of_heights() && height != target_.nodata) {
       // Exact: the two numbers are nearly the same.
-      largest_rounding_ = std::max(largest_rounding_, std::abs(written - height));
+      written_.rounding = std::max(written_.rounding, std::abs(written - height));
     }
   }
 
@@ -271,7 +274,7 @@ class RasterWriter {
   std::int64_t block_width_ = 0;
   std::int64_t block_height_ = 0;
   std::int64_t blocks_done_ = 0;
-  double largest_rounding_ = 0.0;
+  WrittenRaster written_;
   std::vector<double> values_;
   std::vector<GridNormal> normals_;  ///< Beside `values_`; empty when these are heights.
 };
@@ -370,18 +373,18 @@ double default_nodata(const StoreFacts& facts, PixelValue value) noexcept {
   return static_cast<double>(std::numeric_limits<float>::lowest());
 }
 
-double export_raster(TinParts& parts, const PixelGrid& grid, const RasterTarget& target,
-                     const std::function<void(double)>& progress) {
+WrittenRaster export_raster(TinParts& parts, const PixelGrid& grid, const RasterTarget& target,
+                            const std::function<void(double)>& progress) {
   check_table(grid, target);
   const GdalCacheLimit cache(target.buffer_bytes);
   PendingFile file(target.path, target.overwrite);
   const StoreFacts& facts = parts.terrain().store().facts();
-  double rounding = 0.0;
+  WrittenRaster written;
   if (!target.is_cog) {
     GDALDatasetUniquePtr dataset = create(file, grid, target, facts);
     RasterWriter writer(parts, grid, target, *dataset, progress);
     writer.run();
-    rounding = writer.largest_rounding();
+    written = writer.written();
     close_checked(dataset, target.path);
   } else {
     const PendingFile raw(target.path + ".raw.tif", true);
@@ -391,13 +394,13 @@ double export_raster(TinParts& parts, const PixelGrid& grid, const RasterTarget&
     GDALDatasetUniquePtr dataset = create(raw, grid, target, facts);
     RasterWriter writer(parts, grid, target, *dataset, first_half);
     writer.run();
-    rounding = writer.largest_rounding();
+    written = writer.written();
     close_checked(dataset, target.path);
     CopyProgress copying{progress, parts.request().limits.stop};
     copy_as_cog(raw, file, target, copying);
   }
   file.publish();
-  return rounding;
+  return written;
 }
 
 }  // namespace ptin::tools

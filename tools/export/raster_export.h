@@ -43,6 +43,14 @@ struct RasterTarget {
   std::uint64_t table_bytes = std::uint64_t{64} << 20;  ///< For GDAL's table of blocks.
 };
 
+/// What was written.
+struct WrittenRaster {
+  /// The largest distance of a written height from that of the TIN: what Float32 rounds between
+  /// vertices; 0 of what is no height.
+  double rounding = 0.0;
+  std::uint64_t surface_pixels = 0;  ///< Pixels whose centre lies on surface.
+};
+
 /// Samples the TIN of `parts` at the centres of `grid` and writes what `target.content` names.
 /// Heights are Float32, or Float64 where Float32 does not hold every height of a vertex. Slopes and
 /// aspects are Float32, hillshades bytes, all three of the normal that sample_normals() gives, over
@@ -52,15 +60,13 @@ struct RasterTarget {
 /// Blocks are sampled together as far as memory allows, and written in an order that depends on the
 /// size of the raster alone. A COG is copied by GDAL, with its overviews, from a GeoTIFF beside it.
 /// @param progress  Called with the share done, 0 to 1; may be empty.
-/// @return The largest distance of a written height from that of the TIN: what Float32 rounds
-/// between vertices; 0 of what is no height.
 /// @throws Error  invalid_argument    GDAL refuses an option, or the output exists
 ///                resource_exhausted  what a single pixel needs does not fit the memory; the table
 ///                                    of blocks does not fit `table_bytes`; the disk is full
 ///                as TinParts::part; io_error; cancelled. Nothing is left behind.
-[[nodiscard]] double export_raster(TinParts& parts, const PixelGrid& grid,
-                                   const RasterTarget& target,
-                                   const std::function<void(double)>& progress);
+[[nodiscard]] WrittenRaster export_raster(TinParts& parts, const PixelGrid& grid,
+                                          const RasterTarget& target,
+                                          const std::function<void(double)>& progress);
 
 /// A value for pixels without one: 0 of hillshades, else -9999; of heights the lowest float when
 /// -9999 lies between the terrain's least and largest height.

@@ -109,6 +109,18 @@ void warn_of_merging(const BuildCommand& command, const BuildReport& r, const Co
                short_number(r.height_quantum).c_str());
 }
 
+/// Nothing can be asked of a terrain that is void everywhere.
+void warn_of_no_surface(const BuildCommand& command, const BuildReport& r, const Context& context) {
+  if (r.source_samples > r.lone_samples || context.json || context.quiet) return;
+  const std::string why = r.source_samples == 0 ? "no sample of the source has a height"
+                                                : "no sample with a height has a triangle";
+  std::fprintf(
+      stderr,
+      "ptin: warning: %s has no surface, all of it is void: %s; look at the source, and at "
+      "--nodata, --max-edge and --boundary\n",
+      command.output.c_str(), why.c_str());
+}
+
 /// Where flat parts are this much of a file, it says how to leave them out.
 constexpr double kMuchFlat = 0.2;
 
@@ -377,6 +389,7 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
 /// The report, in text or JSON.
 void tell(const BuildCommand& command, const BuildReport& report, const Context& context) {
   warn_of_merging(command, report, context);
+  warn_of_no_surface(command, report, context);
   if (!context.json && context.quiet) return;
   const FlatRecords flat =
       flat_records(*StoreFile::open(output_target(command.output), PageAccess::kPread));

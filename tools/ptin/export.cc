@@ -23,6 +23,7 @@
 #include "tools/ptin/pixel_content.h"
 #include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
+#include "tools/ptin/source_counts.h"
 
 namespace ptin::tools {
 
@@ -186,7 +187,9 @@ PixelGrid grid_of(const ExportOptions& options, const StoreFile& store, const Cr
 Exported export_pixels(TinParts& parts, const PixelGrid& grid, const RasterTarget& target,
                        const Report& report) {
   Exported made;
-  made.rounding = export_raster(parts, grid, target, report);
+  const WrittenRaster written = export_raster(parts, grid, target, report);
+  made.rounding = written.rounding;
+  made.surface_pixels = written.surface_pixels;
   made.columns = grid.columns();
   made.rows = grid.rows();
   const std::array<double, 6> transform = grid.geotransform();
@@ -282,10 +285,17 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   report(0.0);
   // Before anything is published: what may fail for want of memory must leave nothing behind.
   const std::optional<ClassChanges> changes = changes_of(parts, options, crs_facts(store));
+  const std::uint64_t lone_samples = source_count(store, "lone_samples");
   Exported made;
   if (is_raster) {
     made = export_pixels(parts, *grid, raster_target(format, options, store), report);
     progress.finish();
+    if (!context.quiet && made.surface_pixels == 0 && has_surface(store)) {
+      std::fprintf(stderr,
+                   "ptin: warning: no pixel's centre lies on surface; %s has nodata alone, so ask "
+                   "for another --window\n",
+                   options.output.c_str());
+    }
   } else {
     const SinkTarget target = sink_target(format, options, parts);
     made = export_triangles(parts, format, target, report);
@@ -303,6 +313,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   made.certificate.error = sum_above(made.certificate.error, made.rounding);
   made.certificate.deviation = sum_above(made.certificate.deviation, made.rounding);
   made.bytes = bytes_of_file(options.output);
+  made.lone_samples = lone_samples;
   return made;
 }
 
@@ -311,7 +322,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   check_options(options, format);
   const auto start = std::chrono::steady_clock::now();
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.error, context);
   Exported made = export_as(format, options, terrain, context);
   made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (context.json) {

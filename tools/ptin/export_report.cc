@@ -22,6 +22,13 @@ std::string size_text(const Exported& made) {
          short_number(made.pixel_size[0]) + " x " + short_number(made.pixel_size[1]);
 }
 
+/// The samples of which the certificate does not speak.
+const char* left_out_text(bool has_moved, bool has_lone) {
+  if (has_moved)
+    return has_lone ? " (but where voids moved, and lone ones)" : " (but where voids moved)";
+  return has_lone ? " (but lone ones)" : "";
+}
+
 }  // namespace
 
 nlohmann::json json_of(const Exported& made, const StoreFile& store) {
@@ -34,6 +41,7 @@ nlohmann::json json_of(const Exported& made, const StoreFile& store) {
       {"border_moved_at_most", border_move_json(store, certificate.error)},
       {"samples_made_void", made.changes ? nlohmann::json(made.changes->to_void) : nullptr},
       {"samples_made_surface", made.changes ? nlohmann::json(made.changes->to_surface) : nullptr},
+      {"lone_samples", made.lone_samples},
       {"exact", certificate.complete && store.facts().base_error == 0 && made.rounding == 0},
       {"units", units_json(crs_facts(store))},
       {"bytes", made.bytes},
@@ -62,8 +70,12 @@ void print_exported(const Exported& made, const StoreFacts& facts) {
               made.output.c_str(), size_text(made).c_str(), human_bytes(made.bytes).c_str(),
               made.seconds, made.what == "height" ? "" : (made.what + " of a TIN that is ").c_str(),
               short_number(made.certificate.error).c_str(),
-              has_moved ? " (but where voids moved)" : "",
+              left_out_text(has_moved, made.lone_samples > 0),
               short_number(made.certificate.deviation).c_str());
+  if (made.lone_samples > 0) {
+    std::printf("  lone     %s of the source without a triangle, treated as void\n",
+                counted(made.lone_samples, "sample").c_str());
+  }
   if (may_move && made.changes) {
     std::printf("  classes  %s became void, %s surface\n",
                 counted(made.changes->to_void, "sample").c_str(),

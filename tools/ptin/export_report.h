@@ -27,7 +27,9 @@ struct Exported {
   std::optional<LocalFrame> frame;      ///< Of formats that have one.
   Certificate certificate;              ///< Of heights, with what pixels are rounded by.
   double rounding = 0.0;                ///< Of heights to pixels; rasters only.
+  std::uint64_t lone_samples = 0;       ///< Of the source: heights without a triangle, void here.
   std::optional<ClassChanges> changes;  ///< Of the samples in the region; none: not counted.
+  std::uint64_t surface_pixels = 0;     ///< Whose centre lies on surface; rasters only.
   std::uint64_t bytes = 0;
   double seconds = 0.0;
 };

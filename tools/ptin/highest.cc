@@ -50,7 +50,7 @@ void print_text(const HighestResult& result, const HighestOptions& options, bool
 int run_highest(const HighestOptions& options, const Context& context) {
   check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   HighestRequest request;
   if (const auto region = region_of(options.region, terrain.store().facts(), crs.wkt)) {

@@ -244,7 +244,7 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
 int run_isoline(const IsolineOptions& options, const Context& context) {
   check_options(options, context);
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   IsolineRequest request;
   request.levels = levels_of(options.levels, terrain.store().facts(), options.terrain.file);

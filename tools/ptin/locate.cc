@@ -121,11 +121,12 @@ int run_locate(const LocateOptions& options, const Context& context) {
   check_detail(options.detail);
   const AnswerForm form = form_of(options.answer, context.json);
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<MapPoint> asked = options.points.empty()
                                     ? Asked<MapPoint>{{{options.point[0], options.point[1]}}, {}}
                                     : read_points(options.points, options.choice, crs.wkt);
+  warn_of_empty_input(asked.all.empty(), options.points, "point", context);
   LocateRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);

@@ -4,11 +4,10 @@
 #include <cstdint>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "tools/facts/quantity.h"
+#include "tools/ptin/source_counts.h"
 
 namespace ptin::tools {
 
@@ -23,24 +22,6 @@ Length pixel_side_of(const std::string& text) {
                   "\" is no size of a pixel; expected a number > 0 in map units, or with m, km or "
                   "ft behind it a length over ground, as 90m",
               kPixelSize);
-}
-
-/// A count that the build wrote about its source; 0 when it wrote none.
-/// @throws Error corruption  what stands there is no count
-std::uint64_t source_count(const nlohmann::json& metadata, const char* key,
-                           const std::string& path) {
-  const auto source = metadata.find("source");
-  if (source == metadata.end()) return 0;
-  const auto refuse = [&](const std::string& what) {
-    throw Error(ErrorCode::corruption,
-                "the metadata's " + what + "; ptin build did not write this, build the file anew",
-                path);
-  };
-  if (!source->is_object()) refuse("\"source\" is no object");
-  const auto count = source->find(key);
-  if (count == source->end()) return 0;
-  if (!count->is_number_unsigned()) refuse(std::string("\"").append(key) + "\" is no count");
-  return count->get<std::uint64_t>();
 }
 
 }  // namespace
@@ -76,10 +57,8 @@ MapPoint middle_of(const std::optional<Window>& window, const StoreFacts& facts)
 
 std::array<double, 2> own_pixel_size(const StoreFile& store) {
   const StoreFacts& facts = store.facts();
-  const nlohmann::json metadata = metadata_of(store);
-  const auto number = [&](const char* key) { return source_count(metadata, key, store.path()); };
-  const std::uint64_t samples =
-      facts.source_samples + number("void_samples") + number("lone_samples");
+  const std::uint64_t samples = facts.source_samples + source_count(store, "void_samples") +
+                                source_count(store, "lone_samples");
   const std::uint64_t places =
       (static_cast<std::uint64_t>(facts.bounds.max_x - facts.bounds.min_x) + 1) *
       (static_cast<std::uint64_t>(facts.bounds.max_y - facts.bounds.min_y) + 1);

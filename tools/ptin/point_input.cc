@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -280,6 +281,15 @@ Asked<SightPair> read_pairs(const std::string& path, const InputChoice& choice,
     ids.note(f, asked);
   });
   return asked;
+}
+
+void warn_of_empty_input(bool is_empty, const std::string& path, const std::string& what,
+                         const Context& context) {
+  if (!is_empty || context.quiet || context.json) return;
+  std::fprintf(stderr,
+               "ptin: warning: %s held no %s, so the answer is empty; expected a row or a feature "
+               "for each\n",
+               path == "-" ? "standard input" : path.c_str(), what.c_str());
 }
 
 Asked<std::vector<MapPoint>> read_lines(const std::string& text, const InputChoice& choice,

@@ -48,6 +48,12 @@ struct Asked {
 [[nodiscard]] Asked<SightPair> read_pairs(const std::string& path, const InputChoice& choice,
                                           const std::string& crs_wkt);
 
+/// Writes a warning to stderr where an input held nothing, so that the answer is empty. Silent with
+/// -q and --json.
+/// @param what  Should have been read, as "point".
+void warn_of_empty_input(bool is_empty, const std::string& path, const std::string& what,
+                         const Context& context);
+
 /// Reads lines from WKT (LINESTRING, MULTILINESTRING), from a file with WKT, or from a layer, which
 /// is transformed to the terrain's CRS. Each part of a multi-line is a line of its own.
 /// @throws Error not_found, invalid_argument

@@ -232,7 +232,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   }
   check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<std::vector<MapPoint>> asked = read_lines(options.line, options.choice, crs.wkt);
   const std::vector<std::vector<MapPoint>>& lines = asked.all;

@@ -13,6 +13,7 @@
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
 #include "tools/output/standard_output.h"
+#include "tools/ptin/source_counts.h"
 #include "tools/region/on_terrain.h"
 #include "tools/region/region_input.h"
 
@@ -128,10 +129,18 @@ void check_detail(const DetailOptions& options) {
   }
 }
 
-void warn_of_base_error(const StoreFile& store, const std::optional<double>& error,
-                        const Context& context) {
+void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
+                     const Context& context) {
+  if (context.quiet || context.json) return;
+  if (!has_surface(store)) {
+    std::fprintf(stderr,
+                 "ptin: warning: %s has no surface, all of it is void: no triangle of its source "
+                 "has heights at its corners; look at the source, and at --nodata, --max-edge and "
+                 "--boundary of ptin build\n",
+                 store.path().c_str());
+  }
   const double base = store.facts().base_error;
-  if (!error || *error >= base || context.quiet || context.json) return;
+  if (!error || *error >= base) return;
   std::fprintf(stderr,
                "ptin: warning: %s certifies no error below %s (built with --max-error, or heights "
                "were rounded); the answer is within that, not within %s\n",
@@ -156,6 +165,12 @@ void add_level_options(CLI::App& app, LevelOptions& options, const std::string& 
 std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts,
                               const std::string& file) {
   if (!options.interval) return options.levels;
+  if (facts.min_height > facts.max_height) {
+    throw Error(ErrorCode::invalid_argument,
+                "no multiple of the interval lies within the heights of the terrain: it has none, "
+                "all of it is void",
+                file);
+  }
   std::vector<double> levels =
       levels_at(*options.interval, options.base, facts.min_height, facts.max_height);
   if (!levels.empty()) return levels;

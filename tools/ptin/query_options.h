@@ -64,10 +64,12 @@ void add_detail_options(CLI::App& app, DetailOptions& options, const std::string
                         const std::string& vertices_help);
 /// @throws Error invalid_argument  --error negative or not a number
 void check_detail(const DetailOptions& options);
-/// Writes a warning to stderr where the file keeps less detail than --error asks for (`build
-/// --max-error`): the answer then certifies what the file keeps. Silent with -q and --json.
-void warn_of_base_error(const StoreFile& store, const std::optional<double>& error,
-                        const Context& context);
+/// Writes a warning to stderr where a terrain has no surface, so that every answer is void, and where
+/// the file keeps less detail than --error asks for (`build --max-error`): the answer then certifies
+/// what the file keeps. Silent with -q and --json.
+/// @throws Error corruption as has_surface()
+void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
+                     const Context& context);
 
 /// --level or --interval with --base: the heights of isolines.
 struct LevelOptions {

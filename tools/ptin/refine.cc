@@ -129,7 +129,7 @@ void print_stats(const RefineOptions& options, const RefinedTin& refined) {
 int run_refine(const RefineOptions& options, const Context& context) {
   check_options(options);
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request;
   request.region = region_of(options.region, terrain.store().facts(), crs.wkt);

@@ -15,6 +15,7 @@
 #include "tools/plot/canvas.h"
 #include "tools/ptin/error_stats.h"
 #include "tools/ptin/query_options.h"
+#include "tools/ptin/source_counts.h"
 #include "tools/render/overlay.h"
 
 namespace ptin::tools {
@@ -124,10 +125,22 @@ ReliefStyle draw(Canvas& canvas, const RenderOptions& options, const RefinedTin&
   return style;
 }
 
+void warn_of_picture(const RefinedTin& refined, const StoreFile& store, const std::string& output) {
+  const std::vector<TriangleClass>& classes = refined.tin.classes;
+  if (refined.triangles == 0) {
+    std::fprintf(stderr, "ptin: warning: no triangle meets the window; %s shows nothing\n",
+                 output.c_str());
+  } else if (std::count(classes.begin(), classes.end(), TriangleClass::kSurface) == 0 &&
+             has_surface(store)) {
+    std::fprintf(stderr, "ptin: warning: all that meets the window is void; %s shows no surface\n",
+                 output.c_str());
+  }
+}
+
 int run_render(const RenderOptions& options, const Context& context) {
   check_options(options);
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.error, context);
+  warn_of_terrain(terrain.store(), options.error, context);
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
   const std::optional<Region> region = region_of(options.region, store.facts(), crs.wkt);
@@ -149,10 +162,7 @@ int run_render(const RenderOptions& options, const Context& context) {
   const ReliefStyle style = draw(canvas, options, refined, store.facts(), view, context.stop);
   if (!options.no_legend) draw_legend(canvas, view, style, unit_of_ground(crs), crs.vertical_unit);
   canvas.publish();
-  if (refined.triangles == 0 && !context.quiet) {
-    std::fprintf(stderr, "ptin: warning: no triangle meets the window; %s shows nothing\n",
-                 options.output.c_str());
-  }
+  if (!context.quiet) warn_of_picture(refined, store, options.output);
 
   const nlohmann::json answer = {
       {"output", options.output},

@@ -269,9 +269,10 @@ int run_sight(const SightOptions& options, const Context& context) {
   std::ignore = form_of(options.answer, context.json, true);  // before the work
   if (options.frequency) std::ignore = hertz_of(*options.frequency);
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<SightPair> asked = pairs_of(options, crs.wkt);
+  warn_of_empty_input(asked.all.empty(), options.pairs, "pair", context);
   const SightRequest request = request_of(options, ground_of(crs), context);
   SightAnswers answers(options, asked, context, crs);
   if (answers.are_plotted()) require_panels(asked.all.size(), "pairs", options.answer.output);

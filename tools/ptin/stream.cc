@@ -110,7 +110,7 @@ int run_stream(const StreamOptions& options, const Context& context) {
   check_options(options, context);
   const Terrain terrain = open_terrain(options.terrain);
   const StoreFile& store = terrain.store();
-  warn_of_base_error(store, options.wanted.error, context);
+  warn_of_terrain(store, options.wanted.error, context);
   StreamRequest request;
   request.wanted = predicate_of(options.wanted, store.facts(), "--window");
   request.tolerance = options.wanted.error;

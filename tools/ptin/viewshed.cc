@@ -216,7 +216,7 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const StoreFil
 int run_viewshed(const ViewshedOptions& options, const Context& context) {
   check_options(options);
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.error, context);
   // Without --pixel-size, a terrain of points is refused here: its grid is far finer than anybody
   // wants to see.
   if (is_raster(options.output) && !options.pixel_size) {

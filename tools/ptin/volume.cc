@@ -17,6 +17,7 @@
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
 #include "tools/ptin/query_options.h"
+#include "tools/ptin/source_counts.h"
 #include "tools/thread_count.h"
 
 namespace ptin::tools {
@@ -183,7 +184,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
   }
   check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain);
-  warn_of_base_error(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.error, context);
   CrsFacts crs = crs_facts(terrain.store());
   std::optional<Terrain> other;
   double other_height_scale = 1.0;
@@ -191,7 +192,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
     TerrainOptions of_other = options.terrain;
     of_other.file = options.against;
     other = open_terrain(of_other);
-    warn_of_base_error(other->store(), options.detail.error, context);
+    warn_of_terrain(other->store(), options.detail.error, context);
     const CrsFacts crs_of_other = crs_facts(other->store());
     check_comparable(crs, crs_of_other, options, context);
     other_height_scale = height_scale(crs, crs_of_other, options, context);
@@ -200,6 +201,12 @@ int run_volume(const VolumeOptions& options, const Context& context) {
   request.other = other ? &*other : nullptr;
   request.other_height_scale = other_height_scale;
   const VolumeResult result = terrain.volume(request);
+  if (result.surface_area == 0 && has_surface(terrain.store())) {
+    warn("no surface lies in the region" +
+             (other ? ", or none of both terrains at one place" : std::string()) +
+             ": all volumes are 0; ask for another --window or --polygon",
+         context);
+  }
   if (context.json) {
     print_answer(result, options, terrain, other ? &*other : nullptr, crs);
   } else {
