@@ -55,6 +55,7 @@ void extract(benchmark::State& state, int levels, AnswerBy by, int threads) {
   request.levels = levels_between(levels);
   request.threads = threads;
   request.by = by;
+  request.counts_vertices = true;
   QueryCost cost;
   TraceCounts crossed;
   for (auto _ : state) {

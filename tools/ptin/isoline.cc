@@ -258,6 +258,7 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   request.threads = thread_count(options.threads);
   request.limits.stop = context.stop;
   request.by = options.by;
+  request.counts_vertices = context.json;
   return options.polygons ? run_polygons(options, request, terrain, crs, context)
                           : run_lines(options, request, terrain, crs, context);
 }

@@ -64,13 +64,14 @@ class IsolineExtraction {
   /// Tiles take half of the memory. Pieces take three eighths, since they cannot be put on disk;
   /// points take the rest.
   void trace() {
-    const TileTraceRequest request{levels_,
-                                   detail_,
-                                   region_ ? &*region_ : nullptr,
-                                   request_.limits.memory_bytes / 2,
-                                   request_.limits.memory_bytes / 8 * 3,
-                                   request_.threads,
-                                   request_.limits.stop};
+    TileTraceRequest request{levels_,
+                             detail_,
+                             region_ ? &*region_ : nullptr,
+                             request_.limits.memory_bytes / 2,
+                             request_.limits.memory_bytes / 8 * 3,
+                             request_.threads,
+                             request_.limits.stop};
+    request.counts_vertices = request_.counts_vertices;
     const bool by_stars = request_.by == AnswerBy::kStars && !terrain_.uses_other_index();
     TileTraces traces = by_stars ? trace_tiles(terrain_, request, result_.points_, context_.cost)
                                  : trace_by_splits(terrain_, request, *crossed_records(),

@@ -31,6 +31,7 @@ struct IsolineRequest {
   /// Folder of a temporary file for points that do not fit the memory. Empty: no such file, and an
   /// extraction that needs one fails (resource_exhausted).
   std::string temporary_folder;
+  bool counts_vertices = false;  ///< Fill in TraceCounts::vertices: a look-up for each corner.
   int threads = 1;  ///< At most; fewer where the memory is small. The lines do not depend on it.
   /// By stars where the packed R-tree is in use; else by splits, in one mesh and on one thread.
   AnswerBy by = AnswerBy::kStars;

@@ -31,13 +31,17 @@ void ProgressiveIsolines::make_room(std::vector<T>& array, std::uint64_t more) c
   array.reserve(room);
 }
 
+void ProgressiveIsolines::refuse_more_pieces() const {
+  throw Error(ErrorCode::resource_exhausted,
+              "the isolines have more pieces than 32 bits number: ask for fewer levels or a larger "
+              "tolerance",
+              context_.file());
+}
+
 void ProgressiveIsolines::make_room_for_pieces(std::uint64_t pieces) {
   const std::uint64_t fresh = pieces - std::min<std::uint64_t>(pieces, free_.size());
   if (slots_.size() + fresh >= kNone) {
-    throw Error(ErrorCode::resource_exhausted,
-                "the isolines have more pieces than 32 bits number: ask for fewer levels or a "
-                "larger tolerance",
-                context_.file());
+    refuse_more_pieces();
   }
   make_room(slots_, fresh);
   make_room(free_, slots_.size() + fresh - free_.size());
@@ -151,26 +155,20 @@ std::uint64_t ProgressiveIsolines::bytes() const noexcept {
 
 Isolines ProgressiveIsolines::lines(const Tin& tin, const QueryContext& context) const {
   PTIN_CHECK(tin.vertices.size() == bands_.size() && tin.triangles.size() == first_.size());
-  // At most two points a piece, kept twice for a moment, and a line a piece.
-  const std::uint64_t bytes =
-      pieces() * (sizeof(TriangleId) + 8 * sizeof(MapPoint) + sizeof(IsolinePiece)) +
-      first_.size() * kTraceBytesATriangle + bands_.size() * sizeof(std::uint32_t);
-  context.admit(this->bytes() + bytes);
-  Isolines result{PointStore(bytes, {})};
-  Crossings crossings;
-  crossings.bands = bands_;
-  crossings.begin.push_back(0);
-  crossings.triangles.reserve(pieces());
-  crossings.traced.assign(first_.size(), 0);
-  for (const std::vector<std::uint32_t>& level : by_level_) {
-    for (const std::uint32_t s : level) {
-      crossings.triangles.push_back(slots_[s].triangle);
-      crossings.traced[slots_[s].triangle] = 1;
+  // At most two points a piece, and a line a piece.
+  const std::uint64_t point_bytes = pieces() * 2 * sizeof(MapPoint);
+  context.admit(bytes() + LineTracer::bytes_for(pieces()) + point_bytes +
+                pieces() * sizeof(IsolinePiece));
+  Isolines result{PointStore(point_bytes, {})};
+  LineTracer tracer(levels_, heights_, map_);
+  tracer.begin({}, UINT64_MAX);
+  for (TriangleId t = 0; t < first_.size(); ++t) {
+    if (first_[t] != kNone && !tracer.add(tin, t)) {
+      refuse_more_pieces();
     }
-    crossings.begin.push_back(crossings.triangles.size());
   }
   TracedPieces traced;
-  trace_crossings({tin, levels_, heights_, map_}, crossings, context, traced);
+  tracer.join(context, traced);
   result.pieces_ = std::move(traced.pieces);
   result.points_.add(traced.points);
   result.lines_ = join_pieces(result.pieces_, context);

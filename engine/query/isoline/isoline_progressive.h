@@ -72,7 +72,7 @@ class ProgressiveIsolines {
   /// The isolines, joined, of the mesh of the last advance(). The caller fills in the certificates.
   /// @throws Error cancelled; resource_exhausted  when bytes() and the lines exceed the context's
   /// memory
-  /// Cost: linear in the pieces, plus a mark for each triangle; O(n log n) in the lines.
+  /// Cost: linear in the pieces, plus a look at each triangle; O(n log n) in the lines.
   [[nodiscard]] Isolines lines(const Tin& tin, const QueryContext& context) const;
 
  private:
@@ -86,6 +86,7 @@ class ProgressiveIsolines {
   void add_pieces(const Tin& tin, TriangleId t, IsolineChange& change);
   void add_bands(const Tin& tin);
   [[nodiscard]] std::uint32_t pieces_in(const Tin& tin, TriangleId t) const noexcept;
+  [[noreturn]] void refuse_more_pieces() const;
   void make_room_for_pieces(std::uint64_t pieces);
   template <typename T>
   void make_room(std::vector<T>& array, std::uint64_t more) const;

@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/mesh/link.h"
-#include "engine/query/living/living_tin.h"
+#include "engine/query/living/living_place.h"
 #include "engine/query/living/stars_in_region.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/tile_queue.h"
@@ -20,6 +19,8 @@ namespace ptin {
 namespace {
 
 constexpr std::int64_t kSmallestTile = 8;  // grid units a side
+/// With less memory for its tile a thread would read most pages several times.
+constexpr std::uint64_t kUsefulBytes = std::uint64_t{2} << 20;
 
 std::string size_text(std::uint64_t bytes) {
   return bytes < (16 << 20) ? std::to_string((bytes + 1023) >> 10) + " KiB"
@@ -76,7 +77,7 @@ class CrossedHeights final : public HeightPredicate {
 };
 
 /// Gathers and traces tiles, one after the other, in the same memory.
-class Worker {
+class Worker final : private LivingVisitor {
  public:
   Worker(const OpenedTerrain& terrain, const TileTraceRequest& request, std::uint64_t limit,
          TileQueue& queue, Collected& collected)
@@ -88,7 +89,8 @@ class Worker {
         context_({limit, request.stop}, store_.path()),
         heights_crossed_(request.levels),
         stars_in_region_(request.region),
-        living_(terrain, request.detail) {
+        reader_(terrain, request.detail),
+        tracer_(request.levels, store_.facts().heights, store_.facts().map) {
     const LevelSet& levels = request.levels;
     place_.heights = {levels.code(0), levels.code(levels.size() - 1)};
     place_.spans = &heights_crossed_;
@@ -106,25 +108,37 @@ class Worker {
     context_.check_stop();
     place_.box = tile;
     const bool is_small = half_perimeter(tile) <= 2 * kSmallestTile;
-    const std::uint64_t most = is_small ? limit_ : std::min(limit_, request_.tile_bytes);
-    if (!living_.gather(place_, most, context_)) {
-      halve(tile, most);
+    most_bytes_ = is_small ? limit_ : std::min(limit_, request_.tile_bytes);
+    bytes_expected_ = 0;
+    is_full_ = false;
+    tracer_.begin({tile, request_.region, request_.counts_vertices}, most_bytes_);
+    const std::uint64_t before = context_.cost.records_examined;
+    const bool fits = reader_.read(place_, context_, *this) && !is_full_;
+    if (const std::uint64_t records = context_.cost.records_examined - before; records > 0) {
+      segments_of_record_ =
+          static_cast<double>(tracer_.counts().segments) / static_cast<double>(records);
+    }
+    if (!fits) {
+      halve(tile, std::max(bytes_expected_, tracer_.bytes_wanted()));
       return;
     }
-    link_tin(living_.tin());
-    const StoreFacts& facts = store_.facts();
-    const TraceScope scope{tile, request_.region};
-    const std::uint64_t mesh_bytes = LivingTin::bytes_for(living_.tin().triangles.size());
     TracedPieces traced;
-    const TraceResult result =
-        trace_isolines({living_.tin(), request_.levels, facts.heights, facts.map}, scope,
-                       limit_ - std::min(limit_, mesh_bytes), context_, traced);
-    if (result.traced) {
-      collected_.add(std::move(traced), result.counts);
-    } else {
-      halve(tile, mesh_bytes + result.bytes);
-    }
+    tracer_.join(context_, traced);
+    collected_.add(std::move(traced), tracer_.counts());
   }
+
+  /// A tile that is expected not to fit is not read; expectations may be wrong by a half.
+  bool expect(std::uint64_t records) override {
+    bytes_expected_ = LineTracer::bytes_for(
+        static_cast<std::uint64_t>(segments_of_record_ * static_cast<double>(records)));
+    return bytes_expected_ <= 2 * most_bytes_;
+  }
+  bool begin(std::size_t /*most_triangles*/) override { return !is_full_; }
+  bool take_stars(const LivingStars& stars) override {
+    is_full_ = is_full_ || !tracer_.add(stars);
+    return true;
+  }
+  void take(const LivingTriangle& t) override { is_full_ = is_full_ || !tracer_.add(t); }
 
   /// Has the halves of a tile traced, which takes `bytes` or more.
   void halve(const GridBox& tile, std::uint64_t bytes) {
@@ -149,13 +163,16 @@ class Worker {
   CrossedHeights heights_crossed_;
   StarsInRegion stars_in_region_;
   LivingPlace place_;
-  LivingTin living_;
+  LivingReader reader_;
+  LineTracer tracer_;
+  std::uint64_t most_bytes_ = 0, bytes_expected_ = 0;
+  bool is_full_ = false;              ///< What was read of the tile does not fit.
+  double segments_of_record_ = 0.25;  ///< About, by what was gathered last.
 };
 
 /// As many threads as asked for, as long as each has room for a tile of a useful size.
-int threads_within(const TileTraceRequest& request, std::size_t t0_vertices) {
-  const std::uint64_t useful = LivingTin::bytes_for(2 * t0_vertices) + request.tile_bytes / 4;
-  const std::uint64_t most = std::max<std::uint64_t>(request.memory_bytes / useful, 1);
+int threads_within(const TileTraceRequest& request) {
+  const std::uint64_t most = std::max<std::uint64_t>(request.memory_bytes / kUsefulBytes, 1);
   return static_cast<int>(std::min<std::uint64_t>(std::max(request.threads, 1), most));
 }
 
@@ -165,7 +182,7 @@ TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& req
                        PointStore& points, QueryCost& cost) {
   TileQueue queue(terrain.store().facts().bounds);
   Collected collected(points, request.piece_bytes, terrain.store().path());
-  const int count = threads_within(request, terrain.t0().vertices.size());
+  const int count = threads_within(request);
   const std::uint64_t limit = request.memory_bytes / static_cast<std::uint64_t>(count);
   std::vector<std::unique_ptr<Worker>> workers;
   for (int i = 0; i < count; ++i) {
@@ -191,15 +208,14 @@ TileTraces trace_by_splits(const OpenedTerrain& terrain, const TileTraceRequest&
   Refinement refinement(terrain.t0());
   refinement.apply(splits, context);
   const std::uint64_t bytes = bytes_of(terrain.t0()) + refinement_bytes(splits.size());
+  LineTracer tracer(request.levels, facts.heights, facts.map);
   TracedPieces traced;
-  const TraceResult result =
-      trace_isolines({refinement.tin(), request.levels, facts.heights, facts.map},
-                     {facts.bounds, request.region}, context.left_beside(bytes), context, traced);
-  if (!result.traced) {
-    context.admit(bytes + result.bytes);
+  if (!trace_mesh(refinement.tin(), {facts.bounds, request.region, request.counts_vertices},
+                  context.left_beside(bytes), context, tracer, traced)) {
+    context.admit(bytes + tracer.bytes_wanted());
   }
   Collected collected(points, request.piece_bytes, store.path());
-  collected.add(std::move(traced), result.counts);
+  collected.add(std::move(traced), tracer.counts());
   cost.add_counts(context.cost);
   return collected.release();
 }

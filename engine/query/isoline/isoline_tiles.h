@@ -27,8 +27,9 @@ struct TileTraceRequest {
   std::uint64_t piece_bytes;   ///< For the pieces, kBytesAPiece each.
   int threads;
   std::stop_token stop;
-  /// Bytes of the mesh of a tile, where the memory allows: small enough for the processor's caches.
+  /// Bytes of a tile, where the memory allows: small enough for the processor's caches.
   std::uint64_t tile_bytes = std::uint64_t{8} << 20;
+  bool counts_vertices = false;  ///< TraceScope::counts_vertices.
 };
 
 /// Bytes that a piece takes until its line is written: the piece, a line of its own, and what

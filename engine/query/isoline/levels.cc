@@ -2,12 +2,14 @@
 #include "engine/query/isoline/levels.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "engine/error.h"
+#include "storage/page_columns.h"
 
 namespace ptin {
 
@@ -37,6 +39,29 @@ double code_of(double height, const HeightEncoding& encoding) {
   const bool stored = encoding.type == HeightType::int32 &&
                       std::abs(encoding.height_of_code(nearest) - height) <= rounding;
   return stored ? nearest : code;
+}
+
+/// The least ordered height whose code is at least `code`; 2^32 where there is none.
+std::uint64_t least_ordered_at(double code, HeightType type) {
+  constexpr std::uint64_t kNoHeight = std::uint64_t{1} << 32;
+  if (type == HeightType::int32) {
+    const double whole = std::ceil(code);
+    if (whole > std::numeric_limits<std::int32_t>::max()) {
+      return kNoHeight;
+    }
+    const double least = std::numeric_limits<std::int32_t>::min();
+    const auto height = static_cast<std::int32_t>(std::max(whole, least));
+    return ordered_height(std::bit_cast<HeightBits>(height), type);
+  }
+  constexpr float kMost = std::numeric_limits<float>::max();
+  if (code > static_cast<double>(kMost)) {
+    return kNoHeight;
+  }
+  auto height = static_cast<float>(std::max(code, -static_cast<double>(kMost)));
+  if (static_cast<double>(height) < code) {
+    height = std::nextafter(height, kMost);
+  }
+  return ordered_height(std::bit_cast<HeightBits>(height), type);
 }
 
 [[noreturn]] void refuse_more_levels() {
@@ -80,6 +105,7 @@ LevelSet::LevelSet(const std::vector<double>& levels, const HeightEncoding& enco
     if (codes.empty() || codes.back() != code) {
       codes.push_back(code);
       heights_.push_back(height);
+      least_above_.push_back(least_ordered_at(code, encoding.type));
     }
   }
   codes_ = std::make_shared<const Ladder>(std::move(codes));

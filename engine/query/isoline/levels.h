@@ -68,6 +68,10 @@ class LevelSet {
   [[nodiscard]] double height(std::size_t level) const noexcept { return heights_[level]; }
   [[nodiscard]] double code(std::size_t level) const noexcept { return codes_->steps()[level]; }
   [[nodiscard]] const std::vector<double>& heights() const noexcept { return heights_; }
+  /// The least ordered height (storage/page_columns.h) that is above a level; 2^32 where none is.
+  [[nodiscard]] std::uint64_t least_above(std::size_t level) const noexcept {
+    return least_above_[level];
+  }
 
   /// The band of a height: how many levels lie at or below it. A vertex is above level i exactly
   /// when its band is larger than i, so a surface triangle crosses the levels from its smallest
@@ -83,6 +87,7 @@ class LevelSet {
  private:
   std::vector<double> heights_;
   std::shared_ptr<const Ladder> codes_;
+  std::vector<std::uint64_t> least_above_;
 };
 
 /// The levels base + n * interval within [low, high], n an integer, as gdal_contour -i has them.

@@ -70,6 +70,9 @@ bool LivingReader::take_page(PageId page, const LivingPlace& place, QueryContext
   if (!visitor.begin(living_.corners.size())) {
     return false;
   }
+  if (visitor.take_stars(living_)) {
+    return true;
+  }
   visit_living(living_, heights_, [&](const LivingTriangle& t) {
     if (is_wanted(t, place)) {
       visitor.take(t);

@@ -40,6 +40,9 @@ class LivingVisitor {
   /// Called before the triangles of T0, and of each page: at most so many come, and those that the
   /// level has not decided yet. False ends it.
   virtual bool begin(std::size_t /*most_triangles*/) { return true; }
+  /// Called with what lives on a page of the stars that meet the box, of whose heights and triangles
+  /// nothing more is asked yet. True: it took them; false: the triangles come one by one.
+  virtual bool take_stars(const LivingStars& /*stars*/) { return false; }
   virtual void take(const LivingTriangle& t) = 0;
 };
 

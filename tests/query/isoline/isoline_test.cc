@@ -256,8 +256,10 @@ TEST(Isolines, DoNotDependOnTilesOrTemporaryFiles) {
   std::mt19937_64 random(3);
   IsolineRequest request;
   request.levels = random_levels(random, terrain.hierarchy, 20);
+  request.counts_vertices = true;
   const Isolines whole = isolines(terrain.tin, request);
   EXPECT_EQ(whole.tiles, 1U);
+  EXPECT_GT(whole.crossed.vertices, 0U);
   request.limits.memory_bytes = 2 << 20;
   request.temporary_folder = std::filesystem::temp_directory_path().string();
   const Isolines tiled = isolines(terrain.tin, request);
