@@ -64,11 +64,9 @@ set(public_headers
     engine/query/isoline/isoline.h
     engine/query/isoline/isoline_bands.h
     engine/query/isoline/isoline_clip.h
-    engine/query/isoline/isoline_crossings.h
     engine/query/isoline/isoline_cut.h
     engine/query/isoline/isoline_pieces.h
     engine/query/isoline/isoline_progressive.h
-    engine/query/isoline/isoline_trace.h
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
     engine/query/living/grid_cell.h

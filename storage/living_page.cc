@@ -31,6 +31,13 @@ struct LivingPage::Shapes {
   }
 };
 
+namespace {
+
+/// The records of one run of rings, as bits of a run of records.
+constexpr std::uint64_t kOneRingRun = (std::uint64_t{1} << layout::kRingRun) - 1;
+
+}  // namespace
+
 /// The other numbers of a run's records, as far as a living triangle needs them.
 struct LivingPage::Heads {
   static constexpr std::array kColumns{
@@ -113,7 +120,9 @@ LivingPage::LivingPage(const RecordPage& page, const layout::NodeEntry& d,
       high_(ordered_height(d.height_hi, heights.type)),
       star_low_(ordered_height(d.star_height_lo, heights.type)),
       star_high_(ordered_height(d.star_height_hi, heights.type)),
-      no_heights_(no_heights(heights.type)) {}
+      no_heights_(no_heights(heights.type)),
+      steps_(steps_within(filter.steps, ordered_height(d.star_height_lo, heights.type),
+                          ordered_height(d.star_height_hi, heights.type))) {}
 
 std::uint32_t LivingPage::take(LivingStars& out) const {
   Shapes shapes;  // NOLINT: written before read
@@ -125,7 +134,7 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
     if (left == 0) {
       continue;
     }
-    read_shapes(first, count, shapes);
+    read_shapes(first, count, left, shapes);
     left = find_living(first, left, shapes);
     read_heads(first, count, left, heads);
     for (; left != 0; left &= left - 1) {
@@ -139,18 +148,28 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
   return page_.records();
 }
 
-void LivingPage::read_shapes(std::uint32_t first, std::uint32_t count, Shapes& out) const noexcept {
+/// Reads the shapes of the runs of rings that hold a wanted record.
+void LivingPage::read_shapes(std::uint32_t first, std::uint32_t count, std::uint64_t wanted,
+                             Shapes& out) const noexcept {
   const PageColumns& columns = page_.columns();
   const std::byte* const bytes = page_.bytes();
-  columns.read_run(bytes, PageColumn::kDegree, first, std::span(out.degree).first(count));
-  columns.read_run(bytes, PageColumn::kOffsetBits, first, std::span(out.offset_bits).first(count));
-  columns.read_run(bytes, PageColumn::kHeightBits, first, std::span(out.height_bits).first(count));
-  columns.read_run(bytes, PageColumn::kDeathBits, first, std::span(out.death_bits).first(count));
   out.common_bits = columns.common_bits();
-  for (std::uint32_t k = 0; k < count; ++k) {
-    out.bit[k] = k % layout::kRingRun == 0
-                     ? columns.run_begin(bytes, (first + k) / layout::kRingRun)
-                     : out.end(k - 1);
+  for (std::uint32_t begin = 0; begin < count; begin += layout::kRingRun) {
+    if ((wanted >> begin & kOneRingRun) == 0) {
+      continue;
+    }
+    const std::uint32_t end = std::min(begin + layout::kRingRun, count);
+    const auto read = [&](PageColumn c, Shapes::Column& column) {
+      columns.read_run(bytes, c, first + begin, std::span(column).subspan(begin, end - begin));
+    };
+    read(PageColumn::kDegree, out.degree);
+    read(PageColumn::kOffsetBits, out.offset_bits);
+    read(PageColumn::kHeightBits, out.height_bits);
+    read(PageColumn::kDeathBits, out.death_bits);
+    out.bit[begin] = columns.run_begin(bytes, (first + begin) / layout::kRingRun);
+    for (std::uint32_t k = begin + 1; k < end; ++k) {
+      out.bit[k] = out.end(k - 1);
+    }
   }
 }
 
@@ -175,6 +194,12 @@ std::uint64_t LivingPage::find_living(std::uint32_t first, std::uint64_t wanted,
       continue;
     }
     const auto width = static_cast<unsigned>(shapes.death_bits[k]);
+    if (width == 0) {  // all live on
+      shapes.living[k] =
+          shapes.degree[k] < 64 ? (std::uint64_t{1} << shapes.degree[k]) - 1 : ~std::uint64_t{0};
+      result |= std::uint64_t{1} << k;
+      continue;
+    }
     const std::uint32_t error = level_ < 0 ? 0 : page_.error_bits(first + k);
     const std::uint64_t step = shapes.corner_bits(k);
     std::size_t bit = shapes.bit[k] + 2 * shapes.offset_bits[k] + shapes.height_bits[k];
@@ -346,9 +371,32 @@ std::int64_t turn(GridPoint u, GridPoint a, GridPoint b) noexcept {
 
 }  // namespace
 
-/// Appends a star whose corners were appended from `begin` on, unless none of its triangles meets
-/// the filter's box. False when a triangle cannot be what was written.
+/// Whether a step lies within the heights of a star whose corners were appended from `begin` on.
+bool LivingPage::has_step(const Star& star, std::size_t begin,
+                          const LivingStars& out) const noexcept {
+  if (!star.star.has_height) {
+    return false;
+  }
+  std::uint32_t low = ordered_height(star.star.height, heights_.type);
+  std::uint32_t high = low;
+  for (std::size_t i = begin; i < out.corners.size(); ++i) {
+    const LivingCorner& c = out.corners.data()[i];
+    if ((c.flags & LivingCorner::kNoHeight) == 0) {
+      const std::uint32_t height = ordered_height(c.height, heights_.type);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+  }
+  return !steps_within(steps_, low, high).empty();
+}
+
+/// Appends a star whose corners were appended from `begin` on, unless it is not asked for by its
+/// heights, or none of its triangles meets the filter's box. False when a triangle cannot be what was written.
 bool LivingPage::add(const Star& star, std::size_t begin, LivingStars& out) const {
+  if (!filter_.steps.empty() && !has_step(star, begin, out)) {
+    out.corners.grow(begin);
+    return true;
+  }
   bool is_sound = true;
   bool any = false;
   LivingCorner* const end = out.corners.data() + out.corners.size();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "storage/attributes.h"
 #include "storage/descriptor.h"
@@ -38,7 +39,8 @@ class LivingPage {
   struct Star;
   class Corners;
 
-  void read_shapes(std::uint32_t first, std::uint32_t count, Shapes& out) const noexcept;
+  void read_shapes(std::uint32_t first, std::uint32_t count, std::uint64_t wanted,
+                   Shapes& out) const noexcept;
   [[nodiscard]] std::uint64_t find_living(std::uint32_t first, std::uint64_t wanted,
                                           Shapes& shapes) const noexcept;
   [[nodiscard]] bool lives(std::uint32_t death, std::uint32_t error) const noexcept;
@@ -53,6 +55,8 @@ class LivingPage {
                                 LivingStars& out) const;
   [[nodiscard]] bool take_any(const Shapes& shapes, const Star& star, std::uint32_t k,
                               LivingStars& out) const;
+  [[nodiscard]] bool has_step(const Star& star, std::size_t begin,
+                              const LivingStars& out) const noexcept;
   [[nodiscard]] bool add(const Star& star, std::size_t begin, LivingStars& out) const;
 
   const RecordPage& page_;
@@ -63,6 +67,7 @@ class LivingPage {
   bool is_within_;                                  ///< All stars lie in the filter's box.
   std::int64_t low_, high_, star_low_, star_high_;  ///< Heights of the descriptor, ordered.
   HeightInterval no_heights_;
+  std::span<const std::uint64_t> steps_;  ///< Those of the filter that lie within the page.
 };
 
 }  // namespace ptin

@@ -84,9 +84,31 @@ std::uint64_t RecordPage::with_heights(std::uint32_t first, std::uint32_t count,
     const Interval codes = (flags[k] & kPageNoHeights) != 0
                                ? Interval{}
                                : Interval{code(heights[k] - below[k]), code(heights[k] + above[k])};
-    const bool is_wanted = meets(codes, filter.heights) &&
-                           (filter.also_heights == nullptr || filter.also_heights->may_hold(codes));
-    wanted |= std::uint64_t{is_wanted} << k;
+    wanted |= std::uint64_t{meets(codes, filter.heights)} << k;
+  }
+  return wanted;
+}
+
+/// The records of a run within whose heights a step lies. A record without heights spans none.
+std::uint64_t RecordPage::with_steps(std::uint32_t first, std::uint32_t count,
+                                     std::span<const std::uint64_t> steps) const noexcept {
+  Run low, high, above;  // NOLINT: written before read
+  read_run(PageColumn::kHeight, first, count, high);
+  read_run(PageColumn::kBelow, first, count, low);
+  read_run(PageColumn::kAbove, first, count, above);
+  std::uint64_t least = UINT64_MAX;
+  std::uint64_t most = 0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    low[k] = high[k] - low[k];
+    high[k] += above[k];
+    least = std::min(least, low[k]);
+    most = std::max(most, high[k]);
+  }
+  std::uint64_t wanted = 0;
+  for (const std::uint64_t step : steps_within(steps, least, most)) {
+    for (std::uint32_t k = 0; k < count; ++k) {
+      wanted |= static_cast<std::uint64_t>((low[k] < step) & (step <= high[k])) << k;
+    }
   }
   return wanted;
 }
@@ -95,8 +117,11 @@ std::uint64_t RecordPage::near_stars(std::uint32_t first, std::uint32_t count,
                                      const StarFilter& filter, bool is_within) const noexcept {
   std::uint64_t wanted =
       is_within ? ~std::uint64_t{0} >> (kRun - count) : near_box(first, count, filter.box);
-  if (wanted != 0 && (filter.also_heights != nullptr || filter.heights != kAllHeights)) {
+  if (wanted != 0 && filter.heights != kAllHeights) {
     wanted &= with_heights(first, count, filter);
+  }
+  if (wanted != 0 && !filter.steps.empty()) {
+    wanted &= with_steps(first, count, filter.steps);
   }
   for (std::uint64_t left = filter.also_of_stars ? wanted : 0; left != 0; left &= left - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(left));

@@ -110,6 +110,8 @@ class RecordPage {
                                        const GridBox& box) const noexcept;
   [[nodiscard]] std::uint64_t with_heights(std::uint32_t first, std::uint32_t count,
                                            const StarFilter& filter) const noexcept;
+  [[nodiscard]] std::uint64_t with_steps(std::uint32_t first, std::uint32_t count,
+                                         std::span<const std::uint64_t> steps) const noexcept;
   template <class NumberOf>
   [[nodiscard]] bool head_of(const NumberOf& at, VertexSplit& r) const noexcept;
   template <class NumberOf>

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What lives on a page: the triangles that whole rings have, no others, and none that cannot be.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 #include "storage/described_page.h"
+#include "storage/page_columns.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/strange_records.h"
 
@@ -113,6 +116,59 @@ RC_GTEST_PROP(LivingPage, HandsOutWhatWholeRingsHave, (bool are_whole)) {
                      : GridBox{r.u.x - side, r.u.y, r.u.x + side, r.u.y + side};
     RC_ASSERT(made_of(living_of(page, strange.heights(), filter)) ==
               made_by_rings(records, filter));
+  }
+}
+
+/// The stars between whose corners a step lies; those around a vertex without a height are void.
+LivingStars with_steps(const LivingStars& living, std::span<const std::uint64_t> steps,
+                       HeightType type) {
+  LivingStars wanted;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < living.stars.size(); ++i) {
+    LivingStar star = living.stars.data()[i];
+    const std::span corners(living.corners.data() + at, living.corners.data() + star.corner_end);
+    at = star.corner_end;
+    std::vector<std::uint32_t> heights{ordered_height(star.height, type)};
+    for (const LivingCorner& c : corners) {
+      if ((c.flags & LivingCorner::kNoHeight) == 0) {
+        heights.push_back(ordered_height(c.height, type));
+      }
+    }
+    const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+    if (!star.has_height || std::none_of(steps.begin(), steps.end(), [&](std::uint64_t step) {
+          return *low < step && step <= *high;
+        })) {
+      continue;
+    }
+    const std::size_t before = wanted.corners.size();
+    wanted.corners.grow(before + corners.size());
+    std::copy(corners.begin(), corners.end(), wanted.corners.data() + before);
+    star.corner_end = static_cast<std::uint32_t>(wanted.corners.size());
+    wanted.stars.grow(wanted.stars.size() + 1);
+    wanted.stars.data()[wanted.stars.size() - 1] = star;
+  }
+  return wanted;
+}
+
+RC_GTEST_PROP(LivingPage, HandsOutTheStarsAcrossSteps, (bool are_whole)) {
+  const HeightType type = are_whole ? HeightType::int32 : HeightType::float32;
+  StrangeRecords strange(*rc::gen::arbitrary<std::uint64_t>(), type);
+  const StarredRecords given = strange_records(strange, 100);
+  const PackedPage page = packed_page(given, strange.heights(), 65536);
+  const StarredRecords records = decoded_page(page, strange.heights());
+  for (int asked = 0; asked < 20; ++asked) {
+    StarFilter filter;
+    filter.level = *rc::gen::element(-1.0, 0.0, 3.0);
+    const LivingStars all = living_of(page, strange.heights(), filter);
+    std::vector<std::uint64_t> steps{*rc::gen::element(std::uint64_t{0}, std::uint64_t{1} << 32)};
+    for (int i = 0; i < asked; ++i) {
+      const VertexSplit& r = records.splits[*rc::gen::inRange<std::size_t>(0, records.size())];
+      steps.push_back(std::uint64_t{ordered_height(r.height, type)} + *rc::gen::inRange(0, 2));
+    }
+    std::sort(steps.begin(), steps.end());
+    filter.steps = steps;
+    RC_ASSERT(made_of(living_of(page, strange.heights(), filter)) ==
+              made_of(with_steps(all, steps, type)));
   }
 }
 

@@ -260,12 +260,12 @@ void VectorFile::publish() {
 
 std::unique_ptr<OGRGeometry> line_geometry(std::span<const MapPoint> points, const double* z) {
   auto line = std::make_unique<OGRLineString>();
-  line->setNumPoints(static_cast<int>(points.size()), FALSE);
-  if (z != nullptr) line->set3D(TRUE);
-  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-    const MapPoint p = points[static_cast<std::size_t>(i)];
-    z != nullptr ? line->setPoint(i, p.x, p.y, *z) : line->setPoint(i, p.x, p.y);
-  }
+  std::vector<OGRRawPoint> raw(points.size());
+  std::transform(points.begin(), points.end(), raw.begin(),
+                 [](const MapPoint& p) { return OGRRawPoint(p.x, p.y); });
+  const std::vector<double> heights(z != nullptr ? points.size() : 0, z != nullptr ? *z : 0.0);
+  line->setPoints(static_cast<int>(raw.size()), raw.data(),
+                  z != nullptr ? heights.data() : nullptr);
   return line;
 }
 

@@ -16,6 +16,7 @@ namespace ptin {
 namespace {
 
 constexpr std::uint64_t kSmallestLimit = 1 << 20;
+constexpr std::uint64_t kTileBytesOfOneThread = std::uint64_t{256} << 20;
 /// Bytes of a point while its line is written: the point itself, in a geometry, and as bytes of a
 /// format.
 constexpr std::uint64_t kBytesAPointOut = 80;
@@ -72,6 +73,9 @@ class IsolineExtraction {
                              request_.threads,
                              request_.limits.stop};
     request.counts_vertices = request_.counts_vertices;
+    if (request_.threads <= 1) {
+      request.tile_bytes = kTileBytesOfOneThread;
+    }
     const bool by_stars = request_.by == AnswerBy::kStars && !terrain_.uses_other_index();
     TileTraces traces = by_stars ? trace_tiles(terrain_, request, result_.points_, context_.cost)
                                  : trace_by_splits(terrain_, request, *crossed_records(),

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "engine/query/isoline/isoline_pieces.h"
-#include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/isoline/levels.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/answer_by.h"

@@ -15,6 +15,13 @@
 
 namespace ptin {
 
+/// What levels cross.
+struct TraceCounts {
+  std::uint64_t triangles = 0;  ///< Crossed by at least one level.
+  std::uint64_t vertices = 0;   ///< Their corners, where they are counted.
+  std::uint64_t segments = 0;   ///< One for each triangle and level that crosses it.
+};
+
 /// A part of one isoline, in the triangles of one mesh.
 struct IsolinePiece {
   std::uint32_t level = 0;

@@ -155,21 +155,20 @@ std::uint64_t ProgressiveIsolines::bytes() const noexcept {
 
 Isolines ProgressiveIsolines::lines(const Tin& tin, const QueryContext& context) const {
   PTIN_CHECK(tin.vertices.size() == bands_.size() && tin.triangles.size() == first_.size());
-  // At most two points a piece, and a line a piece.
+  // At most a chain and two points a piece, and a line a piece.
   const std::uint64_t point_bytes = pieces() * 2 * sizeof(MapPoint);
-  context.admit(bytes() + LineTracer::bytes_for(pieces()) + point_bytes +
-                pieces() * sizeof(IsolinePiece));
+  context.admit(bytes() + ChainSet::bytes_for(pieces(), 2 * pieces()) + point_bytes +
+                2 * pieces() * sizeof(IsolinePiece));
   Isolines result{PointStore(point_bytes, {})};
-  LineTracer tracer(levels_, heights_, map_);
+  LineTracer tracer(levels_, heights_, map_, context);
   tracer.begin({}, UINT64_MAX);
   for (TriangleId t = 0; t < first_.size(); ++t) {
     if (first_[t] != kNone && !tracer.add(tin, t)) {
       refuse_more_pieces();
     }
   }
-  TracedPieces traced;
-  tracer.join(context, traced);
-  result.pieces_ = std::move(traced.pieces);
+  const TracedPieces& traced = tracer.join();
+  result.pieces_ = traced.pieces;
   result.points_.add(traced.points);
   result.lines_ = join_pieces(result.pieces_, context);
   drop_single_points(result.lines_, result.pieces_, result.points_);

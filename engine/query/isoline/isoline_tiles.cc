@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/living/living_place.h"
 #include "engine/query/living/stars_in_region.h"
 #include "engine/query/refine/refinement.h"
@@ -33,8 +35,8 @@ class Collected {
   Collected(PointStore& points, std::uint64_t piece_bytes, std::string file)
       : points_(points), most_pieces_(piece_bytes / kBytesAPiece), file_(std::move(file)) {}
 
-  void add(TracedPieces traced, const TraceCounts& counts) {
-    std::vector<IsolinePiece>& pieces = traced.pieces;
+  void add(const TracedPieces& traced, const TraceCounts& counts) {
+    const std::vector<IsolinePiece>& pieces = traced.pieces;
     const std::lock_guard lock(mutex_);
     if (all_.pieces.size() + pieces.size() > most_pieces_) {
       throw Error(ErrorCode::resource_exhausted,
@@ -43,11 +45,12 @@ class Collected {
                       "memory, or ask for fewer levels, a window or a larger error",
                   file_);
     }
-    for (IsolinePiece& piece : pieces) {
+    const std::size_t before = all_.pieces.size();
+    all_.pieces.insert(all_.pieces.end(), pieces.begin(), pieces.end());
+    for (IsolinePiece& piece : std::span(all_.pieces).subspan(before)) {
       piece.first += points_.size();
     }
     points_.add(traced.points);
-    all_.pieces.insert(all_.pieces.end(), pieces.begin(), pieces.end());
     all_.counts.triangles += counts.triangles;
     all_.counts.vertices += counts.vertices;
     all_.counts.segments += counts.segments;
@@ -63,19 +66,6 @@ class Collected {
   TileTraces all_;
 };
 
-/// Asks for heights that a level may cross.
-class CrossedHeights final : public HeightPredicate {
- public:
-  explicit CrossedHeights(const LevelSet& levels) : levels_(levels) {}
-  [[nodiscard]] bool may_hold(const Interval& codes) const noexcept override {
-    const std::uint32_t above = levels_.band_of(codes.lo);  // the first level above the lowest
-    return above < levels_.size() && levels_.code(above) <= codes.hi;
-  }
-
- private:
-  const LevelSet& levels_;
-};
-
 /// Gathers and traces tiles, one after the other, in the same memory.
 class Worker final : private LivingVisitor {
  public:
@@ -87,13 +77,10 @@ class Worker final : private LivingVisitor {
         queue_(queue),
         collected_(collected),
         context_({limit, request.stop}, store_.path()),
-        heights_crossed_(request.levels),
         stars_in_region_(request.region),
         reader_(terrain, request.detail),
-        tracer_(request.levels, store_.facts().heights, store_.facts().map) {
-    const LevelSet& levels = request.levels;
-    place_.heights = {levels.code(0), levels.code(levels.size() - 1)};
-    place_.spans = &heights_crossed_;
+        tracer_(request.levels, store_.facts().heights, store_.facts().map, context_) {
+    place_.steps = request.levels.least_above();
     place_.stars = request.region == nullptr ? nullptr : &stars_in_region_;
   }
 
@@ -107,31 +94,31 @@ class Worker final : private LivingVisitor {
   void trace(const GridBox& tile) {
     context_.check_stop();
     place_.box = tile;
-    const bool is_small = half_perimeter(tile) <= 2 * kSmallestTile;
-    most_bytes_ = is_small ? limit_ : std::min(limit_, request_.tile_bytes);
-    bytes_expected_ = 0;
+    is_small_ = half_perimeter(tile) <= 2 * kSmallestTile;
+    most_bytes_ = is_small_ ? limit_ : std::min(limit_, request_.tile_bytes);
     is_full_ = false;
     tracer_.begin({tile, request_.region, request_.counts_vertices}, most_bytes_);
     const std::uint64_t before = context_.cost.records_examined;
     const bool fits = reader_.read(place_, context_, *this) && !is_full_;
     if (const std::uint64_t records = context_.cost.records_examined - before; records > 0) {
-      segments_of_record_ =
-          static_cast<double>(tracer_.counts().segments) / static_cast<double>(records);
+      bytes_of_record_ = static_cast<double>(tracer_.bytes_wanted()) / static_cast<double>(records);
     }
     if (!fits) {
-      halve(tile, std::max(bytes_expected_, tracer_.bytes_wanted()));
+      halve(tile);
       return;
     }
-    TracedPieces traced;
-    tracer_.join(context_, traced);
-    collected_.add(std::move(traced), tracer_.counts());
+    collected_.add(tracer_.join(), tracer_.counts());
   }
 
-  /// A tile that is expected not to fit is not read; expectations may be wrong by a half.
+  /// A tile that is expected not to fit is not read: halves of a tile that would have fitted cost less
+  /// than a tile read in vain. The expectation is trusted less each time, since nothing is learnt then.
   bool expect(std::uint64_t records) override {
-    bytes_expected_ = LineTracer::bytes_for(
-        static_cast<std::uint64_t>(segments_of_record_ * static_cast<double>(records)));
-    return bytes_expected_ <= 2 * most_bytes_;
+    if (is_small_ ||
+        bytes_of_record_ * static_cast<double>(records) <= static_cast<double>(most_bytes_)) {
+      return true;
+    }
+    bytes_of_record_ *= 0.875;
+    return false;
   }
   bool begin(std::size_t /*most_triangles*/) override { return !is_full_; }
   bool take_stars(const LivingStars& stars) override {
@@ -140,16 +127,17 @@ class Worker final : private LivingVisitor {
   }
   void take(const LivingTriangle& t) override { is_full_ = is_full_ || !tracer_.add(t); }
 
-  /// Has the halves of a tile traced, which takes `bytes` or more.
-  void halve(const GridBox& tile, std::uint64_t bytes) {
-    if (half_perimeter(tile) > 2 * kSmallestTile) {
+  /// Has the halves of a tile traced that does not fit.
+  void halve(const GridBox& tile) {
+    if (!is_small_) {
       queue_.put_halves(tile);
       return;
     }
     throw Error(ErrorCode::resource_exhausted,
                 "the isolines of " + std::to_string(kSmallestTile) + " x " +
-                    std::to_string(kSmallestTile) + " grid units alone take " + size_text(bytes) +
-                    " or more, and a tile may take " + size_text(limit_) +
+                    std::to_string(kSmallestTile) + " grid units alone take " +
+                    size_text(tracer_.bytes_wanted()) + " or more, and a tile may take " +
+                    size_text(limit_) +
                     ": give more memory, or ask for fewer levels or a larger error",
                 store_.path());
   }
@@ -160,14 +148,14 @@ class Worker final : private LivingVisitor {
   TileQueue& queue_;
   Collected& collected_;
   QueryContext context_;
-  CrossedHeights heights_crossed_;
   StarsInRegion stars_in_region_;
   LivingPlace place_;
   LivingReader reader_;
   LineTracer tracer_;
-  std::uint64_t most_bytes_ = 0, bytes_expected_ = 0;
-  bool is_full_ = false;              ///< What was read of the tile does not fit.
-  double segments_of_record_ = 0.25;  ///< About, by what was gathered last.
+  std::uint64_t most_bytes_ = 0;
+  bool is_small_ = false;       ///< The tile cannot be halved.
+  bool is_full_ = false;        ///< What was read of the tile does not fit.
+  double bytes_of_record_ = 8;  ///< About, by what was gathered last.
 };
 
 /// As many threads as asked for, as long as each has room for a tile of a useful size.
@@ -208,14 +196,13 @@ TileTraces trace_by_splits(const OpenedTerrain& terrain, const TileTraceRequest&
   Refinement refinement(terrain.t0());
   refinement.apply(splits, context);
   const std::uint64_t bytes = bytes_of(terrain.t0()) + refinement_bytes(splits.size());
-  LineTracer tracer(request.levels, facts.heights, facts.map);
-  TracedPieces traced;
+  LineTracer tracer(request.levels, facts.heights, facts.map, context);
   if (!trace_mesh(refinement.tin(), {facts.bounds, request.region, request.counts_vertices},
-                  context.left_beside(bytes), context, tracer, traced)) {
+                  context.left_beside(bytes), tracer)) {
     context.admit(bytes + tracer.bytes_wanted());
   }
   Collected collected(points, request.piece_bytes, store.path());
-  collected.add(std::move(traced), tracer.counts());
+  collected.add(tracer.join(), tracer.counts());
   cost.add_counts(context.cost);
   return collected.release();
 }

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "engine/query/isoline/isoline_pieces.h"
-#include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/isoline/levels.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
@@ -27,7 +26,8 @@ struct TileTraceRequest {
   std::uint64_t piece_bytes;   ///< For the pieces, kBytesAPiece each.
   int threads;
   std::stop_token stop;
-  /// Bytes of a tile, where the memory allows: small enough for the processor's caches.
+  /// Bytes of a tile at most, where that is possible. Pages on the borders of tiles are read for each
+  /// of them, so one thread is better off with large tiles; several share many small ones out.
   std::uint64_t tile_bytes = std::uint64_t{8} << 20;
   bool counts_vertices = false;  ///< TraceScope::counts_vertices.
 };
@@ -49,7 +49,8 @@ struct TileTraces {
 /// @throws Error resource_exhausted  a tile that cannot be made small enough, or too many pieces;
 ///                                   says what would do
 ///               corruption, io_error, cancelled; as PointStore::add
-/// Cost: the stars with heights at a level, about twice; linear in the triangles crossed.
+/// Cost: the stars with heights at a level, those on pages of several tiles once for each; linear in
+/// the segments.
 [[nodiscard]] TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& request,
                                      PointStore& points, QueryCost& cost);
 

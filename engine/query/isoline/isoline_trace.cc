@@ -5,15 +5,14 @@
 #include <bit>
 #include <cstddef>
 
-#include "engine/prefetch.h"
 #include "storage/page_columns.h"
 
 namespace ptin {
 
 namespace {
 
-/// How far ahead of a look-up its slot is fetched.
-constexpr std::size_t kAhead = 16;
+/// Chains that are joined at once: they, and the table of their ends, fit the processor's caches.
+constexpr std::size_t kBatch = 2048;
 
 bool is_in_tile(const GridBox& tile, GridPoint a, GridPoint b, GridPoint c) noexcept {
   return contains(tile, point_of(std::min({key_of(a), key_of(b), key_of(c)})));
@@ -27,7 +26,9 @@ void LineTracer::begin(const TraceScope& scope, std::uint64_t most_bytes) {
   bytes_wanted_ = 0;
   counts_ = {};
   chains_.clear();
-  points_.clear();
+  batch_.clear();
+  traced_.pieces.clear();
+  traced_.points.clear();
   vertices_.reset(0);
 }
 
@@ -89,6 +90,9 @@ bool LineTracer::add_star(const LivingStar& star, std::span<const LivingCorner> 
   }
   find_wanted(star, ring);
   for (; level < levels_.size() && levels_.least_above(level) <= high; ++level) {
+    if (batch_.size() >= kBatch) {
+      join_batch();
+    }
     if (!has_room(ring.size())) {
       return false;
     }
@@ -161,23 +165,25 @@ void LineTracer::trace_level(std::uint32_t level, std::size_t triangles) {
     const Corner& behind = is_centre_above ? a : b;
     if (!is_open) {
       const bool is_spoke = (is_centre_above ? is_b_above : is_a_above) != is_centre_above;
-      begin_chain(is_spoke ? spoke(before, is_centre_above, level) : cut(a, b, level), level);
+      batch_.begin(is_spoke ? spoke(before, is_centre_above, level) : cut(a, b, level), level);
     }
     is_open = (is_centre_above ? is_a_above : is_b_above) != is_centre_above;
-    extend_chain(is_open ? spoke(behind, is_centre_above, level) : cut(b, a, level));
+    batch_.extend(is_open ? spoke(behind, is_centre_above, level) : cut(b, a, level));
   }
 }
 
 bool LineTracer::has_room(std::size_t segments) {
-  bytes_wanted_ = (chains_.size() + segments) * kBytesAChain +
-                  (points_.size() + 2 * segments) * kBytesAPoint +
+  const std::uint64_t chains = chains_.size() + batch_.size() + segments;
+  const std::uint64_t points = chains_.points() + batch_.points() + 2 * segments;
+  bytes_wanted_ = ChainSet::bytes_for(chains, points) +
+                  2 * traced_.points.size() * sizeof(MapPoint) +
                   (scope_.counts_vertices ? 2 * KeyTable::bytes_for(2 * vertices_.size()) : 0);
-  return bytes_wanted_ <= most_bytes_ && points_.size() + 2 * segments < kNone;
+  return bytes_wanted_ <= most_bytes_ && points < kNone;
 }
 
 /// The cut of the edge from `below` to `above`.
-LineTracer::Step LineTracer::cut(const Corner& below, const Corner& above,
-                                 std::uint32_t level) const noexcept {
+ChainSet::Step LineTracer::cut(const Corner& below, const Corner& above,
+                               std::uint32_t level) const noexcept {
   const auto end_of = [&](const Corner& c) {
     return CutEnd{static_cast<double>(c.position.x), static_cast<double>(c.position.y),
                   heights_.code(height_of_ordered(c.height, heights_.type))};
@@ -187,167 +193,43 @@ LineTracer::Step LineTracer::cut(const Corner& below, const Corner& above,
 }
 
 /// The cut of the edge between the centre of the star and a corner.
-LineTracer::Step LineTracer::spoke(const Corner& corner, bool is_centre_above,
-                                   std::uint32_t level) const noexcept {
+ChainSet::Step LineTracer::spoke(const Corner& corner, bool is_centre_above,
+                                 std::uint32_t level) const noexcept {
   return is_centre_above ? cut(corner, centre_, level) : cut(centre_, corner, level);
 }
 
-void LineTracer::begin_chain(const Step& step, std::uint32_t level) {
-  Chain chain;
-  chain.begin = chain.end = chain.smallest = step.edge;
-  chain.level = level;
-  chain.first = static_cast<std::uint32_t>(points_.size());
-  chain.count = 1;
-  chain.smallest_at = 0;
-  chains_.push_back(chain);
-  points_.push_back(step.point);
+/// Joins what came last: near to each other in the file, most chains are so on the ground.
+void LineTracer::join_batch() {
+  batch_.join(context_, [&](const IsolinePiece& piece, std::span<const MapPoint> points) {
+    piece.ring ? put(piece, points) : chains_.add(piece, points);
+  });
+  batch_.clear();
 }
 
-void LineTracer::extend_chain(const Step& step) {
-  Chain& chain = chains_.back();
-  chain.end = step.edge;
-  if (step.edge < chain.smallest) {
-    chain.smallest = step.edge;
-    chain.smallest_at = chain.count;
-  }
-  ++chain.count;
-  points_.push_back(step.point);
+/// Keeps a piece that is done.
+void LineTracer::put(IsolinePiece piece, std::span<const MapPoint> points) {
+  piece.first = traced_.points.size();
+  traced_.points.insert(traced_.points.end(), points.begin(), points.end());
+  traced_.pieces.push_back(piece);
 }
 
-std::uint64_t LineTracer::hash_of(const CutEdge& edge, std::uint32_t level) noexcept {
-  constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15u;  // 2^64 / phi, odd
-  const std::uint64_t both =
-      (edge.below * kGoldenRatio) ^ std::rotl(edge.above * kGoldenRatio, 29) ^ level;
-  return (both ^ (both >> 31)) * kGoldenRatio;
-}
-
-void LineTracer::note_begin(std::uint32_t chain) noexcept {
-  const std::uint64_t hash = hash_of(chains_[chain].begin, chains_[chain].level);
-  std::size_t i = home(hash);
-  while (slots_[i].chain != kNone) {
-    i = i + 1 == slots_.size() ? 0 : i + 1;
-  }
-  slots_[i] = {static_cast<std::uint32_t>(hash), chain};
-}
-
-/// The chain that begins on an edge at a level, or kNone.
-std::uint32_t LineTracer::chain_from(const CutEdge& edge, std::uint32_t level) const noexcept {
-  const std::uint64_t hash = hash_of(edge, level);
-  for (std::size_t i = home(hash); slots_[i].chain != kNone;
-       i = i + 1 == slots_.size() ? 0 : i + 1) {
-    const std::uint32_t chain = slots_[i].chain;
-    if (slots_[i].tag == static_cast<std::uint32_t>(hash) && chains_[chain].level == level &&
-        chains_[chain].begin == edge) {
-      return chain;
-    }
-  }
-  return kNone;
-}
-
-/// Finds the chain behind each.
-void LineTracer::link(const QueryContext& context) {
-  slots_.assign(chains_.size() + chains_.size() * 3 / 5 + 2, {});
-  const auto fetch = [&](std::size_t i, CutEdge Chain::*edge) {
-    if (i < chains_.size()) {
-      prefetch(&slots_[home(hash_of(chains_[i].*edge, chains_[i].level))]);
-    }
-  };
-  for (std::uint32_t i = 0; i < chains_.size(); ++i) {
-    fetch(i + kAhead, &Chain::begin);
-    note_begin(i);
-  }
-  context.check_stop();
-  for (std::uint32_t i = 0; i < chains_.size(); ++i) {
-    fetch(i + kAhead, &Chain::end);
-    chains_[i].next = chain_from(chains_[i].end, chains_[i].level);
-    if (chains_[i].next != kNone) {
-      chains_[chains_[i].next].is_next = true;
-    }
-  }
-}
-
-void LineTracer::join(const QueryContext& context, TracedPieces& out) {
-  link(context);
-  // Rings are what is left once all open lines are taken.
-  for (const bool ring : {false, true}) {
-    for (std::uint32_t i = 0; i < chains_.size(); ++i) {
-      if (i % kStopInterval == 0) {
-        context.check_stop();
-      }
-      if (!chains_[i].is_taken && (ring || !chains_[i].is_next)) {
-        take_line(i, ring, out);
-      }
-    }
-  }
-}
-
-/// Takes the piece that begins with a chain. A ring has no point for the edge on which that chain
-/// begins: it comes back to that edge last.
-void LineTracer::take_line(std::uint32_t start, bool ring, TracedPieces& out) {
-  IsolinePiece piece;
-  piece.level = chains_[start].level;
-  piece.ring = ring;
-  piece.smallest = {kNoVertexKey, kNoVertexKey};
-  line_.clear();
-  if (!ring) {
-    line_.push_back(points_[chains_[start].first]);
-  }
-  std::size_t smallest = 0;
-  std::uint32_t i = start;
-  std::uint32_t last = start;
-  do {
-    Chain& chain = chains_[i];
-    chain.is_taken = true;
-    if (chain.smallest < piece.smallest) {
-      piece.smallest = chain.smallest;
-      smallest = line_.size() + chain.smallest_at;  // one too many: a chain begins where one ends
-    }
-    const auto first = points_.begin() + chain.first;
-    line_.insert(line_.end(), first + 1, first + chain.count);
-    last = i;
-    i = chain.next;
-  } while (i != kNone && i != start);
-  if (ring) {
-    smallest = smallest == 0 ? line_.size() - 1 : smallest - 1;
-    std::rotate(line_.begin(), line_.begin() + static_cast<std::ptrdiff_t>(smallest), line_.end());
-    line_.push_back(line_.front());
-    smallest = 0;
-  } else {
-    piece.begin = chains_[start].begin;
-    piece.end = chains_[last].end;
-    --smallest;
-  }
-  emit(piece, smallest, out);
-}
-
-/// Adds a piece with the points of the line at hand, of which one lies on the smallest edge.
-void LineTracer::emit(IsolinePiece piece, std::size_t smallest, TracedPieces& out) {
-  std::vector<MapPoint>& points = out.points;
-  piece.first = points.size();
-  for (std::size_t i = 0; i < line_.size(); ++i) {
-    if (i == 0 || points.back() != line_[i]) {
-      points.push_back(line_[i]);
-    }
-    if (i == smallest) {
-      piece.smallest_at = static_cast<std::uint32_t>(points.size() - 1 - piece.first);
-    }
-  }
-  piece.count = static_cast<std::uint32_t>(points.size() - piece.first);
-  out.pieces.push_back(piece);
+const TracedPieces& LineTracer::join() {
+  join_batch();
+  traced_.points.reserve(traced_.points.size() + chains_.points());
+  chains_.join(context_, [&](const IsolinePiece& piece, std::span<const MapPoint> points) {
+    put(piece, points);
+  });
+  return traced_;
 }
 
 bool trace_mesh(const Tin& tin, const TraceScope& scope, std::uint64_t most_bytes,
-                const QueryContext& context, LineTracer& tracer, TracedPieces& out) {
+                LineTracer& tracer) {
   tracer.begin(scope, most_bytes);
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    if (t % kStopInterval == 0) {
-      context.check_stop();
-    }
     if (tin.is_alive(t) && !tracer.add(tin, t)) {
       return false;
     }
   }
-  tracer.join(context, out);
   return true;
 }
 

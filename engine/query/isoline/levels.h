@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/geometry/height.h"
@@ -72,6 +73,8 @@ class LevelSet {
   [[nodiscard]] std::uint64_t least_above(std::size_t level) const noexcept {
     return least_above_[level];
   }
+  /// The same of all levels, ascending.
+  [[nodiscard]] std::span<const std::uint64_t> least_above() const noexcept { return least_above_; }
 
   /// The band of a height: how many levels lie at or below it. A vertex is above level i exactly
   /// when its band is larger than i, so a surface triangle crosses the levels from its smallest

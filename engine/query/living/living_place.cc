@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "storage/packed_rtree.h"
+#include "storage/page_columns.h"
 
 namespace ptin {
 
@@ -11,7 +12,7 @@ namespace {
 
 bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
                    const HeightEncoding& heights) {
-  if (place.heights == kAllHeights && place.spans == nullptr) {
+  if (place.heights == kAllHeights && place.steps.empty()) {
     return true;
   }
   if (t.is_void) {
@@ -21,7 +22,10 @@ bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
   const Interval spanned{std::min({code(0), code(1), code(2)}),
                          std::max({code(0), code(1), code(2)})};
   return meets(spanned, place.heights) &&
-         (place.spans == nullptr || place.spans->may_hold(spanned));
+         (place.steps.empty() ||
+          !steps_within(place.steps, ordered_height(heights.bits(spanned.lo), heights.type),
+                        ordered_height(heights.bits(spanned.hi), heights.type))
+               .empty());
 }
 
 }  // namespace
@@ -30,8 +34,8 @@ bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingV
   ties_.clear();
   filter_ = {.box = place.box,
              .heights = place.heights,
+             .steps = place.steps,
              .also = place.stars,
-             .also_heights = place.spans,
              .also_of_stars = place.asks_each_star};
   set_level(detail_, filter_);
   std::vector<StarPage> pages;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 
 #include "engine/query/living/living_ties.h"
 #include "engine/query/select/accounting.h"
@@ -19,11 +20,12 @@ struct LivingPlace {
   /// Codes: triangles whose corners span an interval that meets it. The default wants void
   /// triangles too.
   Interval heights = kAllHeights;
-  /// Further conditions of pages (StarFilter::also), and of heights, asked of what the corners of a
-  /// triangle span; borrowed; null: none.
+  /// A further condition of pages (StarFilter::also); borrowed; null: none.
   const StarPredicate* stars = nullptr;
   bool asks_each_star = false;  ///< StarFilter::also_of_stars.
-  const HeightPredicate* spans = nullptr;
+  /// Ascending ordered heights, borrowed: triangles with a step within what their corners span
+  /// (storage/attributes.h, steps_within()). Empty: all.
+  std::span<const std::uint64_t> steps;
   /// A further condition of a triangle; none: all are wanted.
   std::function<bool(const LivingTriangle&)> wanted;
 };

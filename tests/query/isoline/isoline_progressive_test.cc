@@ -16,7 +16,6 @@
 
 #include "engine/error.h"
 #include "engine/mesh/star.h"
-#include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/total_order.h"
 #include "engine/query/stream/stream_reader.h"

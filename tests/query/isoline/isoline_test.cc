@@ -19,6 +19,7 @@
 #include "engine/geometry/infinity.h"
 #include "engine/query/isoline/isoline_clip.h"
 #include "engine/query/terrain.h"
+#include "storage/page_columns.h"
 #include "tests/query/isoline/isoline_listing.h"
 
 namespace ptin {
@@ -348,6 +349,26 @@ TEST(Levels, AreStoredHeightsWhereTheyAreMeant) {
   EXPECT_EQ(levels.band_of(15497.0), 2U);
   EXPECT_EQ(levels.band_of(15496.0), 1U);
   EXPECT_EQ(levels.band_of(-1.0), 0U);
+}
+
+/// What is above a level by its code is so as an ordered number too.
+RC_GTEST_PROP(Levels, LieBetweenOrderedHeights, (bool are_whole, std::vector<int> numbers)) {
+  const HeightEncoding heights{are_whole ? HeightType::int32 : HeightType::float32, 1.0, 0.0};
+  std::vector<double> given{-1e300, 1e300, -0.0, 1e-300, -1e-300, 0.1, 2147483647.0, 2147483647.5};
+  std::vector<HeightBits> stored{heights.bits(-0.0), heights.bits(2147483647.0)};
+  for (const int n : numbers) {
+    given.push_back(n + *rc::gen::element(0.0, 0.5, 1e-9, -1e-9));
+    stored.push_back(heights.bits(n));
+    stored.push_back(heights.bits(n / 3.0));
+  }
+  const LevelSet levels(given, heights);
+  RC_ASSERT(levels.least_above().size() == levels.size());
+  for (const HeightBits bits : stored) {
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      const bool is_above = ordered_height(bits, heights.type) >= levels.least_above(i);
+      RC_ASSERT(is_above == (levels.band_of(heights.code(bits)) > i));
+    }
+  }
 }
 
 TEST(Levels, LadderCountsWhatLiesAtOrBelow) {
