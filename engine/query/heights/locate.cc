@@ -84,7 +84,7 @@ class Locating {
   }
   void locate_group(std::span<const Ordered> group);
   [[nodiscard]] bool is_by_stars() const noexcept {
-    return request_.by == AnswerBy::kStars && detail_.is_by_error() && !terrain_.uses_other_index();
+    return request_.by == AnswerBy::kStars && !terrain_.uses_other_index();
   }
   void locate_by_stars(std::span<const Ordered> group);
   void locate_by_splits(std::span<const Ordered> group);
@@ -150,14 +150,15 @@ void Locating::locate_group(std::span<const Ordered> group) {
 }
 
 void Locating::locate_by_stars(std::span<const Ordered> group) {
-  context_.admit(result_.points.size() * (sizeof(LocatedPoint) + sizeof(Ordered)) +
-                 group.size() * (sizeof(Spot) + sizeof(TriangleAt)));
+  const std::uint64_t held = result_.points.size() * (sizeof(LocatedPoint) + sizeof(Ordered)) +
+                             group.size() * (sizeof(Spot) + sizeof(TriangleAt));
+  context_.admit(held);
   spots_.clear();
   for (const Ordered& o : group) {
     spots_.push_back(o.spot);
   }
   found_.resize(group.size());
-  find_triangles(terrain_, detail_.tolerance(), spots_, found_, context_);
+  find_triangles(terrain_, detail_, spots_, found_, held, context_);
   for (std::size_t i = 0; i < group.size(); ++i) {
     result_.points[group[i].index] = answer(found_[i], spots_[i]);
   }

@@ -24,7 +24,7 @@ namespace ptin {
 struct LocateRequest {
   DetailRequest detail;  ///< The TIN of which the heights are.
   QueryLimits limits;
-  /// By stars where the level is one of error and the packed R-tree is in use; else by splits.
+  /// By stars where the packed R-tree is in use; else by splits.
   AnswerBy by = AnswerBy::kStars;
 };
 

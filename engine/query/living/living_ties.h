@@ -69,6 +69,15 @@ class LivingTies {
     }
     clear();
   }
+  /// Calls visit(const LivingTriangle&) for each triangle set aside, and forgets all: for a search
+  /// that did not come to its end.
+  template <class Visit>
+  void abandon(const Visit& visit) {
+    for (const LivingTriangle& t : undecided_) {
+      visit(t);
+    }
+    clear();
+  }
 
  private:
   using Keys = std::array<VertexKey, 3>;  ///< Ascending.

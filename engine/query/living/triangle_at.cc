@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/query/living/level_stars.h"
 #include "engine/query/walk/spot_set.h"
 #include "storage/packed_rtree.h"
 
@@ -82,9 +83,10 @@ double area_of(const GridBox& b) {
 
 class Finder {
  public:
-  Finder(const OpenedTerrain& terrain, double level, QueryContext& context)
-      : store_(terrain.store()), context_(context) {
-    filter_.level = level;
+  Finder(const OpenedTerrain& terrain, const Detail& detail, std::uint64_t held,
+         QueryContext& context)
+      : store_(terrain.store()), context_(context), held_(held), stars_(store_, detail) {
+    set_level(detail, filter_);
   }
   void find(std::span<const Spot> spots, std::span<TriangleAt> found);
 
@@ -94,10 +96,7 @@ class Finder {
   void find_together(std::span<const Spot> spots, std::span<TriangleAt> found);
   void search(const SpotSet& set);
   void read(PageId page);
-  template <class Wants, class Take>
-  void visit_read(const Wants& wants, const Take& take) const {
-    visit_living(living_, store_.facts().heights, wants, take);
-  }
+  void admit() const { context_.admit(held_ + stars_.bytes_aside()); }
   [[nodiscard]] bool is_dense(const GridBox& reach, std::size_t spots) const;
   template <class Source>
   void offer_all(const SpotSet& set, const Source& source, std::span<const Spot> spots,
@@ -105,9 +104,10 @@ class Finder {
 
   const StoreFile& store_;
   QueryContext& context_;
+  std::uint64_t held_;
   StarFilter filter_;
   std::vector<StarPage> pages_;
-  LivingStars living_;
+  LevelStars stars_;
 };
 
 void Finder::search(const SpotSet& set) {
@@ -120,11 +120,7 @@ void Finder::search(const SpotSet& set) {
   context_.check_stop();
 }
 
-void Finder::read(PageId page) {
-  living_.clear();
-  context_.cost.records_examined += store_.read_living(page, filter_, living_, context_.cost.io);
-  context_.cost.stars_read += living_.stars.size();
-}
+void Finder::read(PageId page) { stars_.read(page, filter_, context_); }
 
 /// Offers each triangle of a source to the spots in its box.
 template <class Source>
@@ -163,8 +159,9 @@ class Finder::SmallestFirst final : public BestStarVisitor {
   Merit visit(PageId page, const StarAttributes&) override {
     finder_.context_.check_stop();
     finder_.read(page);
-    finder_.visit_read([&](const GridBox& box) { return contains(box, spot_); },
-                       [&](const LivingTriangle& t) { offer(t, spot_, found_); });
+    finder_.stars_.visit_page([&](const GridBox& box) { return contains(box, spot_); },
+                              [&](const LivingTriangle& t) { offer(t, spot_, found_); });
+    finder_.admit();
     return found_.is_inside ? kBestMerit : kNoMerit;
   }
 
@@ -175,13 +172,16 @@ class Finder::SmallestFirst final : public BestStarVisitor {
 };
 
 void Finder::find_one(Spot spot, TriangleAt& found) {
-  visit_living(store_.t0(), filter_.level, [&](const LivingTriangle& t) { offer(t, spot, found); });
+  stars_.clear();
+  const auto take = [&](const LivingTriangle& t) { offer(t, spot, found); };
+  stars_.visit_t0([&](const GridBox& box) { return contains(box, spot); }, take);
   if (found.is_inside) {
     return;
   }
   filter_.box = box_around(spot);
   SmallestFirst visitor(*this, spot, found);
   store_.star_index().search_stars_best_first(filter_, visitor, kNoMerit, context_.cost.io);
+  stars_.settle(take);
 }
 
 /// Looks for the spots of a dense region together; else for those of its parts.
@@ -201,25 +201,29 @@ void Finder::find(std::span<const Spot> spots, std::span<TriangleAt> found) {
 
 void Finder::find_together(std::span<const Spot> spots, std::span<TriangleAt> found) {
   const SpotSet set(spots, filter_.level);
-  const auto from_t0 = [&](const auto& take) { visit_living(store_.t0(), filter_.level, take); };
   const auto may_hold_one = [&](const GridBox& box) { return set.may_hold_spot(box); };
-  const auto from_page = [&](const auto& take) { visit_read(may_hold_one, take); };
+  const auto from_t0 = [&](const auto& take) { stars_.visit_t0(may_hold_one, take); };
+  const auto from_page = [&](const auto& take) { stars_.visit_page(may_hold_one, take); };
+  const auto from_aside = [&](const auto& take) { stars_.settle(take); };
+  stars_.clear();
   offer_all(set, from_t0, spots, found);
   search(set);
   for (const StarPage& page : pages_) {
     context_.check_stop();
     read(page.id);
     offer_all(set, from_page, spots, found);
+    admit();
   }
+  offer_all(set, from_aside, spots, found);
 }
 
 }  // namespace
 
-void find_triangles(const OpenedTerrain& terrain, double level, std::span<const Spot> spots,
-                    std::span<TriangleAt> found, QueryContext& context) {
+void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
+                    std::span<TriangleAt> found, std::uint64_t held, QueryContext& context) {
   std::fill(found.begin(), found.end(), TriangleAt{});
   if (!spots.empty()) {
-    Finder(terrain, level, context).find(spots, found);
+    Finder(terrain, detail, held, context).find(spots, found);
   }
 }
 

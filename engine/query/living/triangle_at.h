@@ -3,10 +3,12 @@
 // The living triangle at a spot.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/accounting.h"
+#include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/walk/walk.h"
 
@@ -26,14 +28,16 @@ struct TriangleAt {
 };
 
 /// Finds the triangles at spots.
-/// @param level  As StarFilter::level.
+/// @param detail Of which level.
 /// @param spots  In the bounds of the terrain. Spots that lie close together cost less.
 /// @param found  As many; receives the answers. One that is not found lies outside of the domain.
-/// @throws Error corruption, io_error, cancelled
+/// @param held   Bytes that the caller holds, to which triangles are added that a number of vertices
+///               has not decided yet (LivingTies).
+/// @throws Error corruption, io_error, cancelled; resource_exhausted where these do not fit
 /// Cost: of one spot the nodes and pages whose stars may hold it, those of small boxes first, until
 /// a triangle holds it within; of many spots in a small region the pages of the region.
-void find_triangles(const OpenedTerrain& terrain, double level, std::span<const Spot> spots,
-                    std::span<TriangleAt> found, QueryContext& context);
+void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
+                    std::span<TriangleAt> found, std::uint64_t held, QueryContext& context);
 
 /// The code of the height of a surface triangle at a spot that it holds, the same from both sides
 /// of an edge, as the mean of the codes of its corners (walk/walk.h).

@@ -10,6 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
+#include "engine/query/living/triangle_at.h"
 #include "engine/query/select/certificate.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/sight/fresnel.h"
@@ -43,12 +44,12 @@ double error_of_first(const StoreFile& store, std::uint64_t records) {
   return error;
 }
 
-/// Where the clearance first falls to zero in a piece that hides the line: at its beginning, or
-/// where the parabola does.
+/// Where the clearance first falls to zero for certain in a piece that hides the line: at its
+/// beginning, or where the parabola does.
 double first_below(const Ray& ray, const SightPiece& piece) {
   const double width = piece.to - piece.from;
-  return piece.from + width * first_zero(ray.middle(piece.from) - piece.ground_from,
-                                         ray.middle(piece.to) - piece.ground_to,
+  return piece.from + width * first_zero(ray.high(piece.from) - piece.ground_from + piece.deviation,
+                                         ray.high(piece.to) - piece.ground_to + piece.deviation,
                                          ray.bend * width * width);
 }
 
@@ -74,6 +75,20 @@ SightPoint point_at(const SightPair& pair, const SightLine& line, double share, 
           line.ray().middle(share)};
 }
 
+/// Sign of a height above the ground at a located point of surface, in rationals.
+int sign_above(double height, const LocatedPoint& ground, const HeightEncoding& heights, Spot at) {
+  LivingTriangle triangle;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const LocatedPoint::Corner& c = ground.triangle[i];
+    const double code = (c.height - heights.offset) / heights.step;
+    triangle.corner[i] = {c.position,
+                          heights.bits(heights.type == HeightType::int32 ? std::round(code) : code),
+                          true};
+  }
+  const ExactRay ray(heights, {height, nullptr}, {height, nullptr}, 0.0);
+  return ray.sign_at({codes_in(triangle, heights, at), 0, 1});
+}
+
 bool is_true_everywhere(const SightLine& view) {
   return std::all_of(view.pieces.begin(), view.pieces.end(), is_final_truth);
 }
@@ -89,7 +104,7 @@ class SightSolver::Impl {
 
  private:
   [[nodiscard]] bool is_by_stars() const noexcept {
-    return request_.by == AnswerBy::kStars && detail_.is_by_error() && !terrain_.uses_other_index();
+    return request_.by == AnswerBy::kStars && !terrain_.uses_other_index();
   }
   [[nodiscard]] Spot spot_of_end(MapPoint p, double height) const;
   [[nodiscard]] double ground_length(const SightPair& pair) const;
@@ -98,7 +113,7 @@ class SightSolver::Impl {
   void answer(Search search, const SightPair& pair, SightResult& result) const;
   template <class Search>
   void answer_defined(Search& search, const SightPair& pair, SightResult& result) const;
-  void answer_upright(const SightPair& pair, SightResult& result) const;
+  void answer_upright(const SightPair& pair, Spot at, SightResult& result) const;
   bool measure(const SightLine& line, const SightPair& pair, SightResult& result) const;
   bool set_clearance(const SightLine& line, const SightPair& pair, SightResult& result) const;
   void measure_line(const SightLine& line, const SightPair& pair, SightResult& result) const;
@@ -123,7 +138,7 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   const StoreFile& store = terrain.store();
   QueryContext context(request_.limits, store.path());
   detail_ = Detail(request_.detail, terrain.record_source(), context);
-  facts_.tolerance = detail_.tolerance();
+  facts_.detail = &detail_;
   facts_.is_level_asked = detail_.is_asked() && !detail_.certificate().complete;
   facts_.heights = store_facts_.heights;
   const Certificate finest = detail_.certificate();
@@ -136,7 +151,7 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   facts_.exact_settles = !facts_.has_voids || store_facts_.base_error == 0;
   facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);
   if (coarse_records > 0 && request_.verdict_only && is_by_stars()) {
-    coarse_.emplace(terrain_, std::max(error_of_first(store, coarse_records), facts_.tolerance),
+    coarse_.emplace(terrain_, std::max(error_of_first(store, coarse_records), detail_.tolerance()),
                     context);
   }
   base_cost = context.cost;
@@ -173,7 +188,7 @@ SightResult SightSolver::Impl::solve(const SightPair& pair) {
   const Spot q = spot_of_end(pair.b, pair.height_b);
   SightResult result;
   if (p == q) {
-    answer_upright(pair, result);
+    answer_upright(pair, p, result);
   } else {
     result.length = ground_length(pair);
     const double bend = request_.curvature.drop_at(result.length);
@@ -183,7 +198,7 @@ SightResult SightSolver::Impl::solve(const SightPair& pair) {
              pair, result);
     } else {
       const SightView line(facts_, p, q, pair, request_.absolute, bend);
-      answer(SightSearch(terrain_, facts_, request_, detail_, line, context), pair, result);
+      answer(SightSearch(terrain_, facts_, request_, line, context), pair, result);
     }
     result.cost = context.cost;
   }
@@ -224,7 +239,12 @@ void SightSolver::Impl::answer_defined(Search& search, const SightPair& pair,
   if (!request_.verdict_only) {
     measured = measure(line, pair, result) && (!facts_.has_voids || search.ends_known());
   } else if (const SightPiece* hidden = line.hidden_piece(); hidden != nullptr) {
-    result.obstruction = point_at(pair, line, hidden->guess_at, result.length);
+    result.obstruction = point_at(pair, line, hidden->most_at, result.length);
+  } else if (line.is_touched_from_below()) {
+    result.obstruction = point_at(pair, line, line.touched_at(), result.length);
+  }
+  if (result.verdict == SightVerdict::kUndecided && line.may_be_touched_from_below()) {
+    result.certified_deviation = facts_.file_deviation;
   }
   for (const SightPiece& piece : line.pieces) {
     if (result.verdict == SightVerdict::kUndecided && piece.verdict == PieceVerdict::kUndecided) {
@@ -236,7 +256,7 @@ void SightSolver::Impl::answer_defined(Search& search, const SightPair& pair,
 }
 
 /// Both ends at one place: the line is upright, and hidden as far as it lies under ground.
-void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& result) const {
+void SightSolver::Impl::answer_upright(const SightPair& pair, Spot at, SightResult& result) const {
   if (request_.budget && *request_.budget == 0) {
     result.certified_deviation = kInfinity;
     return;
@@ -257,9 +277,15 @@ void SightSolver::Impl::answer_upright(const SightPair& pair, SightResult& resul
   }
   result.clearance_min = request_.absolute ? lower - ground.height_max : lower;
   result.clearance_max = request_.absolute ? lower - ground.height_min : lower;
-  result.verdict = result.clearance_min >= 0  ? SightVerdict::kVisible
-                   : result.clearance_max < 0 ? SightVerdict::kHidden
-                                              : SightVerdict::kUndecided;
+  const bool is_known = ground.height_min == ground.height_max;
+  if (request_.absolute && is_known) {
+    result.verdict = sign_above(lower, ground, facts_.heights, at) < 0 ? SightVerdict::kHidden
+                                                                       : SightVerdict::kVisible;
+  } else {
+    result.verdict = result.clearance_min >= 0  ? SightVerdict::kVisible
+                     : result.clearance_max < 0 ? SightVerdict::kHidden
+                                                : SightVerdict::kUndecided;
+  }
   if (result.verdict == SightVerdict::kUndecided) {
     result.certified_deviation = located.certified_deviation;
   }
@@ -279,7 +305,8 @@ bool SightSolver::Impl::measure(const SightLine& line, const SightPair& pair,
   if (result.verdict == SightVerdict::kHidden) {
     const SightPiece* hidden = line.hidden_piece();
     const double share = hidden != nullptr ? first_below(line.ray(), *hidden) : 2.0;
-    is_true = is_first_for_certain(line, hidden) && line.knows_levels();
+    is_true = is_first_for_certain(line, hidden) && line.knows_levels() &&
+              !line.may_be_touched_from_below();
     if (std::min(share, line.touched_at()) <= 1.0) {
       result.obstruction = point_at(pair, line, std::min(share, line.touched_at()), result.length);
     }
@@ -297,8 +324,9 @@ bool SightSolver::Impl::measure(const SightLine& line, const SightPair& pair,
 bool SightSolver::Impl::set_clearance(const SightLine& line, const SightPair& pair,
                                       SightResult& result) const {
   Lowest lowest{kInfinity, 0.0};
-  double least = line.least_touch().value;
-  double most = least;
+  const Touch& touch = line.least_touch();
+  double least = touch.least;
+  double most = touch.most;
   for (const SightPiece& p : line.pieces) {
     least = std::min(least, p.least);
     most = std::min(most, p.most);
@@ -306,15 +334,16 @@ bool SightSolver::Impl::set_clearance(const SightLine& line, const SightPair& pa
       lowest = {p.guess, p.guess_at};
     }
   }
-  if (line.least_touch().value < lowest.value) {
-    lowest = line.least_touch();
+  if (touch.guess < lowest.value) {
+    lowest = {touch.guess, touch.at};
   }
   if (line.pieces.empty() || !std::isfinite(lowest.value)) {
-    return std::all_of(line.pieces.begin(), line.pieces.end(), [](const auto& p) {
-      return p.final;  // what was read has no surface
-    });
+    return (line.pieces.empty() || touch.least == kInfinity) &&
+           std::all_of(line.pieces.begin(), line.pieces.end(), [](const auto& p) {
+             return p.final;  // what was read has no surface
+           });
   }
-  const bool known = line.ray().is_known() &&
+  const bool known = line.ray().is_known() && !(touch.least < std::min(touch.most, most)) &&
                      std::none_of(line.pieces.begin(), line.pieces.end(), [&](const auto& p) {
                        return p.least < most && !is_final_truth(p);
                      });

@@ -32,9 +32,10 @@ struct SightRequest {
   /// ellipsoid). None: the plane distance in map units.
   std::function<double(MapPoint, MapPoint)> ground_distance;
   double wavelength = 0.0;  ///< Height's unit; above 0 the first Fresnel zone is measured.
-  /// Records that this level leaves out are not read, with two exceptions. The ground below the
-  /// ends is exact all the same. And where a single point hides the line unless it is a void, the
-  /// surface at that point is exact.
+  /// Records that this level leaves out are not read, with these exceptions. The ground below the
+  /// ends is exact all the same. Where a single point hides the line unless it is a void, the
+  /// surface at that point is exact. And by stars the surface is exact in a few points more, those by
+  /// which the answer is most open.
   DetailRequest detail;
   /// Stop once so many stars were read for one pair, or, by splits, records retrieved. Checked
   /// before each step, so the last step may overrun it.

@@ -42,7 +42,8 @@ const SightPiece* SightLine::hidden_piece() const noexcept {
 void SightLine::take_levels() {
   ray_ = {a.level, b.level, bend_};
   touched_ = 2.0;
-  least_touch_ = {kInfinity, 0.0};
+  may_be_touched_ = false;
+  least_touch_ = {};
 }
 
 void SightLine::stand_on(SightEnd& end, const WeightedCodes& ground, double deviation) const {
@@ -76,7 +77,7 @@ void SightLine::decide_by_bounds(SightPiece& p) const {
   p.least = -kInfinity;
   p.most = kInfinity;
   p.guess = 0.0;
-  p.guess_at = p.from;
+  p.guess_at = p.most_at = p.from;
   if (p.surface) {
     p.least = lowest_between(p.from, low0 - p.ground_from, p.to, low1 - p.ground_to, bend_).value -
               p.deviation - slack;
@@ -84,6 +85,7 @@ void SightLine::decide_by_bounds(SightPiece& p) const {
                                        ray_.high(p.to) - p.ground_to, bend_);
     // Where the piece is not settled, the full TIN may have a void instead.
     p.most = facts_.has_voids && !p.settled ? kInfinity : high.value + p.deviation + slack;
+    p.most_at = high.at;
     const Lowest guess = lowest_between(p.from, ray_.middle(p.from) - p.ground_from, p.to,
                                         ray_.middle(p.to) - p.ground_to, bend_);
     p.guess = guess.value;
@@ -197,18 +199,33 @@ void SightLine::decide_exactly(SightPiece& p, const LinePoint& from, const LineP
   p.verdict = sign < 0 ? PieceVerdict::kHidden : PieceVerdict::kVisible;
 }
 
+void SightLine::take_open_touch(double share) {
+  const double least = ray_.low(share) - facts_.max_height - facts_.file_deviation - rounding();
+  least_touch_.least = std::min(least_touch_.least, least);
+  may_be_touched_ = may_be_touched_ || least < 0;
+}
+
 void SightLine::take_touch(const LinePoint& at) {
-  if (!can_be_exact()) {
+  const double share = at.share();
+  const double ground = ground_of(at.ground);
+  const double reach = can_be_exact() ? 0.0 : facts_.file_deviation + rounding();
+  const Touch touch{ray_.low(share) - ground - reach, ray_.high(share) - ground + reach,
+                    ray_.middle(share) - ground, share};
+  if (touch.guess < least_touch_.guess) {
+    least_touch_.guess = touch.guess;
+    least_touch_.at = share;
+  }
+  least_touch_.least = std::min(least_touch_.least, touch.least);
+  least_touch_.most = std::min(least_touch_.most, touch.most);
+  if (!at.is_inner()) {
     return;
   }
-  const double share = at.share();
-  const double clearance = ray_.low(share) - ground_of(at.ground);
-  if (clearance < least_touch_.value) {
-    least_touch_ = {clearance, share};
-  }
   const double slack = rounding();
-  if (at.is_inner() && (clearance < -slack || (clearance < slack && exact_ray().sign_at(at) < 0))) {
+  const bool is_close = can_be_exact() && std::abs(touch.guess) <= slack;
+  if (is_close ? exact_ray().sign_at(at) < 0 : touch.most < 0) {
     touched_ = std::min(touched_, share);
+  } else if (!can_be_exact() && touch.least < 0) {
+    may_be_touched_ = true;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/geometry/infinity.h"
 #include "engine/query/sight/sight.h"
 #include "engine/query/sight/sight_ray.h"
 
@@ -28,6 +29,7 @@ struct SightPiece {
   double least = 0.0, most = 0.0;  ///< Bounds of the smallest clearance.
   /// Smallest clearance over the piece as it is, and its share of the way.
   double guess = 0.0, guess_at = 0.0;
+  double most_at = 0.0;  ///< Share of the way where the clearance is `most` at most.
   PieceVerdict verdict = PieceVerdict::kUndecided;  ///< What the bounds, or exact arithmetic, say.
   friend bool operator==(const SightPiece&, const SightPiece&) = default;
 };
@@ -43,8 +45,8 @@ struct SightFacts {
   double file_deviation = 0.0;    ///< Of the file's full TIN from its source.
   double finest_deviation = 0.0;  ///< Of final pieces: the file's, or that of the level of detail.
   double min_height = 0.0, max_height = 0.0;  ///< Of the whole terrain.
-  double tolerance = -1.0;      ///< Of the level of detail; negative: it keeps all records.
-  bool is_level_asked = false;  ///< A level of detail leaves records out.
+  const Detail* detail = nullptr;             ///< The level of detail; borrowed.
+  bool is_level_asked = false;                ///< A level of detail leaves records out.
   bool has_voids = false;
   bool final_settles = true;  ///< Voids of final pieces are those of the source.
   bool exact_settles = true;  ///< Voids of exact pieces are those of the source.
@@ -59,6 +61,12 @@ struct SightEnd {
   bool known = false;    ///< The ground is that of the file's full TIN.
   WeightedCodes ground;  ///< Set where the end stands on ground.
   Interval level;        ///< Bounds of the height of the end.
+};
+
+/// A vertex that a line passes between voids, or touches from outside of the domain.
+struct Touch {
+  double least = kInfinity, most = kInfinity;  ///< Bounds of the clearance.
+  double guess = kInfinity, at = 0.0;          ///< Over the vertex as it is; its share of the way.
 };
 
 /// A line, its ends, and the pieces of a surface below it. Threads: one owner.
@@ -81,7 +89,7 @@ class SightLine {
   }
   /// True when the heights of both ends are as certain as the file is.
   [[nodiscard]] bool knows_levels() const noexcept {
-    return (a.absolute || a.known) && (b.absolute || b.known);
+    return ends_defined() && (a.absolute || a.known) && (b.absolute || b.known);
   }
   /// The first of `pieces` that is hidden for certain, or null.
   [[nodiscard]] const SightPiece* hidden_piece() const noexcept;
@@ -112,16 +120,21 @@ class SightLine {
   void decide_exactly(SightPiece& piece, const LinePoint& from, const LinePoint& to) const;
   /// Looks at a point in which the line meets the closed surface beside a void, or from outside of
   /// the domain. An end of the line there does not hide the line.
+  /// REQUIRES: the file's full TIN is surface there, of this height.
   void take_touch(const LinePoint& at);
+  /// The same at a point of which it is not known whether it is ground, nor how high.
+  void take_open_touch(double share);
 
   /// True when a vertex hides the line alone: the line passes it between voids, or touches it from
   /// outside of the domain, and the vertex lies above the line.
   [[nodiscard]] bool is_touched_from_below() const noexcept { return touched_ <= 1.0; }
+  /// True when a vertex may hide the line so, and what was left out would tell.
+  [[nodiscard]] bool may_be_touched_from_below() const noexcept { return may_be_touched_; }
   /// Share of the way of the first vertex that hides the line so; above 1 when there is none.
   [[nodiscard]] double touched_at() const noexcept { return touched_; }
-  /// The least clearance over all vertices that the line passes or touches so; infinite when there
-  /// is none.
-  [[nodiscard]] const Lowest& least_touch() const noexcept { return least_touch_; }
+  /// The vertex of least clearance that the line passes or touches so; of infinite clearance when
+  /// there is none.
+  [[nodiscard]] const Touch& least_touch() const noexcept { return least_touch_; }
 
  protected:
   [[nodiscard]] const SightFacts& facts() const noexcept { return facts_; }
@@ -142,7 +155,8 @@ class SightLine {
   double magnitude_;  ///< Sum of all heights of which rounding() depends.
   Ray ray_;
   double touched_ = 2.0;  ///< As touched_at().
-  Lowest least_touch_{};
+  bool may_be_touched_ = false;
+  Touch least_touch_;
 };
 
 }  // namespace ptin

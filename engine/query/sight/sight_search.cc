@@ -16,14 +16,13 @@ constexpr double kEverything = -1.0;  ///< As a deviation: no record is left out
 }  // namespace
 
 SightSearch::SightSearch(const OpenedTerrain& terrain, const SightFacts& facts,
-                         const SightRequest& request, const Detail& detail, const SightView& line,
-                         QueryContext& context)
+                         const SightRequest& request, const SightView& line, QueryContext& context)
     : facts_(facts),
       request_(request),
       context_(context),
       step_(std::max((facts.max_height - facts.min_height) / 4096,
                      facts.heights.type == HeightType::int32 ? facts.heights.step : 0.0)),
-      mesh_(terrain, detail),
+      mesh_(terrain, *facts.detail),
       view_(line) {
   view_.look(mesh_);
 }
@@ -69,7 +68,8 @@ void SightSearch::refine(std::vector<Stretch> stretches, double end_deviation) {
   for (const Stretch& s : stretches) {
     view_.known.push_back({s.from, s.to, s.deviation, s.beyond || !facts_.is_level_asked});
   }
-  const SightPredicate wanted(view_.p(), view_.q(), std::move(stretches), ends, facts_.tolerance);
+  const SightPredicate wanted(view_.p(), view_.q(), std::move(stretches), ends,
+                              facts_.detail->tolerance());
   const SightPredicate beyond = wanted.beyond();
   mesh_.refine(wanted, context_, facts_.is_level_asked ? &beyond : nullptr);
   if (asks_ends) {
@@ -111,20 +111,15 @@ SightVerdict SightSearch::decide() {
     const bool undecided = std::any_of(view_.pieces.begin(), view_.pieces.end(), [](const auto& p) {
       return p.verdict == PieceVerdict::kUndecided;
     });
-    if (!undecided && !view_.is_touch_open()) {
-      return SightVerdict::kVisible;
+    if (!undecided && !view_.open_touch()) {
+      return view_.may_be_touched_from_below() ? SightVerdict::kUndecided : SightVerdict::kVisible;
     }
     if (out_of_budget()) {
       return SightVerdict::kUndecided;
     }
     std::vector<Stretch> stretches = undecided_stretches();
-    if (view_.is_touch_open()) {  // the one point in which the line meets the domain
-      if (!view_.known.empty()) {
-        return SightVerdict::kUndecided;  // the file does not know its voids
-      }
-      stretches = {{0.0, 1.0, kEverything, true}};
-    } else if (stretches.empty() && ends_known()) {
-      stretches = unsettled_stretch();
+    if (stretches.empty() && ends_known()) {
+      stretches = undecided ? unsettled_stretch() : open_touch();
       if (stretches.empty()) {
         return SightVerdict::kUndecided;  // neither the file nor the level of detail says more
       }
@@ -175,6 +170,16 @@ std::vector<SightPredicate::Stretch> SightSearch::unsettled_stretch() const {
     return {};
   }
   return {{likely->guess_at, likely->guess_at, kEverything, true}};
+}
+
+/// The point of which the classes are open; empty when the file does not know them either.
+std::vector<SightPredicate::Stretch> SightSearch::open_touch() const {
+  const double share = *view_.open_touch();
+  const bool is_known = std::any_of(view_.known.begin(), view_.known.end(), [&](const auto& k) {
+    return k.deviation < 0 && k.beyond && k.from <= share && share <= k.to;
+  });
+  return is_known ? std::vector<Stretch>{}
+                  : std::vector<Stretch>{{share, share, kEverything, true}};
 }
 
 }  // namespace ptin

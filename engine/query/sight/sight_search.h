@@ -17,7 +17,7 @@ class SightSearch {
   /// All borrowed for the life of the search.
   /// @param line  Where to begin: before anything is known.
   SightSearch(const OpenedTerrain& terrain, const SightFacts& facts, const SightRequest& request,
-              const Detail& detail, const SightView& line, QueryContext& context);
+              const SightView& line, QueryContext& context);
 
   /// finish_ends() makes the ground below the ends exact; finish_line() makes the whole line as
   /// fine as the level of detail. Both stop when the budget is spent.
@@ -37,6 +37,7 @@ class SightSearch {
   [[nodiscard]] double target(double margin, double deviation) const noexcept;
   [[nodiscard]] std::vector<Stretch> undecided_stretches() const;
   [[nodiscard]] std::vector<Stretch> unsettled_stretch() const;
+  [[nodiscard]] std::vector<Stretch> open_touch() const;
   void add(std::vector<Stretch>& stretches, double from, double to, double deviation) const;
   void refine(std::vector<Stretch> stretches, double end_deviation);
 

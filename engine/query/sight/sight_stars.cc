@@ -12,8 +12,6 @@ namespace ptin {
 
 namespace {
 
-constexpr double kFullDetail = -1.0;  ///< As a level.
-
 /// Shares of the way that are computed in doubles are off by less than this: coordinates are exact
 /// doubles, so a difference, a quotient and their use round a share of at most 1 by some 2^-51.
 constexpr double kShareSlack = 0x1p-40;
@@ -29,7 +27,10 @@ SightStars::SightStars(const OpenedTerrain& terrain, const SightFacts& facts,
       coarse_(coarse),
       context_(context),
       line_(line),
-      origin_(grid_of(line.p())) {
+      origin_(grid_of(line.p())),
+      full_detail_(terrain.store()),
+      asked_(terrain.store(), *facts.detail),
+      full_(terrain.store(), full_detail_) {
   const MapPoint end = grid_of(line.q());
   way_ = {end.x - origin_.x, end.y - origin_.y};
   state_domain(line_.a, line_.p());
@@ -66,7 +67,7 @@ void SightStars::finish_ends() {
     SightEnd& end = *ends[i];
     end.known = true;
     if (end.inside) {
-      find_triangles(terrain_, kFullDetail, {&spots[i], 1}, {&at[i], 1}, context_);
+      find_triangles(terrain_, full_detail_, {&spots[i], 1}, {&at[i], 1}, 0, context_);
     }
     end.surface = at[i].is_found && !at[i].triangle.is_void;
     if (end.surface) {
@@ -77,7 +78,7 @@ void SightStars::finish_ends() {
   line_.take_levels();
   for (std::size_t i = 0; i < 2 && facts_.is_level_asked && line_.ends_defined(); ++i) {
     if (at[i].is_found) {  // the full TIN there is at hand
-      begin_search(Aim::kWhole, {0.0, 1.0}, kFullDetail);
+      begin_search(Aim::kWhole, {0.0, 1.0}, full_);
       take(at[i].triangle);
     }
   }
@@ -121,7 +122,7 @@ Merit SightStars::bound(const StarAttributes& a) const {
   if (!part) {
     return {-kInfinity};
   }
-  if (aim_ == Aim::kWhole) {
+  if (wants_all()) {
     return {0.0};
   }
   const double top =
@@ -150,6 +151,7 @@ double SightStars::cut_off() const noexcept {
     case Aim::kFirst:
       return -first_hidden_;
     case Aim::kWhole:
+    case Aim::kTouch:
       break;
   }
   return 0.0;
@@ -160,7 +162,7 @@ void SightStars::look_at(const Part& part) {
   filter_.box = box_of(part);
   filter_.heights = kAllHeights;
   lowest_ = -kInfinity;
-  if (aim_ == Aim::kWhole) {
+  if (wants_all()) {
     return;
   }
   lowest_ = line_.ray().lowest(part.from, part.to) - facts_.finest_deviation - line_.rounding() -
@@ -179,39 +181,72 @@ Merit SightStars::visit(PageId page, const StarAttributes& a) {
   }
   context_.check_stop();
   look_at(part_in(a.box).value_or(part_));
-  living_.clear();
-  context_.cost.records_examined +=
-      terrain_.store().read_living(page, filter_, living_, context_.cost.io);
-  context_.cost.stars_read += living_.stars.size();
-  visit_living(living_, facts_.heights, [&](const LivingTriangle& t) { take(t); });
-  context_.admit(2 * line_.pieces.capacity() * sizeof(SightPiece) +
+  stars_->read(page, filter_, context_);
+  stars_->visit_page([&](const GridBox& box) { return meets(box, filter_.box); },
+                     [&](const LivingTriangle& t) { take(t); });
+  context_.admit(2 * line_.pieces.capacity() * sizeof(SightPiece) + stars_->bytes_aside() +
                  (coarse_ == nullptr ? 0 : coarse_->bytes()));
   return {cut_off()};
 }
 
-void SightStars::begin_search(Aim aim, Part part, double level) {
+void SightStars::begin_search(Aim aim, Part part, LevelStars& stars) {
   aim_ = aim;
   part_ = part;
-  filter_.level = level;
+  stars_ = &stars;
+  stars.clear();
+  set_level(stars.detail(), filter_);
   is_cut_ = false;
   look_at(part);
 }
 
 /// Looks for triangles of a level along a part of the way.
-void SightStars::search(Aim aim, Part part, double level) {
-  begin_search(aim, part, level);
-  visit_living(terrain_.store().t0(), level, [&](const LivingTriangle& t) { take(t); });
+void SightStars::search(Aim aim, Part part, LevelStars& stars) {
+  begin_search(aim, part, stars);
+  stars.visit_t0([&](const GridBox& box) { return meets(box, filter_.box); },
+                 [&](const LivingTriangle& t) { take(t); });
   StarFilter filter;
-  filter.level = level;
+  set_level(stars.detail(), filter);
   filter.box = box_of(part);
   terrain_.store().star_index().search_stars_best_first(filter, *this, {cut_off()},
                                                         context_.cost.io);
+  finish_search();
+}
+
+/// Takes what was set aside. What tells that such a triangle is gone bounds at least as much as the
+/// triangle: so it was read where the triangle's own bound is not below the cut-off, and no other
+/// triangle matters.
+void SightStars::finish_search() {
+  look_at(part_);
+  if (is_cut_) {
+    stars_->abandon([&](const LivingTriangle& t) { take_abandoned(t); });
+    return;
+  }
+  const double end = cut_off();
+  stars_->settle([&](const LivingTriangle& t) {
+    StarAttributes own;
+    own.box = ptin::box_of(t);
+    own.heights = {kInfinity, -kInfinity};
+    for (const LivingTriangle::Corner& c : t.corner) {
+      own.heights = united(own.heights, facts_.heights.code(c.height));
+    }
+    if (bound(own).value >= end) {
+      take(t);
+    }
+  });
+}
+
+/// Of a triangle that may be gone its own bounds hold all the same.
+void SightStars::take_abandoned(const LivingTriangle& t) {
+  if (const auto on = shared_stretch(t, facts_.heights, line_.p(), line_.q());
+      on && !on->is_point) {
+    line_.pieces.push_back(piece_of(t, *on, false));
+  }
 }
 
 /// Where the budget ends a search, all that was not read is one piece of which nothing is known but
 /// the highest ground of the terrain.
 void SightStars::search_whole_line(Aim aim) {
-  search(aim, {0.0, 1.0}, facts_.tolerance);
+  search(aim, {0.0, 1.0}, asked_);
   if (!is_cut_) {
     return;
   }
@@ -237,7 +272,7 @@ SightPiece SightStars::piece_of(const LivingTriangle& t, const SharedStretch& on
   piece.along_edge = on.along_edge;
   piece.surface = !t.is_void;
   piece.final = is_final;
-  piece.exact = is_final && (filter_.level < 0 || !facts_.is_level_asked);
+  piece.exact = is_final && (stars_ == &full_ || !facts_.is_level_asked);
   piece.deviation = t.deviation;
   piece.highest = facts_.heights.height_of_code(t.heights.hi);
   line_.certify(piece);
@@ -257,7 +292,7 @@ SightPiece SightStars::piece_of(const LivingTriangle& t, const SharedStretch& on
 }
 
 void SightStars::take_touch(const LivingTriangle& t, const LinePoint& at) {
-  const bool is_exact = filter_.level < 0 || !facts_.is_level_asked;
+  const bool is_exact = stars_ == &full_ || !facts_.is_level_asked;
   if (!facts_.final_settles && !(is_exact && facts_.exact_settles)) {
     open_touch_ = at.is_inner() ? at.share() : open_touch_;
   } else if (!t.is_void && (is_exact || at.ground.count == 1)) {  // a vertex is as in the full TIN
@@ -270,7 +305,7 @@ void SightStars::take(const LivingTriangle& t) {
   if (!meets(ptin::box_of(t), filter_.box)) {
     return;
   }
-  if (aim_ != Aim::kWhole) {  // what is void is void in the full TIN, and hides nothing
+  if (!wants_all()) {  // what is void is void in the full TIN, and hides nothing
     const auto is_low = [&](const LivingTriangle::Corner& c) {
       return facts_.heights.height(c.height) < lowest_;
     };
@@ -286,7 +321,13 @@ void SightStars::take(const LivingTriangle& t) {
     take_touch(t, on->from);
     return;
   }
+  if (aim_ == Aim::kTouch) {
+    return;
+  }
   SightPiece piece = piece_of(t, *on, true);
+  if (!piece.surface && piece.along_edge && (piece.to < part_.from || piece.from > part_.to)) {
+    return;  // the triangle on the edge's other side, which may be surface, need not be read
+  }
   line_.decide_exactly(piece, on->from, on->to);
   most_ = std::min(most_, piece.most);
   if (piece.verdict == PieceVerdict::kHidden) {
@@ -374,7 +415,7 @@ void SightStars::decide_by_search() {
     }
   }
   if (const std::optional<double> share = likely_share()) {
-    search(Aim::kVerdict, {*share, *share}, facts_.tolerance);
+    search(Aim::kVerdict, {*share, *share}, asked_);
   }
   if (first_hidden_ > 1.0) {
     search_whole_line(Aim::kVerdict);
@@ -396,52 +437,6 @@ void SightStars::finish_line() {
   if (first_hidden_ <= 1.0) {
     search_whole_line(Aim::kFirst);
   }
-}
-
-/// Where the full TIN may have a void in the place of a piece that hides the line, or of the one
-/// point in which the line meets the domain: looks at the full TIN there, at the point that is most
-/// likely to hide the line first.
-void SightStars::settle() {
-  if (!facts_.has_voids || facts_.final_settles || !facts_.exact_settles) {
-    return;
-  }
-  std::vector<std::pair<double, double>> likely;
-  for (const SightPiece& p : line_.pieces) {
-    if (p.verdict == PieceVerdict::kUndecided && p.surface && p.guess < -p.deviation) {
-      likely.emplace_back(p.guess, p.guess_at);
-    }
-  }
-  std::sort(likely.begin(), likely.end());
-  if (line_.pieces.empty() && open_touch_) {
-    likely.emplace_back(0.0, *open_touch_);
-  }
-  for (const auto& [guess, share] : likely) {
-    if (first_hidden_ <= 1.0 || out_of_budget()) {
-      return;
-    }
-    search(Aim::kWhole, {share, share}, kFullDetail);
-    open_touch_.reset();
-  }
-}
-
-SightVerdict SightStars::decide() {
-  if (request_.verdict_only) {
-    decide_by_search();
-  }
-  settle();
-  line_.order_pieces();
-  if (facts_.is_level_asked) {
-    line_.prefer_exact();
-    line_.order_pieces();
-  }
-  if (line_.hidden_piece() != nullptr || line_.is_touched_from_below()) {
-    return SightVerdict::kHidden;
-  }
-  const bool is_open =
-      (line_.pieces.empty() && open_touch_) ||
-      std::any_of(line_.pieces.begin(), line_.pieces.end(),
-                  [](const SightPiece& p) { return p.verdict == PieceVerdict::kUndecided; });
-  return is_open ? SightVerdict::kUndecided : SightVerdict::kVisible;
 }
 
 }  // namespace ptin

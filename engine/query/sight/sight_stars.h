@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/query/living/level_stars.h"
 #include "engine/query/living/triangle_at.h"
 #include "engine/query/living/triangle_on_line.h"
 #include "engine/query/sight/coarse_ground.h"
@@ -45,6 +46,7 @@ class SightStars final : private BestStarVisitor {
     kLeast,    ///< The pieces that may have the smallest clearance, the highest stars first.
     kFirst,    ///< The pieces up to the first one that hides the line, in their order.
     kWhole,    ///< All pieces.
+    kTouch,    ///< What meets the line in a single point.
   };
   /// A part of the way.
   struct Part {
@@ -59,17 +61,29 @@ class SightStars final : private BestStarVisitor {
   [[nodiscard]] std::optional<Part> part_in(const GridBox& box) const noexcept;
   [[nodiscard]] GridBox box_of(const Part& part) const noexcept;
   [[nodiscard]] double cut_off() const noexcept;
+  /// True when triangles far below the line are wanted too.
+  [[nodiscard]] bool wants_all() const noexcept {
+    return aim_ == Aim::kWhole || aim_ == Aim::kTouch;
+  }
   void look_at(const Part& part);
-  void begin_search(Aim aim, Part part, double level);
-  void search(Aim aim, Part part, double level);
+  void begin_search(Aim aim, Part part, LevelStars& stars);
+  void search(Aim aim, Part part, LevelStars& stars);
+  void finish_search();
   void search_whole_line(Aim aim);
   void take(const LivingTriangle& t);
+  void take_abandoned(const LivingTriangle& t);
   void take_touch(const LivingTriangle& t, const LinePoint& at);
   [[nodiscard]] SightPiece piece_of(const LivingTriangle& t, const SharedStretch& on,
                                     bool is_final) const;
   [[nodiscard]] bool is_hidden_by_coarse();
   [[nodiscard]] std::optional<double> likely_share() const;
   void settle();
+  void narrow();
+  [[nodiscard]] const SightPiece* wide_piece(bool by_guess) const;
+  void order();
+  void look_at_full(Aim aim, double share);
+  void settle_touches();
+  [[nodiscard]] std::optional<double> unsettled_touch() const;
   void decide_by_search();
 
   const OpenedTerrain& terrain_;
@@ -79,8 +93,10 @@ class SightStars final : private BestStarVisitor {
   QueryContext& context_;
   SightLine line_;
   MapPoint origin_, way_;  ///< The line's beginning, and from there to its end, grid units.
-  LivingStars living_;
+  Detail full_detail_;
+  LevelStars asked_, full_;  ///< Of the level of detail, and of the full TIN.
   // Of the search at hand.
+  LevelStars* stars_ = &asked_;
   Aim aim_ = Aim::kVerdict;
   Part part_{0.0, 1.0};  ///< Of the way; nothing else is looked at.
   StarFilter filter_;    ///< Of the page at hand.
@@ -91,6 +107,7 @@ class SightStars final : private BestStarVisitor {
   double most_ = kInfinity;           ///< The smallest clearance is no more.
   double first_hidden_ = 2.0;         ///< Share of the way at which a hidden piece begins; 2: none.
   std::optional<double> open_touch_;  ///< Where the line has one point, which may be a void or not.
+  std::vector<double> settled_;       ///< Points of the line at which the full TIN was looked at.
 };
 
 }  // namespace ptin

@@ -39,7 +39,7 @@ void SightView::look(const BoundedMesh& mesh) {
   if (b.inside && last_triangle != kNone) {
     set_end(mesh, last, last_triangle, b);
   }
-  touch_open_ = false;
+  open_touch_.reset();
   if (pieces.empty() && walk.meets_domain()) {
     set_only_point(mesh, walk);
   }
@@ -56,12 +56,16 @@ void SightView::set_only_point(const BoundedMesh& mesh, const LineWalk& walk) {
       set_end(mesh, walk.entry(), answering(mesh, *end), *end);
     }
   }
-  touch_open_ =
-      facts().has_voids &&
-      !(facts().exact_settles && std::any_of(known.begin(), known.end(), [&](const auto& k) {
-          const double share = walk.entry().share();
-          return k.deviation < 0 && k.beyond && k.from <= share && share <= k.to;
-        }));
+  if (const double share = walk.entry().share(); !is_settled_at(share)) {
+    open_touch_ = share;
+  }
+}
+
+bool SightView::is_settled_at(double share) const noexcept {
+  return !facts().has_voids || std::any_of(known.begin(), known.end(), [&](const auto& k) {
+    return k.deviation < 0 && k.from <= share && share <= k.to &&
+           (facts().final_settles || (k.beyond && facts().exact_settles));
+  });
 }
 
 TriangleId SightView::answering(const BoundedMesh& mesh, const SightEnd& end) const {
@@ -127,7 +131,7 @@ void SightView::decide_exactly_all(const BoundedMesh& mesh) {
     return;
   }
   LineWalk walk(tin, p(), q(), start_);
-  if (walk.meets_domain() && pieces.empty() && !touch_open_) {
+  if (walk.meets_domain() && pieces.empty()) {
     check_touch(mesh, walk.entry());
   }
   for (std::size_t i = 0; i < pieces.size() && walk.next(); ++i) {
@@ -146,6 +150,11 @@ void SightView::decide_exactly_all(const BoundedMesh& mesh) {
 /// triangles lie beside the line, or an end on the domain's border.
 void SightView::check_touch(const BoundedMesh& mesh, const Crossing& c) {
   const Tin& tin = mesh.tin();
+  if (!is_settled_at(c.share())) {  // the full TIN may have another class there
+    open_touch_ = c.share();
+    take_open_touch(c.share());
+    return;
+  }
   const LinePoint at = point_of(tin, facts().heights, c);
   bool touches = false;
   if (c.footing.lies() == Lies::kOnVertex) {

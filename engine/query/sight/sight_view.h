@@ -4,6 +4,7 @@
 // above the full surface.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/geometry/infinity.h"
@@ -35,9 +36,12 @@ class SightView : public SightLine {
   /// where these do not tell and no record was left out, exactly. Cost: the triangles on the way.
   void look(const BoundedMesh& mesh);
 
-  /// True when the line meets the domain in one point alone, and records may still change whether
-  /// that point is ground.
-  [[nodiscard]] bool is_touch_open() const noexcept { return touch_open_; }
+  /// A point, as a share of the way, of which records may still change whether it is ground, and
+  /// which is not a part of a piece that tells: the one in which the line meets the domain, or one
+  /// in which two voids meet.
+  [[nodiscard]] const std::optional<double>& open_touch() const noexcept { return open_touch_; }
+  /// True when no record was left out that may change the classes at a point.
+  [[nodiscard]] bool is_settled_at(double share) const noexcept;
 
  private:
   void add_piece(const BoundedMesh& mesh, const LinePiece& piece);
@@ -48,7 +52,7 @@ class SightView : public SightLine {
   void check_touch(const BoundedMesh& mesh, const Crossing& c);
 
   TriangleId start_ = 0;  ///< Where the last look() began; triangles keep their numbers.
-  bool touch_open_ = false;
+  std::optional<double> open_touch_;
 };
 
 }  // namespace ptin

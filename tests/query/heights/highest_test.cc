@@ -250,11 +250,13 @@ TEST(Highest, LooksAtEachRecordOnce) {
   EXPECT_LE(highest(terrain, request).cost.records_examined, h.records.size());
 }
 
-/// That locating one point at the same level of detail reads.
+/// That locating one point at the same level of detail reads, by splits: these need all records up
+/// to the last vertex of the level.
 std::uint64_t pages_of_one_point(const Terrain& terrain, const HighestRequest& request,
                                  MapPoint point) {
   LocateRequest where;
   where.detail.vertices = request.detail.vertices;
+  where.by = AnswerBy::kSplits;
   return locate(terrain, {&point, 1}, where).cost.io.pages;
 }
 

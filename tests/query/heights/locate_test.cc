@@ -154,10 +154,14 @@ TEST(Locate, AnswersByStarsAsBySplits) {
                                         {"coast_257.tif", 1.0}}) {
     const Terrain& terrain = reference::built_terrain(name, max_error);
     const std::vector<MapPoint> points = random_points(terrain.store().facts(), 4000, 5);
-    for (const double error : {-1.0, 0.0, 0.7, 5.0, 21.3, 1e5}) {
-      SCOPED_TRACE(testing::Message() << name << " at " << error);
+    std::vector<DetailRequest> levels(1);
+    for (const double error : {0.0, 0.7, 5.0, 21.3, 1e5}) levels.push_back({error, {}});
+    for (const std::uint64_t vertices : {4, 50, 3000, 20001}) levels.push_back({{}, vertices});
+    for (const DetailRequest& level : levels) {
+      SCOPED_TRACE(testing::Message() << name << " at " << level.tolerance.value_or(-1.0) << ", "
+                                      << level.vertices.value_or(0));
       LocateRequest request;
-      if (error >= 0) request.detail.tolerance = error;
+      request.detail = level;
       const LocateResult stars = locate(terrain, points, request);
       const LocateResult few = locate(terrain, std::span(points).first(40), request);
       request.by = AnswerBy::kSplits;
@@ -165,7 +169,8 @@ TEST(Locate, AnswersByStarsAsBySplits) {
       EXPECT_EQ(stars.certified_error, splits.certified_error);
       EXPECT_EQ(stars.certified_deviation, splits.certified_deviation);
       EXPECT_EQ(stars.cost.records_applied, 0U);
-      EXPECT_TRUE(stars.cost.stars_read > 0 || error > 1000);  // then T0 answers
+      const bool is_t0 = level.tolerance > 1000 || level.vertices == 4U;
+      EXPECT_TRUE(stars.cost.stars_read > 0 || is_t0);
       EXPECT_EQ(splits.cost.stars_read, 0U);
       for (std::size_t i = 0; i < points.size(); ++i) {
         expect_same(stars.points[i], splits.points[i]);
@@ -185,8 +190,11 @@ RC_GTEST_PROP(Locate, AnswersByStarsAsBySplitsOnAnyTerrain, (std::uint64_t seed)
   std::vector<MapPoint> points(24);
   for (MapPoint& p : points) p = map.map(nasty_spot(random, h.full));
   LocateRequest request;
-  if (!h.records.empty() && random() % 4 != 0) {
+  const auto kind = random() % 4;
+  if (!h.records.empty() && kind == 1) {
     request.detail.tolerance = h.records[random() % h.records.size()].error;
+  } else if (kind > 1) {
+    request.detail.vertices = terrain.t0().vertices.size() + random() % (h.records.size() + 1);
   }
   const LocateResult stars = locate(terrain, points, request);
   request.by = AnswerBy::kSplits;

@@ -84,6 +84,18 @@ PointState state_at(const Tin& tin, const RationalPoint& at) {
                            : (surface ? PointState::kSurface : PointState::kVoid);
 }
 
+/// The height of an end; none where it is above ground that is not there.
+std::optional<Rational> end_height(const SmallTerrain& t, const RationalPoint& at, double height,
+                                   bool absolute) {
+  if (absolute) return Rational(height);
+  for (const TriangleId triangle : triangles_at(t.full, at)) {
+    if (t.full.classes[triangle] == TriangleClass::kSurface) {
+      return Rational(height) - clearance_at(t, triangle, at, 0);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 SmallTerrain::SmallTerrain(std::uint64_t seed, double max_error) : path(fresh_path(".ptin")) {
@@ -116,17 +128,8 @@ TrueSight true_sight(const SmallTerrain& t, Spot p, double height_p, Spot q, dou
                      bool absolute, double bend) {
   const RationalPoint a = rational_of(p);
   const RationalPoint b = rational_of(q);
-  const auto level = [&](const RationalPoint& at, double height) -> std::optional<Rational> {
-    if (absolute) return Rational(height);
-    for (const TriangleId triangle : triangles_at(t.full, at)) {
-      if (t.full.classes[triangle] == TriangleClass::kSurface) {
-        return Rational(height) - clearance_at(t, triangle, at, 0);
-      }
-    }
-    return std::nullopt;
-  };
-  const std::optional<Rational> za = level(a, height_p);
-  const std::optional<Rational> zb = level(b, height_q);
+  const std::optional<Rational> za = end_height(t, a, height_p, absolute);
+  const std::optional<Rational> zb = end_height(t, b, height_q, absolute);
   TrueSight truth;
   truth.state_p = state_at(t.full, a);
   truth.state_q = state_at(t.full, b);
@@ -194,6 +197,91 @@ TrueSight true_sight(const SmallTerrain& t, Spot p, double height_p, Spot q, dou
     truth.void_share = Rational(*all.rbegin() - *all.begin()).convert_to<double>() - covered;
   }
   return truth;
+}
+
+std::optional<Rational> least_clearance_near(const SmallTerrain& t, Spot p, double height_p, Spot q,
+                                             double height_q, bool absolute, double bend,
+                                             double share) {
+  const RationalPoint a = rational_of(p);
+  const RationalPoint b = rational_of(q);
+  const Rational za = *end_height(t, a, height_p, absolute);
+  const Rational zb = *end_height(t, b, height_q, absolute);
+  const Rational reach = Rational(1) / (1 << 30);
+  std::optional<Rational> least;
+  for (TriangleId triangle = 0; triangle < t.full.triangles.size(); ++triangle) {
+    const std::optional<Shares> in = shares_in(t.full, triangle, a, b);
+    if (!in || t.full.classes[triangle] != TriangleClass::kSurface) continue;
+    const Rational from = std::max(in->from, Rational(Rational(share) - reach));
+    const Rational to = std::min(in->to, Rational(Rational(share) + reach));
+    for (const Rational& s : {from, to}) {
+      if (from > to) continue;
+      const Rational line = za * (1 - s) + zb * s - Rational(bend) * s * (1 - s);
+      const Rational clearance = clearance_at(t, triangle, along(a, b, s), line);
+      if (!least || clearance < *least) least = clearance;
+    }
+  }
+  return least;
+}
+
+namespace {
+
+/// p + n/2 * (x, y).
+Spot moved(Spot p, std::int64_t n, std::int64_t x, std::int64_t y) {
+  return {p.x + n * x / 2, p.y + n * y / 2};
+}
+
+/// A vertex of the domain's border where that turns, mostly.
+Spot nasty_corner(std::mt19937_64& random, const Tin& tin) {
+  Spot corner = spot_of(tin.position(0));
+  const auto x = static_cast<std::int64_t>(random() % 3) - 1;
+  const auto y = static_cast<std::int64_t>(random() % 3) - 1;
+  for (VertexId v = 0; v < tin.vertices.size(); ++v) {
+    const Spot s = spot_of(tin.position(v));
+    if (s.x * x + s.y * y > corner.x * x + corner.y * y) corner = s;
+  }
+  return corner;
+}
+
+}  // namespace
+
+std::pair<Spot, Spot> nasty_line(std::mt19937_64& random, const Tin& tin) {
+  constexpr std::int64_t kUnit = std::int64_t{1} << kSpotBits;
+  const auto below = [&](unsigned n) { return static_cast<std::int64_t>(random() % n); };
+  const auto vertex = [&] {
+    return spot_of(tin.position(static_cast<VertexId>(random() % tin.vertices.size())));
+  };
+  const Triangle& t = tin.triangles[random() % tin.triangles.size()];
+  const int i = static_cast<int>(below(3));
+  Spot at = vertex();
+  std::int64_t x = (below(7) - 3) * kUnit;
+  std::int64_t y = (below(7) - 3) * kUnit;
+  switch (random() % 6) {
+    case 0: {  // along an edge
+      at = spot_of(tin.position(t.v[i]));
+      const Spot to = spot_of(tin.position(t.v[next_corner(i)]));
+      x = to.x - at.x;
+      y = to.y - at.y;
+      break;
+    }
+    case 1:  // along a row, a column or a diagonal
+      x = (below(3) - 1) * kUnit;
+      y = (below(3) - 1) * kUnit;
+      break;
+    case 2: {  // through two vertices
+      const Spot to = vertex();
+      x = to.x - at.x;
+      y = to.y - at.y;
+      break;
+    }
+    case 3:
+      at = nasty_corner(random, tin);
+      break;
+    case 4:  // through any vertex
+      break;
+    default:
+      return {nasty_spot(random, tin), nasty_spot(random, tin)};
+  }
+  return {moved(at, -below(9), x, y), moved(at, below(9), x, y)};
 }
 
 }  // namespace ptin::reference

@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "engine/query/sight/sight.h"
 #include "engine/query/terrain.h"
@@ -39,5 +40,16 @@ struct TrueSight {
 /// @param bend  Curvature::drop_at(length), as the engine rounds it.
 [[nodiscard]] TrueSight true_sight(const SmallTerrain& t, Spot p, double height_p, Spot q,
                                    double height_q, bool absolute, double bend);
+
+/// The least clearance of the line over the surface near a share of the way, within 2^-30 of it, for
+/// the rounding of shares; none where there is no surface. REQUIRES: true_sight().defined.
+[[nodiscard]] std::optional<Rational> least_clearance_near(const SmallTerrain& t, Spot p,
+                                                           double height_p, Spot q, double height_q,
+                                                           bool absolute, double bend,
+                                                           double share);
+
+/// The ends of a line that runs along edges, through vertices, along rows, columns and diagonals, or
+/// touches a corner of the domain; its ends often lie on edges and vertices, or outside.
+[[nodiscard]] std::pair<Spot, Spot> nasty_line(std::mt19937_64& random, const Tin& tin);
 
 }  // namespace ptin::reference

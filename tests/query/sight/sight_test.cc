@@ -266,7 +266,13 @@ RC_GTEST_PROP(Sight, ByStarsAtALevelAgreesWithSplits, (std::uint64_t seed)) {
   for (int i = 0; i < 20; ++i) {
     SightCase asked = random_question(random, t);
     asked.request.wavelength = random() % 3 == 0 ? 1.0 : 0.0;
-    asked.request.detail.tolerance = static_cast<double>(random() % 8);
+    if (random() % 2 == 0) {
+      asked.request.detail.tolerance = static_cast<double>(random() % 8);
+    } else {
+      const StoreFile& store = t.terrain->store();
+      asked.request.detail.vertices =
+          store.t0().vertices.size() + random() % (store.record_count() + 2);
+    }
     const SightResult stars = sight(*t.terrain, asked.pair, asked.request);
     const SightResult splits = by_splits(*t.terrain, asked.pair, asked.request);
     RC_ASSERT(stars.state_a == splits.state_a);
@@ -317,6 +323,65 @@ TEST_P(SightByBothWays, IsTheSame) {
   }
   EXPECT_GT(verdicts[static_cast<std::size_t>(SightVerdict::kVisible)], 50);
   EXPECT_GT(verdicts[static_cast<std::size_t>(SightVerdict::kHidden)], 50);
+}
+
+/// What answers at levels are worth: how wide intervals are, and how many answers are open.
+struct SightWorth {
+  double width = 0.0;
+  int finite = 0, undecided = 0;
+
+  void add(const SightResult& found, const SightResult& exact) {
+    if (found.verdict == SightVerdict::kUndecided) {
+      ++undecided;
+    } else {
+      ASSERT_EQ(found.verdict, exact.verdict);
+    }
+    if (std::isnan(found.clearance_min)) return;
+    ASSERT_LE(found.clearance_min, exact.clearance_min + 1e-9);
+    ASSERT_GE(found.clearance_max, exact.clearance_max - 1e-9);
+    if (std::isfinite(found.clearance_max)) {
+      width += found.clearance_max - found.clearance_min;
+      ++finite;
+    }
+  }
+};
+
+/// Stars tell more of a line at a level than splits do, and nothing that is wrong.
+TEST_P(SightByBothWays, AtALevelStarsTellMore) {
+  const Terrain& t = reference::built_terrain(GetParam());
+  const StoreFacts& f = t.store().facts();
+  SightSolver full(t, {}, 0);
+  for (const std::uint64_t vertices : {600, 3000, 9001}) {
+    SightRequest request;
+    request.detail.vertices = vertices;
+    SightSolver by_stars(t, request, 0);
+    request.by = AnswerBy::kSplits;
+    SightSolver by_splits(t, request, 0);
+    std::mt19937_64 random(vertices);
+    SightWorth stars;
+    SightWorth splits;
+    for (int i = 0; i < 150; ++i) {
+      const auto place = [&] {
+        const auto at = [&](std::int32_t low, std::int32_t high) {
+          const double v = std::uniform_real_distribution<double>(low, high)(random);
+          return i % 2 == 0 ? v : std::round(v);
+        };
+        const double x = at(f.bounds.min_x, f.bounds.max_x);
+        return f.map.to_map(x, at(f.bounds.min_y, f.bounds.max_y));
+      };
+      const MapPoint a = place();
+      const SightPair pair{a, static_cast<double>(i % 4 * 20), place(), 30.0};
+      const SightResult exact = full.solve(pair);
+      stars.add(by_stars.solve(pair), exact);
+      splits.add(by_splits.solve(pair), exact);
+      if (HasFatalFailure()) return;
+    }
+    EXPECT_LE(stars.undecided, splits.undecided) << vertices;
+    EXPECT_GE(stars.finite, splits.finite) << vertices;
+    // Where there are voids splits have no bound for most lines that have wide ones.
+    const double most = f.free_of_voids ? 1.0 : 3.0;
+    EXPECT_LE(stars.width / stars.finite, most * splits.width / splits.finite) << vertices;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Terrains, SightByBothWays,
