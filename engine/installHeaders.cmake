@@ -101,10 +101,12 @@ set(public_headers
     engine/query/walk/point_state.h
     engine/stop.h
     storage/attributes.h
+    storage/coarsest_tin.h
     storage/file/announcer.h
     storage/file/file_layer.h
     storage/file/file_questions.h
     storage/file/io_counters.h
+    storage/file/replaced_file.h
     storage/file/sigbus_guard.h
     storage/index.h
     storage/index_shape.h
@@ -116,6 +118,7 @@ set(public_headers
     storage/record.h
     storage/spatialindex_rtree.h
     storage/star.h
+    storage/store_facts.h
     storage/store_file.h
     storage/store_writer.h
     storage/verify.h)

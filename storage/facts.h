@@ -4,7 +4,7 @@
 #pragma once
 
 #include "storage/layout.h"
-#include "storage/store_file.h"
+#include "storage/store_facts.h"
 
 namespace ptin {
 

@@ -20,7 +20,8 @@ namespace {
 
 class StoreFileImpl final : public StoreFile {
  public:
-  StoreFileImpl(const std::string& path, PageAccess access, std::shared_ptr<Announcer> announcer);
+  StoreFileImpl(const std::string& path, PageAccess access, std::shared_ptr<Announcer> announcer,
+                ReplacedFile replaced);
 
   [[nodiscard]] const std::string& path() const noexcept override { return file_.path(); }
   [[nodiscard]] const StoreFacts& facts() const noexcept override { return front_.facts; }
@@ -77,8 +78,8 @@ StoreFront opened_front(const ReadOnlyFile& file) {
 }
 
 StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access,
-                             std::shared_ptr<Announcer> announcer)
-    : file_(path, std::move(announcer)), front_(opened_front(file_)) {
+                             std::shared_ptr<Announcer> announcer, ReplacedFile replaced)
+    : file_(path, std::move(announcer), replaced), front_(opened_front(file_)) {
   const IndexNodes::Root place{front_.index, front_.index_offset, front_.root_checksum};
   if (access == PageAccess::kMapped) {
     mapping_.emplace(file_);
@@ -187,16 +188,10 @@ std::uint32_t StoreFileImpl::read_living(PageId id, const StarFilter& filter, Li
 
 }  // namespace
 
-bool has_void(const CoarsestTin& t0) noexcept {
-  return std::any_of(t0.triangles.begin(), t0.triangles.end(),
-                     [](const CoarsestTin::T& t) { return t.is_void != 0; }) ||
-         std::any_of(t0.vertices.begin(), t0.vertices.end(),
-                     [](const CoarsestTin::V& v) { return v.has_height == 0; });
-}
-
 std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access,
-                                                 std::shared_ptr<Announcer> announcer) {
-  return std::make_shared<const StoreFileImpl>(path, access, std::move(announcer));
+                                                 std::shared_ptr<Announcer> announcer,
+                                                 ReplacedFile replaced) {
+  return std::make_shared<const StoreFileImpl>(path, access, std::move(announcer), replaced);
 }
 
 }  // namespace ptin

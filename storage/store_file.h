@@ -11,57 +11,18 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/geometry/affine.h"
-#include "engine/geometry/box.h"
-#include "engine/geometry/height.h"
+#include "storage/coarsest_tin.h"
 #include "storage/file/announcer.h"
+#include "storage/file/replaced_file.h"
 #include "storage/index.h"
 #include "storage/living_stars.h"
 #include "storage/page_store.h"
 #include "storage/star.h"
+#include "storage/store_facts.h"
 
 namespace ptin {
 
 class PackedRTree;
-
-/// Facts of fixed size that a query needs; kept in the header, in binary.
-struct StoreFacts {
-  AffineMap map;
-  HeightEncoding heights;
-  GridBox bounds;           ///< Of the whole domain, grid units.
-  double min_height = 0.0;  ///< Of all samples, height's unit; min > max when all is void.
-  double max_height = 0.0;
-  /// Error of the file's finest TIN against its source, in the height's unit: what --max-error left
-  /// out, and the rounding of heights.
-  double base_error = 0.0;
-  double base_deviation = 0.0;
-  std::uint64_t source_samples = 0;  ///< Samples with a height in the source.
-  /// No triangle of the source's TIN, or of any coarser one, is void, and every vertex has a
-  /// height. False where that is not known.
-  bool free_of_voids = false;
-  std::uint32_t page_bytes = 4096;
-  friend bool operator==(const StoreFacts&, const StoreFacts&) = default;
-};
-
-/// T0: the coarsest TIN, as stored. Triangle corners are indices into `vertices`,
-/// counter-clockwise.
-struct CoarsestTin {
-  struct V {
-    GridPoint position;
-    HeightBits height;
-    std::uint32_t has_height;  ///< 0 or 1.
-  };
-  struct T {
-    std::uint32_t v[3];
-    std::uint32_t is_void;   ///< 0 or 1.
-    float death = kLivesOn;  ///< As RingCorner::death.
-  };
-  std::vector<V> vertices;
-  std::vector<T> triangles;
-};
-
-/// True when a triangle of T0 is void or a vertex of T0 has no height.
-[[nodiscard]] bool has_void(const CoarsestTin& t0) noexcept;
 
 /// One bin of the table of errors: the records with error in (previous upper, upper]. Bins ascend,
 /// and each is an eighth of an octave wide. The first has upper 0 and holds records of error
@@ -93,7 +54,8 @@ class StoreFile {
   ///               is no regular file, or a stream
   static std::shared_ptr<const StoreFile> open(const std::string& path,
                                                PageAccess access = PageAccess::kMapped,
-                                               std::shared_ptr<Announcer> announcer = nullptr);
+                                               std::shared_ptr<Announcer> announcer = nullptr,
+                                               ReplacedFile replaced = ReplacedFile::kRefused);
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
   virtual ~StoreFile() = default;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <span>
 
 #include "engine/error.h"
@@ -233,34 +232,6 @@ const char* name_of(SectionKind kind) noexcept {
       return "pages";
   }
   return "unknown";
-}
-
-const char* fault_in(const CoarsestTin& t0, const StoreFacts& facts) noexcept {
-  for (const CoarsestTin::V& v : t0.vertices) {
-    if (!contains(facts.bounds, v.position)) {
-      return "a vertex of T0 lies outside of the bounds";
-    }
-    if (v.has_height > 1 || (v.has_height == 1 && !std::isfinite(facts.heights.code(v.height)))) {
-      return "a vertex of T0 has a height that is no number";
-    }
-  }
-  for (const CoarsestTin::T& t : t0.triangles) {
-    for (int i = 0; i < 3; ++i) {
-      if (t.v[i] >= t0.vertices.size() || t.v[i] == t.v[i == 2 ? 0 : i + 1]) {
-        return "a triangle of T0 has a corner that is no vertex, or has one twice";
-      }
-      if (t.is_void == 0 && t0.vertices[t.v[i]].has_height == 0) {
-        return "a surface triangle of T0 has a corner without a height";
-      }
-    }
-    if (std::isnan(t.death)) {
-      return "a triangle of T0 dies at an error that is no number";
-    }
-    if (t.is_void > 1) {
-      return "a triangle of T0 is neither surface (0) nor void (1)";
-    }
-  }
-  return nullptr;
 }
 
 StoreFront read_front(const ReadOnlyFile& file) {

@@ -35,11 +35,6 @@ struct StoreFront {
 /// @throws Error corruption, unsupported_version, io_error
 [[nodiscard]] StoreFront read_front(const ReadOnlyFile& file);
 
-/// What is wrong with a T0, as a sentence; null when nothing is. A sound T0 has vertices within the
-/// bounds, finite heights, triangles whose corners are vertices and different, and no surface
-/// triangle with a corner without a height.
-[[nodiscard]] const char* fault_in(const CoarsestTin& t0, const StoreFacts& facts) noexcept;
-
 /// The name of a section as `ptin info` shows it: "metadata", "t0 vertices", ..., "unknown".
 [[nodiscard]] const char* name_of(layout::SectionKind kind) noexcept;
 

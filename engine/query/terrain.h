@@ -80,8 +80,9 @@ class Terrain : public OpenedTerrain {
   /// Opens the file at `path`.
   /// @throws Error as StoreFile::open; corruption when the stored T0 is not a valid TIN
   [[nodiscard]] static Terrain open(const std::string& path,
-                                    PageAccess access = PageAccess::kMapped) {
-    return Terrain(path, access);
+                                    PageAccess access = PageAccess::kMapped,
+                                    ReplacedFile replaced = ReplacedFile::kRefused) {
+    return Terrain(path, access, replaced);
   }
 
   /// The TIN at a level of detail, over the whole domain or in a region.

@@ -12,6 +12,7 @@
 #include <boost/interprocess/file_mapping.hpp>
 
 #include "storage/file/announcer.h"
+#include "storage/file/replaced_file.h"
 
 namespace ptin {
 
@@ -21,7 +22,8 @@ class ReadOnlyFile {
  public:
   /// @param announcer  Is told what is read next; null: the kernel is.
   /// @throws Error not_found, io_error, invalid_argument (no regular file)
-  explicit ReadOnlyFile(const std::string& path, std::shared_ptr<Announcer> announcer = nullptr);
+  explicit ReadOnlyFile(const std::string& path, std::shared_ptr<Announcer> announcer = nullptr,
+                        ReplacedFile replaced = ReplacedFile::kRefused);
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return seen_.bytes; }
@@ -39,7 +41,9 @@ class ReadOnlyFile {
   void will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept;
 
   /// Compares size, modification time and change time of the file with those at opening. A change
-  /// that keeps all three is not seen, such as a write through a mapping that was made before.
+  /// that keeps all three is not seen, such as a write through a mapping that was made before. The
+  /// change time, which a rename and new rights change as well, is not looked at where a file that
+  /// was replaced answers on.
   /// @throws Error corruption  one of them differs; io_error
   void check_unchanged() const;
 
@@ -55,6 +59,7 @@ class ReadOnlyFile {
   boost::interprocess::file_mapping file_;
   Seen seen_{};
   std::shared_ptr<Announcer> announcer_;
+  ReplacedFile replaced_;
 };
 
 }  // namespace ptin

@@ -268,6 +268,26 @@ TEST_P(ReplacedStore, IsNoticedByReads) {
   }
 }
 
+/// A file that lost its name, and one that was written to.
+TEST_P(ReplacedStore, IsAnsweredFromWhereThatIsWanted) {
+  install_sigbus_guard();
+  for (const FileChange& change : changes()) {
+    SCOPED_TRACE(change.name);
+    const std::string name = change.name;
+    const bool keeps_bytes = name == "Replaced" || name == "ReplacedByACopy" || name == "Removed";
+    for (const PageAccess access : {PageAccess::kMapped, PageAccess::kPread}) {
+      const TemporaryStore file(terrain_of(1));
+      const TemporaryStore other(terrain_of(2));
+      const auto store = StoreFile::open(file.path, access, nullptr, ReplacedFile::kAnswers);
+      const Terrain terrain(store);
+      const Asking ask = GetParam().prepare(terrain, store);
+      change.make(file.path, other.path);
+      const std::optional<Error> error = error_of(ask);
+      EXPECT_EQ(!error, keeps_bytes) << (error ? error->what() : "an answer");
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Question, ReplacedStore, ::testing::ValuesIn(questions()),
                          [](const auto& question) { return std::string(question.param.name); });
 

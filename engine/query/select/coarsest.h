@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/mesh/tin.h"
-#include "storage/store_file.h"
+#include "storage/coarsest_tin.h"
 
 namespace ptin {
 

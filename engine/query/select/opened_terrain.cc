@@ -7,8 +7,8 @@
 
 namespace ptin {
 
-OpenedTerrain::OpenedTerrain(const std::string& path, PageAccess access)
-    : OpenedTerrain(StoreFile::open(path, access)) {}
+OpenedTerrain::OpenedTerrain(const std::string& path, PageAccess access, ReplacedFile replaced)
+    : OpenedTerrain(StoreFile::open(path, access, nullptr, replaced)) {}
 
 OpenedTerrain::OpenedTerrain(std::shared_ptr<const StoreFile> store)
     : store_(std::move(store)),

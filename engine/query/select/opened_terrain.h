@@ -20,7 +20,8 @@ namespace ptin {
 class OpenedTerrain {
  public:
   /// @throws Error as StoreFile::open; corruption when the stored T0 is not a valid TIN
-  explicit OpenedTerrain(const std::string& path, PageAccess access = PageAccess::kMapped);
+  explicit OpenedTerrain(const std::string& path, PageAccess access = PageAccess::kMapped,
+                         ReplacedFile replaced = ReplacedFile::kRefused);
   /// @throws Error corruption when the stored T0 is not a valid TIN
   explicit OpenedTerrain(std::shared_ptr<const StoreFile> store);
 

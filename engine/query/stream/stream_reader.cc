@@ -12,9 +12,9 @@
 #include "engine/query/refine/split_site.h"
 #include "engine/query/select/coarsest.h"
 #include "engine/stop.h"
+#include "storage/coarsest_tin.h"
 #include "storage/facts.h"
 #include "storage/metadata_text.h"
-#include "storage/store_front.h"
 
 namespace ptin {
 

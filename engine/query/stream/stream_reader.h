@@ -16,7 +16,7 @@
 #include "engine/query/select/query_limits.h"
 #include "engine/query/stream/split_code.h"
 #include "engine/query/stream/stream_format.h"
-#include "storage/store_file.h"
+#include "storage/store_facts.h"
 
 namespace ptin {
 

@@ -124,13 +124,13 @@ class Writer {
     const Tin base = base_mesh();
     std::vector<PendingSplit> splits = missing_splits(base);
     store_.pages().check_unchanged();
-    summary_.splits = splits.size();
     summary_.base_vertices = base.vertices.size();
     send_head();
     send_start(base, splits);
     if (request_.held.empty()) {
       send_t0(base);
     }
+    summary_.certificate = certificate_from(splits, 0);
     GrowingMesh mesh(base, splits.size());
     Levels levels(base, splits.size());
     for (std::size_t at = 0; at < splits.size();) {
@@ -139,12 +139,13 @@ class Writer {
       const std::size_t count =
           std::min<std::uint64_t>(splits.size() - at, std::clamp(share, kLeastSplits, kMostSplits));
       const Certificate left = certificate_from(splits, at + count);
-      send_splits(std::span(splits).subspan(at, count), left, mesh, levels);
+      if (!send_splits(std::span(splits).subspan(at, count), left, mesh, levels)) break;
+      summary_.certificate = left;
       at += count;
+      summary_.splits = at;
     }
-    summary_.certificate = certificate_from(splits, splits.size());
-    send_end(mesh.tin());
-    context_.cost.records_applied = splits.size();
+    if (!summary_.is_cut) send_end(mesh.tin());
+    context_.cost.records_applied = summary_.splits;
     summary_.cost = context_.cost;
     summary_.cost.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -156,6 +157,9 @@ class Writer {
   [[nodiscard]] std::vector<PendingSplit> missing_splits(const Tin& base);
   [[nodiscard]] Certificate certificate_from(std::span<const PendingSplit> splits,
                                              std::size_t next) const;
+  [[nodiscard]] std::vector<PendingSplit> first_of(const AttributePredicate& predicate,
+                                                   std::uint64_t most, std::uint64_t held,
+                                                   std::uint64_t fixed_bytes, std::uint64_t meshes);
   void send(std::span<const std::byte> bytes) {
     sink_(bytes);
     summary_.bytes += bytes.size();
@@ -164,7 +168,8 @@ class Writer {
   void send_head();
   void send_start(const Tin& base, std::span<const PendingSplit> splits);
   void send_t0(const Tin& base);
-  void send_splits(std::span<PendingSplit> splits, const Certificate& left, GrowingMesh& mesh,
+  /// @return False where the frame would go beyond the bytes of the request: it is not sent.
+  bool send_splits(std::span<PendingSplit> splits, const Certificate& left, GrowingMesh& mesh,
                    Levels& levels);
   void code_level(std::span<const PendingSplit> splits, RangeEncoder& coder, GrowingMesh& mesh);
   void send_end(const Tin& tin);
@@ -225,8 +230,11 @@ Tin Writer::base_mesh() {
   Refinement refinement(terrain_.t0());
   for (const StreamHeld& held : request_.held) {
     const PredicatePtr predicate = held.predicate ? held.predicate : everything();
+    const std::uint64_t fixed = refinement_bytes(refinement.tin().vertices.size());
+    // Of the first records of the predicate those that earlier servings brought are dropped: at
+    // most as many as they brought.
     std::vector<PendingSplit> splits =
-        retrieve(source_, *predicate, refinement_bytes(refinement.tin().vertices.size()), context_);
+        first_of(*predicate, held.splits, refinement.tin().vertices.size(), fixed, 1);
     // Before cutting, since a serving counts the splits that it sent, without those that the
     // receiver had by then.
     std::erase_if(splits, [&](const PendingSplit& s) { return refinement.find(s.u) != kNone; });
@@ -240,17 +248,37 @@ Tin Writer::base_mesh() {
   return stream::numbered_by_key(refinement.tin());
 }
 
+/// The records for which a predicate is true: all, or where few are wanted at least the first
+/// `most` that `held` ones do not have. Notes the largest error that is left out.
+/// @param meshes  Of the records, that the query will hold.
+std::vector<PendingSplit> Writer::first_of(const AttributePredicate& predicate, std::uint64_t most,
+                                           std::uint64_t held, std::uint64_t fixed_bytes,
+                                           std::uint64_t meshes) {
+  left_out_ = -1.0;
+  const std::uint64_t all = store_.record_count();
+  if (most >= all - std::min(all, held)) {
+    std::vector<PageId> pages;
+    source_.index.search(predicate, pages, context_.cost.io);
+    context_.check_stop();
+    context_.admit(fixed_bytes + meshes * refinement_bytes(most_records(store_, pages)));
+    std::vector<PendingSplit> splits;
+    read_pages(store_, pages, predicate, context_, splits);
+    return splits;
+  }
+  const std::uint64_t wanted = most + held;
+  const std::uint64_t beside = fixed_bytes + (meshes - 1) * refinement_bytes(wanted);
+  FirstRecords first = first_records(source_, predicate, Growth{wanted}, beside, context_);
+  left_out_ = first.largest_error_left;
+  return std::move(first.splits);
+}
+
 /// The records that are wanted and not held, in the total order. They are closed together with
 /// those that are held, and so is any first part of them.
 std::vector<PendingSplit> Writer::missing_splits(const Tin& base) {
   const PredicatePtr wanted = request_.wanted ? request_.wanted : everything();
   const std::uint64_t base_bytes = 2 * refinement_bytes(base.vertices.size());
-  std::vector<PageId> pages;
-  source_.index.search(*wanted, pages, context_.cost.io);
-  context_.check_stop();
-  context_.admit(base_bytes + 2 * refinement_bytes(most_records(store_, pages)));
-  std::vector<PendingSplit> splits;
-  read_pages(store_, pages, *wanted, context_, splits);
+  std::vector<PendingSplit> splits =
+      first_of(*wanted, request_.most_splits, base.vertices.size(), base_bytes, 2);
   if (!request_.held.empty()) {
     KeyTable held(base.vertices.size());
     for (VertexId v = 0; v < base.vertices.size(); ++v) {
@@ -261,7 +289,7 @@ std::vector<PendingSplit> Writer::missing_splits(const Tin& base) {
   }
   std::sort(splits.begin(), splits.end(), is_before);
   if (request_.most_splits < splits.size()) {
-    left_out_ = splits[request_.most_splits].error;
+    left_out_ = std::max<double>(left_out_, splits[request_.most_splits].error);
     splits.resize(request_.most_splits);
   }
   return splits;
@@ -344,7 +372,7 @@ void Writer::send_t0(const Tin& base) {
 
 /// Sends one frame. Within it splits come level by level, and in a level by the number of w: an
 /// order costs bits only where it says something.
-void Writer::send_splits(std::span<PendingSplit> splits, const Certificate& left, GrowingMesh& mesh,
+bool Writer::send_splits(std::span<PendingSplit> splits, const Certificate& left, GrowingMesh& mesh,
                          Levels& levels) {
   sort_by_rank(splits);
   const std::vector<std::uint32_t> level = levels.of(splits, context_);
@@ -367,8 +395,12 @@ void Writer::send_splits(std::span<PendingSplit> splits, const Certificate& left
       (splits.size() + stream::kMostSplitsPerByte - 1) / stream::kMostSplitsPerByte;
   payload.resize(std::max(payload.size(), before + least), std::byte{0});
   const std::uint64_t bytes = summary_.bytes;
+  const std::uint64_t whole = bytes + sizeof(stream::FrameHead) + payload.size();
+  summary_.is_cut = whole > request_.most_bytes && summary_.split_bytes > 0;
+  if (summary_.is_cut) return false;
   send_frame(stream::FrameKind::kSplits, payload);
   summary_.split_bytes += summary_.bytes - bytes;
+  return true;
 }
 
 void Writer::code_level(std::span<const PendingSplit> splits, RangeEncoder& coder,

@@ -42,6 +42,9 @@ struct StreamRequest {
   std::vector<StreamHeld> held;
   /// Most splits to send; the most important ones are sent.
   std::uint64_t most_splits = std::numeric_limits<std::uint64_t>::max();
+  /// Most bytes: the stream is cut behind the last frame that ends within them, and has no end. T0
+  /// and one frame of splits are sent whatever they take, so that every stream brings something.
+  std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
   /// Text for the receiver (JSON: CRS, units, what was asked); at most 1 MiB.
   std::string metadata;
   QueryLimits limits;
@@ -52,6 +55,7 @@ struct StreamSummary {
   std::uint64_t splits = 0;         ///< Sent.
   std::uint64_t frames = 0;
   std::uint64_t bytes = 0;
+  bool is_cut = false;            ///< At StreamRequest::most_bytes.
   std::uint64_t split_bytes = 0;  ///< Of `bytes`, those of frames of splits, heads included.
   Certificate certificate;        ///< Once all is received, in the region asked for.
   QueryCost cost;
@@ -68,7 +72,8 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 /// @throws Error invalid_argument, resource_exhausted (before a page is read), corruption,
 /// io_error, cancelled; what `sink` throws
 /// Cost: O(|T0| + h + k log k) time for k splits sent and h held; memory for two meshes of h + k
-/// vertices, known beforehand.
+/// vertices, known beforehand. With `most_splits`, and of servings that were cut, pages are read
+/// about as far down in errors as their splits are (first_records(), select/total_order.h).
 StreamSummary write_stream(const OpenedTerrain& terrain, const StreamRequest& request,
                            const ByteSink& sink);
 
