@@ -58,6 +58,7 @@ TEST(RoundTicks, HaveTheDecimalsThatTheirStepNeeds) {
   EXPECT_EQ(tick_text(0.30000000000000004, 0.1), "0.3");
   EXPECT_EQ(tick_text(-1e-17, 0.1), "0.0");
   EXPECT_EQ(tick_text(2500, 500), "2500");
+  EXPECT_EQ(tick_text(-26690000000.05, 0.05), "-26690000000.05");
   EXPECT_EQ(tick_text(0.025, 0.005), "0.025");
 }
 

@@ -105,14 +105,14 @@ void describe_buffers(nlohmann::json& json, const std::vector<Vec3f>& points, st
   json["buffers"] = {{{"byteLength", 2 * bytes + index_bytes}}};
 }
 
-void write_chunk_header(OutputFile& out, std::uint64_t bytes, std::uint32_t type) {
+void write_chunk_header(ByteSink& out, std::uint64_t bytes, std::uint32_t type) {
   out.write_value(static_cast<std::uint32_t>(bytes));
   out.write_value(type);
 }
 
 }  // namespace
 
-void write_glb(const Mesh& mesh, OutputFile& out) {
+void write_glb(const Mesh& mesh, ByteSink& out) {
   const LocalFrame frame = frame_of(mesh);
   std::vector<Vec3f> points;
   points.reserve(mesh.vertices.size());

@@ -5,6 +5,7 @@
 
 #include "engine/error.h"
 #include "tools/output/file_name.h"
+#include "tools/output/output_file.h"
 
 namespace ptin::tools {
 

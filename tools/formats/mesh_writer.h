@@ -10,15 +10,15 @@
 
 #include "tools/formats/mesh.h"
 #include "tools/formats/mesh_stream.h"
-#include "tools/output/output_file.h"
+#include "tools/output/byte_sink.h"
 
 namespace ptin::tools {
 
 /// A mesh format: its extension and how to write it.
 struct MeshFormat {
-  std::string_view extension;                        ///< Lower case, without the dot.
-  std::string_view description;                      ///< For --help and error messages.
-  void (*write)(const Mesh& mesh, OutputFile& out);  ///< Null where there is `make`.
+  std::string_view extension;                      ///< Lower case, without the dot.
+  std::string_view description;                    ///< For --help and error messages.
+  void (*write)(const Mesh& mesh, ByteSink& out);  ///< Null where there is `make`.
   /// Of a format that is written piece by piece; else null.
   std::unique_ptr<MeshStream> (*make)(const MeshStreamTarget& target);
 };
@@ -36,9 +36,9 @@ struct MeshFormat {
 void write_mesh(const Mesh& mesh, const std::string& path, bool overwrite);
 
 // The writers of whole meshes. Each documents its own conventions.
-void write_ply(const Mesh& mesh, OutputFile& out);
-void write_obj(const Mesh& mesh, OutputFile& out);
-void write_2dm(const Mesh& mesh, OutputFile& out);
-void write_glb(const Mesh& mesh, OutputFile& out);
+void write_ply(const Mesh& mesh, ByteSink& out);
+void write_obj(const Mesh& mesh, ByteSink& out);
+void write_2dm(const Mesh& mesh, ByteSink& out);
+void write_glb(const Mesh& mesh, ByteSink& out);
 
 }  // namespace ptin::tools

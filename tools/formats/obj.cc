@@ -7,7 +7,7 @@
 
 namespace ptin::tools {
 
-void write_obj(const Mesh& mesh, OutputFile& out) {
+void write_obj(const Mesh& mesh, ByteSink& out) {
   std::string line = "# written by ptin; x east, y north, z up\n";
   if (!mesh.crs.horizontal_text().empty()) line += "# crs: " + mesh.crs.horizontal_text() + "\n";
   if (!mesh.crs.vertical_text().empty())

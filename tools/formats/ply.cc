@@ -28,7 +28,7 @@ std::string header_of(const Mesh& mesh) {
 
 }  // namespace
 
-void write_ply(const Mesh& mesh, OutputFile& out) {
+void write_ply(const Mesh& mesh, ByteSink& out) {
   if (mesh.vertices.size() > INT32_MAX) {
     throw Error(ErrorCode::invalid_argument,
                 "PLY holds at most 2^31 - 1 vertices; ask for a window or an error");

@@ -7,7 +7,7 @@
 
 namespace ptin::tools {
 
-void write_2dm(const Mesh& mesh, OutputFile& out) {
+void write_2dm(const Mesh& mesh, ByteSink& out) {
   out.write("MESH2D\n");
   std::string line;
   std::uint64_t id = 0;

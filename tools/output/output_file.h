@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "storage/file/file_layer.h"
+#include "tools/output/byte_sink.h"
 #include "tools/output/temporary_path.h"
 
 namespace ptin::tools {
@@ -40,26 +41,16 @@ void move_into_place(const std::string& from, const std::string& to, bool overwr
 
 /// Writes a file beside the target under a temporary name; publish() syncs and renames it.
 /// Destroyed without publish(), it removes what it wrote: the target's name never shows a part.
-class OutputFile {
+class OutputFile : public ByteSink {
  public:
   /// @throws Error  as check_output; io_error when the folder is not writable
   OutputFile(std::string path, bool overwrite, FileLayer& files = FileLayer::system());
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
-  ~OutputFile();
+  ~OutputFile() override;
 
-  /// Appends; buffered.  @throws Error resource_exhausted (disk full), io_error
-  void write(const void* data, std::size_t bytes);
-  void write(std::string_view text) { write(text.data(), text.size()); }
-  /// Appends the bytes of a trivially copyable value, as this (little-endian) machine holds them.
-  template <typename T>
-  void write_value(const T& value) {
-    write(&value, sizeof value);
-  }
-
-  /// Writes over bytes that were written before: a header whose counts are known at the end.
-  /// @throws Error as write
-  void replace(std::uint64_t offset, std::string_view bytes);
+  using ByteSink::write;
+  /// Appends; buffered.
+  void write(const void* data, std::size_t bytes) override;
+  void replace(std::uint64_t offset, std::string_view bytes) override;
 
   /// Makes the file appear under its name. With `overwrite` the companions of the file that it
   /// replaces are removed first (tools/output/companion_files.h).

@@ -48,7 +48,7 @@ std::string tick_text(double value, double step) {
   const double decimals = std::max(0.0, std::ceil(-std::log10(step) - 1e-9));
   const double shown = std::abs(value) < step / 2 ? 0.0 : value;
   if (std::abs(value) >= 1e9 || decimals > 9) {
-    std::snprintf(text.data(), text.size(), "%.12g", shown);
+    std::snprintf(text.data(), text.size(), "%.14g", shown);
   } else {
     std::snprintf(text.data(), text.size(), "%.*f", static_cast<int>(decimals), shown);
   }

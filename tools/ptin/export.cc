@@ -19,11 +19,11 @@
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
 #include "tools/ptin/export_report.h"
-#include "tools/ptin/mesh_crs.h"
 #include "tools/ptin/pixel_content.h"
 #include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
 #include "tools/ptin/source_counts.h"
+#include "tools/region/mesh_crs.h"
 
 namespace ptin::tools {
 

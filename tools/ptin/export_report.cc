@@ -6,7 +6,7 @@
 #include "engine/crs/crs_facts.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
-#include "tools/ptin/mesh_crs.h"
+#include "tools/region/mesh_crs.h"
 
 namespace ptin::tools {
 

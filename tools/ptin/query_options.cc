@@ -75,17 +75,6 @@ void add_region_options(CLI::App& app, RegionOptions& options, RegionKinds kinds
       ->excludes(polygon);
 }
 
-Window window_of(const std::vector<double>& numbers, const std::string& option) {
-  check_finite(numbers, option);
-  if (numbers[0] > numbers[2] || numbers[1] > numbers[3]) {
-    throw Error(ErrorCode::invalid_argument,
-                "the window is inverted; its order is XMIN YMIN XMAX YMAX with XMIN <= XMAX and "
-                "YMIN <= YMAX",
-                option);
-  }
-  return {numbers[0], numbers[1], numbers[2], numbers[3]};
-}
-
 std::optional<Region> region_of(const RegionOptions& options, const StoreFacts& facts,
                                 const std::string& crs_wkt) {
   std::optional<Region> region;

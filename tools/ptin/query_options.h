@@ -14,6 +14,7 @@
 
 #include "engine/query/terrain.h"
 #include "tools/ptin/command.h"
+#include "tools/region/on_terrain.h"
 
 namespace ptin::tools {
 
@@ -40,10 +41,6 @@ enum class RegionKinds : std::uint8_t { kWindow, kWithInside, kAll };
 /// @param kinds  A window alone, a window or a polygon, or a point too.
 void add_region_options(CLI::App& app, RegionOptions& options,
                         RegionKinds kinds = RegionKinds::kAll);
-/// The window of four numbers.
-/// @param option  Gave the numbers; named in errors.
-/// @throws Error invalid_argument  a number is not finite, or the window is inverted
-[[nodiscard]] Window window_of(const std::vector<double>& numbers, const std::string& option);
 /// The region that was asked for, which meets the box of the terrain's samples.
 /// @throws Error as window_of, read_polygon and check_on_terrain
 [[nodiscard]] std::optional<Region> region_of(const RegionOptions& options, const StoreFacts& facts,

@@ -11,9 +11,10 @@
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
 #include "tools/formats/mesh_writer.h"
-#include "tools/ptin/mesh_crs.h"
+#include "tools/output/output_file.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/cut.h"
+#include "tools/region/mesh_crs.h"
 #include "tools/region/tin_mesh.h"
 
 namespace ptin::tools {

@@ -15,7 +15,7 @@
 #include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/query_options.h"
-#include "tools/ptin/stream_request.h"
+#include "tools/region/serving.h"
 
 namespace ptin::tools {
 
@@ -43,22 +43,6 @@ void check_options(const StreamOptions& options, const Context& context) {
     throw Error(ErrorCode::invalid_argument,
                 "a stream is binary: redirect stdout, or give the stream a file name");
   }
-}
-
-/// The metadata of the stream: CRS and units for the receiver, what keeps the border of voids in
-/// place, and what was asked for, so that the receiver can say what it has.
-std::string metadata_for(const StoreFile& store, const Serving& wanted) {
-  const nlohmann::json all = metadata_of(store);
-  nlohmann::json metadata = {{"request", to_json(wanted)}};
-  for (const char* name : {"crs", "crs_wkt", "units"}) {
-    if (const auto it = all.find(name); it != all.end()) metadata[name] = *it;
-  }
-  metadata["free_of_voids"] = store.facts().free_of_voids;
-  const nlohmann::json options = all.value("options", nlohmann::json::object());
-  if (const auto it = options.find("void_slope"); it != options.end()) {
-    metadata["options"] = {{"void_slope", *it}};
-  }
-  return metadata.dump();
 }
 
 std::vector<StreamHeld> held_of(const StreamOptions& options, const StoreFacts& facts) {
@@ -116,7 +100,7 @@ int run_stream(const StreamOptions& options, const Context& context) {
   request.tolerance = options.wanted.error;
   request.held = held_of(options, store.facts());
   if (options.wanted.splits) request.most_splits = *options.wanted.splits;
-  request.metadata = metadata_for(store, options.wanted);
+  request.metadata = metadata_of_stream(store, options.wanted);
   request.limits = limits_of(options.memory, context);
   const StreamSummary summary = send(options, terrain, request);
   if (context.json) {

@@ -18,10 +18,10 @@
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
 #include "tools/formats/mesh_writer.h"
-#include "tools/ptin/mesh_crs.h"
 #include "tools/ptin/query_options.h"
 #include "tools/ptin/stream_isolines.h"
-#include "tools/ptin/stream_request.h"
+#include "tools/region/mesh_crs.h"
+#include "tools/region/serving.h"
 #include "tools/region/tin_mesh.h"
 
 namespace ptin::tools {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/region/on_terrain.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,19 @@ void check_on_terrain(const Region& region, const StoreFacts& facts, const std::
               "this misses the terrain, which has " + bounds_text(facts) +
                   (exchanged ? "; with x and y exchanged it would not: give x before y" : ""),
               option);
+}
+
+Window window_of(const std::vector<double>& numbers, const std::string& option) {
+  for (const double number : numbers) {
+    if (!std::isfinite(number)) refuse("a region's coordinates must be finite numbers", option);
+  }
+  if (numbers[0] > numbers[2] || numbers[1] > numbers[3]) {
+    throw Error(ErrorCode::invalid_argument,
+                "the window is inverted; its order is XMIN YMIN XMAX YMAX with XMIN <= XMAX and "
+                "YMIN <= YMAX",
+                option);
+  }
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
 }  // namespace ptin::tools

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "engine/query/terrain.h"
 
@@ -16,5 +17,10 @@ namespace ptin::tools {
 ///                                 them if x and y changed places; as GridRegion
 /// Cost: linear in the region's corners.
 void check_on_terrain(const Region& region, const StoreFacts& facts, const std::string& option);
+
+/// The window of four numbers.
+/// @param option  Gave the numbers; named in errors.
+/// @throws Error invalid_argument  a number is not finite, or the window is inverted
+[[nodiscard]] Window window_of(const std::vector<double>& numbers, const std::string& option);
 
 }  // namespace ptin::tools

@@ -25,6 +25,10 @@ constexpr std::size_t kLongestWord = 64;
 /// What may follow the word of a geometry, without blanks.
 constexpr std::array kAfterWord = {"(", "Z(", "M(", "ZM(", "EMPTY", "ZEMPTY", "MEMPTY", "ZMEMPTY"};
 
+constexpr std::array<std::string_view, 7> kShapes = {
+    "POINT",           "LINESTRING",   "POLYGON",           "MULTIPOINT",
+    "MULTILINESTRING", "MULTIPOLYGON", "GEOMETRYCOLLECTION"};
+
 /// False when nothing of this name is there. A name too long for a file names none.
 bool exists(const std::string& path) {
   std::error_code fault;
@@ -68,6 +72,33 @@ std::string first_bytes(std::ifstream& in) {
   return start;
 }
 
+/// "POINTZ(" as "POINT Z(": the standard has both, and OGR reads the blank alone.
+std::string with_blanks(const std::string& wkt) {
+  std::string text;
+  for (std::size_t i = 0; i < wkt.size();) {
+    std::size_t end = i;
+    std::string word;
+    for (; end < wkt.size() && std::isalpha(static_cast<unsigned char>(wkt[end])) != 0; ++end) {
+      word += static_cast<char>(std::toupper(static_cast<unsigned char>(wkt[end])));
+    }
+    if (end == i) {
+      text += wkt[i++];
+      continue;
+    }
+    const auto splits = [&](std::string_view mark) {
+      return word.ends_with(mark) &&
+             std::any_of(kShapes.begin(), kShapes.end(), [&](std::string_view shape) {
+               return word.size() == shape.size() + mark.size() && word.starts_with(shape);
+             });
+    };
+    const std::size_t mark = splits("ZM") ? 2 : splits("Z") || splits("M") ? 1 : 0;
+    text.append(wkt, i, end - i - mark);
+    if (mark > 0) text.append(" ").append(wkt, end - mark, mark);
+    i = end;
+  }
+  return text;
+}
+
 std::unique_ptr<OGRGeometry> wkt_or_refuse(const std::string& wkt, const std::string& example,
                                            const std::string& where) {
   std::unique_ptr<OGRGeometry> geometry = geometry_of_wkt(wkt);
@@ -78,10 +109,13 @@ std::unique_ptr<OGRGeometry> wkt_or_refuse(const std::string& wkt, const std::st
 }  // namespace
 
 std::unique_ptr<OGRGeometry> geometry_of_wkt(const std::string& text) {
+  const std::string spaced = with_blanks(text);
+  const char* rest = spaced.c_str();
   OGRGeometry* raw = nullptr;
-  const OGRErr status = OGRGeometryFactory::createFromWkt(text.c_str(), nullptr, &raw);
+  const OGRErr status = OGRGeometryFactory::createFromWkt(&rest, nullptr, &raw);
   std::unique_ptr<OGRGeometry> geometry(raw);
-  if (status != OGRERR_NONE) geometry.reset();
+  while (std::isspace(static_cast<unsigned char>(*rest)) != 0) ++rest;
+  if (status != OGRERR_NONE || *rest != '\0') geometry.reset();
   return geometry;
 }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ptin/mesh_crs.h"
+#include "tools/region/mesh_crs.h"
 
 #include <cmath>
 
 #include "engine/crs/ground.h"
-#include "tools/facts/human.h"
 #include "tools/formats/mesh_writer.h"
 #include "tools/formats/number_text.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What `ptin stream` is asked for: as options, as text that a receiver hands back, and as a
-// predicate.
+// What a stream is asked for: as text that a receiver hands back, as a predicate, and as what the
+// stream tells of itself.
 #pragma once
 
 #include <cstdint>
@@ -50,5 +50,9 @@ struct Serving {
 /// prints as `have`.
 /// @throws Error invalid_argument  not JSON, unknown names or other types
 [[nodiscard]] std::vector<Serving> servings_of(const std::string& text);
+
+/// The metadata of the stream: CRS and units for the receiver, what keeps the border of voids in
+/// place, and what was asked for, so that the receiver can say what it has.
+[[nodiscard]] std::string metadata_of_stream(const StoreFile& store, const Serving& wanted);
 
 }  // namespace ptin::tools

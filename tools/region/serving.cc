@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ptin/stream_request.h"
+#include "tools/region/serving.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "engine/query/terrain.h"
-#include "tools/ptin/query_options.h"
 #include "tools/region/on_terrain.h"
 
 namespace ptin::tools {
@@ -103,6 +103,20 @@ std::vector<Serving> servings_of(const std::string& text) {
   if (!json.is_array()) return {serving_of(json)};
   for (const nlohmann::json& one : json) servings.push_back(serving_of(one));
   return servings;
+}
+
+std::string metadata_of_stream(const StoreFile& store, const Serving& wanted) {
+  const nlohmann::json all = metadata_of(store);
+  nlohmann::json metadata = {{"request", to_json(wanted)}};
+  for (const char* name : {"crs", "crs_wkt", "units"}) {
+    if (const auto it = all.find(name); it != all.end()) metadata[name] = *it;
+  }
+  metadata["free_of_voids"] = store.facts().free_of_voids;
+  const nlohmann::json options = all.value("options", nlohmann::json::object());
+  if (const auto it = options.find("void_slope"); it != options.end()) {
+    metadata["options"] = {{"void_slope", *it}};
+  }
+  return metadata.dump();
 }
 
 }  // namespace ptin::tools
