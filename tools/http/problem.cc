@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/http/problem.h"
+
+#include <string>
+
+#include <boost/beast/http/status.hpp>
+#include <nlohmann/json.hpp>
+
+namespace ptin::http {
+
+std::string reason_of(unsigned status) {
+  const auto name = boost::beast::http::obsolete_reason(boost::beast::http::int_to_status(status));
+  return name == "<unknown-status>" ? "Unknown" : std::string(name);
+}
+
+Response Problem::response() const {
+  nlohmann::ordered_json json = {{"type", "about:blank"},
+                                 {"title", reason_of(status_)},
+                                 {"status", status_},
+                                 {"detail", detail_}};
+  if (!parameter_.empty()) json["parameter"] = parameter_;
+  if (!limit_.empty()) json["limit"] = limit_;
+  Response response;
+  response.status = status_;
+  response.content_type = "application/problem+json";
+  // What a client sent may be no UTF-8: such bytes are told as U+FFFD.
+  response.body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (retry_after_) response.add("Retry-After", std::to_string(*retry_after_));
+  if (!methods_.empty()) response.add("Allow", methods_);
+  if (whole_bytes_) response.add("Content-Range", "bytes */" + std::to_string(*whole_bytes_));
+  if (status_ == 401) response.add("WWW-Authenticate", "Bearer");
+  return response;
+}
+
+}  // namespace ptin::http

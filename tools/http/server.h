@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A server of HTTP/1.1: one thread for connections, several that compute, limits on everything a
+// client can do. TLS and HTTP/2 are a proxy's.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "tools/http/limits.h"
+#include "tools/http/service.h"
+
+namespace ptin::http {
+
+/// What a server does now.
+struct ServerLoad {
+  std::size_t connections = 0, waiting = 0, computing = 0;
+};
+
+class Server {
+ public:
+  /// Listens from here on; run() answers.
+  /// @param address  "127.0.0.1:8080", "[::1]:8080"; port 0 lets the system choose one.
+  /// @throws Error invalid_argument  no such address
+  ///               io_error          the system refuses it; names the address
+  Server(const std::string& address, const Limits& limits, Service& service);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// The address that is listened on, "127.0.0.1:8080".
+  [[nodiscard]] std::string address() const;
+
+  /// Answers on the calling thread, until drain() was called and every request at hand was
+  /// answered, or was given up.
+  void run();
+
+  /// Takes no further connection and no further request; what is at hand is finished, within the
+  /// limits of computing and writing. May be called from any thread, not from a signal handler.
+  void drain();
+
+  /// Only for the service, on the thread of connections.
+  [[nodiscard]] ServerLoad load() const;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+}  // namespace ptin::http
