@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin viewer: a folder that any web host can give out.
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program.h"
+#include "tools/viewer/viewer_page.h"
+
+namespace ptin::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::answer_of;
+using testing::expect_done;
+using testing::Outcome;
+using testing::read_file;
+using testing::run_ptin;
+using testing::TestFolder;
+using testing::write_file;
+
+class ViewerCli : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::string file(const std::string& name) const { return folder.file(name); }
+  /// A stream of a small terrain under this name.
+  std::string stream(const std::string& name) {
+    const std::string store = testing::built(folder, "mountains_257.tif", "m.ptin");
+    expect_done({"stream", store, "--error", "20", "-o", file(name), "-q"});
+    fs::remove(store);
+    return file(name);
+  }
+  TestFolder folder;
+};
+
+TEST_F(ViewerCli, WritesThePageAndTheStreamThatItOpens) {
+  const std::string dem = stream("dem.ptins");
+  const json answer = answer_of({"viewer", "-o", file("site"), "--stream", dem, "--json"});
+  EXPECT_EQ(answer.at("stream"), "dem.ptins");
+  EXPECT_EQ(answer.at("files").size(), 5U);
+  for (const json& written : answer.at("files")) {
+    const std::string name = written.at("name");
+    EXPECT_EQ(written.at("bytes"), fs::file_size(file("site/" + name))) << name;
+  }
+  EXPECT_EQ(read_file(file("site/dem.ptins")), read_file(dem));
+  EXPECT_NE(read_file(file("site/index.html")).find(R"(name="ptin-stream" content="./dem.ptins")"),
+            std::string::npos);
+  for (const ViewerFile& packed : viewer_files()) {
+    if (packed.name == "index.html") continue;
+    EXPECT_EQ(read_file(file("site/" + std::string(packed.name))), packed.content) << packed.name;
+  }
+}
+
+TEST_F(ViewerCli, WithoutAStreamThePageOpensNone) {
+  expect_done({"viewer", "-o", file("site"), "-q"});
+  EXPECT_NE(read_file(file("site/index.html")).find(R"(name="ptin-stream" content="")"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(file("site/dem.ptins")));
+}
+
+TEST_F(ViewerCli, ReplacesWhatIsThereOnlyWhenAsked) {
+  expect_done({"viewer", "-o", file("site"), "-q"});
+  write_file(file("site/worker.js"), "mine");
+  const Outcome refused = run_ptin({"viewer", "-o", file("site"), "-q"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("--overwrite"), std::string::npos) << refused.err;
+  EXPECT_EQ(read_file(file("site/worker.js")), "mine");
+  expect_done({"viewer", "-o", file("site"), "--overwrite", "-q"});
+  EXPECT_NE(read_file(file("site/worker.js")), "mine");
+}
+
+TEST_F(ViewerCli, AStreamThatLiesInTheFolderStaysWhereItIs) {
+  fs::create_directory(file("site"));
+  const std::string dem = stream("site/dem.ptins");
+  const json answer = answer_of({"viewer", "-o", file("site"), "--stream", dem, "--json"});
+  EXPECT_EQ(answer.at("files").size(), 4U);
+  EXPECT_EQ(answer.at("stream"), "dem.ptins");
+}
+
+TEST_F(ViewerCli, RefusesWhatIsNoStream) {
+  const std::string store = testing::built(folder, "mountains_257.tif", "m.ptin");
+  write_file(file("other.txt"), "something else");
+  write_file(file("empty.ptins"), "");
+  fs::copy_file(stream("dem.ptins"), file("worker.js"));
+  const auto refusal = [&](const std::string& name) {
+    const Outcome outcome = run_ptin({"viewer", "-o", file("site"), "--stream", file(name)});
+    EXPECT_EQ(outcome.status, 2) << name;
+    EXPECT_FALSE(fs::exists(file("site"))) << "nothing is written for " << name;
+    return outcome.err;
+  };
+  EXPECT_NE(refusal("other.txt").find("does not begin like a stream"), std::string::npos);
+  EXPECT_NE(refusal("empty.ptins").find("does not begin like a stream"), std::string::npos);
+  EXPECT_NE(refusal("worker.js").find("own files"), std::string::npos);
+  EXPECT_NE(refusal(".").find("a folder"), std::string::npos);
+  expect_done({"build", testing::test_data("mountains_257.tif"), "-o", file("n.ptin"), "-q"});
+  EXPECT_NE(refusal("n.ptin").find("a store, not a stream"), std::string::npos);
+  EXPECT_EQ(run_ptin({"viewer", "-o", file("site"), "--stream", file("none.ptins")}).status, 3);
+  EXPECT_EQ(run_ptin({"viewer", "-o", file("no/site")}).status, 3) << "the folder above is missing";
+}
+
+TEST(ViewerPage, AnyNameIsAnAddressBesideThePage) {
+  const std::string page = viewer_page_for("a \"b\" <c>&#?:100%\xC3\xA4.ptins");
+  EXPECT_NE(page.find("content=\"./a%20%22b%22%20%3Cc%3E%26%23%3F%3A100%25%C3%A4.ptins\">"),
+            std::string::npos);
+}
+
+TEST(ViewerPage, TheFilesAreSmallEnoughToOpenQuickly) {
+  std::size_t bytes = 0;
+  for (const ViewerFile& file : viewer_files()) {
+    EXPECT_FALSE(file.content.empty()) << file.name;
+    bytes += file.content.size();
+    if (file.name == "decoder.wasm") {
+      EXPECT_LT(file.content.size(), 150'000U);
+      EXPECT_TRUE(file.content.starts_with(std::string_view("\0asm", 4)));
+    }
+  }
+  EXPECT_LT(bytes, 900'000U) << "before packing";
+}
+
+}  // namespace
+}  // namespace ptin::tools

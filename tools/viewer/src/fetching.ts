@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Requests, and what people are told when they fail.
+
+/** A failure as a title and a sentence for people. */
+export class Problem extends Error {
+  /** @param limit  The limit of a service that a question went beyond, by its name. */
+  constructor(readonly title: string, message: string, readonly status = 0, readonly limit = '') {
+    super(message);
+    this.name = 'Problem';
+  }
+}
+
+/** fetch(), whose failures say what they may mean. A cancelled request stays an AbortError. */
+export async function opened(address: string, init: RequestInit): Promise<Response> {
+  try {
+    return await fetch(address, init);
+  } catch (error) {
+    if ((error as Error).name === 'AbortError') throw error;
+    const other = new URL(address, self.location.href).origin !== self.location.origin;
+    throw new Problem(
+      'The terrain cannot be reached',
+      other
+        ? `${new URL(address, self.location.href).host} did not answer, or does not let pages of other hosts read it ` +
+          '(its answers need the header Access-Control-Allow-Origin).'
+        : 'The connection to the host broke, or there is none. Reload the page to try again.');
+  }
+}
+
+/** Throws the Problem of an answer that is none. */
+export async function checkAnswer(response: Response): Promise<void> {
+  if (response.ok) return;
+  const { status } = response;
+  const type = response.headers.get('Content-Type') ?? '';
+  if (type.includes('json')) {
+    const told = await response.json().catch(() => null) as
+      { title?: string; detail?: string; limit?: string } | null;
+    if (told?.detail !== undefined) {
+      throw new Problem(told.title ?? `The host answered ${status}`, told.detail, status, told.limit ?? '');
+    }
+  }
+  const path = new URL(response.url).pathname;
+  const said: Record<number, [string, string]> = {
+    401: ['Not allowed', 'The host wants to know who asks.'],
+    403: ['Not allowed', `The host does not give out ${path}.`],
+    404: ['There is no such terrain', `The host has no ${path}. Look at the address for a slip.`],
+  };
+  const [title, message] = said[status] ?? [`The host answered ${status}`, `It could not give out ${path}.`];
+  throw new Problem(title, message, status);
+}

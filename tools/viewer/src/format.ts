@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Numbers for people.
+
+/** So many significant digits, without an exponent, with thin spaces between thousands. */
+export function number(value: number, digits = 4): string {
+  if (!Number.isFinite(value)) return '–';
+  if (value === 0) return '0';
+  const places = Math.max(0, Math.min(12, digits - 1 - Math.floor(Math.log10(Math.abs(value)))));
+  const [whole, part] = Math.abs(value).toFixed(places).split('.');
+  const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, '\u202f') : whole;
+  return (value < 0 ? '\u2212' : '') + grouped + (part === undefined ? '' : `.${part}`);
+}
+
+export function count(value: number): string {
+  return String(Math.round(value)).replace(/\B(?=(\d{3})+$)/g, '\u202f');
+}
+
+export function bytes(value: number): string {
+  if (value < 1000) return `${value} B`;
+  if (value < 1e6) return `${number(value / 1e3, 3)} KB`;
+  return `${number(value / 1e6, 3)} MB`;
+}
+
+/** A length given in metres. */
+export function metres(value: number): string {
+  return Math.abs(value) >= 1000 ? `${number(value / 1000, 3)} km` : `${number(value, 3)} m`;
+}
+
+/** A height with a decimal place that its uncertainty deserves. */
+export function height(value: number, uncertainty: number, sign: string): string {
+  const places = uncertainty > 0 ? Math.max(0, Math.min(3, 1 - Math.floor(Math.log10(uncertainty)))) : 2;
+  return `${value.toFixed(places).replace('-', '\u2212')} ${sign}`;
+}
+
+/** A place of the map, with as many decimals as its unit deserves. */
+export function coordinates(x: number, y: number, isDegrees: boolean): string {
+  if (!isDegrees) return `${count(x)} E  ${count(y)} N`.replace(/-/g, '\u2212');
+  return `${Math.abs(y).toFixed(5)}° ${y < 0 ? 'S' : 'N'}  ${Math.abs(x).toFixed(5)}° ${x < 0 ? 'W' : 'E'}`;
+}
+
+/** The largest of 1, 2, 5 times a power of ten that is at most `value`. */
+export function roundBelow(value: number): number {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return [5, 2, 1].map((n) => n * power).find((n) => n <= value * 1.0000001) ?? power;
+}

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The tools: what a click asks, and how the answer is written and drawn.
+import { coordinates, count, height as heightText, metres, number } from './format';
+import { Frame, signOf } from './frame';
+import type { Answer, FromWorker, MapPosition, Question, ToWorker } from './messages';
+import { colour, download, hide, part, speak, toast } from './page';
+import { verdictColour } from './panel';
+import { csvOf, drawPlot, heightAlong } from './plot';
+import type { Place, Relief } from './relief';
+import { curvatureDrop, fresnelRadius, type Station } from './walk';
+
+export type Tool = 'height' | 'profile' | 'sight' | 'viewshed';
+type AnswerOf<K extends Answer['kind']> = Extract<Answer, { kind: K }>;
+
+export class Inquiry {
+  private tool: Tool = 'height';
+  private from: MapPosition | null = null;
+  private asked: Question | null = null;
+  private ticket = 0;
+  private shownProfile: AnswerOf<'profile'> | AnswerOf<'sight'> | null = null;
+
+  constructor(
+    private readonly relief: Relief, private readonly frame: () => Frame | null, private readonly send: (m: ToWorker) => void,
+  ) {
+    for (const radio of document.querySelectorAll<HTMLInputElement>('input[name=tool]')) {
+      radio.addEventListener('change', () => { this.choose(radio.value as Tool); });
+    }
+    part('answer-close').addEventListener('click', () => { this.close(); });
+    part('csv').addEventListener('click', () => { this.saveProfile(); });
+    part<HTMLFormElement>('sight-form').addEventListener('input', () => { this.askAgain(); });
+    part<HTMLFormElement>('sight-form').addEventListener('submit', (event) => { event.preventDefault(); });
+    addEventListener('resize', () => { if (this.shownProfile !== null) this.plot(this.shownProfile); });
+  }
+
+  choose(tool: Tool): void {
+    this.close();
+    this.tool = tool;
+    document.querySelector<HTMLInputElement>(`input[name=tool][value=${tool}]`)!.checked = true;
+    const hints: Record<Tool, string> = {
+      height: 'Click the terrain for its height', profile: 'Click where the profile begins, then where it ends',
+      sight: 'Click the eye, then the target', viewshed: 'Click where the observer stands',
+    };
+    if (tool === 'height' || tool === 'profile') toast(hints[tool]);
+    else this.showForm(tool, hints[tool]);
+  }
+
+  /** What a line of sight or a viewshed is asked with, before there is an answer. */
+  private showForm(tool: 'sight' | 'viewshed', hint: string): void {
+    this.write(tool === 'sight' ? 'Line of sight' : 'Viewshed', '', hint);
+    hide(false, 'answer', 'sight-form');
+    hide(tool !== 'viewshed', 'radius-field');
+    hide(true, 'csv', 'plot');
+  }
+
+  /** Forgets what was asked, with its marks. */
+  close(): void {
+    this.from = null;
+    this.asked = null;
+    this.shownProfile = null;
+    ++this.ticket;
+    hide(true, 'answer');
+    this.relief.clearMarks();
+    this.relief.setDrape(null, []);
+  }
+
+  /** A click on the terrain. */
+  click(place: Place | null): void {
+    const frame = this.frame();
+    if (frame === null) return;
+    if (place === null) {
+      toast('There is no terrain at that place');
+      return;
+    }
+    const at = { x: frame.mapX(place.x), y: frame.mapY(place.y) };
+    if (this.tool === 'height') {
+      this.ask({ kind: 'height', at });
+    } else if (this.tool === 'viewshed') {
+      this.ask(this.viewshedAt(at));
+    } else if (this.from === null) {
+      const { tool } = this;
+      this.close();
+      this.from = at;
+      this.relief.addMark(place, colour('mark'));
+      if (tool === 'sight') this.showForm(tool, 'Now click the target');
+      else toast('Now click where it ends');
+    } else {
+      this.ask(this.lineTo(this.from, at));
+      this.from = null;
+    }
+  }
+
+  /** An answer of the Worker, or its refusal. Those to earlier questions are left alone. */
+  take(message: Extract<FromWorker, { kind: 'answer' | 'refused' }>): void {
+    if (message.ticket !== this.ticket) return;
+    if (message.kind === 'refused') {
+      toast(message.message);
+      return;
+    }
+    const frame = this.frame();
+    if (frame !== null) void this.show(message.answer, frame);
+  }
+
+  private ask(question: Question): void {
+    this.asked = question;
+    this.send({ kind: 'ask', ticket: ++this.ticket, question });
+  }
+
+  private lineTo(from: MapPosition, to: MapPosition): Question {
+    if (this.tool === 'profile') return { kind: 'profile', from, to };
+    const value = this.formValue;
+    return {
+      kind: 'sight', from, to,
+      request: { observerHeight: value('observer'), targetHeight: value('target'), frequency: value('frequency') * 1e9 },
+    };
+  }
+
+  private viewshedAt(at: MapPosition): Question {
+    return { kind: 'viewshed', at, height: this.formValue('observer'), radius: this.formValue('radius') * 1000 };
+  }
+
+  private readonly formValue = (name: string): number => {
+    const field = part<HTMLFormElement>('sight-form').elements.namedItem(name) as HTMLInputElement;
+    return Math.max(0, Number(field.value) || 0);
+  };
+
+  /** The same places with what the form says now. */
+  private askAgain(): void {
+    if (this.asked?.kind === 'sight') this.ask(this.lineTo(this.asked.from, this.asked.to));
+    if (this.asked?.kind === 'viewshed') this.ask(this.viewshedAt(this.asked.at));
+  }
+
+  private async show(answer: Answer, frame: Frame): Promise<void> {
+    this.relief.clearMarks();
+    this.shownProfile = answer.kind === 'profile' || answer.kind === 'sight' ? answer : null;
+    hide(false, 'answer');
+    hide(answer.kind !== 'sight' && answer.kind !== 'viewshed', 'sight-form');
+    hide(answer.kind !== 'viewshed', 'radius-field');
+    hide(this.shownProfile === null, 'csv', 'plot');
+    if (answer.kind === 'height') this.showHeight(answer, frame);
+    if (answer.kind === 'profile') this.showProfile(answer, frame);
+    if (answer.kind === 'sight') this.showSight(answer, frame);
+    if (answer.kind === 'viewshed') await this.showViewshed(answer, frame);
+  }
+
+  private write(title: string, text: string, note: string, tone = ''): void {
+    part('answer-title').textContent = title;
+    const strong = document.createElement('span');
+    strong.textContent = text;
+    strong.className = tone;
+    part('answer-text').replaceChildren(strong);
+    part('answer-note').textContent = note;
+    speak(`${title}: ${text}. ${note}`);
+  }
+
+  private showHeight(answer: AnswerOf<'height'>, frame: Frame): void {
+    const { located, certificate, at } = answer;
+    const sign = signOf(frame.units.height);
+    const where = coordinates(at.x, at.y, frame.isDegrees);
+    // For programs that drive the page.
+    Object.assign(part('answer').dataset, { x: at.x, y: at.y, height: located.height, deviation: certificate.deviation });
+    if (located.state !== 'surface' || located.height === null) {
+      this.write('Height', located.state === 'void' ? 'No data here' : 'Outside of the terrain', where);
+    } else {
+      const d = certificate.deviation;
+      const interval = d === 0 ? 'exact'
+        : `certainly between ${heightText(located.height - d, d, sign)} and ${heightText(located.height + d, d, sign)}`;
+      this.write('Height', heightText(located.height, d, sign), `${interval}\n${where}${triangleNote(answer, frame)}`);
+      this.relief.addMark(this.placeOf(frame, at, located.height), colour('mark'));
+    }
+    const corners = located.triangle.map((c): Place => this.placeOf(
+      frame, { x: frame.mapOfGridX(c.x), y: frame.mapOfGridY(c.y) }, c.height ?? located.height ?? frame.baseHeight));
+    if (corners.length === 3) {
+      this.relief.addLine([...corners, corners[0]], colour('mark'));
+      this.relief.addBody(corners, [0, 1, 2], colour('mark'));
+    }
+  }
+
+  private showProfile(answer: AnswerOf<'profile'>, frame: Frame): void {
+    const sign = signOf(frame.units.height);
+    const { stations, length, certificate } = answer;
+    const known = stations.flatMap((s) => (s.height === null ? [] : [s.height]));
+    if (known.length === 0) {
+      this.write('Profile', 'No data along this line', metres(length));
+      hide(true, 'csv', 'plot');
+      return;
+    }
+    const d = certificate.deviation;
+    const low = known.reduce((a, b) => Math.min(a, b)), high = known.reduce((a, b) => Math.max(a, b));
+    const climb = climbOf(stations);
+    this.write('Profile', metres(length),
+      `from ${heightText(low, d, sign)} to ${heightText(high, d, sign)}, up ${number(climb.up, 3)} ${sign}, ` +
+      `down ${number(climb.down, 3)} ${sign}\n${certaintyNote(d, sign)}`);
+    this.drawGround(answer, frame, colour('mark'));
+    this.plot(answer);
+  }
+
+  private showSight(answer: AnswerOf<'sight'>, frame: Frame): void {
+    const { sight, request, certificate } = answer;
+    if (sight === null) {
+      this.write('Line of sight', 'An end has no ground', 'Choose two places on the surface.');
+      hide(true, 'csv', 'plot');
+      this.drawGround(answer, frame, colour('soft'));
+      return;
+    }
+    const tone = { visible: 'good', hidden: 'bad', unsure: 'unsure' }[sight.verdict];
+    const said = { visible: 'Visible', hidden: 'Hidden', unsure: 'Too close to call' }[sight.verdict];
+    const above = sight.clearance >= 0 ? 'clears the ground by' : 'is blocked by';
+    const notes = [`${metres(sight.length)}; the line ${above} ${number(Math.abs(sight.clearance), 3)} m ` +
+      `at ${metres(sight.clearanceAt * sight.length)}`];
+    if (sight.fresnelRatio !== null) {
+      const share = Math.round(100 * sight.fresnelRatio);
+      notes.push(`First Fresnel zone: ${share >= 60 ? 'free enough' : 'obstructed'}, ` +
+        `${Math.max(0, Math.min(100, share))} % free at ${metres(sight.fresnelAt * sight.length)}`);
+    }
+    notes.push(certaintyNote(certificate.deviation, signOf(frame.units.height)));
+    this.write('Line of sight', said, notes.join('\n'), tone);
+    this.drawGround(answer, frame, colour('soft'));
+    this.drawRay(answer, frame);
+    this.plot(answer);
+    if (request.frequency > 0) this.drawFresnel(answer, frame);
+  }
+
+  private async showViewshed(answer: AnswerOf<'viewshed'>, frame: Frame): Promise<void> {
+    const { viewshed, at } = answer;
+    this.relief.setDrape(await createImageBitmap(viewshed.picture), viewshed.window);
+    this.write('Viewshed', 'Green is seen', `${metres(this.formValue('radius') * 1000)} around ${coordinates(at.x, at.y, frame.isDegrees)}`, 'good');
+  }
+
+  private placeOf(frame: Frame, at: MapPosition, height: number): Place {
+    return { x: frame.sceneX(at.x), y: frame.sceneY(at.y), z: frame.sceneZ(height) };
+  }
+
+  /** A place on the way. */
+  private along(frame: Frame, answer: { from: MapPosition; to: MapPosition }, share: number, height: number): Place {
+    const { from, to } = answer;
+    return this.placeOf(frame, { x: from.x + share * (to.x - from.x), y: from.y + share * (to.y - from.y) }, height);
+  }
+
+  private drawGround(answer: AnswerOf<'profile'> | AnswerOf<'sight'>, frame: Frame, lineColour: string): void {
+    let run: Place[] = [];
+    const end = (): void => {
+      if (run.length > 1) this.relief.addLine(run, lineColour);
+      run = [];
+    };
+    const length = frame.metresBetween(answer.from, answer.to);
+    for (const s of answer.stations) {
+      if (s.height === null) end();
+      else run.push(this.along(frame, answer, s.distance / length, s.height));
+    }
+    end();
+    const known = answer.stations.filter((s) => s.height !== null);
+    for (const s of [known[0], known[known.length - 1]]) {
+      if (s !== undefined) this.relief.addMark(this.along(frame, answer, s.distance / length, s.height as number), colour('mark'), 11);
+    }
+  }
+
+  /** The ray, bent as the Earth is: so it stands to the flat picture as it stands to the ground. */
+  private rayHeight(answer: AnswerOf<'sight'>, frame: Frame): (share: number) => number {
+    const s = answer.sight!;
+    return (share) => (s.observerZ + share * (s.targetZ - s.observerZ) + curvatureDrop(s.length, share)) / frame.scaleZ;
+  }
+
+  private drawRay(answer: AnswerOf<'sight'>, frame: Frame): void {
+    const at = this.rayHeight(answer, frame);
+    const { sight } = answer;
+    const ray = Array.from({ length: 65 }, (_, i) => this.along(frame, answer, i / 64, at(i / 64)));
+    this.relief.addLine(ray, verdictColour(sight!.verdict));
+    if (sight!.verdict === 'visible') return;
+    const ground = heightAlong(answer.stations, sight!.clearanceAt * sight!.length);
+    if (ground !== null) this.relief.addMark(this.along(frame, answer, sight!.clearanceAt, ground), verdictColour('hidden'), 17);
+  }
+
+  /** The zone as a tube of twelve sides. */
+  private drawFresnel(answer: AnswerOf<'sight'>, frame: Frame): void {
+    const at = this.rayHeight(answer, frame);
+    const { sight, request, from, to } = answer;
+    const dx = frame.sceneX(to.x) - frame.sceneX(from.x), dy = frame.sceneY(to.y) - frame.sceneY(from.y);
+    const length = Math.hypot(dx, dy);
+    const sides = 12, rings = 48;
+    const places: Place[] = [];
+    const corners: number[] = [];
+    for (let i = 0; i <= rings; ++i) {
+      const middle = this.along(frame, answer, i / rings, at(i / rings));
+      const radius = fresnelRadius(request.frequency, sight!.length, i / rings);
+      for (let k = 0; k < sides; ++k) {
+        const angle = 2 * Math.PI * k / sides;
+        const aside = radius * Math.cos(angle);
+        places.push({ x: middle.x - aside * dy / length, y: middle.y + aside * dx / length, z: middle.z + radius * Math.sin(angle) });
+        const a = i * sides + k, b = i * sides + (k + 1) % sides;
+        if (i < rings) corners.push(a, b, a + sides, b, b + sides, a + sides);
+      }
+    }
+    this.relief.addBody(places, corners, verdictColour(sight!.verdict));
+  }
+
+  private plot(answer: AnswerOf<'profile'> | AnswerOf<'sight'>): void {
+    const frame = this.frame();
+    if (frame === null || part('plot').hasAttribute('hidden')) return;
+    const length = frame.metresBetween(answer.from, answer.to);
+    const ray = answer.kind === 'sight' && answer.sight !== null
+      ? {
+          at: this.rayHeight(answer, frame), colour: verdictColour(answer.sight.verdict),
+          radius: (share: number) => answer.request.frequency > 0
+            ? fresnelRadius(answer.request.frequency, length, share) / frame.scaleZ : 0,
+        }
+      : undefined;
+    drawPlot(part('plot') as unknown as SVGSVGElement, {
+      stations: answer.stations, length, heightSign: signOf(frame.units.height), deviation: answer.certificate.deviation, ray,
+      onHover: () => undefined,
+    });
+  }
+
+  private saveProfile(): void {
+    const { shownProfile: p } = this;
+    const frame = this.frame();
+    if (p === null || frame === null) return;
+    const length = frame.metresBetween(p.from, p.to);
+    download('profile.csv', csvOf(p.stations, length, p.from, p.to, p.certificate.deviation), 'text/csv');
+  }
+}
+
+function certaintyNote(deviation: number, sign: string): string {
+  return deviation === 0 ? 'Exact' : `Heights within \u00b1${number(deviation, 3)} ${sign}`;
+}
+
+function triangleNote(answer: AnswerOf<'height'>, frame: Frame): string {
+  const corners = answer.located.triangle;
+  if (corners.length !== 3) return '';
+  const [a, b, c] = corners.map((p) => ({
+    x: frame.sceneX(frame.mapOfGridX(p.x)), y: frame.sceneY(frame.mapOfGridY(p.y)),
+  }));
+  const area = Math.abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+  const told = area >= 1e6 ? `${number(area / 1e6, 3)} km\u00b2` : `${area < 100 ? number(area, 3) : count(area)} m\u00b2`;
+  return `\nin a triangle of ${told}${answer.cost ? `\n${answer.cost}` : ''}`;
+}
+
+function climbOf(stations: readonly Station[]): { up: number; down: number } {
+  const climb = { up: 0, down: 0 };
+  stations.forEach((s, i) => {
+    const before = stations[i - 1]?.height ?? null;
+    if (s.height === null || before === null) return;
+    if (s.height > before) climb.up += s.height - before;
+    else climb.down += before - s.height;
+  });
+  return climb;
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the page and its Worker say to each other.
+import type { Certificate, Facts } from './decoder';
+import type { DrawnMesh } from './drawn_mesh';
+import type { Units } from './frame';
+import type { Located, Sight, SightRequest, Station } from './walk';
+
+export interface MapPosition {
+  x: number;
+  y: number;
+}
+
+/** A part of the terrain, and the error at which it is wanted there, in the height's unit. */
+export interface Wanted {
+  window: [number, number, number, number];
+  error: number;
+}
+
+/** Where the terrain comes from. */
+export type Source =
+  /** `name`: what to call it, where its address does not tell. */
+  | { kind: 'stream'; url: string; name?: string }
+  | { kind: 'collection'; service: string; id: string };
+
+export type ToWorker =
+  | { kind: 'open'; source: Source; decoder: string; mostVertices: number }
+  /** The certified error at which to stop; 0: all there is. */
+  | { kind: 'limit'; error: number }
+  /** What the camera looks at, the coarsest part first. Static streams ignore it. */
+  | { kind: 'view'; wanted: Wanted[] }
+  | { kind: 'edges'; wanted: boolean }
+  | { kind: 'ask'; ticket: number; question: Question };
+
+export type Question =
+  | { kind: 'height'; at: MapPosition }
+  | { kind: 'profile'; from: MapPosition; to: MapPosition }
+  | { kind: 'sight'; from: MapPosition; to: MapPosition; request: SightRequest }
+  | { kind: 'viewshed'; at: MapPosition; height: number; radius: number };
+
+export interface Viewshed {
+  /** A picture of what is seen. */
+  picture: Blob;
+  window: [number, number, number, number];
+}
+
+export type Answer =
+  | { kind: 'height'; at: MapPosition; located: Located; certificate: Certificate; cost?: string }
+  | { kind: 'profile'; from: MapPosition; to: MapPosition; stations: Station[]; length: number; certificate: Certificate }
+  | {
+      kind: 'sight'; from: MapPosition; to: MapPosition; request: SightRequest; sight: Sight | null; stations: Station[];
+      certificate: Certificate;
+    }
+  | { kind: 'viewshed'; at: MapPosition; viewshed: Viewshed };
+
+/** How far loading is. */
+export interface Status {
+  vertices: number;
+  triangles: number;
+  splits: number;
+  splitsInAll: number;
+  /** Received, and to come as far as the host says; 0 when it does not. */
+  bytes: number;
+  bytesInAll: number;
+  certificate: Certificate;
+  /** `held`: there is more, which the error, the number of vertices or the service keeps away. */
+  state: 'loading' | 'complete' | 'held' | 'cut';
+  /** Why it is held. */
+  heldBy?: 'error' | 'vertices' | 'service';
+  isServed: boolean;
+  /** The requests that were made, and what the last one cost the service. */
+  requests: number;
+  cost?: string;
+}
+
+export type FromWorker =
+  | { kind: 'terrain'; facts: Facts; units: Units; metadata: unknown; name: string }
+  | { kind: 'mesh'; mesh: DrawnMesh; status: Status }
+  | { kind: 'edges'; edges: Uint32Array }
+  | { kind: 'status'; status: Status }
+  | { kind: 'answer'; ticket: number; answer: Answer }
+  | { kind: 'refused'; ticket: number; message: string }
+  /** What went wrong, as a sentence; `final`: nothing more will come. */
+  | { kind: 'error'; title: string; message: string; final: boolean };

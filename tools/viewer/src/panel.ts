@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The card with settings and facts: reads and writes Settings, shows Status.
+import { bytes, count, number, roundBelow } from './format';
+import { Frame, signOf } from './frame';
+import type { Status } from './messages';
+import { colour, input, part } from './page';
+import type { Settings } from './permalink';
+import { gradientOf, heightStops, slopeStops } from './ramps';
+import type { Shading } from './relief';
+
+/** Errors that the slider tells apart: from a quarter of the relief down by this factor, then none. */
+const errorSpan = 1e4;
+
+export class Panel {
+  private frame: Frame | null = null;
+  private timer = 0;
+
+  /** @param changed is told which settings the user changed; errors only once the slider rests. */
+  constructor(readonly settings: Settings, private readonly changed: (key: keyof Settings) => void) {
+    for (const radio of document.querySelectorAll<HTMLInputElement>('input[name=shading]')) {
+      radio.addEventListener('change', () => { this.set('shading', radio.value as Shading); });
+    }
+    for (const key of ['exaggeration', 'azimuth', 'altitude'] as const) {
+      input(key).addEventListener('input', () => { this.set(key, Number(input(key).value)); });
+    }
+    input('interval').addEventListener('input', () => { this.set('interval', Math.max(0, Number(input('interval').value) || 0)); });
+    input('wireframe').addEventListener('change', () => { this.set('wireframe', input('wireframe').checked); });
+    input('error').addEventListener('input', () => {
+      this.settings.error = this.errorAt(Number(input('error').value));
+      this.show();
+      clearTimeout(this.timer);
+      this.timer = window.setTimeout(() => { this.changed('error'); }, 180);
+    });
+    part('fold').addEventListener('click', () => { this.fold(!part('card').classList.contains('folded')); });
+    if (matchMedia('(max-width: 700px)').matches) this.fold(true);
+    this.show();
+  }
+
+  set<K extends keyof Settings>(key: K, value: Settings[K]): void {
+    this.settings[key] = value;
+    this.show();
+    this.changed(key);
+  }
+
+  setFrame(frame: Frame, name: string, subtitle: string): void {
+    this.frame = frame;
+    part('title').textContent = name;
+    document.title = name;
+    part('subtitle').textContent = subtitle;
+    this.show();
+  }
+
+  /** An interval that gives the relief some twenty lines. */
+  get usualInterval(): number {
+    return roundBelow(Math.max(this.relief, 1e-3) / 20);
+  }
+
+  showStatus(status: Status): void {
+    const sign = this.sign;
+    const { error } = status.certificate;
+    part('certified').textContent = error === 0 ? 'Exact' : `\u00b1${number(error, 3)} ${sign}`;
+    // A service certifies what was asked for: what the camera looks at.
+    const where = status.isServed ? 'where you look' : 'at every sample';
+    part('certified-what').textContent = {
+      loading: `certified ${where}, and still refining`,
+      complete: error === 0 ? 'every sample is met' : `certified ${where}`,
+      held: status.heldBy === 'error' ? `certified ${where}, as asked for`
+        : `certified ${where}; more would be too much for this ${status.heldBy === 'service' ? 'service' : 'device'}`,
+      cut: 'certified at every sample; the rest of the stream did not arrive',
+    }[status.state];
+    part('fact-vertices').textContent = count(status.vertices);
+    part('fact-triangles').textContent = count(status.triangles);
+    part('fact-bytes').textContent = bytes(status.bytes) +
+      (status.bytesInAll > status.bytes ? ` of ${bytes(status.bytesInAll)}` : '');
+    part('fact-cost-row').hidden = status.cost === undefined || status.cost === '';
+    part('fact-cost').textContent = status.cost ?? '';
+    this.showProgress(status);
+  }
+
+  private showProgress(status: Status): void {
+    const bar = part('progress');
+    const share = status.state !== 'loading' ? 1
+      : status.bytesInAll > 0 ? status.bytes / status.bytesInAll
+      : status.splitsInAll > 0 ? status.splits / status.splitsInAll : 0.1;
+    bar.querySelector<HTMLElement>('i')!.style.width = `${100 * share}%`;
+    bar.setAttribute('aria-valuenow', String(Math.round(100 * share)));
+    bar.classList.toggle('done', status.state !== 'loading');
+  }
+
+  private get relief(): number {
+    return this.frame === null ? 1 : Math.max(this.frame.facts.maxHeight - this.frame.facts.minHeight, 1e-6);
+  }
+  private get sign(): string { return signOf(this.frame?.units.height ?? 'metre'); }
+
+  private errorAt(place: number): number {
+    if (place >= 100) return 0;
+    return Number((this.relief / 4 * errorSpan ** (-place / 99)).toPrecision(2));
+  }
+  private placeOf(error: number): number {
+    if (error === 0) return 100;
+    return Math.max(0, Math.min(99, Math.round(99 * Math.log(this.relief / 4 / error) / Math.log(errorSpan))));
+  }
+
+  private fold(on: boolean): void {
+    part('card').classList.toggle('folded', on);
+    part('fold').setAttribute('aria-expanded', String(!on));
+  }
+
+  private show(): void {
+    const { settings: s, sign } = this;
+    document.querySelector<HTMLInputElement>(`input[name=shading][value=${s.shading}]`)!.checked = true;
+    for (const key of ['exaggeration', 'azimuth', 'altitude'] as const) {
+      if (Number(input(key).value) !== s[key]) input(key).value = String(s[key]);
+    }
+    part('exaggeration-told').textContent = `${Number(s.exaggeration.toFixed(1))}\u00d7`;
+    part('azimuth-told').textContent = `${compass(s.azimuth)} ${Math.round(s.azimuth)}\u00b0`;
+    part('altitude-told').textContent = `${Math.round(s.altitude)}\u00b0`;
+    part('error-told').textContent = s.error === 0 ? 'all' : `to \u00b1${number(s.error, 2)} ${sign}`;
+    if (this.frame !== null) input('error').value = String(this.placeOf(s.error));
+    input('wireframe').checked = s.wireframe;
+    if (document.activeElement !== input('interval')) input('interval').value = s.interval === 0 ? '' : String(s.interval);
+    part('interval-unit').textContent = sign;
+    this.showLegend();
+  }
+
+  private showLegend(): void {
+    const { shading } = this.settings;
+    part('legend').hidden = shading === 'shade' || this.frame === null;
+    const bar = part('legend').querySelector<HTMLElement>('i')!;
+    bar.style.background = gradientOf(shading === 'slope' ? slopeStops : heightStops);
+    if (this.frame === null) return;
+    const { minHeight: low, maxHeight: high } = this.frame.facts;
+    const told = shading === 'slope' ? ['0\u00b0', '30\u00b0', '60\u00b0']
+      : [low, (low + high) / 2, high].map((h) => `${number(h, h > 999 ? 4 : 3)} ${this.sign}`);
+    ['low', 'middle', 'high'].forEach((at, i) => { part(`legend-${at}`).textContent = told[i]; });
+  }
+}
+
+/** The nearest of eight directions. */
+export function compass(degrees: number): string {
+  return ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'][Math.round(degrees / 45) % 8];
+}
+
+/** Colours of marks, which follow light and dark. */
+export const verdictColour = (verdict: 'visible' | 'hidden' | 'unsure'): string =>
+  colour({ visible: 'good', hidden: 'bad', unsure: 'unsure' }[verdict]);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Camera and settings in the address, behind #: whoever opens it sees the same.
+import type { Shading } from './relief';
+import type { Pose } from './view';
+
+export interface Settings {
+  shading: Shading;
+  wireframe: boolean;
+  exaggeration: number;
+  /** Degrees: clockwise from north, above the horizon. */
+  azimuth: number;
+  altitude: number;
+  /** Between isolines, in the height's unit; 0: none. */
+  interval: number;
+  /** At which refinement stops; 0: all there is. */
+  error: number;
+}
+
+export const defaults: Settings = {
+  shading: 'height', wireframe: false, exaggeration: 1, azimuth: 315, altitude: 42, interval: 0, error: 0,
+};
+
+const short = (value: number, digits: number): string => String(Number(value.toPrecision(digits)));
+
+export function toHash(pose: Pose | null, settings: Settings): string {
+  const parts = new URLSearchParams();
+  if (pose !== null) {
+    parts.set('at', [
+      short(pose.x, 10), short(pose.y, 10), short(pose.height, 5), short(pose.distance, 5), short(pose.heading, 4),
+      short(pose.tilt, 4),
+    ].join(','));
+  }
+  if (settings.shading !== defaults.shading) parts.set('shading', settings.shading);
+  if (settings.wireframe) parts.set('wireframe', '1');
+  for (const key of ['exaggeration', 'azimuth', 'altitude', 'interval', 'error'] as const) {
+    if (settings[key] !== defaults[key]) parts.set(key, short(settings[key], 5));
+  }
+  return parts.toString().replace(/%2C/g, ',');
+}
+
+/** What a hash says; what it does not say, or says wrongly, is as it is at first. */
+export function fromHash(hash: string): { pose: Pose | null; settings: Settings } {
+  const parts = new URLSearchParams(hash.replace(/^#/, ''));
+  const settings = { ...defaults };
+  const shading = parts.get('shading');
+  if (shading === 'height' || shading === 'slope' || shading === 'shade') settings.shading = shading;
+  settings.wireframe = parts.get('wireframe') === '1';
+  const ranges = { exaggeration: [0.5, 10], azimuth: [0, 360], altitude: [5, 90], interval: [0, 1e9], error: [0, 1e9] } as const;
+  for (const [key, [low, high]] of Object.entries(ranges) as Array<[keyof typeof ranges, readonly [number, number]]>) {
+    const value = Number(parts.get(key) ?? NaN);
+    if (value >= low && value <= high) settings[key] = value;
+  }
+  const at = (parts.get('at') ?? '').split(',').map(Number);
+  const isPose = at.length === 6 && at.every(Number.isFinite) && at[3] > 0;
+  const [x, y, height, distance, heading, tilt] = at;
+  return { pose: isPose ? { x, y, height, distance, heading, tilt } : null, settings };
+}

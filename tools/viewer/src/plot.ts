@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A profile as a drawing and as CSV.
+import { height as heightText, metres, roundBelow } from './format';
+import type { Station } from './walk';
+
+const namespace = 'http://www.w3.org/2000/svg';
+
+function element(name: string, attributes: Record<string, string | number>, text = ''): SVGElement {
+  const made = document.createElementNS(namespace, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
+  made.textContent = text;
+  return made;
+}
+
+export interface PlotOptions {
+  stations: readonly Station[];
+  /** Metres. */
+  length: number;
+  heightSign: string;
+  deviation: number;
+  /** A line of sight over the profile: heights at shares of the way, and its Fresnel zone's radius there. */
+  ray?: { at: (share: number) => number; radius: (share: number) => number; colour: string };
+  /** Told where the pointer is, as a distance; null when it leaves. */
+  onHover: (distance: number | null) => void;
+}
+
+const left = 46, right = 22, top = 12, bottom = 24;
+
+/** Draws into `svg`, anew. Heights have the plot's own scale. */
+export function drawPlot(svg: SVGSVGElement, options: PlotOptions): void {
+  const { stations, length, ray } = options;
+  const { width, height } = svg.getBoundingClientRect();
+  svg.replaceChildren();
+  svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
+  const known = stations.flatMap((s) => (s.height === null ? [] : [s.height]));
+  if (known.length === 0) return;
+  const shares = Array.from({ length: 65 }, (_, i) => i / 64);
+  const rays = ray === undefined ? [] : shares.flatMap((s) => [ray.at(s) + ray.radius(s), ray.at(s) - ray.radius(s)]);
+  const low = known.concat(rays).reduce((a, b) => Math.min(a, b)), high = known.concat(rays).reduce((a, b) => Math.max(a, b));
+  const slack = 0.08 * Math.max(high - low, 1e-6);
+  const x = (distance: number): number => left + (distance / length) * (width - left - right);
+  const y = (value: number): number =>
+    height - bottom - ((value - low + slack) / (high - low + 2 * slack)) * (height - top - bottom);
+  drawAxes(svg, { x, y, low, high, length, width, height, sign: options.heightSign });
+  for (const run of runsOf(stations)) {
+    const points = run.map((s) => `${x(s.distance).toFixed(1)},${y(s.height as number).toFixed(1)}`);
+    const floor = height - bottom;
+    svg.append(
+      element('polygon', {
+        class: 'ground', points: `${x(run[0].distance)},${floor} ${points.join(' ')} ${x(run[run.length - 1].distance)},${floor}`,
+      }),
+      element('polyline', { class: 'surface', points: points.join(' ') }));
+  }
+  if (ray !== undefined) drawRay(svg, ray, shares, length, x, y);
+  addCursor(svg, options, x, y);
+}
+
+function drawRay(
+  svg: SVGSVGElement, ray: NonNullable<PlotOptions['ray']>, shares: number[], length: number, x: (d: number) => number,
+  y: (h: number) => number,
+): void {
+  const upper = shares.map((s) => `${x(s * length)},${y(ray.at(s) + ray.radius(s))}`);
+  const lower = [...shares].reverse().map((s) => `${x(s * length)},${y(ray.at(s) - ray.radius(s))}`);
+  svg.append(
+    element('polygon', { points: [...upper, ...lower].join(' '), fill: ray.colour, opacity: 0.2 }),
+    element('polyline', {
+      points: shares.map((s) => `${x(s * length)},${y(ray.at(s))}`).join(' '), fill: 'none', stroke: ray.colour,
+      'stroke-width': 1.6,
+    }));
+}
+
+function drawAxes(svg: SVGSVGElement, a: {
+  x: (d: number) => number; y: (h: number) => number; low: number; high: number; length: number; width: number;
+  height: number; sign: string;
+}): void {
+  const heightStep = roundBelow(Math.max(a.high - a.low, 1e-6) / 2.2);
+  for (let h = Math.ceil(a.low / heightStep) * heightStep; h <= a.high; h += heightStep) {
+    svg.append(
+      element('line', { class: 'grid', x1: left, x2: a.width - right, y1: a.y(h), y2: a.y(h) }),
+      element('text', { x: left - 6, y: a.y(h) + 4, 'text-anchor': 'end' }, `${Number(h.toPrecision(6))}`));
+  }
+  const step = roundBelow(a.length / 3);
+  const inKilometres = a.length >= 2000;
+  for (let d = 0; d <= a.length; d += step) {
+    const label = inKilometres ? `${Number((d / 1000).toPrecision(4))} km` : `${Number(d.toPrecision(4))} m`;
+    svg.append(element('text', { x: a.x(d), y: a.height - 7, 'text-anchor': d === 0 ? 'start' : 'middle' }, label));
+  }
+  svg.append(element('text', { x: left - 6, y: a.height - 7, 'text-anchor': 'end' }, a.sign));
+}
+
+function addCursor(svg: SVGSVGElement, options: PlotOptions, x: (d: number) => number, y: (h: number) => number): void {
+  const cursor = element('g', { class: 'cursor', visibility: 'hidden' });
+  const dot = element('circle', { r: 4 });
+  const label = element('text', { y: top + 2, 'text-anchor': 'middle' });
+  cursor.append(dot, label);
+  svg.append(cursor);
+  svg.onpointermove = (event): void => {
+    const box = svg.getBoundingClientRect();
+    const share = (event.clientX - box.left - left) / (box.width - left - right);
+    const distance = Math.max(0, Math.min(1, share)) * options.length;
+    const value = heightAlong(options.stations, distance);
+    cursor.setAttribute('visibility', value === null ? 'hidden' : 'visible');
+    options.onHover(distance);
+    if (value === null) return;
+    dot.setAttribute('cx', String(x(distance)));
+    dot.setAttribute('cy', String(y(value)));
+    label.setAttribute('x', String(Math.max(left + 60, Math.min(box.width - 70, x(distance)))));
+    label.textContent = `${metres(distance)}, ${heightText(value, options.deviation, options.heightSign)}`;
+  };
+  svg.onpointerleave = (): void => {
+    cursor.setAttribute('visibility', 'hidden');
+    options.onHover(null);
+  };
+}
+
+/** Stretches without a gap. */
+export function runsOf(stations: readonly Station[]): Station[][] {
+  const runs: Station[][] = [[]];
+  for (const s of stations) {
+    if (s.height === null) runs.push([]);
+    else runs[runs.length - 1].push(s);
+  }
+  return runs.filter((run) => run.length > 1);
+}
+
+/** The height at a distance; null over a gap. */
+export function heightAlong(stations: readonly Station[], distance: number): number | null {
+  for (const run of runsOf(stations)) {
+    const next = run.findIndex((s) => s.distance >= distance);
+    if (next < 0 || distance < run[0].distance) continue;
+    const b = run[next], a = run[Math.max(0, next - 1)];
+    const part = b.distance > a.distance ? (distance - a.distance) / (b.distance - a.distance) : 0;
+    return (a.height as number) + part * ((b.height as number) - (a.height as number));
+  }
+  return null;
+}
+
+/** One line a station; a gap is a line without a height. */
+export function csvOf(
+  stations: readonly Station[], length: number, from: { x: number; y: number }, to: { x: number; y: number },
+  deviation: number,
+): string {
+  const lines = ['distance_m,x,y,height,height_min,height_max'];
+  for (const s of stations) {
+    const share = s.distance / length;
+    const place = [s.distance, from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)];
+    const heights = s.height === null ? ['', '', ''] : [s.height, s.height - deviation, s.height + deviation];
+    lines.push([...place, ...heights].join(','));
+  }
+  return lines.join('\n') + '\n';
+}

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A terrain of a service, as fine as the camera needs it where it looks. Each answer is a stream that goes on from those before
+// it, so only what is missing travels. Detail that is no longer looked at goes away when there is too much of it: then the view
+// is fetched anew into a second decoder, which takes the place of the first once it has caught up.
+import { Decoder } from './decoder';
+import { Problem, checkAnswer } from './fetching';
+import type { Frame } from './frame';
+import type { Answer, Question, Wanted } from './messages';
+import type { Collection, Service, Serving } from './service';
+
+const firstBytes = 64 * 1024;
+const laterBytes = 256 * 1024;
+const leastBytes = 32 * 1024;
+/** The service takes 64. */
+const mostServings = 60;
+
+export interface ServedEvents {
+  /** There is more to see. */
+  grown(): void;
+  /** All that is wanted for now is there. */
+  settled(): void;
+  failed(error: unknown, final: boolean): void;
+}
+
+/** A decoder with what it was served. */
+class Received {
+  readonly decoder: Decoder;
+  readonly have: Serving[] = [];
+  readonly whole: Wanted[] = [];
+  fingerprint = '';
+  constructor(module: WebAssembly.Module) {
+    this.decoder = new Decoder(module);
+  }
+
+  /** True when all of `wanted` was served at its error, or at a smaller one. */
+  covers(wanted: Wanted): boolean {
+    return this.whole.some((w) => w.error <= wanted.error && holds(w.window, wanted.window));
+  }
+}
+
+function holds(outer: readonly number[], inner: readonly number[]): boolean {
+  return outer[0] <= inner[0] && outer[1] <= inner[1] && outer[2] >= inner[2] && outer[3] >= inner[3];
+}
+
+/** A window larger by a share of its size on each side, within `bounds`. */
+export function widened(window: Wanted['window'], bounds: Wanted['window'], share: number): Wanted['window'] {
+  const x = share * (window[2] - window[0]), y = share * (window[3] - window[1]);
+  return [
+    Math.max(bounds[0], window[0] - x), Math.max(bounds[1], window[1] - y),
+    Math.min(bounds[2], window[2] + x), Math.min(bounds[3], window[3] + y),
+  ];
+}
+
+export class ServedView {
+  private shown: Received;
+  /** What is asked for now goes here; after a start anew not `shown` yet. */
+  private received: Received;
+  private wanted: Wanted[] = [];
+  private leastError = 0;
+  /** Errors are this many times those of the camera, where the vertices would be too many. */
+  private coarser = 1;
+  private isLean = true;
+  private wake: (() => void) | null = null;
+  /** Of the next answer: less where the service has not the memory for more. */
+  private mostBytes = laterBytes;
+  /** The service has not the memory for all that is wanted. */
+  private isTooMuch = false;
+  bytes = 0;
+  requests = 0;
+  cost: string | undefined;
+  isLoading = true;
+
+  constructor(
+    private readonly service: Service, private readonly collection: Collection, private readonly module: WebAssembly.Module,
+    private readonly mostVertices: number, private readonly events: ServedEvents,
+  ) {
+    this.shown = this.received = new Received(module);
+  }
+
+  get decoder(): Decoder { return this.shown.decoder; }
+  get heldBy(): 'service' | 'vertices' | null {
+    return this.isTooMuch ? 'service' : this.coarser > 1 ? 'vertices' : null;
+  }
+
+  setLimit(error: number): void {
+    if (error === this.leastError) return;
+    this.leastError = error;
+    this.startAnew();
+    this.wake?.();
+  }
+
+  setView(wanted: Wanted[]): void {
+    // A window that sticks out by the last bit of a number would never be covered.
+    this.wanted = wanted.map((w) => ({ window: widened(w.window, this.collection.bounds, 0), error: w.error }));
+    this.isLean = false;
+    this.isTooMuch = false;
+    this.mostBytes = laterBytes;
+    this.coarser = Math.max(1, this.coarser * 0.8);
+    this.wake?.();
+  }
+
+  async run(): Promise<void> {
+    const { bounds, heights } = this.collection;
+    const first: Wanted = { window: bounds, error: Math.max((heights[1] - heights[0]) / 100, 1e-6) };
+    while (!this.received.decoder.hasMesh && !this.isTooMuch) await this.bring(first, firstBytes);
+    for (;;) {
+      const next = this.nextWanted();
+      if (next !== undefined) {
+        this.isLoading = true;
+        await this.bring(next, this.mostBytes);
+        continue;
+      }
+      this.shown = this.received;
+      this.isLoading = false;
+      this.events.settled();
+      await new Promise<void>((resolve) => { this.wake = resolve; });
+      this.wake = null;
+    }
+  }
+
+  async answer(question: Question, frame: Frame): Promise<Answer> {
+    switch (question.kind) {
+      case 'height': return this.service.height(question.at, frame);
+      case 'profile': return this.service.profile(question.from, question.to, frame);
+      case 'sight': return this.service.sight(question.from, question.to, question.request, frame);
+      case 'viewshed': return this.service.viewshed(question.at, question.height, question.radius, frame);
+    }
+  }
+
+  private nextWanted(): Wanted | undefined {
+    return this.wanted
+      .map((w): Wanted => ({ window: w.window, error: Math.max(w.error * this.coarser, this.leastError) }))
+      .find((w) => !this.received.covers(w));
+  }
+
+  private startAnew(): void {
+    this.received = new Received(this.module);
+    this.isLean = true;
+  }
+
+  /** Too much is held: without what is not looked at any more, or coarser when there is nothing else. */
+  private makeRoom(): void {
+    if (this.isLean) this.coarser *= 1.5;
+    this.startAnew();
+  }
+
+  /** Asks for a part, once. A failure waits before the next attempt. */
+  private async bring(wanted: Wanted, mostBytes: number): Promise<void> {
+    const to = this.received;
+    if (to.have.length >= mostServings) {
+      this.startAnew();
+      return;
+    }
+    try {
+      // A quarter larger, and somewhat finer, so that a small move asks for nothing.
+      const window = widened(wanted.window, this.collection.bounds, 1 / 8);
+      await this.receive(to, { window, error: Number((0.8 * wanted.error).toPrecision(2)) }, mostBytes);
+    } catch (error) {
+      if (this.mends(error, wanted, to)) return;
+      this.events.failed(error, !this.decoder.hasMesh);
+      this.startAnew();
+      await new Promise<void>((resolve) => { setTimeout(resolve, 3000); });
+    }
+    if (to.decoder.hasMesh && to.decoder.mesh.vertexCount > this.mostVertices) this.makeRoom();
+  }
+
+  /** Makes less of what the service refused, so that the next attempt may succeed. */
+  private mends(error: unknown, wanted: Wanted, to: Received): boolean {
+    if (!(error instanceof Problem)) return false;
+    if (error.status === 409) {
+      this.startAnew();
+    } else if (error.status !== 413) {
+      return false;
+    } else if (error.limit === 'have' || error.limit === 'held_vertices') {
+      this.makeRoom();
+    } else if (this.mostBytes > leastBytes) {
+      this.mostBytes /= 2;
+    } else {
+      to.whole.push(wanted);
+      this.isTooMuch = true;
+    }
+    return true;
+  }
+
+  private async receive(to: Received, wanted: Wanted, mostBytes: number): Promise<void> {
+    ++this.requests;
+    const cancel = new AbortController();
+    const { response, fingerprint, cost } = await this.service.stream(
+      wanted.window, wanted.error, mostBytes, to.have, to.fingerprint, cancel.signal);
+    await checkAnswer(response);
+    if (response.body === null) throw new Problem('The service answered nothing', 'The connection to it broke.');
+    to.fingerprint = fingerprint;
+    this.cost = cost;
+    const { decoder } = to;
+    const reader = response.body.getReader();
+    for (;;) {
+      const { done, value } = await reader.read();
+      if (done) break;
+      this.bytes += value.length;
+      decoder.feed(value);
+      if (to === this.shown) this.events.grown();
+    }
+    to.have.push({ window: wanted.window, error: wanted.error, splits: decoder.splits });
+    const isWhole = decoder.isComplete && (decoder.certificate.error <= wanted.error || decoder.splits === 0);
+    if (isWhole) to.whole.push(wanted);
+    if (!decoder.isComplete) decoder.beginNext();
+  }
+}

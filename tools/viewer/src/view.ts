@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where the camera stands and what it needs: its controls, the permalink's part, and the detail that its picture shows.
+import { PerspectiveCamera, Vector3 } from 'three';
+import { MapControls } from 'three/addons/controls/MapControls.js';
+import type { Frame } from './frame';
+import type { Wanted } from './messages';
+
+/** What the camera looks at on the map, from how far, and in which direction, in metres and degrees. */
+export interface Pose {
+  x: number;
+  y: number;
+  /** Of the place looked at; in the height's unit. */
+  height: number;
+  distance: number;
+  /** Clockwise from north. */
+  heading: number;
+  /** From straight down. */
+  tilt: number;
+}
+
+/** Light and colours show steps that no silhouette does: so many of them are told apart in the whole relief. */
+const leastSteps = 150;
+
+export class View {
+  readonly controls: MapControls;
+  private frame: Frame | null = null;
+  private home: Pose | null = null;
+
+  constructor(readonly camera: PerspectiveCamera, canvas: HTMLCanvasElement, private readonly reducedMotion: () => boolean) {
+    this.controls = new MapControls(camera, canvas);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.12;
+    this.controls.zoomToCursor = true;
+    this.controls.screenSpacePanning = false;
+    this.controls.maxPolarAngle = 1.5;
+    this.controls.keyPanSpeed = 40;
+  }
+
+  /** `covered`: pixels at the left of the picture that something lies over. */
+  setFrame(frame: Frame, exaggeration: number, width: number, covered: number): void {
+    this.frame = frame;
+    const extent = Math.hypot(frame.width, frame.depth);
+    this.controls.minDistance = extent / 5000;
+    this.controls.maxDistance = extent * 6;
+    // From near, backwards, until all corners are within what is not covered.
+    const free = (width - covered) / width;
+    for (let distance = 0.4 * extent; distance < 5 * extent; distance *= 1.05) {
+      this.home = this.homeAt(frame, distance, free);
+      this.pose(this.home, exaggeration);
+      if (this.isWhole(frame, exaggeration, 1 - 2 * free)) break;
+    }
+  }
+
+  private homeAt(frame: Frame, distance: number, free: number): Pose {
+    const isTall = this.camera.aspect * free < 1;
+    const heading = 340;
+    // The picture's middle is that of what is not covered.
+    const aside = (1 - free) / 2 * this.metresPerPixel(distance, 1) * this.camera.aspect;
+    const turn = heading * Math.PI / 180;
+    return {
+      x: frame.middleX - Math.cos(turn) * aside / frame.scaleX, y: frame.middleY + Math.sin(turn) * aside / frame.scaleY,
+      height: frame.heightAt(0.35 * frame.relief), distance, heading, tilt: isTall ? 42 : 52,
+    };
+  }
+
+  /** True when every corner of the terrain is in the picture, right of `left` (-1: its edge). */
+  private isWhole(frame: Frame, exaggeration: number, left: number): boolean {
+    this.camera.updateMatrixWorld();
+    for (const x of [-frame.width / 2, frame.width / 2]) {
+      for (const y of [-frame.depth / 2, frame.depth / 2]) {
+        for (const z of [0, frame.relief * exaggeration]) {
+          const at = new Vector3(x, y, z).project(this.camera);
+          if (at.z > 1 || at.x < left + 0.02 || at.x > 0.95 || Math.abs(at.y) > 0.86) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  reset(exaggeration: number): void {
+    if (this.home !== null) this.pose(this.home, exaggeration);
+  }
+
+  pose(pose: Pose, exaggeration: number): void {
+    const { frame } = this;
+    if (frame === null) return;
+    const target = new Vector3(frame.sceneX(pose.x), frame.sceneY(pose.y), frame.sceneZ(pose.height) * exaggeration);
+    const heading = pose.heading * Math.PI / 180, tilt = Math.max(pose.tilt, 0.01) * Math.PI / 180;
+    const back = new Vector3(-Math.sin(heading) * Math.sin(tilt), -Math.cos(heading) * Math.sin(tilt), Math.cos(tilt));
+    this.controls.target.copy(target);
+    this.camera.position.copy(target).addScaledVector(back, pose.distance);
+    this.controls.update();
+  }
+
+  /** The pose now. */
+  current(exaggeration: number): Pose | null {
+    const { frame } = this;
+    if (frame === null) return null;
+    const { target } = this.controls;
+    const back = this.camera.position.clone().sub(target);
+    const distance = back.length();
+    return {
+      x: frame.mapX(target.x), y: frame.mapY(target.y), height: frame.heightAt(target.z / exaggeration), distance,
+      heading: (Math.atan2(-back.x, -back.y) * 180 / Math.PI + 360) % 360,
+      tilt: Math.acos(Math.max(-1, Math.min(1, back.z / distance))) * 180 / Math.PI,
+    };
+  }
+
+  /** Follows the controls; true while they still move. Clips the view around the terrain. */
+  update(): boolean {
+    this.controls.enableDamping = !this.reducedMotion();
+    const moved = this.controls.update();
+    const { frame, camera } = this;
+    if (frame !== null) {
+      const distance = camera.position.distanceTo(this.controls.target);
+      camera.near = Math.max(distance / 2000, 0.05);
+      camera.far = camera.position.length() + 2 * Math.hypot(frame.width, frame.depth, frame.relief);
+      camera.updateProjectionMatrix();
+    }
+    return moved;
+  }
+
+  pan(right: number, up: number): void {
+    const step = 0.12 * this.camera.position.distanceTo(this.controls.target);
+    const forward = this.controls.target.clone().sub(this.camera.position).setZ(0).normalize();
+    const sideways = new Vector3(forward.y, -forward.x, 0);
+    const move = sideways.multiplyScalar(right * step).addScaledVector(forward, up * step);
+    this.controls.target.add(move);
+    this.camera.position.add(move);
+    this.controls.update();
+  }
+
+  zoom(factor: number): void {
+    const { target, minDistance, maxDistance } = this.controls;
+    const back = this.camera.position.clone().sub(target);
+    back.setLength(Math.min(maxDistance, Math.max(minDistance, back.length() * factor)));
+    this.camera.position.copy(target).add(back);
+    this.controls.update();
+  }
+
+  turn(degrees: number): void {
+    const back = this.camera.position.clone().sub(this.controls.target);
+    back.applyAxisAngle(new Vector3(0, 0, 1), degrees * Math.PI / 180);
+    this.camera.position.copy(this.controls.target).add(back);
+    this.controls.update();
+  }
+
+  /** Metres that a pixel shows at a distance, for a canvas of so many pixels in height. */
+  metresPerPixel(distance: number, pixels: number): number {
+    return 2 * distance * Math.tan(this.camera.fov * Math.PI / 360) / Math.max(1, pixels);
+  }
+
+  /**
+   * What the picture needs: for each octave of distance the part of the terrain that is at most so far, and the error that is
+   * `tolerance` pixels there. The coarsest part first.
+   */
+  wanted(pixels: number, tolerance: number, exaggeration: number): Wanted[] {
+    const { frame } = this;
+    if (frame === null) return [];
+    const seen = this.seenPlaces(frame, exaggeration);
+    const nearest = Math.min(...seen.map((s) => s.distance));
+    const farthest = Math.max(...seen.map((s) => s.distance), nearest);
+    const parts: Wanted[] = [];
+    for (let reach = farthest; seen.length !== 0; reach /= 2) {
+      const within = seen.filter((s) => s.distance <= reach * 1.001);
+      const window = windowOf(frame, within);
+      const at = Math.max(reach / 2, nearest);
+      const error = tolerance * this.metresPerPixel(at, pixels) / exaggeration;
+      parts.push({ window, error: Math.min(error, frame.relief / leastSteps) / frame.scaleZ });
+      if (reach / 2 <= nearest) break;
+    }
+    return parts;
+  }
+
+  /** Places of the terrain's middle height under points of the picture, and how far they are. */
+  private seenPlaces(frame: Frame, exaggeration: number): Array<{ x: number; y: number; distance: number }> {
+    const places = [];
+    const middle = 0.4 * frame.relief * exaggeration;
+    const { camera } = this;
+    camera.updateMatrixWorld();
+    const columns = 12, rows = 12;
+    for (let i = 0; i <= columns; ++i) {
+      for (let j = 0; j <= rows; ++j) {
+        const ray = new Vector3(2 * i / columns - 1, 2 * j / rows - 1, 0.5).unproject(camera).sub(camera.position).normalize();
+        const reach = ray.z < -1e-3 ? (middle - camera.position.z) / ray.z : Infinity;
+        const distance = Math.min(reach > 0 ? reach : camera.far, camera.far);
+        const x = camera.position.x + ray.x * distance, y = camera.position.y + ray.y * distance;
+        const inX = Math.max(-frame.width / 2, Math.min(frame.width / 2, x));
+        const inY = Math.max(-frame.depth / 2, Math.min(frame.depth / 2, y));
+        if (Math.hypot(x - inX, y - inY) > 0.3 * Math.hypot(frame.width, frame.depth) && reach !== Infinity) continue;
+        places.push({ x: inX, y: inY, distance: camera.position.distanceTo(new Vector3(inX, inY, middle)) });
+      }
+    }
+    return places;
+  }
+}
+
+function windowOf(frame: Frame, places: Array<{ x: number; y: number }>): Wanted['window'] {
+  const xs = places.map((p) => frame.mapX(p.x)), ys = places.map((p) => frame.mapY(p.y));
+  return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+}

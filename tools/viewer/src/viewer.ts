@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
+import { bytes, coordinates, metres, roundBelow } from './format';
+import { Frame } from './frame';
+import { Inquiry, Tool } from './inquiry';
+import type { FromWorker, Source, Status, ToWorker } from './messages';
+import { colour, part, speak, toast, trouble } from './page';
+import { Panel } from './panel';
+import { Settings, fromHash, toHash } from './permalink';
+import { Relief } from './relief';
+import { View } from './view';
+
+interface Boot {
+  source: Source | null;
+  worker: Worker | null;
+  early: FromWorker[];
+  query: URLSearchParams;
+  mostVertices: number;
+}
+
+/** Pixels by which a picture of a service's terrain may be off. */
+const tolerance = 0.3;
+
+class Viewer {
+  private readonly relief: Relief;
+  private readonly view: View;
+  private readonly panel: Panel;
+  private readonly inquiry: Inquiry;
+  private readonly worker: Worker;
+  private frame: Frame | null = null;
+  private status: Status | null = null;
+  private isServed: boolean;
+  private linkTimer = 0;
+  private viewTimer = 0;
+  private spokenState = '';
+
+  constructor(boot: Boot) {
+    const canvas = part<HTMLCanvasElement>('relief');
+    this.worker = boot.worker!;
+    this.isServed = boot.source?.kind === 'collection';
+    this.relief = new Relief(canvas);
+    const still = matchMedia('(prefers-reduced-motion: reduce)');
+    this.view = new View(this.relief.camera, canvas, () => still.matches);
+    this.panel = new Panel(fromHash(location.hash).settings, (key) => { this.apply(key); });
+    this.inquiry = new Inquiry(this.relief, () => this.frame, (m) => { this.worker.postMessage(m); });
+    part('viewshed-tool').hidden = !this.isServed;
+    for (const key of Object.keys(this.panel.settings) as Array<keyof Settings>) this.apply(key);
+    this.relief.beforeDrawing = () => this.beforeDrawing();
+    this.view.controls.addEventListener('change', () => { this.moved(); });
+    this.followPage(canvas);
+    this.followPointer(canvas);
+    addEventListener('keydown', (event) => { this.key(event); });
+    this.worker.onmessage = (event: MessageEvent<FromWorker>) => { this.take(event.data); };
+    for (const message of boot.early.splice(0)) this.take(message);
+  }
+
+  private send(message: ToWorker): void {
+    this.worker.postMessage(message);
+  }
+
+  private take(message: FromWorker): void {
+    switch (message.kind) {
+      case 'terrain': this.introduce(message); break;
+      case 'mesh':
+        this.relief.setMesh(message.mesh);
+        if (this.status === null) requestAnimationFrame(() => { performance.mark('ptin-first-picture'); });
+        this.show(message.status);
+        break;
+      case 'edges': this.relief.setEdges(message.edges); break;
+      case 'status': this.show(message.status); break;
+      case 'answer':
+      case 'refused': this.inquiry.take(message); break;
+      case 'error':
+        trouble(message.title, message.message, this.frame !== null);
+        part('progress').classList.add('done');
+        if (this.frame === null) part('subtitle').textContent = 'Nothing is shown';
+        break;
+    }
+  }
+
+  private introduce(message: Extract<FromWorker, { kind: 'terrain' }>): void {
+    const { facts, units } = message;
+    const frame = this.frame = new Frame(facts, units);
+    this.relief.setFrame(frame);
+    const size = `${metres(frame.width)} \u00d7 ${metres(frame.depth)}`;
+    const unknown = units.height === 'unknown' ? ' \u00b7 unit of heights unknown, taken for metres' : '';
+    this.panel.setFrame(frame, message.name, `${size}${unknown}`);
+    const { pose } = fromHash(location.hash);
+    const { width, height } = this.relief.canvas.getBoundingClientRect();
+    const card = part('card').getBoundingClientRect();
+    this.view.setFrame(frame, this.exaggeration, width, card.width < width / 2 && width > height ? card.right : 0);
+    if (pose !== null) this.view.pose(pose, this.exaggeration);
+    this.moved();
+  }
+
+  private show(status: Status): void {
+    this.status = status;
+    this.panel.showStatus(status);
+    if (status.state !== this.spokenState && status.state !== 'loading') {
+      performance.mark('ptin-settled');
+      speak(`${part('certified').textContent}, ${part('certified-what').textContent}, ${bytes(status.bytes)} received`);
+    }
+    this.spokenState = status.state;
+  }
+
+  private get exaggeration(): number { return this.panel.settings.exaggeration; }
+
+  /** Carries a setting out. */
+  private apply(key: keyof Settings): void {
+    const s = this.panel.settings;
+    if (key === 'shading') this.relief.shading = s.shading;
+    if (key === 'azimuth' || key === 'altitude') this.relief.sun = s;
+    if (key === 'interval') this.relief.isolines = s.interval;
+    if (key === 'error') this.send({ kind: 'limit', error: s.error });
+    if (key === 'wireframe') {
+      this.relief.wireframe = s.wireframe;
+      this.send({ kind: 'edges', wanted: s.wireframe });
+    }
+    if (key === 'exaggeration') this.setExaggeration(s.exaggeration);
+    this.keepLink();
+  }
+
+  private setExaggeration(factor: number): void {
+    const ratio = factor / this.relief.verticalScale;
+    this.relief.verticalScale = factor;
+    // What is looked at stays in the middle.
+    const { target } = this.view.controls;
+    const rise = target.z * (ratio - 1);
+    target.z += rise;
+    this.relief.camera.position.z += rise;
+  }
+
+  private beforeDrawing(): boolean {
+    const moves = this.view.update();
+    const distance = this.relief.camera.position.distanceTo(this.view.controls.target);
+    this.relief.hazeFrom = 1.1 * distance;
+    this.showScale(distance);
+    return moves;
+  }
+
+  /** The camera moved. */
+  private moved(): void {
+    this.relief.draw();
+    this.keepLink();
+    if (!this.isServed) return;
+    clearTimeout(this.viewTimer);
+    this.viewTimer = window.setTimeout(() => {
+      const wanted = this.view.wanted(this.relief.canvas.clientHeight, tolerance, this.exaggeration);
+      this.send({ kind: 'view', wanted });
+    }, 150);
+  }
+
+  private keepLink(): void {
+    clearTimeout(this.linkTimer);
+    this.linkTimer = window.setTimeout(() => {
+      if (this.frame === null) return;
+      const hash = toHash(this.view.current(this.exaggeration), this.panel.settings);
+      history.replaceState(null, '', `${location.pathname}${location.search}#${hash}`);
+    }, 250);
+  }
+
+  private showScale(distance: number): void {
+    if (this.frame === null) return;
+    const { canvas } = this.relief;
+    const metre = 1 / this.view.metresPerPixel(distance, canvas.clientHeight);
+    const length = roundBelow(Math.min(130, canvas.clientWidth / 4) / metre);
+    const scale = part('scale');
+    scale.querySelector('i')!.style.width = `${length * metre}px`;
+    scale.querySelector('span')!.textContent = length >= 1000 ? `${length / 1000} km` : `${Number(length.toPrecision(1))} m`;
+  }
+
+  private followPage(canvas: HTMLCanvasElement): void {
+    const resize = (): void => { this.relief.resize(canvas.clientWidth, canvas.clientHeight); };
+    new ResizeObserver(resize).observe(canvas);
+    resize();
+    const dark = matchMedia('(prefers-color-scheme: dark)');
+    const recolour = (): void => { this.relief.haze = colour('haze'); };
+    dark.addEventListener('change', recolour);
+    recolour();
+    canvas.addEventListener('webglcontextlost', () => {
+      trouble('The picture is lost', 'The graphics card gave up on it. Reload the page.', true);
+    });
+    addEventListener('hashchange', () => {
+      const { pose } = fromHash(location.hash);
+      if (pose !== null) this.view.pose(pose, this.exaggeration);
+      this.moved();
+    });
+    part('home').addEventListener('click', () => { this.home(); });
+    part('link').addEventListener('click', () => { void this.copyLink(); });
+    part('help').addEventListener('click', () => { part<HTMLDialogElement>('keys').showModal(); });
+    part('trouble-close').addEventListener('click', () => { part('trouble').hidden = true; });
+  }
+
+  private followPointer(canvas: HTMLCanvasElement): void {
+    let pressed: { x: number; y: number } | null = null;
+    let waiting = false;
+    canvas.addEventListener('pointerdown', (e) => { pressed = e.isPrimary && e.button === 0 ? { x: e.clientX, y: e.clientY } : null; });
+    canvas.addEventListener('pointerup', (e) => {
+      const isClick = pressed !== null && Math.hypot(e.clientX - pressed.x, e.clientY - pressed.y) < 5;
+      pressed = null;
+      if (isClick) this.inquiry.click(this.relief.pick(e.clientX, e.clientY));
+    });
+    canvas.addEventListener('pointermove', (e) => {
+      if (waiting || e.pointerType === 'touch' || e.buttons !== 0) return;
+      waiting = true;
+      requestAnimationFrame(() => {
+        waiting = false;
+        this.tellPlace(e.clientX, e.clientY);
+      });
+    });
+    canvas.addEventListener('pointerleave', () => { part('place').textContent = ''; });
+  }
+
+  private tellPlace(x: number, y: number): void {
+    if (this.frame === null || this.status === null) return;
+    const place = this.relief.pick(x, y);
+    part('place').textContent = place === null ? ''
+      : coordinates(this.frame.mapX(place.x), this.frame.mapY(place.y), this.frame.isDegrees);
+  }
+
+  private home(): void {
+    this.view.reset(this.exaggeration);
+    this.moved();
+  }
+
+  private async copyLink(): Promise<void> {
+    const hash = toHash(this.view.current(this.exaggeration), this.panel.settings);
+    const address = `${location.origin}${location.pathname}${location.search}#${hash}`;
+    try {
+      await navigator.clipboard.writeText(address);
+      toast('The link to this view is copied');
+    } catch {
+      toast('The browser does not let pages copy; the address line has the link');
+    }
+  }
+
+  private key(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement;
+    if (event.ctrlKey || event.metaKey || event.altKey || part<HTMLDialogElement>('keys').open) return;
+    if (target.matches('input[type=number], input[type=text]') && event.key !== 'Escape') return;
+    if (event.key.startsWith('Arrow') && target.matches('input')) return;
+    if (event.key === 'Enter' && target !== this.relief.canvas) return;
+    const action = this.actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (action === undefined) return;
+    event.preventDefault();
+    action();
+    if (!['?', 'Enter', 'Escape'].includes(event.key)) this.moved();
+  }
+
+  private readonly actions: Record<string, () => void> = {
+    ArrowLeft: () => { this.view.pan(-1, 0); },
+    ArrowRight: () => { this.view.pan(1, 0); },
+    ArrowUp: () => { this.view.pan(0, 1); },
+    ArrowDown: () => { this.view.pan(0, -1); },
+    '+': () => { this.view.zoom(0.8); },
+    '=': () => { this.view.zoom(0.8); },
+    '-': () => { this.view.zoom(1.25); },
+    ',': () => { this.view.turn(-10); },
+    '.': () => { this.view.turn(10); },
+    r: () => { this.home(); },
+    w: () => { this.panel.set('wireframe', !this.panel.settings.wireframe); },
+    i: () => { this.panel.set('interval', this.panel.settings.interval > 0 ? 0 : this.panel.usualInterval); },
+    1: () => { this.panel.set('shading', 'height'); },
+    2: () => { this.panel.set('shading', 'slope'); },
+    3: () => { this.panel.set('shading', 'shade'); },
+    h: () => { this.choose('height'); },
+    p: () => { this.choose('profile'); },
+    s: () => { this.choose('sight'); },
+    v: () => { if (this.isServed) this.choose('viewshed'); },
+    l: () => { void this.copyLink(); },
+    '?': () => { part<HTMLDialogElement>('keys').showModal(); },
+    Enter: () => {
+      const { clientWidth, clientHeight } = this.relief.canvas;
+      this.inquiry.click(this.relief.pick(clientWidth / 2, clientHeight / 2));
+    },
+    Escape: () => { this.inquiry.close(); },
+  };
+
+  private choose(tool: Tool): void {
+    this.inquiry.choose(tool);
+  }
+}
+
+/** Where no terrain was named. */
+function welcome(boot: Boot): void {
+  const box = part('welcome');
+  box.hidden = false;
+  part('card').hidden = part('tools').hidden = true;
+  const form = box.querySelector('form')!;
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    const stream = String(new FormData(form).get('stream')).trim();
+    if (stream !== '') location.search = `?${new URLSearchParams({ stream })}`;
+  });
+  const openFile = (file: File | undefined): void => {
+    if (file === undefined) return;
+    box.hidden = true;
+    part('card').hidden = part('tools').hidden = false;
+    boot.source = { kind: 'stream', url: URL.createObjectURL(file), name: file.name };
+    boot.worker!.postMessage({
+      kind: 'open', source: boot.source, decoder: new URL('decoder.wasm', location.href).href, mostVertices: boot.mostVertices,
+    } satisfies ToWorker);
+    start(boot);
+  };
+  box.querySelector<HTMLInputElement>('input[type=file]')!.addEventListener('change', (event) => {
+    openFile((event.target as HTMLInputElement).files?.[0]);
+  });
+  addEventListener('dragover', (event) => { event.preventDefault(); });
+  addEventListener('drop', (event) => {
+    event.preventDefault();
+    openFile(event.dataTransfer?.files[0]);
+  }, { once: true });
+}
+
+function start(boot: Boot): void {
+  try {
+    (window as unknown as { ptinViewer: Viewer }).ptinViewer = new Viewer(boot);
+  } catch (error) {
+    trouble('The picture cannot be drawn', `The viewer needs WebGL 2, which this browser does not give. (${(error as Error).message})`, false);
+  }
+}
+
+const boot = (window as unknown as { ptinBoot: Boot }).ptinBoot;
+if (location.protocol === 'file:') {
+  trouble('The page needs a web server',
+    'Browsers do not let a page in a folder read the files beside it. In that folder: python3 -m http.server, then open http://localhost:8000.',
+    false);
+} else if (boot.source === null) {
+  welcome(boot);
+} else {
+  start(boot);
+}

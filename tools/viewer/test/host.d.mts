@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import type { IncomingMessage, ServerResponse } from 'node:http';
+
+export interface HostOptions {
+  bytesPerSecond?: number;
+  answer?: (request: IncomingMessage, response: ServerResponse, path: string) => boolean;
+}
+export function host(folder: string, options?: HostOptions): Promise<{ url: string; close(): Promise<void> }>;

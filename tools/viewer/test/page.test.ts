@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The page in a browser: it opens, refines, answers, and says what is wrong.
+import assert from 'node:assert/strict';
+import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Browser, BrowserContextOptions, Page, chromium } from 'playwright-core';
+import { host } from './host.mjs';
+import { assets, file, ptin, terrain } from './support';
+
+const site = file('site');
+let browser: Browser;
+let store = '';
+let fast: Awaited<ReturnType<typeof host>>;
+let slow: Awaited<ReturnType<typeof host>>;
+
+before(async () => {
+  const made = terrain('mountains_257');
+  store = made.store;
+  ptin('viewer', '-o', site, '--stream', made.stream);
+  cpSync(assets, site, { recursive: true, force: true, filter: (from) => !from.endsWith('index.html') });
+  fast = await host(site);
+  slow = await host(site, { bytesPerSecond: 15000 });
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM, args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'],
+  });
+});
+after(async () => {
+  await browser?.close();
+  await fast?.close();
+  await slow?.close();
+});
+
+const wide = { viewport: { width: 1100, height: 720 } };
+const phone = { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 };
+
+/** A page, with what it complained of. */
+async function opened(address: string, options: BrowserContextOptions = wide): Promise<{ page: Page; faults: string[] }> {
+  const page = await (await browser.newContext(options)).newPage();
+  const faults: string[] = [];
+  page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) faults.push(message.text()); });
+  page.on('pageerror', (error) => { faults.push(error.message); });
+  await page.goto(address);
+  return { page, faults: faults };
+}
+
+async function complete(page: Page): Promise<void> {
+  await page.waitForFunction(() => document.querySelector('#progress')!.classList.contains('done'), null, { timeout: 60000 });
+  await rested(page);
+}
+
+/** Waits until the picture is drawn and nothing more is asked for. */
+async function rested(page: Page): Promise<number> {
+  return page.evaluate(async () => {
+    const relief = (window as unknown as { ptinViewer: { relief: { pictures: number } } }).ptinViewer.relief;
+    for (let before = -1; before !== relief.pictures;) {
+      before = relief.pictures;
+      await new Promise((resolve) => { setTimeout(resolve, 700); });
+    }
+    return relief.pictures;
+  });
+}
+
+/** How many colours the middle of the picture has. */
+async function colours(page: Page): Promise<number> {
+  const { width, height } = page.viewportSize()!;
+  const clip = { x: width * 0.4, y: height * 0.4, width: width * 0.3, height: height * 0.25 };
+  const png = (await page.screenshot({ clip })).toString('base64');
+  return page.evaluate(async (data) => {
+    const picture = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const canvas = new OffscreenCanvas(picture.width, picture.height);
+    const context = canvas.getContext('2d')!;
+    context.drawImage(picture, 0, 0);
+    const { data: pixels } = context.getImageData(0, 0, picture.width, picture.height);
+    return new Set(new Uint32Array(pixels.buffer)).size;
+  }, png);
+}
+
+const text = (page: Page, selector: string): Promise<string> => page.locator(selector).innerText();
+const digits = (told: string): number => Number(told.replace(/[^0-9]/g, ''));
+
+test('the page shows the terrain while it arrives, and then rests', async () => {
+  const { page, faults } = await opened(slow.url);
+  await page.waitForFunction(() => /\d/.test(document.querySelector('#fact-vertices')!.textContent!));
+  const counts = [digits(await text(page, '#fact-vertices'))];
+  const share = await page.getAttribute('#progress', 'aria-valuenow');
+  assert.ok(Number(share) < 100, 'it is shown before it is whole');
+  await page.waitForTimeout(700);
+  counts.push(digits(await text(page, '#fact-vertices')));
+  await complete(page);
+  counts.push(digits(await text(page, '#fact-vertices')));
+  assert.ok(counts[0] < counts[1] && counts[1] < counts[2], counts.join(' '));
+  assert.equal(counts[2], 257 * 257);
+  assert.equal(await text(page, '#certified'), 'Exact');
+  assert.ok(await colours(page) > 500, 'the picture is not blank');
+  const pictures = await rested(page);
+  await page.waitForTimeout(500);
+  assert.equal(await rested(page), pictures, 'nothing is drawn while nothing changes');
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
+for (const [name, options] of [['a wide screen', wide], ['a phone', phone]] as const) {
+  test(`a click tells the height that locate tells, on ${name}`, async () => {
+    const { page, faults } = await opened(`${fast.url}#error=5`, options);
+    await complete(page);
+    const { width, height } = page.viewportSize()!;
+    await page.mouse.click(width * 0.6, height * 0.55);
+    await page.waitForSelector('#answer:not([hidden])');
+    const told = await page.evaluate(() => ({ ...document.getElementById('answer')!.dataset })) as Record<string, string>;
+    const at = (...more: string[]): number =>
+      JSON.parse(ptin('locate', store, told.x, told.y, '--json', ...more)).points[0].height as number;
+    assert.ok(Math.abs(at() - Number(told.height)) <= Number(told.deviation) + 1e-9, 'the interval holds the full height');
+    const certified = Number((await text(page, '#certified')).replace(/[^0-9.]/g, ''));
+    assert.ok(certified <= 5 && certified > 0);
+    assert.match(await text(page, '#answer-note'), /certainly between [\d.]+ m and [\d.]+ m/);
+    assert.ok(await colours(page) > 400);
+    assert.deepEqual(faults, []);
+    await page.context().close();
+  });
+}
+
+test('at full detail a click is exact', async () => {
+  const { page } = await opened(fast.url);
+  await complete(page);
+  await page.mouse.click(640, 380);
+  await page.waitForSelector('#answer:not([hidden])');
+  const told = await page.evaluate(() => ({ ...document.getElementById('answer')!.dataset })) as Record<string, string>;
+  const point = JSON.parse(ptin('locate', store, told.x, told.y, '--json')).points[0] as { height: number };
+  assert.ok(Math.abs(point.height - Number(told.height)) < 1e-5);
+  assert.match(await text(page, '#answer-note'), /^exact/);
+  await page.context().close();
+});
+
+test('triangles, isolines and colours change the picture', async () => {
+  const { page, faults } = await opened(`${fast.url}#error=20`);
+  await complete(page);
+  let before = await page.screenshot();
+  for (const key of ['w', 'i', '2', '3', '1']) {
+    await page.keyboard.press(key);
+    await rested(page);
+    const now = await page.screenshot();
+    assert.ok(!now.equals(before), `${key} changes the picture`);
+    before = now;
+  }
+  assert.ok(await page.isChecked('#wireframe'));
+  assert.match(page.url(), /wireframe=1/);
+  assert.match(page.url(), /interval=\d/);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
+test('a profile is drawn and saved, a line of sight is judged', async () => {
+  const { page, faults } = await opened(fast.url);
+  await complete(page);
+  await page.keyboard.press('p');
+  await page.mouse.click(520, 330);
+  await page.waitForTimeout(200);
+  await page.mouse.click(760, 420);
+  await page.waitForSelector('#plot .surface');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#csv')]);
+  const csv = readFileSync((await download.path())!, 'utf8').trim().split('\n');
+  assert.equal(csv[0], 'distance_m,x,y,height,height_min,height_max');
+  assert.ok(csv.length > 20);
+  const [, x, y, height] = csv[5].split(',').map(Number);
+  const point = JSON.parse(ptin('locate', store, String(x), String(y), '--json')).points[0] as { height: number };
+  assert.ok(Math.abs(point.height - height) < 1e-3);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('s');
+  await page.mouse.click(520, 330);
+  await page.waitForTimeout(200);
+  await page.fill('input[name=frequency]', '0.45');
+  await page.mouse.click(760, 420);
+  await page.waitForFunction(() => /Visible|Hidden/.test(document.getElementById('answer-text')!.textContent!));
+  assert.match(await text(page, '#answer-note'), /Fresnel/);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
+test('detail goes and comes again with the slider', async () => {
+  const { page } = await opened(fast.url);
+  await complete(page);
+  const slide = (value: number): Promise<void> => page.locator('#error').evaluate((e, v) => {
+    (e as HTMLInputElement).value = String(v);
+    e.dispatchEvent(new Event('input', { bubbles: true }));
+  }, value);
+  await slide(30);
+  await page.waitForFunction(() => !document.getElementById('certified')!.textContent!.includes('Exact'));
+  await rested(page);
+  assert.ok(digits(await text(page, '#fact-vertices')) < 20000);
+  await slide(100);
+  await page.waitForFunction(() => document.getElementById('certified')!.textContent === 'Exact');
+  assert.equal(digits(await text(page, '#fact-vertices')), 257 * 257);
+  await page.context().close();
+});
+
+test('a link brings the same view', async () => {
+  const { page } = await opened(fast.url);
+  await complete(page);
+  for (const key of ['ArrowUp', 'ArrowLeft', '+', '+', '.']) await page.keyboard.press(key);
+  await page.waitForTimeout(600);
+  const link = page.url();
+  assert.match(link, /#at=/);
+  const again = await opened(link);
+  await complete(again.page);
+  await again.page.waitForTimeout(500);
+  const numbers = (url: string): number[] => new URLSearchParams(new URL(url).hash.slice(1)).get('at')!.split(',').map(Number);
+  const [first, second] = [numbers(link), numbers(again.page.url())];
+  first.forEach((n, i) => { assert.ok(Math.abs(n - second[i]) <= 2e-3 * Math.abs(n), `${first} ${second}`); });
+  await page.context().close();
+  await again.page.context().close();
+});
+
+test('what is wrong is said in a sentence', async () => {
+  const whole = readFileSync(file('mountains_257.ptins'));
+  const bad = new Uint8Array(whole);
+  bad[40000] ^= 1;
+  mkdirSync(site, { recursive: true });
+  writeFileSync(join(site, 'damaged.ptins'), bad);
+  writeFileSync(join(site, 'cut.ptins'), whole.subarray(0, 60000));
+  writeFileSync(join(site, 'short.ptins'), whole.subarray(0, 700));
+  writeFileSync(join(site, 'store.ptin'), readFileSync(store));
+  const said = async (stream: string): Promise<string> => {
+    const { page } = await opened(`${fast.url}?stream=${encodeURIComponent(stream)}`);
+    await page.waitForSelector('#trouble:not([hidden])');
+    const told = await text(page, '#trouble');
+    await page.context().close();
+    return told;
+  };
+  assert.match(await said('none.ptins'), /no such terrain[^]*none\.ptins/);
+  assert.match(await said('viewer.js'), /not a stream/);
+  assert.match(await said('store.ptin'), /not a stream[^]*store/);
+  assert.match(await said('damaged.ptins'), /damaged[^]*frame \d+ at byte \d+/);
+  assert.match(await said('short.ptins'), /too early/);
+  assert.match(await said('http://127.0.0.1:9/x.ptins'), /cannot be reached/);
+  const { page } = await opened(`${fast.url}?stream=cut.ptins`);
+  await complete(page);
+  assert.match(await text(page, '#certified-what'), /did not arrive/);
+  assert.ok(digits(await text(page, '#fact-vertices')) > 10000);
+  await page.context().close();
+});
+
+test('nothing is wider than a phone, and axe finds no serious fault', async () => {
+  for (const options of [phone, wide, { ...wide, colorScheme: 'dark' as const, reducedMotion: 'reduce' as const }]) {
+    const { page, faults } = await opened(fast.url, options);
+    await complete(page);
+    await page.keyboard.press('p');
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    const over = await page.evaluate(() => [...document.querySelectorAll('button, input, label')].filter((e) => {
+      const box = e.getBoundingClientRect();
+      return box.width > 1 && box.height > 1 && (box.left < -1 || box.right > innerWidth + 1);
+    }).map((e) => e.outerHTML.slice(0, 80)));
+    assert.deepEqual(over, []);
+    await page.addScriptTag({ path: process.env.PTIN_AXE });
+    const found = await page.evaluate(async () => {
+      const { axe } = window as unknown as {
+        axe: { run(): Promise<{ violations: Array<{ id: string; impact: string; nodes: Array<{ html: string }> }> }> };
+      };
+      return (await axe.run()).violations.filter((v) => ['serious', 'critical'].includes(v.impact))
+        .map((v) => `${v.id}: ${v.nodes.map((n) => n.html.slice(0, 120)).join(' | ')}`);
+    });
+    assert.deepEqual(found, []);
+    assert.deepEqual(faults, []);
+    await page.context().close();
+  }
+});
+
+test('without a stream the page asks for one', async () => {
+  const bare = file('bare');
+  ptin('viewer', '-o', bare);
+  cpSync(assets, bare, { recursive: true, force: true });
+  const server = await host(bare);
+  const { page, faults } = await opened(server.url);
+  await page.waitForSelector('#welcome:not([hidden])');
+  await page.setInputFiles('#welcome input[type=file]', file('mountains_257.ptins'));
+  await complete(page);
+  assert.equal(await text(page, '#title'), 'mountains_257');
+  assert.equal(digits(await text(page, '#fact-vertices')), 257 * 257);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+  await server.close();
+});

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The small parts: numbers for people, permalinks, CSV, kept bytes, windows, frames of degrees, costs.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { drawnMesh, surfaceEdges } from '../src/drawn_mesh';
+import { bytes, coordinates, count, height, metres, number, roundBelow } from '../src/format';
+import { Frame, unitsOf } from '../src/frame';
+import { defaults, fromHash, toHash } from '../src/permalink';
+import { csvOf, heightAlong, runsOf } from '../src/plot';
+import { widened } from '../src/served_view';
+import { costOf } from '../src/service';
+import { KeptBytes, StaticStream } from '../src/static_stream';
+import { decoded, decoderModule, terrain } from './support';
+
+test('numbers', () => {
+  assert.equal(number(0.0123456, 3), '0.0123');
+  assert.equal(number(-12345.6, 3), '\u221212\u202f346');
+  assert.equal(count(1234567), '1\u202f234\u202f567');
+  assert.equal(bytes(1289341), '1.29 MB');
+  assert.equal(metres(950), '950 m');
+  assert.equal(metres(12345), '12.3 km');
+  assert.equal(height(907.123, 13.3, 'm'), '907 m');
+  assert.equal(height(907.123, 0, 'm'), '907.12 m');
+  assert.equal(coordinates(-118.25, -34.5, true), '34.50000° S  118.25000° W');
+  assert.equal(roundBelow(730), 500);
+  assert.equal(roundBelow(0.2), 0.2);
+});
+
+test('a permalink brings back what it was made of', () => {
+  const pose = { x: 379901.25, y: 3803354.5, height: 907, distance: 8123, heading: 340, tilt: 52 };
+  const settings = { ...defaults, shading: 'slope' as const, wireframe: true, interval: 20, exaggeration: 1.5, error: 2.5 };
+  const back = fromHash(`#${toHash(pose, settings)}`);
+  assert.deepEqual(back, { pose, settings });
+  assert.deepEqual(fromHash(''), { pose: null, settings: defaults });
+  assert.deepEqual(fromHash('#at=1,2,x&shading=no&exaggeration=99&interval=-3'), { pose: null, settings: defaults });
+});
+
+test('a profile as CSV, with its gaps', () => {
+  const stations = [{ distance: 0, height: 5 }, { distance: 10, height: 7 }, { distance: 10, height: null },
+    { distance: 15, height: 6 }, { distance: 20, height: 8 }];
+  assert.equal(csvOf(stations, 20, { x: 0, y: 0 }, { x: 20, y: 10 }, 0.5),
+    'distance_m,x,y,height,height_min,height_max\n0,0,0,5,4.5,5.5\n10,10,5,7,6.5,7.5\n10,10,5,,,\n' +
+    '15,15,7.5,6,5.5,6.5\n20,20,10,8,7.5,8.5\n');
+  assert.equal(runsOf(stations).length, 2);
+  assert.equal(heightAlong(stations, 5), 6);
+  assert.equal(heightAlong(stations, 12), null);
+});
+
+test('bytes are kept in order and can be read again', () => {
+  const kept = new KeptBytes();
+  kept.add(Uint8Array.of(1, 2, 3));
+  kept.add(Uint8Array.of());
+  kept.add(Uint8Array.of(4));
+  kept.pass(2);
+  assert.deepEqual([...kept.next()!], [3]);
+  kept.pass(1);
+  assert.deepEqual([...kept.next()!], [4]);
+  kept.pass(1);
+  assert.equal(kept.next(), null);
+  kept.rewind();
+  assert.deepEqual([...kept.next()!], [1, 2, 3]);
+});
+
+test('a window grows by a quarter, within the terrain', () => {
+  assert.deepEqual(widened([10, 10, 18, 26], [0, 0, 100, 27], 1 / 8), [9, 8, 19, 27]);
+});
+
+test('degrees are as long as they are at the middle of the terrain', () => {
+  const facts = {
+    originX: 10, originY: 59, stepX: 1, stepY: 1, heightIsFloat: false, heightStep: 1, heightOffset: 0, minX: 0, minY: 0, maxX: 1,
+    maxY: 2, minHeight: 0, maxHeight: 100, baseError: 0, baseDeviation: 0,
+  };
+  const frame = new Frame(facts, { horizontal: 'degree', height: 'foot' });
+  assert.ok(Math.abs(frame.depth - 222390) < 10);
+  assert.ok(Math.abs(frame.width / frame.depth - 0.25) < 1e-3);
+  assert.ok(Math.abs(frame.relief - 30.48) < 1e-9);
+  assert.equal(frame.mapX(frame.sceneX(10.25)), 10.25);
+});
+
+test('what an answer cost, in words', () => {
+  const response = new Response(null, { headers: { 'Server-Timing': 'query;dur=28.94;desc="pages=126 stars=0 records=3961"' } });
+  assert.equal(costOf(response), '126 pages, 29 ms');
+  assert.equal(costOf(new Response(null)), '');
+});
+
+test('refinement stops at an error, becomes coarser again, and goes on', () => {
+  const stream = readFileSync(terrain('mountains_257').stream);
+  const still = new StaticStream(decoderModule(), { error: 0, mostVertices: 1e9 });
+  still.kept.add(stream);
+  const apply = (): void => { while (still.apply(1e9)); };
+  still.setError(10);
+  apply();
+  assert.equal(still.heldBy, 'error');
+  const first = { error: still.decoder.certificate.error, vertices: still.decoder.mesh.vertexCount };
+  assert.ok(first.error <= 10);
+  still.setError(1);
+  apply();
+  assert.ok(still.decoder.certificate.error <= 1 && still.decoder.mesh.vertexCount > first.vertices);
+  still.setError(10);
+  apply();
+  assert.equal(still.decoder.mesh.vertexCount, first.vertices);
+  still.setError(0);
+  apply();
+  assert.ok(still.decoder.isComplete);
+  assert.equal(still.decoder.mesh.vertexCount, 257 * 257);
+});
+
+test('refinement stops at a number of vertices', () => {
+  const still = new StaticStream(decoderModule(), { error: 0, mostVertices: 20000 });
+  still.kept.add(readFileSync(terrain('mountains_257').stream));
+  while (still.apply(1e9));
+  assert.equal(still.heldBy, 'vertices');
+  assert.ok(still.decoder.mesh.vertexCount <= 20000);
+});
+
+test('what is drawn has upward normals, every edge once, and no void triangle', () => {
+  const decoder = decoded(decoderModule(), readFileSync(terrain('coast_257', '--error', '5').stream));
+  const { mesh, facts } = decoder;
+  const drawn = drawnMesh(mesh, new Frame(facts, unitsOf(JSON.parse(decoder.metadata))));
+  const surface = mesh.classes.reduce((n, c) => n + (c === 0 ? 1 : 0), 0);
+  assert.equal(drawn.corners.length, 3 * surface);
+  for (const v of drawn.corners) assert.ok(drawn.normals[4 * v + 2] > 0);
+  const edges = surfaceEdges(mesh);
+  const names = new Set<string>();
+  for (let i = 0; i < edges.length; i += 2) {
+    const [a, b] = [edges[i], edges[i + 1]].sort((p, q) => p - q);
+    names.add(`${a} ${b}`);
+  }
+  assert.equal(names.size, edges.length / 2);
+  const all = new Set<string>();
+  for (let i = 0; i < drawn.corners.length; i += 3) {
+    for (let k = 0; k < 3; ++k) {
+      const [a, b] = [drawn.corners[i + k], drawn.corners[i + (k + 1) % 3]].sort((p, q) => p - q);
+      all.add(`${a} ${b}`);
+    }
+  }
+  assert.deepEqual([...names].sort(), [...all].sort());
+});

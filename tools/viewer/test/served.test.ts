@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A terrain of a service, played by the program: only what is missing is asked for, within a budget of vertices.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { Problem } from '../src/fetching';
+import type { Wanted } from '../src/messages';
+import type { Collection, Service, Serving, StreamAnswer } from '../src/service';
+import { ServedView } from '../src/served_view';
+import { decoderModule, file, ptin, terrain } from './support';
+
+interface Asked {
+  window: readonly number[] | null;
+  error: number;
+  have: Serving[];
+}
+
+const { store } = terrain('mountains_257');
+const info = JSON.parse(ptin('info', store, '--json')) as { bounds: { min_x: number; min_y: number; max_x: number; max_y: number } };
+const bounds: Wanted['window'] = [info.bounds.min_x, info.bounds.min_y, info.bounds.max_x, info.bounds.max_y];
+const collection: Collection = { title: 'm', bounds, heights: [633, 1576], vertices: 66049, fingerprint: 'f' };
+
+/** A view of the terrain, and what was asked for it. `refuses` may throw before an answer. */
+function served(mostVertices: number, refuses: (asked: Asked, mostBytes: number) => void = () => undefined): {
+  view: ServedView; asked: Asked[]; faults: unknown[]; settled: () => Promise<void>;
+} {
+  const asked: Asked[] = [];
+  const faults: unknown[] = [];
+  let wake: (() => void) | null = null;
+  const service = {
+    async stream(window: readonly number[] | null, error: number, mostBytes: number, have: Serving[]): Promise<StreamAnswer> {
+      asked.push({ window, error, have: have.map((h) => ({ ...h })) });
+      refuses(asked[asked.length - 1], mostBytes);
+      const more = have.length === 0 ? [] : ['--have', JSON.stringify(have)];
+      const part = window === null ? [] : ['--window', ...window.map(String)];
+      ptin('stream', store, '--error', String(error), ...part, ...more, '-o', file('served.ptins'), '--overwrite');
+      return { response: new Response(readFileSync(file('served.ptins'))), fingerprint: 'f', cost: '' };
+    },
+  };
+  const view = new ServedView(service as unknown as Service, collection, decoderModule(), mostVertices, {
+    grown: () => undefined, settled: () => { wake?.(); }, failed: (error) => { faults.push(error); },
+  });
+  const settled = (): Promise<void> => new Promise((resolve) => { wake = resolve; });
+  return { view, asked, faults, settled };
+}
+
+const middle: Wanted['window'] = [
+  bounds[0] + 0.4 * (bounds[2] - bounds[0]), bounds[1] + 0.4 * (bounds[3] - bounds[1]),
+  bounds[0] + 0.6 * (bounds[2] - bounds[0]), bounds[1] + 0.6 * (bounds[3] - bounds[1]),
+];
+const near: Wanted[] = [{ window: bounds, error: 20 }, { window: middle, error: 1 }];
+
+test('a service that is busy at first is asked again', async () => {
+  const { view, asked, faults, settled } = served(1e6, () => {
+    if (asked.length === 1) throw new Problem('The service is busy', 'Come again later.', 503);
+  });
+  void view.run();
+  await settled();
+  assert.equal(asked.length, 2);
+  assert.equal(faults.length, 1);
+  assert.ok(view.decoder.hasMesh);
+});
+
+test('detail comes where the camera looks, once', async () => {
+  const { view, asked, faults, settled } = served(1e6);
+  void view.run();
+  await settled();
+  const first = view.decoder.mesh.vertexCount;
+  assert.equal(asked.length, 1);
+  assert.deepEqual(asked[0].have, []);
+  view.setView(near);
+  await settled();
+  assert.ok(view.decoder.mesh.vertexCount > first + 1000);
+  const requests = asked.length;
+  assert.equal(asked[requests - 1].have.length, requests - 1, 'what was served is told');
+  assert.ok(view.decoder.certificate.error <= 1);
+  view.setView(near);
+  await settled();
+  view.setView([near[0], { window: middle, error: 1.1 }]);
+  await settled();
+  assert.equal(asked.length, requests, 'nothing is asked for twice');
+  assert.equal(view.heldBy, null);
+  assert.deepEqual(faults, []);
+});
+
+test('a window that sticks out by the last bit of a number is covered', async () => {
+  const { view, asked, settled } = served(1e6);
+  void view.run();
+  await settled();
+  view.setView([{ window: [bounds[0] - 1e-9, bounds[1], bounds[2] + 1e-9, bounds[3]], error: 20 }]);
+  await settled();
+  assert.ok(asked.length <= 2);
+});
+
+test('the budget of vertices is kept: by leaving what is not looked at, then by larger errors', async () => {
+  const { view, asked, settled } = served(9000);
+  void view.run();
+  await settled();
+  const corner = (i: number, j: number): Wanted['window'] => {
+    const [x, y] = [(bounds[2] - bounds[0]) / 4, (bounds[3] - bounds[1]) / 4];
+    return [bounds[0] + i * x, bounds[1] + j * y, bounds[0] + (i + 1) * x, bounds[1] + (j + 1) * y];
+  };
+  for (const [i, j] of [[0, 0], [3, 0], [3, 3], [0, 3]]) {
+    view.setView([{ window: bounds, error: 40 }, { window: corner(i, j), error: 1.5 }]);
+    await settled();
+    assert.ok(view.decoder.mesh.vertexCount <= 9000, `${view.decoder.mesh.vertexCount} vertices`);
+  }
+  assert.ok(asked.some((a, i) => i > 0 && a.have.length === 0), 'a view was fetched anew');
+  view.setView([{ window: bounds, error: 0.5 }]);
+  await settled();
+  assert.ok(view.decoder.mesh.vertexCount <= 9000);
+  assert.equal(view.heldBy, 'vertices');
+});
+
+test('refusals are mended: a replaced file begins anew, too much becomes less', async () => {
+  let replaced = true;
+  const { view, asked, faults, settled } = served(1e6, (a) => {
+    if (a.have.length !== 0 && replaced) {
+      replaced = false;
+      throw new Problem('Conflict', 'the file was replaced', 409);
+    }
+    if (a.error < 2) throw new Problem('Too much', 'the answer takes more memory', 413, 'question_memory');
+  });
+  void view.run();
+  await settled();
+  view.setView([{ window: bounds, error: 5 }]);
+  await settled();
+  assert.ok(asked.some((a, i) => i > 1 && a.have.length === 0));
+  assert.ok(view.decoder.certificate.error <= 5);
+  view.setView([{ window: bounds, error: 5 }, { window: middle, error: 1 }]);
+  await settled();
+  assert.equal(view.heldBy, 'service');
+  assert.deepEqual(faults, []);
+});

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What several tests need: the program, streams of small terrains, the decoder, meshes that the program wrote.
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { Decoder, Facts, MeshView, triangleWords, vertexWords } from '../src/decoder';
+import { heightOf } from '../src/frame';
+
+/** The program that was built, and the small terrains of tests/data. */
+export const program = process.env.PTIN_PROGRAM ?? '';
+export const data = process.env.PTIN_TEST_DATA ?? '';
+export const assets = process.env.PTIN_VIEWER_ASSETS ?? '';
+
+export const folder = mkdtempSync(join(tmpdir(), 'ptin-viewer-'));
+process.on('exit', () => { rmSync(folder, { recursive: true, force: true }); });
+
+export function file(name: string): string {
+  return join(folder, name);
+}
+
+export function ptin(...parts: string[]): string {
+  return execFileSync(program, parts, { encoding: 'utf8', maxBuffer: 1 << 28, stdio: ['ignore', 'pipe', 'ignore'] });
+}
+
+/** The path of a terrain, built once, and that of its stream. */
+export function terrain(name: string, ...options: string[]): { store: string; stream: string } {
+  const store = file(`${name}.ptin`), stream = file(`${name}.ptins`);
+  ptin('build', join(data, `${name}.tif`), '-q', '-o', store, '--overwrite');
+  ptin('stream', store, ...options, '-o', stream, '--overwrite');
+  return { store, stream };
+}
+
+export function decoderModule(): WebAssembly.Module {
+  return new WebAssembly.Module(readFileSync(join(assets, 'decoder.wasm')));
+}
+
+/** A decoder that was fed `bytes`, in pieces of a size. */
+export function decoded(module: WebAssembly.Module, bytes: Uint8Array, piece = bytes.length): Decoder {
+  const decoder = new Decoder(module);
+  for (let at = 0; at < bytes.length; at += piece) decoder.feed(bytes.subarray(at, at + piece));
+  return decoder;
+}
+
+type Corner = readonly [number, number, number];
+
+/** A triangle beginning with its least corner, as text: so that two meshes can be compared whatever their order. */
+function told(corners: Corner[]): string {
+  const names = corners.map((c) => c.join(' '));
+  const first = names.indexOf([...names].sort()[0]);
+  return [0, 1, 2].map((i) => names[(first + i) % 3]).join(', ');
+}
+
+/** The surface's triangles, corner by corner on the map, sorted. */
+export function trianglesOf(mesh: MeshView, facts: Facts): string[] {
+  const corner = (v: number): Corner => [
+    facts.originX + facts.stepX * mesh.vertices[v * vertexWords],
+    facts.originY + facts.stepY * mesh.vertices[v * vertexWords + 1], heightOf(facts, mesh.vertices[v * vertexWords + 2]),
+  ];
+  const all: string[] = [];
+  for (let t = 0; t < mesh.triangleCount; ++t) {
+    if (mesh.classes[t] === 0) all.push(told([0, 1, 2].map((i) => corner(mesh.triangles[t * triangleWords + i]))));
+  }
+  return all.sort();
+}
+
+/** The same of a binary PLY that the program wrote: doubles, then a count and three indices a triangle. */
+export function trianglesOfPly(path: string): string[] {
+  const bytes = readFileSync(path);
+  const mark = 'end_header\n';
+  const header = bytes.subarray(0, bytes.indexOf(mark) + mark.length).toString('latin1');
+  const countOf = (what: string): number => Number(new RegExp(`element ${what} (\\d+)`).exec(header)![1]);
+  let at = header.length;
+  const corners: Corner[] = [];
+  for (let v = 0; v < countOf('vertex'); ++v, at += 24) {
+    corners.push([bytes.readDoubleLE(at), bytes.readDoubleLE(at + 8), bytes.readDoubleLE(at + 16)]);
+  }
+  const all: string[] = [];
+  for (let t = 0; t < countOf('face'); ++t, at += 13) {
+    all.push(told([1, 5, 9].map((offset) => corners[bytes.readUInt32LE(at + offset)])));
+  }
+  return all.sort();
+}

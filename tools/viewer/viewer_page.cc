@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/viewer/viewer_page.h"
+
+#include <algorithm>
+
+#include "engine/check.h"
+
+namespace ptin::tools {
+
+namespace {
+
+constexpr std::string_view kIndex = "index.html";
+constexpr std::string_view kNoStream = R"(<meta name="ptin-stream" content="">)";
+
+bool is_plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+         c == '_' || c == '-' || c == '~';
+}
+
+/// A file name as a relative address. What comes out holds nothing that HTML would read, and with
+/// its `./` no scheme.
+std::string address_of(std::string_view name) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string address = "./";
+  for (const char c : name) {
+    if (is_plain(c)) {
+      address += c;
+      continue;
+    }
+    const auto byte = static_cast<unsigned char>(c);
+    address.append({'%', kDigits[byte >> 4], kDigits[byte & 15U]});
+  }
+  return address;
+}
+
+}  // namespace
+
+std::string viewer_page_for(std::string_view stream) {
+  const auto files = viewer_files();
+  const auto index = std::find_if(files.begin(), files.end(),
+                                  [](const ViewerFile& file) { return file.name == kIndex; });
+  PTIN_CHECK(index != files.end());
+  std::string page(index->content);
+  const std::size_t at = page.find(kNoStream);
+  PTIN_CHECK(at != std::string::npos);
+  page.insert(at + kNoStream.size() - std::string_view("\">").size(), address_of(stream));
+  return page;
+}
+
+}  // namespace ptin::tools
