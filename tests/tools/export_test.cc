@@ -299,7 +299,7 @@ TEST(Export, WritesTheSameTrianglesAsFeatures) {
             (std::vector<std::string>{"a.fgb", "a.gpkg", "a.ply", "coast_257.tif.ptin"}));
 }
 
-TEST(Export, RasterOfTheFullTinIsTheSource) {
+TEST(ExportRaster, RasterOfTheFullTinIsTheSource) {
   const TestFolder folder;
   for (const char* name : {"coast_257.tif", "mountains_257.tif"}) {
     const std::string file = built(folder, name);
@@ -327,7 +327,7 @@ TEST(Export, RasterOfTheFullTinIsTheSource) {
   }
 }
 
-TEST(Export, TellsWhichSamplesChangeBetweenSurfaceAndVoid) {
+TEST(ExportRaster, TellsWhichSamplesChangeBetweenSurfaceAndVoid) {
   const TestFolder folder;
   const std::string file = built(folder, "coast_257.tif");
   expect_done({"export", file, "-q", "-o", folder.file("full.tif")});
@@ -352,7 +352,7 @@ TEST(Export, TellsWhichSamplesChangeBetweenSurfaceAndVoid) {
   EXPECT_GT(most, 0U);
 }
 
-TEST(Export, TakesSeveralCreationOptions) {
+TEST(ExportRaster, TakesSeveralCreationOptions) {
   const TestFolder folder;
   const std::string file = built(folder, "coast_257.tif");
   const auto size = [&](const std::vector<std::string>& options) {
@@ -367,7 +367,7 @@ TEST(Export, TakesSeveralCreationOptions) {
   EXPECT_NE(size({"--co", "COMPRESS=DEFLATE", "--co", "ZLEVEL=1"}), deflated);
 }
 
-TEST(Export, RasterDoesNotDependOnMemory) {
+TEST(ExportRaster, RasterDoesNotDependOnMemory) {
   const TestFolder folder;
   const Terrain terrain = Terrain::open(built(folder, "mountains_257.tif"));
   const StoreFacts& facts = terrain.store().facts();
@@ -407,7 +407,7 @@ double height_at(const Tin& tin, const StoreFacts& facts, long double x, long do
   return NAN;
 }
 
-TEST(Export, RasterInterpolatesTheTriangles) {
+TEST(ExportRaster, RasterInterpolatesTheTriangles) {
   const TestFolder folder;
   std::mt19937 random(7);
   for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
@@ -440,7 +440,7 @@ TEST(Export, RasterInterpolatesTheTriangles) {
   }
 }
 
-TEST(Export, RastersOfWindowsAreCutsOfTheWhole) {
+TEST(ExportRaster, RastersOfWindowsAreCutsOfTheWhole) {
   const TestFolder folder;
   const std::string file = built(folder, "mountains_257.tif");
   const ReadRaster dem = read_raster(test_data("mountains_257.tif"));
@@ -481,7 +481,7 @@ std::string terrain_in_degrees(const TestFolder& folder) {
   return folder.file("degrees.ptin");
 }
 
-TEST(Export, TakesPixelSizesOverGround) {
+TEST(ExportRaster, TakesPixelSizesOverGround) {
   const TestFolder folder;
   const auto size = [&](const std::string& file, const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {
@@ -507,7 +507,7 @@ TEST(Export, TakesPixelSizesOverGround) {
   EXPECT_EQ(size(built(folder, "mountains_257.tif"), {"90m"}), (std::array<double, 2>{90, 90}));
 }
 
-TEST(Export, RefusesPixelsThatDoNotFit) {
+TEST(ExportRaster, RefusesPixelsThatDoNotFit) {
   const TestFolder folder;
   const auto refuse = [&](const std::string& file, const std::vector<std::string>& more,
                           const std::string& words) {

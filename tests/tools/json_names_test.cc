@@ -156,6 +156,7 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   question({"profile", store, "--line", line, "--stations", "50m"});
   question({"stream", store, "-o", file("a.pts")});
   question({"unstream", file("a.pts"), "-o", file("b.ply")});
+  ask({"viewer", "-o", file("site"), "--stream", file("a.pts")});
   question({"isoline", store, "--interval", "20", "-o", file("a.geojson"), "-q"});
   question({"isoline", store, "--interval", "20", "--polygons", "-o", file("b.geojson"), "-q"});
   question(

@@ -112,6 +112,14 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin unstream isolines.pts --level 500 1000 -o contours.gpkg\n"
      "  ptin unstream isolines.pts --level 500 --steps -o arriving.gpkg\n",
      declare_unstream},
+    {"viewer", "Write a web page that shows a stream and refines it while it arrives",
+     "The page needs no program on the host: any that gives out files will do. It opens the stream "
+     "beside it, or one that\n"
+     "its address names: index.html?stream=https://example.org/dem.ptins\n\n"
+     "Examples:\n"
+     "  ptin stream dem.ptin -o dem.ptins && ptin viewer -o site --stream dem.ptins\n"
+     "  ptin viewer -o site && python3 -m http.server --directory site\n",
+     declare_viewer},
     {"highest", "Find the highest or lowest point of a window",
      "Exact, of the full TIN. Reads little more than what lies around the answer.\n\n"
      "Examples:\n"
@@ -184,6 +192,20 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin bench /mnt/usb/dem.ptin --seconds 300 -o usb.png\n"
      "  ptin bench dem.ptin --error 5 --threads 16 --json | jq .best\n",
      declare_bench},
+    {"serve", "Answer questions over HTTP: heights, contours, lines of sight, meshes, streams",
+     "GET / lists what there is, GET /api as OpenAPI. Every limit on what a client may ask is an "
+     "option. Loopback unless\n"
+     "--listen says otherwise; TLS is a proxy's (tools/serve/README.md). A file that is replaced "
+     "by renaming another one onto\n"
+     "it is picked up at the next question. SIGTERM finishes what is at hand, and ends with status "
+     "0.\n\n"
+     "Examples:\n"
+     "  ptin serve dem.ptin\n"
+     "  ptin serve alps=/data/alps.ptin coast=/data/coast.ptin --listen 0.0.0.0:8080 --cors '*'\n"
+     "  ptin serve --config /etc/ptin.toml --limit points=1000\n"
+     "  curl "
+     "'http://127.0.0.1:8080/collections/dem/position?coords=POINT(-118.2%2034.3)&error=5'\n",
+     declare_serve},
     {"completion", "Print a completion script for a shell, or the manual page",
      "Example:\n"
      "  ptin completion bash > ~/.local/share/bash-completion/completions/ptin\n"

@@ -41,6 +41,7 @@ Action declare_refine(CLI::App& app, Context& context);
 Action declare_export(CLI::App& app, Context& context);
 Action declare_stream(CLI::App& app, Context& context);
 Action declare_unstream(CLI::App& app, Context& context);
+Action declare_viewer(CLI::App& app, Context& context);
 Action declare_locate(CLI::App& app, Context& context);
 Action declare_profile(CLI::App& app, Context& context);
 Action declare_sight(CLI::App& app, Context& context);
@@ -50,6 +51,7 @@ Action declare_highest(CLI::App& app, Context& context);
 Action declare_volume(CLI::App& app, Context& context);
 Action declare_viewshed(CLI::App& app, Context& context);
 Action declare_bench(CLI::App& app, Context& context);
+Action declare_serve(CLI::App& app, Context& context);
 Action declare_completion(CLI::App& app, Context& context);
 
 }  // namespace ptin::tools

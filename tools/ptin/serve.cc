@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// ptin serve: questions over HTTP.
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include "engine/error.h"
+#include "storage/file/sigbus_guard.h"
+#include "tools/error_status.h"
+#include "tools/http/server.h"
+#include "tools/ptin/query_options.h"
+#include "tools/serve/config_file.h"
+#include "tools/serve/limit_table.h"
+#include "tools/serve/log_writer.h"
+#include "tools/serve/terrain_service.h"
+#include "tools/thread_count.h"
+
+namespace ptin::tools {
+
+namespace {
+
+struct ServeCommand {
+  std::vector<std::string> files;
+  std::optional<std::string> listen, cors, token_file;
+  std::string config, memory;
+  std::vector<std::string> limits;
+  std::optional<std::uint64_t> threads;
+  bool offers_files = false;
+};
+
+/// NAME=FILE, or a file whose name without its extension is the name.
+serve::ServedFile served_file(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  std::error_code unknown;
+  if (equals != std::string::npos && !std::filesystem::exists(text, unknown)) {
+    return {text.substr(0, equals), text.substr(equals + 1)};
+  }
+  return {std::filesystem::path(text).stem().string(), text};
+}
+
+serve::ServeOptions options_of(const ServeCommand& command) {
+  serve::ServeOptions options;
+  options.http.threads = static_cast<std::size_t>(thread_count(0));
+  options.version = PTIN_VERSION;
+  if (!command.config.empty()) serve::read_config(command.config, options);
+  for (const std::string& file : command.files) options.files.push_back(served_file(file));
+  if (options.files.empty()) refuse("no file is given: name files, or --config with [collections]");
+  if (command.listen) options.listen = *command.listen;
+  if (command.cors) options.cors_origin = serve::checked_origin(*command.cors, "--cors");
+  if (command.token_file) options.token = serve::read_token(*command.token_file);
+  if (command.threads) options.http.threads = static_cast<std::size_t>(*command.threads);
+  if (command.offers_files) options.offers_files = true;
+  if (!command.memory.empty()) serve::set_limit(options, "memory_bytes", command.memory);
+  for (const std::string& limit : command.limits) {
+    const std::size_t equals = limit.find('=');
+    if (equals == std::string::npos) refuse("expected NAME=VALUE, as points=1000", "--limit");
+    serve::set_limit(options, limit.substr(0, equals), limit.substr(equals + 1));
+  }
+  if (options.question.question_memory > options.http.memory_bytes) {
+    refuse("one question may take " + std::to_string(options.question.question_memory) +
+           " bytes, and all together " + std::to_string(options.http.memory_bytes) +
+           ": give more --memory, or a smaller --limit question_memory=SIZE");
+  }
+  return options;
+}
+
+int run_serve(const ServeCommand& command, const Context& context) {
+  // Each thread would else keep memory of its own that no other one gets.
+  ::mallopt(M_ARENA_MAX, 2);
+  install_sigbus_guard();  // A file that is cut short fails questions, not the service.
+  const serve::ServeOptions options = options_of(command);
+  std::signal(SIGPIPE, SIG_IGN);  // Of whoever read the log and left.
+  serve::LogWriter log(STDERR_FILENO);
+  serve::TerrainService service(options, [&log](const std::string& line) { log.add(line); });
+  http::Server server(options.listen, options.http, service);
+  service.watch(&server);
+  if (!context.quiet) {
+    std::printf("http://%s/ answers from %zu file%s; SIGTERM ends it\n", server.address().c_str(),
+                options.files.size(), options.files.size() == 1 ? "" : "s");
+    std::fflush(stdout);
+  }
+  const std::stop_callback drains(context.stop, [&] {
+    service.begin_to_drain();
+    server.drain();
+  });
+  server.run();
+  service.watch(nullptr);
+  return kExitDone;
+}
+
+std::string limits_help() {
+  std::string help = "A limit, as points=1000; may be given often. A refusal names it:";
+  const serve::ServeOptions defaults;
+  for (const serve::LimitFact& limit : serve::limit_table()) {
+    help.append("\n  ").append(limit.name).append("=").append(std::to_string(limit.get(defaults)));
+    if (!limit.unit.empty()) help.append(" ").append(limit.unit);
+    help.append(": ").append(limit.about);
+  }
+  return help;
+}
+
+}  // namespace
+
+Action declare_serve(CLI::App& app, Context& context) {
+  const auto command = std::make_shared<ServeCommand>();
+  app.add_option("FILE", command->files, "Files, each as FILE or NAME=FILE")->type_name("FILE...");
+  app.add_option("--listen", command->listen, "Where to listen; 127.0.0.1:8080 without it")
+      ->type_name("ADDRESS:PORT");
+  app.add_option("--config", command->config,
+                 "TOML: listen, threads, cors, token_file, files, [collections], [limits]; options "
+                 "win over it")
+      ->type_name("FILE");
+  app.add_option("--threads", command->threads, "Questions that are computed at once")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--memory", command->memory, "Memory of all questions at once; 192M without it")
+      ->type_name("SIZE");
+  app.add_option("--limit", command->limits, limits_help())->type_name("NAME=VALUE");
+  app.add_option("--cors", command->cors, "Web pages of this origin may ask; * for all")
+      ->type_name("ORIGIN");
+  app.add_option("--token-file", command->token_file,
+                 "Questions need the token of its first line, as Authorization: Bearer TOKEN")
+      ->type_name("FILE");
+  app.add_flag("--files", command->offers_files, "Give out the files themselves, by ranges");
+  return [command, &context] { return run_serve(*command, context); };
+}
+
+}  // namespace ptin::tools

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/serve/answer_parts.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "engine/crs/border_move.h"
+#include "engine/error.h"
+#include "engine/stop.h"
+#include "tools/formats/number_text.h"
+#include "tools/http/problem.h"
+
+namespace ptin::serve {
+
+namespace {
+
+constexpr std::size_t kFirstBytes = 4096;      ///< Of a long text.
+constexpr std::size_t kLookBytes = 64 * 1024;  ///< Between two looks at the stop token.
+
+/// How much a client likes a media type, and how closely it names it: 3 by its name, 2 by "text/*",
+/// 1 by "*/*", 0 not at all.
+struct Liking {
+  double quality = 0.0;
+  int closeness = 0;
+};
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
+/// The part of a list before the next mark, without blanks; the list loses it.
+std::string_view next_part(std::string_view& list, char mark) {
+  const std::size_t end = std::min(list.find(mark), list.size());
+  const std::string_view part = trimmed(list.substr(0, end));
+  list.remove_prefix(std::min(end + 1, list.size()));
+  return part;
+}
+
+/// What the header Accept, in lower case, says of a media type: the range counts that is closest.
+Liking liking_of(std::string_view accept, std::string_view media) {
+  media = media.substr(0, media.find(';'));
+  Liking liking;
+  while (!accept.empty()) {
+    std::string_view range = next_part(accept, ',');
+    const std::string_view name = next_part(range, ';');
+    const bool is_of_kind =
+        name.ends_with("/*") && media.starts_with(name.substr(0, name.size() - 1));
+    const int closeness = name == media ? 3 : is_of_kind ? 2 : name == "*/*" ? 1 : 0;
+    if (closeness <= liking.closeness) continue;
+    liking = {1.0, closeness};
+    while (!range.empty()) {
+      const std::string_view parameter = next_part(range, ';');
+      if (parameter.starts_with("q="))
+        liking.quality = number_of(parameter.substr(2)).value_or(0.0);
+    }
+  }
+  return liking;
+}
+
+}  // namespace
+
+const OfferedFormat& format_of(const Asked& asked, std::span<const OfferedFormat> offered) {
+  if (asked.question.has("f")) {
+    std::vector<std::string_view> names;
+    for (const OfferedFormat& format : offered) names.push_back(format.name);
+    const std::string_view chosen = asked.question.choice("f", names);
+    for (const OfferedFormat& format : offered) {
+      if (format.name == chosen) return format;
+    }
+  }
+  const std::string accept = lower_case(asked.request.header("accept").value_or(""));
+  const OfferedFormat* best = &offered.front();
+  Liking most;
+  for (const OfferedFormat& format : offered) {
+    const Liking liking = liking_of(accept, format.media);
+    const bool is_liked_more =
+        liking.quality > most.quality ||
+        (liking.quality == most.quality && liking.quality > 0 && liking.closeness > most.closeness);
+    if (!is_liked_more) continue;
+    most = liking;
+    best = &format;
+  }
+  return *best;
+}
+
+void add_choice(http::Response& response, const Asked& asked) {
+  if (!asked.question.has("f")) response.add("Vary", "Accept");
+}
+
+void LongText::make_room(std::size_t bytes) {
+  const std::size_t needed = text_.size() + bytes;
+  if (needed > most_bytes_) {
+    throw Error(ErrorCode::resource_exhausted, "the text of the answer takes more than its memory");
+  }
+  if (needed > text_.capacity()) {
+    text_.reserve(std::min(most_bytes_, std::max({needed, 2 * text_.capacity(), kFirstBytes})));
+  }
+  if (needed < next_look_) return;
+  stop_if_asked(stop_, "the answer");
+  next_look_ = needed + kLookBytes;
+}
+
+LongText& LongText::add(std::string_view text) {
+  make_room(text.size());
+  text_ += text;
+  return *this;
+}
+
+LongText& LongText::number(double value) {
+  constexpr std::size_t kMostDigits = 32;
+  make_room(kMostDigits);
+  append_json_number(text_, value);
+  return *this;
+}
+
+LongText& LongText::json(const Json& value) {
+  return add(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+QueryLimits engine_limits(const Asked& asked, std::uint64_t answer_bytes) {
+  QueryLimits limits = asked.limits;
+  limits.memory_bytes -= std::min<std::uint64_t>(limits.memory_bytes / 2, answer_bytes);
+  return limits;
+}
+
+http::Response json_response(const Json& json, std::string_view media) {
+  return text_response(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n", media);
+}
+
+http::Response text_response(std::string text, std::string_view media) {
+  http::Response response;
+  response.content_type = media;
+  response.body = std::move(text);
+  return response;
+}
+
+void append_json_number(std::string& text, double value) {
+  if (std::isfinite(value)) {
+    tools::append_number(text, value);
+  } else {
+    text += "null";
+  }
+}
+
+void add_cost(http::Response& response, const QueryCost& cost) {
+  std::string value = "query;dur=";
+  append_json_number(value, std::round(1e5 * cost.seconds) / 1e2);
+  value += ";desc=\"pages=" + std::to_string(cost.io.pages) +
+           " stars=" + std::to_string(cost.stars_read) +
+           " records=" + std::to_string(cost.records_retrieved) +
+           " bytes=" + std::to_string(cost.io.bytes_read) + "\"";
+  response.add("Server-Timing", std::move(value));
+}
+
+void add_certainty(http::Response& response, double certified_error, bool exact) {
+  std::string error;
+  append_json_number(error, certified_error);
+  response.add("Ptin-Certified-Error", std::move(error));
+  response.add("Ptin-Exact", exact ? "true" : "false");
+}
+
+Json certainty_json(const Asked& asked, double certified_error, double certified_deviation,
+                    bool exact) {
+  const CrsFacts& crs = asked.collection->crs;
+  Json json = {{"certified_error", certified_error},
+               {"certified_deviation", certified_deviation},
+               {"exact", exact},
+               {"unit", crs.vertical_unit}};
+  const double moved = border_moved_at_most(asked.terrain().store(), certified_error);
+  json["border_moved_at_most"] = std::isfinite(moved) ? Json(moved) : Json();
+  return json;
+}
+
+DetailRequest detail_of(const Asked& asked) {
+  const DetailRequest detail = asked.question.detail();
+  const std::size_t least = asked.terrain().store().t0().vertices.size();
+  if (!detail.vertices || *detail.vertices >= least) return detail;
+  throw http::Problem(400, "the coarsest TIN has " + std::to_string(least) +
+                               " vertices; ask for at least that many")
+      .at("vertices");
+}
+
+std::optional<Window> window_on_terrain(const Asked& asked, const Places& places) {
+  const std::optional<Window> given = asked.question.bbox();
+  if (!given) return std::nullopt;
+  const Window window = places.to_terrain(*given);
+  const StoreFacts& facts = asked.facts();
+  if (GridRegion(window, facts.map).meets(facts.bounds)) return window;
+  std::string text = "this window misses the terrain";
+  const char* before = ", which has west, south, east, north ";
+  if (const auto bounds = places.from_terrain(asked.collection->bounds)) {
+    for (const double side : {bounds->min_x, bounds->min_y, bounds->max_x, bounds->max_y}) {
+      append_json_number(text.append(before), side);
+      before = ", ";
+    }
+  }
+  throw http::Problem(400, text).at("bbox");
+}
+
+void check_count(std::size_t count, std::size_t most, std::string_view what, std::string_view name,
+                 std::string_view parameter) {
+  if (count <= most) return;
+  throw http::Problem(413, std::to_string(count) + " " + std::string(what) +
+                               " are asked for, and " + std::to_string(most) +
+                               " are answered at once; ask in parts")
+      .at(std::string(parameter))
+      .beyond(std::string(name));
+}
+
+}  // namespace ptin::serve

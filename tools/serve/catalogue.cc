@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/serve/catalogue.h"
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <utility>
+
+#include <sys/stat.h>
+
+#include "engine/error.h"
+#include "tools/http/etag.h"
+#include "tools/serve/places.h"
+
+namespace ptin::serve {
+
+namespace {
+
+/// Between two tries to open a file that was refused for a reason that may pass.
+constexpr std::chrono::seconds kBetweenTries{1};
+
+bool is_name(const std::string& id) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  };
+  return !id.empty() && id.front() != '.' && id.size() <= 64 &&
+         std::all_of(id.begin(), id.end(), is_plain);
+}
+
+/// Whether trying again gives nothing else.
+bool is_damaged(const std::exception& error) {
+  const auto* const known = dynamic_cast<const Error*>(&error);
+  return known != nullptr && (known->code() == ErrorCode::corruption ||
+                              known->code() == ErrorCode::unsupported_version);
+}
+
+}  // namespace
+
+std::string version_of(const Collection& collection, const std::string& program) {
+  return collection.fingerprint + "-" + program;
+}
+
+std::optional<FileIdentity> identity_of(const std::string& path) {
+  struct stat facts {};
+  if (::stat(path.c_str(), &facts) != 0) return std::nullopt;
+  return FileIdentity{facts.st_dev, facts.st_ino, static_cast<std::uint64_t>(facts.st_size),
+                      facts.st_mtim.tv_sec, facts.st_mtim.tv_nsec};
+}
+
+Collection::Collection(std::string name, const std::string& path)
+    : id(std::move(name)),
+      identity(identity_of(path).value_or(FileIdentity{})),
+      terrain(Terrain::open(path, PageAccess::kMapped, ReplacedFile::kAnswers)),
+      crs(crs_facts(terrain.store())),
+      ground(ground_of(crs)),
+      fingerprint(http::hex_of(terrain.store().fingerprint())) {
+  const StoreFacts& facts = terrain.store().facts();
+  const MapPoint a = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
+  const MapPoint b = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
+  bounds = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+  lon_lat = lon_lat_of(bounds, crs);
+}
+
+Catalogue::Catalogue(const std::vector<ServedFile>& files, Warn warn) : warn_(std::move(warn)) {
+  for (const ServedFile& file : files) {
+    if (!is_name(file.id)) {
+      refuse("\"" + file.id +
+                 "\" cannot be the name of a collection: give one of letters, digits, -, _ and . "
+                 "as NAME=FILE",
+             file.path);
+    }
+    auto entry = std::make_unique<Entry>();
+    entry->path = file.path;
+    entry->open = std::make_shared<Collection>(file.id, file.path);
+    if (!entries_.emplace(file.id, std::move(entry)).second) {
+      refuse("two files have the name \"" + file.id + "\"; give another one as NAME=FILE",
+             file.path);
+    }
+  }
+}
+
+std::shared_ptr<const Collection> Catalogue::find(const std::string& id) const {
+  const auto found = entries_.find(id);
+  return found == entries_.end() ? nullptr : current(id, *found->second);
+}
+
+std::vector<std::shared_ptr<const Collection>> Catalogue::all() const {
+  std::vector<std::shared_ptr<const Collection>> all;
+  for (const auto& [id, entry] : entries_) all.push_back(current(id, *entry));
+  return all;
+}
+
+std::shared_ptr<const Collection> Catalogue::current(const std::string& id, Entry& entry) const {
+  const std::optional<FileIdentity> now = identity_of(entry.path);
+  const std::lock_guard lock(entry.mutex);
+  const FileIdentity seen = now.value_or(FileIdentity{});
+  if (now && seen == entry.open->identity) {
+    entry.is_stale = false;
+    return entry.open;
+  }
+  const bool is_known = entry.is_stale && seen == entry.refused;
+  if (is_known && std::chrono::steady_clock::now() < entry.next_try) return entry.open;
+  entry.refused = seen;
+  entry.is_stale = true;
+  entry.next_try = std::chrono::steady_clock::now() + kBetweenTries;
+  if (!now) {
+    if (!is_known) warn_(id, "the file is gone; the one that was open goes on answering");
+    return entry.open;
+  }
+  try {
+    entry.open = std::make_shared<Collection>(id, entry.path);
+    entry.is_stale = false;
+  } catch (const std::exception& error) {
+    if (is_damaged(error)) entry.next_try = std::chrono::steady_clock::time_point::max();
+    if (is_known) return entry.open;
+    warn_(id, std::string("the file that took its place cannot be opened: ") + error.what());
+  }
+  return entry.open;
+}
+
+}  // namespace ptin::serve

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The files that a service answers from, each under a name. No path ever comes from a client.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/crs/crs_facts.h"
+#include "engine/crs/ground.h"
+#include "engine/query/terrain.h"
+#include "tools/serve/serve_options.h"
+#include "tools/serve/tile_sets.h"
+
+namespace ptin::serve {
+
+/// Which file stands under a path: it changes when the file is replaced, or written to.
+struct FileIdentity {
+  std::uint64_t device = 0, inode = 0, bytes = 0;
+  std::int64_t seconds = 0, nanoseconds = 0;  ///< Of its last change.
+  friend bool operator==(const FileIdentity&, const FileIdentity&) = default;
+};
+
+/// One file, opened. Immutable, shared by the questions in flight; it lives as long as one of them,
+/// also when another file has taken its place.
+struct Collection {
+  Collection(std::string name, const std::string& path);
+
+  std::string id;
+  /// Of what stood under the path before the file was opened: where another one took its place
+  /// meanwhile, that is seen the next time.
+  FileIdentity identity;
+  Terrain terrain;
+  CrsFacts crs;
+  Ground ground;
+  std::string fingerprint;        ///< Of the content, as hexadecimal digits.
+  Window bounds{};                ///< Map units.
+  std::optional<Window> lon_lat;  ///< Degrees east and north of CRS84; none: not known.
+  mutable TileSets tile_sets;
+};
+
+/// Changes whenever the bytes of any answer may: with the file, and with the program.
+[[nodiscard]] std::string version_of(const Collection& collection, const std::string& program);
+
+/// Threads: any.
+class Catalogue {
+ public:
+  /// Takes a sentence about a file that cannot be read any more.
+  using Warn = std::function<void(const std::string& id, const std::string& what)>;
+
+  /// Opens all files.
+  /// @throws Error invalid_argument  two files of one name, or a name that no URL should hold
+  ///               as Terrain::open
+  Catalogue(const std::vector<ServedFile>& files, Warn warn);
+
+  /// The collection of this name, null when there is none. Looks whether the file was replaced, and
+  /// then opens the new one; while that one cannot be opened, the old one goes on answering.
+  [[nodiscard]] std::shared_ptr<const Collection> find(const std::string& id) const;
+  /// All, by name.
+  [[nodiscard]] std::vector<std::shared_ptr<const Collection>> all() const;
+
+ private:
+  struct Entry {
+    std::string path;
+    mutable std::mutex mutex;
+    std::shared_ptr<const Collection> open;
+    FileIdentity refused;  ///< That could not be opened.
+    bool is_stale = false;
+    /// What is damaged is not tried again; what may be a matter of the moment is, from then on.
+    std::chrono::steady_clock::time_point next_try;
+  };
+  [[nodiscard]] std::shared_ptr<const Collection> current(const std::string& id,
+                                                          Entry& entry) const;
+
+  Warn warn_;
+  std::map<std::string, std::unique_ptr<Entry>> entries_;
+};
+
+/// The identity of the file at a path; none: there is no file.
+[[nodiscard]] std::optional<FileIdentity> identity_of(const std::string& path);
+
+}  // namespace ptin::serve

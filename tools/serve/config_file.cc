@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/serve/config_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <sys/stat.h>
+
+#include "engine/error.h"
+#include "tools/serve/limit_table.h"
+
+namespace ptin::serve {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostThreads = 1024;  // As --threads.
+
+std::vector<CLI::ConfigItem> items_of(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw system_error(errno, "cannot open", path);
+  try {
+    return CLI::ConfigTOML().from_config(in);
+  } catch (const CLI::Error& error) {
+    refuse(std::string("this is no configuration: ") + error.what(), path);
+  }
+}
+
+std::string next_to(const std::string& config, const std::string& file) {
+  return fs::path(file).is_absolute() ? file : (fs::path(config).parent_path() / file).string();
+}
+
+void take_setting(const std::string& name, const std::string& value, const std::string& path,
+                  ServeOptions& options) {
+  if (name == "listen") {
+    options.listen = value;
+  } else if (name == "cors") {
+    options.cors_origin = checked_origin(value, path);
+  } else if (name == "token_file") {
+    options.token = read_token(next_to(path, value));
+  } else if (name == "files") {
+    if (value != "true" && value != "false") refuse("files is neither true nor false", path);
+    options.offers_files = value == "true";
+  } else if (name == "threads") {
+    const auto [end, status] =
+        std::from_chars(value.data(), value.data() + value.size(), options.http.threads);
+    if (status != std::errc() || end != value.data() + value.size() || options.http.threads == 0 ||
+        options.http.threads > kMostThreads) {
+      refuse("threads is no whole number from 1 to " + std::to_string(kMostThreads), path);
+    }
+  } else {
+    refuse("\"" + name +
+               "\" means nothing here; there are listen, threads, cors, token_file, files, and the "
+               "tables [collections] and [limits]",
+           path);
+  }
+}
+
+}  // namespace
+
+void read_config(const std::string& path, ServeOptions& options) {
+  for (const CLI::ConfigItem& item : items_of(path)) {
+    if (item.name == "++" || item.name == "--") continue;  // A table begins or ends.
+    if (item.inputs.size() != 1) refuse("\"" + item.fullname() + "\" has not one value", path);
+    const std::string& value = item.inputs.front();
+    if (item.parents.empty()) {
+      take_setting(item.name, value, path, options);
+    } else if (item.parents == std::vector<std::string>{"collections"}) {
+      options.files.push_back({item.name, next_to(path, value)});
+    } else if (item.parents == std::vector<std::string>{"limits"}) {
+      set_limit(options, item.name, value);
+    } else {
+      refuse(
+          "no table is called [" + item.parents.front() + "]; there are [collections] and [limits]",
+          path);
+    }
+  }
+}
+
+std::string checked_origin(const std::string& origin, const std::string& where) {
+  const bool is_plain = std::all_of(origin.begin(), origin.end(), [](char c) {
+    constexpr unsigned char kBlank = 0x20, kDelete = 0x7F;
+    return static_cast<unsigned char>(c) > kBlank && static_cast<unsigned char>(c) != kDelete;
+  });
+  if (is_plain) return origin;
+  refuse(
+      "an origin of web pages holds no blank and no control character; expected * or one as "
+      "https://example.org",
+      where);
+}
+
+std::string read_token(const std::string& path) {
+  struct stat facts {};
+  if (::stat(path.c_str(), &facts) != 0) throw system_error(errno, "cannot open", path);
+  if ((facts.st_mode & (S_IROTH | S_IWOTH)) != 0) {
+    refuse("everybody may read the token in this file; take that away with chmod o-rwx", path);
+  }
+  std::ifstream in(path);
+  std::string token;
+  std::getline(in, token);
+  while (!token.empty() && std::isspace(static_cast<unsigned char>(token.back())) != 0) {
+    token.pop_back();  // An editor's blank, or the other half of a line end.
+  }
+  if (token.empty()) {
+    refuse("the first line of the file is empty; it holds the token", path);
+  }
+  return token;
+}
+
+}  // namespace ptin::serve

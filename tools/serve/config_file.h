@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A service's configuration, as TOML.
+#pragma once
+
+#include <string>
+
+#include "tools/serve/serve_options.h"
+
+namespace ptin::serve {
+
+/// Reads a configuration into `options`: `listen`, `threads`, `cors`, `token_file`, `files` (true or
+/// false), a table [collections] of NAME = "FILE", where a name that is no path from the root counts
+/// from the folder of the configuration, and a table [limits].
+/// @throws Error not_found, io_error
+///               invalid_argument  no TOML; a name that means nothing here (named, with those that
+///                                 do)
+void read_config(const std::string& path, ServeOptions& options);
+
+/// The origin of web pages that may ask, as it goes into a header.
+/// @param where  Gave it, for the error.
+/// @throws Error invalid_argument  it holds a blank or a control character
+[[nodiscard]] std::string checked_origin(const std::string& origin, const std::string& where);
+
+/// The token that a file holds: its first line, without blanks behind it.
+/// @throws Error not_found, io_error; invalid_argument  it is empty, or others may read the file
+[[nodiscard]] std::string read_token(const std::string& path);
+
+}  // namespace ptin::serve

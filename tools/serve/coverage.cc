@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/serve/coverage.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "tools/facts/answers.h"
+#include "tools/http/problem.h"
+
+namespace ptin::serve {
+
+namespace {
+
+struct StateName {
+  const char* id;  ///< As `state` of other formats has it.
+  const char* label;
+};
+constexpr std::array kStates = {StateName{"surface", "surface"}, StateName{"void", "void"},
+                                StateName{"outside", "outside of the terrain"},
+                                StateName{"outside of the polygon", "outside of the polygon"}};
+constexpr std::array<std::string_view, 4> kNames = {"height", "height_min", "height_max", "state"};
+
+Json number_parameter(const char* what, const std::string& unit) {
+  return {{"type", "Parameter"},
+          {"unit", {{"label", {{"en", unit}}}}},
+          {"observedProperty", {{"label", {{"en", what}}}}}};
+}
+
+Json state_parameter() {
+  Json property = {{"label", {{"en", "what the position is on"}}}, {"categories", Json::array()}};
+  Json encoding = Json::object();
+  for (std::size_t i = 0; i < kStates.size(); ++i) {
+    property["categories"].push_back(
+        {{"id", kStates[i].id}, {"label", {{"en", kStates[i].label}}}});
+    encoding[kStates[i].id] = i;
+  }
+  return {{"type", "Parameter"},
+          {"observedProperty", std::move(property)},
+          {"categoryEncoding", std::move(encoding)}};
+}
+
+/// The object "referencing" of positions in the CRS of `places`: its axes in the order of the
+/// authority, whatever order the numbers of the domain have.
+Json referencing_json(const Places& places) {
+  Json system = {{"type", places.is_geographic() ? "GeographicCRS" : "ProjectedCRS"}};
+  if (!places.uri().empty()) system["id"] = places.uri();
+  Json axes = {"x", "y"};
+  if (places.is_north_first()) axes = {"y", "x"};
+  return Json::array({{{"coordinates", std::move(axes)}, {"system", std::move(system)}}});
+}
+
+void add_pair(LongText& text, const MapPoint& p) {
+  text.add("[").number(p.x).add(",").number(p.y).add("]");
+}
+
+void add_domain(LongText& text, const Coverage& coverage, const Places& places) {
+  text.add(R"({"type":"Domain","domainType":)");
+  if (coverage.positions.empty()) {
+    text.add(R"("Grid","axes":)").json(coverage.grid_axes);
+  } else if (coverage.positions.size() == 1) {
+    const MapPoint& p = coverage.positions[0];
+    text.add(R"("Point","axes":{"x":{"values":[)").number(p.x);
+    text.add(R"(]},"y":{"values":[)").number(p.y).add("]}}");
+  } else {
+    text.add(R"("MultiPoint","axes":{"composite":{"dataType":"tuple","coordinates":["x","y"],)");
+    text.add("\"values\":[");
+    for (std::size_t i = 0; i < coverage.positions.size(); ++i) {
+      if (i > 0) text.add(",");
+      add_pair(text, coverage.positions[i]);
+    }
+    text.add("]}}");
+  }
+  text.add(",\"referencing\":").json(referencing_json(places)).add("}");
+}
+
+void add_value(LongText& text, std::string_view name, const CoverageValue& value) {
+  if (name == "state") {
+    text.number(static_cast<double>(value.state));
+  } else if (value.state != CoverageState::kSurface) {
+    text.add("null");
+  } else {
+    text.number(name == "height"       ? value.height
+                : name == "height_min" ? value.height_min
+                                       : value.height_max);
+  }
+}
+
+void add_range(LongText& text, std::string_view name, const Coverage& coverage) {
+  text.add("\"").add(name).add(R"(":{"type":"NdArray","dataType":)");
+  text.add(name == "state" ? "\"integer\"" : "\"float\"");
+  if (!coverage.shape.empty()) {
+    text.add(",\"axisNames\":").json(coverage.axes).add(",\"shape\":").json(coverage.shape);
+  }
+  text.add(",\"values\":[");
+  for (std::size_t i = 0; i < coverage.size; ++i) {
+    if (i > 0) text.add(",");
+    add_value(text, name, coverage.value(i));
+  }
+  text.add("]}");
+}
+
+}  // namespace
+
+CoverageValue value_of(const LocatedPoint& p) noexcept {
+  const CoverageState state = p.state == PointState::kSurface ? CoverageState::kSurface
+                              : p.state == PointState::kVoid  ? CoverageState::kVoid
+                                                              : CoverageState::kOutside;
+  return {p.height, p.height_min, p.height_max, state};
+}
+
+Coverage coverage_at(std::span<const MapPoint> positions,
+                     std::function<CoverageValue(std::size_t)> value) {
+  Coverage coverage{positions, {}, {}, {}, positions.size(), std::move(value)};
+  if (positions.size() != 1) {
+    coverage.shape = {positions.size()};
+    coverage.axes = {"composite"};
+  }
+  return coverage;
+}
+
+Json coverage_parameters(const std::string& unit) {
+  return {{"height", number_parameter("height", unit)},
+          {"height_min", number_parameter("least height that is certain", unit)},
+          {"height_max", number_parameter("largest height that is certain", unit)},
+          {"state", state_parameter()}};
+}
+
+std::vector<std::string_view> asked_names(const Question& question) {
+  std::vector<std::string_view> names;
+  std::string_view given = question.text("parameter-name");
+  while (!given.empty()) {
+    const std::size_t end = std::min(given.find(','), given.size());
+    const std::string_view name = trimmed(given.substr(0, end));
+    const auto* const known = std::find(kNames.begin(), kNames.end(), name);
+    if (known == kNames.end()) {
+      throw http::Problem(400, "\"" + std::string(name) +
+                                   "\" is no parameter of this coverage; it has height, "
+                                   "height_min, height_max, state")
+          .at("parameter-name");
+    }
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(*known);
+    given.remove_prefix(std::min(end + 1, given.size()));
+  }
+  if (names.empty()) names.assign(kNames.begin(), kNames.end());
+  return names;
+}
+
+std::string coverage_text(const Asked& asked, const Places& places, const Coverage& coverage,
+                          const Json& certainty) {
+  const std::vector<std::string_view> names = asked_names(asked.question);
+  const Json all = coverage_parameters(asked.collection->crs.vertical_unit);
+  Json parameters = Json::object();
+  for (const std::string_view name : names) parameters[std::string(name)] = all[std::string(name)];
+  LongText text(asked);
+  text.add(R"({"type":"Coverage","domain":)");
+  add_domain(text, coverage, places);
+  text.add(",\"parameters\":").json(parameters).add(",\"ranges\":{");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text.add(",");
+    add_range(text, names[i], coverage);
+  }
+  return text.add("},\"ptin:certainty\":").json(certainty).add("}\n").take();
+}
+
+void add_point(LongText& text, const MapPoint& p) {
+  text.add(R"({"type":"Point","coordinates":)");
+  add_pair(text, p);
+  text.add("}");
+}
+
+void add_members(LongText& text, const LocatedPoint& p) {
+  text.add("\"state\":\"").add(tools::name_of(p.state)).add("\",\"height\":").number(p.height);
+  text.add(",\"height_min\":").number(p.height_min);
+  text.add(",\"height_max\":").number(p.height_max);
+}
+
+Json certainty_of(const Asked& asked, const LocateResult& result) {
+  return certainty_json(asked, result.certified_error, result.certified_deviation, result.exact);
+}
+
+std::string points_geojson(const Asked& asked, std::span<const MapPoint> client,
+                           const LocateResult& result) {
+  LongText text(asked);
+  text.add(R"({"type":"FeatureCollection","features":[)");
+  for (std::size_t i = 0; i < client.size(); ++i) {
+    text.add(i == 0 ? R"({"type":"Feature","geometry":)" : R"(,{"type":"Feature","geometry":)");
+    add_point(text, client[i]);
+    text.add(",\"properties\":{");
+    add_members(text, result.points[i]);
+    text.add("}}");
+  }
+  text.add("],\"ptin:certainty\":").json(certainty_of(asked, result));
+  return text.add("}\n").take();
+}
+
+std::string points_csv(const Asked& asked, std::span<const MapPoint> client,
+                       const LocateResult& result) {
+  LongText text(asked);
+  text.add("x,y,state,height,height_min,height_max\n");
+  for (std::size_t i = 0; i < client.size(); ++i) {
+    const LocatedPoint& p = result.points[i];
+    text.number(client[i].x).add(",").number(client[i].y).add(",").add(tools::name_of(p.state));
+    for (const double value : {p.height, p.height_min, p.height_max}) {
+      text.add(",");
+      if (value == value) text.number(value);
+    }
+    text.add("\n");
+  }
+  return text.take();
+}
+
+}  // namespace ptin::serve

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Elevations as Google's Elevation API and opentopodata answer them: latitude before longitude,
+// metres, a `status` in the body. Their clients work unchanged; what they do not know is further
+// members (`state`, `elevation_min`, `elevation_max`).
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/facts/answers.h"
+#include "tools/http/problem.h"
+#include "tools/serve/answer_parts.h"
+#include "tools/serve/polyline.h"
+#include "tools/serve/questions.h"
+
+namespace ptin::serve {
+
+namespace {
+
+using http::Problem;
+
+constexpr auto kElevationParameters = std::to_array<ParameterFact>(
+    {{"locations", "string", "lat,lng|lat,lng... or an encoded polyline",
+      "34.34,-118.3|34.35,-118.29"},
+     {"path", "string", "instead of locations; with samples, positions along it"},
+     {"samples", "integer", "positions at equal distances along the path or the locations", "10"},
+     {"interpolation", "string", "accepted and without effect: a TIN is linear", "bilinear"},
+     {"nodata_value", "string", "what stands for no elevation: null, nan or a whole number",
+      "null"},
+     {"format", "string", "json or geojson", "json"},
+     {"key", "string", "accepted and without effect"},
+     {"sensor", "string", "accepted and without effect"},
+     {"language", "string", "accepted and without effect"},
+     {"region", "string", "accepted and without effect"},
+     {"error", "number", "certified error allowed, in metres; without it: full detail", "5"}});
+
+/// A position of latitude and longitude, as MapPoint{longitude, latitude}.
+MapPoint place_of(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  const std::optional<double> lat = number_of(text.substr(0, comma));
+  const std::optional<double> lng =
+      comma == std::string_view::npos ? std::nullopt : number_of(text.substr(comma + 1));
+  if (!lat || !lng || std::abs(*lat) > 90 || std::abs(*lng) > 180) {
+    throw Problem(
+        400, "\"" + std::string(text) + "\" is no position; expected latitude,longitude in degrees")
+        .at("locations");
+  }
+  return {*lng, *lat};
+}
+
+std::vector<MapPoint> places_of(std::string_view text) {
+  if (text.starts_with("enc:")) return decode_polyline(text.substr(4));
+  if (text.find(',') == std::string_view::npos) return decode_polyline(text);
+  std::vector<MapPoint> places;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('|'), text.size());
+    if (end > 0) places.push_back(place_of(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return places;
+}
+
+/// So many positions at equal distances along a path, over a sphere's latitudes and longitudes.
+std::vector<MapPoint> along(const std::vector<MapPoint>& path, std::uint64_t samples) {
+  std::vector<double> reached{0.0};
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const double shrink = std::cos((path[i].y + path[i - 1].y) / 2 * 3.14159265358979323846 / 180);
+    reached.push_back(reached.back() +
+                      std::hypot((path[i].x - path[i - 1].x) * shrink, path[i].y - path[i - 1].y));
+  }
+  std::vector<MapPoint> places;
+  std::size_t i = 1;
+  for (std::uint64_t s = 0; s < samples; ++s) {
+    const double at = reached.back() * static_cast<double>(s) / static_cast<double>(samples - 1);
+    while (i + 1 < path.size() && reached[i] < at) ++i;
+    const double length = reached[i] - reached[i - 1];
+    const double share = length > 0 ? std::clamp((at - reached[i - 1]) / length, 0.0, 1.0) : 0.0;
+    places.push_back({path[i - 1].x + share * (path[i].x - path[i - 1].x),
+                      path[i - 1].y + share * (path[i].y - path[i - 1].y)});
+  }
+  return places;
+}
+
+std::vector<MapPoint> asked_places(const Asked& asked) {
+  const Question& q = asked.question;
+  if (q.has("locations") == q.has("path")) {
+    throw Problem(400, "give either locations or path, as latitude,longitude between |")
+        .at("locations");
+  }
+  const std::vector<MapPoint> given = places_of(q.text(q.has("path") ? "path" : "locations"));
+  if (given.empty()) throw Problem(400, "no position is given").at("locations");
+  check_count(given.size(), asked.options.question.points, "positions", "points", "locations");
+  const std::optional<std::uint64_t> samples = q.count("samples");
+  if (!samples) return given;
+  check_count(static_cast<std::size_t>(*samples), asked.options.question.points, "samples",
+              "points", "samples");
+  if (*samples < 2 || given.size() < 2) {
+    throw Problem(400, "a path has two positions at least, and so have its samples").at("samples");
+  }
+  return along(given, *samples);
+}
+
+/// What stands where there is no elevation.
+Json nodata_of(const Question& question) {
+  const std::string& text = question.text("nodata_value");
+  std::string word;
+  for (const char c : text) word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (word.empty() || word == "null" || word == "nan") return nullptr;  // JSON has no NaN.
+  if (const std::optional<double> number = number_of(text)) return *number;
+  throw Problem(400, "\"" + text + "\" is neither null, nan nor a number").at("nodata_value");
+}
+
+struct Elevations {
+  std::vector<LocatedPoint> points;
+  std::vector<std::string> dataset;  ///< From which each point is.
+  std::vector<double> metres;        ///< In a unit of its heights.
+  QueryCost cost;
+  double certified_error = 0.0;
+  bool exact = true;
+};
+
+using Collections = std::vector<std::shared_ptr<const Collection>>;
+
+/// The collections that the path names, all of them looked up before the first one is asked.
+Collections collections_of(const Asked& asked) {
+  Collections collections;
+  std::string_view names = asked.rest;
+  do {
+    const std::size_t end = std::min(names.find(','), names.size());
+    collections.push_back(asked.catalogue.find(std::string(names.substr(0, end))));
+    names.remove_prefix(std::min(end + 1, names.size()));
+    if (collections.back()) continue;
+    throw Problem(404, "there is no collection of this name; /collections lists them").at("id");
+  } while (!names.empty());
+  return collections;
+}
+
+LocateResult locate_in(const Collection& collection, const Asked& asked, std::vector<MapPoint> at) {
+  const Places places(collection.crs, "CRS84", collection.bounds);
+  places.to_terrain(at, "locations");
+  LocateRequest request;
+  request.detail.tolerance = asked.question.detail().tolerance;
+  if (request.detail.tolerance) *request.detail.tolerance /= collection.ground.metres_per_height;
+  request.limits = engine_limits(asked, at.size() * kAnswerBytesOfPlace);
+  return collection.terrain.locate(at, request);
+}
+
+/// Asks the collections one after the other for what the ones before have no surface at.
+Elevations elevations_of(const Asked& asked, const std::vector<MapPoint>& lon_lat) {
+  Elevations found;
+  found.points.resize(lon_lat.size());
+  found.dataset.resize(lon_lat.size());
+  found.metres.assign(lon_lat.size(), 1.0);
+  std::vector<std::size_t> open(lon_lat.size());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
+  for (const auto& collection : collections_of(asked)) {
+    if (open.empty()) break;
+    std::vector<MapPoint> at;
+    for (const std::size_t i : open) at.push_back(lon_lat[i]);
+    const LocateResult result = locate_in(*collection, asked, std::move(at));
+    found.cost.add_counts(result.cost);
+    found.cost.seconds += result.cost.seconds;
+    found.exact = found.exact && result.exact;
+    const double metres = collection->ground.metres_per_height;
+    found.certified_error = std::max(found.certified_error, result.certified_error * metres);
+    std::vector<std::size_t> still_open;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const LocatedPoint& p = result.points[i];
+      if (found.dataset[open[i]].empty() || p.state != PointState::kOutside) {
+        found.points[open[i]] = p;
+        found.dataset[open[i]] = collection->id;
+        found.metres[open[i]] = metres;
+      }
+      if (p.state != PointState::kSurface) still_open.push_back(open[i]);
+    }
+    open = std::move(still_open);
+  }
+  return found;
+}
+
+Json result_json(const Elevations& found, const std::vector<MapPoint>& lon_lat, std::size_t i,
+                 const Json& nodata) {
+  const LocatedPoint& p = found.points[i];
+  const bool has_height = p.state == PointState::kSurface;
+  const double metres = found.metres[i];
+  return {{"elevation", has_height ? Json(p.height * metres) : nodata},
+          {"location", {{"lat", lon_lat[i].y}, {"lng", lon_lat[i].x}}},
+          {"dataset", found.dataset[i]},
+          {"state", tools::name_of(p.state)},
+          {"elevation_min", has_height ? Json(p.height_min * metres) : Json()},
+          {"elevation_max", has_height ? Json(p.height_max * metres) : Json()}};
+}
+
+Json feature_json(Json result) {
+  const Json location = result["location"];
+  Json position = {location["lng"], location["lat"]};
+  if (!result["elevation"].is_null()) position.push_back(result["elevation"]);
+  result.erase("location");
+  return {{"type", "Feature"},
+          {"geometry", {{"type", "Point"}, {"coordinates", std::move(position)}}},
+          {"properties", std::move(result)}};
+}
+
+}  // namespace
+
+std::span<const ParameterFact> elevation_parameters() noexcept { return kElevationParameters; }
+
+http::Response answer_elevation(const Asked& asked) {
+  static constexpr std::array<std::string_view, 2> kElevationFormats = {"json", "geojson"};
+  const bool as_features = asked.question.choice("format", kElevationFormats) == "geojson";
+  const std::vector<MapPoint> lon_lat = asked_places(asked);
+  const Json nodata = nodata_of(asked.question);
+  const Elevations found = elevations_of(asked, lon_lat);
+  Json results = Json::array();
+  for (std::size_t i = 0; i < lon_lat.size(); ++i) {
+    Json result = result_json(found, lon_lat, i, nodata);
+    results.push_back(as_features ? feature_json(std::move(result)) : std::move(result));
+  }
+  const Json certainty = {{"certified_error", found.certified_error},  // In metres, as all here.
+                          {"exact", found.exact}};
+  Json json = {{"results", std::move(results)}, {"status", "OK"}};
+  if (as_features) {
+    json = {{"type", "FeatureCollection"}, {"features", std::move(json["results"])}};
+    json["ptin:certainty"] = certainty;
+  } else {
+    json.update(certainty);
+  }
+  http::Response response = json_response(json, as_features ? kGeoJson : kJson);
+  add_cost(response, found.cost);
+  add_certainty(response, found.certified_error, found.exact);
+  return response;
+}
+
+http::Response refuse_elevation(const Problem& problem) {
+  http::Response response = json_response({{"error", problem.detail()},
+                                           {"error_message", problem.detail()},
+                                           {"results", Json::array()},
+                                           {"status", "INVALID_REQUEST"}});
+  response.status = problem.status();
+  return response;
+}
+
+}  // namespace ptin::serve

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One question of the service: where it is asked, what it takes, and what answers it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "tools/http/memory_budget.h"
+#include "tools/http/problem.h"
+#include "tools/http/request.h"
+#include "tools/http/response.h"
+#include "tools/serve/catalogue.h"
+#include "tools/serve/question.h"
+#include "tools/serve/serve_options.h"
+
+namespace ptin::serve {
+
+/// A request on its way to an answer.
+struct Asked {
+  const http::Request& request;
+  const Question& question;
+  const ServeOptions& options;
+  const Catalogue& catalogue;
+  std::shared_ptr<const Collection> collection;  ///< Null where the path names none.
+  std::string_view rest;                         ///< What a `*` of the path stands for.
+  QueryLimits limits;  ///< For the engine: the memory that was reserved, the request's stop token.
+
+  [[nodiscard]] const Terrain& terrain() const { return collection->terrain; }
+  [[nodiscard]] const StoreFacts& facts() const { return collection->terrain.store().facts(); }
+};
+
+/// How much of the budget a question reserves before it works.
+enum class Reserves : std::uint8_t { kNothing, kQuarter, kAll };  // of question_memory
+
+struct Endpoint {
+  std::string_view path;  ///< "/collections/{id}/position"; a last segment `*` takes what follows.
+  std::string_view name;  ///< In the log and in metrics: "position".
+  bool takes_post;        ///< Beside GET and HEAD.
+  std::string_view about;
+  std::span<const ParameterFact> parameters;
+  std::string_view media;  ///< Types of the answer, between blanks.
+  Reserves reserves;
+  /// May throw http::Problem, or Error as the engine.
+  http::Response (*answer)(const Asked& asked);
+  /// A refusal as the clients of this question expect it; null: as the Problem has it.
+  http::Response (*refusal)(const http::Problem& problem) = nullptr;
+};
+
+/// Every question, in the order of the documentation.
+[[nodiscard]] std::span<const Endpoint> endpoints() noexcept;
+
+}  // namespace ptin::serve

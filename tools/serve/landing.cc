@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The pages about the service itself: landing page, conformance, collections.
+#include <array>
+#include <string>
+
+#include "tools/http/problem.h"
+#include "tools/serve/answer_parts.h"
+#include "tools/serve/coverage.h"
+#include "tools/serve/questions.h"
+
+namespace ptin::serve {
+
+namespace {
+
+constexpr std::array kStandards = {
+    "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/core",
+    "http://www.opengis.net/spec/ogcapi-common-2/1.0/conf/collections",
+    "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/core",
+    "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/covjson",
+    "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/geojson"};
+
+constexpr const char* kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
+
+/// What OGC EDR calls a data query; what else there is stands among the links.
+constexpr std::array kDataQueries = {"position", "trajectory", "area"};
+constexpr std::array kDataFormats = {"covjson", "geojson", "csv"};  // of each of them
+
+constexpr auto kLandingFormats =
+    std::to_array<OfferedFormat>({{"json", kJson}, {"html", "text/html"}});
+constexpr auto kLandingParameters =
+    std::to_array<ParameterFact>({{"f", "string", "json or html", "json"}});
+
+constexpr auto kPageFormats = std::to_array<OfferedFormat>({{"json", kJson}});
+constexpr auto kPageParameters = std::to_array<ParameterFact>({{"f", "string", "json", "json"}});
+
+Json link(const std::string& href, const char* rel, std::string_view type, const char* title) {
+  return {{"href", href}, {"rel", rel}, {"type", type}, {"title", title}};
+}
+
+/// What this service knows of a terrain beyond what OGC asks for.
+Json terrain_json(const Collection& c) {
+  const StoreFacts& facts = c.terrain.store().facts();
+  return {{"bounds", {c.bounds.min_x, c.bounds.min_y, c.bounds.max_x, c.bounds.max_y}},
+          {"heights", {facts.min_height, facts.max_height}},
+          {"vertices", c.terrain.store().t0().vertices.size() + c.terrain.store().record_count()},
+          {"base_error", facts.base_error},
+          {"crs", c.crs.horizontal_text()},
+          {"vertical_crs", c.crs.vertical_text()},
+          {"units", {{"horizontal", c.crs.horizontal_unit}, {"height", c.crs.vertical_unit}}},
+          {"geographic", c.crs.geographic},
+          {"free_of_voids", facts.free_of_voids},
+          {"fingerprint", c.fingerprint},
+          {"bytes", c.terrain.store().file_bytes()}};
+}
+
+Json collection_json(const Collection& c) {
+  const std::string base = "/collections/" + c.id, crs = uri_of(c.crs);
+  Json json = {{"id", c.id},
+               {"title", c.id},
+               {"links",
+                {link(base, "self", kJson, "this document"),
+                 link(base + "/stream", "item", "application/vnd.ptin.stream",
+                      "progressive transmission")}}};
+  const Window w = c.lon_lat.value_or(c.bounds);
+  json["extent"]["spatial"] = {{"bbox", {{w.min_x, w.min_y, w.max_x, w.max_y}}},
+                               {"crs", c.lon_lat ? kCrs84 : crs}};
+  json["crs"] = Json::array();
+  if (c.lon_lat) json["crs"].push_back(kCrs84);
+  if (!crs.empty()) json["crs"].push_back(crs);
+  json["storageCrs"] = crs.empty() ? Json() : Json(crs);
+  json["data_queries"] = Json::object();
+  for (const char* query : kDataQueries) {
+    json["data_queries"][query]["link"] = {
+        {"href", base + "/" + query},
+        {"rel", "data"},
+        {"variables", {{"query_type", query}, {"output_formats", kDataFormats}}}};
+  }
+  json["parameter_names"] = coverage_parameters(c.crs.vertical_unit);
+  json["output_formats"] = kDataFormats;
+  json["terrain"] = terrain_json(c);
+  return json;
+}
+
+Json all_json(const Asked& asked) {
+  Json collections = Json::array();
+  for (const auto& collection : asked.catalogue.all()) {
+    collections.push_back(collection_json(*collection));
+  }
+  return {{"links", {link("/collections", "self", kJson, "this document")}},
+          {"collections", std::move(collections)}};
+}
+
+Json landing_json() {
+  return {{"title", "Terrains"},
+          {"description",
+           "Heights, contours, lines of sight and meshes of terrains, each answer "
+           "exact or within a certified error"},
+          {"links",
+           {link("/", "self", kJson, "this document"),
+            link("/api", "service-desc", "application/vnd.oai.openapi+json;version=3.0",
+                 "the service as OpenAPI"),
+            link("/conformance", "conformance", kJson, "standards"),
+            link("/collections", "data", kJson, "the terrains")}}};
+}
+
+std::string landing_html(const Asked& asked) {
+  std::string page =
+      "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Terrains</title>"
+      "<meta name=\"viewport\" content=\"width=device-width\"><style>body{font:16px/1.5 "
+      "system-ui;max-width:46rem;margin:3rem auto;padding:0 1rem}</style><h1>Terrains</h1><ul>";
+  for (const auto& c : asked.catalogue.all()) {  // An id holds nothing that HTML would read.
+    page += "<li><a href=\"/viewer/index.html?collection=" + c->id + "\">" + c->id +
+            "</a> (<a href=\"/collections/" + c->id + "\">facts</a>)</li>";
+  }
+  return page + "</ul><p><a href=\"/api\">The service as OpenAPI</a></p></html>\n";
+}
+
+}  // namespace
+
+std::span<const ParameterFact> landing_parameters() noexcept { return kLandingParameters; }
+std::span<const ParameterFact> page_parameters() noexcept { return kPageParameters; }
+
+http::Response answer_landing(const Asked& asked) {
+  const OfferedFormat& format = format_of(asked, kLandingFormats);
+  http::Response response = format.name == "json"
+                                ? json_response(landing_json())
+                                : text_response(landing_html(asked), "text/html; charset=utf-8");
+  add_choice(response, asked);
+  return response;
+}
+
+http::Response answer_conformance(const Asked& asked) {
+  static_cast<void>(format_of(asked, kPageFormats));
+  return json_response({{"conformsTo", kStandards}});
+}
+
+http::Response answer_collections(const Asked& asked) {
+  static_cast<void>(format_of(asked, kPageFormats));
+  return json_response(all_json(asked));
+}
+
+http::Response answer_collection(const Asked& asked) {
+  static_cast<void>(format_of(asked, kPageFormats));
+  return json_response(collection_json(*asked.collection));
+}
+
+}  // namespace ptin::serve

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/serve/places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <ogr_spatialref.h>
+
+#include "tools/http/problem.h"
+
+namespace ptin::serve {
+
+namespace {
+
+constexpr std::string_view kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
+constexpr std::string_view kEpsg = "http://www.opengis.net/def/crs/EPSG/0/";
+/// Steps along a side of a window: a straight side may be bent in the other CRS.
+constexpr int kStepsOfSide = 21;
+constexpr double kHalfTurn = 180, kTurn = 360;  // degrees
+
+using Transformation = std::unique_ptr<OGRCoordinateTransformation>;
+struct BothWays {
+  Transformation there, back;
+};
+
+/// What the client's CRS is called for GDAL; nothing where it is the terrain's own.
+std::optional<std::string> name_of(const std::string& asked) {
+  if (asked == "native") return std::nullopt;
+  if (asked == "CRS84" || asked == "OGC:CRS84" || asked == kCrs84) return "OGC:CRS84";
+  const std::string_view text = asked;
+  std::string_view code;
+  if (text.starts_with("EPSG:")) code = text.substr(5);
+  if (text.starts_with(kEpsg)) code = text.substr(kEpsg.size());
+  const bool is_number = !code.empty() && code.size() < 8 &&
+                         code.find_first_not_of("0123456789") == std::string_view::npos;
+  if (is_number) return "EPSG:" + std::string(code);
+  throw http::Problem(400,
+                      "no CRS that is known here; expected CRS84, native, EPSG:CODE, or the "
+                      "URI of one of them at http://www.opengis.net/def/crs/")
+      .at("crs");
+}
+
+BothWays make_both_ways(const std::string& client, const std::string& wkt) {
+  OGRSpatialReference from, to;
+  if (from.SetFromUserInput(client.c_str()) != OGRERR_NONE ||
+      to.importFromWkt(wkt.c_str()) != OGRERR_NONE) {
+    return {};
+  }
+  for (OGRSpatialReference* plane : {&from, &to}) {
+    plane->DemoteTo2D(nullptr);
+    plane->StripVertical();
+    plane->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  }
+  return {Transformation(OGRCreateCoordinateTransformation(&from, &to)),
+          Transformation(OGRCreateCoordinateTransformation(&to, &from))};
+}
+
+/// Making a transformation takes milliseconds, and none may be used by two threads: each thread
+/// keeps those that it made.
+std::shared_ptr<BothWays> both_ways(const std::string& client, const std::string& wkt) {
+  static thread_local std::map<std::pair<std::string, std::string>, std::shared_ptr<BothWays>> made;
+  constexpr std::size_t kMostKept = 64;  // A client may ask for any of some thousand codes.
+  const std::pair key{client, wkt};
+  if (made.size() >= kMostKept && made.count(key) == 0) made.clear();
+  const auto [at, is_new] = made.try_emplace(key);
+  if (is_new) at->second = std::make_shared<BothWays>(make_both_ways(client, wkt));
+  return at->second->there && at->second->back ? at->second : nullptr;
+}
+
+/// Whether x of a CRS is a longitude, and whether that is in degrees.
+struct Longitudes {
+  bool are_there = false, are_degrees = false;
+};
+
+Longitudes longitudes_of(const std::string& name) {
+  constexpr double kDegree = 3.14159265358979323846 / 180, kSame = 1e-12;
+  OGRSpatialReference crs;
+  if (crs.SetFromUserInput(name.c_str()) != OGRERR_NONE || crs.IsGeographic() == 0) return {};
+  return {true, std::abs(crs.GetAngularUnits() - kDegree) < kSame};
+}
+
+bool transform(OGRCoordinateTransformation& way, MapPoint& place) {
+  double x = place.x, y = place.y;
+  int succeeded = 0;
+  way.Transform(1, &x, &y, nullptr, &succeeded);
+  if (succeeded == 0 || !std::isfinite(x) || !std::isfinite(y)) return false;
+  place = {x, y};
+  return true;
+}
+
+/// Positions along the sides of a window, once around it; the last one is the first one.
+std::vector<MapPoint> around(const Window& w) {
+  const MapPoint corners[] = {
+      {w.min_x, w.min_y}, {w.max_x, w.min_y}, {w.max_x, w.max_y}, {w.min_x, w.max_y}};
+  std::vector<MapPoint> path;
+  for (std::size_t side = 0; side < 4; ++side) {
+    const MapPoint &a = corners[side], &b = corners[(side + 1) % 4];
+    for (int i = 0; i < kStepsOfSide; ++i) {
+      path.push_back({a.x + (b.x - a.x) * i / kStepsOfSide, a.y + (b.y - a.y) * i / kStepsOfSide});
+    }
+  }
+  path.push_back(path.front());
+  return path;
+}
+
+/// The multiple of a turn that brings a longitude nearest to another one.
+double turns_towards(double x, double other) { return kTurn * std::round((other - x) / kTurn); }
+
+/// Longitudes jump by a turn at the antimeridian: takes that out along a path. A path around a pole
+/// then does not come back to where it began.
+void unwrap(std::vector<MapPoint>& path) {
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    path[i].x += turns_towards(path[i].x, path[i - 1].x);
+  }
+}
+
+Window box_of(std::span<const MapPoint> places) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Window box{kFar, kFar, -kFar, -kFar};
+  for (const MapPoint& p : places) {
+    box = {std::min(box.min_x, p.x), std::min(box.min_y, p.y), std::max(box.max_x, p.x),
+           std::max(box.max_y, p.y)};
+  }
+  return box;
+}
+
+/// The box around the places of a window's sides; none where one of them has no place.
+/// @param turns  x of the places is a longitude in degrees: the box may reach beyond 180 then.
+std::optional<Window> box_around(OGRCoordinateTransformation& way, const Window& window,
+                                 bool turns) {
+  std::vector<MapPoint> path = around(window);
+  for (MapPoint& p : path) {
+    if (!transform(way, p)) return std::nullopt;
+  }
+  if (turns) unwrap(path);
+  Window box = box_of(path);
+  const bool holds_pole = turns && std::abs(path.back().x - path.front().x) > kHalfTurn;
+  if (holds_pole) {
+    const bool is_north = box.min_y + box.max_y > 0;
+    box = {-kHalfTurn, is_north ? box.min_y : -90, kHalfTurn, is_north ? 90 : box.max_y};
+  }
+  return box;
+}
+
+/// A window of longitudes as clients read it: from -180 to 180, west larger than east across the
+/// antimeridian.
+Window wrapped(Window window) {
+  if (window.max_x - window.min_x >= kTurn) {
+    window.min_x = -kHalfTurn;
+    window.max_x = kHalfTurn;
+    return window;
+  }
+  const double off = turns_towards((window.min_x + window.max_x) / 2, 0);
+  window.min_x += off;
+  window.max_x += off;
+  if (window.min_x < -kHalfTurn) window.min_x += kTurn;
+  if (window.max_x > kHalfTurn) window.max_x -= kTurn;
+  return window;
+}
+
+bool is_in_degrees(const CrsFacts& crs) {
+  return crs.geographic && crs.horizontal_unit == "degree";
+}
+
+}  // namespace
+
+struct Places::Inside {
+  std::shared_ptr<BothWays> ways;  ///< Null: nothing is transformed.
+};
+
+Places::Places(const CrsFacts& terrain, const std::string& asked,
+               const std::optional<Window>& bounds)
+    : inside_(std::make_unique<Inside>()), turns_(is_in_degrees(terrain)) {
+  if (turns_) bounds_ = bounds;
+  const bool is_known = !terrain.wkt.empty();
+  const std::optional<std::string> name =
+      asked.empty() && !is_known ? std::nullopt : name_of(asked.empty() ? "CRS84" : asked);
+  if (!name) {
+    uri_ = uri_of(terrain);
+    geographic_ = terrain.geographic;
+    client_turns_ = turns_;
+    return;
+  }
+  if (!is_known) {
+    throw http::Problem(400, "the CRS of this collection is not known; ask with crs=native")
+        .at("crs");
+  }
+  inside_->ways = both_ways(*name, terrain.wkt);
+  if (inside_->ways == nullptr) {
+    throw http::Problem(400, "there is no transformation between " + *name +
+                                 " and the CRS of this collection; ask with crs=native")
+        .at("crs");
+  }
+  uri_ = *name == "OGC:CRS84" ? std::string(kCrs84) : std::string(kEpsg) + name->substr(5);
+  const Longitudes longitudes =
+      *name == "OGC:CRS84" ? Longitudes{true, true} : longitudes_of(*name);
+  geographic_ = longitudes.are_there;
+  client_turns_ = longitudes.are_degrees;
+}
+
+Places::~Places() = default;
+
+bool Places::is_native() const noexcept { return inside_->ways == nullptr; }
+
+bool Places::is_north_first() const {
+  if (!uri_.starts_with(kEpsg)) return false;
+  OGRSpatialReference crs;
+  const std::string code = "EPSG:" + uri_.substr(kEpsg.size());
+  if (crs.SetFromUserInput(code.c_str()) != OGRERR_NONE) return false;
+  return crs.EPSGTreatsAsLatLong() != 0 || crs.EPSGTreatsAsNorthingEasting() != 0;
+}
+
+double Places::turned(double x) const noexcept {
+  if (!bounds_) return x;
+  // Between -180 and 180 both a client and a terrain are where they say.
+  const bool is_plain = std::abs(x) <= kHalfTurn && std::abs(bounds_->min_x) <= kHalfTurn &&
+                        std::abs(bounds_->max_x) <= kHalfTurn;
+  return is_plain ? x : x + turns_towards(x, (bounds_->min_x + bounds_->max_x) / 2);
+}
+
+void Places::to_terrain(std::span<MapPoint> places, std::string_view parameter) const {
+  if (is_native()) return;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (transform(*inside_->ways->there, places[i])) {
+      places[i].x = turned(places[i].x);
+      continue;
+    }
+    throw http::Problem(400,
+                        "position " + std::to_string(i + 1) +
+                            " is nowhere in the CRS of this collection; expected x (longitude) "
+                            "before y (latitude)")
+        .at(std::string(parameter));
+  }
+}
+
+MapPoint Places::to_terrain(MapPoint place, std::string_view parameter) const {
+  to_terrain({&place, 1}, parameter);
+  return place;
+}
+
+void Places::from_terrain(std::span<MapPoint> places) const {
+  if (is_native()) return;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  double last = 0.0;  // Nearest to it is from -180 to 180.
+  for (MapPoint& place : places) {
+    if (!transform(*inside_->ways->back, place)) {
+      place = {kNone, kNone};
+    } else if (client_turns_) {
+      place.x += turns_towards(place.x, last);
+      last = place.x;
+    }
+  }
+}
+
+Window Places::to_terrain(const Window& given) const {
+  if (is_native() && given.min_x <= given.max_x) return given;
+  Window window = given;
+  if (window.min_x > window.max_x) {
+    if (!client_turns_) {
+      throw http::Problem(400, "the window is inverted; expected west, south, east, north")
+          .at("bbox");
+    }
+    window.max_x += kTurn;
+  }
+  if (!is_native()) {
+    const std::optional<Window> box = box_around(*inside_->ways->there, window, turns_);
+    if (!box) {
+      throw http::Problem(400,
+                          "the window reaches where the CRS of this collection has no positions; "
+                          "ask for a smaller one")
+          .at("bbox");
+    }
+    window = *box;
+  }
+  if (!bounds_) return window;
+  if (window.max_x - window.min_x >= kTurn) {  // Every longitude, in whatever turn.
+    return {bounds_->min_x, window.min_y, bounds_->max_x, window.max_y};
+  }
+  const double middle = (window.min_x + window.max_x) / 2;
+  const double off = turned(middle) - middle;
+  return {window.min_x + off, window.min_y, window.max_x + off, window.max_y};
+}
+
+std::optional<Window> Places::from_terrain(const Window& window) const {
+  if (is_native()) return window;
+  const std::optional<Window> box = box_around(*inside_->ways->back, window, client_turns_);
+  return box && client_turns_ ? wrapped(*box) : box;
+}
+
+std::optional<Window> lon_lat_of(const Window& window, const CrsFacts& terrain) {
+  if (terrain.wkt.empty()) return std::nullopt;
+  const std::shared_ptr<BothWays> ways = both_ways("OGC:CRS84", terrain.wkt);
+  if (ways == nullptr) return std::nullopt;
+  const std::optional<Window> box = box_around(*ways->back, window, true);
+  return box ? std::optional(wrapped(*box)) : std::nullopt;
+}
+
+std::string uri_of(const CrsFacts& terrain) {
+  if (!terrain.code.starts_with("EPSG:")) return {};
+  return std::string(kEpsg) + terrain.code.substr(5);
+}
+
+}  // namespace ptin::serve

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a service of terrains is started with.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/http/limits.h"
+
+namespace ptin::serve {
+
+/// A file under the name that clients know it by.
+struct ServedFile {
+  std::string id;  ///< Letters, digits, `-`, `_` and `.`.
+  std::string path;
+};
+
+/// What one question may ask for. Beyond: 413, with the name of the limit as here.
+struct QuestionLimits {
+  std::size_t points = 10000;
+  std::size_t pairs = 1000;
+  std::size_t vertices = 500000;       ///< Of a mesh, and of lines.
+  std::size_t held_vertices = 500000;  ///< That a receiver of a stream has.
+  std::size_t have = 64;               ///< Servings that a receiver has had.
+  std::size_t pixels = std::size_t{4} << 20;
+  std::uint64_t stream_bytes = std::uint64_t{256} << 10;     ///< Without `max_bytes`.
+  std::uint64_t most_stream_bytes = std::uint64_t{4} << 20;  ///< With it.
+  std::uint64_t question_memory = std::uint64_t{64} << 20;   ///< Of one question.
+};
+
+struct ServeOptions {
+  std::vector<ServedFile> files;
+  std::string listen = "127.0.0.1:8080";
+  http::Limits http;
+  QuestionLimits question;
+  std::uint64_t cache_bytes = std::uint64_t{32} << 20;  ///< Answers that are kept.
+  std::string token;                                    ///< Empty: no question needs one.
+  std::string cors_origin;  ///< Of pages that may read answers; "*" for all; empty: none.
+  bool offers_files = false;
+  std::string version;  ///< Of the program; part of every ETag.
+};
+
+}  // namespace ptin::serve

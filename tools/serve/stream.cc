@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Progressive transmission, in bounded pieces: T0 and what matters most, then what a client lacks.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tools/http/problem.h"
+#include "tools/region/serving.h"
+#include "tools/serve/answer_parts.h"
+#include "tools/serve/questions.h"
+
+namespace ptin::serve {
+
+namespace {
+
+using http::Problem;
+
+constexpr auto kStreamParameters = std::to_array<ParameterFact>(
+    {{"window", "array", "what the client looks at: xmin, ymin, xmax, ymax in map units",
+      "380000,3802000,382000,3804000"},
+     kErrorParameter,
+     {"max_bytes", "integer", "most bytes of the answer, which ends on a frame; 256 KiB without it",
+      "100000"},
+     {"have", "array",
+      "what the client was served before, in that order: objects with window, error, splits",
+      "[{\"error\":50,\"splits\":3000}]"},
+     {"fingerprint", "string", "of the collection from which it was served", ""}});
+
+std::vector<tools::Serving> held_servings(const Asked& asked) {
+  const Question& q = asked.question;
+  if (q.has("fingerprint") && q.text("fingerprint") != asked.collection->fingerprint) {
+    throw Problem(409, "the file of this collection was replaced since; ask anew, without have")
+        .at(q.has("have") ? "have" : "fingerprint");
+  }
+  if (!q.has("have")) return {};
+  static_cast<void>(q.json("have"));  // Its depth is looked at.
+  std::vector<tools::Serving> servings;
+  try {
+    servings = tools::servings_of(q.text("have"));
+  } catch (const Error& error) {
+    throw Problem(400, error.message()).at("have");
+  }
+  check_count(servings.size(), asked.options.question.have, "servings", "have", "have");
+  return servings;
+}
+
+std::vector<StreamHeld> held_of(const Asked& asked) {
+  std::vector<StreamHeld> held;
+  for (const tools::Serving& s : held_servings(asked)) {
+    const std::uint64_t splits = s.splits.value_or(asked.options.question.held_vertices);
+    check_count(splits, asked.options.question.held_vertices, "held vertices", "held_vertices",
+                "have");
+    held.push_back({tools::predicate_of(s, asked.facts(), "have"), splits});
+  }
+  return held;
+}
+
+std::uint64_t most_bytes(const Asked& asked) {
+  const QuestionLimits& limits = asked.options.question;
+  const std::uint64_t asked_for = asked.question.count("max_bytes").value_or(limits.stream_bytes);
+  check_count(asked_for, limits.most_stream_bytes, "bytes", "most_stream_bytes", "max_bytes");
+  return asked_for;
+}
+
+}  // namespace
+
+std::span<const ParameterFact> stream_parameters() noexcept { return kStreamParameters; }
+
+http::Response answer_stream(const Asked& asked) {
+  tools::Serving wanted;
+  wanted.window = asked.question.numbers("window");
+  if (!wanted.window.empty() && wanted.window.size() != 4) {
+    throw Problem(400, "a window has four numbers: xmin, ymin, xmax, ymax").at("window");
+  }
+  wanted.error = asked.question.number("error");
+  const std::uint64_t most = most_bytes(asked);
+  StreamRequest request;
+  request.wanted = tools::predicate_of(wanted, asked.facts(), "window");
+  request.tolerance = wanted.error;
+  request.held = held_of(asked);
+  // About as many as so many bytes hold, and more: splits behind the cut are not looked for.
+  request.most_splits = most;
+  request.most_bytes = most;
+  request.metadata = tools::metadata_of_stream(asked.terrain().store(), wanted);
+  request.limits = asked.limits;
+
+  std::string text;
+  const StreamSummary summary =
+      asked.terrain().stream(request, [&](std::span<const std::byte> bytes) {
+        text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      });
+  http::Response response = text_response(std::move(text), "application/vnd.ptin.stream");
+  response.add("Ptin-Splits", std::to_string(summary.splits));
+  response.add("Ptin-Fingerprint", asked.collection->fingerprint);
+  add_cost(response, summary.cost);
+  add_certainty(response, summary.certificate.error,
+                summary.certificate.complete && asked.facts().base_error == 0);
+  return response;
+}
+
+}  // namespace ptin::serve

@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/serve/terrain_service.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <ctime>
+#include <utility>
+
+#include "engine/error.h"
+#include "tools/error_status.h"
+#include "tools/http/etag.h"
+#include "tools/http/gzip.h"
+#include "tools/http/problem.h"
+
+namespace ptin::serve {
+
+namespace {
+
+using http::Problem;
+using http::Request;
+using http::Response;
+
+constexpr std::array<std::string_view, 3> kQuick = {"healthz", "readyz", "metrics"};
+/// Smaller answers are sent as they are.
+constexpr std::size_t kLeastPacked = 1024;
+
+bool is_get(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
+
+/// Whether a path has the form of a pattern; fills in what its `{id}` and `*` stand for.
+bool fits(std::string_view pattern, const std::vector<std::string>& path, std::string& id,
+          std::string& rest) {
+  std::size_t at = 0;
+  while (!pattern.empty()) {
+    pattern.remove_prefix(1);  // the slash
+    const std::size_t end = std::min(pattern.find('/'), pattern.size());
+    const std::string_view segment = pattern.substr(0, end);
+    pattern.remove_prefix(end);
+    if (segment.empty()) return path.empty();
+    if (at >= path.size()) return false;
+    if (segment == "*") {
+      for (; at < path.size(); ++at) rest.append(rest.empty() ? "" : "/").append(path[at]);
+      return true;
+    }
+    if (segment == "{id}") {
+      if (path[at].empty()) return false;
+      id = path[at];
+    } else if (segment != path[at]) {
+      return false;
+    }
+    ++at;
+  }
+  return at == path.size();
+}
+
+/// What a client may ask a path for.
+std::string methods_of(const Endpoint* endpoint) {
+  return endpoint != nullptr && endpoint->takes_post ? "GET, HEAD, POST, OPTIONS"
+                                                     : "GET, HEAD, OPTIONS";
+}
+
+bool is_bearer(std::string_view scheme) {
+  constexpr std::string_view kBearer = "bearer ";
+  return std::equal(
+      scheme.begin(), scheme.end(), kBearer.begin(), kBearer.end(),
+      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+/// Whether the header Accept chooses between several types.
+bool chooses_by_accept(const Endpoint& endpoint, const Question& question) {
+  return endpoint.media.find(' ') != std::string_view::npos && !question.has("f");
+}
+
+std::string header_of(const Response& response, std::string_view name) {
+  for (const auto& [known, value] : response.headers) {
+    if (known == name) return value;
+  }
+  return {};
+}
+
+/// Tells caches that an answer depends on a header, beside those that are told.
+void add_vary(Response& response, const std::string& header) {
+  for (auto& [name, value] : response.headers) {
+    if (name != "Vary") continue;
+    value += ", " + header;
+    return;
+  }
+  response.add("Vary", header);
+}
+
+/// In a time that does not tell how many bytes were right.
+bool is_same_secret(std::string_view given, std::string_view secret) {
+  unsigned difference = given.size() == secret.size() ? 0U : 1U;
+  for (std::size_t i = 0; i < secret.size(); ++i) {
+    const char c = given.empty() ? '\0' : given[i % given.size()];
+    difference |= static_cast<unsigned char>(c ^ secret[i]);
+  }
+  return difference == 0;
+}
+
+bool packs_well(std::string_view type) {
+  for (const std::string_view known :
+       {"json", "text/", "xml", "javascript", "wasm", "quantized-mesh", "gltf-binary", "ply"}) {
+    if (type.find(known) != std::string_view::npos) return true;
+  }
+  return false;
+}
+
+std::string now_text() {
+  const auto now = std::chrono::system_clock::now();
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+  const auto millis =
+      std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
+  std::tm parts{};
+  ::gmtime_r(&seconds, &parts);
+  std::array<char, 40> text{};
+  const std::size_t n = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
+  std::string fraction = std::to_string(millis);
+  return std::string(text.data(), n) + "." + std::string(3 - fraction.size(), '0') + fraction + "Z";
+}
+
+/// Packs what packs well, for a client that takes it.
+void pack(bool takes_gzip, Response& response) {
+  if (!packs_well(response.content_type) || response.long_body) return;
+  add_vary(response, "Accept-Encoding");
+  const bool is_packed = std::any_of(response.headers.begin(), response.headers.end(),
+                                     [](const auto& h) { return h.first == "Content-Encoding"; });
+  if (response.body_bytes() < kLeastPacked || is_packed || !takes_gzip) return;
+  response.body = http::gzip(response.lasting_body.empty() ? response.body : response.lasting_body);
+  response.lasting_body = {};
+  response.add("Content-Encoding", "gzip");
+  for (auto& [name, value] : response.headers) {
+    if (name == "ETag") value = http::gzip_etag_of(value);
+  }
+}
+
+}  // namespace
+
+TerrainService::TerrainService(ServeOptions options, LogLine log)
+    : options_(std::move(options)),
+      log_(std::move(log)),
+      catalogue_(
+          options_.files,
+          [this](const std::string& id, const std::string& what) {
+            metrics_.add("ptin_stale_files_total", "collection=\"" + id + "\"");
+            this->log(
+                {{"time", now_text()}, {"event", "file"}, {"collection", id}, {"detail", what}});
+          }),
+      budget_(std::make_shared<http::MemoryBudget>(options_.http.memory_bytes)),
+      cache_(options_.cache_bytes) {
+  metrics_.declare_counter("ptin_requests_total", "Requests answered, by question and status.");
+  metrics_.declare_counter("ptin_hung_up_total", "Clients that left before their answer.");
+  metrics_.declare_counter("ptin_sent_bytes_total", "Bytes written, heads included.");
+  metrics_.declare_counter("ptin_store_failures_total",
+                           "Questions that failed because a file is damaged or cannot be read.");
+  metrics_.declare_counter("ptin_stale_files_total",
+                           "Times that a file was gone, or its successor could not be opened.");
+  metrics_.declare_seconds("ptin_queue_seconds", "Time that a question waited for a thread.");
+  metrics_.declare_seconds("ptin_compute_seconds", "Time that a question was computed.");
+  metrics_.declare_gauge("ptin_connections", "Connections open.");
+  metrics_.declare_gauge("ptin_waiting", "Questions that wait for a thread.");
+  metrics_.declare_gauge("ptin_computing", "Questions being computed.");
+  metrics_.declare_gauge("ptin_cache_bytes", "Answers that are kept.");
+  metrics_.declare_gauge("ptin_memory_reserved_bytes", "Memory reserved by questions and answers.");
+}
+
+bool TerrainService::is_quick(const Request& request) const {
+  if (request.method == "OPTIONS") return true;
+  return request.path.size() == 1 &&
+         std::find(kQuick.begin(), kQuick.end(), request.path[0]) != kQuick.end();
+}
+
+Response TerrainService::answer_quickly(const Request& request) {
+  if (request.method == "OPTIONS") return options_of(request);
+  if (!is_get(request)) {
+    throw Problem(405, "only GET and HEAD are answered here").allow(methods_of(nullptr));
+  }
+  if (request.path[0] == "readyz") return ready();
+  if (request.path[0] == "metrics") return metrics_text();
+  Response alive;
+  alive.content_type = "text/plain; charset=utf-8";
+  alive.body = "alive\n";
+  return alive;
+}
+
+Response TerrainService::ready() const {
+  Response response;
+  response.content_type = "text/plain; charset=utf-8";
+  response.status = drains_ ? 503 : 200;
+  response.body = drains_ ? "draining\n" : "ready\n";
+  return response;
+}
+
+Response TerrainService::metrics_text() {
+  if (server_ != nullptr) {
+    const http::ServerLoad load = server_->load();
+    metrics_.set("ptin_connections", "", static_cast<double>(load.connections));
+    metrics_.set("ptin_waiting", "", static_cast<double>(load.waiting));
+    metrics_.set("ptin_computing", "", static_cast<double>(load.computing));
+  }
+  metrics_.set("ptin_cache_bytes", "", static_cast<double>(cache_.bytes()));
+  metrics_.set("ptin_memory_reserved_bytes", "", static_cast<double>(budget_->lent()));
+  Response response;
+  response.content_type = "text/plain; version=0.0.4; charset=utf-8";
+  response.body = metrics_.text();
+  return response;
+}
+
+TerrainService::Match TerrainService::match(const Request& request) const {
+  for (const Endpoint& endpoint : endpoints()) {
+    Match found;
+    if (!fits(endpoint.path, request.path, found.id, found.rest)) continue;
+    found.endpoint = &endpoint;
+    return found;
+  }
+  return {};
+}
+
+void TerrainService::authorize(const Request& request) const {
+  if (options_.token.empty()) return;
+  constexpr std::size_t kScheme = 7;  // Of "Bearer " before the token.
+  const std::string_view given = request.header("authorization").value_or("");
+  if (is_bearer(given.substr(0, kScheme)) &&
+      is_same_secret(given.substr(kScheme), options_.token)) {
+    return;
+  }
+  throw Problem(401, "this service wants a token; send it as Authorization: Bearer TOKEN");
+}
+
+Response TerrainService::answer(const Request& request) {
+  authorize(request);
+  const Match found = match(request);
+  if (found.endpoint == nullptr) {
+    throw Problem(404, "there is nothing under this path; / and /api list what there is");
+  }
+  if (!is_get(request) && !(found.endpoint->takes_post && request.method == "POST")) {
+    throw Problem(405, found.endpoint->takes_post ? "only GET, HEAD and POST are answered here"
+                                                  : "only GET and HEAD are answered here")
+        .allow(methods_of(found.endpoint));
+  }
+  try {
+    return answer_endpoint(request, found);
+  } catch (const Problem& problem) {
+    if (found.endpoint->refusal == nullptr || problem.status() >= 500) throw;
+    return found.endpoint->refusal(problem);
+  }
+}
+
+/// What an answer depends on: the file, the question, and what the client takes.
+std::string TerrainService::key_of(const Request& request, const Match& found,
+                                   const Collection* collection, const Question& question) const {
+  std::string key = options_.version + "\n" + std::string(found.endpoint->path) + "\n";
+  if (collection != nullptr) key += collection->fingerprint + collection->id;
+  return key + "\n" + found.rest + "\n" + question.canonical() + "\n" +
+         std::string(request.header("accept").value_or(""));
+}
+
+std::shared_ptr<const Collection> TerrainService::collection_of(const Match& found) const {
+  if (found.id.empty()) return nullptr;
+  std::shared_ptr<const Collection> collection = catalogue_.find(found.id);
+  if (collection) return collection;
+  throw Problem(404, "there is no collection of this name; /collections lists them").at("id");
+}
+
+std::shared_ptr<http::MemoryBudget::Lease> TerrainService::lend(Reserves reserves) const {
+  std::uint64_t bytes = options_.question.question_memory;
+  if (reserves == Reserves::kQuarter) bytes /= 4;
+  if (reserves == Reserves::kNothing) bytes = 0;
+  std::shared_ptr<http::MemoryBudget::Lease> lease = budget_->lend(bytes);
+  if (lease) return lease;
+  throw Problem(503,
+                "the questions at hand take all memory that the service has for them; come "
+                "again later")
+      .beyond("memory_bytes")
+      .retry_after(1);
+}
+
+/// An address that names the version of its answers never gets other bytes.
+std::string TerrainService::cache_control_of(const Question& question,
+                                             const Collection& collection) const {
+  if (question.text("v") != version_of(collection, options_.version)) return "no-cache";
+  return (options_.token.empty() ? "public" : "private") +
+         std::string(", max-age=31536000, immutable");
+}
+
+/// 304, with the headers that the whole answer would have (RFC 9110, section 15.4.5).
+Response TerrainService::unchanged(std::string etag, std::string cache_control, bool is_chosen) {
+  Response response;
+  response.status = 304;
+  response.add("ETag", std::move(etag));
+  response.add("Cache-Control", std::move(cache_control));
+  if (is_chosen) add_vary(response, "Accept");
+  add_vary(response, "Accept-Encoding");
+  return response;
+}
+
+Response TerrainService::answer_endpoint(const Request& request, const Match& found) {
+  const std::shared_ptr<const Collection> collection = collection_of(found);
+  const Question question(request, found.endpoint->parameters);
+  // What a collection answers to a GET is the same until its file is replaced.
+  if (!is_get(request) || !collection) return compute(request, found, collection, question);
+  const std::string etag = http::etag_of(key_of(request, found, collection.get(), question));
+  const std::string cache_control = cache_control_of(question, *collection);
+  const std::string_view known = request.header("if-none-match").value_or("");
+  if (http::names_etag(known, etag)) {
+    const std::string packed = http::gzip_etag_of(etag);
+    const bool has_packed = known.find(packed) != std::string_view::npos;
+    return unchanged(has_packed ? packed : etag, cache_control,
+                     chooses_by_accept(*found.endpoint, question));
+  }
+  const bool takes_gzip = http::takes_gzip(request.header("accept-encoding").value_or(""));
+  const std::string cached = etag + (takes_gzip ? "gzip" : "");
+  std::optional<Response> response = cache_.find(cached);
+  if (!response) {
+    response = compute(request, found, collection, question);
+    if (response->status != 200 || response->long_body) return std::move(*response);
+    response->add("ETag", etag);
+    response->add("Cache-Control", cache_control);
+    pack(takes_gzip, *response);
+    cache_.keep(cached, *response);
+  }
+  // Whatever there is: there is an answer.
+  if (known == "*") {
+    return unchanged(header_of(*response, "ETag"), cache_control,
+                     chooses_by_accept(*found.endpoint, question));
+  }
+  return std::move(*response);
+}
+
+/// The answer, with the memory that was reserved for it.
+Response TerrainService::compute(const Request& request, const Match& found,
+                                 const std::shared_ptr<const Collection>& collection,
+                                 const Question& question) {
+  const auto lease = lend(found.endpoint->reserves);
+  const Asked asked{request,
+                    question,
+                    options_,
+                    catalogue_,
+                    collection,
+                    found.rest,
+                    {lease->bytes(), request.stop}};
+  Response response = found.endpoint->answer(asked);
+  if (response.held || response.long_body) return response;
+  if (!is_get(request) || !collection) {
+    pack(http::takes_gzip(request.header("accept-encoding").value_or("")), response);
+  }
+  lease->shrink_to(response.body.capacity());
+  response.held = lease;
+  return response;
+}
+
+Response TerrainService::options_of(const Request& request) const {
+  Response response;
+  response.status = 204;
+  const std::string methods = methods_of(match(request).endpoint);
+  response.add("Allow", methods);
+  if (!options_.cors_origin.empty() && request.header("access-control-request-method")) {
+    response.add("Access-Control-Allow-Methods", methods);
+    response.add("Access-Control-Allow-Headers",
+                 "Content-Type, Authorization, If-None-Match, Range");
+    response.add("Access-Control-Max-Age", "86400");
+  }
+  return response;
+}
+
+Response TerrainService::failed(const Request& request, const Error& error, http::GivenUp why) {
+  const std::string id = match(request).id;
+  switch (error.code()) {
+    case ErrorCode::invalid_argument:
+      return Problem(400, error.message()).response();
+    case ErrorCode::resource_exhausted:
+      return Problem(413,
+                     "the answer takes more memory than the service gives a question; ask for "
+                     "less: a smaller window, or a larger error")
+          .beyond("question_memory")
+          .response();
+    case ErrorCode::cancelled:
+      if (why == http::GivenUp::kDeadline) {
+        return Problem(503,
+                       "the answer takes longer than the service computes; ask for less: a "
+                       "smaller window, or a larger error")
+            .beyond("computing")
+            .response();
+      }
+      return Problem(503, "the service ends").retry_after(1).response();
+    case ErrorCode::corruption:
+    case ErrorCode::io_error:
+    case ErrorCode::not_found:
+    case ErrorCode::unsupported_version:
+      metrics_.add("ptin_store_failures_total", "collection=\"" + id + "\"");
+      log({{"time", now_text()}, {"event", "store"}, {"id", request.id}, {"detail", error.what()}});
+      return Problem(500,
+                     "the file of this collection is damaged, or cannot be read; whoever runs "
+                     "the service finds more in its log")
+          .response();
+    case ErrorCode::internal:
+      break;
+  }
+  log({{"time", now_text()}, {"event", "fault"}, {"id", request.id}, {"detail", error.what()}});
+  return Problem(500, "a fault of the service; whoever runs it finds more in its log").response();
+}
+
+Response TerrainService::failure(const Request& request, std::exception_ptr thrown,
+                                 http::GivenUp why) noexcept {
+  try {
+    return failure_told(request, std::move(thrown), why);
+  } catch (...) {  // No memory even for a sentence: the status alone tells.
+    Response response;
+    response.status = 503;
+    return response;
+  }
+}
+
+Response TerrainService::failure_told(const Request& request, std::exception_ptr thrown,
+                                      http::GivenUp why) {
+  try {
+    std::rethrow_exception(std::move(thrown));
+  } catch (const Problem& problem) {
+    return problem.response();
+  } catch (const Error& error) {
+    return failed(request, error, why);
+  } catch (const std::bad_alloc&) {
+    return Problem(503, "the system gives no more memory; come again later")
+        .retry_after(5)
+        .response();
+  } catch (const std::exception& error) {
+    return failed(request, {ErrorCode::internal, error.what()}, why);
+  }
+}
+
+void TerrainService::finish(const Request&, Response& response) {
+  if (!options_.cors_origin.empty()) {
+    response.add("Access-Control-Allow-Origin", options_.cors_origin);
+    response.add("Access-Control-Expose-Headers",
+                 "ETag, Server-Timing, Ptin-Certified-Error, Ptin-Exact, Ptin-Bounds, "
+                 "Ptin-Fingerprint, Ptin-Splits, Ptin-Vertices, Ptin-Triangles, Content-Range, "
+                 "Retry-After");
+  }
+  response.add("X-Content-Type-Options", "nosniff");
+}
+
+void TerrainService::note(const http::Served& served) noexcept {
+  try {
+    const Request& request = served.request;
+    const Match found = request.is_parsed ? match(request) : Match{};
+    const std::string question = found.endpoint ? std::string(found.endpoint->name)
+                                 : is_quick(request) && !request.path.empty() ? request.path[0]
+                                                                              : "none";
+    const unsigned status = served.response ? served.response->status : 499;
+    metrics_.add("ptin_requests_total",
+                 "question=\"" + question + "\",status=\"" + std::to_string(status) + "\"");
+    if (served.response == nullptr) metrics_.add("ptin_hung_up_total", "");
+    metrics_.add("ptin_sent_bytes_total", "", static_cast<double>(served.bytes_written));
+    metrics_.observe("ptin_queue_seconds", "", served.queue_seconds);
+    metrics_.observe("ptin_compute_seconds", "question=\"" + question + "\"",
+                     served.compute_seconds);
+    nlohmann::ordered_json line = {{"time", now_text()},
+                                   {"event", "request"},
+                                   {"id", request.id},
+                                   {"remote", request.remote},
+                                   {"method", request.method},
+                                   {"target", request.target},
+                                   {"question", question},
+                                   {"status", status},
+                                   {"bytes", served.bytes_written},
+                                   {"queue_ms", 1e3 * served.queue_seconds},
+                                   {"compute_ms", 1e3 * served.compute_seconds},
+                                   {"write_ms", 1e3 * served.write_seconds}};
+    if (!served.is_whole) line["whole"] = false;
+    log(line);
+  } catch (const std::exception&) {
+    // Without memory for its line a request is not told; the next one is.
+  }
+}
+
+void TerrainService::log(const nlohmann::ordered_json& line) const noexcept {
+  try {
+    log_(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  } catch (const std::exception&) {
+    // As in note().
+  }
+}
+
+}  // namespace ptin::serve

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Tiles for viewers of the globe: quantized-mesh for Cesium, and 3D Tiles 1.1.
+#include <array>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "tools/http/problem.h"
+#include "tools/serve/answer_parts.h"
+#include "tools/serve/questions.h"
+
+namespace ptin::serve {
+
+namespace {
+
+using http::Problem;
+
+constexpr std::string_view kQuantizedMesh = "application/vnd.quantized-mesh";
+
+constexpr auto kTilesParameters = std::to_array<ParameterFact>(
+    {{"v", "string", "the version that layer.json tells: such an answer may be kept for ever", ""},
+     {"extensions", "string", "octvertexnormals, where the header Accept does not say so",
+      "octvertexnormals"}});
+
+struct TileNumber {
+  std::int64_t level, x, y;
+};
+
+/// The numbers of "3/5/1.terrain".
+std::optional<TileNumber> number_of_tile(std::string_view path, std::string_view extension) {
+  if (!path.ends_with(extension)) return std::nullopt;
+  path.remove_suffix(extension.size());
+  std::array<std::int64_t, 3> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto [end, status] = std::from_chars(path.data(), path.data() + path.size(), numbers[i]);
+    if (status != std::errc() || numbers[i] < 0) return std::nullopt;
+    path.remove_prefix(static_cast<std::size_t>(end - path.data()));
+    if (path.empty() != (i + 1 == numbers.size())) return std::nullopt;
+    if (!path.empty() && path.front() != '/') return std::nullopt;
+    if (!path.empty()) path.remove_prefix(1);
+  }
+  return TileNumber{numbers[0], numbers[1], numbers[2]};
+}
+
+[[noreturn]] void throw_no_tile() {
+  throw Problem(404,
+                "there is no such tile; layer.json, tileset.json and its subtrees tell which "
+                "ones there are");
+}
+
+/// What a viewer that assumes an ellipsoid has to know.
+const char* datum_name(tools::VerticalDatum datum) {
+  switch (datum) {
+    case tools::VerticalDatum::kEllipsoidal:
+      return "ellipsoidal";
+    case tools::VerticalDatum::kOrthometric:
+      return "orthometric: up to 110 m off the ellipsoid that viewers assume";
+    case tools::VerticalDatum::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+std::shared_ptr<const tools::TerrainTiles> quantized(const Asked& asked) {
+  return asked.collection->tile_sets.quantized(asked.terrain(), asked.collection->crs,
+                                               asked.limits);
+}
+
+std::shared_ptr<const tools::TerrainTileset> tileset(const Asked& asked) {
+  return asked.collection->tile_sets.tileset(asked.terrain(), asked.collection->crs, asked.limits);
+}
+
+/// The error is in metres, whatever the unit of the file's heights.
+http::Response tile_response(tools::Tile tile, std::string_view media) {
+  http::Response response = text_response(std::move(tile.bytes), media);
+  add_cost(response, tile.cost);
+  add_certainty(response, tile.error, false);
+  return response;
+}
+
+http::Response layer_json(const Asked& asked) {
+  Json json = quantized(asked)->layer_json(version_of(*asked.collection, asked.options.version));
+  json["ptin:heights"] = datum_name(tools::vertical_datum(asked.collection->crs));
+  return json_response(json);
+}
+
+}  // namespace
+
+std::span<const ParameterFact> tiles_parameters() noexcept { return kTilesParameters; }
+
+http::Response answer_tiles(const Asked& asked) {
+  if (asked.rest == "layer.json") return layer_json(asked);
+  const std::optional<TileNumber> number = number_of_tile(asked.rest, ".terrain");
+  if (!number) throw_no_tile();
+  const std::string_view accept = asked.request.header("accept").value_or("");
+  constexpr std::string_view kNormals = "octvertexnormals";
+  const bool has_normals = accept.find(kNormals) != std::string_view::npos ||
+                           asked.question.text("extensions").find(kNormals) != std::string::npos;
+  std::optional<tools::Tile> tile =
+      quantized(asked)->tile({number->level, number->x, number->y, has_normals, asked.limits});
+  if (!tile) throw_no_tile();
+  http::Response response = tile_response(std::move(*tile), kQuantizedMesh);
+  response.add("Vary", "Accept");
+  return response;
+}
+
+http::Response answer_tileset(const Asked& asked) {
+  return json_response(tileset(asked)->tileset_json());
+}
+
+http::Response answer_subtree(const Asked& asked) {
+  const std::optional<TileNumber> number = number_of_tile(asked.rest, ".subtree");
+  if (!number) throw_no_tile();
+  std::optional<std::string> subtree = tileset(asked)->subtree(number->level, number->x, number->y);
+  if (!subtree) throw_no_tile();
+  return text_response(std::move(*subtree), "application/octet-stream");
+}
+
+http::Response answer_content(const Asked& asked) {
+  const std::optional<TileNumber> number = number_of_tile(asked.rest, ".glb");
+  if (!number) throw_no_tile();
+  std::optional<tools::Tile> content =
+      tileset(asked)->content(number->level, number->x, number->y, asked.limits);
+  if (!content) throw_no_tile();
+  return tile_response(std::move(*content), "model/gltf-binary");
+}
+
+}  // namespace ptin::serve

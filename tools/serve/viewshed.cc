@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What one observer sees, as a picture or as GeoJSON.
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/error.h"
+#include "tools/http/problem.h"
+#include "tools/plot/png.h"
+#include "tools/serve/answer_parts.h"
+#include "tools/serve/coverage.h"
+#include "tools/serve/questions.h"
+#include "tools/serve/wkt_places.h"
+
+namespace ptin::serve {
+
+namespace {
+
+constexpr auto kViewshedParameters = std::to_array<ParameterFact>(
+    {{"coords", "string", "the observer's position as WKT, POINT", "POINT(-118.3 34.34)", true},
+     {"height", "number", "of the observer's eye above ground; 2 without it", "2"},
+     {"absolute", "boolean", "the height is not above ground but that of the terrain's heights",
+      "false"},
+     {"target", "number", "height of targets above ground; 0 without it", "0"},
+     {"radius", "number", "how far targets are looked at, over ground, in the unit of heights",
+      "5000", true},
+     {"curvature", "number", "coefficient of the Earth's curvature and refraction; 0: flat",
+      "0.857"},
+     kErrorParameter,
+     kVerticesParameter,
+     kCrsParameter,
+     {"f", "string", "png (pixels of the terrain, see Ptin-Bounds) or geojson (vertices)", "png"}});
+constexpr auto kViewshedFormats =
+    std::to_array<OfferedFormat>({{"png", "image/png"}, {"geojson", kGeoJson}});
+
+ViewshedRequest request_of(const Asked& asked, const Places& places, bool as_picture) {
+  const std::vector<MapPoint> eye = points_of_wkt(asked.question.needed("coords"), "coords");
+  if (eye.size() != 1) throw http::Problem(400, "one observer has one position").at("coords");
+  ViewshedRequest request;
+  request.eye = places.to_terrain(eye[0]);
+  request.eye_height = asked.question.number("height", 2.0);
+  request.absolute = asked.question.flag("absolute");
+  request.target_height = asked.question.number("target", 0.0);
+  request.radius = asked.question.number("radius", 0.0);
+  if (request.radius <= 0) {
+    throw http::Problem(400, "the radius must be above 0").at("radius");
+  }
+  const Ground& ground = asked.collection->ground;
+  const MapPoint per_unit = ground.per_map_unit(request.eye);
+  request.ground_per_map_x = per_unit.x;
+  request.ground_per_map_y = per_unit.y;
+  request.curvature = {asked.question.number("curvature", Curvature{}.coefficient),
+                       ground.earth_diameter};
+  request.pixels = as_picture;
+  request.list_vertices = !as_picture;
+  request.detail = detail_of(asked);
+  request.limits = engine_limits(asked);
+  return request;
+}
+
+/// @throws http::Problem 400  the observer stands outside of the terrain, or below its surface
+Viewshed viewshed_of(const Asked& asked, const ViewshedRequest& request) {
+  try {
+    return asked.terrain().viewshed(request);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::invalid_argument) throw;
+    throw http::Problem(400, error.message()).at("coords");
+  }
+}
+
+/// Pixels as colours: visible green, perhaps visible yellow, hidden dark, nothing clear.
+std::string png_of(const Viewshed& seen) {
+  std::vector<std::uint32_t> pixels;
+  pixels.reserve(seen.pixels.size());
+  for (const Sight s : seen.pixels) {
+    pixels.push_back(s == Sight::kVisible          ? 0xB02E9E4FU
+                     : s == Sight::kPerhapsVisible ? 0xB0C8B13AU
+                     : s == Sight::kPerhapsHidden  ? 0x806B5A3AU
+                     : s == Sight::kHidden         ? 0x80303038U
+                                                   : 0x00000000U);
+  }
+  return tools::png_of(static_cast<int>(seen.width), static_cast<int>(seen.height), pixels);
+}
+
+/// "west,south,east,north" of the picture, map units.
+std::string bounds_text(const Viewshed& seen) {
+  const double west = seen.first.x - seen.step_x / 2, north = seen.first.y + seen.step_y / 2;
+  std::string text;
+  append_json_number(text, west);
+  append_json_number(text += ',', north - seen.step_y * seen.height);
+  append_json_number(text += ',', west + seen.step_x * seen.width);
+  append_json_number(text += ',', north);
+  return text;
+}
+
+std::string geojson_of(const Viewshed& seen, const Asked& asked, const Places& places) {
+  check_count(seen.vertices.size(), asked.options.question.vertices, "vertices", "vertices",
+              "radius");
+  LongText text(asked);
+  text.add(R"({"type":"FeatureCollection","features":[)");
+  for (std::size_t i = 0; i < seen.vertices.size(); ++i) {
+    const Viewshed::Target& target = seen.vertices[i];
+    MapPoint p = target.position;
+    places.from_terrain({&p, 1});
+    text.add(i == 0 ? R"({"type":"Feature","geometry":)" : R"(,{"type":"Feature","geometry":)");
+    add_point(text, p);
+    text.add(",\"properties\":{\"height\":").number(target.height);
+    text.add(",\"visible\":").truth(target.visible).add(",\"certain\":").truth(target.certain);
+    text.add("}}");
+  }
+  text.add("],\"eye_height\":").number(seen.eye_height);
+  text.add(",\"visible\":").json(seen.visible_vertices);
+  text.add(",\"hidden\":").json(seen.hidden_vertices);
+  text.add(",\"undecided\":").json(seen.undecided_vertices).add(",\"ptin:certainty\":");
+  text.json(certainty_json(asked, seen.certified_error, seen.certified_deviation, seen.exact));
+  return text.add("}\n").take();
+}
+
+/// The raster has the terrain's own pixels: a radius that would make too many is told at once.
+void check_pixels(const Asked& asked, const ViewshedRequest& request) {
+  const StoreFacts& facts = asked.facts();
+  const MapPoint a = facts.map.to_map(0, 0), b = facts.map.to_map(1, 1);
+  const double across = 2 * request.radius / (std::abs(b.x - a.x) * request.ground_per_map_x) + 1;
+  const double down = 2 * request.radius / (std::abs(b.y - a.y) * request.ground_per_map_y) + 1;
+  if (across * down <= static_cast<double>(asked.options.question.pixels)) return;
+  throw http::Problem(413, "the picture has more than " +
+                               std::to_string(asked.options.question.pixels) +
+                               " pixels; ask for a smaller radius, or for geojson at an error")
+      .at("radius")
+      .beyond("pixels");
+}
+
+}  // namespace
+
+std::span<const ParameterFact> viewshed_parameters() noexcept { return kViewshedParameters; }
+
+http::Response answer_viewshed(const Asked& asked) {
+  const bool as_picture = format_of(asked, kViewshedFormats).name == "png";
+  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
+  const ViewshedRequest request = request_of(asked, places, as_picture);
+  if (as_picture) check_pixels(asked, request);
+  const Viewshed seen = viewshed_of(asked, request);
+  http::Response response;
+  if (as_picture) {
+    response = text_response(png_of(seen), "image/png");
+    response.add("Ptin-Bounds", bounds_text(seen));
+  } else {
+    response = text_response(geojson_of(seen, asked, places), kGeoJson);
+  }
+  add_choice(response, asked);
+  add_cost(response, seen.cost);
+  add_certainty(response, seen.certified_error, seen.exact);
+  return response;
+}
+
+}  // namespace ptin::serve
