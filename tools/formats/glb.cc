@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/error.h"
+#include "tools/formats/glb_mesh.h"
 #include "tools/formats/mesh_writer.h"
 
 namespace ptin::tools {
@@ -52,13 +53,16 @@ std::vector<Vec3f> normals_of(const std::vector<Vec3f>& points, const Mesh& mesh
   return normals;
 }
 
-nlohmann::json extent_of(const std::vector<Vec3f>& points, bool upper) {
-  Vec3f extent = points[0];
+GlbMeshFacts facts_of(const std::vector<Vec3f>& points, const Mesh& mesh) {
+  GlbMeshFacts facts{points.size(), mesh.triangles.size() * 3, GlbType::kUnsignedInt, points[0],
+                     points[0]};
   for (const Vec3f& p : points) {
-    for (std::size_t i = 0; i < 3; ++i)
-      extent[i] = upper ? std::max(extent[i], p[i]) : std::min(extent[i], p[i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      facts.low[i] = std::min(facts.low[i], p[i]);
+      facts.high[i] = std::max(facts.high[i], p[i]);
+    }
   }
-  return {extent[0], extent[1], extent[2]};
+  return facts;
 }
 
 nlohmann::json scene_of(const Mesh& mesh, const LocalFrame& frame) {
@@ -72,37 +76,6 @@ nlohmann::json scene_of(const Mesh& mesh, const LocalFrame& frame) {
   json["scenes"] = {{{"nodes", {0}}}};
   json["nodes"] = {{{"name", "terrain"}, {"extras", extras}}};
   return json;
-}
-
-/// Adds mesh, material, accessors and buffer views: positions, normals, indices, in this order.
-void describe_buffers(nlohmann::json& json, const std::vector<Vec3f>& points, std::size_t indices) {
-  const std::size_t bytes = points.size() * sizeof(Vec3f);
-  const std::size_t index_bytes = indices * sizeof(std::uint32_t);
-  json["nodes"][0]["mesh"] = 0;
-  json["materials"] = {{{"pbrMetallicRoughness",
-                         {{"baseColorFactor", {0.72, 0.7, 0.62, 1.0}},
-                          {"metallicFactor", 0.0},
-                          {"roughnessFactor", 1.0}}},
-                        {"doubleSided", true}}};
-  json["meshes"] = {{{"primitives",
-                      {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}},
-                        {"indices", 2},
-                        {"material", 0},
-                        {"mode", 4}}}}}};
-  json["accessors"] = {
-      {{"bufferView", 0},
-       {"componentType", 5126},
-       {"count", points.size()},
-       {"type", "VEC3"},
-       {"min", extent_of(points, false)},
-       {"max", extent_of(points, true)}},
-      {{"bufferView", 1}, {"componentType", 5126}, {"count", points.size()}, {"type", "VEC3"}},
-      {{"bufferView", 2}, {"componentType", 5125}, {"count", indices}, {"type", "SCALAR"}}};
-  json["bufferViews"] = {
-      {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", bytes}, {"target", 34962}},
-      {{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", bytes}, {"target", 34962}},
-      {{"buffer", 0}, {"byteOffset", 2 * bytes}, {"byteLength", index_bytes}, {"target", 34963}}};
-  json["buffers"] = {{{"byteLength", 2 * bytes + index_bytes}}};
 }
 
 void write_chunk_header(ByteSink& out, std::uint64_t bytes, std::uint32_t type) {
@@ -120,14 +93,15 @@ void write_glb(const Mesh& mesh, ByteSink& out) {
   const std::vector<Vec3f> normals = normals_of(points, mesh);
 
   nlohmann::json json = scene_of(mesh, frame);
-  if (!mesh.triangles.empty())
-    describe_buffers(json, points, mesh.triangles.size() * 3);  // glTF has no empty buffers.
+  std::uint64_t binary = 0;
+  if (!mesh.triangles.empty()) {
+    const GlbMeshFacts facts = facts_of(points, mesh);
+    json["nodes"][0]["mesh"] = 0;
+    describe_mesh(json, facts);
+    binary = glb_bytes(facts);
+  }
   std::string text = json.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
-  const std::uint64_t binary =
-      mesh.triangles.empty()
-          ? 0
-          : points.size() * 2 * sizeof(Vec3f) + mesh.triangles.size() * 3 * sizeof(std::uint32_t);
   const std::uint64_t total = 12 + 8 + text.size() + (binary > 0 ? 8 + binary : 0);
   if (total > UINT32_MAX) {
     throw Error(ErrorCode::invalid_argument,

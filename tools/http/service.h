@@ -23,9 +23,8 @@ struct Served {
   bool is_whole = false;            ///< All of the answer was taken by the system.
 };
 
-/// Answers requests. Threads: all functions may be called from several at once; the server calls
-/// `is_quick`, `answer_quickly`, `refuse` and `note` on the thread of its connections, which they
-/// must not block.
+/// Answers requests. Threads: answer() may be called on several at once; the server calls all other
+/// functions on the thread of its connections, which they must not block.
 class Service {
  public:
   virtual ~Service() = default;

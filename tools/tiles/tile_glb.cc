@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/check.h"
+#include "tools/formats/glb_mesh.h"
 #include "tools/tiles/tile_bytes.h"
 
 namespace ptin::tools {
@@ -17,8 +18,6 @@ namespace ptin::tools {
 namespace {
 
 using GlbVector = std::array<float, 3>;
-
-constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
 
 /// Earth-centred, or around the origin, with y up.
 Vec3 turned_up(const Vec3& p) { return {p.x, p.z, -p.y}; }
@@ -63,47 +62,18 @@ LocalPositions local_positions_of(const TileMesh& mesh, const TileGlbTarget& tar
   return local;
 }
 
-nlohmann::json scene_of(const TileMesh& mesh, const LocalPositions& local, int index_type) {
-  const std::size_t count = local.vertices.size();
-  const std::size_t bytes = count * sizeof(GlbVector);
-  const std::size_t index_bytes = mesh.triangles.size() * 3 * (index_type == kUnsignedInt ? 4 : 2);
+nlohmann::json scene_of(const LocalPositions& local, const GlbMeshFacts& facts) {
   const Vec3 origin = turned_up(local.origin);
   nlohmann::json json;
   json["asset"] = {{"version", "2.0"}, {"generator", "ptin"}};
   json["scene"] = 0;
   json["scenes"] = {{{"nodes", {0}}}};
   json["nodes"] = {{{"mesh", 0}, {"translation", {origin.x, origin.y, origin.z}}}};
-  json["materials"] = {{{"pbrMetallicRoughness",
-                         {{"baseColorFactor", {0.72, 0.7, 0.62, 1.0}},
-                          {"metallicFactor", 0.0},
-                          {"roughnessFactor", 1.0}}},
-                        {"doubleSided", true}}};
-  json["meshes"] = {{{"primitives",
-                      {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}},
-                        {"indices", 2},
-                        {"material", 0},
-                        {"mode", 4}}}}}};
-  json["accessors"] = {
-      {{"bufferView", 0},
-       {"componentType", kFloat},
-       {"count", count},
-       {"type", "VEC3"},
-       {"min", local.low},
-       {"max", local.high}},
-      {{"bufferView", 1}, {"componentType", kFloat}, {"count", count}, {"type", "VEC3"}},
-      {{"bufferView", 2},
-       {"componentType", index_type},
-       {"count", mesh.triangles.size() * 3},
-       {"type", "SCALAR"}}};
-  json["bufferViews"] = {
-      {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", bytes}, {"target", 34962}},
-      {{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", bytes}, {"target", 34962}},
-      {{"buffer", 0}, {"byteOffset", 2 * bytes}, {"byteLength", index_bytes}, {"target", 34963}}};
-  json["buffers"] = {{{"byteLength", 2 * bytes + index_bytes}}};
+  describe_mesh(json, facts);
   return json;
 }
 
-std::string buffer_of(const TileMesh& mesh, const LocalPositions& local, int index_type) {
+std::string buffer_of(const TileMesh& mesh, const LocalPositions& local, GlbType index_type) {
   TileBytes out;
   for (const GlbVector& p : local.vertices) out.add(p);
   for (const TileMesh::Vertex& v : mesh.vertices) {
@@ -112,7 +82,7 @@ std::string buffer_of(const TileMesh& mesh, const LocalPositions& local, int ind
   }
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) {
-      if (index_type == kUnsignedInt) {
+      if (index_type == GlbType::kUnsignedInt) {
         out.add(v);
       } else {
         out.add(static_cast<std::uint16_t>(v));
@@ -153,8 +123,11 @@ std::string tile_glb(const TileMesh& mesh, const TileGlbTarget& target) {
   }
   const LocalPositions local = local_positions_of(mesh, target);
   // 65535 is no index: it ends a strip.
-  const int index_type = mesh.vertices.size() > 65535 ? kUnsignedInt : kUnsignedShort;
-  return glb_of(scene_of(mesh, local, index_type), buffer_of(mesh, local, index_type));
+  const GlbMeshFacts facts{
+      local.vertices.size(), mesh.triangles.size() * 3,
+      mesh.vertices.size() > 65535 ? GlbType::kUnsignedInt : GlbType::kUnsignedShort, local.low,
+      local.high};
+  return glb_of(scene_of(local, facts), buffer_of(mesh, local, facts.index_type));
 }
 
 }  // namespace ptin::tools
