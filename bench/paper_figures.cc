@@ -18,6 +18,7 @@
 //
 // usage: paper_figures [OUT.csv] [LARGEST]
 // sizes above LARGEST (default 50 000; 1 000 000 gives all) are left out
+#include <filesystem>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -206,8 +207,9 @@ void check_against_store(const MadeTerrain& terrain, const Counted& counted) {
   const Tile& tile = terrain.started.tile;
   StarredRecords records = starred_records(std::vector(tile.records), 0, RecordStars(tile.stars));
   BuildReport report;
-  StoreOutput output(path, {}, false, terrain.frame);
-  output.add_segment(records);
+  std::filesystem::create_directory(folder.file("work"));
+  StoreOutput output(path, {}, false, terrain.frame, FileLayer::system(), folder.file("work"));
+  add_segment(output, records);
   output.publish(tile.tin, deaths_of(tile), {"random"}, report);
   const Terrain tin = Terrain::open(path);
   int differences = 0;

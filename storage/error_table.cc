@@ -28,6 +28,14 @@ void ErrorTable::add(const VertexSplit& r) {
   bin.void_vertices += (r.flags & VertexSplit::kVertexVoid) != 0 ? 1 : 0;
 }
 
+void ErrorTable::add(const ErrorBin& other) {
+  ErrorBin& bin = bins_[layout::to_bits(other.upper)];
+  bin.upper = other.upper;
+  bin.max_deviation = std::max(bin.max_deviation, other.max_deviation);
+  bin.records += other.records;
+  bin.void_vertices += other.void_vertices;
+}
+
 std::vector<ErrorBin> ErrorTable::bins() const {
   std::vector<ErrorBin> result;
   result.reserve(bins_.size() + 1);

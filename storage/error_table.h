@@ -23,6 +23,8 @@ namespace ptin {
 class ErrorTable {
  public:
   void add(const VertexSplit& r);
+  /// Adds a bin of another table.
+  void add(const ErrorBin& bin);
   /// Bins that are not empty, and the one of error 0 in any case, ascending.
   [[nodiscard]] std::vector<ErrorBin> bins() const;
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "storage/packed_segment.h"
 
-#include <span>
+#include <algorithm>
 
 #include "engine/check.h"
+#include "storage/record_page.h"
+#include "storage/error_table.h"
 #include "storage/page_packer.h"
 #include "storage/record_order.h"
 
@@ -30,6 +32,35 @@ PackedSegment pack_segment(const StarredRecords& records, const HeightEncoding& 
     finish();
   }
   return packed;
+}
+
+std::optional<PageCounts> count_pages(std::span<const std::byte> pages,
+                                      std::span<const layout::NodeEntry> descriptors,
+                                      const HeightEncoding& heights) {
+  if (descriptors.empty() || pages.size() % descriptors.size() != 0) {
+    return pages.empty() && descriptors.empty() ? std::optional<PageCounts>(PageCounts{})
+                                                : std::nullopt;
+  }
+  const std::size_t page_bytes = pages.size() / descriptors.size();
+  PageCounts counts;
+  ErrorTable errors;
+  VertexSplit r;
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    const RecordPage page(pages.subspan(i * page_bytes, page_bytes), heights);
+    if (!page.is_sound() || page.records() != descriptors[i].records) {
+      return std::nullopt;
+    }
+    for (std::uint32_t k = 0; k < page.records(); ++k) {
+      if (!page.head(k, r)) {
+        return std::nullopt;
+      }
+      errors.add(r);
+      counts.max_rank = std::max(counts.max_rank, r.rank);
+    }
+    counts.records += page.records();
+  }
+  counts.bins = errors.bins();
+  return counts;
 }
 
 }  // namespace ptin

@@ -5,10 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "storage/layout.h"
 #include "storage/star.h"
+#include "storage/store_file.h"
 
 namespace ptin {
 
@@ -17,6 +20,20 @@ struct PackedSegment {
   std::vector<std::byte> pages;
   std::vector<layout::NodeEntry> descriptors;
 };
+
+/// What a store counts of pages, so that whoever made them counts, and not the one who writes all.
+struct PageCounts {
+  std::uint64_t records = 0;
+  std::uint16_t max_rank = 0;
+  std::vector<ErrorBin> bins;  ///< As ErrorTable::bins().
+};
+
+/// Counts pages that were packed. None when a reader would not accept one of them, or they are not
+/// those of the descriptors.
+/// Cost: takes every record apart, some 20 ns each.
+[[nodiscard]] std::optional<PageCounts> count_pages(
+    std::span<const std::byte> pages, std::span<const layout::NodeEntry> descriptors,
+    const HeightEncoding& heights);
 
 /// Orders the records of a segment (storage/record_order.h) and packs them. The bytes depend on the
 /// set of records, their stars and the size of a page alone. Threads: any number at once.

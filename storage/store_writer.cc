@@ -32,8 +32,6 @@ namespace ptin {
 
 namespace {
 
-constexpr std::size_t kWriteBytes = std::size_t{1} << 20;
-
 constexpr std::uint64_t padded_to(std::uint64_t bytes, std::uint64_t unit) {
   return (bytes + unit - 1) / unit * unit;
 }
@@ -135,18 +133,19 @@ class StoreWriterImpl final : public StoreWriter {
         folder_(folder_of(path)),
         stem_(std::filesystem::path(path).filename().string()),
         file_(options.work_folder.empty() ? ScratchFile(files_, folder_, stem_, false)
-                                          : kept_file(files_, options.work_folder + "/pages")) {
+                                          : kept_file(files_, pages_file_in(options.work_folder))) {
     if (!options_.work_folder.empty()) {
       const std::string journal = options_.work_folder + "/descriptors";
       journal_.emplace(files_, journal, ScratchFile::kept_at(journal));
     }
-    pending_.reserve(kWriteBytes);
   }
 
   void resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) override;
   [[nodiscard]] StoreCheckpoint position() const override;
   void sync() override;
   void add_segment(const PackedSegment& segment, const HeightEncoding& heights) override;
+  void add_placed(std::span<const layout::NodeEntry> descriptors, const PageCounts& counts,
+                  const HeightEncoding& heights) override;
   void publish(const StoreFacts& facts, const CoarsestTin& t0,
                const std::string& metadata_json) override;
 
@@ -155,8 +154,7 @@ class StoreWriterImpl final : public StoreWriter {
     return ScratchFile(files, path, ScratchFile::kept_at(path));
   }
   void start(const HeightEncoding& heights);
-  [[nodiscard]] bool count(std::span<const std::byte> bytes, const layout::NodeEntry& entry);
-  void flush();
+  void add(const PageCounts& counts);
   void restore_moved_pages();
   void take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page);
   PageSlots move_pages_behind(std::uint64_t front_bytes);
@@ -170,7 +168,6 @@ class StoreWriterImpl final : public StoreWriter {
   std::optional<HeightEncoding> heights_;
   std::optional<IndexWriter> index_;
   ErrorTable errors_;
-  std::vector<std::byte> pending_;   // finished pages, not yet written
   std::uint64_t written_bytes_ = 0;  // pages lie at the start of the file until publish()
   std::uint64_t records_ = 0;
   std::uint16_t max_rank_ = 0;
@@ -192,44 +189,33 @@ void StoreWriterImpl::add_segment(const PackedSegment& segment, const HeightEnco
   PTIN_CHECK(!published_ &&
              segment.pages.size() == segment.descriptors.size() * options_.page_bytes);
   start(heights);
-  for (std::size_t i = 0; i < segment.descriptors.size(); ++i) {
-    const auto page =
-        std::span(segment.pages).subspan(i * options_.page_bytes, options_.page_bytes);
-    const layout::NodeEntry& entry = segment.descriptors[i];
-    PTIN_CHECK(count(page, entry));
+  const std::optional<PageCounts> counts =
+      count_pages(segment.pages, segment.descriptors, heights);
+  PTIN_CHECK(counts.has_value());
+  file_.write_at(segment.pages, written_bytes_);
+  add_placed(segment.descriptors, *counts, heights);
+}
+
+void StoreWriterImpl::add_placed(std::span<const layout::NodeEntry> descriptors,
+                                 const PageCounts& counts, const HeightEncoding& heights) {
+  PTIN_CHECK(!published_);
+  start(heights);
+  for (const layout::NodeEntry& entry : descriptors) {
     index_->add(entry);
     if (journal_) {
       journal_->add(entry);
     }
-    pending_.insert(pending_.end(), page.begin(), page.end());
-    if (pending_.size() >= kWriteBytes) {
-      flush();
-    }
   }
+  add(counts);
+  written_bytes_ += descriptors.size() * options_.page_bytes;
 }
 
-// Counts the records of a page. False when one of them is not sound.
-bool StoreWriterImpl::count(std::span<const std::byte> bytes, const layout::NodeEntry& entry) {
-  const RecordPage page(bytes, *heights_);
-  if (!page.is_sound() || page.records() != entry.records) {
-    return false;
+void StoreWriterImpl::add(const PageCounts& counts) {
+  records_ += counts.records;
+  max_rank_ = std::max(max_rank_, counts.max_rank);
+  for (const ErrorBin& bin : counts.bins) {
+    errors_.add(bin);
   }
-  VertexSplit r;
-  for (std::uint32_t i = 0; i < page.records(); ++i) {
-    if (!page.head(i, r)) {
-      return false;
-    }
-    errors_.add(r);
-    max_rank_ = std::max(max_rank_, r.rank);
-  }
-  records_ += page.records();
-  return true;
-}
-
-void StoreWriterImpl::flush() {
-  file_.write_at(pending_, written_bytes_);
-  written_bytes_ += pending_.size();
-  pending_.clear();
 }
 
 StoreCheckpoint StoreWriterImpl::position() const {
@@ -239,7 +225,6 @@ StoreCheckpoint StoreWriterImpl::position() const {
 
 void StoreWriterImpl::sync() {
   PTIN_CHECK(journal_.has_value() && !published_);
-  flush();
   file_.sync();
   journal_->sync();
 }
@@ -263,13 +248,17 @@ void StoreWriterImpl::restore_moved_pages() {
 // Reads the next page again, checks it, and counts it as add_segment() did.
 void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page) {
   file_.read_at(page, written_bytes_);
-  if (checksum_of(page) != entry.checksum || !count(page, entry)) {
+  const std::optional<PageCounts> counts =
+      checksum_of(page) == entry.checksum ? count_pages(page, std::span(&entry, 1), *heights_)
+                                          : std::nullopt;
+  if (!counts) {
     throw Error(ErrorCode::corruption,
                 "page " + std::to_string(written_bytes_ / options_.page_bytes) +
                     " of the unfinished build is damaged; start again after --discard",
                 path_);
   }
   index_->add(entry);
+  add(*counts);
   written_bytes_ += page.size();
 }
 
@@ -311,7 +300,6 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
     throw Error(ErrorCode::invalid_argument, fault, path_);
   }
   start(facts.heights);
-  flush();
   const IndexShape shape(index_->pages());
   Front front(6);
   const std::vector<layout::T0Vertex> vertices = stored(t0.vertices, facts.heights.type);
@@ -349,6 +337,8 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
 }
 
 }  // namespace
+
+std::string pages_file_in(const std::string& work_folder) { return work_folder + "/pages"; }
 
 std::unique_ptr<StoreWriter> StoreWriter::create(const std::string& path,
                                                  const StoreWriterOptions& options) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "storage/packed_segment.h"
@@ -30,6 +31,9 @@ struct StoreWriterOptions {
   std::string work_folder = {};
 };
 
+/// The file in a work folder that holds the pages, one behind the other from its beginning.
+[[nodiscard]] std::string pages_file_in(const std::string& work_folder);
+
 /// Writes a store beside the target, under a temporary name; publish() syncs and renames it. A
 /// writer that is destroyed without publish() removes what it wrote: the target's name never shows
 /// a part. (A process that is killed leaves a file named .TARGET.PID-N.tmp.)
@@ -37,7 +41,7 @@ struct StoreWriterOptions {
 /// The file keeps the order in which segments come, whatever their records need of each other. The
 /// bytes depend on what is given alone.
 ///
-/// Memory: 2 MiB, and about one byte for a hundred records, since leaves of the index go to a
+/// Memory: 1 MiB, and about one byte for a hundred records, since leaves of the index go to a
 /// nameless side file.
 class StoreWriter {
  public:
@@ -67,6 +71,15 @@ class StoreWriter {
   /// @throws Error resource_exhausted (disk full), io_error, invalid_argument (another encoding of
   ///               heights than before), internal (pages that no reader would accept)
   virtual void add_segment(const PackedSegment& segment, const HeightEncoding& heights) = 0;
+
+  /// Appends pages that somebody has put into pages_file_in() of the work folder already, behind all
+  /// that were added before: by another thread, or another process.
+  /// REQUIRES: a work folder; the descriptors are those of the pages, and count_pages() gave the
+  /// counts.
+  /// @throws Error resource_exhausted (disk full), io_error, invalid_argument (another encoding of
+  ///               heights than before)
+  virtual void add_placed(std::span<const layout::NodeEntry> descriptors, const PageCounts& counts,
+                          const HeightEncoding& heights) = 0;
 
   /// Writes T0, metadata, index and tables, syncs, renames onto the target, syncs the folder. To be
   /// called once, at the end. Cost besides: moves as many bytes of pages as the front of the file

@@ -12,9 +12,9 @@
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/raster/raster_source.h"
-#include "engine/construct/raster/raster_tile.h"
 #include "engine/construct/source_kind.h"
 #include "engine/construct/store_output.h"
+#include "engine/construct/tiled_source.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
 
@@ -34,28 +34,19 @@ void build_raster(Job& job) {
   job.report.height_rounding = source.frame().height_rounding;
   job.report.vertices =
       static_cast<std::uint64_t>(source.width()) * static_cast<std::uint64_t>(source.height());
-  const MeasureUnits units = measure_units(source.frame(), job.options.void_slope);
-  const std::int64_t side =
-      job.options.tile.value_or(TileTree::default_side(source.width(), source.height()));
-  const bool thins_sides = job.options.max_error > 0.0 && side % 32 == 0 && side >= 64;
-  const auto make_starter = [&source, units, thins_sides]() -> LeafStarter {
-    const auto own = std::make_shared<const RasterSource>(source.duplicate());
-    return [own, units, thins_sides](const SampleRange& window) {
-      return start_raster_tile(*own, window, units, thins_sides);
-    };
-  };
-  const TiledSource tiled{source.frame(), units, TileTree(source.width(), source.height(), side),
-                          make_starter};
-  const BuildPlan plan = plan_build(tiled.tree, job.plan_request({}));
+  const TiledSource tiles = tiled(source, job.options);
+  const BuildPlan plan = plan_build(tiles.tree, job.plan_request({}));
   job.tell(plan);
   if (job.resources.dry_run) {
     return;
   }
   // Of a source that is no file, this much at least can be compared.
-  began_with["size"] = {source.width(), source.height(), tiled.tree.side()};
+  began_with["size"] = {source.width(), source.height(), tiles.tree.side()};
   began_with["samples"] = source.valid_samples();
-  in_workspace(job, began_with,
-               [&](Workspace& workspace) { build_tiles(workspace, job, tiled, plan); });
+  in_workspace(job, began_with, [&](Workspace& workspace) {
+    const ArrayFileFacts index = source.save(job.files(), workspace.temporary(kRasterIndex));
+    build_tiles(workspace, job, tiles, plan, index_json("raster", index));
+  });
 }
 
 BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::string& output,

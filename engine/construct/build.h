@@ -16,6 +16,8 @@
 
 namespace ptin {
 
+class TaskDriver;
+
 /// How the work is done; never changes a byte of the file.
 struct BuildResources {
   bool overwrite = false;
@@ -27,6 +29,7 @@ struct BuildResources {
   Unfinished unfinished = Unfinished::kRefuse;          ///< What to do with an interrupted build.
   bool dry_run = false;                                 ///< Stop when the plan is made.
   std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
+  TaskDriver* driver = nullptr;  ///< Who has the tasks done; borrowed; null: threads.
   FileLayer* files = nullptr;  ///< Through which to write; null means the system. For tests.
   std::stop_token stop;
   BuildObserver* observer = nullptr;  ///< Who is told of the work; null: nobody. Borrowed.

@@ -7,10 +7,9 @@
 
 #include <sys/stat.h>
 
-#include "engine/construct/collapse/first_pass.h"
 #include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/grid/source_options.h"
-#include "engine/construct/hierarchy/hierarchy.h"
+#include "engine/construct/tasks/build_hierarchy.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/source_files.h"
 #include "engine/construct/store_output.h"
@@ -22,7 +21,7 @@ namespace ptin::build_internal {
 namespace {
 
 /// Of the temporary files: to be raised when their bytes mean something else.
-constexpr int kTemporaryFormat = 4;
+constexpr int kTemporaryFormat = 5;
 
 /// The number of a file on its disk, which stays the same when it gets another name; none when
 /// there is no such file.
@@ -30,8 +29,6 @@ std::optional<std::uint64_t> inode_of(const std::string& path) {
   struct stat s {};
   return ::stat(path.c_str(), &s) == 0 ? std::optional<std::uint64_t>(s.st_ino) : std::nullopt;
 }
-
-std::string pages_in(const Workspace& workspace) { return workspace.folder() + "/pages"; }
 
 /// True when this build, or the interrupted one that it goes on with, had got as far as giving the
 /// output its name. Its pages may still have theirs, too (FileLayer::rename).
@@ -219,15 +216,9 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
 HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
                                    const BuildPlan& plan) {
   HierarchyOptions options;
-  options.collapse.cost = job.options.cost;
-  options.collapse.units = source.units;
-  options.collapse.first_pass =
-      (kFirstPassShare * job.options.max_error - source.frame.height_rounding) /
-      source.frame.heights.step;
+  options.collapse = collapse_options(job.options, source);
   options.threads = plan.threads;
-  options.memory_for_tiles = plan.memory_for_tiles;
-  options.memory_for_reading = plan.memory.gdal_cache;
-  options.tile_bytes = plan.tile_bytes;
+  options.memory = {plan.tile_bytes, plan.memory_for_tiles, plan.memory.gdal_cache};
   options.give_back = [&job](std::uint64_t bytes) {
     // Memory that is given back is taken again a page at a time: a fifth of the time, where it
     // happens before every larger piece.
@@ -236,23 +227,28 @@ HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
     }
   };
   options.checkpoint_interval = job.resources.checkpoint_interval;
+  options.driver = job.resources.driver;
   options.stop = job.resources.stop;
   options.progress = [&job](const StageProgress& progress) { job.tell(progress); };
   return options;
 }
 
-void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan) {
+void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan,
+                 const nlohmann::json& index) {
   if (is_published(job, workspace)) {
     report_published(job);
     return;
   }
   StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame,
-                    job.resources.files, workspace.folder());
+                    job.files(), workspace.folder());
+  if (job.resources.driver != nullptr) {
+    job.resources.driver->begin({index, workspace.folder(), workspace.temporary_folder()});
+  }
   const BuiltHierarchy built = build_hierarchy(
       source.make_starter, source.tree, hierarchy_options(job, source, plan), workspace, store);
   job.report.lone_samples = built.lone_samples;
   job.stage("writing")(0, 1);
-  const std::uint64_t inode = inode_of(pages_in(workspace)).value_or(0);
+  const std::uint64_t inode = inode_of(pages_file_in(workspace.folder())).value_or(0);
   workspace.append({{{"publishing", inode}}});
   job.inode_of_output = inode;
   store.publish(built.t0, built.t0_deaths, job.inputs, job.report);
@@ -269,9 +265,13 @@ std::optional<ArrayFileFacts> kept_index(const Workspace& workspace, const std::
   return std::nullopt;
 }
 
-void note_index(Workspace& workspace, const std::string& key, const ArrayFileFacts& index) {
+nlohmann::json index_json(const char* kind, const ArrayFileFacts& index) {
+  return {{kind, {index.bytes, index.checksum}}};
+}
+
+void note_index(Workspace& workspace, const char* kind, const ArrayFileFacts& index) {
   workspace.sync_names();
-  workspace.append({{{key, {index.bytes, index.checksum}}}});
+  workspace.append({index_json(kind, index)});
 }
 
 BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk) {

@@ -15,14 +15,14 @@
 #include "engine/construct/build_plan.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
-#include "engine/construct/hierarchy/hierarchy.h"
+#include "engine/construct/tasks/build_hierarchy.h"
 #include "engine/construct/hierarchy/tile_bytes.h"
-#include "engine/construct/hierarchy/tile_collapse.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/point_count.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/scratch/workspace.h"
 #include "engine/construct/tile/tile_tree.h"
+#include "engine/construct/tiled_source.h"
 
 namespace ptin::build_internal {
 
@@ -63,14 +63,6 @@ struct Job {
   [[nodiscard]] SourceOptions source_options() const;
 };
 
-/// What a build works on, of whatever kind its source is.
-struct TiledSource {
-  TerrainFrame frame;
-  MeasureUnits units;
-  TileTree tree;
-  std::function<LeafStarter()> make_starter;  ///< Called once for each thread.
-};
-
 /// The exception that is being handled, as an Error: of this library, of others, or of a function of
 /// the caller's. REQUIRES: an exception is being handled.
 [[nodiscard]] Error error_in_flight();
@@ -97,8 +89,10 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
 
 /// Collapses all tiles, tightens them and publishes the file. Where an interrupted build had
 /// published it already, only reports it.
+/// @param index  index_json() of the source, for other processes of the build (ReadSource).
 /// @throws Error as build_hierarchy() and StoreOutput
-void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan);
+void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan,
+                 const nlohmann::json& index);
 
 /// Plans a build over points or a TIN from the headers and first lines of its inputs, tells the
 /// observer, and refuses a build that the memory or the disk cannot hold. A source of which any
@@ -109,13 +103,15 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
 void plan_before_reading(const Job& job,
                          const std::function<SourceDisk(const PointCount&)>& disk_of);
 
+/// The facts of a source's index under the name of its kind.
+[[nodiscard]] nlohmann::json index_json(const char* kind, const ArrayFileFacts& index);
 /// The index of a source that an interrupted build had sorted on disk and noted under `key`; none
 /// where that build had not got so far.
 [[nodiscard]] std::optional<ArrayFileFacts> kept_index(const Workspace& workspace,
                                                        const std::string& key);
 /// Notes the index of a sorted source in the manifest, so that a resumed build does not read and
 /// sort the source again.  @throws Error io_error
-void note_index(Workspace& workspace, const std::string& key, const ArrayFileFacts& index);
+void note_index(Workspace& workspace, const char* kind, const ArrayFileFacts& index);
 /// Plans the tiles of a source that has been sorted, and tells the observer.
 /// @throws Error as plan_build()
 [[nodiscard]] BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk);

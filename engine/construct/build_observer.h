@@ -4,7 +4,7 @@
 #pragma once
 
 #include "engine/construct/build_plan.h"
-#include "engine/construct/hierarchy/stage_progress.h"
+#include "engine/construct/tasks/stage_progress.h"
 
 namespace ptin {
 

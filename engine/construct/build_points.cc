@@ -19,9 +19,6 @@ namespace ptin::build_internal {
 
 namespace {
 
-constexpr const char* kBucketFile = "points";
-constexpr const char* kPointsIndex = "points.index";
-
 ExternalMemory memory_for_sorting(const Job& job, const Workspace& workspace) {
   return {job.files(), workspace.temporary_folder(), job.memory.sorting};
 }
@@ -54,15 +51,17 @@ void lay_boundary(Job& job, Workspace& workspace) {
 }
 
 /// The points as an interrupted build had sorted them, or else read and sorted now.
-PointBuckets sorted_points(Job& job, Workspace& workspace) {
-  const std::string buckets = workspace.temporary(kBucketFile);
+/// @param index_facts  Receives those of their index.
+PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index_facts) {
+  const std::string buckets = workspace.temporary(kPointBuckets);
   const std::string index = workspace.temporary(kPointsIndex);
   if (const auto facts = kept_index(workspace, "points")) {
     job.lines = {};
+    index_facts = *facts;
     return PointBuckets::load(job.files(), buckets, index, *facts, job.resources.stop,
                               job.stage("checking"));
   }
-  workspace.remove(kBucketFile);
+  workspace.remove(kPointBuckets);
   if (job.lines.rings_are_flat) {
     lay_boundary(job, workspace);
   }
@@ -70,7 +69,8 @@ PointBuckets sorted_points(Job& job, Workspace& workspace) {
       PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
                          job.resources.stop, job.stages(), buckets);
   job.lines = {};  // the points have what they need of them
-  note_index(workspace, "points", points.save(job.files(), index));
+  index_facts = points.save(job.files(), index);
+  note_index(workspace, "points", index_facts);
   return points;
 }
 
@@ -85,19 +85,12 @@ void report_counts(BuildReport& report, const PointBuckets& points) {
 }
 
 void build_points_in(Workspace& workspace, Job& job) {
-  const PointBuckets points = sorted_points(job, workspace);
+  ArrayFileFacts index;
+  const PointBuckets points = sorted_points(job, workspace, index);
   report_counts(job.report, points);
-  TiledSource tiled{points.frame(),
-                    measure_units(points.frame(), job.options.void_slope),
-                    point_tree(points, job.options.tile),
-                    {}};
-  const BuildPlan plan = plan_sorted(job, tiled.tree, PointBuckets::disk_of(points.size()));
-  tiled.make_starter = [&]() -> LeafStarter {
-    const auto starter = std::make_shared<PointTileStarter>(
-        points, tiled.tree, tiled.units, job.options.max_edge, job.resources.stop);
-    return [starter](const SampleRange& window) { return starter->start(window); };
-  };
-  build_tiles(workspace, job, tiled, plan);
+  const TiledSource tiles = tiled(points, job.options, job.resources.stop);
+  const BuildPlan plan = plan_sorted(job, tiles.tree, PointBuckets::disk_of(points.size()));
+  build_tiles(workspace, job, tiles, plan, index_json("points", index));
 }
 
 }  // namespace

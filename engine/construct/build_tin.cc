@@ -14,25 +14,25 @@ namespace ptin::build_internal {
 
 namespace {
 
-constexpr const char* kTinFile = "tin";
-constexpr const char* kTinIndex = "tin.index";
-
 /// The triangles as an interrupted build had sorted them, or else read and sorted now.
-TinTriangles sorted_triangles(Job& job, Workspace& workspace) {
-  const std::string kept_as = workspace.temporary(kTinFile);
+/// @param index_facts  Receives those of their index.
+TinTriangles sorted_triangles(Job& job, Workspace& workspace, ArrayFileFacts& index_facts) {
+  const std::string kept_as = workspace.temporary(kTinTriangles);
   const std::string index = workspace.temporary(kTinIndex);
   if (const auto facts = kept_index(workspace, "tin")) {
+    index_facts = *facts;
     return TinTriangles::load(job.files(), kept_as, index, *facts, job.resources.stop,
                               job.stage("checking"));
   }
-  for (const std::string& name : TinTriangles::kept_files(kTinFile)) {
+  for (const std::string& name : TinTriangles::kept_files(kTinTriangles)) {
     workspace.remove(name);
   }
   TinTriangles triangles =
       TinTriangles::read(job.inputs[0], job.source_options(),
                          {job.files(), workspace.temporary_folder(), job.memory.sorting},
                          job.resources.stop, job.stages(), kept_as);
-  note_index(workspace, "tin", triangles.save(job.files(), index));
+  index_facts = triangles.save(job.files(), index);
+  note_index(workspace, "tin", index_facts);
   return triangles;
 }
 
@@ -49,21 +49,14 @@ void report_counts(BuildReport& report, const TinTriangles& triangles) {
 
 void build_tin_in(Workspace& workspace, Job& job) {
   job.begins_anew = true;
-  const TinTriangles triangles = sorted_triangles(job, workspace);
+  ArrayFileFacts index;
+  const TinTriangles triangles = sorted_triangles(job, workspace, index);
   job.begins_anew = false;
   report_counts(job.report, triangles);
-  TiledSource tiled{triangles.frame(),
-                    measure_units(triangles.frame(), job.options.void_slope),
-                    tin_tree(triangles, job.options.tile),
-                    {}};
+  const TiledSource tiles = tiled(triangles, job.options);
   const BuildPlan plan =
-      plan_sorted(job, tiled.tree, TinTriangles::disk_of(triangles.counts().vertices));
-  tiled.make_starter = [&]() -> LeafStarter {
-    return [&](const SampleRange& window) {
-      return start_tin_tile(triangles, tiled.tree, window, tiled.units);
-    };
-  };
-  build_tiles(workspace, job, tiled, plan);
+      plan_sorted(job, tiles.tree, TinTriangles::disk_of(triangles.counts().vertices));
+  build_tiles(workspace, job, tiles, plan, index_json("tin", index));
 }
 
 }  // namespace

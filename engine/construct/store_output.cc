@@ -2,10 +2,13 @@
 #include "engine/construct/store_output.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -173,82 +176,112 @@ std::vector<float> coarsest_deaths(const Tin& tin, std::span<const float> deaths
   return stored;
 }
 
-StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
-                         const TerrainFrame& frame, FileLayer* files,
-                         const std::string& work_folder)
-    : path_(path),
-      options_(options),
-      frame_(frame),
-      detail_{frame.height_rounding, options.max_error},
-      base_error_(frame.height_rounding),
-      base_deviation_(frame.height_rounding) {
-  StoreWriterOptions writer_options;
-  writer_options.overwrite = overwrite;
-  writer_options.page_bytes = options.page_bytes;
-  writer_options.files = files;
-  writer_options.work_folder = work_folder;
-  writer_ = StoreWriter::create(path, writer_options);
-}
-
 namespace {
 
-/// What add() is told of a segment beside its pages. Pages and descriptors follow it in the bytes.
-struct PreparedFacts {
+/// What the output must know of a segment; error bins and descriptors follow it in the bytes.
+struct SegmentFacts {
   std::uint64_t records, void_records;
-  std::uint64_t page_bytes, descriptors;
+  std::uint64_t bins, descriptors;
   RecordBounds worst;  ///< Of what was left out.
   std::uint32_t max_rank;
   std::uint32_t reserved;
 };
 
+/// Takes plain values from the front of bytes.
+template <class T>
+std::vector<T> take(std::span<const std::byte>& bytes, std::uint64_t count) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  PTIN_CHECK(count <= bytes.size() / sizeof(T));
+  std::vector<T> values(static_cast<std::size_t>(count));
+  const auto part = bytes.first(values.size() * sizeof(T));
+  std::copy(part.begin(), part.end(), std::as_writable_bytes(std::span(values)).begin());
+  bytes = bytes.subspan(part.size());
+  return values;
+}
+
+StoreWriterOptions writer_options(const BuildOptions& options, bool overwrite, FileLayer& files,
+                                  const std::string& work_folder) {
+  StoreWriterOptions result;
+  result.overwrite = overwrite;
+  result.page_bytes = options.page_bytes;
+  result.files = &files;
+  result.work_folder = work_folder;
+  return result;
+}
+
 }  // namespace
 
-std::vector<std::byte> StoreOutput::prepare(StarredRecords& records) const {
+StorePacker::StorePacker(const BuildOptions& options, const TerrainFrame& frame, FileLayer& files,
+                         std::string work_folder)
+    : detail_{frame.height_rounding, options.max_error},
+      heights_(frame.heights),
+      page_bytes_(options.page_bytes),
+      files_(files),
+      work_folder_(std::move(work_folder)) {}
+
+PreparedSegment StorePacker::prepare(StarredRecords& records) const {
   detail_.add_rounding(records);
-  PreparedFacts facts{};
+  SegmentFacts facts{};
   // Of the source's TIN: before records are left out.
   facts.void_records = static_cast<std::uint64_t>(
       std::count_if(records.splits.begin(), records.splits.end(),
                     [](const VertexSplit& r) { return (r.flags & VertexSplit::kAnyVoid) != 0; }));
   facts.worst = detail_.leave_out(records);
-  for (const VertexSplit& r : records.splits) {
-    facts.max_rank = std::max<std::uint32_t>(facts.max_rank, r.rank);
-  }
-  facts.records = records.size();
-  const PackedSegment packed = pack_segment(records, frame_.heights, options_.page_bytes);
-  facts.page_bytes = packed.pages.size();
+  PackedSegment packed = pack_segment(records, heights_, page_bytes_);
+  const std::optional<PageCounts> counts =
+      count_pages(packed.pages, packed.descriptors, heights_);
+  PTIN_CHECK(counts.has_value());
+  facts.records = counts->records;
+  facts.max_rank = counts->max_rank;
+  facts.bins = counts->bins.size();
   facts.descriptors = packed.descriptors.size();
-  std::vector<std::byte> prepared(sizeof facts + packed.pages.size() +
-                                  packed.descriptors.size() * sizeof(layout::NodeEntry));
-  auto end = prepared.begin();
-  const auto append = [&](std::span<const std::byte> bytes) {
-    end = std::copy(bytes.begin(), bytes.end(), end);
-  };
-  append(std::as_bytes(std::span(&facts, 1)));
-  append(packed.pages);
-  append(std::as_bytes(std::span(packed.descriptors)));
+  const std::array<std::span<const std::byte>, 3> parts{
+      std::as_bytes(std::span(&facts, 1)), std::as_bytes(std::span(counts->bins)),
+      std::as_bytes(std::span(packed.descriptors))};
+  PreparedSegment prepared{
+      std::move(packed.pages),
+      std::vector<std::byte>(parts[0].size() + parts[1].size() + parts[2].size())};
+  auto end = prepared.description.begin();
+  for (const std::span<const std::byte> part : parts) {
+    end = std::copy(part.begin(), part.end(), end);
+  }
   return prepared;
 }
 
-void StoreOutput::add(std::span<const std::byte> prepared) {
-  PreparedFacts facts{};
-  PTIN_CHECK(prepared.size() >= sizeof facts);
-  std::memcpy(&facts, prepared.data(), sizeof facts);
-  prepared = prepared.subspan(sizeof facts);
-  PTIN_CHECK(prepared.size() == facts.page_bytes + facts.descriptors * sizeof(layout::NodeEntry));
-  const auto pages = prepared.first(facts.page_bytes);
-  PackedSegment packed;
-  packed.pages.assign(pages.begin(), pages.end());
-  packed.descriptors.resize(facts.descriptors);
-  const auto descriptors = prepared.subspan(facts.page_bytes);
-  std::copy(descriptors.begin(), descriptors.end(),
-            std::as_writable_bytes(std::span(packed.descriptors)).begin());
+void StorePacker::place(std::span<const std::byte> pages, std::uint64_t offset) const {
+  ScratchFile(files_, pages_file_in(work_folder_), ScratchFile::Kept::kExisting)
+      .write_at(pages, offset);
+}
+
+StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
+                         const TerrainFrame& frame, FileLayer& files,
+                         const std::string& work_folder)
+    : path_(path),
+      options_(options),
+      frame_(frame),
+      writer_(
+          StoreWriter::create(path, writer_options(options, overwrite, files, work_folder))),
+      packer_(options, frame, files, work_folder),
+      base_error_(frame.height_rounding),
+      base_deviation_(frame.height_rounding) {}
+
+void StoreOutput::add(std::span<const std::byte> description) {
+  const SegmentFacts facts = take<SegmentFacts>(description, 1)[0];
+  PageCounts counts;
+  counts.records = facts.records;
+  counts.max_rank = static_cast<std::uint16_t>(facts.max_rank);
+  counts.bins = take<ErrorBin>(description, facts.bins);
+  const auto descriptors = take<layout::NodeEntry>(description, facts.descriptors);
   void_records_ += facts.void_records;
   base_error_ = std::max(base_error_, static_cast<double>(facts.worst.error));
   base_deviation_ = std::max(base_deviation_, static_cast<double>(facts.worst.deviation));
-  max_rank_ = std::max(max_rank_, static_cast<std::uint16_t>(facts.max_rank));
+  max_rank_ = std::max(max_rank_, counts.max_rank);
   records_ += facts.records;
-  writer_->add_segment(packed, frame_.heights);
+  writer_->add_placed(descriptors, counts, frame_.heights);
+}
+
+std::uint64_t StoreOutput::page_bytes() const {
+  return writer_->position().pages * options_.page_bytes;
 }
 
 nlohmann::json StoreOutput::position() const {
@@ -277,7 +310,7 @@ void StoreOutput::resume(const nlohmann::json& position) {
 void StoreOutput::publish(const Tin& t0, std::span<const float> t0_deaths,
                           const std::vector<std::string>& inputs, BuildReport& report) {
   CoarsestTin coarsest = coarsest_tin(t0);
-  const std::vector<float> deaths = coarsest_deaths(t0, t0_deaths, detail_);
+  const std::vector<float> deaths = coarsest_deaths(t0, t0_deaths, packer_.detail());
   PTIN_CHECK(deaths.size() == coarsest.triangles.size());
   for (std::size_t i = 0; i < deaths.size(); ++i) {
     coarsest.triangles[i].death = deaths[i];

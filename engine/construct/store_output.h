@@ -11,28 +11,47 @@
 
 #include "engine/construct/build.h"
 #include "engine/construct/grid/terrain_frame.h"
-#include "engine/construct/hierarchy/segment_output.h"
+#include "engine/construct/tasks/segment_output.h"
 #include "engine/construct/stored_detail.h"
 #include "engine/mesh/tin.h"
 #include "storage/store_writer.h"
 
 namespace ptin {
 
-/// Takes segments of records with their final attributes, leaves out the finest detail
-/// (BuildOptions::max_error), adds the rounding of heights, and publishes. Destroyed before
-/// publish(), it leaves nothing behind, but for what is in a work folder.
+/// Makes pages of a store and puts them to their place in its work folder, in whatever process:
+/// leaves out the finest detail (BuildOptions::max_error) and adds the rounding of heights.
+class StorePacker final : public SegmentPacker {
+ public:
+  /// @param files        Borrowed.
+  /// @param work_folder  As StoreWriterOptions; its StoreWriter was made already.
+  StorePacker(const BuildOptions& options, const TerrainFrame& frame, FileLayer& files,
+              std::string work_folder);
+
+  [[nodiscard]] PreparedSegment prepare(StarredRecords& records) const override;
+  void place(std::span<const std::byte> pages, std::uint64_t offset) const override;
+  [[nodiscard]] const StoredDetail& detail() const noexcept { return detail_; }
+
+ private:
+  StoredDetail detail_;
+  HeightEncoding heights_;
+  std::uint32_t page_bytes_;
+  FileLayer& files_;
+  std::string work_folder_;
+};
+
+/// Takes segments of records with their final attributes, and publishes. Destroyed before
+/// publish(), it leaves nothing behind but what is in the work folder.
 class StoreOutput final : public SegmentOutput {
  public:
-  /// @param files, work_folder  As StoreWriterOptions; without a folder nothing can be resumed.
+  /// @param files, work_folder  As StoreWriterOptions.
   /// @throws Error as StoreWriter::create
   StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
-              const TerrainFrame& frame, FileLayer* files = nullptr,
-              const std::string& work_folder = "");
+              const TerrainFrame& frame, FileLayer& files, const std::string& work_folder);
 
-  /// Packs one segment, which is changed in place, into pages, and notes what is told of it.
-  [[nodiscard]] std::vector<std::byte> prepare(StarredRecords& records) const override;
-  /// @throws Error as StoreWriter::add_segment
-  void add(std::span<const std::byte> prepared) override;
+  [[nodiscard]] const SegmentPacker& packer() const override { return packer_; }
+  /// @throws Error as StoreWriter::add_placed
+  void add(std::span<const std::byte> description) override;
+  [[nodiscard]] std::uint64_t page_bytes() const override;
   [[nodiscard]] nlohmann::json position() const override;
   void sync() override { writer_->sync(); }
   void resume(const nlohmann::json& position) override;
@@ -50,8 +69,8 @@ class StoreOutput final : public SegmentOutput {
   std::string path_;
   BuildOptions options_;
   TerrainFrame frame_;
-  StoredDetail detail_;
-  std::unique_ptr<StoreWriter> writer_;
+  std::unique_ptr<StoreWriter> writer_;  ///< Made before the packer, which finds its file.
+  StorePacker packer_;
   double base_error_ = 0.0;
   double base_deviation_ = 0.0;
   std::uint64_t records_ = 0;

@@ -4,17 +4,20 @@
 // and an output that keeps records in memory.
 #pragma once
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <map>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/hierarchy/segment_output.h"
+#include "engine/construct/tasks/segment_output.h"
 #include "storage/file/file_layer.h"
 
 namespace ptin::test {
@@ -77,36 +80,81 @@ class FailingFiles final : public FileLayer {
   int calls_ = 0;
 };
 
-/// Segments as they come, and where each ends.
+/// Segments as they come, and where each ends. "Pages" are their three arrays behind their sizes.
 class RecordsInMemory final : public SegmentOutput {
  public:
-  /// The three arrays behind their sizes.
-  [[nodiscard]] std::vector<std::byte> prepare(StarredRecords& records) const override {
-    std::vector<std::byte> bytes;
-    const auto append = [&](const auto& array) {
-      const std::size_t size = array.size();
-      for (const auto part :
-           {std::as_bytes(std::span(&size, 1)), std::as_bytes(std::span(array))}) {
-        bytes.insert(bytes.end(), part.begin(), part.end());
-      }
-    };
-    append(records.splits);
-    append(records.corners);
-    append(records.ring_end);
-    return bytes;
+  [[nodiscard]] const SegmentPacker& packer() const override { return packer_; }
+  /// @param description  The number of bytes of the segment.
+  void add(std::span<const std::byte> description) override {
+    std::size_t bytes = 0;
+    std::memcpy(&bytes, description.data(), sizeof bytes);
+    take_segment(packer_.part(end_, bytes));
+    end_ += bytes;
+    ends_[records_.size()] = end_;
   }
-  void add(std::span<const std::byte> prepared) override {
+  [[nodiscard]] std::uint64_t page_bytes() const override { return end_; }
+  [[nodiscard]] nlohmann::json position() const override { return records_.size(); }
+  void sync() override {}
+  void resume(const nlohmann::json& position) override {
+    const auto size = position.get<std::size_t>();
+    records_.splits.resize(size);
+    records_.ring_end.resize(size);
+    records_.corners.resize(size == 0 ? 0 : records_.ring_end.back());
+    end_ = size == 0 ? 0 : ends_.at(size);
+  }
+  [[nodiscard]] const std::vector<VertexSplit>& records() const { return records_.splits; }
+  [[nodiscard]] const StarredRecords& starred() const { return records_; }
+
+ private:
+  class Packer final : public SegmentPacker {
+   public:
+    [[nodiscard]] PreparedSegment prepare(StarredRecords& records) const override {
+      PreparedSegment segment;
+      const auto append = [](std::vector<std::byte>& to, std::span<const std::byte> bytes) {
+        to.insert(to.end(), bytes.begin(), bytes.end());
+      };
+      const auto append_array = [&](const auto& array) {
+        const std::size_t size = array.size();
+        append(segment.pages, std::as_bytes(std::span(&size, 1)));
+        append(segment.pages, std::as_bytes(std::span(array)));
+      };
+      append_array(records.splits);
+      append_array(records.corners);
+      append_array(records.ring_end);
+      const std::size_t bytes = segment.pages.size();
+      append(segment.description, std::as_bytes(std::span(&bytes, 1)));
+      return segment;
+    }
+    void place(std::span<const std::byte> pages, std::uint64_t offset) const override {
+      const std::lock_guard lock(mutex_);
+      bytes_.resize(std::max(bytes_.size(), static_cast<std::size_t>(offset) + pages.size()));
+      std::copy(pages.begin(), pages.end(),
+                bytes_.begin() + static_cast<std::ptrdiff_t>(offset));
+    }
+    [[nodiscard]] std::vector<std::byte> part(std::size_t begin, std::size_t bytes) const {
+      const std::lock_guard lock(mutex_);
+      const auto first = bytes_.begin() + static_cast<std::ptrdiff_t>(begin);
+      return {first, first + static_cast<std::ptrdiff_t>(bytes)};
+    }
+
+   private:
+    mutable std::mutex mutex_;
+    mutable std::vector<std::byte> bytes_;
+  };
+
+  void take_segment(const std::vector<std::byte>& pages) {
+    std::span<const std::byte> rest(pages);
     const auto before = static_cast<std::uint32_t>(records_.corners.size());
     const auto first = records_.ring_end.size();
     const auto take = [&](auto& to) {
       std::size_t size = 0;
-      std::memcpy(&size, prepared.data(), sizeof size);
+      std::memcpy(&size, rest.data(), sizeof size);
       const std::size_t had = to.size();
       to.resize(had + size);
-      const auto bytes = prepared.subspan(sizeof size, size * sizeof to[0]);
+      const auto bytes = rest.subspan(sizeof size, size * sizeof to[0]);
       std::copy(bytes.begin(), bytes.end(),
                 std::as_writable_bytes(std::span(to).subspan(had)).begin());
-      prepared = prepared.subspan(sizeof size + bytes.size());
+      rest = rest.subspan(sizeof size + bytes.size());
     };
     take(records_.splits);
     take(records_.corners);
@@ -115,19 +163,11 @@ class RecordsInMemory final : public SegmentOutput {
       records_.ring_end[i] += before;
     }
   }
-  [[nodiscard]] nlohmann::json position() const override { return records_.size(); }
-  void sync() override {}
-  void resume(const nlohmann::json& position) override {
-    const auto size = position.get<std::size_t>();
-    records_.splits.resize(size);
-    records_.ring_end.resize(size);
-    records_.corners.resize(size == 0 ? 0 : records_.ring_end.back());
-  }
-  [[nodiscard]] const std::vector<VertexSplit>& records() const { return records_.splits; }
-  [[nodiscard]] const StarredRecords& starred() const { return records_; }
 
- private:
+  Packer packer_;
   StarredRecords records_;
+  std::size_t end_ = 0;
+  std::map<std::size_t, std::size_t> ends_;  ///< Of the bytes, by the number of records.
 };
 
 }  // namespace ptin::test

@@ -152,9 +152,9 @@ TEST(HierarchyOptions, AdmitWorkersByWhatThePlanSaysOfTheSource) {
     const BuildPlan plan = plan_build(tree, job.plan_request({}));
     const build_internal::TiledSource source{{}, {}, tree, {}};
     const HierarchyOptions built = hierarchy_options(job, source, plan);
-    const std::uint64_t of_leaf = built.tile_bytes.of_replay(tree.side() * tree.side());
+    const std::uint64_t of_leaf = built.memory.tile_bytes.of_replay(tree.side() * tree.side());
     EXPECT_EQ(of_leaf, plan.tile_bytes.of_replay(tree.side() * tree.side()));
-    EXPECT_EQ(built.memory_for_tiles, plan.memory_for_tiles);
+    EXPECT_EQ(built.memory.for_tiles, plan.memory_for_tiles);
     if (kind == InputKind::kRaster) {
       of_raster = of_leaf;
     } else {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/store_output.h"
 
+#include <filesystem>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -47,10 +48,12 @@ std::pair<StarredRecords, StarredRecords> halves(const Tile& tile) {
 std::vector<VertexSplit> written(const oracle::TestTerrain& terrain, const BuildOptions& options,
                                  double rounding, StoreFacts& facts, BuildReport& report) {
   const oracle::ScratchFolder folder;
-  StoreOutput output(folder.file("out.ptin"), options, false, frame_of(terrain, rounding));
+  std::filesystem::create_directory(folder.file("work"));
+  StoreOutput output(folder.file("out.ptin"), options, false, frame_of(terrain, rounding),
+                     FileLayer::system(), folder.file("work"));
   auto [first, second] = halves(terrain.tile);
-  output.add_segment(first);
-  output.add_segment(second);
+  add_segment(output, first);
+  add_segment(output, second);
   output.publish(terrain.tile.tin, deaths_of(terrain.tile), {"/some/folder/dem.tif"}, report);
   const auto store = StoreFile::open(folder.file("out.ptin"));
   facts = store->facts();
@@ -138,15 +141,17 @@ TEST(StoreOutput, LeavesOutRecordsUpToTheLargestErrorAndKeepsTheirWorst) {
   }
 }
 
-TEST(StoreOutput, LeavesNothingBehindWithoutPublish) {
+TEST(StoreOutput, LeavesNothingBehindButItsWorkWithoutPublish) {
   const oracle::TestTerrain terrain = oracle::simplified(oracle::random_terrain(9, 200));
   const oracle::ScratchFolder folder;
   {
-    StoreOutput output(folder.file("out.ptin"), {}, false, frame_of(terrain, 0.0));
+    std::filesystem::create_directory(folder.file("work"));
+    StoreOutput output(folder.file("out.ptin"), {}, false, frame_of(terrain, 0.0),
+                       FileLayer::system(), folder.file("work"));
     auto records = halves(terrain.tile).first;
-    output.add_segment(records);
+    add_segment(output, records);
   }
-  EXPECT_TRUE(folder.names().empty());
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"work"});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <new>
 #include <optional>
@@ -26,6 +27,7 @@
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
 #include "tools/progress_fd.h"
+#include "tools/ptin/build_cluster.h"
 #include "tools/ptin/error_stats.h"
 #include "tools/ptin/query_options.h"
 #include "tools/thread_count.h"
@@ -65,9 +67,19 @@ ReturnChoice returns_of(const std::string& name) {
   return name == "last" ? ReturnChoice::kLast : ReturnChoice::kAll;
 }
 
-/// Puts the options together and looks at the output; what their values may be is build()'s matter.
-void check_command(BuildCommand& command) {
+/// Puts the options together.
+void complete_options(BuildCommand& command) {
   BuildOptions& options = command.options;
+  options.cost = cost_of(command.cost);
+  options.duplicates = merge_of(command.duplicates);
+  options.returns = returns_of(command.returns);
+  if (!command.bbox.empty())
+    options.bbox = {command.bbox[0], command.bbox[1], command.bbox[2], command.bbox[3]};
+}
+
+/// The same, and looks at the output; what their values may be is build()'s matter.
+void check_command(BuildCommand& command) {
+  const BuildOptions& options = command.options;
   if (command.inputs.empty() && !options.columns.empty()) {
     throw Error(ErrorCode::invalid_argument,
                 "no input; all that follows --columns names columns, so put INPUT before it");
@@ -76,11 +88,7 @@ void check_command(BuildCommand& command) {
     throw Error(ErrorCode::invalid_argument,
                 "no input; all that follows --breaklines are breaklines, so put INPUT before it");
   }
-  options.cost = cost_of(command.cost);
-  options.duplicates = merge_of(command.duplicates);
-  options.returns = returns_of(command.returns);
-  if (!command.bbox.empty())
-    options.bbox = {command.bbox[0], command.bbox[1], command.bbox[2], command.bbox[3]};
+  complete_options(command);
   // An interrupted build may have been killed when its output had just got its name.
   const bool is_resumed =
       command.resume && is_there(Workspace::folder_of(output_target(command.output)));
@@ -400,6 +408,36 @@ void tell(const BuildCommand& command, const BuildReport& report, const Context&
   }
 }
 
+/// True where this process is one of several that were started together, by mpirun or srun.
+bool is_started_with_others() {
+  const char* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE");
+  return (ranks != nullptr && std::string(ranks) != "1") || std::getenv("PMIX_RANK") != nullptr;
+}
+
+/// The processes that build with this one; null where it is alone.
+std::unique_ptr<BuildCluster> cluster_of(const Context& context) {
+  if (!is_started_with_others()) return nullptr;
+  if (!context.join_cluster) {
+    throw Error(ErrorCode::invalid_argument,
+                "this ptin was made without MPI, so each of the processes would build by itself; make "
+                "it with -D PTIN_MPI=ON, or start it without mpirun");
+  }
+  return context.join_cluster();
+}
+
+/// What a process does that another one directs: tasks, one at a time, without a word.
+int work_in_cluster(BuildCommand& command, const Context& context, BuildCluster& cluster) {
+  complete_options(command);
+  return_freed_memory(1);
+  install_sigbus_guard();
+  Context silent = context;
+  silent.quiet = true;
+  command.progress_fd = -1;
+  BuildShow show(command, silent);
+  cluster.work(command.inputs, command.options, resources_of(command, context, show));
+  return kExitDone;
+}
+
 int run_build(BuildCommand& command, const Context& context) {
   if (command.discard && command.inputs.empty()) {
     const bool found = Workspace::discard(FileLayer::system(), output_target(command.output));
@@ -412,14 +450,17 @@ int run_build(BuildCommand& command, const Context& context) {
     }
     return found ? kExitDone : kExitNegative;
   }
+  const std::unique_ptr<BuildCluster> cluster = cluster_of(context);
+  if (cluster && !cluster->directs()) return work_in_cluster(command, context, *cluster);
   check_command(command);
   return_freed_memory(thread_count(command.threads));
   install_sigbus_guard();  // a temporary file that loses bytes is an error, not the end
   BuildReport report;
   {
     BuildShow show(command, context);
-    report = build(command.inputs, output_target(command.output), command.options,
-                   resources_of(command, context, show));
+    BuildResources resources = resources_of(command, context, show);
+    if (cluster) resources.driver = cluster->driver();
+    report = build(command.inputs, output_target(command.output), command.options, resources);
     show.finish();
   }
   if (!report.left_behind.empty()) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -12,8 +13,13 @@
 
 namespace ptin::tools {
 
+class BuildCluster;
+
 /// What every subcommand is given.
 struct Context {
+  /// The processes with which this one builds together; null where there are none. Empty where the
+  /// program was made without them.
+  std::function<std::unique_ptr<BuildCluster>()> join_cluster;
   std::stop_token stop;  ///< Fires on SIGINT and SIGTERM.
   bool json = false;     ///< --json: the answer on stdout and an error on stderr as JSON.
   bool quiet = false;    ///< -q: no progress, report or warning; what was asked for is printed.

@@ -14,6 +14,7 @@ struct TileBytes {
   std::uint64_t replay_of_sample = 500;     ///< Of a replay, for a sample of the leaf.
   double join_of_pushed = 2.2;           ///< Of a join, for a byte of its children's pushed files.
   std::uint64_t pushed_of_vertex = 880;  ///< A vertex in these files; the plan expects joins by it.
+  double close_of_segment = 2.0;         ///< Of closing, for a byte of its segment.
   std::uint64_t fixed = 8U << 20;        ///< Of any work, besides.
 
   /// A batch: its leaves one by one, then their join.
@@ -25,6 +26,12 @@ struct TileBytes {
   /// @param pushed_bytes  Of the files of its children.
   [[nodiscard]] std::uint64_t of_join(std::uint64_t pushed_bytes) const noexcept {
     return fixed + static_cast<std::uint64_t>(static_cast<double>(pushed_bytes) * join_of_pushed);
+  }
+  /// Closing a tile of level 2 or more.
+  /// @param segment_bytes  Of its file.
+  [[nodiscard]] std::uint64_t of_close(std::uint64_t segment_bytes) const noexcept {
+    return fixed +
+           static_cast<std::uint64_t>(static_cast<double>(segment_bytes) * close_of_segment);
   }
   /// A batch in tightening, leaf by leaf.
   /// @param leaf_samples  Of its largest leaf.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/frame_file.h"
 #include "engine/construct/grid/grid_precision.h"
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/raster/raster_mosaic.h"
@@ -88,6 +89,27 @@ RasterSource RasterSource::open(const std::vector<std::string>& paths, const Sou
   impl->frame_mosaic(paths.front(), options);
   impl->check_size();
   impl->scan(stop, progress);
+  return RasterSource(std::move(impl));
+}
+
+ArrayFileFacts RasterSource::save(FileLayer& files, const std::string& index) const {
+  ArrayFileWriter file(files, index);
+  put_frame(file, impl_->frame);
+  file.put(std::span<const std::uint64_t>(&impl_->valid_samples, 1));
+  file.sync();
+  return file.facts();
+}
+
+RasterSource RasterSource::take_up(const std::vector<std::string>& paths,
+                                   const SourceOptions& options, const std::string& index,
+                                   const ArrayFileFacts& facts) {
+  auto impl = std::make_unique<Impl>(RasterMosaic(paths, options));
+  impl->frame_mosaic(paths.front(), options);
+  impl->check_size();
+  ArrayFileReader file(index, facts);
+  impl->frame = take_frame(file);
+  impl->valid_samples = file.take<std::uint64_t>()[0];
+  file.require_undamaged();
   return RasterSource(std::move(impl));
 }
 

@@ -13,6 +13,7 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/scratch/array_file.h"
 
 namespace ptin {
 
@@ -50,6 +51,17 @@ class RasterSource {
                                          const SourceOptions& options,
                                          const std::stop_token& stop = {},
                                          const Progress& progress = {});
+
+  /// Writes what open() found out by reading to the file `index`, for take_up() of other processes.
+  /// @return  What take_up() needs to know of it.
+  /// @throws Error io_error, resource_exhausted
+  [[nodiscard]] ArrayFileFacts save(FileLayer& files, const std::string& index) const;
+  /// Opens the files as open() does, but reads no sample.
+  /// @param options  Those of open().
+  /// @throws Error corruption  the index is not what was written; as open()
+  [[nodiscard]] static RasterSource take_up(const std::vector<std::string>& paths,
+                                            const SourceOptions& options, const std::string& index,
+                                            const ArrayFileFacts& facts);
 
   RasterSource(RasterSource&&) noexcept;
   RasterSource& operator=(RasterSource&&) noexcept;

@@ -3,7 +3,7 @@
 // Terrains built over a tree of tiles keep every promise of those built as one tile: the records of
 // all segments are refined and held against all samples, since witnesses order them and tightening
 // must make them true.
-#include "engine/construct/hierarchy/hierarchy.h"
+#include "engine/construct/tasks/build_hierarchy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -322,10 +322,10 @@ TEST(Hierarchy, RefusesAJoinThatTheMemoryDoesNotHold) {
   test::RecordsInMemory output;
   HierarchyOptions options;
   options.collapse.units = terrain.tile.units;
-  options.tile_bytes.fixed = 0;
+  options.memory.tile_bytes.fixed = 0;
   const TileTree tree(raster.width(), raster.height(), 8);
   const LeafStarter start = [&](const SampleRange& w) { return raster.start(w); };
-  options.memory_for_tiles = options.tile_bytes.of_batch(100);
+  options.memory.for_tiles = options.memory.tile_bytes.of_batch(100);
   try {
     static_cast<void>(build_hierarchy([&] { return start; }, tree, options, workspace, output));
     FAIL() << "the root joins far more than fits";

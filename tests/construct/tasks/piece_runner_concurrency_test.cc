@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/construct/hierarchy/piece_runner.h"
+#include "engine/construct/tasks/piece_runner.h"
 
 namespace ptin {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // When workers give memory back, and what becomes of what pieces and callbacks throw.
-#include "engine/construct/hierarchy/piece_runner.h"
+#include "engine/construct/tasks/piece_runner.h"
 
 #include <atomic>
 #include <cstddef>

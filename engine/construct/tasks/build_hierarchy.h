@@ -10,11 +10,12 @@
 #include <stop_token>
 #include <vector>
 
-#include "engine/construct/hierarchy/segment_output.h"
-#include "engine/construct/hierarchy/stage_progress.h"
-#include "engine/construct/hierarchy/tile_bytes.h"
 #include "engine/construct/hierarchy/tile_collapse.h"
 #include "engine/construct/scratch/workspace.h"
+#include "engine/construct/tasks/segment_output.h"
+#include "engine/construct/tasks/stage_progress.h"
+#include "engine/construct/tasks/task_driver.h"
+#include "engine/construct/tasks/task_schedule.h"
 #include "engine/construct/tile/tile_tree.h"
 #include "engine/mesh/tin.h"
 
@@ -23,12 +24,10 @@ namespace ptin {
 struct HierarchyOptions {
   CollapseOptions collapse;
   int threads = 1;
-  std::uint64_t memory_for_tiles = ~std::uint64_t{0};  ///< Bytes, for all work at once.
-  /// Bytes for reading the source, besides. The last join takes them too: nothing is read beside it.
-  std::uint64_t memory_for_reading = 0;
-  TileBytes tile_bytes;  ///< What each kind of work takes, by estimate.
+  TaskMemory memory;
   std::function<void(std::uint64_t bytes)> give_back;   ///< PieceLimits::give_back.
   std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
+  TaskDriver* driver = nullptr;  ///< Who runs the tasks; borrowed; null: threads of this process.
   std::stop_token stop;
   /// Told the samples and leaves that are done, and all there are. Called by any thread, but never
   /// twice at once. May be empty.
@@ -47,7 +46,7 @@ struct BuiltHierarchy {
 /// tiles of level 1 are final when the tile is collapsed, since these tiles measure all their
 /// samples. The segments of tiles above, a sixteenth of all records, lie in the workspace until
 /// tightening.
-/// @param make_starter  Called once for each thread, in each of the two stages.
+/// @param make_starter  Called once for each thread, and once more for tightening.
 /// @throws Error as simplify(), the starters and the output; resource_exhausted, io_error. After
 ///     resource_exhausted, io_error and cancelled a later call can take the workspace up again.
 [[nodiscard]] BuiltHierarchy build_hierarchy(const std::function<LeafStarter()>& make_starter,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/hierarchy/piece_runner.h"
+#include "engine/construct/tasks/piece_runner.h"
 
 #include <algorithm>
 #include <condition_variable>

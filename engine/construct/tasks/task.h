@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The work of a build as tasks: each reads the files that it names and writes files of its own, and
+// can be done again with the same result, by any thread, process or machine that sees these files.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "engine/construct/scratch/array_file.h"
+#include "engine/construct/tile/tile_tree.h"
+#include "engine/error.h"
+
+namespace ptin {
+
+enum class TaskKind : std::uint8_t {
+  kCollapse,  ///< A batch: its leaves are read from the source, collapsed and joined.
+  kJoin,      ///< A tile of level 2 or more: what its children pushed up is joined and collapsed.
+  kTighten,   ///< A batch: the segments above it are replayed over its leaves.
+  kClose,     ///< A tile of level 2 or more: its segment gets its final bounds, and is packed.
+  kPlace,     ///< The pages of a batch or a tile are copied to their place in the output.
+};
+
+/// A task's kind, and its tile: the top of a batch, or a tile of level 2 or more.
+struct TaskName {
+  TaskKind kind = TaskKind::kCollapse;
+  TileId tile;
+  friend auto operator<=>(const TaskName&, const TaskName&) = default;
+};
+
+/// A sentence's subject: "collapsing tile 1-3-0".
+[[nodiscard]] std::string to_string(const TaskName& name);
+
+/// What tasks hand to one another, each in a file `LEVEL-X-Y.ending` (file_name()).
+enum class TileFile : std::uint8_t {
+  kPushed,       ///< By collapse and join: what the tile pushes up.
+  kSegment,      ///< By join: records that wait for tightening.
+  kBounds,       ///< By tighten and close: raises for each tile above, the root's first; by close
+                 ///< also the final bounds of what the tile pushed up.
+  kPages,        ///< By collapse and close: final pages, in the order of their segments.
+  kDescriptions  ///< By the same: of each segment, what the output must know of its pages.
+};
+inline constexpr std::size_t kTileFiles = 5;
+
+[[nodiscard]] std::string file_name(const TileId& tile, TileFile file);
+/// The task that writes a file.
+[[nodiscard]] TaskName producer_of(const TileId& tile, TileFile file) noexcept;
+
+/// A file that a task reads, and how its content is recognised.
+struct InputFile {
+  TileId tile;
+  TileFile file = TileFile::kPushed;
+  ArrayFileFacts facts;
+};
+
+/// What a worker is told. The order of inputs is that of:
+/// - join: the `pushed` of its children, in the order of TileTree::children();
+/// - tighten: the `pushed` of the root; the `segment` of each tile above, the root first;
+/// - close: its `segment`; the `bounds` of its children;
+/// - place: its `pages`.
+struct Task {
+  TaskName name;
+  std::vector<InputFile> inputs;
+  std::uint64_t offset = 0;  ///< Place: where the pages go, in bytes from the first page.
+  std::uint64_t bytes = 0;   ///< Memory that it takes, by estimate.
+};
+
+/// What a worker tells when a task is done.
+struct TaskResult {
+  std::array<ArrayFileFacts, kTileFiles> files{};  ///< By TileFile; 0 bytes: no such file.
+  std::uint64_t page_bytes = 0;                    ///< Of the pages themselves.
+  std::uint64_t lone_samples = 0;                  ///< Collapse: in its leaves; see StartedTile.
+  [[nodiscard]] const ArrayFileFacts& facts(TileFile file) const {
+    return files[static_cast<std::size_t>(file)];
+  }
+  [[nodiscard]] ArrayFileFacts& facts(TileFile file) {
+    return files[static_cast<std::size_t>(file)];
+  }
+};
+
+/// Thrown by a task when a file that it reads is not what was written, or is gone: the task that
+/// wrote it is to be done again.
+class DamagedInput : public Error {
+ public:
+  DamagedInput(const InputFile& input, const Error& error)
+      : Error(error.code(), error.message(), error.context()),
+        tile_(input.tile),
+        file_(input.file) {}
+  [[nodiscard]] const TileId& tile() const noexcept { return tile_; }
+  [[nodiscard]] TileFile file() const noexcept { return file_; }
+  [[nodiscard]] TaskName producer() const noexcept { return producer_of(tile_, file_); }
+
+ private:
+  TileId tile_;
+  TileFile file_;
+};
+
+/// Calls `use()`, which reads an input.
+/// @throws DamagedInput  it met bytes that are not what was written, or found no file
+template <class Use>
+auto use_input(const InputFile& input, Use&& use) {
+  try {
+    return use();
+  } catch (const Error& e) {
+    if (e.code() == ErrorCode::corruption || e.code() == ErrorCode::not_found) {
+      throw DamagedInput(input, e);
+    }
+    throw;
+  }
+}
+
+/// Opens an input in the folder of the tasks' files and calls `read(reader)`.
+/// @throws DamagedInput  as use_input()
+template <class Read>
+auto read_input(const std::string& folder, const InputFile& input, Read&& read) {
+  return use_input(input, [&] {
+    ArrayFileReader reader(folder + "/" + file_name(input.tile, input.file), input.facts);
+    return read(reader);
+  });
+}
+
+// As JSON: for the manifest, for messages between processes and for the notes of parts. At most
+// 1 KB, for trees of up to 20 levels.
+[[nodiscard]] nlohmann::json json_of(const TaskName& name);
+[[nodiscard]] nlohmann::json json_of(const Task& task);
+[[nodiscard]] nlohmann::json json_of(const TaskResult& result);
+/// @throws nlohmann::json::exception  the JSON is none that json_of() made
+[[nodiscard]] TaskName task_name_in(const nlohmann::json& json);
+[[nodiscard]] Task task_in(const nlohmann::json& json);
+[[nodiscard]] TaskResult task_result_in(const nlohmann::json& json);
+
+}  // namespace ptin

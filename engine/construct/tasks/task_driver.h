@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Who has the tasks of a build done: threads of this process, or other processes.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+
+#include "engine/construct/tasks/piece_runner.h"
+#include "engine/construct/tasks/task_messages.h"
+#include "engine/construct/tasks/task_schedule.h"
+#include "engine/construct/tasks/task_worker.h"
+
+namespace ptin {
+
+/// Runs tasks until the schedule has none left.
+class TaskDriver {
+ public:
+  TaskDriver() = default;
+  TaskDriver(const TaskDriver&) = delete;
+  TaskDriver& operator=(const TaskDriver&) = delete;
+  virtual ~TaskDriver() = default;
+
+  /// Told of the build before its first task. Does nothing by default.
+  virtual void begin(const BuildNote& note);
+  /// @param worker  Does tasks in this process.
+  /// @param limits  Of this process.
+  /// @return The most bytes that were admitted at once in this process, by estimate.
+  /// @throws Error cancelled  `stop` fired; and whatever a task or the schedule throws, but for
+  ///     DamagedInput, of which the schedule is told
+  virtual std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& limits,
+                            const std::stop_token& stop) = 0;
+};
+
+/// Threads of this process, as many at once as memory admits (piece_runner.h).
+class ThreadDriver final : public TaskDriver {
+ public:
+  std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& limits,
+                    const std::stop_token& stop) override;
+};
+
+}  // namespace ptin

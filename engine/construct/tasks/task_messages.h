@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What a process that directs a build and those that do its tasks tell each other: lines of JSON.
+#pragma once
+
+#include <stop_token>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/construct/tasks/task.h"
+
+namespace ptin {
+
+class TaskSchedule;
+class TaskWorker;
+
+/// What processes that do tasks must know of a build, beside its inputs and options.
+struct BuildNote {
+  nlohmann::json index;   ///< Of the source, as ReadSource takes it.
+  std::string folder;     ///< The build's, with the file of pages.
+  std::string temporary;  ///< The folder of its temporary files.
+};
+
+[[nodiscard]] std::string message_of(const BuildNote& note);
+/// @throws nlohmann::json::exception  the message is none of message_of()
+[[nodiscard]] BuildNote note_in(const std::string& message);
+
+/// The message that a task be done. At most 1 KB for trees of up to 20 levels.
+[[nodiscard]] std::string message_of(const Task& task);
+/// Does the task of a message, and tells what came of it: its result, the input that was damaged, or
+/// the error that it met.
+/// @param thread, stop  As TaskWorker::run().
+[[nodiscard]] std::string answer_to(const std::string& message, TaskWorker& worker,
+                                    std::size_t thread, const std::stop_token& stop);
+/// The answer of a process that could not begin, or to which something else happened.
+[[nodiscard]] std::string answer_of(const Error& error);
+/// Hands an answer to the schedule.
+/// @throws Error  the error that the answer tells; as TaskSchedule::done() and failed()
+void take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule);
+
+}  // namespace ptin

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/tiled_source.h"
+
+#include "engine/construct/collapse/first_pass.h"
+#include "engine/construct/raster/raster_tile.h"
+#include "engine/construct/tin/tin_tile.h"
+#include "engine/error.h"
+
+namespace ptin::build_internal {
+
+TiledSource tiled(const RasterSource& source, const BuildOptions& options) {
+  const MeasureUnits units = measure_units(source.frame(), options.void_slope);
+  const std::int64_t side =
+      options.tile.value_or(TileTree::default_side(source.width(), source.height()));
+  const bool thins_sides = options.max_error > 0.0 && side % 32 == 0 && side >= 64;
+  const auto make_starter = [&source, units, thins_sides]() -> LeafStarter {
+    const auto own = std::make_shared<const RasterSource>(source.duplicate());
+    return [own, units, thins_sides](const SampleRange& window) {
+      return start_raster_tile(*own, window, units, thins_sides);
+    };
+  };
+  return {source.frame(), units, TileTree(source.width(), source.height(), side), make_starter};
+}
+
+TiledSource tiled(const PointBuckets& points, const BuildOptions& options,
+                  const std::stop_token& stop) {
+  const MeasureUnits units = measure_units(points.frame(), options.void_slope);
+  const auto tree = std::make_shared<const TileTree>(point_tree(points, options.tile));
+  const auto make_starter = [&points, tree, units, longest = options.max_edge,
+                             stop]() -> LeafStarter {
+    const auto starter =
+        std::make_shared<PointTileStarter>(points, *tree, units, longest, stop);
+    return [tree, starter](const SampleRange& window) { return starter->start(window); };
+  };
+  return {points.frame(), units, *tree, make_starter};
+}
+
+TiledSource tiled(const TinTriangles& triangles, const BuildOptions& options) {
+  const MeasureUnits units = measure_units(triangles.frame(), options.void_slope);
+  const auto tree = std::make_shared<const TileTree>(tin_tree(triangles, options.tile));
+  const auto make_starter = [&triangles, tree, units]() -> LeafStarter {
+    return [&triangles, tree, units](const SampleRange& window) {
+      return start_tin_tile(triangles, *tree, window, units);
+    };
+  };
+  return {triangles.frame(), units, *tree, make_starter};
+}
+
+CollapseOptions collapse_options(const BuildOptions& options, const TiledSource& source) {
+  CollapseOptions result;
+  result.cost = options.cost;
+  result.units = source.units;
+  result.first_pass = (kFirstPassShare * options.max_error - source.frame.height_rounding) /
+                      source.frame.heights.step;
+  return result;
+}
+
+ReadSource::ReadSource(const std::vector<std::string>& inputs, const BuildOptions& options,
+                       const nlohmann::json& index, const std::string& folder, FileLayer& files,
+                       const std::stop_token& stop) {
+  const auto facts = [&](const char* kind) {
+    return ArrayFileFacts{index.at(kind).at(0).get<std::uint64_t>(),
+                          index.at(kind).at(1).get<std::uint64_t>()};
+  };
+  const auto path = [&](const char* name) { return folder + "/" + name; };
+  if (index.contains("raster")) {
+    raster_ = std::make_unique<RasterSource>(RasterSource::take_up(
+        inputs, source_options_of(options), path(kRasterIndex), facts("raster")));
+    tiled_ = std::make_unique<TiledSource>(build_internal::tiled(*raster_, options));
+  } else if (index.contains("points")) {
+    points_ = std::make_unique<PointBuckets>(
+        PointBuckets::load(files, path(kPointBuckets), path(kPointsIndex), facts("points")));
+    tiled_ = std::make_unique<TiledSource>(build_internal::tiled(*points_, options, stop));
+  } else {
+    triangles_ = std::make_unique<TinTriangles>(
+        TinTriangles::load(files, path(kTinTriangles), path(kTinIndex), facts("tin")));
+    tiled_ = std::make_unique<TiledSource>(build_internal::tiled(*triangles_, options));
+  }
+}
+
+}  // namespace ptin::build_internal
