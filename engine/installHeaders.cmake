@@ -10,6 +10,8 @@ set(public_headers
     engine/construct/build_observer.h
     engine/construct/build_options.h
     engine/construct/build_plan.h
+    engine/construct/build_parts.h
+    engine/construct/build_worker.h
     engine/construct/grid/decimal.h
     engine/construct/grid/source_disk.h
     engine/construct/grid/source_options.h

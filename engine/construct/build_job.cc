@@ -9,10 +9,10 @@
 
 #include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/grid/source_options.h"
-#include "engine/construct/tasks/build_hierarchy.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/source_files.h"
 #include "engine/construct/store_output.h"
+#include "engine/construct/tasks/build_hierarchy.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
 
@@ -162,15 +162,20 @@ SourceOptions Job::source_options() const {
   return source;
 }
 
-nlohmann::json fingerprint(const Job& job) {
-  std::vector<std::string> inputs = job.inputs;
-  inputs.insert(inputs.end(), job.options.breaklines.begin(), job.options.breaklines.end());
-  if (!job.options.boundary.empty()) {
-    inputs.push_back(job.options.boundary);
+std::vector<std::string> all_inputs(const std::vector<std::string>& inputs,
+                                    const BuildOptions& options) {
+  std::vector<std::string> all = inputs;
+  all.insert(all.end(), options.breaklines.begin(), options.breaklines.end());
+  if (!options.boundary.empty()) {
+    all.push_back(options.boundary);
   }
+  return all;
+}
+
+nlohmann::json fingerprint(const Job& job) {
   return {{"options", options_json(job.options)},
           {"page_bytes", job.options.page_bytes},
-          {"inputs", input_fingerprint(inputs)},
+          {"inputs", input_fingerprint(all_inputs(job.inputs, job.options))},
           {"program", {PTIN_VERSION, kTemporaryFormat}}};
 }
 
@@ -210,7 +215,9 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
     }
     give_up(workspace, e);
   }
-  remove_done(workspace, job);
+  if (!job.goes_on_elsewhere) {
+    remove_done(workspace, job);
+  }
 }
 
 HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
@@ -239,10 +246,14 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
     report_published(job);
     return;
   }
-  StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame,
-                    job.files(), workspace.folder());
-  if (job.resources.driver != nullptr) {
-    job.resources.driver->begin({index, workspace.folder(), workspace.temporary_folder()});
+  StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame, job.files(),
+                    workspace.folder());
+  TaskDriver* const driver = job.resources.driver;
+  if (driver != nullptr &&
+      !driver->begin({index, workspace.folder(), workspace.temporary_folder(),
+                      input_fingerprint(all_inputs(job.inputs, job.options))})) {
+    job.goes_on_elsewhere = true;
+    return;
   }
   const BuiltHierarchy built = build_hierarchy(
       source.make_starter, source.tree, hierarchy_options(job, source, plan), workspace, store);

@@ -15,12 +15,12 @@
 #include "engine/construct/build_plan.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/terrain_frame.h"
-#include "engine/construct/tasks/build_hierarchy.h"
 #include "engine/construct/hierarchy/tile_bytes.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/point_count.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/scratch/workspace.h"
+#include "engine/construct/tasks/build_hierarchy.h"
 #include "engine/construct/tile/tile_tree.h"
 #include "engine/construct/tiled_source.h"
 
@@ -45,6 +45,8 @@ struct Job {
   /// True while a resumed build would do all of the work again: an error then leaves no folder
   /// behind.
   bool begins_anew = false;
+  /// True when the source is read and others do the rest (TaskDriver::begin): the folder stays.
+  bool goes_on_elsewhere = false;
 
   /// The layer that files are written through: the caller's, or the system's.
   [[nodiscard]] FileLayer& files() const;
@@ -70,6 +72,10 @@ struct Job {
 /// The same error, whose message also says that the work in `folder` is kept, and by which option
 /// a build goes on with it.
 [[nodiscard]] Error with_resume_hint(const Error& error, const std::string& folder);
+
+/// The inputs, and the files of lines that the options name.
+[[nodiscard]] std::vector<std::string> all_inputs(const std::vector<std::string>& inputs,
+                                                  const BuildOptions& options);
 
 /// What a resumed build must agree with: the options that decide the bytes of the output; names,
 /// sizes and times of the inputs; and the version of the program, since another one may not

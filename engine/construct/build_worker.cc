@@ -3,6 +3,7 @@
 
 #include "engine/construct/build_job.h"
 #include "engine/construct/memory_plan.h"
+#include "engine/construct/source_files.h"
 #include "engine/construct/source_kind.h"
 #include "engine/construct/store_output.h"
 #include "engine/construct/tasks/task_messages.h"
@@ -13,6 +14,22 @@ namespace ptin {
 
 using namespace build_internal;
 
+namespace {
+
+/// @throws Error invalid_argument  this process sees other inputs than the one that directs it
+const BuildNote& require_same_inputs(const BuildNote& note, const std::vector<std::string>& inputs,
+                                     const BuildOptions& options) {
+  if (input_fingerprint(all_inputs(inputs, options)) != note.inputs) {
+    throw Error(ErrorCode::invalid_argument,
+                "an input is not the one that the build began with: its size or time of change "
+                "differ; build anew, or give all processes the same files",
+                inputs.empty() ? "" : inputs.front());
+  }
+  return note;
+}
+
+}  // namespace
+
 struct BuildWorker::Impl {
   Impl(const std::vector<std::string>& inputs, const BuildOptions& options,
        const BuildResources& given, const BuildNote& note)
@@ -20,7 +37,8 @@ struct BuildWorker::Impl {
         files(given.files != nullptr ? *given.files : FileLayer::system()),
         memory(plan_memory(given.memory_bytes, source_kind(inputs, options))),
         cache(memory.gdal_cache),
-        source(inputs, options, note.index, note.temporary, files, given.stop),
+        source(inputs, options, require_same_inputs(note, inputs, options).index, note.temporary,
+               files, given.stop),
         packer(options, source.tiled().frame, files, note.folder),
         worker({source.tiled().tree, collapse_options(options, source.tiled()),
                 source.tiled().make_starter, packer, files, note.temporary, true},
@@ -40,6 +58,9 @@ BuildWorker::BuildWorker(const std::vector<std::string>& inputs, const BuildOpti
     : impl_(std::make_unique<Impl>(inputs, options, resources, note_in(note))) {}
 
 BuildWorker::~BuildWorker() = default;
+
+TaskWorker& BuildWorker::tasks() noexcept { return impl_->worker; }
+const TileTree& BuildWorker::tree() const noexcept { return impl_->source.tiled().tree; }
 
 std::string BuildWorker::answer(const std::string& message, std::size_t thread) {
   try {

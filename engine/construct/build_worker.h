@@ -12,6 +12,9 @@
 
 namespace ptin {
 
+class TaskWorker;
+class TileTree;
+
 /// Opens the source of a build as the process that directs it did, but reads of it only what its
 /// tasks want. Both processes see the inputs, the output's folder and that of temporary files by the
 /// same names.
@@ -31,6 +34,9 @@ class BuildWorker {
   /// went wrong.
   /// Threads: several at once, each with a number of its own.
   [[nodiscard]] std::string answer(const std::string& message, std::size_t thread = 0);
+
+  [[nodiscard]] TaskWorker& tasks() noexcept;
+  [[nodiscard]] const TileTree& tree() const noexcept;
 
  private:
   struct Impl;

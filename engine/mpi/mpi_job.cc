@@ -39,11 +39,12 @@ class MpiDriver final : public TaskDriver {
  public:
   explicit MpiDriver(const MpiSession& session) : session_(session) {}
 
-  void begin(const BuildNote& note) override {
+  [[nodiscard]] bool begin(const BuildNote& note) override {
     for (int rank = 1; rank < session_.ranks(); ++rank) {
       session_.send(rank, kBuild + message_of(note));
       idle_.insert(rank);
     }
+    return true;
   }
   std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& limits,
                     const std::stop_token& stop) override;

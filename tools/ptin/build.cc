@@ -3,18 +3,12 @@
 // ptin build: from a source to a .ptin file, with a report.
 #include "engine/construct/build.h"
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <new>
-#include <optional>
 #include <utility>
-
-#include <malloc.h>
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
@@ -25,10 +19,11 @@
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
 #include "tools/output/output_file.h"
-#include "tools/progress.h"
-#include "tools/progress_fd.h"
 #include "tools/ptin/build_cluster.h"
+#include "tools/ptin/build_command.h"
+#include "tools/ptin/build_show.h"
 #include "tools/ptin/error_stats.h"
+#include "tools/ptin/parts_plan.h"
 #include "tools/ptin/query_options.h"
 #include "tools/thread_count.h"
 
@@ -36,48 +31,7 @@ namespace ptin::tools {
 
 namespace {
 
-struct BuildCommand {
-  std::vector<std::string> inputs;
-  std::string output;
-  std::string cost = "error";
-  std::string duplicates, returns;
-  std::vector<double> bbox;
-  BuildOptions options;
-  bool overwrite = false;
-  std::string memory, tmp;
-  int threads = 0;
-  bool resume = false, discard = false, dry_run = false;
-  int progress_fd = -1;
-};
-
-CostModel cost_of(const std::string& name) {
-  if (name == "roi") return CostModel::kRoi;
-  return name == "elevation" ? CostModel::kElevation : CostModel::kError;
-}
-
-std::optional<PointMerge> merge_of(const std::string& name) {
-  if (name.empty()) return std::nullopt;
-  if (name == "min") return PointMerge::kLowest;
-  if (name == "max") return PointMerge::kHighest;
-  return name == "first" ? PointMerge::kFirst : PointMerge::kMean;
-}
-
-ReturnChoice returns_of(const std::string& name) {
-  if (name == "first") return ReturnChoice::kFirst;
-  return name == "last" ? ReturnChoice::kLast : ReturnChoice::kAll;
-}
-
-/// Puts the options together.
-void complete_options(BuildCommand& command) {
-  BuildOptions& options = command.options;
-  options.cost = cost_of(command.cost);
-  options.duplicates = merge_of(command.duplicates);
-  options.returns = returns_of(command.returns);
-  if (!command.bbox.empty())
-    options.bbox = {command.bbox[0], command.bbox[1], command.bbox[2], command.bbox[3]};
-}
-
-/// The same, and looks at the output; what their values may be is build()'s matter.
+/// Puts the options together and looks at the output; what their values may be is build()'s matter.
 void check_command(BuildCommand& command) {
   const BuildOptions& options = command.options;
   if (command.inputs.empty() && !options.columns.empty()) {
@@ -94,8 +48,6 @@ void check_command(BuildCommand& command) {
       command.resume && is_there(Workspace::folder_of(output_target(command.output)));
   check_output(command.output, command.overwrite || is_resumed);
 }
-
-double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
 
 /// How far merging moved a height, in steps between heights.
 double height_steps(const BuildReport& r) {
@@ -233,167 +185,6 @@ void print_report(const BuildCommand& command, const BuildReport& r, const FlatR
   print_next(command);
 }
 
-nlohmann::json plan_json(const BuildPlan& p) {
-  return {{"tile", p.tile_side},
-          {"tiles", p.leaves},
-          {"levels", p.levels},
-          {"vertices", p.vertices},
-          {"threads", p.threads},
-          {"memory_limit", p.memory.limit},
-          {"memory_expected", p.memory_expected},
-          {"temporary_bytes", p.temporary_bytes},
-          {"output_bytes", p.output_bytes},
-          {"free_bytes", p.output_free},
-          {"estimated", p.is_estimate},
-          {"seconds", p.seconds}};
-}
-
-/// One line of what is to come; a second one when less is used than was asked for.
-void print_plan(const BuildPlan& p) {
-  std::fprintf(stderr,
-               "plan: %s%s in %s of %lld, %s, at most %s of memory, %s of "
-               "temporary disk, %s of output, roughly %s\n",
-               p.is_estimate ? "up to about " : "",
-               counted(p.vertices, "vertex", "vertices").c_str(), counted(p.leaves, "tile").c_str(),
-               static_cast<long long>(p.tile_side),
-               counted(static_cast<std::uint64_t>(p.threads), "thread").c_str(),
-               human_bytes(p.memory_expected).c_str(), human_bytes(p.temporary_bytes).c_str(),
-               human_bytes(p.output_bytes).c_str(), human_duration(p.seconds).c_str());
-  if (p.memory.limit > p.memory.allowed) {
-    std::fprintf(stderr,
-                 "plan: warning: --memory %s is more than the system lets this process have, %s\n",
-                 human_bytes(p.memory.limit).c_str(), human_bytes(p.memory.allowed).c_str());
-  }
-  if (p.threads < p.threads_wanted) {
-    std::fprintf(stderr, "plan: %s instead of %d, since no more tiles fit into %s\n",
-                 counted(static_cast<std::uint64_t>(p.threads), "thread").c_str(), p.threads_wanted,
-                 human_bytes(p.memory.limit).c_str());
-  }
-}
-
-/// Big blocks go back to the system as soon as they are freed, so that the limit holds between
-/// tiles too.
-void return_freed_memory(int threads) {
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  mallopt(M_TRIM_THRESHOLD, 4 << 20);
-  mallopt(M_ARENA_MAX, threads + 1);
-}
-
-/// Where the limit leaves room for it, freed blocks are kept for the next tile: giving them back
-/// and taking fresh ones, page by page, is a sixth of the time of a build.
-void keep_freed_memory(const BuildPlan& plan) {
-  constexpr std::uint64_t kKeptByThread = std::uint64_t{64} << 20;  // measured
-  const std::uint64_t kept = kKeptByThread * static_cast<std::uint64_t>(plan.threads + 1);
-  if (plan.memory_expected + kept <= plan.memory.limit) {
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that malloc takes
-    mallopt(M_TRIM_THRESHOLD, 32 << 20);
-  }
-}
-
-/// What a run shows while it works.
-class BuildShow final : public BuildObserver {
- public:
-  BuildShow(const BuildCommand& command, const Context& context)
-      : command_(command),
-        context_(context),
-        style_(Progress::style_for(context.quiet, stderr)),
-        progress_(style_) {
-    if (command.progress_fd >= 0) {
-      std::signal(SIGPIPE, SIG_IGN);  // a reader may go away
-      fd_.emplace(command.progress_fd);
-    }
-  }
-  void plan(const BuildPlan& plan) override {
-    finish();
-    keep_freed_memory(plan);
-    if (command_.dry_run && context_.json) {
-      print_json(plan_json(plan));
-    } else if (!context_.quiet) {
-      print_plan(plan);
-    }
-  }
-  void progress(const StageProgress& p) override {
-    const auto now = std::chrono::steady_clock::now();
-    if (stage_ != p.stage) {
-      end_stage();
-      stage_ = p.stage;
-      begin_ = now;
-      first_ = p.done;
-    }
-    facts_.tiles_done = p.tiles_done;
-    facts_.tiles = p.tiles;
-    if (now - looked_ > std::chrono::milliseconds(500)) {
-      looked_ = now;
-      facts_.memory = anonymous_bytes_now();
-      most_memory_ = std::max(most_memory_, facts_.memory);
-    }
-    seconds_ = std::chrono::duration<double>(now - begin_).count();
-    facts_.per_second =
-        static_cast<std::uint64_t>(ratio(static_cast<double>(p.done - first_), seconds_));
-    facts_.remaining_seconds =
-        facts_.per_second > 0 && p.total >= p.done
-            ? ratio(static_cast<double>(p.total - p.done), static_cast<double>(facts_.per_second))
-            : -1.0;
-    if (fd_) fd_->report(p.stage, p.done, p.total, facts_);
-    progress_.report(p.stage, p.done, p.total, seconds_ > 1.0 && p.total > 1 ? detail() : "");
-  }
-  void give_back_memory() override { malloc_trim(0); }
-  void finish() {
-    end_stage();
-    progress_.finish();
-  }
-
- private:
-  [[nodiscard]] std::string detail() const {
-    const std::string tiles =
-        facts_.tiles > 0 ? grouped(facts_.tiles_done) + " of " + grouped(facts_.tiles) + " tiles, "
-                         : "";
-    return tiles + rate() + human_bytes(facts_.memory);
-  }
-  /// Stages without tiles count in units of their own: bytes of text, samples, passes over points.
-  [[nodiscard]] std::string rate() const {
-    return facts_.tiles > 0 ? grouped(facts_.per_second) + " vertices/s, " : "";
-  }
-  /// Where lines stay, a stage that took a while says what it came to.
-  void end_stage() {
-    if (!stage_.empty() && style_ == Progress::Style::kSparse && seconds_ > 1.0) {
-      progress_.finish();
-      std::fprintf(stderr, "  %s%sat most %s of memory so far\n",
-                   facts_.tiles > 0 ? (counted(facts_.tiles, "tile") + ", ").c_str() : "",
-                   rate().c_str(), human_bytes(most_memory_).c_str());
-    }
-    stage_.clear();
-    facts_.tiles = facts_.tiles_done = 0;
-  }
-
-  const BuildCommand& command_;
-  const Context& context_;
-  Progress::Style style_;
-  Progress progress_;
-  std::optional<ProgressFd> fd_;
-  std::string stage_;
-  std::chrono::steady_clock::time_point begin_{}, looked_{};
-  std::uint64_t first_ = 0, most_memory_ = 0;
-  double seconds_ = 0.0;
-  ProgressFacts facts_;
-};
-
-BuildResources resources_of(const BuildCommand& command, const Context& context,
-                            BuildObserver& show) {
-  BuildResources resources;
-  resources.overwrite = command.overwrite;
-  resources.stop = context.stop;
-  if (!command.memory.empty()) resources.memory_bytes = parse_bytes(command.memory, "--memory");
-  resources.threads = command.threads;
-  resources.tmp = command.tmp;
-  resources.unfinished = command.resume    ? Unfinished::kResume
-                         : command.discard ? Unfinished::kDiscard
-                                           : Unfinished::kRefuse;
-  resources.dry_run = command.dry_run;
-  resources.observer = &show;
-  return resources;
-}
-
 /// The report, in text or JSON.
 void tell(const BuildCommand& command, const BuildReport& report, const Context& context) {
   warn_of_merging(command, report, context);
@@ -418,9 +209,10 @@ bool is_started_with_others() {
 std::unique_ptr<BuildCluster> cluster_of(const Context& context) {
   if (!is_started_with_others()) return nullptr;
   if (!context.join_cluster) {
-    throw Error(ErrorCode::invalid_argument,
-                "this ptin was made without MPI, so each of the processes would build by itself; make "
-                "it with -D PTIN_MPI=ON, or start it without mpirun");
+    throw Error(
+        ErrorCode::invalid_argument,
+        "this ptin was made without MPI, so each of the processes would build by itself; make "
+        "it with -D PTIN_MPI=ON, or start it without mpirun");
   }
   return context.join_cluster();
 }
@@ -435,6 +227,26 @@ int work_in_cluster(BuildCommand& command, const Context& context, BuildCluster&
   command.progress_fd = -1;
   BuildShow show(command, silent);
   cluster.work(command.inputs, command.options, resources_of(command, context, show));
+  return kExitDone;
+}
+
+/// Reads the source, and writes the plan for those who do the rest.
+int plan_in_parts(const BuildCommand& command, const BuildResources& resources,
+                  const Context& context, BuildShow& show) {
+  write_parts_plan(command, context.arguments, resources);
+  show.finish();
+  if (context.json) {
+    print_json({{"plan", command.plan}, {"parts", command.parts}});
+  } else if (!context.quiet) {
+    const std::string plan = shell_word(command.plan);
+    const int last = command.parts - 1;
+    std::printf(
+        "%s: %d parts. Each phase begins when all jobs of the one before are done:\n"
+        "  ptin build-part %s collapse N    for N from 0 to %d\n  ptin build-part %s join\n"
+        "  ptin build-part %s tighten N     for N from 0 to %d\n  ptin build-part %s publish\n",
+        command.plan.c_str(), command.parts, plan.c_str(), last, plan.c_str(), plan.c_str(), last,
+        plan.c_str());
+  }
   return kExitDone;
 }
 
@@ -459,6 +271,7 @@ int run_build(BuildCommand& command, const Context& context) {
   {
     BuildShow show(command, context);
     BuildResources resources = resources_of(command, context, show);
+    if (command.parts > 0) return plan_in_parts(command, resources, context, show);
     if (cluster) resources.driver = cluster->driver();
     report = build(command.inputs, output_target(command.output), command.options, resources);
     show.finish();
@@ -478,139 +291,11 @@ int run_build(BuildCommand& command, const Context& context) {
   return kExitDone;
 }
 
-/// What is read, and what of it.
-void add_source_options(CLI::App& app, BuildCommand& command) {
-  BuildOptions& options = command.options;
-  app.add_option(
-      "INPUT", command.inputs,
-      "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz\n"
-      "too), or a layer that OGR reads; several files of one CRS; or a TIN: PLY, OBJ, 2DM, "
-      "LandXML");
-  app.add_option("--nodata", options.nodata,
-                 "This stored value (before scale and offset) means void; overrides the source's")
-      ->type_name("V");
-  app.add_option("--resolution", options.resolution, "Points, TINs: the grid unit, in CRS units")
-      ->check(numbers(NumberRange::kPositive, "in CRS units"))
-      ->type_name("R");
-  app.add_option("--class", options.classes,
-                 "LAS: keep points of these classes, such as 2 for ground; 2,9 for several")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("N");
-  app.add_option("--returns", command.returns,
-                 "LAS: keep the last return of each pulse (near the ground), the first, or all\n"
-                 "(default)")
-      ->check(CLI::IsMember({"all", "first", "last"}))
-      ->type_name("WHICH");
-  app.add_option("--duplicates", command.duplicates,
-                 "Points, --repair: the height of those that fall together: mean (default), min, "
-                 "max, or\n"
-                 "first (of the first input that has one)")
-      ->check(CLI::IsMember({"mean", "min", "max", "first"}))
-      ->type_name("RULE");
-  app.add_option("--layer", options.layer, "Points of this layer, where a file holds several")
-      ->type_name("NAME");
-  app.add_option("--columns", options.columns,
-                 "Text: the names of its columns from the left; x, y, z or as a header may name\n"
-                 "them, by any other name columns that are passed over (default: a header's, else "
-                 "x y z)")
-      ->delimiter(',')
-      ->type_name("NAME");
-  app.add_option("--z-field", options.z_field,
-                 "The attribute that holds the height of a layer's points (default: their z)")
-      ->type_name("NAME");
-  app.add_flag("--repair", options.repair,
-               "TINs: leave the triangles and triangulate the vertices anew; voids by --max-edge");
-  app.add_option("--max-edge", options.max_edge,
-                 "Points, --repair: triangles with an edge longer than this become void; CRS "
-                 "units, or metres\n"
-                 "where those are degrees")
-      ->check(numbers(NumberRange::kPositive, "in CRS units, or metres where those are degrees"))
-      ->type_name("L");
-  app.add_option("--breaklines", options.breaklines,
-                 "Points, --repair: lines with heights that become edges of the TIN, from layers "
-                 "that OGR\n"
-                 "reads or LandXML; several files, behind INPUT")
-      ->type_name("FILE");
-  app.add_option("--breakline-layer", options.breakline_layer,
-                 "Breaklines of this layer, where a file holds several")
-      ->type_name("NAME");
-  app.add_option("--boundary", options.boundary,
-                 "Points, --repair: polygons outside of which all is void, from a layer that OGR "
-                 "reads or\n"
-                 "LandXML; without heights they are laid on the surface")
-      ->type_name("FILE");
-  app.add_option("--boundary-layer", options.boundary_layer,
-                 "The boundary is this layer, where its file holds several")
-      ->type_name("NAME");
-  app.add_option("--bbox", command.bbox, "Leave out samples outside of this box, in CRS units")
-      ->expected(4)
-      ->check(numbers(NumberRange::kFinite, "in CRS units"))
-      ->type_name("XMIN YMIN XMAX YMAX");
-  app.add_option("--a-srs,--a_srs", options.a_srs,
-                 "The CRS; overrides the source's (EPSG code, WKT, PROJ string)")
-      ->type_name("CRS");
-  app.add_option("--vertical-crs", options.vertical_crs, "The vertical CRS, as EPSG:5773")
-      ->type_name("CRS");
-}
-
-/// The work: its tiles, memory, threads and temporary files, and whether it goes on.
-void add_work_options(CLI::App& app, BuildCommand& command) {
-  app.add_option(
-         "--tile", command.options.tile,
-         "Samples along a leaf of the tile hierarchy, of points and TINs about as many (default:\n"
-         "by the number of samples)")
-      ->type_name("SIDE");
-  app.add_option("--memory", command.memory,
-                 "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less\n"
-                 "where a cgroup or a resource limit allows less)")
-      ->type_name("SIZE");
-  app.add_option(
-         "--threads", command.threads,
-         "Threads (default: one a processor that affinity and cgroups leave this process);\n"
-         "fewer are used where memory is short. The output is the same for any number")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
-  app.add_option("--tmp", command.tmp, "Folder for temporary files (default: beside the output)")
-      ->check(CLI::ExistingDirectory)
-      ->type_name("DIR");
-  auto* resume = app.add_flag("--resume", command.resume, "Go on with an interrupted build");
-  app.add_flag("--discard", command.discard,
-               "Remove an interrupted build first; without INPUT, only that")
-      ->excludes(resume);
-  app.add_flag("--dry-run", command.dry_run, "Say what the build would need, and stop");
-  app.add_option("--progress-fd", command.progress_fd,
-                 "Write progress as lines of JSON to this file descriptor")
-      ->check(numbers(NumberRange::kNotNegative, ""))
-      ->type_name("FD");
-}
-
 }  // namespace
 
 Action declare_build(CLI::App& app, Context& context) {
   const auto command = std::make_shared<BuildCommand>();
-  BuildOptions& options = command->options;
-  add_source_options(app, *command);
-  app.add_option("-o,--output", command->output, "The .ptin file to write")
-      ->type_name("FILE")
-      ->required();
-  app.add_option("--cost", command->cost,
-                 "In which order vertices go: error (default, for levels of detail), roi (point\n"
-                 "location) or elevation (isolines)")
-      ->check(CLI::IsMember({"error", "roi", "elevation"}));
-  app.add_option("--max-error", options.max_error,
-                 "Leave out detail below this error, in the height's unit")
-      ->check(numbers(NumberRange::kNotNegative, "in the height's unit"))
-      ->type_name("E");
-  app.add_option(
-         "--void-slope", options.void_slope,
-         "Error charged for each ground unit that the border of a void moves: at an error E it\n"
-         "moves by E / S at most")
-      ->check(numbers(NumberRange::kNotNegative, ""))
-      ->type_name("S")
-      ->capture_default_str();
-  add_work_options(app, *command);
-  app.add_flag("--overwrite", command->overwrite, "Replace an existing output");
+  declare_build_options(app, *command);
   return [command, &context] { return run_build(*command, context); };
 }
 

@@ -32,6 +32,17 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin build scan_*.las --class 2 -o ground.ptin\n"
      "  ptin build survey.gpkg --layer spots --z-field height -o survey.ptin\n",
      declare_build},
+    {"build-part", "Do one job of a build that was divided by `ptin build --parts`",
+     "The phases follow each other: collapse (each part), join, tighten (each part), publish. A "
+     "job\n"
+     "that is done again does nothing; one that died has left nothing that counts.\n\n"
+     "Examples:\n"
+     "  ptin build huge.vrt -o huge.ptin --parts 16 --plan huge.plan\n"
+     "  ptin build-part huge.plan collapse 3\n"
+     "  ptin build-part huge.plan join\n"
+     "  ptin build-part huge.plan tighten 3\n"
+     "  ptin build-part huge.plan publish\n",
+     declare_build_part},
     {"info", "Tell what a .ptin file holds",
      "Examples:\n"
      "  ptin info dem.ptin\n"
@@ -357,6 +368,7 @@ int run_program(int argc, const char* const* argv, Context& context) {
   try {
     CPLSetErrorHandler(CPLQuietErrorHandler);
     GDALAllRegister();
+    if (argc > 2) context.arguments.assign(argv + 2, argv + argc);
     return run_command_line(argc, argv, context);
   } catch (...) {
     return report_current_error(context.json);

@@ -8,6 +8,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -20,9 +21,10 @@ struct Context {
   /// The processes with which this one builds together; null where there are none. Empty where the
   /// program was made without them.
   std::function<std::unique_ptr<BuildCluster>()> join_cluster;
-  std::stop_token stop;  ///< Fires on SIGINT and SIGTERM.
-  bool json = false;     ///< --json: the answer on stdout and an error on stderr as JSON.
-  bool quiet = false;    ///< -q: no progress, report or warning; what was asked for is printed.
+  std::vector<std::string> arguments;  ///< As they were given, behind the subcommand.
+  std::stop_token stop;                ///< Fires on SIGINT and SIGTERM.
+  bool json = false;   ///< --json: the answer on stdout and an error on stderr as JSON.
+  bool quiet = false;  ///< -q: no progress, report or warning; what was asked for is printed.
 };
 
 /// Runs a parsed subcommand; returns the exit status.  @throws Error
@@ -41,6 +43,7 @@ struct Command {
 [[nodiscard]] std::span<const Command> commands() noexcept;
 
 Action declare_build(CLI::App& app, Context& context);
+Action declare_build_part(CLI::App& app, Context& context);
 Action declare_info(CLI::App& app, Context& context);
 Action declare_verify(CLI::App& app, Context& context);
 Action declare_refine(CLI::App& app, Context& context);

@@ -41,10 +41,24 @@ void BatchOrder::visit(const TileTree& tree, const TileId& id) {
     batches_.push_back(id);
     return;
   }
+  const std::size_t first = batches_.size();
   for (const TileId& child : tree.children(id)) {
     visit(tree, child);
   }
   output_.push_back(id);
+  batches_of_.emplace_back(first, batches_.size());
+}
+
+std::vector<TileId> BatchOrder::above_within(std::size_t begin, std::size_t end) const {
+  std::vector<TileId> tiles;
+  for (std::size_t i = 0; i < batches_of_.size(); ++i) {
+    if (begin <= batches_of_[i].first && batches_of_[i].second <= end) {
+      tiles.push_back(output_[batches_.size() + i]);
+    }
+  }
+  std::stable_sort(tiles.begin(), tiles.end(),
+                   [](const TileId& a, const TileId& b) { return a.level < b.level; });
+  return tiles;
 }
 
 }  // namespace ptin

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "engine/construct/tile/tile_tree.h"
@@ -41,12 +42,15 @@ class BatchOrder {
   [[nodiscard]] const std::vector<TileId>& output() const noexcept { return output_; }
   /// The place of a top, or of a tile above, in output().
   [[nodiscard]] std::size_t place_of(const TileId& id) const { return places_.at(id); }
+  /// The tiles above the batches of which all batches have a place in [begin, end), the lowest first.
+  [[nodiscard]] std::vector<TileId> above_within(std::size_t begin, std::size_t end) const;
 
  private:
   void visit(const TileTree& tree, const TileId& id);
 
   std::vector<TileId> batches_, output_;
   std::map<TileId, std::size_t> places_;
+  std::vector<std::pair<std::size_t, std::size_t>> batches_of_;  ///< Beside output_, above batches.
 };
 
 }  // namespace ptin

@@ -16,9 +16,8 @@ BuildLog::BuildLog(Workspace& workspace, SegmentOutput& output, std::chrono::mil
 }
 
 void BuildLog::take_up(const nlohmann::json& line) {
-  if (line.contains("done")) {
-    results_[task_name_in(line["done"])] = task_result_in(line);
-  } else if (line.contains("checkpoint")) {
+  take_line(line, results_);
+  if (line.contains("checkpoint")) {
     position_ = line["checkpoint"];
     written_ = line.at("written").get<std::uint64_t>();
   }
@@ -26,9 +25,7 @@ void BuildLog::take_up(const nlohmann::json& line) {
 
 void BuildLog::note_done(const TaskName& name, const TaskResult& result) {
   results_[name] = result;
-  nlohmann::json line = json_of(result);
-  line["done"] = json_of(name);
-  lines_.push_back(std::move(line));
+  lines_.push_back(line_of(name, result));
   for (std::size_t i = 0; i < kTileFiles; ++i) {
     if (result.files[i].bytes > 0) {
       const std::string file = file_name(name.tile, static_cast<TileFile>(i));

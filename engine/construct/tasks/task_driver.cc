@@ -39,7 +39,7 @@ class TaskPieces final : public PieceSource {
 
 }  // namespace
 
-void TaskDriver::begin(const BuildNote&) {}
+bool TaskDriver::begin(const BuildNote& /*note*/) { return true; }
 
 std::uint64_t ThreadDriver::run(TaskSchedule& schedule, TaskWorker& worker,
                                 const PieceLimits& limits, const std::stop_token& stop) {

@@ -21,8 +21,9 @@ class TaskDriver {
   TaskDriver& operator=(const TaskDriver&) = delete;
   virtual ~TaskDriver() = default;
 
-  /// Told of the build before its first task. Does nothing by default.
-  virtual void begin(const BuildNote& note);
+  /// Told of the build before its first task. By default it does nothing.
+  /// @return  False: the build ends here, and its folder stays for those who do the tasks.
+  [[nodiscard]] virtual bool begin(const BuildNote& note);
   /// @param worker  Does tasks in this process.
   /// @param limits  Of this process.
   /// @return The most bytes that were admitted at once in this process, by estimate.

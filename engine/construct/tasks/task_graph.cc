@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/construct/tasks/batch_order.h"
 #include "engine/memory_units.h"
 
@@ -17,6 +19,18 @@ namespace {
 }
 
 }  // namespace
+
+nlohmann::json line_of(const TaskName& name, const TaskResult& result) {
+  nlohmann::json line = json_of(result);
+  line["done"] = json_of(name);
+  return line;
+}
+
+void take_line(const nlohmann::json& line, TaskResults& results) {
+  if (line.contains("done")) {
+    results[task_name_in(line["done"])] = task_result_in(line);
+  }
+}
 
 std::vector<std::pair<TileId, TileFile>> TaskGraph::inputs_of(const TaskName& name) const {
   std::vector<std::pair<TileId, TileFile>> inputs;
@@ -53,8 +67,7 @@ std::uint64_t TaskGraph::bytes_of_join(const TileId& id, const TaskResults& resu
     pushed += results.at(producer_of(child, TileFile::kPushed)).facts(TileFile::kPushed).bytes;
   }
   const std::uint64_t bytes = memory_.tile_bytes.of_join(pushed);
-  const std::uint64_t most =
-      memory_.for_tiles + (id == tree_.root() ? memory_.for_reading : 0);
+  const std::uint64_t most = memory_.for_tiles + (id == tree_.root() ? memory_.for_reading : 0);
   if (bytes > most) {  // the terrain keeps more than the plan expected
     refuse_join(bytes - most);
   }

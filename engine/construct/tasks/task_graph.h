@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "engine/construct/hierarchy/tile_bytes.h"
 #include "engine/construct/tasks/task.h"
 #include "engine/construct/tile/tile_tree.h"
@@ -24,6 +26,11 @@ struct TaskMemory {
 };
 
 using TaskResults = std::map<TaskName, TaskResult>;
+
+/// A task that is done with its result, as one line of a manifest.
+[[nodiscard]] nlohmann::json line_of(const TaskName& name, const TaskResult& result);
+/// Takes such a line up; lines of other kinds are left alone.
+void take_line(const nlohmann::json& line, TaskResults& results);
 
 /// Threads: any number at once.
 class TaskGraph {

@@ -25,14 +25,16 @@ Error error_in(const nlohmann::json& json) {
 }  // namespace
 
 std::string message_of(const BuildNote& note) {
-  return text_of(
-      {{"index", note.index}, {"folder", note.folder}, {"temporary", note.temporary}});
+  return text_of({{"index", note.index},
+                  {"folder", note.folder},
+                  {"temporary", note.temporary},
+                  {"inputs", note.inputs}});
 }
 
 BuildNote note_in(const std::string& message) {
   const nlohmann::json json = nlohmann::json::parse(message);
   return {json.at("index"), json.at("folder").get<std::string>(),
-          json.at("temporary").get<std::string>()};
+          json.at("temporary").get<std::string>(), json.at("inputs")};
 }
 
 std::string message_of(const Task& task) { return text_of(json_of(task)); }
@@ -57,9 +59,8 @@ std::string answer_to(const std::string& message, TaskWorker& worker, std::size_
 void take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule) {
   const nlohmann::json json = nlohmann::json::parse(answer);
   if (json.contains("damaged")) {
-    const InputFile input{task_name_in(json["damaged"]).tile,
-                          static_cast<TileFile>(json.at("file").get<int>()),
-                          {}};
+    const InputFile input{
+        task_name_in(json["damaged"]).tile, static_cast<TileFile>(json.at("file").get<int>()), {}};
     schedule.failed(name, DamagedInput(input, error_in(json.at("error"))));
   } else if (json.contains("error")) {
     throw error_in(json["error"]);

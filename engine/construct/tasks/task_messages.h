@@ -20,6 +20,7 @@ struct BuildNote {
   nlohmann::json index;   ///< Of the source, as ReadSource takes it.
   std::string folder;     ///< The build's, with the file of pages.
   std::string temporary;  ///< The folder of its temporary files.
+  nlohmann::json inputs;  ///< Names, sizes and times of the inputs, which must be the same for all.
 };
 
 [[nodiscard]] std::string message_of(const BuildNote& note);

@@ -132,6 +132,15 @@ void TaskSchedule::done(const TaskName& name, const TaskResult& result) {
   log_.checkpoint(false);
 }
 
+void TaskSchedule::take_up(const TaskResults& results) {
+  for (const auto& [name, result] : results) {
+    log_.note_done(name, result);
+  }
+  for (const auto& [name, result] : results) {
+    follow(name);
+  }
+}
+
 /// Makes a tile above ready when this task was done with all its children, unless that is past.
 void TaskSchedule::make_ready(TaskKind kind, const TileId& parent) {
   const TaskName name{kind, parent};
@@ -246,9 +255,10 @@ void TaskSchedule::write_again(const DamagedInput& damage) {
     return;  // somebody met the same damage before
   }
   if (++damages_[name] == kMostDamages) {
-    throw Error(damage.code(),
-                damage.message() + "; it was written anew, and is damaged again: is the disk sound?",
-                damage.context());
+    throw Error(
+        damage.code(),
+        damage.message() + "; it was written anew, and is damaged again: is the disk sound?",
+        damage.context());
   }
   again_.insert(name);
 }

@@ -46,6 +46,8 @@ class TaskSchedule {
   /// To be called when a task met a damaged input.
   /// @throws Error  the damage, when the same file was written anew twice already
   void failed(const TaskName& name, const DamagedInput& damage);
+  /// Takes up what was done elsewhere, before anything is handed out.
+  void take_up(const TaskResults& results);
   /// To be called when somebody else met a damaged file of a task: it is done again.
   /// @throws Error  as failed()
   void write_again(const DamagedInput& damage);
@@ -72,17 +74,17 @@ class TaskSchedule {
   TaskGraph graph_;
   BuildLog& log_;
   std::size_t next_collapse_ = 0, next_tighten_ = 0;  ///< Batches before these are handed out.
-  std::set<TaskName> ready_;    ///< Joins and closings whose children are done.
-  std::set<TaskName> again_;    ///< To be done again, or tried again.
-  std::uint64_t clock_ = 0;     ///< Counts what is handed out and what is done again.
+  std::set<TaskName> ready_;  ///< Joins and closings whose children are done.
+  std::set<TaskName> again_;  ///< To be done again, or tried again.
+  std::uint64_t clock_ = 0;   ///< Counts what is handed out and what is done again.
   std::map<TaskName, std::uint64_t> running_;  ///< Handed out, and when.
   std::map<TaskName, std::uint64_t> renewed_;  ///< When tasks were done again.
   std::map<TaskName, int> damages_;            ///< How often files of a task were damaged.
-  std::deque<TaskName> to_place_;          ///< Known places, not handed out.
-  std::map<TileId, std::uint64_t> places_;  ///< Offsets of pages that are not in the output yet.
-  std::set<TileId> placed_;                ///< Pages in their place, ahead of those before them.
-  std::size_t next_place_;                 ///< In BatchOrder::output(): the first without a place.
-  std::uint64_t end_of_places_;            ///< Where its pages go.
+  std::deque<TaskName> to_place_;              ///< Known places, not handed out.
+  std::map<TileId, std::uint64_t> places_;     ///< Offsets of pages that are not in the output yet.
+  std::set<TileId> placed_;      ///< Pages in their place, ahead of those before them.
+  std::size_t next_place_;       ///< In BatchOrder::output(): the first without a place.
+  std::uint64_t end_of_places_;  ///< Where its pages go.
 };
 
 }  // namespace ptin

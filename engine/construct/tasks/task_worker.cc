@@ -111,7 +111,8 @@ void TaskWorker::write_pushed_of(const TileId& tile, const Tile& pushed, TaskRes
   finish(file, result.facts(TileFile::kPushed));
 }
 
-const LeafStarter& TaskWorker::starter(std::size_t thread) {
+/// A copy: the others may go while it is used.
+LeafStarter TaskWorker::starter(std::size_t thread) {
   const std::lock_guard lock(mutex_);
   while (starters_.size() <= thread) {
     starters_.emplace_back();

@@ -64,7 +64,7 @@ class TaskWorker {
   [[nodiscard]] ArrayFileWriter writer(const TileId& tile, TileFile file) const;
   void finish(ArrayFileWriter& file, ArrayFileFacts& facts) const;
   void write_pushed_of(const TileId& tile, const Tile& pushed, TaskResult& result) const;
-  [[nodiscard]] const LeafStarter& starter(std::size_t thread);
+  [[nodiscard]] LeafStarter starter(std::size_t thread);
   [[nodiscard]] SharedSegment segment_of(const InputFile& input);
   [[nodiscard]] std::shared_ptr<const Tin> coarsest(const InputFile& root);
 

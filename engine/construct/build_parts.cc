@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/build_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <fstream>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/construct/build_job.h"
+#include "engine/construct/build_worker.h"
+#include "engine/construct/memory_plan.h"
+#include "engine/construct/source_kind.h"
+#include "engine/construct/tasks/batch_order.h"
+#include "engine/construct/tasks/piece_runner.h"
+#include "engine/construct/tasks/task_driver.h"
+#include "engine/construct/tasks/task_graph.h"
+#include "engine/construct/tasks/task_messages.h"
+#include "engine/construct/tasks/task_worker.h"
+#include "storage/file/file_questions.h"
+
+namespace ptin {
+
+using namespace build_internal;
+
+namespace {
+
+const char* name_of(PartsPhase phase) {
+  static constexpr std::array<const char*, 3> kNames{"collapse", "join", "tighten"};
+  return kNames[static_cast<std::size_t>(phase)];
+}
+
+int parts_of(PartsPhase phase, int parts) { return phase == PartsPhase::kJoin ? 1 : parts; }
+
+// -------------------------------------------------------------------------------------------------
+// What jobs tell: their results, in a file that appears when all of them are there.
+
+std::string told_in(const std::string& folder, PartsPhase phase, int part) {
+  return folder + "/part-" + name_of(phase) + "-" + std::to_string(part);
+}
+
+void tell(FileLayer& files, const std::string& folder, PartsPhase phase, int part,
+          const TaskResults& results) {
+  std::string text;
+  for (const auto& [name, result] : results) {
+    text += line_of(name, result).dump() + "\n";
+  }
+  ScratchFile file(files, folder, "part", false);
+  file.write_at(std::as_bytes(std::span(text)), 0);
+  file.publish_as(told_in(folder, phase, part), true);
+}
+
+/// Takes up what a job told. False when it told nothing.
+bool take_told(const std::string& folder, PartsPhase phase, int part, TaskResults& results) {
+  std::ifstream file(told_in(folder, phase, part));
+  if (!file) {
+    return false;
+  }
+  for (std::string line; std::getline(file, line);) {
+    take_line(nlohmann::json::parse(line), results);
+  }
+  return true;
+}
+
+void require_told(const std::string& folder, PartsPhase phase, int parts, TaskResults& results) {
+  for (int part = 0; part < parts_of(phase, parts); ++part) {
+    if (!take_told(folder, phase, part, results)) {
+      throw Error(ErrorCode::invalid_argument,
+                  "part " + std::to_string(part) + " of the phase " + name_of(phase) +
+                      " is not done; do it first",
+                  folder);
+    }
+  }
+}
+
+// -------------------------------------------------------------------------------------------------
+// One job.
+
+/// The batches of a part, as places in BatchOrder::batches().
+std::pair<std::size_t, std::size_t> batches_of(const BatchOrder& order, int part, int parts) {
+  const auto at = [&](int i) {
+    return order.batches().size() * static_cast<std::size_t>(i) / static_cast<std::size_t>(parts);
+  };
+  return {at(part), at(part + 1)};
+}
+
+/// The tasks of a job, each after those that write its inputs.
+std::vector<TaskName> tasks_of(const BatchOrder& order, PartsPhase phase, int part, int parts) {
+  std::vector<TaskName> tasks;
+  if (phase == PartsPhase::kJoin) {
+    std::vector<TileId> above = order.above_within(0, order.batches().size());
+    for (int i = 0; i < parts; ++i) {
+      const auto [begin, end] = batches_of(order, i, parts);
+      const std::vector<TileId> within = order.above_within(begin, end);
+      std::erase_if(above, [&](const TileId& id) {
+        return std::find(within.begin(), within.end(), id) != within.end();
+      });
+    }
+    for (const TileId& id : above) {
+      tasks.push_back({TaskKind::kJoin, id});
+    }
+    return tasks;
+  }
+  const bool collapses = phase == PartsPhase::kCollapse;
+  if (!collapses && order.output().size() == order.batches().size()) {
+    return tasks;  // nothing lies above the only batch
+  }
+  const auto [begin, end] = batches_of(order, part, parts);
+  for (std::size_t i = begin; i < end; ++i) {
+    tasks.push_back({collapses ? TaskKind::kCollapse : TaskKind::kTighten, order.batches()[i]});
+  }
+  for (const TileId& id : order.above_within(begin, end)) {
+    tasks.push_back({collapses ? TaskKind::kJoin : TaskKind::kClose, id});
+  }
+  return tasks;
+}
+
+/// Which part wrote a file that is damaged.
+Error damaged(const DamagedInput& damage, const BatchOrder& order, int parts) {
+  const TaskName producer = damage.producer();
+  const bool is_first = producer.kind == TaskKind::kCollapse || producer.kind == TaskKind::kJoin;
+  const PartsPhase phase = is_first ? PartsPhase::kCollapse : PartsPhase::kTighten;
+  for (const PartsPhase p : {phase, PartsPhase::kJoin}) {
+    for (int part = 0; part < parts_of(p, parts); ++part) {
+      const std::vector<TaskName> tasks = tasks_of(order, p, part, parts);
+      if (std::find(tasks.begin(), tasks.end(), producer) != tasks.end()) {
+        return {damage.code(),
+                "a temporary file is not what was written; remove " + std::string("part-") +
+                    name_of(p) + "-" + std::to_string(part) + " beside it, and do part " +
+                    std::to_string(part) + " of the phase " + name_of(p) + " again",
+                damage.context()};
+      }
+    }
+  }
+  return damage;
+}
+
+class PartPieces final : public PieceSource {
+ public:
+  PartPieces(std::vector<TaskName> tasks, const TaskGraph& graph, TaskResults known,
+             TaskWorker& worker)
+      : tasks_(std::move(tasks)), graph_(graph), known_(std::move(known)), worker_(worker) {}
+
+  [[nodiscard]] std::optional<std::uint64_t> next_bytes() override {
+    const auto next = find_next();
+    return next == tasks_.end() ? std::nullopt : std::optional(graph_.bytes_of(*next, known_));
+  }
+  [[nodiscard]] Piece take(int thread) override {
+    const auto next = find_next();
+    const Task task = graph_.describe(*next, known_);
+    tasks_.erase(next);
+    return {task.bytes, [this, task, thread](const std::stop_token& stop) -> std::function<void()> {
+              const TaskResult result = worker_.run(task, static_cast<std::size_t>(thread), stop);
+              return [this, name = task.name, result] {
+                known_[name] = result;
+                done_[name] = result;
+              };
+            }};
+  }
+  [[nodiscard]] const TaskResults& done() const noexcept { return done_; }
+  [[nodiscard]] bool is_complete() const noexcept { return tasks_.empty(); }
+
+ private:
+  [[nodiscard]] std::vector<TaskName>::iterator find_next() {
+    return std::find_if(tasks_.begin(), tasks_.end(), [&](const TaskName& name) {
+      const auto inputs = graph_.inputs_of(name);
+      return std::all_of(inputs.begin(), inputs.end(), [&](const auto& input) {
+        return known_.contains(producer_of(input.first, input.second));
+      });
+    });
+  }
+
+  std::vector<TaskName> tasks_;
+  const TaskGraph& graph_;
+  TaskResults known_, done_;
+  TaskWorker& worker_;
+};
+
+/// A build that ends when its source is read.
+class NoteTaker final : public TaskDriver {
+ public:
+  [[nodiscard]] bool begin(const BuildNote& note) override {
+    note_ = message_of(note);
+    return false;
+  }
+  std::uint64_t run(TaskSchedule& /*schedule*/, TaskWorker& /*worker*/,
+                    const PieceLimits& /*limits*/, const std::stop_token& /*stop*/) override {
+    return 0;
+  }
+  [[nodiscard]] const std::string& note() const noexcept { return note_; }
+
+ private:
+  std::string note_;
+};
+
+/// Goes on from what the jobs told.
+class Publisher final : public TaskDriver {
+ public:
+  explicit Publisher(int parts) : parts_(parts) {}
+
+  [[nodiscard]] bool begin(const BuildNote& note) override {
+    for (const PartsPhase phase :
+         {PartsPhase::kCollapse, PartsPhase::kJoin, PartsPhase::kTighten}) {
+      require_told(note.temporary, phase, parts_, told_);
+    }
+    return true;
+  }
+  std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& limits,
+                    const std::stop_token& stop) override {
+    schedule.take_up(std::exchange(told_, {}));
+    return threads_.run(schedule, worker, limits, stop);
+  }
+
+ private:
+  int parts_;
+  TaskResults told_;
+  ThreadDriver threads_;
+};
+
+void require_part(PartsPhase phase, int part, int parts) {
+  if (parts < 1 || part < 0 || part >= parts_of(phase, parts)) {
+    throw Error(ErrorCode::invalid_argument,
+                "there is no part " + std::to_string(part) + " of the phase " + name_of(phase) +
+                    ": its parts are 0 to " + std::to_string(parts_of(phase, parts) - 1));
+  }
+}
+
+}  // namespace
+
+std::string begin_parts(const std::vector<std::string>& inputs, const std::string& output,
+                        const BuildOptions& options, const BuildResources& resources) {
+  NoteTaker taker;
+  BuildResources to_note = resources;
+  to_note.driver = &taker;
+  build(inputs, output, options, to_note);
+  return taker.note();
+}
+
+void do_part(const std::vector<std::string>& inputs, const BuildOptions& options,
+             const BuildResources& resources, const std::string& note, PartsPhase phase, int part,
+             int parts) {
+  require_part(phase, part, parts);
+  const std::string folder = note_in(note).temporary;
+  FileLayer& files = resources.files != nullptr ? *resources.files : FileLayer::system();
+  TaskResults known;
+  if (take_told(folder, phase, part, known)) {
+    return;
+  }
+  for (const PartsPhase before : {PartsPhase::kCollapse, PartsPhase::kJoin}) {
+    if (before < phase) {
+      require_told(folder, before, parts, known);
+    }
+  }
+  BuildWorker worker(inputs, options, resources, note);
+  const MemoryPlan memory = plan_memory(resources.memory_bytes, source_kind(inputs, options));
+  const int threads = std::max(resources.threads, 1);
+  const TaskMemory task_memory{tile_bytes_of(memory.kind),
+                               memory.for_tiles(anonymous_bytes_now(), threads), memory.gdal_cache};
+  const TaskGraph graph(worker.tree(), task_memory);
+  const BatchOrder order(worker.tree());
+  PartPieces pieces(tasks_of(order, phase, part, parts), graph, std::move(known), worker.tasks());
+  const PieceLimits limits{threads, task_memory.for_tiles, [&](std::uint64_t) {
+                             if (resources.observer != nullptr) {
+                               resources.observer->give_back_memory();
+                             }
+                           }};
+  try {
+    run_pieces(pieces, limits, resources.stop);
+  } catch (const DamagedInput& damage) {
+    throw damaged(damage, order, parts);
+  }
+  tell(files, folder, phase, part, pieces.done());
+}
+
+BuildReport publish_parts(const std::vector<std::string>& inputs, const std::string& output,
+                          const BuildOptions& options, const BuildResources& resources, int parts) {
+  Publisher publisher(parts);
+  BuildResources to_publish = resources;
+  to_publish.driver = &publisher;
+  to_publish.unfinished = Unfinished::kResume;
+  return build(inputs, output, options, to_publish);
+}
+
+}  // namespace ptin
