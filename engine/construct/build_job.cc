@@ -172,6 +172,11 @@ std::vector<std::string> all_inputs(const std::vector<std::string>& inputs,
   return all;
 }
 
+std::string Job::sorting_folder(const Workspace& workspace) const {
+  return resources.driver != nullptr && !resources.tmp.empty() ? resources.tmp
+                                                               : workspace.temporary_folder();
+}
+
 nlohmann::json fingerprint(const Job& job) {
   return {{"options", options_json(job.options)},
           {"page_bytes", job.options.page_bytes},
@@ -197,7 +202,7 @@ void plan_before_reading(const Job& job,
 
 void in_workspace(Job& job, const nlohmann::json& fingerprint,
                   const std::function<void(Workspace&)>& work) {
-  Workspace workspace(job.files(), job.output, job.resources.tmp, job.resources.unfinished,
+  Workspace workspace(job.files(), job.output, job.exchange_folder(), job.resources.unfinished,
                       fingerprint);
   job.report.resumed = !workspace.lines().empty();
   job.report.source_bytes = bytes_in(fingerprint.at("inputs"));

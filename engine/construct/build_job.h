@@ -63,6 +63,13 @@ struct Job {
   [[nodiscard]] std::function<void(const char* name, std::uint64_t done, std::uint64_t total)>
   stages() const;
   [[nodiscard]] SourceOptions source_options() const;
+  /// Where the build's temporary files go: BuildResources::tmp, but for files that other processes
+  /// read, too, which lie beside the output.
+  [[nodiscard]] std::string exchange_folder() const {
+    return resources.driver ? "" : resources.tmp;
+  }
+  /// Where this process alone keeps what it sorts.
+  [[nodiscard]] std::string sorting_folder(const Workspace& workspace) const;
 };
 
 /// The exception that is being handled, as an Error: of this library, of others, or of a function of

@@ -20,7 +20,7 @@ namespace ptin::build_internal {
 namespace {
 
 ExternalMemory memory_for_sorting(const Job& job, const Workspace& workspace) {
-  return {job.files(), workspace.temporary_folder(), job.memory.sorting};
+  return {job.files(), job.sorting_folder(workspace), job.memory.sorting};
 }
 
 /// Vertices of TINs are sorted before they are points.
@@ -58,8 +58,7 @@ PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index
   if (const auto facts = kept_index(workspace, "points")) {
     job.lines = {};
     index_facts = *facts;
-    return PointBuckets::load(job.files(), buckets, index, *facts, job.resources.stop,
-                              job.stage("checking"));
+    return PointBuckets::load(job.files(), buckets, index, *facts);
   }
   workspace.remove(kPointBuckets);
   if (job.lines.rings_are_flat) {

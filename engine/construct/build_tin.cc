@@ -21,15 +21,14 @@ TinTriangles sorted_triangles(Job& job, Workspace& workspace, ArrayFileFacts& in
   const std::string index = workspace.temporary(kTinIndex);
   if (const auto facts = kept_index(workspace, "tin")) {
     index_facts = *facts;
-    return TinTriangles::load(job.files(), kept_as, index, *facts, job.resources.stop,
-                              job.stage("checking"));
+    return TinTriangles::load(job.files(), kept_as, index, *facts);
   }
   for (const std::string& name : TinTriangles::kept_files(kTinTriangles)) {
     workspace.remove(name);
   }
   TinTriangles triangles =
       TinTriangles::read(job.inputs[0], job.source_options(),
-                         {job.files(), workspace.temporary_folder(), job.memory.sorting},
+                         {job.files(), job.sorting_folder(workspace), job.memory.sorting},
                          job.resources.stop, job.stages(), kept_as);
   index_facts = triangles.save(job.files(), index);
   note_index(workspace, "tin", index_facts);

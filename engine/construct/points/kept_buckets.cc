@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Buckets of points that outlive the process.
-#include <algorithm>
-#include <filesystem>
 #include <type_traits>
 #include <utility>
 
@@ -10,16 +8,13 @@
 #include "engine/construct/points/packed_bucket.h"
 #include "engine/construct/points/point_buckets.h"
 #include "engine/construct/points/point_spool.h"
-#include "engine/error.h"
-#include "engine/stop.h"
-#include "storage/file/checksum.h"
 
 namespace ptin {
 
 /// The plain values of buckets.
 struct PointBuckets::Kept {
   PointCounts counts;
-  std::uint64_t size, bucket_points, checksum;
+  std::uint64_t size, bucket_points;
   std::uint64_t codes_are_whole;
 };
 
@@ -35,21 +30,17 @@ SourceDisk PointBuckets::disk_of(std::uint64_t points, PointMerge rule) noexcept
           .output_of_vertex = kPointOutputOfVertex};
 }
 
-void PointBuckets::add_to_checksum(std::span<const std::byte> bucket) {
-  const std::array<std::uint64_t, 2> link{checksum_, checksum_of(bucket)};
-  checksum_ = checksum_of_object(link);
-}
-
 ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) const {
   static_assert(std::is_trivially_copyable_v<Kept>);
   file_->sync();
-  const Kept kept{counts_, size_, bucket_points_, checksum_, codes_are_whole_ ? 1U : 0U};
+  const Kept kept{counts_, size_, bucket_points_, codes_are_whole_ ? 1U : 0U};
   ArrayFileWriter file(files, index);
   file.put(std::span(&kept, 1));
   put_frame(file, frame_);
   file.put(hull_.corners());
   file.put(boxes_.boxes());
   file.put(ends_);
+  file.put(checksums_);
   file.put(fixed_.vertices());
   file.put(fixed_.edges());
   file.put(fixed_.sides_without_ground());
@@ -57,33 +48,8 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
   return file.facts();
 }
 
-void PointBuckets::check_points(const std::string& path, std::uint64_t expected,
-                                const std::stop_token& stop,
-                                const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
-  std::error_code ignored;
-  bool is_sound = std::filesystem::file_size(path, ignored) == (ends_.empty() ? 0 : ends_.back());
-  std::vector<std::byte> bucket;
-  for (std::uint64_t i = 0; is_sound && i < ends_.size(); ++i) {
-    stop_if_asked(stop, "the build");
-    bucket.resize(ends_[i] - begin_of(i));
-    file_->read_at(bucket, begin_of(i));
-    add_to_checksum(bucket);
-    if (progress && i % 1024 == 0) {
-      progress(i * bucket_points_, size_);
-    }
-  }
-  if (!is_sound || checksum_ != expected) {
-    throw Error(ErrorCode::corruption,
-                "the sorted points of the unfinished build are damaged; start again after "
-                "--discard",
-                path);
-  }
-}
-
 PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
-                                const std::string& index, const ArrayFileFacts& facts,
-                                const std::stop_token& stop,
-                                const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+                                const std::string& index, const ArrayFileFacts& facts) {
   ArrayFileReader file(index, facts);
   const Kept kept = file.take<Kept>()[0];
   PointBuckets result;
@@ -95,6 +61,7 @@ PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
   result.hull_ = ConvexHull(file.take_copy<GridPoint>());
   result.boxes_ = PackedBoxes(file.take_copy<GridBox>());
   result.ends_ = file.take_copy<std::uint64_t>();
+  result.checksums_ = file.take_copy<std::uint64_t>();
   LineGraph lines;
   lines.vertices = file.take_copy<LineVertex>();
   lines.edges = file.take_copy<LineEdge>();
@@ -102,7 +69,7 @@ PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
   file.require_undamaged();
   result.fixed_ = FixedEdges(std::move(lines));
   result.file_ = std::make_unique<ScratchFile>(files, buckets, ScratchFile::Kept::kExisting);
-  result.check_points(buckets, kept.checksum, stop, progress);
+  result.path_ = buckets;
   return result;
 }
 

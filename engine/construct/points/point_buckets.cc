@@ -19,6 +19,7 @@
 #include "engine/construct/points/point_spool.h"
 #include "engine/error.h"
 #include "engine/stop.h"
+#include "storage/file/checksum.h"
 
 namespace ptin {
 
@@ -106,7 +107,7 @@ class PointBuckets::Writer {
       box = united(box, p.position);
     }
     pack_bucket(bucket_, box, packed_);
-    to_.add_to_checksum(packed_);
+    to_.checksums_.push_back(checksum_of(packed_));
     const std::uint64_t begin = to_.begin_of(boxes_.size());
     to_.file_->write_at(packed_, begin);
     to_.ends_.push_back(begin + packed_.size());
@@ -247,6 +248,15 @@ HeightBits PointBuckets::stored(double height) const {
   return codes_are_whole_ ? frame_.heights.bits(height) : encode_height(frame_.heights, height);
 }
 
+void PointBuckets::require_undamaged(std::uint64_t bucket, std::span<const std::byte> bytes) const {
+  if (checksum_of(bytes) != checksums_[bucket]) {
+    throw Error(ErrorCode::corruption,
+                "the sorted points of the build are not what was written; the disk or another "
+                "program damaged them: start again after --discard",
+                path_);
+  }
+}
+
 void PointBuckets::take(std::uint64_t first, std::uint64_t count,
                         std::vector<BucketPoint>& points) const {
   points.clear();
@@ -260,6 +270,7 @@ void PointBuckets::take(std::uint64_t first, std::uint64_t count,
     const std::uint64_t bytes = ends_[number] - begin_of(number);
     packed.resize(bytes + kUnpackSlack);
     file_->read_at(std::span(packed).first(bytes), begin_of(number));
+    require_undamaged(number, std::span(packed).first(bytes));
     bucket.resize(end - begin);
     unpack_bucket(std::span(packed).first(bytes), box(number), bucket);
     for (; at < end; ++at) {

@@ -70,7 +70,7 @@ class PointBuckets {
   ///
   /// Disk, in memory.folder: 27 bytes a point while points are read, 43 (for kFirst 51) while they
   /// are sorted, then
-  /// at most 16, mostly half of that (points/packed_bucket.h). Memory: memory.bytes, and 24 bytes
+  /// at most 16, mostly half of that (points/packed_bucket.h). Memory: memory.bytes, and 32 bytes
   /// for each of at most 2^20 buckets.
   /// @param keep_as  A file that must not exist: the buckets stay in it, so that load() can take
   ///                 them up; "" keeps them in a file without a name.
@@ -92,11 +92,10 @@ class PointBuckets {
   /// @throws Error io_error, resource_exhausted
   [[nodiscard]] ArrayFileFacts save(FileLayer& files, const std::string& index) const;
   /// Takes up what read() kept in the file `buckets` and save() wrote to `index`.
-  /// @throws Error corruption  a file is not what was written; not_found, io_error, cancelled
-  /// Cost: one reading of the points, to check them.
+  /// @throws Error corruption  the index is not what was written; not_found, io_error
+  /// Cost: reads the index; a bucket is checked whenever it is taken.
   static PointBuckets load(FileLayer& files, const std::string& buckets, const std::string& index,
-                           const ArrayFileFacts& facts, const std::stop_token& stop = {},
-                           const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
+                           const ArrayFileFacts& facts);
 
   [[nodiscard]] const TerrainFrame& frame() const noexcept { return frame_; }
   [[nodiscard]] const PointCounts& counts() const noexcept { return counts_; }
@@ -115,7 +114,8 @@ class PointBuckets {
   [[nodiscard]] const GridBox& box(std::uint64_t bucket) const noexcept {
     return boxes_.boxes()[bucket];
   }
-  /// Points first .. first + count - 1 in the order of the curve.  @throws Error io_error
+  /// Points first .. first + count - 1 in the order of the curve.
+  /// @throws Error corruption  a bucket is not what was written; io_error
   void take(std::uint64_t first, std::uint64_t count, std::vector<BucketPoint>& points) const;
 
   /// Calls visit(bucket) for each bucket with meets(box of the bucket), the nearest to `from`
@@ -144,9 +144,7 @@ class PointBuckets {
   void add_fixed_vertices(const class PointOrder& order, Sorter& sorter);
   /// A height as the file of buckets holds it, as terrains store it.
   [[nodiscard]] HeightBits stored(double height) const;
-  void add_to_checksum(std::span<const std::byte> bucket);
-  void check_points(const std::string& path, std::uint64_t expected, const std::stop_token& stop,
-                    const std::function<void(std::uint64_t, std::uint64_t)>& progress);
+  void require_undamaged(std::uint64_t bucket, std::span<const std::byte> bytes) const;
   /// Where a bucket begins in the file.
   [[nodiscard]] std::uint64_t begin_of(std::uint64_t bucket) const noexcept {
     return bucket == 0 ? 0 : ends_[bucket - 1];
@@ -159,9 +157,10 @@ class PointBuckets {
   std::uint64_t bucket_points_ = 1024;
   bool codes_are_whole_ = false;  ///< Heights on disk are codes.
   std::unique_ptr<ScratchFile> file_;
-  std::vector<std::uint64_t> ends_;  ///< Where each bucket ends in the file.
-  std::uint64_t checksum_ = 0;       ///< Of all buckets: a chain, from the first to the last.
-  PackedBoxes boxes_;                ///< Those of the buckets.
+  std::vector<std::uint64_t> ends_;       ///< Where each bucket ends in the file.
+  std::vector<std::uint64_t> checksums_;  ///< Of the buckets.
+  std::string path_;                      ///< Of a file that was kept, for errors.
+  PackedBoxes boxes_;                     ///< Those of the buckets.
   FixedEdges fixed_;
 };
 

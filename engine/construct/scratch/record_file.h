@@ -4,15 +4,14 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <stop_token>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "engine/construct/scratch/external_memory.h"
@@ -51,47 +50,59 @@ class RecordFile {
   /// Writes what add() still holds. To be called after the last record.
   /// @throws Error as add()
   void finish() {
+    if (block_.empty()) {
+      return;
+    }
     file_->write_at(std::as_bytes(std::span(block_)), written_ * sizeof(Record));
-    add_to_checksum(block_);
+    checksums_.push_back(checksum_of(std::as_bytes(std::span(block_))));
     written_ += block_.size();
     block_.clear();
   }
-  /// Of all records, block by block. Complete after finish().
-  [[nodiscard]] std::uint64_t checksum() const noexcept { return checksum_; }
+  /// Of each block of records. Complete after finish().
+  [[nodiscard]] const std::vector<std::uint64_t>& checksums() const noexcept { return checksums_; }
   /// @throws Error io_error, resource_exhausted
   void sync() { file_->sync(); }
-  /// Takes up the file of an earlier process, which was finished: reads all of it. False when it is
-  /// not what was written.
-  /// @param path               Of the same file.
-  /// @param records, checksum  What size() and checksum() were.
-  /// @throws Error io_error, cancelled
-  [[nodiscard]] bool take_up(const std::string& path, std::uint64_t records, std::uint64_t checksum,
-                             const std::stop_token& stop) {
-    std::error_code ignored;
-    if (std::filesystem::file_size(path, ignored) != records * sizeof(Record)) {
-      return false;
-    }
+  /// Takes up the file of another process, which was finished. From then on every block is checked
+  /// when something of it is read.
+  /// @param path                Of the same file, for errors.
+  /// @param records, checksums  What size() and checksums() were.
+  void take_up(const std::string& path, std::uint64_t records,
+               std::vector<std::uint64_t> checksums) {
+    path_ = path;
     written_ = records;
-    std::vector<Record> block;
-    for (std::uint64_t i = 0; i < records; i += block.size()) {
-      stop_if_asked(stop, "reading temporary files");
-      take(i, std::min<std::uint64_t>(kBlock, records - i), block);
-      add_to_checksum(block);
+    checksums_ = std::move(checksums);
+    if (checksums_.size() != (records + kBlock - 1) / kBlock) {
+      refuse();
     }
-    return checksum_ == checksum;
   }
   [[nodiscard]] std::uint64_t size() const noexcept { return written_ + block_.size(); }
 
   /// Reads records `first` to `first` + `count` - 1 into `records`, which gets that length.
-  /// @throws Error io_error
+  /// @throws Error io_error; corruption  the file was taken up, and is not what was written
   void take(std::uint64_t first, std::uint64_t count, std::vector<Record>& records) const {
+    if (path_.empty() || count == 0) {
+      records.resize(count);
+      file_->read_at(std::as_writable_bytes(std::span(records)), first * sizeof(Record));
+      return;
+    }
+    const std::uint64_t begin = first / kBlock * kBlock;
+    const std::uint64_t end = std::min<std::uint64_t>(written_, padded(first + count));
+    records.resize(end - begin);
+    file_->read_at(std::as_writable_bytes(std::span(records)), begin * sizeof(Record));
+    for (std::uint64_t i = begin; i < end; i += kBlock) {
+      const auto block = std::span(records).subspan(i - begin, std::min(kBlock, end - i));
+      if (checksum_of(std::as_bytes(block)) != checksums_[i / kBlock]) {
+        refuse();
+      }
+    }
+    records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(first - begin));
     records.resize(count);
-    file_->read_at(std::as_writable_bytes(std::span(records)), first * sizeof(Record));
   }
+  /// @throws Error as take()
   [[nodiscard]] Record at(std::uint64_t i) const {
-    Record record;
-    file_->read_at(std::as_writable_bytes(std::span(&record, 1)), i * sizeof(Record));
-    return record;
+    std::vector<Record> record;
+    take(i, 1, record);
+    return record.front();
   }
   /// Calls visit(record) for all of them, in their order.
   /// @throws Error io_error, cancelled, and what `visit` throws
@@ -108,18 +119,22 @@ class RecordFile {
   }
 
  private:
-  static constexpr std::size_t kBlock = 1 << 13;
-  void add_to_checksum(const std::vector<Record>& block) {
-    if (!block.empty()) {
-      const std::array<std::uint64_t, 2> link{checksum_,
-                                              checksum_of(std::as_bytes(std::span(block)))};
-      checksum_ = checksum_of_object(link);
-    }
+  static constexpr std::uint64_t kBlock = 1 << 13;
+  static constexpr std::uint64_t padded(std::uint64_t records) {
+    return (records + kBlock - 1) / kBlock * kBlock;
+  }
+  [[noreturn]] void refuse() const {
+    throw Error(
+        ErrorCode::corruption,
+        "what was sorted for the build is not what was written; the disk or another program "
+        "damaged it: start again after --discard",
+        path_);
   }
   std::unique_ptr<ScratchFile> file_;
   std::vector<Record> block_;
   std::uint64_t written_ = 0;
-  std::uint64_t checksum_ = 0;
+  std::vector<std::uint64_t> checksums_;
+  std::string path_;  ///< Of a file that was taken up.
 };
 
 }  // namespace ptin

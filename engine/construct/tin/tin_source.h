@@ -80,11 +80,10 @@ class TinTriangles {
   /// @throws Error io_error, resource_exhausted
   [[nodiscard]] ArrayFileFacts save(FileLayer& files, const std::string& index);
   /// Takes up what read() kept as `kept_as` and save() wrote to `index`.
-  /// @throws Error corruption  a file is not what was written; not_found, io_error, cancelled
-  /// Cost: one reading of the triangles, to check them.
+  /// @throws Error corruption  the index is not what was written; not_found, io_error
+  /// Cost: reads the index; triangles are checked whenever they are taken.
   static TinTriangles load(FileLayer& files, const std::string& kept_as, const std::string& index,
-                           const ArrayFileFacts& facts, const std::stop_token& stop = {},
-                           const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
+                           const ArrayFileFacts& facts);
 
   /// What read() takes of the disk for so many vertices.
   [[nodiscard]] static SourceDisk disk_of(std::uint64_t vertices) noexcept;
@@ -98,7 +97,7 @@ class TinTriangles {
   /// is in piece i. So every triangle is in one part. A part is in general a polygon with holes, of
   /// several pieces, that may touch itself at a vertex. Its vertices are in the order of their
   /// keys.
-  /// @throws Error io_error; resource_exhausted  more triangles than one mesh in memory counts
+  /// @throws Error io_error, corruption; resource_exhausted  more triangles than one mesh in memory counts
   /// Cost: linear but for sorting; 130 bytes a triangle while it runs.
   [[nodiscard]] Tin part(std::uint64_t i, std::uint64_t n) const;
 
