@@ -39,6 +39,10 @@ BuildNote note_in(const std::string& message) {
 
 std::string message_of(const Task& task) { return text_of(json_of(task)); }
 
+std::uint64_t bytes_of_task(const std::string& message) {
+  return task_in(nlohmann::json::parse(message)).bytes;
+}
+
 std::string answer_of(const Error& error) { return text_of({{"error", json_of(error)}}); }
 
 std::string answer_to(const std::string& message, TaskWorker& worker, std::size_t thread,

@@ -3,6 +3,8 @@
 // What a process that directs a build and those that do its tasks tell each other: lines of JSON.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <stop_token>
 #include <string>
 
@@ -29,6 +31,8 @@ struct BuildNote {
 
 /// The message that a task be done. At most 1 KB for trees of up to 20 levels.
 [[nodiscard]] std::string message_of(const Task& task);
+/// Task::bytes of a message.
+[[nodiscard]] std::uint64_t bytes_of_task(const std::string& message);
 /// Does the task of a message, and tells what came of it: its result, the input that was damaged, or
 /// the error that it met.
 /// @param thread, stop  As TaskWorker::run().
