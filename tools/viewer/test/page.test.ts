@@ -2,12 +2,13 @@
 //
 // The page in a browser: it opens, refines, answers, and says what is wrong.
 import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Browser, BrowserContextOptions, Page, chromium } from 'playwright-core';
 import { host } from './host.mjs';
-import { assets, file, ptin, terrain } from './support';
+import { assets, file, program, ptin, terrain } from './support';
 
 const site = file('site');
 let browser: Browser;
@@ -280,4 +281,27 @@ test('without a stream the page asks for one', async () => {
   assert.deepEqual(faults, []);
   await page.context().close();
   await server.close();
+});
+
+test('opens a terrain of a service from the page that lists them', async () => {
+  const service = spawn(program, ['serve', `hills=${store}`, '--listen', '127.0.0.1:0'], { stdio: ['ignore', 'pipe', 'ignore'] });
+  try {
+    const address = await new Promise<string>((resolve, reject) => {
+      let said = '';
+      service.on('error', reject);
+      service.stdout!.on('data', (bytes: Buffer) => {
+        said += bytes.toString();
+        const found = /http:\/\/[\d.:]+\//.exec(said);
+        if (found !== null) resolve(found[0]);
+      });
+    });
+    const { page, faults } = await opened(address);
+    await page.locator('a', { hasText: 'hills' }).click();
+    await complete(page);
+    assert.ok(await colours(page) > 20);
+    assert.deepEqual(faults, []);
+    await page.context().close();
+  } finally {
+    service.kill();
+  }
 });
