@@ -83,7 +83,7 @@ http::Response answer_stream(const Asked& asked) {
   request.most_splits = most;
   request.most_bytes = most;
   request.metadata = tools::metadata_of_stream(asked.terrain().store(), wanted);
-  request.limits = asked.limits;
+  request.limits = engine_limits(asked, 2 * most);  // While it grows, the text is there twice.
 
   std::string text;
   const StreamSummary summary =
