@@ -92,6 +92,28 @@ TEST_F(Serve, SendsStreamsInPiecesThatGoOn) {
   EXPECT_EQ(reader.tin().triangles.size(), expected.triangles);
 }
 
+/// Not refused, as it was: how long a piece is, the service decides.
+TEST(ServeSmall, SendsShorterPiecesWhereMemoryIsShort) {
+  TestFolder folder;
+  serve::ServeOptions options = serve_options(folder);
+  options.question.question_memory = 16 << 20;
+  ServedTerrains served(options);
+  const std::string stream = "/collections/mountains/stream";
+  StreamReader reader("stream");
+  json have = json::array();
+  for (const int most_bytes : {30000, 256000}) {
+    const HttpAnswer answer =
+        served.post(stream, {{"error", 0.5}, {"have", have}, {"max_bytes", most_bytes}});
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    const auto bytes = std::as_bytes(std::span(answer.body));
+    for (std::size_t at = 0; at < bytes.size();) at += reader.feed(bytes.subspan(at));
+    have.push_back({{"error", 0.5}, {"splits", reader.splits()}});
+    EXPECT_GT(reader.splits(), 1000U);
+    EXPECT_GT(reader.certificate().error, 0.5);  // There is more to ask for.
+    if (!reader.is_complete()) reader.begin_next();
+  }
+}
+
 TEST_F(Serve, RefusesWhatAReceiverHadOfAnotherFile) {
   const HttpAnswer answer = served_->post(
       in("mountains", "stream"),
