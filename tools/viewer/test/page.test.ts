@@ -267,6 +267,23 @@ test('nothing is wider than a phone, and axe finds no serious fault', async () =
   }
 });
 
+test('a terrain of 800 km fills the picture as a small one does', async () => {
+  const heights = Array.from({ length: 40 }, (_, row) => Array.from({ length: 40 }, (_, c) => 500 + 300 * Math.sin(c / 4) * Math.cos(row / 5)));
+  writeFileSync(file('wide.asc'), ['ncols 40', 'nrows 40', 'xllcorner 0', 'yllcorner 0', 'cellsize 20000',
+    ...heights.map((row) => row.map((h) => h.toFixed(2)).join(' '))].join('\n') + '\n');
+  ptin('build', file('wide.asc'), '--a-srs', 'EPSG:3413', '-q', '-o', file('wide.ptin'));
+  ptin('stream', file('wide.ptin'), '-o', join(site, 'wide.ptins'));
+  const { page, faults } = await opened(`${fast.url}?stream=wide.ptins`);
+  await complete(page);
+  const away = await page.evaluate(() => {
+    const viewer = (window as unknown as { ptinViewer: { relief: { camera: { position: { length(): number } } } } }).ptinViewer;
+    return viewer.relief.camera.position.length();
+  });
+  assert.ok(away < 3e6, `${away} m`);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
 test('without a stream the page asks for one', async () => {
   const bare = file('bare');
   ptin('viewer', '-o', bare);
