@@ -103,7 +103,8 @@ TEST_F(ServeConventions, GivesTilesThatMayBeKept) {
   EXPECT_GT(std::stod(now.header("ptin-certified-error")), 0.0);
   EXPECT_EQ(get(tile + "?v=of_another_file").header("cache-control"), "no-cache");
   const HttpAnswer plain = get(tile);
-  EXPECT_NE(plain.header("server-timing").find("query"), std::string::npos);
+  EXPECT_NE(plain.header("server-timing").find("query;dur="), std::string::npos);
+  EXPECT_EQ(plain.header("server-timing").find("dur=0;"), std::string::npos);
   EXPECT_GT(read_terrain_tile(plain.body).triangles.size(), 10U);
   EXPECT_EQ(get(root + "9/1/1.terrain").status, 404);
 }
