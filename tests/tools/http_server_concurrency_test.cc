@@ -361,7 +361,9 @@ TEST(HttpServerConcurrency, LetsGoOfAClientThatDoesNotRead) {
 
 TEST(HttpServerConcurrency, SendsLargeAnswersWhole) {
   MadeService service;
-  RunningServer running(small_limits(), service);
+  Limits limits = small_limits();
+  limits.writing = milliseconds(10000);  // Where others work too, a client may have to wait.
+  RunningServer running(limits, service);
   HttpClient client(running.address());
   EXPECT_EQ(client.get("/large").body, std::string(std::size_t{64} << 20, 'x'));
 }

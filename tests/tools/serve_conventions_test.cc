@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What HTTP promises of the service's answers: paths, tags, what caches may keep, tiles and the page.
-#include <memory>
+#include <cstddef>
 #include <string>
+#include <string_view>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -16,30 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kHighest = "/collections/mountains/highest?crs=native";
-
-class ServeConventions : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TestFolder>();
-    serve::ServeOptions options = serve_options(*folder_);
-    options.offers_files = true;
-    served_ = std::make_unique<ServedTerrains>(options);
-  }
-  static void TearDownTestSuite() {
-    served_.reset();
-    folder_.reset();
-  }
-  static HttpAnswer get(const std::string& target, const std::string& headers = {}) {
-    return served_->get(target, headers);
-  }
-
-  static std::unique_ptr<TestFolder> folder_;
-  static std::unique_ptr<ServedTerrains> served_;
-};
-
-std::unique_ptr<TestFolder> ServeConventions::folder_;
-std::unique_ptr<ServedTerrains> ServeConventions::served_;
+class ServeConventions : public Serve {};
 
 TEST_F(ServeConventions, KnowsNoCollectionWithoutAName) {
   for (const char* path : {"/collections/", "/collections//", "/collections//position",
@@ -125,7 +103,8 @@ TEST_F(ServeConventions, GivesTilesThatMayBeKept) {
   EXPECT_GT(std::stod(now.header("ptin-certified-error")), 0.0);
   EXPECT_EQ(get(tile + "?v=of_another_file").header("cache-control"), "no-cache");
   const HttpAnswer plain = get(tile);
-  EXPECT_NE(plain.header("server-timing").find("query"), std::string::npos);
+  EXPECT_NE(plain.header("server-timing").find("query;dur="), std::string::npos);
+  EXPECT_EQ(plain.header("server-timing").find("dur=0;"), std::string::npos);
   EXPECT_GT(read_terrain_tile(plain.body).triangles.size(), 10U);
   EXPECT_EQ(get(root + "9/1/1.terrain").status, 404);
 }
@@ -157,6 +136,19 @@ TEST_F(ServeConventions, GivesThePageAsItIsPacked) {
     EXPECT_EQ(get(target, "Accept-Encoding: gzip\r\n" + known).status, 304);
   }
   EXPECT_EQ(get("/viewer/none.js").status, 404);
+}
+
+TEST_F(ServeConventions, AnswersTheLinksOfItsPage) {
+  const std::string page = get("/", "Accept: text/html\r\n").body;
+  constexpr std::string_view kLink = "<a href=\"";
+  std::size_t links = 0;
+  for (std::size_t at = 0; (at = page.find(kLink, at)) != std::string::npos; ++links) {
+    at += kLink.size();
+    const std::string target = page.substr(at, page.find('"', at) - at);
+    EXPECT_EQ(get(target).status, 200) << target;
+  }
+  EXPECT_EQ(links, 5U);  // The viewer and the facts of two terrains, and /api.
+  EXPECT_EQ(get("/viewer/?collection=coast&vertices=1000").status, 200);
 }
 
 TEST(ServeToken, KeepsTilesOutOfSharedCaches) {

@@ -16,6 +16,8 @@
 #include <boost/asio/write.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/read.hpp>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -25,11 +27,13 @@ namespace {
 
 namespace beast_http = boost::beast::http;
 
-/// So much is written under one deadline.
-constexpr std::size_t kPieceBytes = std::size_t{64} << 10;
+/// So much of an answer waits in the system's memory, beside what is on its way: without a bound it
+/// takes megabytes for each client that does not read.
+constexpr int kMostUnsentBytes = 128 << 10;
 /// So much of a refused request is still read, for at most so long, before the connection closes:
 /// a socket that is closed while bytes wait in it resets, and the client loses the answer.
 constexpr std::uint64_t kMostDropped = std::uint64_t{1} << 20;
+constexpr std::size_t kDroppedPieceBytes = std::size_t{4} << 10;
 constexpr std::chrono::milliseconds kLinger{1000};
 
 double seconds_between(std::chrono::steady_clock::time_point from,
@@ -102,7 +106,12 @@ Connection::Connection(boost::asio::ip::tcp::socket socket, ConnectionHost& host
 
 Connection::~Connection() { close(); }
 
-void Connection::start() { wait_for_request(host_.limits.reading); }
+void Connection::start() {
+  // Where the system does not know it, it keeps its own bound.
+  static_cast<void>(::setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT,
+                                 &kMostUnsentBytes, sizeof kMostUnsentBytes));
+  wait_for_request(host_.limits.reading);
+}
 
 void Connection::drain() {
   keeps_ = false;
@@ -425,33 +434,63 @@ void Connection::write_next(Status status, std::size_t bytes) {
   bytes_written_ += bytes;
   if (state_ != State::kWriting) return;
   if (status) return end_of_answer(false);
-  const std::uint64_t whole = response_.body_bytes();
-  if (body_written_ == whole) return end_of_answer(true);
+  if (body_written_ == response_.body_bytes()) return end_of_answer(true);
   if (!response_.long_body && Clock::now() > write_by_) return end_of_answer(false);
-  if (response_.long_body && !fetch_piece()) return end_of_answer(false);
   set_deadline(host_.limits.writing, [this] { end_of_answer(false); });
-  const std::size_t size =
-      static_cast<std::size_t>(std::min<std::uint64_t>(whole - body_written_, kPieceBytes));
+  if (response_.long_body) return wait_for_room();
+  host_.turns.wait([self = shared_from_this()] {
+    if (self->state_ == State::kWriting) self->write_piece();
+  });
+}
+
+/// Of an answer in memory.
+void Connection::write_piece() {
   const std::string_view body =
       response_.lasting_body.empty() ? response_.body : response_.lasting_body;
-  const char* from = response_.long_body ? piece_.data() : body.data() + body_written_;
-  body_written_ += size;
-  boost::asio::async_write(socket_, boost::asio::buffer(from, size),
+  const std::string_view piece = body.substr(body_written_, kPieceBytes);
+  body_written_ += piece.size();
+  boost::asio::async_write(socket_, boost::asio::buffer(piece),
                            [self = shared_from_this()](const Status& next, std::size_t n) {
                              self->write_next(next, n);
                            });
 }
 
-bool Connection::fetch_piece() {
+/// A piece is read when the socket takes some of it, so that no memory is held for clients that do
+/// not read.
+void Connection::wait_for_room() {
+  socket_.async_wait(boost::asio::ip::tcp::socket::wait_write,
+                     [self = shared_from_this()](const Status& status) {
+                       if (self->state_ != State::kWriting) return;
+                       if (status) return self->end_of_answer(false);
+                       self->host_.turns.wait([self] {
+                         if (self->state_ == State::kWriting) self->write_long_piece();
+                       });
+                     });
+}
+
+void Connection::write_long_piece() {
+  std::vector<char>& piece = host_.turns.room();
+  const std::uint64_t left = response_.long_body->bytes - body_written_;
+  const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(left, kPieceBytes));
   try {
-    piece_.resize(kPieceBytes);
-    const std::uint64_t left = response_.long_body->bytes - body_written_;
-    const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(left, kPieceBytes));
-    response_.long_body->read(body_written_, std::span(piece_).first(size));
-    return true;
+    response_.long_body->read(body_written_, std::span(piece).first(size));
   } catch (const std::exception&) {
-    return false;  // The connection closes before the announced length: the client notices.
+    // The connection closes before the announced length: the client notices.
+    return end_of_answer(false);
   }
+  Status status;
+  socket_.non_blocking(true, status);
+  const std::size_t taken =
+      status ? 0 : socket_.write_some(boost::asio::buffer(piece.data(), size), status);
+  if (status && status != boost::asio::error::would_block) return end_of_answer(false);
+  const std::uint64_t before = body_written_;
+  body_written_ += taken;
+  bytes_written_ += taken;
+  if (body_written_ == response_.long_body->bytes) return end_of_answer(true);
+  if (body_written_ / kPieceBytes != before / kPieceBytes) {
+    set_deadline(host_.limits.writing, [this] { end_of_answer(false); });
+  }
+  wait_for_room();
 }
 
 void Connection::end_of_answer(bool is_whole) {
@@ -481,7 +520,7 @@ void Connection::linger() {
 }
 
 void Connection::drop_what_comes() {
-  piece_.resize(kPieceBytes);
+  piece_.resize(kDroppedPieceBytes);
   socket_.async_read_some(boost::asio::buffer(piece_),
                           [self = shared_from_this()](const Status& status, std::size_t bytes) {
                             self->dropped_ += bytes;

@@ -23,6 +23,7 @@
 #include "tools/http/memory_budget.h"
 #include "tools/http/problem.h"
 #include "tools/http/service.h"
+#include "tools/http/turns.h"
 #include "tools/http/worker_pool.h"
 
 namespace ptin::http {
@@ -34,6 +35,7 @@ struct ConnectionHost {
   WorkerPool& pool;
   /// Of bodies that arrive or are answered.
   std::shared_ptr<MemoryBudget> bodies;
+  Turns& turns;  ///< Of answers that take more than one piece.
   std::uint64_t next_request = 1;
   bool drains = false;  ///< No request is taken any more.
 };
@@ -85,7 +87,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// @param then_close  The answer is the last one of the connection.
   void write(Response response, bool then_close);
   void write_next(Status status, std::size_t bytes);
-  [[nodiscard]] bool fetch_piece();
+  void write_piece();
+  void wait_for_room();
+  void write_long_piece();
   void end_of_answer(bool is_whole);
   void linger();
   void drop_what_comes();

@@ -16,6 +16,7 @@
 
 #include "engine/error.h"
 #include "tools/http/connection.h"
+#include "tools/http/turns.h"
 #include "tools/http/worker_pool.h"
 
 namespace ptin::http {
@@ -55,7 +56,9 @@ struct Server::Inside {
       : limits(limits_given),
         host{limits, service, pool,
              std::make_shared<MemoryBudget>(std::max<std::uint64_t>(
-                 limits.memory_bytes / 6, std::uint64_t{4} * limits.body_bytes))},
+                 limits.memory_bytes / 6, std::uint64_t{4} * limits.body_bytes)),
+             turns},
+        turns(io.get_executor()),
         acceptor(io),
         pause(io),
         pool(limits.threads, limits.waiting) {
@@ -134,6 +137,7 @@ struct Server::Inside {
   std::unordered_map<Connection*, std::weak_ptr<Connection>> connections;
   ConnectionHost host;
   boost::asio::io_context io{1};
+  Turns turns;  // Those that wait in it are connections, whose sockets are the context's.
   tcp::acceptor acceptor;
   boost::asio::steady_timer pause;
   WorkerPool pool;

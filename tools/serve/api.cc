@@ -115,7 +115,11 @@ http::Response answer_api(const Asked& asked) {
     if (endpoint.takes_post) paths[path]["post"] = operation_of(endpoint, true);
   }
   Json security = Json::array();
-  if (!asked.options.token.empty()) security.push_back({{"bearer", Json::array()}});
+  Json components = {{"responses", {{"Problem", problem_response()}}}};
+  if (!asked.options.token.empty()) {
+    security.push_back({{"bearer", Json::array()}});
+    components["securitySchemes"] = {{"bearer", {{"type", "http"}, {"scheme", "bearer"}}}};
+  }
   return json_response(
       {{"openapi", "3.0.3"},
        {"info",
@@ -126,9 +130,7 @@ http::Response answer_api(const Asked& asked) {
        {"servers", Json::array({{{"url", "/"}}})},
        {"security", std::move(security)},
        {"paths", std::move(paths)},
-       {"components",
-        {{"responses", {{"Problem", problem_response()}}},
-         {"securitySchemes", {{"bearer", {{"type", "http"}, {"scheme", "bearer"}}}}}}}},
+       {"components", std::move(components)}},
       format.media);
 }
 

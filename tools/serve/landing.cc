@@ -107,13 +107,15 @@ Json landing_json() {
 std::string landing_html(const Asked& asked) {
   std::string page =
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Terrains</title>"
-      "<meta name=\"viewport\" content=\"width=device-width\"><style>body{font:16px/1.5 "
-      "system-ui;max-width:46rem;margin:3rem auto;padding:0 1rem}</style><h1>Terrains</h1><ul>";
+      "<meta name=\"viewport\" content=\"width=device-width\">"
+      "<link rel=\"icon\" href=\"data:,\"><style>body{font:16px/1.5 "
+      "system-ui;max-width:46rem;margin:3rem auto;padding:0 "
+      "1rem}</style><main><h1>Terrains</h1><ul>";
   for (const auto& c : asked.catalogue.all()) {  // An id holds nothing that HTML would read.
     page += "<li><a href=\"/viewer/index.html?collection=" + c->id + "\">" + c->id +
             "</a> (<a href=\"/collections/" + c->id + "\">facts</a>)</li>";
   }
-  return page + "</ul><p><a href=\"/api\">The service as OpenAPI</a></p></html>\n";
+  return page + "</ul><p><a href=\"/api\">The service as OpenAPI</a></p></main></html>\n";
 }
 
 }  // namespace

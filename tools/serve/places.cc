@@ -11,6 +11,7 @@
 #include <ogr_spatialref.h>
 
 #include "tools/http/problem.h"
+#include "tools/tiles/curve_range.h"
 
 namespace ptin::serve {
 
@@ -19,13 +20,19 @@ namespace {
 constexpr std::string_view kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
 constexpr std::string_view kEpsg = "http://www.opengis.net/def/crs/EPSG/0/";
 /// Steps along a side of a window: a straight side may be bent in the other CRS.
-constexpr int kStepsOfSide = 21;
-constexpr double kHalfTurn = 180, kTurn = 360;  // degrees
+constexpr int kStepsOfSide = 32;
+constexpr double kQuarterTurn = 90, kHalfTurn = 180, kTurn = 360;  // degrees
 
 using Transformation = std::unique_ptr<OGRCoordinateTransformation>;
 struct BothWays {
   Transformation there, back;
 };
+/// One of them, and the one against it.
+struct Way {
+  OGRCoordinateTransformation *there, *back;
+};
+Way forth(const BothWays& ways) { return {ways.there.get(), ways.back.get()}; }
+Way back(const BothWays& ways) { return {ways.back.get(), ways.there.get()}; }
 
 /// What the client's CRS is called for GDAL; nothing where it is the terrain's own.
 std::optional<std::string> name_of(const std::string& asked) {
@@ -92,56 +99,68 @@ bool transform(OGRCoordinateTransformation& way, MapPoint& place) {
   return true;
 }
 
-/// Positions along the sides of a window, once around it; the last one is the first one.
-std::vector<MapPoint> around(const Window& w) {
+/// Positions along a side of a window, from corner to corner; the four go once around it.
+std::vector<MapPoint> along_side(const Window& w, std::size_t side) {
   const MapPoint corners[] = {
       {w.min_x, w.min_y}, {w.max_x, w.min_y}, {w.max_x, w.max_y}, {w.min_x, w.max_y}};
+  const MapPoint &a = corners[side], &b = corners[(side + 1) % 4];
   std::vector<MapPoint> path;
-  for (std::size_t side = 0; side < 4; ++side) {
-    const MapPoint &a = corners[side], &b = corners[(side + 1) % 4];
-    for (int i = 0; i < kStepsOfSide; ++i) {
-      path.push_back({a.x + (b.x - a.x) * i / kStepsOfSide, a.y + (b.y - a.y) * i / kStepsOfSide});
-    }
+  for (int i = 0; i <= kStepsOfSide; ++i) {
+    const double t = static_cast<double>(i) / kStepsOfSide;
+    path.push_back({std::lerp(a.x, b.x, t), std::lerp(a.y, b.y, t)});
   }
-  path.push_back(path.front());
   return path;
 }
 
 /// The multiple of a turn that brings a longitude nearest to another one.
 double turns_towards(double x, double other) { return kTurn * std::round((other - x) / kTurn); }
 
-/// Longitudes jump by a turn at the antimeridian: takes that out along a path. A path around a pole
-/// then does not come back to where it began.
-void unwrap(std::vector<MapPoint>& path) {
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    path[i].x += turns_towards(path[i].x, path[i - 1].x);
-  }
+/// Whether a pole is one position of a CRS, and lies in a window of it or on its border.
+/// @param way  From longitude and latitude.
+bool holds_pole(OGRCoordinateTransformation& way, const Window& w, double lat) {
+  MapPoint pole{0, lat}, turned{120, lat};
+  if (!transform(way, pole) || !transform(way, turned)) return false;
+  const double near = 1e-9 * (w.max_x - w.min_x + w.max_y - w.min_y);
+  const bool is_one = std::hypot(pole.x - turned.x, pole.y - turned.y) <= near;
+  return is_one && pole.x >= w.min_x - near && pole.x <= w.max_x + near &&
+         pole.y >= w.min_y - near && pole.y <= w.max_y + near;
 }
 
-Window box_of(std::span<const MapPoint> places) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Window box{kFar, kFar, -kFar, -kFar};
-  for (const MapPoint& p : places) {
-    box = {std::min(box.min_x, p.x), std::min(box.min_y, p.y), std::max(box.max_x, p.x),
-           std::max(box.max_y, p.y)};
+/// The box that holds a window's sides in the other CRS; none where one of their positions has none
+/// there.
+/// @param turns  x there is a longitude in degrees. It jumps by a turn at the antimeridian, which is
+///               taken out along the sides: the box may reach beyond 180.
+std::optional<Window> box_of_sides(OGRCoordinateTransformation& way, const Window& window,
+                                   bool turns) {
+  tools::CurveRange x, y;
+  std::optional<double> last;
+  for (std::size_t side = 0; side < 4; ++side) {
+    std::vector<double> xs, ys;
+    for (MapPoint p : along_side(window, side)) {
+      if (!transform(way, p)) return std::nullopt;
+      if (turns && last) p.x += turns_towards(p.x, *last);
+      last = p.x;
+      xs.push_back(p.x);
+      ys.push_back(p.y);
+    }
+    x.hold_curve(xs);
+    y.hold_curve(ys);
   }
-  return box;
+  return Window{x.low, y.low, x.high, y.high};
 }
 
-/// The box around the places of a window's sides; none where one of them has no place.
-/// @param turns  x of the places is a longitude in degrees: the box may reach beyond 180 then.
-std::optional<Window> box_around(OGRCoordinateTransformation& way, const Window& window,
-                                 bool turns) {
-  std::vector<MapPoint> path = around(window);
-  for (MapPoint& p : path) {
-    if (!transform(way, p)) return std::nullopt;
-  }
-  if (turns) unwrap(path);
-  Window box = box_of(path);
-  const bool holds_pole = turns && std::abs(path.back().x - path.front().x) > kHalfTurn;
-  if (holds_pole) {
-    const bool is_north = box.min_y + box.max_y > 0;
-    box = {-kHalfTurn, is_north ? box.min_y : -90, kHalfTurn, is_north ? 90 : box.max_y};
+/// The box that holds a window in the other CRS, as above. A pole within the window makes it all
+/// longitudes, up to the pole.
+std::optional<Window> box_around(const Way& way, const Window& window, bool turns) {
+  std::optional<Window> box = box_of_sides(*way.there, window, turns);
+  if (!box || !turns) return box;
+  const bool north = holds_pole(*way.back, window, kQuarterTurn);
+  const bool south = holds_pole(*way.back, window, -kQuarterTurn);
+  box->min_y = south ? -kQuarterTurn : std::max(box->min_y, -kQuarterTurn);
+  box->max_y = north ? kQuarterTurn : std::min(box->max_y, kQuarterTurn);
+  if (north || south) {
+    box->min_x = -kHalfTurn;
+    box->max_x = kHalfTurn;
   }
   return box;
 }
@@ -267,7 +286,7 @@ Window Places::to_terrain(const Window& given) const {
     window.max_x += kTurn;
   }
   if (!is_native()) {
-    const std::optional<Window> box = box_around(*inside_->ways->there, window, turns_);
+    const std::optional<Window> box = box_around(forth(*inside_->ways), window, turns_);
     if (!box) {
       throw http::Problem(400,
                           "the window reaches where the CRS of this collection has no positions; "
@@ -287,7 +306,7 @@ Window Places::to_terrain(const Window& given) const {
 
 std::optional<Window> Places::from_terrain(const Window& window) const {
   if (is_native()) return window;
-  const std::optional<Window> box = box_around(*inside_->ways->back, window, client_turns_);
+  const std::optional<Window> box = box_around(back(*inside_->ways), window, client_turns_);
   return box && client_turns_ ? wrapped(*box) : box;
 }
 
@@ -295,7 +314,7 @@ std::optional<Window> lon_lat_of(const Window& window, const CrsFacts& terrain) 
   if (terrain.wkt.empty()) return std::nullopt;
   const std::shared_ptr<BothWays> ways = both_ways("OGC:CRS84", terrain.wkt);
   if (ways == nullptr) return std::nullopt;
-  const std::optional<Window> box = box_around(*ways->back, window, true);
+  const std::optional<Window> box = box_around(back(*ways), window, true);
   return box ? std::optional(wrapped(*box)) : std::nullopt;
 }
 

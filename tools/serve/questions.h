@@ -25,6 +25,7 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
 // What they take. A page: what is about the service itself, but for the landing page.
 [[nodiscard]] std::span<const ParameterFact> landing_parameters() noexcept;
 [[nodiscard]] std::span<const ParameterFact> page_parameters() noexcept;
+[[nodiscard]] std::span<const ParameterFact> viewer_parameters() noexcept;
 [[nodiscard]] std::span<const ParameterFact> position_parameters() noexcept;
 [[nodiscard]] std::span<const ParameterFact> trajectory_parameters() noexcept;
 [[nodiscard]] std::span<const ParameterFact> area_parameters() noexcept;

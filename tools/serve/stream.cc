@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Progressive transmission, in bounded pieces: T0 and what matters most, then what a client lacks.
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
 
+#include "engine/error.h"
 #include "tools/http/problem.h"
 #include "tools/region/serving.h"
 #include "tools/serve/answer_parts.h"
@@ -63,6 +65,23 @@ std::uint64_t most_bytes(const Asked& asked) {
   return asked_for;
 }
 
+/// The bytes of a piece. It may end on any frame: where so many splits take more than the memory of
+/// a question, there are fewer in it.
+StreamSummary write_piece(const Asked& asked, StreamRequest& request, std::string& text) {
+  constexpr std::uint64_t kFewSplits = 4096;
+  while (true) {
+    try {
+      return asked.terrain().stream(request, [&](std::span<const std::byte> bytes) {
+        text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      });
+    } catch (const Error& error) {
+      const bool is_large = error.code() == ErrorCode::resource_exhausted && text.empty();
+      if (!is_large || request.most_splits <= kFewSplits) throw;
+      request.most_splits /= 2;
+    }
+  }
+}
+
 }  // namespace
 
 std::span<const ParameterFact> stream_parameters() noexcept { return kStreamParameters; }
@@ -79,17 +98,16 @@ http::Response answer_stream(const Asked& asked) {
   request.wanted = tools::predicate_of(wanted, asked.facts(), "window");
   request.tolerance = wanted.error;
   request.held = held_of(asked);
-  // About as many as so many bytes hold, and more: splits behind the cut are not looked for.
-  request.most_splits = most;
+  request.limits = engine_limits(asked, 2 * most);  // While it grows, the text is there twice.
+  // No more than so many bytes hold and so much memory takes: those behind the cut are not looked for.
+  constexpr std::uint64_t kMemoryOfSplit = 512;
+  request.most_splits =
+      std::max<std::uint64_t>(1, std::min(most, request.limits.memory_bytes / kMemoryOfSplit));
   request.most_bytes = most;
   request.metadata = tools::metadata_of_stream(asked.terrain().store(), wanted);
-  request.limits = asked.limits;
 
   std::string text;
-  const StreamSummary summary =
-      asked.terrain().stream(request, [&](std::span<const std::byte> bytes) {
-        text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-      });
+  const StreamSummary summary = write_piece(asked, request, text);
   http::Response response = text_response(std::move(text), "application/vnd.ptin.stream");
   response.add("Ptin-Splits", std::to_string(summary.splits));
   response.add("Ptin-Fingerprint", asked.collection->fingerprint);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The files of the viewer, which are packed into the program.
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@
 namespace ptin::serve {
 
 namespace {
+
+/// What the page reads of its own address; the files are the same whatever it says.
+constexpr auto kViewerParameters = std::to_array<ParameterFact>(
+    {{"collection", "string", "the terrain that the page opens", "m"},
+     {"stream", "string", "instead of a collection: the address of a stream"},
+     {"service", "string", "the service that has the collection, where it is another one"},
+     {"vertices", "integer", "so many vertices are shown at most", "400000"}});
 
 /// A file as it is sent, made once.
 struct SentFile {
@@ -48,6 +56,8 @@ http::Response response_of(const SentFile& sent, const http::Request& request) {
 }
 
 }  // namespace
+
+std::span<const ParameterFact> viewer_parameters() noexcept { return kViewerParameters; }
 
 http::Response answer_viewer(const Asked& asked) {
   const std::string_view name = asked.rest.empty() ? "index.html" : asked.rest;

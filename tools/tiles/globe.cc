@@ -13,6 +13,7 @@
 
 #include "engine/crs/ground.h"
 #include "engine/error.h"
+#include "tools/tiles/curve_range.h"
 
 namespace ptin::tools {
 
@@ -65,22 +66,38 @@ Window window_of(const GridBox& b) {
           static_cast<double>(b.max_y)};
 }
 
-/// Calls visit(x, y) for points along the border of a box, in order: `steps` a side, from a corner on.
-template <class Visit>
-void walk_around(const Window& w, int steps, const Visit& visit) {
+/// Calls visit(xs, ys) for each side of a box: `steps` + 1 points from corner to corner, of which
+/// place(x, y) tells two numbers each.
+template <class Place, class Visit>
+void walk_sides(const Window& w, std::size_t steps, const Place& place, const Visit& visit) {
   const std::array<MapPoint, 5> corners{{{w.min_x, w.min_y},
                                          {w.max_x, w.min_y},
                                          {w.max_x, w.max_y},
                                          {w.min_x, w.max_y},
                                          {w.min_x, w.min_y}}};
+  std::vector<double> xs(steps + 1), ys(steps + 1);
   for (std::size_t side = 0; side < 4; ++side) {
     const MapPoint& a = corners[side];
     const MapPoint& b = corners[side + 1];
-    for (int i = 0; i < steps; ++i) {
-      const double t = static_cast<double>(i) / steps;
-      visit(std::lerp(a.x, b.x, t), std::lerp(a.y, b.y, t));
+    for (std::size_t i = 0; i <= steps; ++i) {
+      const double t = static_cast<double>(i) / static_cast<double>(steps);
+      const MapPoint p = place(std::lerp(a.x, b.x, t), std::lerp(a.y, b.y, t));
+      xs[i] = p.x;
+      ys[i] = p.y;
     }
+    visit(xs, ys);
   }
+}
+
+/// Whether a pole is one place of the map that lies in a box of the grid, or on its border.
+bool holds_pole(const GlobePath& path, const AffineMap& map, const GridBox& b, double lat) {
+  const MapPoint pole = map.to_grid(path.to_map(0.0, lat));
+  const MapPoint turned = map.to_grid(path.to_map(120.0, lat));
+  constexpr double kSame = 1.0;  // grid unit
+  const bool is_one =
+      std::hypot(pole.x - turned.x, pole.y - turned.y) < kSame;  // false of no place
+  return is_one && pole.x > b.min_x - kSame && pole.x < b.max_x + kSame &&
+         pole.y > b.min_y - kSame && pole.y < b.max_y + kSame;
 }
 
 }  // namespace
@@ -189,26 +206,36 @@ Globe::Globe(const StoreFacts& facts, const CrsFacts& crs, const GlobeOptions& o
 
 void Globe::find_box(const GlobePath& path) {
   const GridBox& b = facts_.bounds;
-  GlobeBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  double last_lon = HUGE_VAL;
-  double turned = 0.0;
-  walk_around(window_of(b), 64, [&](double x, double y) {
-    const GlobePoint p = path.to_globe(x, y, 0.0);
-    box.west = std::min(box.west, p.lon);
-    box.east = std::max(box.east, p.lon);
-    box.south = std::min(box.south, p.lat);
-    box.north = std::max(box.north, p.lat);
-    if (std::isfinite(last_lon)) turned = std::max(turned, std::abs(p.lon - last_lon));
-    last_lon = p.lon;
-  });
-  if (degrees_per_map_unit_ == 0 && turned > 180.0)
+  const bool is_plane = degrees_per_map_unit_ == 0;
+  CurveRange lon, lat;
+  bool turns =
+      is_plane && (holds_pole(path, facts_.map, b, 90.0) || holds_pole(path, facts_.map, b, -90.0));
+  // Where heights are transformed, positions depend on them.
+  std::vector<double> heights = {0.0};
+  if (options_.to_ellipsoid && facts_.min_height <= facts_.max_height)
+    heights = {facts_.min_height, facts_.max_height};
+  for (const double height : heights) {
+    const auto place = [&](double x, double y) {
+      const GlobePoint p = path.to_globe(x, y, height);
+      return MapPoint{p.lon, p.lat};
+    };
+    walk_sides(window_of(b), 64, place,
+               [&](const std::vector<double>& lons, const std::vector<double>& lats) {
+                 for (std::size_t i = 1; i < lons.size(); ++i)
+                   turns = turns || (is_plane && std::abs(lons[i] - lons[i - 1]) > 180.0);
+                 lon.hold_curve(lons);
+                 lat.hold_curve(lats);
+               });
+  }
+  if (turns)
     refuse("a pole lies within the terrain, which tiles of longitude and latitude cannot show");
-  // Sides are curves between the points that were looked at.
-  const double share = degrees_per_map_unit_ > 0 ? 1e-12 : 1e-3;
-  const double wider = share * (box.east - box.west);
-  const double higher = share * (box.north - box.south);
-  box_ = {box.west - wider, std::max(-90.0, box.south - higher), box.east + wider,
-          std::min(90.0, box.north + higher)};
+  if (is_plane) {  // As GlobePath::to_globe() turns longitudes.
+    lon.low = std::max(lon.low, middle_lon_ - 180.0);
+    lon.high = std::min(lon.high, middle_lon_ + 180.0);
+  }
+  const double rounding = 1e-12 * (lon.high - lon.low);
+  box_ = {lon.low - rounding, std::max(-90.0, lat.low - rounding), lon.high + rounding,
+          std::min(90.0, lat.high + rounding)};
 }
 
 Globe::Lease Globe::path() const {
@@ -237,33 +264,30 @@ GridBox Globe::grid_box(const GlobeBox& asked) const {
                      std::min(asked.east, box_.east), std::min(asked.north, box_.north)};
   if (box.west > box.east || box.south > box.north) return {};
   const GridBox& all = facts_.bounds;
-  double min_x = HUGE_VAL, min_y = HUGE_VAL, max_x = -HUGE_VAL, max_y = -HUGE_VAL;
+  CurveRange x, y;
   bool is_finite = true;
   const Lease way = path();
-  walk_around({box.west, box.south, box.east, box.north}, 16, [&](double lon, double lat) {
-    const MapPoint at = facts_.map.to_grid(way->to_map(lon, lat));
-    is_finite = is_finite && std::isfinite(at.x) && std::isfinite(at.y);
-    min_x = std::min(min_x, at.x);
-    max_x = std::max(max_x, at.x);
-    min_y = std::min(min_y, at.y);
-    max_y = std::max(max_y, at.y);
-  });
+  walk_sides(
+      {box.west, box.south, box.east, box.north}, 16,
+      [&](double lon, double lat) { return facts_.map.to_grid(way->to_map(lon, lat)); },
+      [&](const std::vector<double>& xs, const std::vector<double>& ys) {
+        for (std::size_t i = 0; i < xs.size(); ++i)
+          is_finite = is_finite && std::isfinite(xs[i]) && std::isfinite(ys[i]);
+        x.hold_curve(xs);
+        y.hold_curve(ys);
+      });
   if (!is_finite) return all;
-  // Sides are curves between the points; a grid unit more is for rounding.
-  const double share = degrees_per_map_unit_ > 0 ? 1e-6 : 0.02;
-  const double wider = share * (max_x - min_x) + 1.0;
-  const double higher = share * (max_y - min_y) + 1.0;
+  constexpr double kRounding = 1.0;  // grid unit
+  const double min_x = x.low - kRounding, max_x = x.high + kRounding;
+  const double min_y = y.low - kRounding, max_y = y.high + kRounding;
   const auto clamped = [](double v, std::int32_t low, std::int32_t high) {
     return static_cast<std::int32_t>(std::clamp(v, double(low), double(high)));
   };
-  if (max_x + wider < all.min_x || min_x - wider > all.max_x || max_y + higher < all.min_y ||
-      min_y - higher > all.max_y) {
-    return {};
-  }
-  return {clamped(std::floor(min_x - wider), all.min_x, all.max_x),
-          clamped(std::floor(min_y - higher), all.min_y, all.max_y),
-          clamped(std::ceil(max_x + wider), all.min_x, all.max_x),
-          clamped(std::ceil(max_y + higher), all.min_y, all.max_y)};
+  if (max_x < all.min_x || min_x > all.max_x || max_y < all.min_y || min_y > all.max_y) return {};
+  return {clamped(std::floor(min_x), all.min_x, all.max_x),
+          clamped(std::floor(min_y), all.min_y, all.max_y),
+          clamped(std::ceil(max_x), all.min_x, all.max_x),
+          clamped(std::ceil(max_y), all.min_y, all.max_y)};
 }
 
 }  // namespace ptin::tools

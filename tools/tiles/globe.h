@@ -87,7 +87,7 @@ class Globe {
   };
   [[nodiscard]] Lease path() const;
 
-  /// Around the terrain's domain. A little larger than need be where the CRS is no geographic one.
+  /// Holds the terrain's domain. A little larger than need be where its sides are bent in degrees.
   [[nodiscard]] const GlobeBox& box() const noexcept { return box_; }
   /// Of all heights, metres, after they were transformed. Bounds that are reached where heights are
   /// taken as they are.

@@ -15,9 +15,33 @@ namespace ptin::tools {
 
 namespace {
 
-TileGrid grid_of(const Globe& globe) {
+/// Positions of a level are multiples of this, metres: a power of two.
+double position_step_of(double error, double extent, int level) {
+  // Heights are not rounded, so this is all that positions lose beside the lattice's share.
+  const double finest = std::ldexp(extent, -level - 22);
+  return std::ldexp(1.0, std::ilogb(std::max(error / 1024, finest)));
+}
+
+/// How far the content of a level may lie beside the terrain's domain, metres: by the rounding of
+/// positions, less than a step, and by the straight edges of triangles on a curved Earth. Edges leave
+/// their place by `chord` at most, a triangle's middle by less than half as much again.
+double beyond_domain(const TileLevel& level, double extent) {
+  return position_step_of(level.error, extent, 0) + 1.5 * level.chord;
+}
+
+/// The box that is divided into tiles: it holds what the coarsest level's content takes.
+TileGrid grid_of(const Globe& globe, double beyond) {
   const GlobeBox& box = globe.box();
-  return {box.west, box.south, box.east - box.west, box.north - box.south, 1, 1, false};
+  constexpr double kLeastCurve = 6335439.0;    // metres, of a meridian
+  constexpr double kLeastParallel = 1e-3;      // of the equator: next to a pole no longitude is far
+  constexpr double kMostWidth = 360.0 - 1e-9;  // west and east are not to be the same meridian
+  const double degrees = beyond / kLeastCurve * (180.0 / M_PI);
+  const double south = std::max(-90.0, box.south - degrees);
+  const double north = std::min(90.0, box.north + degrees);
+  const double farthest = std::max(std::abs(south), std::abs(north));
+  const double wider = degrees / std::max(std::cos(farthest * (M_PI / 180.0)), kLeastParallel);
+  const double width = std::min(box.east - box.west + 2 * wider, kMostWidth);
+  return {0.5 * (box.west + box.east - width), south, width, north - south, 1, 1, false};
 }
 
 /// The diagonal of the box around the terrain, by its sides over ground: it is no less than that of
@@ -111,17 +135,26 @@ TerrainTileset::TerrainTileset(const Terrain& terrain, std::shared_ptr<const Glo
                                const TerrainTilesOptions& options, const QueryLimits& limits)
     : extent_(extent_of(*globe)),
       first_error_(wanted_error(terrain, *globe, extent_)),
-      pyramid_(terrain, globe, grid_of(*globe), tileset_levels_of(terrain, *globe, first_error_),
-               {0, options.most_vertices, options.coverage_triangles}, limits) {
+      pyramid_(made_pyramid(terrain, std::move(globe), options, limits)) {
   // A file that tells of no error as large as that of its only level has one level alone.
   first_error_ = std::max(first_error_, pyramid_.level(0).error);
 }
 
+TilePyramid TerrainTileset::made_pyramid(const Terrain& terrain, std::shared_ptr<const Globe> globe,
+                                         const TerrainTilesOptions& options,
+                                         const QueryLimits& limits) const {
+  std::vector<TileLevel> levels = tileset_levels_of(terrain, *globe, first_error_);
+  const TileGrid grid = grid_of(*globe, beyond_domain(levels.front(), extent_));
+  return {terrain,
+          std::move(globe),
+          grid,
+          std::move(levels),
+          {0, options.most_vertices, options.coverage_triangles},
+          limits};
+}
+
 double TerrainTileset::position_step(int level) const {
-  // Heights are not rounded, so this is all that positions lose beside the lattice's share.
-  const double finest = std::ldexp(extent_, -level - 22);
-  const double wanted = std::max(pyramid_.level(level).error / 1024, finest);
-  return std::ldexp(1.0, std::ilogb(wanted));
+  return position_step_of(pyramid_.level(level).error, extent_, level);
 }
 
 bool TerrainTileset::has_tile(std::int64_t level, std::int64_t x, std::int64_t y) const noexcept {
@@ -137,16 +170,16 @@ bool TerrainTileset::has_content(std::int64_t level, std::int64_t x,
 }
 
 nlohmann::json TerrainTileset::tileset_json() const {
-  const GlobeBox& box = pyramid_.globe().box();
+  const TileGrid& grid = pyramid_.grid();
   const auto radians = [](double degrees) { return degrees * (M_PI / 180.0); };
-  const double east = box.east > 180.0 ? box.east - 360.0 : box.east;
-  const double west = box.west < -180.0 ? box.west + 360.0 : box.west;
-  // Positions are rounded, the coarsest most.
-  const double slack = position_step(0);
+  const double grid_east = grid.west + grid.width;
+  const double east = grid_east > 180.0 ? grid_east - 360.0 : grid_east;
+  const double west = grid.west < -180.0 ? grid.west + 360.0 : grid.west;
+  const double slack = beyond_domain(pyramid_.level(0), extent_);
   nlohmann::json root = {
       {"boundingVolume",
        {{"region",
-         {radians(west), radians(box.south), radians(east), radians(box.north),
+         {radians(west), radians(grid.south), radians(east), radians(grid.south + grid.height),
           pyramid_.globe().min_height() - slack, pyramid_.globe().max_height() + slack}}}},
       {"geometricError", first_error_},
       {"refine", "REPLACE"},

@@ -2,7 +2,10 @@
 //
 // A terrain as 3D Tiles 1.1: tileset.json with implicit tiling, subtrees, and tiles as GLB.
 //
-// - The root is the box around the terrain, in longitude and latitude; each tile has four children.
+// - The root is a box in longitude and latitude around the terrain and around all contents: their
+//   positions are rounded, and their triangles are flat on a curved Earth. Each tile has four
+//   children, and its content may leave its share of the root's region, into that of a neighbour, by
+//   a position_step() and half as much again as TileLevel::chord, as neighbours share what is cut.
 //   A tile of level L lies within tileset.json's geometric error of the root / 2^L of the terrain,
 //   certified: it is made from the TIN of less than that. The root's is what the file certifies for
 //   its coarsest TIN, or a 64th of the terrain's extent where that is less. The finest level is
@@ -60,6 +63,9 @@ class TerrainTileset {
  private:
   TerrainTileset(const Terrain& terrain, std::shared_ptr<const Globe> globe,
                  const TerrainTilesOptions& options, const QueryLimits& limits);
+  [[nodiscard]] TilePyramid made_pyramid(const Terrain& terrain, std::shared_ptr<const Globe> globe,
+                                         const TerrainTilesOptions& options,
+                                         const QueryLimits& limits) const;
 
   double extent_ = 0.0;  ///< Of the terrain, metres.
   double first_error_ = 0.0;

@@ -2,6 +2,7 @@
 #include "tools/tiles/tile_pyramid.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -267,6 +268,7 @@ std::vector<TileRectangle> TilePyramid::rectangles(int z) const {
 }
 
 TileMesh TilePyramid::mesh(const TileId& tile, const QueryLimits& limits) const {
+  const auto start = std::chrono::steady_clock::now();
   const TileId unrolled{tile.level, unrolled_column(tile), tile.y};
   const TileBox box = TileGrid::box_of(unrolled);
   const TileBox keep = box.widened(TileCut::kNearby, TileCut::kNearby);
@@ -289,6 +291,8 @@ TileMesh TilePyramid::mesh(const TileId& tile, const QueryLimits& limits) const 
   mesh.add(*tin, terrain_.store().facts(), limits.stop);
   TileMesh made = TileMeshMaker(mesh, box, tile, options_.most_vertices).made(limits.stop);
   made.cost = parts.cost();
+  made.cost.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return made;
 }
 

@@ -29,7 +29,7 @@ struct TileMesh {
   };
   std::vector<Vertex> vertices;  ///< In the order in which the triangles use them first.
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Counter-clockwise seen from above.
-  QueryCost cost;                                       ///< Of gathering the triangles.
+  QueryCost cost;  ///< Of gathering the triangles; the time is that of the mesh.
 };
 
 /// A tile as a format has it.

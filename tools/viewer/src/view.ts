@@ -48,6 +48,7 @@ export class View {
     for (let distance = 0.4 * extent; distance < 5 * extent; distance *= 1.05) {
       this.home = this.homeAt(frame, distance, free);
       this.pose(this.home, exaggeration);
+      this.clip(frame);
       if (this.isWhole(frame, exaggeration, 1 - 2 * free)) break;
     }
   }
@@ -111,14 +112,16 @@ export class View {
   update(): boolean {
     this.controls.enableDamping = !this.reducedMotion();
     const moved = this.controls.update();
-    const { frame, camera } = this;
-    if (frame !== null) {
-      const distance = camera.position.distanceTo(this.controls.target);
-      camera.near = Math.max(distance / 2000, 0.05);
-      camera.far = camera.position.length() + 2 * Math.hypot(frame.width, frame.depth, frame.relief);
-      camera.updateProjectionMatrix();
-    }
+    if (this.frame !== null) this.clip(this.frame);
     return moved;
+  }
+
+  /** Near and far are around the terrain, wherever the camera is. */
+  private clip(frame: Frame): void {
+    const { camera } = this;
+    camera.near = Math.max(camera.position.distanceTo(this.controls.target) / 2000, 0.05);
+    camera.far = camera.position.length() + 2 * Math.hypot(frame.width, frame.depth, frame.relief);
+    camera.updateProjectionMatrix();
   }
 
   pan(right: number, up: number): void {

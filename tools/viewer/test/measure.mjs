@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How fast streams are decoded and shown, and how large the page is.
+// How fast streams are decoded and shown, how large the page is, and what a service sends until there is a picture.
 // usage: node measure.mjs STREAM...    CHROMIUM=path measures the page in a browser, too, with pictures by software
+//        CHROMIUM=path node measure.mjs http://127.0.0.1:8080/collections/ID...    a terrain of a service, in a browser
 import { execFileSync } from 'node:child_process';
 import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { basename, dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
@@ -15,6 +17,8 @@ const assets = join(here, '..', 'assets');
 const scratch = mkdtempSync(join(tmpdir(), 'ptin-measure-'));
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 const repeats = 5;
+const marks = ['ptin-first-picture', 'ptin-settled'];
+const isService = (given) => /^http:\/\//.test(given);
 
 let packed = 0;
 for (const name of ['index.html', 'viewer.js', 'worker.js', 'decoder.wasm']) {
@@ -31,7 +35,9 @@ execFileSync(join(here, '..', 'node_modules', '.bin', 'esbuild'),
 const { Decoder } = await import(pathToFileURL(decoderPath).href);
 const module = new WebAssembly.Module(readFileSync(join(assets, 'decoder.wasm')));
 
-for (const stream of process.argv.slice(2)) {
+for (const address of process.argv.slice(2).filter(isService)) await ofService(new URL(address));
+
+for (const stream of process.argv.slice(2).filter((given) => !isService(given))) {
   const bytes = readFileSync(stream);
   const rates = [];
   let splits = 0;
@@ -49,17 +55,77 @@ for (const stream of process.argv.slice(2)) {
 }
 rmSync(scratch, { recursive: true });
 
+async function launched() {
+  const { chromium } = await import('playwright-core');
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM, args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'],
+  });
+}
+
+/** Milliseconds from the address being asked for to the first picture, and to the first time that nothing is awaited. */
+async function shownAfter(page, address) {
+  await page.goto(address);
+  await page.waitForFunction((names) => names.every((name) => performance.getEntriesByName(name).length !== 0), marks, { timeout: 120000 });
+  return page.evaluate((names) => names.map((name) => performance.getEntriesByName(name)[0].startTime), marks);
+}
+
+/** Passes on what goes between a browser and a service, and keeps when how many bytes came from the service. */
+async function tapped(target) {
+  const pieces = [];
+  const sockets = new Set();
+  const server = createServer((near) => {
+    const far = connect(Number(target.port || 80), target.hostname);
+    for (const [socket, other] of [[near, far], [far, near]]) {
+      sockets.add(socket);
+      socket.setNoDelay();
+      socket.on('error', () => { other.destroy(); });
+      socket.on('close', () => { sockets.delete(socket); other.destroy(); });
+    }
+    far.on('data', (bytes) => { pieces.push([performance.timeOrigin + performance.now(), bytes.length]); });
+    near.pipe(far);
+    far.pipe(near);
+  });
+  await new Promise((resolve) => { server.listen(0, '127.0.0.1', resolve); });
+  return {
+    url: `http://127.0.0.1:${server.address().port}/`,
+    begin: () => { pieces.length = 0; },
+    bytesUntil: (time) => pieces.reduce((sum, [at, bytes]) => sum + (at <= time ? bytes : 0), 0),
+    close: () => { server.close(); for (const socket of sockets) socket.destroy(); },
+  };
+}
+
+/** All that a browser without any cache gets of a service: the page, the terrain's facts, the stream, and heads. */
+async function ofService(address) {
+  if (!process.env.CHROMIUM) throw new Error('a service is measured in a browser: name it by CHROMIUM=path');
+  const id = decodeURIComponent(/\/collections\/([^/]+)$/.exec(address.pathname)?.[1] ?? '');
+  if (id === '') throw new Error(`${address} is no address of a collection`);
+  const tap = await tapped(address);
+  const browser = await launched();
+  const runs = [];
+  for (let i = 0; i < repeats; ++i) {
+    const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+    const page = await context.newPage();
+    tap.begin();
+    const [first] = await shownAfter(page, `${tap.url}viewer/index.html?collection=${encodeURIComponent(id)}`);
+    const begin = await page.evaluate(() => performance.timeOrigin);
+    runs.push({ time: first, bytes: tap.bytesUntil(begin + first) });
+    await context.close();
+  }
+  const times = runs.map((run) => run.time);
+  console.log(`${address}, Chromium ${browser.version()}: first picture after ${median(runs.map((run) => run.bytes))} bytes and ` +
+    `${Math.round(median(times))} ms, the quickest of ${repeats} after ${Math.round(Math.min(...times))} ms`);
+  await browser.close();
+  tap.close();
+}
+
 /** The decoder alone in a page, then the whole page from its address to the first and the last picture. */
 async function inBrowser(stream, splits) {
-  const { chromium } = await import('playwright-core');
   const site = join(scratch, 'site');
   cpSync(assets, site, { recursive: true });
   cpSync(stream, join(site, 'dem.ptins'));
   cpSync(decoderPath, join(site, 'decoder.js'));
   const server = await host(site);
-  const browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM, args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'],
-  });
+  const browser = await launched();
   const alone = await browser.newPage();
   await alone.goto(`${server.url}decoder.js`);
   const rate = await alone.evaluate(async (repeats) => {
@@ -80,9 +146,7 @@ async function inBrowser(stream, splits) {
   for (let i = 0; i < repeats; ++i) {
     const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
     const page = await context.newPage();
-    await page.goto(`${server.url}?stream=dem.ptins`);
-    await page.waitForFunction(() => performance.getEntriesByName('ptin-settled').length !== 0, null, { timeout: 120000 });
-    times.push(await page.evaluate(() => ['ptin-first-picture', 'ptin-settled'].map((n) => performance.getEntriesByName(n)[0].startTime)));
+    times.push(await shownAfter(page, `${server.url}?stream=dem.ptins`));
     await context.close();
   }
   console.log(`  Chromium ${browser.version()}: ${Math.round(rate)} splits/s; first picture after ` +

@@ -2,12 +2,13 @@
 //
 // The page in a browser: it opens, refines, answers, and says what is wrong.
 import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Browser, BrowserContextOptions, Page, chromium } from 'playwright-core';
 import { host } from './host.mjs';
-import { assets, file, ptin, terrain } from './support';
+import { assets, file, program, ptin, terrain } from './support';
 
 const site = file('site');
 let browser: Browser;
@@ -266,6 +267,23 @@ test('nothing is wider than a phone, and axe finds no serious fault', async () =
   }
 });
 
+test('a terrain of 800 km fills the picture as a small one does', async () => {
+  const heights = Array.from({ length: 40 }, (_, row) => Array.from({ length: 40 }, (_, c) => 500 + 300 * Math.sin(c / 4) * Math.cos(row / 5)));
+  writeFileSync(file('wide.asc'), ['ncols 40', 'nrows 40', 'xllcorner 0', 'yllcorner 0', 'cellsize 20000',
+    ...heights.map((row) => row.map((h) => h.toFixed(2)).join(' '))].join('\n') + '\n');
+  ptin('build', file('wide.asc'), '--a-srs', 'EPSG:3413', '-q', '-o', file('wide.ptin'));
+  ptin('stream', file('wide.ptin'), '-o', join(site, 'wide.ptins'));
+  const { page, faults } = await opened(`${fast.url}?stream=wide.ptins`);
+  await complete(page);
+  const away = await page.evaluate(() => {
+    const viewer = (window as unknown as { ptinViewer: { relief: { camera: { position: { length(): number } } } } }).ptinViewer;
+    return viewer.relief.camera.position.length();
+  });
+  assert.ok(away < 3e6, `${away} m`);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
 test('without a stream the page asks for one', async () => {
   const bare = file('bare');
   ptin('viewer', '-o', bare);
@@ -280,4 +298,27 @@ test('without a stream the page asks for one', async () => {
   assert.deepEqual(faults, []);
   await page.context().close();
   await server.close();
+});
+
+test('opens a terrain of a service from the page that lists them', async () => {
+  const service = spawn(program, ['serve', `hills=${store}`, '--listen', '127.0.0.1:0'], { stdio: ['ignore', 'pipe', 'ignore'] });
+  try {
+    const address = await new Promise<string>((resolve, reject) => {
+      let said = '';
+      service.on('error', reject);
+      service.stdout!.on('data', (bytes: Buffer) => {
+        said += bytes.toString();
+        const found = /http:\/\/[\d.:]+\//.exec(said);
+        if (found !== null) resolve(found[0]);
+      });
+    });
+    const { page, faults } = await opened(address);
+    await page.locator('a', { hasText: 'hills' }).click();
+    await complete(page);
+    assert.ok(await colours(page) > 20);
+    assert.deepEqual(faults, []);
+    await page.context().close();
+  } finally {
+    service.kill();
+  }
 });

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Areas as coverages, and what OGC's clients send.
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/query/terrain.h"
+#include "tests/tools/serve_fixture.h"
+#include "tools/facts/answers.h"
+
+namespace ptin::tools::testing {
+namespace {
+
+using nlohmann::json;
+
+TEST_F(Serve, GivesCoveragesWithOneMeaningOfNull) {
+  const Window w = bounds_of(*coast_);
+  const std::string ring = "POLYGON((" + text_of({w.min_x, w.min_y}) + "," +
+                           text_of({w.max_x, w.min_y}) + "," + text_of({w.max_x, w.max_y}) + "," +
+                           text_of({w.min_x, w.min_y}) + "))";
+  const HttpAnswer answer =
+      get(in("coast", "area?crs=native&resolution-x=20&resolution-y=10&coords=" + encoded(ring)));
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  EXPECT_EQ(answer.header("content-type"), "application/prs.coverage+json");
+  const json coverage = answer.json();
+  const json& heights = coverage["ranges"]["height"];
+  const json& states = coverage["ranges"]["state"]["values"];
+  EXPECT_EQ(heights["shape"], (json{11, 21}));
+  EXPECT_EQ(heights["values"].size(), 231U);
+  EXPECT_EQ(coverage["domain"]["axes"]["x"]["num"], 21);
+  std::set<int> seen;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    EXPECT_EQ(heights["values"][i].is_null(), states[i] != 0) << i;
+    seen.insert(states[i].get<int>());
+  }
+  EXPECT_TRUE(seen.count(0) != 0 && seen.count(3) != 0);
+  // A height of the grid is the height at that position.
+  const double x = w.min_x + (w.max_x - w.min_x) * 18 / 20,
+               y = w.min_y + (w.max_y - w.min_y) * 1 / 10;
+  const json point = get(in("coast", "position?crs=native&f=json&coords=" +
+                                         encoded("POINT(" + text_of({x, y}) + ")")))
+                         .json();
+  EXPECT_EQ(heights["values"][1 * 21 + 18], point["points"][0]["height"]);
+}
+
+TEST_F(Serve, TakesWhatOgcAndOthersClientsSend) {
+  const std::string at = "POINT(-118.3%2034.34)";
+  const json plain = get(in("mountains", "position?coords=" + at)).json();
+  EXPECT_EQ(get(in("mountains", "position?datetime=2026-01-01&z=5&coords=" + at)).json(), plain);
+  for (const char* wkt : {"POINTZ(-118.3 34.34 7)", "PointZM (-118.3 34.34 7 1)",
+                          "POINT Z(-118.3 34.34 7)", "  point(-118.3 34.34) "}) {
+    EXPECT_EQ(get(in("mountains", "position?coords=" + encoded(wkt))).json(), plain) << wkt;
+  }
+  EXPECT_EQ(get(in("mountains", "profile?coords=" +
+                                    encoded("LINESTRINGZM(-118.3 34.34 1 2, -118.29 34.35 1 2)")))
+                .status,
+            200);
+  const json two = get(in("mountains", "position?parameter-name=state,height&coords=" + at)).json();
+  EXPECT_EQ(two["ranges"].size(), 2U);
+  EXPECT_EQ(two["ranges"]["height"], plain["ranges"]["height"]);
+  EXPECT_EQ(two["parameters"].size(), 2U);
+  const json ids = plain["parameters"]["state"]["observedProperty"]["categories"];
+  EXPECT_EQ(ids[2]["id"], name_of(PointState::kOutside));
+  // The area's positions alone, as a position question has them.
+  const std::string ring =
+      encoded("POLYGON((-118.31 34.34,-118.3 34.34,-118.3 34.35,-118.31 34.34))");
+  const std::string area = in("mountains", "area?resolution-x=4&resolution-y=4&coords=" + ring);
+  const json features = get(area + "&f=geojson").json()["features"];
+  const json coverage = get(area).json();
+  std::size_t inner = 0;
+  for (const json& state : coverage["ranges"]["state"]["values"]) inner += state == 3 ? 0 : 1;
+  ASSERT_EQ(features.size(), inner);
+  ASSERT_GT(inner, 3U);
+  const json& first = features[0];
+  const json& xy = first["geometry"]["coordinates"];
+  const json same =
+      get(in("mountains", "position?f=geojson&coords=" +
+                              encoded("POINT(" + xy[0].dump() + " " + xy[1].dump() + ")")))
+          .json();
+  EXPECT_EQ(same["features"][0]["properties"], first["properties"]);
+  const std::string csv = get(area + "&f=csv").body;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), inner + 1);
+  EXPECT_EQ(get("/collections/mountains").json()["parameter_names"].size(), 4U);
+}
+
+}  // namespace
+}  // namespace ptin::tools::testing
