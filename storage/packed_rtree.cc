@@ -2,6 +2,7 @@
 #include "storage/packed_rtree.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "engine/geometry/infinity.h"
 #include "storage/descriptor.h"
 #include "storage/page_columns.h"
+#include "storage/page_stores.h"
 
 namespace ptin {
 
@@ -84,6 +86,7 @@ void PackedRTree::descend(const Test& test, IoCounters& counters, const Take& ta
     std::swap(found, below);
   }
   nodes_.require_undamaged();
+  nodes_.settle(counters);
 }
 
 void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId>& pages,
@@ -100,20 +103,51 @@ void PackedRTree::search_stars(const StarFilter& filter, std::vector<StarPage>& 
   });
 }
 
+/// A node or page on the heap of a best-first search.
+class PackedRTree::Waiting {
+ public:
+  Merit bound;
+  std::uint32_t level;  // above that of its descriptor; 0: a page
+  std::uint64_t number;
+  std::uint64_t checksum;  // of a page: its place among the attributes
+  bool operator<(const Waiting& other) const {
+    if (bound.is_below(other.bound) || other.bound.is_below(bound)) {
+      return bound.is_below(other.bound);
+    }
+    return level != other.level ? level < other.level : number > other.number;
+  }
+};
+
+bool PackedRTree::is_at_hand(const Waiting& w) const noexcept {
+  return w.level == 0 ? pages_->is_at_hand(PageId{w.number})
+                      : nodes_.is_at_hand(w.level - 1, w.number);
+}
+
+/// Of a far file, where what is visited next must be waited for: announces with it the best of what
+/// waits, which will probably be visited soon.
+void PackedRTree::announce_best(const Waiting& next, std::vector<Waiting>& heap,
+                                IoCounters& counters) const {
+  constexpr std::size_t kMostBeside = 7;
+  if (pages_ == nullptr || !pages_->is_far() || is_at_hand(next)) {
+    return;
+  }
+  std::vector<Waiting> best(std::min(kMostBeside, heap.size()), next);
+  std::partial_sort_copy(heap.begin(), heap.end(), best.begin(), best.end(),
+                         [](const Waiting& a, const Waiting& b) { return b < a; });
+  best.insert(best.begin(), next);  // What is read first is announced first.
+  RangesToCome ranges(nodes_.file(), counters);
+  for (const Waiting& w : best) {
+    if (w.level == 0) {
+      const PageId page{w.number};
+      pages_->add_ranges(std::span(&page, 1), ranges);
+    } else {
+      nodes_.add_ranges(w.level - 1, std::span(&w.number, 1), ranges);
+    }
+  }
+}
+
 void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor,
                                           Merit cut_off, IoCounters& counters) const {
-  struct Waiting {
-    Merit bound;
-    std::uint32_t level;  // above that of its descriptor; 0: a page
-    std::uint64_t number;
-    std::uint64_t checksum;  // of a page: its place in `pages`
-    bool operator<(const Waiting& other) const {
-      if (bound.is_below(other.bound) || other.bound.is_below(bound)) {
-        return bound.is_below(other.bound);
-      }
-      return level != other.level ? level < other.level : number > other.number;
-    }
-  };
   const IndexShape& shape = nodes_.shape();
   if (shape.levels() == 0) {
     return;
@@ -125,6 +159,7 @@ void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisi
     std::pop_heap(heap.begin(), heap.end());
     const Waiting at = heap.back();
     heap.pop_back();
+    announce_best(at, heap, counters);
     if (at.level == 0) {
       cut_off = visitor.visit(PageId{at.number}, pages[at.checksum]);
       continue;
@@ -144,6 +179,7 @@ void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisi
     });
   }
   nodes_.require_undamaged();
+  nodes_.settle(counters);
 }
 
 /// Calls `take` for each entry that passes the test.

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "engine/error.h"
+#include "engine/remote/remote_file.h"
 #include "tools/http/etag.h"
 #include "tools/serve/places.h"
 
@@ -27,6 +28,11 @@ bool is_name(const std::string& id) {
          std::all_of(id.begin(), id.end(), is_plain);
 }
 
+Terrain opened(const std::string& path) {
+  return is_remote(path) ? Terrain(open_remote_store(path))
+                         : Terrain::open(path, PageAccess::kMapped, ReplacedFile::kAnswers);
+}
+
 /// Whether trying again gives nothing else.
 bool is_damaged(const std::exception& error) {
   const auto* const known = dynamic_cast<const Error*>(&error);
@@ -41,6 +47,8 @@ std::string version_of(const Collection& collection, const std::string& program)
 }
 
 std::optional<FileIdentity> identity_of(const std::string& path) {
+  // Of an object elsewhere each answer tells whether it is the one that was opened.
+  if (is_remote(path)) return FileIdentity{};
   struct stat facts {};
   if (::stat(path.c_str(), &facts) != 0) return std::nullopt;
   return FileIdentity{facts.st_dev, facts.st_ino, static_cast<std::uint64_t>(facts.st_size),
@@ -50,7 +58,7 @@ std::optional<FileIdentity> identity_of(const std::string& path) {
 Collection::Collection(std::string name, const std::string& path)
     : id(std::move(name)),
       identity(identity_of(path).value_or(FileIdentity{})),
-      terrain(Terrain::open(path, PageAccess::kMapped, ReplacedFile::kAnswers)),
+      terrain(opened(path)),
       crs(crs_facts(terrain.store())),
       ground(ground_of(crs)),
       fingerprint(http::hex_of(terrain.store().fingerprint())) {
