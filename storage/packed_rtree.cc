@@ -123,61 +123,106 @@ bool PackedRTree::is_at_hand(const Waiting& w) const noexcept {
                       : nodes_.is_at_hand(w.level - 1, w.number);
 }
 
-/// Of a far file, where what is visited next must be waited for: announces with it the best of what
-/// waits, which will probably be visited soon.
-void PackedRTree::announce_best(const Waiting& next, std::vector<Waiting>& heap,
-                                IoCounters& counters) const {
-  constexpr std::size_t kMostBeside = 7;
-  if (pages_ == nullptr || !pages_->is_far() || is_at_hand(next)) {
-    return;
+/// The heap of a best-first search, and what is done with its nodes.
+class PackedRTree::BestFirst {
+ public:
+  BestFirst(const PackedRTree& tree, const StarFilter& filter, BestStarVisitor& visitor,
+            Merit cut_off, IoCounters& counters)
+      : tree_(tree),
+        test_(filter, tree.heights_),
+        visitor_(visitor),
+        cut_off_(cut_off),
+        counters_(counters),
+        heap_{{kBestMerit, tree.nodes_.shape().levels(), 0, tree.nodes_.root_checksum()}} {}
+
+  void run() {
+    while (is_left()) {
+      const Waiting at = pop();
+      if (tree_.pages_ != nullptr && tree_.pages_->is_far() && !tree_.is_at_hand(at)) {
+        announce_with_best(at);
+      }
+      if (at.level == 0) {
+        cut_off_ = visitor_.visit(PageId{at.number}, pages_[at.checksum]);
+      } else {
+        open(at);
+      }
+    }
   }
-  std::vector<Waiting> best(std::min(kMostBeside, heap.size()), next);
-  std::partial_sort_copy(heap.begin(), heap.end(), best.begin(), best.end(),
-                         [](const Waiting& a, const Waiting& b) { return b < a; });
-  best.insert(best.begin(), next);  // What is read first is announced first.
-  RangesToCome ranges(nodes_.file(), counters);
+
+ private:
+  [[nodiscard]] bool is_left() const {
+    return !heap_.empty() && !heap_.front().bound.is_below(cut_off_);
+  }
+  Waiting pop() {
+    std::pop_heap(heap_.begin(), heap_.end());
+    const Waiting at = heap_.back();
+    heap_.pop_back();
+    return at;
+  }
+  void push(const Waiting& w) {
+    heap_.push_back(w);
+    std::push_heap(heap_.begin(), heap_.end());
+  }
+  void open(const Waiting& at);
+  void announce_with_best(const Waiting& next);
+
+  const PackedRTree& tree_;
+  StarTest test_;
+  BestStarVisitor& visitor_;
+  Merit cut_off_;
+  IoCounters& counters_;
+  std::vector<StarAttributes> pages_;
+  std::vector<Waiting> heap_;
+};
+
+/// Puts what a node describes on the heap.
+void PackedRTree::BestFirst::open(const Waiting& at) {
+  const NodePlace place{at.level - 1, at.number, at.checksum};
+  tree_.visit(place, test_, counters_, [&](std::uint64_t child, const layout::NodeEntry& entry) {
+    const StarAttributes a = star_attributes_of(entry, tree_.heights_);
+    const bool is_page = place.level == 0;
+    const Merit bound = is_page ? visitor_.bound(a) : visitor_.bound_of_node(a, place.level - 1);
+    if (!bound.is_below(cut_off_)) {
+      push({bound, place.level, child, is_page ? pages_.size() : entry.checksum});
+      if (is_page) {
+        pages_.push_back(a);
+      }
+    }
+  });
+}
+
+/// Of a far file, where what is visited next must be waited for: announces with it the best of what
+/// waits, which will probably be visited soon. Nodes that are at hand are opened for that; the order
+/// in which nodes are decides nothing.
+void PackedRTree::BestFirst::announce_with_best(const Waiting& next) {
+  constexpr std::size_t kMostTogether = 6;
+  std::vector<Waiting> best{next};  // What is read first is announced first.
+  while (best.size() < kMostTogether && is_left()) {
+    const Waiting at = pop();
+    if (at.level > 0 && tree_.is_at_hand(at)) {
+      open(at);
+    } else {
+      best.push_back(at);
+    }
+  }
+  RangesToCome ranges(tree_.nodes_.file(), counters_);
   for (const Waiting& w : best) {
     if (w.level == 0) {
       const PageId page{w.number};
-      pages_->add_ranges(std::span(&page, 1), ranges);
+      tree_.pages_->add_ranges(std::span(&page, 1), ranges);
     } else {
-      nodes_.add_ranges(w.level - 1, std::span(&w.number, 1), ranges);
+      tree_.nodes_.add_ranges(w.level - 1, std::span(&w.number, 1), ranges);
     }
   }
+  std::for_each(best.begin() + 1, best.end(), [&](const Waiting& w) { push(w); });
 }
 
 void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor,
                                           Merit cut_off, IoCounters& counters) const {
-  const IndexShape& shape = nodes_.shape();
-  if (shape.levels() == 0) {
+  if (nodes_.shape().levels() == 0) {
     return;
   }
-  const StarTest test(filter, heights_);
-  std::vector<StarAttributes> pages;
-  std::vector<Waiting> heap{{kBestMerit, shape.levels(), 0, nodes_.root_checksum()}};
-  while (!heap.empty() && !heap.front().bound.is_below(cut_off)) {
-    std::pop_heap(heap.begin(), heap.end());
-    const Waiting at = heap.back();
-    heap.pop_back();
-    announce_best(at, heap, counters);
-    if (at.level == 0) {
-      cut_off = visitor.visit(PageId{at.number}, pages[at.checksum]);
-      continue;
-    }
-    const NodePlace place{at.level - 1, at.number, at.checksum};
-    visit(place, test, counters, [&](std::uint64_t child, const layout::NodeEntry& entry) {
-      const StarAttributes a = star_attributes_of(entry, heights_);
-      const bool is_page = place.level == 0;
-      const Merit bound = is_page ? visitor.bound(a) : visitor.bound_of_node(a, place.level - 1);
-      if (!bound.is_below(cut_off)) {
-        heap.push_back({bound, place.level, child, is_page ? pages.size() : entry.checksum});
-        std::push_heap(heap.begin(), heap.end());
-        if (is_page) {
-          pages.push_back(a);
-        }
-      }
-    });
-  }
+  BestFirst(*this, filter, visitor, cut_off, counters).run();
   nodes_.require_undamaged();
   nodes_.settle(counters);
 }

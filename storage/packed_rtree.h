@@ -96,7 +96,7 @@ class PackedRTree final : public RecordIndex {
     std::uint64_t number, checksum;
   };
   class Waiting;
-  void announce_best(const Waiting& next, std::vector<Waiting>& heap, IoCounters& counters) const;
+  class BestFirst;
   [[nodiscard]] bool is_at_hand(const Waiting& w) const noexcept;
   template <class Test, class Take>
   void descend(const Test& test, IoCounters& counters, const Take& take) const;

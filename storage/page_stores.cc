@@ -21,8 +21,8 @@ void DescribedPageStore::add_ranges(std::span<const PageId> ids,
   RangeJoiner range(slots_.page_bytes);
   const auto send = [&] {
     if (range.size() > 0) {
-      ranges.add({slots_.offset + range.begin() * slots_.page_bytes,
-                  range.size() * slots_.page_bytes});
+      ranges.add(
+          {slots_.offset + range.begin() * slots_.page_bytes, range.size() * slots_.page_bytes});
     }
   };
   for (const PageId id : ids) {

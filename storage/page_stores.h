@@ -22,6 +22,7 @@ class DescribedPageStore : public PageStore {
  public:
   [[nodiscard]] std::uint64_t page_count() const noexcept final { return slots_.pages; }
   [[nodiscard]] std::size_t page_bytes() const noexcept final { return slots_.page_bytes; }
+  [[nodiscard]] bool is_far() const noexcept final { return file_.is_far(); }
   void announce(std::span<const PageId> ids, IoCounters& counters) const noexcept final;
   /// Adds the ranges of pages, which ascend, to those that are announced together.
   void add_ranges(std::span<const PageId> ids, RangesToCome& ranges) const noexcept;
@@ -44,8 +45,7 @@ class DescribedPageStore : public PageStore {
   /// @throws Error corruption  bytes that view_described() returned may not be those of the file
   virtual void require_undamaged() const {}
 
-  /// ReadableFile::is_far() and is_at_hand(), of a page.
-  [[nodiscard]] bool is_far() const noexcept { return file_.is_far(); }
+  /// ReadableFile::is_at_hand(), of a page.
   [[nodiscard]] bool is_at_hand(PageId id) const noexcept {
     return index_of(id) >= slots_.pages ||
            file_.is_at_hand({slots_.offset_of(id), slots_.page_bytes});

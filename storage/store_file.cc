@@ -95,8 +95,7 @@ StoreFileImpl::StoreFileImpl(std::unique_ptr<ReadOnlyFile> file, PageAccess acce
   file_ = std::move(file);
   if (access == PageAccess::kMapped) {
     mapping_.emplace(opened);
-    nodes_ =
-        std::make_unique<MappedIndexNodes>(opened, *mapping_, root(), front_.facts.heights);
+    nodes_ = std::make_unique<MappedIndexNodes>(opened, *mapping_, root(), front_.facts.heights);
     pages_ = std::make_unique<MappedPageStore>(opened, *mapping_, front_.slots, *nodes_);
   } else {
     read_by_copies();

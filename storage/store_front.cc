@@ -244,8 +244,8 @@ void announce_front(const StoreFront& front, const ReadableFile& file) {
   const IndexShape& index = front.index;
   const std::uint64_t upper =
       index.levels() < 2 ? index.total_nodes() : index.total_nodes() - index.nodes(0);
-  const ByteRange whole{
-      0, front.index_offset + std::min(upper, kMostUpperNodes) * layout::kNodeBytes};
+  const ByteRange whole{0,
+                        front.index_offset + std::min(upper, kMostUpperNodes) * layout::kNodeBytes};
   file.will_need(std::span(&whole, 1));
 }
 

@@ -138,9 +138,9 @@ void HttpRanges::reap() {
   int left = 0;
   while (const CURLMsg* const message = curl_multi_info_read(multi_.get(), &left)) {
     if (message->msg != CURLMSG_DONE) continue;
-    const auto done =
-        std::find_if(running_.begin(), running_.end(),
-                     [&](const Running& r) { return r.handle.get() == message->easy_handle; });
+    const auto done = std::find_if(running_.begin(), running_.end(), [&](const Running& r) {
+      return r.handle.get() == message->easy_handle;
+    });
     const CURLcode code = message->data.result;
     curl_multi_remove_handle(multi_.get(), done->handle.get());
     Waiting work = done->work;

@@ -15,6 +15,19 @@ namespace ptin {
 namespace {
 
 constexpr double kMostPauseSeconds = 10;
+constexpr std::size_t kMostWords = 4096;
+
+/// What stores of objects say of a refusal, in XML, as the end of a sentence.
+std::string message_in(const std::string& words) {
+  constexpr std::string_view kBegin = "<Message>";
+  const std::size_t begin = words.find(kBegin);
+  const std::size_t end = words.find("</Message>");
+  if (begin == std::string::npos || end == std::string::npos || end < begin) return "";
+  std::string message = words.substr(begin + kBegin.size(), end - begin - kBegin.size());
+  const auto is_control = [](unsigned char c) { return c < ' ' || c == 127; };
+  std::replace_if(message.begin(), message.end(), is_control, ' ');
+  return ": " + message;
+}
 
 std::string_view trimmed(std::string_view text) {
   const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
@@ -157,6 +170,7 @@ void HttpTransfer::begin(CURL* handle, const std::string& url) {
   received_ = 0;
   refused_ = is_judged_ = false;
   bad_.reset();
+  words_.clear();
   curl_easy_reset(handle);  // keeps its connections
   curl_easy_setopt(handle, CURLOPT_URL, url.c_str());
   curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "http,https");
@@ -200,7 +214,10 @@ std::size_t HttpTransfer::take_body(char* data, std::size_t size, std::size_t co
       t.bad_ = t.fault_of_head();
     }
     if (t.bad_) return 0;
-    if (t.head_.status != 206) return bytes;  // the words of a refusal
+    if (t.head_.status != 206) {
+      t.words_.append(data, std::min(bytes, kMostWords - t.words_.size()));
+      return bytes;
+    }
     if (bytes > t.range_.out.size() - t.received_) {
       t.bad_.emplace(ErrorCode::io_error, "the server sent more bytes than were asked for",
                      t.name_);
@@ -217,10 +234,11 @@ std::size_t HttpTransfer::take_body(char* data, std::size_t size, std::size_t co
 /// What is wrong with an answer that is a success.
 std::optional<Error> HttpTransfer::fault_of_head() {
   if (head_.status == 200) {
-    return Error(ErrorCode::invalid_argument,
-                 "the server sends whole files and no ranges of them (status 200 to a request for a "
-                 "range): copy the file, or put it on a server that sends ranges",
-                 name_);
+    return Error(
+        ErrorCode::invalid_argument,
+        "the server sends whole files and no ranges of them (status 200 to a request for a "
+        "range): copy the file, or put it on a server that sends ranges",
+        name_);
   }
   if (head_.status != 206) return std::nullopt;
   if (!head_.encoding.empty() && !is_header(head_.encoding, "identity")) {
@@ -279,17 +297,19 @@ bool HttpTransfer::finish(CURLcode code) {
   if (refused_) {
     fail({ErrorCode::io_error,
           "the server refuses access (status " + std::to_string(status) +
-              "): look at the credentials, and at the region and the name of the object",
+              "): look at the credentials, and at the region and the name of the object" +
+              message_in(words_),
           name_});
   } else if (status == 404 || status == 410) {
-    fail({ErrorCode::not_found,
-          "there is no such object (status " + std::to_string(status) + ")", name_});
+    fail({ErrorCode::not_found, "there is no such object (status " + std::to_string(status) + ")",
+          name_});
   } else if (status == 412 || (status == 416 && expected_ != nullptr)) {
     failure_ = replaced(name_);
   } else if (status == 416) {
     fail({ErrorCode::corruption, "the object is empty; a .ptin file is expected", name_});
   } else {
-    fail({ErrorCode::io_error, "the server answers " + std::to_string(status), name_});
+    fail({ErrorCode::io_error, "the server answers " + std::to_string(status) + message_in(words_),
+          name_});
   }
   return true;
 }
@@ -301,9 +321,8 @@ bool HttpTransfer::try_again(const std::string& why) {
           why + (tries_ > 1 ? "; " + std::to_string(tries_) + " tries were made" : ""), name_});
     return true;
   }
-  const double pause =
-      std::min(kMostPauseSeconds, head_.retry_after.value_or(options_.first_pause *
-                                                             std::exp2(tries_ - 1)));
+  const double pause = std::min(
+      kMostPauseSeconds, head_.retry_after.value_or(options_.first_pause * std::exp2(tries_ - 1)));
   not_before_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                    std::chrono::duration<double>(std::max(pause, 0.0)));
   return false;

@@ -96,6 +96,7 @@ class HttpTransfer {
   ObjectIdentity identity_;
   std::size_t received_ = 0;
   int tries_ = 0;
+  std::string words_;         ///< The beginning of a body that is no range.
   bool refused_ = false;      ///< The last try met 401 or 403.
   bool is_judged_ = false;    ///< The head was looked at.
   std::optional<Error> bad_;  ///< What the head of this try says that ends it.

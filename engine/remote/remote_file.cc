@@ -35,8 +35,8 @@ RemoteOptions configured(RemoteOptions options) {
     const char* const text = CPLGetConfigOption(name, nullptr);
     return text != nullptr && *text != '\0' ? std::max(CPLAtof(text), 0.0) : otherwise;
   };
-  options.tries = static_cast<int>(
-      std::min(number("GDAL_HTTP_MAX_RETRY", options.tries - 1), 100.0) + 1);
+  options.tries =
+      static_cast<int>(std::min(number("GDAL_HTTP_MAX_RETRY", options.tries - 1), 100.0) + 1);
   options.first_pause = number("GDAL_HTTP_RETRY_DELAY", options.first_pause);
   options.most_seconds_to_connect = static_cast<long>(
       number("GDAL_HTTP_CONNECTTIMEOUT", static_cast<double>(options.most_seconds_to_connect)));

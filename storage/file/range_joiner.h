@@ -50,8 +50,7 @@ class RangeJoiner {
 /// out.
 class RangesToCome {
  public:
-  RangesToCome(const ReadableFile& file, IoCounters& counters)
-      : file_(file), counters_(counters) {}
+  RangesToCome(const ReadableFile& file, IoCounters& counters) : file_(file), counters_(counters) {}
   RangesToCome(const RangesToCome&) = delete;
   RangesToCome& operator=(const RangesToCome&) = delete;
   ~RangesToCome() { file_.will_need(ranges_); }

@@ -145,8 +145,7 @@ std::vector<RangedFile::Number> RangedFile::wanted_round(Number first, Number la
   if (numbers.empty() || asker == askers_.end()) {
     return numbers;
   }
-  const std::size_t most =
-      std::min(kMostRoundBytes, most_blocks_ * kBlockBytes / 4) / kBlockBytes;
+  const std::size_t most = std::min(kMostRoundBytes, most_blocks_ * kBlockBytes / 4) / kBlockBytes;
   std::vector<ByteRange>& announced = asker->second.announced;
   const auto holds_first = [&](const ByteRange& r) {
     return r.offset / kBlockBytes <= first && first <= (r.offset + r.bytes - 1) / kBlockBytes;

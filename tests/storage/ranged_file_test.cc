@@ -118,11 +118,14 @@ TEST_F(RangedFileTest, ReadsWhatWasAnnouncedInOneRoundWhenItIsWanted) {
 
 TEST_F(RangedFileTest, JoinsWhatLiesNearAndWastesAThirdAtMost) {
   open();
-  announce({{10 * kBlock, kBlock}, {11 * kBlock, kBlock}, {13 * kBlock, kBlock},
-            {14 * kBlock, kBlock}, {30 * kBlock, kBlock}});
+  announce({{10 * kBlock, kBlock},
+            {11 * kBlock, kBlock},
+            {13 * kBlock, kBlock},
+            {14 * kBlock, kBlock},
+            {30 * kBlock, kBlock}});
   expect_reads(10 * kBlock, 1);
-  EXPECT_EQ(source->rounds, (std::vector<NotingSource::Round>{
-                                {{10 * kBlock, 5 * kBlock}, {30 * kBlock, kBlock}}}));
+  EXPECT_EQ(source->rounds,
+            (std::vector<NotingSource::Round>{{{10 * kBlock, 5 * kBlock}, {30 * kBlock, kBlock}}}));
 }
 
 TEST_F(RangedFileTest, ForgetsAnnouncementsAtTheNextAndAtTheEndOfAQuestion) {
@@ -133,8 +136,8 @@ TEST_F(RangedFileTest, ForgetsAnnouncementsAtTheNextAndAtTheEndOfAQuestion) {
   announce({{90 * kBlock, kBlock}});
   file->check_unchanged();
   expect_reads(100 * kBlock, 1);
-  EXPECT_EQ(source->rounds, (std::vector<NotingSource::Round>{{{70 * kBlock, kBlock}},
-                                                              {{100 * kBlock, kBlock}}}));
+  EXPECT_EQ(source->rounds,
+            (std::vector<NotingSource::Round>{{{70 * kBlock, kBlock}}, {{100 * kBlock, kBlock}}}));
 }
 
 TEST_F(RangedFileTest, SplitsLongAnnouncementsIntoRoundsThatTheCacheHolds) {
@@ -236,8 +239,8 @@ TEST_F(SparseCacheTest, ReadsAgainWhatTheDiskHasDamaged) {
   }
   open_kept();
   expect_reads(0, 20 * kBlock);
-  EXPECT_EQ(source->rounds, (std::vector<NotingSource::Round>{
-                                {{3 * kBlock, kBlock}, {7 * kBlock, kBlock}}}));
+  EXPECT_EQ(source->rounds,
+            (std::vector<NotingSource::Round>{{{3 * kBlock, kBlock}, {7 * kBlock, kBlock}}}));
   std::filesystem::resize_file(path, 10 * kBlock);  // the checksums are gone
   open_kept();
   expect_reads(0, 20 * kBlock);

@@ -195,10 +195,9 @@ void print_errors(const StoreFile& store) {
 void print_info(const StoreFile& store, const CrsFacts& crs) {
   std::printf("file       %s, %s\n", store.path().c_str(), human_bytes(store.file_bytes()).c_str());
   if (const std::optional<IoCounters> cost = store.remote_cost()) {
-    std::printf("elsewhere  opened by %s in %s, %s\n",
-                counted(cost->remote_requests, "request").c_str(),
-                counted(cost->remote_rounds, "round").c_str(),
-                human_bytes(cost->remote_bytes).c_str());
+    std::printf(
+        "elsewhere  opened by %s in %s, %s\n", counted(cost->remote_requests, "request").c_str(),
+        counted(cost->remote_rounds, "round").c_str(), human_bytes(cost->remote_bytes).c_str());
   }
   print_place(store, crs);
   print_counts(store);

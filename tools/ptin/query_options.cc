@@ -42,8 +42,7 @@ void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index)
       ->type_name("DIR");
 }
 
-std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options,
-                                            const Context& context) {
+std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options, const Context& context) {
   if (is_remote(options.file)) {
     RemoteOptions remote;
     remote.caches.folder = options.cache_folder;
