@@ -133,6 +133,7 @@ class PackedRTree::BestFirst {
         visitor_(visitor),
         cut_off_(cut_off),
         counters_(counters),
+        together_(visitor.wants_all() ? kMostTogether : kFirstTogether),
         heap_{{kBestMerit, tree.nodes_.shape().levels(), 0, tree.nodes_.root_checksum()}} {}
 
   void run() {
@@ -171,6 +172,11 @@ class PackedRTree::BestFirst {
   BestStarVisitor& visitor_;
   Merit cut_off_;
   IoCounters& counters_;
+  /// What is announced together: of most points one time of nodes and one of pages are enough. A
+  /// search that goes on will probably go on for long.
+  static constexpr std::size_t kFirstTogether = 6, kMostTogether = 96;
+  std::size_t together_;
+  std::size_t announced_ = 0;  ///< Times.
   std::vector<StarAttributes> pages_;
   std::vector<Waiting> heap_;
 };
@@ -195,9 +201,11 @@ void PackedRTree::BestFirst::open(const Waiting& at) {
 /// waits, which will probably be visited soon. Nodes that are at hand are opened for that; the order
 /// in which nodes are decides nothing.
 void PackedRTree::BestFirst::announce_with_best(const Waiting& next) {
-  constexpr std::size_t kMostTogether = 6;
+  if (++announced_ > 2 && together_ < kMostTogether) {
+    together_ *= 2;
+  }
   std::vector<Waiting> best{next};  // What is read first is announced first.
-  while (best.size() < kMostTogether && is_left()) {
+  while (best.size() < together_ && is_left()) {
     const Waiting at = pop();
     if (at.level > 0 && tree_.is_at_hand(at)) {
       open(at);

@@ -53,6 +53,9 @@ class BestStarVisitor {
     static_cast<void>(level);
     return bound(a);
   }
+  /// Whether all that passes the filter will probably be visited: of a far file it is then announced
+  /// together. A hint.
+  [[nodiscard]] virtual bool wants_all() const { return false; }
   /// Called for pages in the order of falling bounds. Returns the cut-off: pages and nodes whose
   /// bound is below it are not visited.
   /// @param a  What the descriptor says of the page's stars.

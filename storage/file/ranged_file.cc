@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "storage/file/range_joiner.h"
 
 namespace ptin {
 
@@ -180,14 +179,13 @@ void RangedFile::read_round(const std::vector<Number>& numbers,
   struct Run {
     Number first, count;
   };
-  std::vector<Run> runs;
-  RangeJoiner joiner(kBlockBytes);
+  std::vector<Run> runs;  // What lies near was joined where it was announced.
   for (const Number number : numbers) {
-    if (!joiner.join(number)) {
-      joiner.restart(number);
+    if (!runs.empty() && runs.back().first + runs.back().count == number) {
+      ++runs.back().count;
+    } else {
       runs.push_back({number, 1});
     }
-    runs.back() = {joiner.begin(), joiner.size()};
   }
   const auto bytes_of = [&](const Run& r) {
     return std::min((r.first + r.count) * kBlockBytes, bytes()) - r.first * kBlockBytes;
@@ -212,6 +210,10 @@ void RangedFile::read_round(const std::vector<Number>& numbers,
   lock.unlock();
   try {
     source_->read(reads);
+  } catch (const Error& error) {
+    lock.lock();
+    is_replaced_ = is_replaced_ || error.code() == ErrorCode::corruption;
+    throw;
   } catch (...) {
     lock.lock();
     throw;
@@ -294,6 +296,10 @@ void RangedFile::check_unchanged() const {
   const std::lock_guard lock(mutex_);
   if (const auto asker = askers_.find(std::this_thread::get_id()); asker != askers_.end()) {
     asker->second.announced.clear();
+  }
+  if (is_replaced_) {
+    throw Error(ErrorCode::corruption,
+                "the object was replaced or cut short while it was open; open it again", path());
   }
 }
 

@@ -49,8 +49,8 @@ class RangedFile final : public ReadableFile {
   [[nodiscard]] bool is_far() const noexcept override { return true; }
   [[nodiscard]] bool is_at_hand(const ByteRange& range) const noexcept override;
   void settle(IoCounters& counters) const noexcept override;
-  /// Forgets what this thread announced and did not read. Whether the object is another one by now is
-  /// told by each answer of the source, so nothing is asked.
+  /// Forgets what this thread announced and did not read. The server is not asked: each of its answers
+  /// tells whether the object is another one, and once one of them has, this does.
   void check_unchanged() const override;
 
   /// Keeps blocks in the folder of the options from now on, and looks for them there.
@@ -96,6 +96,7 @@ class RangedFile final : public ReadableFile {
   mutable std::unordered_set<Number> under_way_;
   mutable std::unordered_map<std::thread::id, Asker> askers_;
   mutable Costs all_;
+  mutable bool is_replaced_ = false;  ///< As an answer of the source said.
 };
 
 }  // namespace ptin

@@ -45,7 +45,7 @@ class NotingSource final : public RangeSource {
       for (const RangeRead& r : ranges) rounds.back().push_back({r.offset, r.out.size()});
     }
     if (delay.count() > 0) std::this_thread::sleep_for(delay);
-    if (fails) throw Error(ErrorCode::io_error, "refused", name_);
+    if (fails) throw Error(fault, "refused", name_);
     for (const RangeRead& r : ranges) {
       std::memcpy(r.out.data(), content_.data() + r.offset, r.out.size());
     }
@@ -53,6 +53,7 @@ class NotingSource final : public RangeSource {
   using Round = std::vector<ByteRange>;
   std::vector<Round> rounds;
   std::atomic<bool> fails = false;
+  ErrorCode fault = ErrorCode::io_error;
   std::chrono::milliseconds delay{0};
 
  private:
@@ -116,7 +117,7 @@ TEST_F(RangedFileTest, ReadsWhatWasAnnouncedInOneRoundWhenItIsWanted) {
   EXPECT_EQ(counters.remote_rounds, 1U) << "told once";
 }
 
-TEST_F(RangedFileTest, JoinsWhatLiesNearAndWastesAThirdAtMost) {
+TEST_F(RangedFileTest, JoinsWhatLiesSideBySide) {
   open();
   announce({{10 * kBlock, kBlock},
             {11 * kBlock, kBlock},
@@ -125,7 +126,9 @@ TEST_F(RangedFileTest, JoinsWhatLiesNearAndWastesAThirdAtMost) {
             {30 * kBlock, kBlock}});
   expect_reads(10 * kBlock, 1);
   EXPECT_EQ(source->rounds,
-            (std::vector<NotingSource::Round>{{{10 * kBlock, 5 * kBlock}, {30 * kBlock, kBlock}}}));
+            (std::vector<NotingSource::Round>{
+                {{10 * kBlock, 2 * kBlock}, {13 * kBlock, 2 * kBlock}, {30 * kBlock, kBlock}}}))
+      << "gaps are for whoever announces";
 }
 
 TEST_F(RangedFileTest, ForgetsAnnouncementsAtTheNextAndAtTheEndOfAQuestion) {
@@ -180,8 +183,20 @@ TEST_F(RangedFileTest, FailsWhereTheSourceFailsAndReadsOnAfterwards) {
   std::vector<std::byte> got(kBlock);
   EXPECT_THROW(file->read_at(got, 10 * kBlock), Error);
   source->fails = false;
+  EXPECT_NO_THROW(file->check_unchanged());
   expect_reads(10 * kBlock, 3 * kBlock);
   EXPECT_THROW(file->read_at(got, content.size() - 5), Error) << "behind the end";
+}
+
+TEST_F(RangedFileTest, TellsThatTheObjectWasReplacedFromThenOn) {
+  open(kBlock);
+  EXPECT_NO_THROW(file->check_unchanged());
+  source->fault = ErrorCode::corruption;
+  source->fails = true;
+  std::vector<std::byte> got(10);
+  EXPECT_THROW(file->read_at(got, 10 * kBlock), Error);
+  source->fails = false;
+  EXPECT_THROW(file->check_unchanged(), Error);
 }
 
 TEST_F(RangedFileTest, ReadsABlockOnceForManyThreads) {

@@ -11,6 +11,7 @@
 
 #include "tests/support/range_server.h"
 #include "tests/tools/program.h"
+#include "tests/tools/serve_fixture.h"
 
 namespace ptin::tools::testing {
 namespace {
@@ -60,7 +61,7 @@ nlohmann::json answer_alone(const Outcome& outcome, const std::string& file,
     }
   }
   nlohmann::json json = nlohmann::json::parse(text);
-  for (const char* name : {"cost", "base_cost", "remote"}) json.erase(name);
+  for (const char* name : {"cost", "base_cost", "remote", "seconds"}) json.erase(name);
   if (json.contains("pairs")) {
     for (nlohmann::json& pair : json["pairs"]) pair.erase("cost");
   }
@@ -174,11 +175,8 @@ TEST_F(RemoteTest, AsksTheServerInFewRounds) {
 
 TEST_F(RemoteTest, KeepsWhatWasReadInAFolder) {
   const TestFolder cache;
-  TestFolder out;
-  write_file(out.file("point.csv"), "x,y\n379000,3804000\n");
-  const std::vector<std::string> words{
-      "locate",         url("plain"),          "--points", out.file("point.csv"),
-      "--cache-folder", cache.path().string(), "--json"};
+  const std::vector<std::string> words{"highest", url("plain"), "--cache-folder",
+                                       cache.path().string(), "--json"};
   EXPECT_GT(cost_of(words).requests, 0U);
   EXPECT_EQ(cost_of(words).requests, 0U);
   ASSERT_EQ(cache.names().size(), 1U);
@@ -214,6 +212,47 @@ TEST_F(RemoteTest, NeverMixesTwoObjects) {
     }
   }
   expect_done({"refine", server_->url("replaced-0/m.ptin"), "-o", out.file("whole.ply")});
+}
+
+/// Where the server tells nothing, and both have one length, checksums tell.
+TEST_F(RemoteTest, KnowsAnObjectByItsPages) {
+  std::string bytes = read_file(local_);
+  write_file(folder_->file("e.ptin"), bytes);
+  for (std::size_t at = bytes.size() / 4; at < bytes.size(); at += 4096) bytes[at] ^= 1;
+  write_file(folder_->file("e.ptin.other"), bytes);
+  const TestFolder out;
+  const Outcome outcome =
+      run_ptin({"refine", server_->url("swapped-1/e.ptin"), "-o", out.file("e.ply")});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_NE(outcome.err.find("does not match the checksum"), std::string::npos) << outcome.err;
+}
+
+TEST_F(RemoteTest, IsServed) {
+  serve::ServeOptions options = serve_options(*folder_);
+  options.files.push_back({"far", url("replaced-3")});
+  options.offers_files = true;
+  ServedTerrains service(options);
+  const std::string place =
+      "/position?coords=" + encoded("POINT(379010 3804020)") + "&crs=native&f=csv";
+  const HttpAnswer near = service.get("/collections/mountains" + place);
+  const HttpAnswer far = service.get("/collections/far" + place);
+  EXPECT_EQ(near.status, 200) << near.body;
+  EXPECT_EQ(far.status, 200) << far.body;
+  EXPECT_EQ(near.body, far.body);
+  EXPECT_EQ(service.get("/collections/far/file").status, 403);
+  // The object is another one by now: the question that meets it fails, the next ones are of it.
+  const auto extent_of = [&](const std::string& name) {
+    return nlohmann::json::parse(service.get("/collections/" + name).body)["extent"];
+  };
+  EXPECT_EQ(extent_of("far"), extent_of("mountains"));
+  int failed = 0;
+  for (int i = 0; i < 6 && failed == 0; ++i) {
+    const std::string at = "POINT(" + std::to_string(377500 + 900 * i) + " 3806000)";
+    failed = service.get("/collections/far/position?coords=" + encoded(at) + "&crs=native").status;
+    failed = failed == 200 ? 0 : failed;
+  }
+  EXPECT_EQ(failed, 500);
+  EXPECT_EQ(extent_of("far"), extent_of("coast"));
 }
 
 TEST_F(RemoteTest, TellsWhatIsWrongWithAServer) {

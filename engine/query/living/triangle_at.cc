@@ -173,6 +173,11 @@ class Finder::SmallestFirst final : public BestStarVisitor {
     }
     return {-area};
   }
+  /// On a vertex no triangle ends the search, and most positions of the grid have one.
+  [[nodiscard]] bool wants_all() const override {
+    constexpr std::int64_t kWithin = (std::int64_t{1} << kSpotBits) - 1;
+    return (spot_.x & kWithin) == 0 && (spot_.y & kWithin) == 0;
+  }
   Merit visit(PageId page, const StarAttributes&) override {
     finder_.context_.check_stop();
     finder_.read(page);
