@@ -235,20 +235,6 @@ TEST_F(RemoteFileTest, StopsWhenItIsAsked) {
   EXPECT_EQ(fault->code(), ErrorCode::cancelled);
 }
 
-TEST_F(RemoteFileTest, ServesManyThreadsAtOnce) {
-  const auto source = open("plain");
-  std::vector<std::thread> threads;
-  for (std::uint64_t i = 0; i < 6; ++i) {
-    threads.emplace_back([&, i] {
-      for (std::uint64_t k = 0; k < 5; ++k) {
-        expect_reads(*source, {{i * 100000 + k, 3000}, {i * 100000 + 50000 + k, 70}});
-      }
-    });
-  }
-  for (std::thread& t : threads) t.join();
-  EXPECT_LE(server_->take_counts().most, 16U);
-}
-
 TEST_F(RemoteFileTest, ReadsGdalsFileSystems) {
   const std::string path = "/vsimem/" + file;
   VSIFCloseL(VSIFileFromMemBuffer(path.c_str(), reinterpret_cast<GByte*>(content.data()),

@@ -2,66 +2,22 @@
 #include "storage/file/ranged_file.h"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <random>
-#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
+#include "tests/storage/noting_source.h"
 #include "tests/support/test_folder.h"
 
 namespace ptin {
 namespace {
 
+using test::noise;
+using test::NotingSource;
 using test::TestFolder;
-
-std::vector<std::byte> noise(std::size_t bytes, std::uint64_t seed = 1) {
-  std::mt19937_64 random(seed);
-  std::vector<std::byte> result(bytes);
-  for (std::byte& b : result) b = static_cast<std::byte>(random());
-  return result;
-}
-
-/// An object in memory that notes its rounds.
-class NotingSource final : public RangeSource {
- public:
-  explicit NotingSource(std::vector<std::byte> content, std::size_t front = 0)
-      : content_(std::move(content)), front_(front) {}
-  [[nodiscard]] const std::string& name() const noexcept override { return name_; }
-  [[nodiscard]] std::uint64_t bytes() const noexcept override { return content_.size(); }
-  [[nodiscard]] std::span<const std::byte> front() const noexcept override {
-    return std::span(content_).first(front_);
-  }
-  void read(std::span<const RangeRead> ranges) override {
-    {
-      const std::lock_guard lock(mutex_);
-      rounds.emplace_back();
-      for (const RangeRead& r : ranges) rounds.back().push_back({r.offset, r.out.size()});
-    }
-    if (delay.count() > 0) std::this_thread::sleep_for(delay);
-    if (fails) throw Error(fault, "refused", name_);
-    for (const RangeRead& r : ranges) {
-      std::memcpy(r.out.data(), content_.data() + r.offset, r.out.size());
-    }
-  }
-  using Round = std::vector<ByteRange>;
-  std::vector<Round> rounds;
-  std::atomic<bool> fails = false;
-  ErrorCode fault = ErrorCode::io_error;
-  std::chrono::milliseconds delay{0};
-
- private:
-  std::string name_ = "elsewhere";
-  std::vector<std::byte> content_;
-  std::size_t front_;
-  std::mutex mutex_;
-};
 
 constexpr std::uint64_t kBlock = RangedFile::kBlockBytes;
 
@@ -197,17 +153,6 @@ TEST_F(RangedFileTest, TellsThatTheObjectWasReplacedFromThenOn) {
   EXPECT_THROW(file->read_at(got, 10 * kBlock), Error);
   source->fails = false;
   EXPECT_THROW(file->check_unchanged(), Error);
-}
-
-TEST_F(RangedFileTest, ReadsABlockOnceForManyThreads) {
-  open();
-  source->delay = std::chrono::milliseconds(20);
-  std::vector<std::thread> threads;
-  for (int i = 0; i < 8; ++i) {
-    threads.emplace_back([this] { expect_reads(40 * kBlock, 2 * kBlock); });
-  }
-  for (std::thread& t : threads) t.join();
-  EXPECT_EQ(source->rounds.size(), 1U);
 }
 
 class SparseCacheTest : public RangedFileTest {
