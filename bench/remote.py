@@ -15,6 +15,7 @@ import argparse
 import json
 import os
 import random
+import re
 import statistics
 import subprocess
 import sys
@@ -116,13 +117,12 @@ class Bench:
                 self.counts()
                 begin = time.monotonic()
                 url = f"{address}collections/t/position?coords=POINT({x + dx!r}%20{y!r})"
-                urllib.request.urlopen(url).read()
+                with urllib.request.urlopen(url) as answer:
+                    told = re.search(r"remote_rounds=(\d+)", answer.headers.get("Server-Timing", ""))
                 seconds = time.monotonic() - begin
                 counted = self.counts()
                 if dx:
-                    # The service tells none; there are no more than the time and the requests allow.
-                    rounds = min(counted["requests"], int(seconds / self.delay) if self.delay else counted["requests"])
-                    asked.append({"rounds": rounds, "requests": counted["requests"], "bytes": counted["bytes"],
+                    asked.append({"rounds": int(told[1]) if told else 0, "requests": counted["requests"], "bytes": counted["bytes"],
                                   "most": counted["most"], "seconds": seconds, "used": 0, "singly": 0, "requests_singly": 0})
         service.terminate()
         service.wait()

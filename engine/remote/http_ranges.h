@@ -32,7 +32,7 @@ class HttpRanges final : public RangeSource {
  public:
   static constexpr std::size_t kMostRequests = 16;
   /// Of the object, in the first request: its front, and the upper levels of the index of a file of
-  /// 10 million vertices.
+  /// nine million vertices.
   static constexpr std::size_t kFrontBytes = std::size_t{64} << 10;
 
   /// @param name  For errors.

@@ -190,7 +190,6 @@ void HttpTransfer::begin(CURL* handle, const std::string& url) {
   curl_easy_setopt(handle, CURLOPT_HEADERDATA, this);
   curl_easy_setopt(handle, CURLOPT_WRITEFUNCTION, &HttpTransfer::take_body);
   curl_easy_setopt(handle, CURLOPT_WRITEDATA, this);
-  curl_easy_setopt(handle, CURLOPT_PRIVATE, this);
   set_options_of_gdal(handle);
 }
 

@@ -203,6 +203,7 @@ TEST_F(RemoteFileTest, RefusesAnObjectThatTookThePlace) {
   expect_fault("replaced-1", ErrorCode::corruption, "replaced");
   EXPECT_EQ(server_->take_counts().ranges.size(), 2U);
   expect_fault("weak-1", ErrorCode::corruption, "replaced");
+  expect_fault("deaf-1", ErrorCode::corruption, "replaced");
   // Its length alone tells where nothing else does.
   std::ofstream(folder_->file(file + ".other"), std::ios::binary)
       .write(other.data(), static_cast<std::streamsize>(kBytes - 1));

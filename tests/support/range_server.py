@@ -20,6 +20,7 @@ first. What comes first in the path says how the server behaves; the rest names 
   /replaced-N/F         from request N on (from 0) another object: the file F.other, with its own ETag
   /swapped-N/F          the same, with neither ETag nor Last-Modified: only its bytes tell
   /weak-N/F             the same, with Last-Modified alone
+  /deaf-N/F             as /replaced-N, by a server that does not know If-Match
   /wrong/F              after the first request, other bytes than were asked for, and it says so
   /shifted/F            after the first request, other bytes than were asked for, and it does not say so
   /packed/F             Content-Encoding: gzip
@@ -171,7 +172,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
         elif mode == "silent" and number > 0:
             time.sleep(600)
         else:
-            if mode in ("replaced", "swapped", "weak") and number >= least:
+            if mode in ("replaced", "swapped", "weak", "deaf") and number >= least:
                 name += ".other"
             self.send_range(mode, name, number, least)
 
@@ -191,7 +192,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
         headers, etag = self.identity(mode, name)
         total = os.path.getsize(name)
         match = re.fullmatch(r"bytes=(\d+)-(\d+)", self.headers.get("Range", ""))
-        if self.headers.get("If-Match") not in (None, "*", etag):
+        if mode != "deaf" and self.headers.get("If-Match") not in (None, "*", etag):
             self.refuse(412)
             return
         if mode == "packed":

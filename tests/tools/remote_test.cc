@@ -239,6 +239,7 @@ TEST_F(RemoteTest, IsServed) {
   EXPECT_EQ(near.status, 200) << near.body;
   EXPECT_EQ(far.status, 200) << far.body;
   EXPECT_EQ(near.body, far.body);
+  EXPECT_NE(far.header("server-timing").find("remote_rounds=1 "), std::string::npos);
   EXPECT_EQ(service.get("/collections/far/file").status, 403);
   // The object is another one by now: the question that meets it fails, the next ones are of it.
   const auto extent_of = [&](const std::string& name) {
