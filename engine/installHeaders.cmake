@@ -101,6 +101,7 @@ set(public_headers
     engine/query/volume/plane_area.h
     engine/query/volume/volume.h
     engine/query/walk/point_state.h
+    engine/remote/remote_file.h
     engine/stop.h
     storage/attributes.h
     storage/coarsest_tin.h
@@ -108,6 +109,7 @@ set(public_headers
     storage/file/file_layer.h
     storage/file/file_questions.h
     storage/file/io_counters.h
+    storage/file/range_source.h
     storage/file/replaced_file.h
     storage/file/sigbus_guard.h
     storage/index.h

@@ -70,7 +70,25 @@ layout::NodeEntry IndexNodes::descend_to(PageId page) const {
   return entry;
 }
 
-MappedIndexNodes::MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping,
+void IndexNodes::add_ranges(std::uint32_t level, std::span<const std::uint64_t> numbers,
+                            RangesToCome& ranges) const noexcept {
+  RangeJoiner range(layout::kNodeBytes);
+  const auto send = [&] {
+    if (range.size() > 0) {
+      ranges.add({offset_of(range.begin()), range.size() * layout::kNodeBytes});
+    }
+  };
+  for (const std::uint64_t number : numbers) {
+    const std::uint64_t position = place_.shape.position(level, number);
+    if (!is_known(position) && !range.join(position)) {
+      send();
+      range.restart(position);
+    }
+  }
+  send();
+}
+
+MappedIndexNodes::MappedIndexNodes(const ReadableFile& file, const MappedFile& mapping,
                                    const Root& place, const HeightEncoding& heights)
     : IndexNodes(file, place, heights), mapping_(mapping), verified_(place.shape.total_nodes()) {}
 
@@ -88,16 +106,6 @@ const layout::IndexNode& MappedIndexNodes::node(std::uint32_t level, std::uint64
   return mapped;
 }
 
-void MappedIndexNodes::announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
-                                IoCounters& counters) const noexcept {
-  join_ranges(
-      level, numbers, [&](std::uint64_t position) { return verified_.test(position); },
-      [&](std::uint64_t offset, std::uint64_t bytes) {
-        file_.will_need(offset, bytes);
-        ++counters.ranges_announced;
-      });
-}
-
 layout::NodeEntry MappedIndexNodes::descriptor(PageId page) const {
   require_page(page);
   const std::uint64_t leaf = index_of(page) / layout::kFanOut;
@@ -110,7 +118,7 @@ layout::NodeEntry MappedIndexNodes::descriptor(PageId page) const {
   return mapped.entry[index_of(page) % layout::kFanOut];
 }
 
-PreadIndexNodes::PreadIndexNodes(const ReadOnlyFile& file, const Root& place,
+PreadIndexNodes::PreadIndexNodes(const ReadableFile& file, const Root& place,
                                  const HeightEncoding& heights)
     : IndexNodes(file, place, heights) {}
 
@@ -137,19 +145,10 @@ const layout::IndexNode& PreadIndexNodes::node(std::uint32_t level, std::uint64_
   return scratch;
 }
 
-void PreadIndexNodes::announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
-                               IoCounters& counters) const noexcept {
-  join_ranges(
-      level, numbers,
-      [&](std::uint64_t position) {
-        Slot& slot = slot_of(position);
-        const std::lock_guard lock(slot.lock);
-        return slot.position == position;
-      },
-      [&](std::uint64_t offset, std::uint64_t bytes) {
-        file_.will_need(offset, bytes);
-        ++counters.ranges_announced;
-      });
+bool PreadIndexNodes::is_known(std::uint64_t position) const noexcept {
+  Slot& slot = slot_of(position);
+  const std::lock_guard lock(slot.lock);
+  return slot.position == position;
 }
 
 layout::NodeEntry PreadIndexNodes::descriptor(PageId page) const {

@@ -13,11 +13,11 @@
 #include "engine/geometry/height.h"
 #include "storage/file/io_counters.h"
 #include "storage/file/mapped_file.h"
-#include "storage/file/read_only_file.h"
+#include "storage/file/range_joiner.h"
+#include "storage/file/readable_file.h"
 #include "storage/index_shape.h"
 #include "storage/layout.h"
 #include "storage/page_store.h"
-#include "storage/range_joiner.h"
 #include "storage/touch_bits.h"
 
 namespace ptin {
@@ -40,6 +40,7 @@ class IndexNodes {
   [[nodiscard]] const IndexShape& shape() const noexcept { return place_.shape; }
   [[nodiscard]] std::uint64_t root_checksum() const noexcept { return place_.root_checksum; }
   [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
+  [[nodiscard]] const ReadableFile& file() const noexcept { return file_; }
 
   /// The node `number` of `level`, verified.
   /// @param expected  The checksum of the node, from its parent's entry or from the section table.
@@ -53,8 +54,15 @@ class IndexNodes {
 
   /// Starts reading those of the nodes `numbers` of a level that were not read before. `numbers`
   /// ascend. A hint: never fails.
-  virtual void announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
-                        IoCounters& counters) const noexcept = 0;
+  void announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
+                IoCounters& counters) const noexcept {
+    RangesToCome ranges(file_, counters);
+    add_ranges(level, numbers, ranges);
+  }
+  /// Adds their ranges to those that are announced together. Ranges that lie near each other are
+  /// joined.
+  void add_ranges(std::uint32_t level, std::span<const std::uint64_t> numbers,
+                  RangesToCome& ranges) const noexcept;
 
   /// A copy of the descriptor of a page, verified as node() verifies. Cost: one copy when the leaf of the page was verified before
   /// (mapped) or is in the cache (pread), otherwise the path from the root.
@@ -64,10 +72,20 @@ class IndexNodes {
   /// @throws Error corruption  when a mapping lost its file while it was read
   virtual void require_undamaged() const {}
 
+  /// ReadableFile::is_far(), is_at_hand() of a node, and settle().
+  [[nodiscard]] bool is_far() const noexcept { return file_.is_far(); }
+  [[nodiscard]] bool is_at_hand(std::uint32_t level, std::uint64_t number) const noexcept {
+    const std::uint64_t position = place_.shape.position(level, number);
+    return is_known(position) || file_.is_at_hand({offset_of(position), layout::kNodeBytes});
+  }
+  void settle(IoCounters& counters) const noexcept { file_.settle(counters); }
+
  protected:
-  IndexNodes(const ReadOnlyFile& file, const Root& place, const HeightEncoding& heights)
+  IndexNodes(const ReadableFile& file, const Root& place, const HeightEncoding& heights)
       : file_(file), place_(place), heights_(heights) {}
   void require_page(PageId page) const;
+  /// Whether the node at a position was verified, and is known without reading.
+  [[nodiscard]] virtual bool is_known(std::uint64_t position) const noexcept = 0;
   [[nodiscard]] std::uint64_t offset_of(std::uint64_t position) const noexcept {
     return place_.offset + position * layout::kNodeBytes;
   }
@@ -76,31 +94,10 @@ class IndexNodes {
   /// @throws Error corruption
   void verify(const layout::IndexNode& node, std::uint32_t level, std::uint64_t number,
               std::uint64_t expected) const;
-  /// Calls start(offset, bytes) for the ranges of the file that hold the nodes `numbers` of a
-  /// level, except those for which is_known(position) is true. Ranges that lie near each other are
-  /// joined.
-  template <class IsKnown, class Start>
-  void join_ranges(std::uint32_t level, std::span<const std::uint64_t> numbers,
-                   const IsKnown& is_known, const Start& start) const noexcept {
-    RangeJoiner range(layout::kNodeBytes);
-    const auto send = [&] {
-      if (range.size() > 0) {
-        start(offset_of(range.begin()), range.size() * layout::kNodeBytes);
-      }
-    };
-    for (const std::uint64_t number : numbers) {
-      const std::uint64_t position = place_.shape.position(level, number);
-      if (!is_known(position) && !range.join(position)) {
-        send();
-        range.restart(position);
-      }
-    }
-    send();
-  }
   /// The entry of a page in its leaf, found from the root down.
   [[nodiscard]] layout::NodeEntry descend_to(PageId page) const;
 
-  const ReadOnlyFile& file_;
+  const ReadableFile& file_;
   Root place_;
   HeightEncoding heights_;
 };
@@ -108,15 +105,18 @@ class IndexNodes {
 /// Nodes are read in place, in the mapping. A node is verified when it is first touched.
 class MappedIndexNodes final : public IndexNodes {
  public:
-  MappedIndexNodes(const ReadOnlyFile& file, const MappedFile& mapping, const Root& place,
+  MappedIndexNodes(const ReadableFile& file, const MappedFile& mapping, const Root& place,
                    const HeightEncoding& heights);
   [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
                                               std::uint64_t expected,
                                               layout::IndexNode& scratch) const override;
-  void announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
-                IoCounters& counters) const noexcept override;
   [[nodiscard]] layout::NodeEntry descriptor(PageId page) const override;
   void require_undamaged() const override { mapping_.require_undamaged(); }
+
+ protected:
+  [[nodiscard]] bool is_known(std::uint64_t position) const noexcept override {
+    return verified_.test(position);
+  }
 
  private:
   const MappedFile& mapping_;
@@ -126,13 +126,14 @@ class MappedIndexNodes final : public IndexNodes {
 /// Nodes are read by pread. Verified ones are kept in a cache of at most 4 MiB.
 class PreadIndexNodes final : public IndexNodes {
  public:
-  PreadIndexNodes(const ReadOnlyFile& file, const Root& place, const HeightEncoding& heights);
+  PreadIndexNodes(const ReadableFile& file, const Root& place, const HeightEncoding& heights);
   [[nodiscard]] const layout::IndexNode& node(std::uint32_t level, std::uint64_t number,
                                               std::uint64_t expected,
                                               layout::IndexNode& scratch) const override;
-  void announce(std::uint32_t level, std::span<const std::uint64_t> numbers,
-                IoCounters& counters) const noexcept override;
   [[nodiscard]] layout::NodeEntry descriptor(PageId page) const override;
+
+ protected:
+  [[nodiscard]] bool is_known(std::uint64_t position) const noexcept override;
 
  private:
   /// A place of the cache. A node can be in one slot alone: its position modulo kSlots. The lock is

@@ -2,6 +2,7 @@
 #include "storage/packed_rtree.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "engine/geometry/infinity.h"
 #include "storage/descriptor.h"
 #include "storage/page_columns.h"
+#include "storage/page_stores.h"
 
 namespace ptin {
 
@@ -84,6 +86,7 @@ void PackedRTree::descend(const Test& test, IoCounters& counters, const Take& ta
     std::swap(found, below);
   }
   nodes_.require_undamaged();
+  nodes_.settle(counters);
 }
 
 void PackedRTree::search(const AttributePredicate& predicate, std::vector<PageId>& pages,
@@ -100,50 +103,136 @@ void PackedRTree::search_stars(const StarFilter& filter, std::vector<StarPage>& 
   });
 }
 
+/// A node or page on the heap of a best-first search.
+class PackedRTree::Waiting {
+ public:
+  Merit bound;
+  std::uint32_t level;  // above that of its descriptor; 0: a page
+  std::uint64_t number;
+  std::uint64_t checksum;  // of a page: its place among the attributes
+  bool operator<(const Waiting& other) const {
+    if (bound.is_below(other.bound) || other.bound.is_below(bound)) {
+      return bound.is_below(other.bound);
+    }
+    return level != other.level ? level < other.level : number > other.number;
+  }
+};
+
+bool PackedRTree::is_at_hand(const Waiting& w) const noexcept {
+  return w.level == 0 ? pages_->is_at_hand(PageId{w.number})
+                      : nodes_.is_at_hand(w.level - 1, w.number);
+}
+
+/// The heap of a best-first search, and what is done with its nodes.
+class PackedRTree::BestFirst {
+ public:
+  BestFirst(const PackedRTree& tree, const StarFilter& filter, BestStarVisitor& visitor,
+            Merit cut_off, IoCounters& counters)
+      : tree_(tree),
+        test_(filter, tree.heights_),
+        visitor_(visitor),
+        cut_off_(cut_off),
+        counters_(counters),
+        together_(visitor.wants_all() ? kMostTogether : kFirstTogether),
+        heap_{{kBestMerit, tree.nodes_.shape().levels(), 0, tree.nodes_.root_checksum()}} {}
+
+  void run() {
+    while (is_left()) {
+      const Waiting at = pop();
+      if (tree_.pages_ != nullptr && tree_.pages_->is_far() && !tree_.is_at_hand(at)) {
+        announce_with_best(at);
+      }
+      if (at.level == 0) {
+        cut_off_ = visitor_.visit(PageId{at.number}, pages_[at.checksum]);
+      } else {
+        open(at);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_left() const {
+    return !heap_.empty() && !heap_.front().bound.is_below(cut_off_);
+  }
+  Waiting pop() {
+    std::pop_heap(heap_.begin(), heap_.end());
+    const Waiting at = heap_.back();
+    heap_.pop_back();
+    return at;
+  }
+  void push(const Waiting& w) {
+    heap_.push_back(w);
+    std::push_heap(heap_.begin(), heap_.end());
+  }
+  void open(const Waiting& at);
+  void announce_with_best(const Waiting& next);
+
+  const PackedRTree& tree_;
+  StarTest test_;
+  BestStarVisitor& visitor_;
+  Merit cut_off_;
+  IoCounters& counters_;
+  /// What is announced together: of most points one time of nodes and one of pages are enough. A
+  /// search that goes on will probably go on for long.
+  static constexpr std::size_t kFirstTogether = 6, kMostTogether = 96;
+  std::size_t together_;
+  std::size_t announced_ = 0;  ///< Times.
+  std::vector<StarAttributes> pages_;
+  std::vector<Waiting> heap_;
+};
+
+/// Puts what a node describes on the heap.
+void PackedRTree::BestFirst::open(const Waiting& at) {
+  const NodePlace place{at.level - 1, at.number, at.checksum};
+  tree_.visit(place, test_, counters_, [&](std::uint64_t child, const layout::NodeEntry& entry) {
+    const StarAttributes a = star_attributes_of(entry, tree_.heights_);
+    const bool is_page = place.level == 0;
+    const Merit bound = is_page ? visitor_.bound(a) : visitor_.bound_of_node(a, place.level - 1);
+    if (!bound.is_below(cut_off_)) {
+      push({bound, place.level, child, is_page ? pages_.size() : entry.checksum});
+      if (is_page) {
+        pages_.push_back(a);
+      }
+    }
+  });
+}
+
+/// Of a far file, where what is visited next must be waited for: announces with it the best of what
+/// waits, which will probably be visited soon. Nodes that are at hand are opened for that; the order
+/// in which nodes are decides nothing.
+void PackedRTree::BestFirst::announce_with_best(const Waiting& next) {
+  if (++announced_ > 2 && together_ < kMostTogether) {
+    together_ *= 2;
+  }
+  std::vector<Waiting> best{next};  // What is read first is announced first.
+  while (best.size() < together_ && is_left()) {
+    const Waiting at = pop();
+    if (at.level > 0 && tree_.is_at_hand(at)) {
+      open(at);
+    } else {
+      best.push_back(at);
+    }
+  }
+  RangesToCome ranges(tree_.nodes_.file(), counters_);
+  for (const Waiting& w : best) {
+    if (w.level == 0) {
+      const PageId page{w.number};
+      tree_.pages_->add_ranges(std::span(&page, 1), ranges);
+    } else {
+      tree_.nodes_.add_ranges(w.level - 1, std::span(&w.number, 1), ranges);
+    }
+  }
+  std::for_each(best.begin() + 1, best.end(), [&](const Waiting& w) { push(w); });
+}
+
 void PackedRTree::search_stars_best_first(const StarFilter& filter, BestStarVisitor& visitor,
                                           Merit cut_off, IoCounters& counters) const {
-  struct Waiting {
-    Merit bound;
-    std::uint32_t level;  // above that of its descriptor; 0: a page
-    std::uint64_t number;
-    std::uint64_t checksum;  // of a page: its place in `pages`
-    bool operator<(const Waiting& other) const {
-      if (bound.is_below(other.bound) || other.bound.is_below(bound)) {
-        return bound.is_below(other.bound);
-      }
-      return level != other.level ? level < other.level : number > other.number;
-    }
-  };
-  const IndexShape& shape = nodes_.shape();
-  if (shape.levels() == 0) {
+  if (nodes_.shape().levels() == 0) {
     return;
   }
-  const StarTest test(filter, heights_);
-  std::vector<StarAttributes> pages;
-  std::vector<Waiting> heap{{kBestMerit, shape.levels(), 0, nodes_.root_checksum()}};
-  while (!heap.empty() && !heap.front().bound.is_below(cut_off)) {
-    std::pop_heap(heap.begin(), heap.end());
-    const Waiting at = heap.back();
-    heap.pop_back();
-    if (at.level == 0) {
-      cut_off = visitor.visit(PageId{at.number}, pages[at.checksum]);
-      continue;
-    }
-    const NodePlace place{at.level - 1, at.number, at.checksum};
-    visit(place, test, counters, [&](std::uint64_t child, const layout::NodeEntry& entry) {
-      const StarAttributes a = star_attributes_of(entry, heights_);
-      const bool is_page = place.level == 0;
-      const Merit bound = is_page ? visitor.bound(a) : visitor.bound_of_node(a, place.level - 1);
-      if (!bound.is_below(cut_off)) {
-        heap.push_back({bound, place.level, child, is_page ? pages.size() : entry.checksum});
-        std::push_heap(heap.begin(), heap.end());
-        if (is_page) {
-          pages.push_back(a);
-        }
-      }
-    });
-  }
+  BestFirst(*this, filter, visitor, cut_off, counters).run();
   nodes_.require_undamaged();
+  nodes_.settle(counters);
 }
 
 /// Calls `take` for each entry that passes the test.

@@ -14,6 +14,8 @@
 
 namespace ptin {
 
+class DescribedPageStore;
+
 /// How good a star is in a best-first search: by its value, larger is better, and among equal
 /// values by its place, smaller is better.
 struct Merit {
@@ -51,6 +53,9 @@ class BestStarVisitor {
     static_cast<void>(level);
     return bound(a);
   }
+  /// Whether all that passes the filter will probably be visited: of a far file it is then announced
+  /// together. A hint.
+  [[nodiscard]] virtual bool wants_all() const { return false; }
   /// Called for pages in the order of falling bounds. Returns the cut-off: pages and nodes whose
   /// bound is below it are not visited.
   /// @param a  What the descriptor says of the page's stars.
@@ -61,8 +66,11 @@ class PackedRTree final : public RecordIndex {
  public:
   /// @param nodes    Borrowed for the life of the index.
   /// @param heights  How entries hold heights.
-  PackedRTree(const IndexNodes& nodes, const HeightEncoding& heights)
-      : nodes_(nodes), heights_(heights) {}
+  /// @param pages    Of the same file, borrowed: where the file is far, a best-first search announces
+  ///                 pages too. Null: it does not.
+  PackedRTree(const IndexNodes& nodes, const HeightEncoding& heights,
+              const DescribedPageStore* pages = nullptr)
+      : nodes_(nodes), heights_(heights), pages_(pages) {}
 
   /// As RecordIndex::search. Entries are tested where they lie. Nodes of a level that were never
   /// read are announced together before they are read. Cost: one call of the predicate for each
@@ -90,6 +98,9 @@ class PackedRTree final : public RecordIndex {
     std::uint32_t level;
     std::uint64_t number, checksum;
   };
+  class Waiting;
+  class BestFirst;
+  [[nodiscard]] bool is_at_hand(const Waiting& w) const noexcept;
   template <class Test, class Take>
   void descend(const Test& test, IoCounters& counters, const Take& take) const;
   template <class Test, class Take>
@@ -97,6 +108,7 @@ class PackedRTree final : public RecordIndex {
 
   const IndexNodes& nodes_;
   HeightEncoding heights_;
+  const DescribedPageStore* pages_;
 };
 
 }  // namespace ptin

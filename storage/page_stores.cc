@@ -6,18 +6,23 @@
 #include "engine/check.h"
 #include "engine/error.h"
 #include "storage/file/checksum.h"
-#include "storage/range_joiner.h"
+#include "storage/file/range_joiner.h"
 
 namespace ptin {
 
 void DescribedPageStore::announce(std::span<const PageId> ids,
                                   IoCounters& counters) const noexcept {
+  RangesToCome ranges(file_, counters);
+  add_ranges(ids, ranges);
+}
+
+void DescribedPageStore::add_ranges(std::span<const PageId> ids,
+                                    RangesToCome& ranges) const noexcept {
   RangeJoiner range(slots_.page_bytes);
   const auto send = [&] {
     if (range.size() > 0) {
-      file_.will_need(slots_.offset + range.begin() * slots_.page_bytes,
-                      range.size() * slots_.page_bytes);
-      ++counters.ranges_announced;
+      ranges.add(
+          {slots_.offset + range.begin() * slots_.page_bytes, range.size() * slots_.page_bytes});
     }
   };
   for (const PageId id : ids) {
@@ -88,6 +93,7 @@ void PreadPageStore::read_described(PageId id, const layout::NodeEntry& descript
   counters.bytes_read += out.size();
   verify(id, descriptor, out);
   ++counters.pages_verified;
+  file_.settle(counters);
 }
 
 }  // namespace ptin

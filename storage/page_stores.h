@@ -7,7 +7,8 @@
 #include <span>
 
 #include "storage/file/mapped_file.h"
-#include "storage/file/read_only_file.h"
+#include "storage/file/range_joiner.h"
+#include "storage/file/readable_file.h"
 #include "storage/index_nodes.h"
 #include "storage/page_slots.h"
 #include "storage/page_store.h"
@@ -21,7 +22,10 @@ class DescribedPageStore : public PageStore {
  public:
   [[nodiscard]] std::uint64_t page_count() const noexcept final { return slots_.pages; }
   [[nodiscard]] std::size_t page_bytes() const noexcept final { return slots_.page_bytes; }
+  [[nodiscard]] bool is_far() const noexcept final { return file_.is_far(); }
   void announce(std::span<const PageId> ids, IoCounters& counters) const noexcept final;
+  /// Adds the ranges of pages, which ascend, to those that are announced together.
+  void add_ranges(std::span<const PageId> ids, RangesToCome& ranges) const noexcept;
   void read(PageId id, std::span<std::byte> out, IoCounters& counters) const final;
 
   /// As read(), for a caller that has the page's descriptor. REQUIRES: id < page_count(),
@@ -41,14 +45,20 @@ class DescribedPageStore : public PageStore {
   /// @throws Error corruption  bytes that view_described() returned may not be those of the file
   virtual void require_undamaged() const {}
 
+  /// ReadableFile::is_at_hand(), of a page.
+  [[nodiscard]] bool is_at_hand(PageId id) const noexcept {
+    return index_of(id) >= slots_.pages ||
+           file_.is_at_hand({slots_.offset_of(id), slots_.page_bytes});
+  }
+
  protected:
-  DescribedPageStore(const ReadOnlyFile& file, const PageSlots& slots, const IndexNodes& nodes)
+  DescribedPageStore(const ReadableFile& file, const PageSlots& slots, const IndexNodes& nodes)
       : file_(file), slots_(slots), nodes_(nodes) {}
   /// @throws Error corruption
   void verify(PageId id, const layout::NodeEntry& descriptor,
               std::span<const std::byte> copy) const;
 
-  const ReadOnlyFile& file_;
+  const ReadableFile& file_;
   PageSlots slots_;
   const IndexNodes& nodes_;
 };
@@ -57,7 +67,7 @@ class DescribedPageStore : public PageStore {
 /// from then on the page is trusted as long as the file is unchanged.
 class MappedPageStore final : public DescribedPageStore {
  public:
-  MappedPageStore(const ReadOnlyFile& file, const MappedFile& mapping, const PageSlots& slots,
+  MappedPageStore(const ReadableFile& file, const MappedFile& mapping, const PageSlots& slots,
                   const IndexNodes& nodes)
       : DescribedPageStore(file, slots, nodes), mapping_(mapping), verified_(slots.pages) {}
   void read_described(PageId id, const layout::NodeEntry& descriptor, std::span<std::byte> out,
@@ -77,7 +87,7 @@ class MappedPageStore final : public DescribedPageStore {
 /// Reads with pread; compares the checksum of every read.
 class PreadPageStore final : public DescribedPageStore {
  public:
-  PreadPageStore(const ReadOnlyFile& file, const PageSlots& slots, const IndexNodes& nodes)
+  PreadPageStore(const ReadableFile& file, const PageSlots& slots, const IndexNodes& nodes)
       : DescribedPageStore(file, slots, nodes) {}
   void read_described(PageId id, const layout::NodeEntry& descriptor, std::span<std::byte> out,
                       IoCounters& counters) const override;

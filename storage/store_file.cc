@@ -9,6 +9,7 @@
 #include "storage/described_page.h"
 #include "storage/descriptor.h"
 #include "storage/file/mapped_file.h"
+#include "storage/file/ranged_file.h"
 #include "storage/index_nodes.h"
 #include "storage/packed_rtree.h"
 #include "storage/page_stores.h"
@@ -20,10 +21,10 @@ namespace {
 
 class StoreFileImpl final : public StoreFile {
  public:
-  StoreFileImpl(const std::string& path, PageAccess access, std::shared_ptr<Announcer> announcer,
-                ReplacedFile replaced);
+  StoreFileImpl(std::unique_ptr<ReadOnlyFile> file, PageAccess access);
+  explicit StoreFileImpl(std::unique_ptr<RangedFile> file);
 
-  [[nodiscard]] const std::string& path() const noexcept override { return file_.path(); }
+  [[nodiscard]] const std::string& path() const noexcept override { return file_->path(); }
   [[nodiscard]] const StoreFacts& facts() const noexcept override { return front_.facts; }
   [[nodiscard]] std::string_view metadata_json() const noexcept override { return front_.metadata; }
   [[nodiscard]] const CoarsestTin& t0() const noexcept override { return front_.t0; }
@@ -37,7 +38,10 @@ class StoreFileImpl final : public StoreFile {
     return front_.bins;
   }
   [[nodiscard]] std::vector<SectionInfo> sections() const override;
-  [[nodiscard]] std::uint64_t file_bytes() const noexcept override { return file_.bytes(); }
+  [[nodiscard]] std::uint64_t file_bytes() const noexcept override { return file_->bytes(); }
+  [[nodiscard]] std::optional<IoCounters> remote_cost() const noexcept override {
+    return far_ != nullptr ? std::optional(far_->cost()) : std::nullopt;
+  }
   [[nodiscard]] std::uint64_t fingerprint() const noexcept override {
     return front_.header.header_checksum;
   }
@@ -60,7 +64,14 @@ class StoreFileImpl final : public StoreFile {
                               const Undo& undo) const;
   [[nodiscard]] DescribedPage described(PageId id) const;
 
-  ReadOnlyFile file_;
+  [[nodiscard]] IndexNodes::Root root() const {
+    return {front_.index, front_.index_offset, front_.root_checksum};
+  }
+  void read_by_copies();
+  void search_by_nodes();
+
+  std::unique_ptr<ReadableFile> file_;
+  RangedFile* far_ = nullptr;  ///< `file_`, where it lies elsewhere.
   StoreFront front_;
   std::optional<MappedFile> mapping_;
   std::unique_ptr<IndexNodes> nodes_;
@@ -73,23 +84,40 @@ class StoreFileImpl final : public StoreFile {
 StoreFront opened_front(const ReadOnlyFile& file) {
   constexpr std::uint64_t kFrontBytes = std::uint64_t{16} << 10;  // of most files, and more
   file.expect_jumps();
-  file.will_need(0, std::min(kFrontBytes, file.bytes()));
+  const ByteRange front{0, std::min(kFrontBytes, file.bytes())};
+  file.will_need(std::span(&front, 1));
   return read_front(file);
 }
 
-StoreFileImpl::StoreFileImpl(const std::string& path, PageAccess access,
-                             std::shared_ptr<Announcer> announcer, ReplacedFile replaced)
-    : file_(path, std::move(announcer), replaced), front_(opened_front(file_)) {
-  const IndexNodes::Root place{front_.index, front_.index_offset, front_.root_checksum};
+StoreFileImpl::StoreFileImpl(std::unique_ptr<ReadOnlyFile> file, PageAccess access)
+    : front_(opened_front(*file)) {
+  const ReadOnlyFile& opened = *file;
+  file_ = std::move(file);
   if (access == PageAccess::kMapped) {
-    mapping_.emplace(file_);
-    nodes_ = std::make_unique<MappedIndexNodes>(file_, *mapping_, place, front_.facts.heights);
-    pages_ = std::make_unique<MappedPageStore>(file_, *mapping_, front_.slots, *nodes_);
+    mapping_.emplace(opened);
+    nodes_ = std::make_unique<MappedIndexNodes>(opened, *mapping_, root(), front_.facts.heights);
+    pages_ = std::make_unique<MappedPageStore>(opened, *mapping_, front_.slots, *nodes_);
   } else {
-    nodes_ = std::make_unique<PreadIndexNodes>(file_, place, front_.facts.heights);
-    pages_ = std::make_unique<PreadPageStore>(file_, front_.slots, *nodes_);
+    read_by_copies();
   }
-  index_ = std::make_unique<PackedRTree>(*nodes_, front_.facts.heights);
+  search_by_nodes();
+}
+
+StoreFileImpl::StoreFileImpl(std::unique_ptr<RangedFile> file)
+    : far_(file.get()), front_(read_front(*file)) {
+  file_ = std::move(file);
+  far_->keep_on_disk(front_.header.header_checksum);
+  read_by_copies();
+  search_by_nodes();
+}
+
+void StoreFileImpl::read_by_copies() {
+  nodes_ = std::make_unique<PreadIndexNodes>(*file_, root(), front_.facts.heights);
+  pages_ = std::make_unique<PreadPageStore>(*file_, front_.slots, *nodes_);
+}
+
+void StoreFileImpl::search_by_nodes() {
+  index_ = std::make_unique<PackedRTree>(*nodes_, front_.facts.heights, pages_.get());
   // A file that changed while its front was read is not the one that was checked.
   pages_->check_unchanged();
 }
@@ -106,7 +134,7 @@ std::vector<SectionInfo> StoreFileImpl::sections() const {
 }
 
 DescribedPage StoreFileImpl::described(PageId id) const {
-  return {file_.path(), id, nodes_->descriptor(id), front_.facts.heights, front_.slots.page_bytes};
+  return {file_->path(), id, nodes_->descriptor(id), front_.facts.heights, front_.slots.page_bytes};
 }
 
 StoreFile::PageInfo StoreFileImpl::page_info(PageId id) const {
@@ -191,7 +219,14 @@ std::uint32_t StoreFileImpl::read_living(PageId id, const StarFilter& filter, Li
 std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access,
                                                  std::shared_ptr<Announcer> announcer,
                                                  ReplacedFile replaced) {
-  return std::make_shared<const StoreFileImpl>(path, access, std::move(announcer), replaced);
+  return std::make_shared<const StoreFileImpl>(
+      std::make_unique<ReadOnlyFile>(path, std::move(announcer), replaced), access);
+}
+
+std::shared_ptr<const StoreFile> StoreFile::open(std::shared_ptr<RangeSource> source,
+                                                 const RemoteCaches& caches) {
+  return std::make_shared<const StoreFileImpl>(std::make_unique<RangedFile>(
+      std::move(source), RangedFileOptions{caches.memory_bytes, caches.folder}));
 }
 
 }  // namespace ptin

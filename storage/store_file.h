@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 
 #include "storage/coarsest_tin.h"
 #include "storage/file/announcer.h"
+#include "storage/file/range_source.h"
 #include "storage/file/replaced_file.h"
 #include "storage/index.h"
 #include "storage/living_stars.h"
@@ -42,6 +44,16 @@ struct SectionInfo {
 
 enum class PageAccess { kMapped, kPread };
 
+/// What is kept of a file that lies elsewhere.
+struct RemoteCaches {
+  /// In memory: the parts used last, at least 1 MiB of them. A round of reading takes up to 6 MiB
+  /// besides.
+  std::uint64_t memory_bytes = std::uint64_t{64} << 20;
+  /// A folder in which what was read is kept for the next opening too; empty: none. A file in it has
+  /// the name of the content, and so is never out of date.
+  std::string folder;
+};
+
 /// An open store. Immutable; shared by any number of queries and threads.
 class StoreFile {
  public:
@@ -56,6 +68,11 @@ class StoreFile {
                                                PageAccess access = PageAccess::kMapped,
                                                std::shared_ptr<Announcer> announcer = nullptr,
                                                ReplacedFile replaced = ReplacedFile::kRefused);
+  /// The same of a file that lies elsewhere. Answers are the same; pages and nodes are read in rounds
+  /// of ranges, and each is verified at every reading.
+  /// @throws Error as above, and as RangeSource::read; not_found, io_error (the folder of the caches)
+  static std::shared_ptr<const StoreFile> open(std::shared_ptr<RangeSource> source,
+                                               const RemoteCaches& caches = {});
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
   virtual ~StoreFile() = default;
@@ -70,6 +87,9 @@ class StoreFile {
   [[nodiscard]] virtual std::span<const ErrorBin> error_bins() const noexcept = 0;
   [[nodiscard]] virtual std::vector<SectionInfo> sections() const = 0;
   [[nodiscard]] virtual std::uint64_t file_bytes() const noexcept = 0;
+  /// What a file that lies elsewhere cost since its opening, which is counted, by all threads. None:
+  /// the file is the system's.
+  [[nodiscard]] virtual std::optional<IoCounters> remote_cost() const noexcept = 0;
   /// The checksum of the header. The header holds the checksum of the table with the checksums of
   /// all sections, and an index entry that of what it describes: so this one number stands for the
   /// content of the file.

@@ -32,7 +32,7 @@ void require(bool condition, const std::string& path, const char* message) {
 }
 
 /// Refuses a file that is a stream: nothing is damaged then, the wrong file was named.
-void refuse_stream(const ReadOnlyFile& file) {
+void refuse_stream(const ReadableFile& file) {
   std::array<std::uint8_t, layout::kStreamMagic.size()> magic{};
   if (file.bytes() < magic.size()) return;
   file.read_at(std::as_writable_bytes(std::span(magic)), 0);
@@ -41,7 +41,7 @@ void refuse_stream(const ReadOnlyFile& file) {
               "this is a stream, not a store; `ptin unstream` makes a mesh of it", file.path());
 }
 
-FileHeader read_header(const ReadOnlyFile& file) {
+FileHeader read_header(const ReadableFile& file) {
   const std::string& path = file.path();
   FileHeader h;
   refuse_stream(file);
@@ -70,7 +70,7 @@ FileHeader read_header(const ReadOnlyFile& file) {
   return h;
 }
 
-void check_header(const FileHeader& h, const ReadOnlyFile& file) {
+void check_header(const FileHeader& h, const ReadableFile& file) {
   const std::string& path = file.path();
   require(h.major_version == layout::kMajorVersion, path,
           "the header has major version 0, which no program wrote");
@@ -103,7 +103,7 @@ void check_header(const FileHeader& h, const ReadOnlyFile& file) {
   require(fault == nullptr, path, fault);
 }
 
-std::vector<SectionEntry> read_table(const FileHeader& h, const ReadOnlyFile& file) {
+std::vector<SectionEntry> read_table(const FileHeader& h, const ReadableFile& file) {
   const std::string& path = file.path();
   std::vector<SectionEntry> table(h.section_count);
   file.read_at(std::as_writable_bytes(std::span(table)), sizeof h);
@@ -140,7 +140,7 @@ const SectionEntry& find(const std::vector<SectionEntry>& table, SectionKind kin
 // A whole section as an array of T, once its checksum was compared.
 template <class T>
 std::vector<T> read_section(const std::vector<SectionEntry>& table, SectionKind kind,
-                            const ReadOnlyFile& file) {
+                            const ReadableFile& file) {
   const SectionEntry& s = find(table, kind, file.path());
   if (s.bytes % sizeof(T) != 0) {
     damaged(file.path(), std::string("the section \"") + name_of(kind) +
@@ -156,7 +156,7 @@ std::vector<T> read_section(const std::vector<SectionEntry>& table, SectionKind 
 }
 
 CoarsestTin read_t0(const std::vector<SectionEntry>& table, const StoreFacts& facts,
-                    const ReadOnlyFile& file) {
+                    const ReadableFile& file) {
   CoarsestTin t0;
   for (const auto& v : read_section<layout::T0Vertex>(table, SectionKind::kT0Vertices, file)) {
     t0.vertices.push_back({{v.x, v.y}, v.height, v.has_height});
@@ -173,7 +173,7 @@ CoarsestTin read_t0(const std::vector<SectionEntry>& table, const StoreFacts& fa
 }
 
 std::vector<ErrorBin> read_bins(const std::vector<SectionEntry>& table, const FileHeader& h,
-                                const ReadOnlyFile& file) {
+                                const ReadableFile& file) {
   const std::string& path = file.path();
   std::vector<ErrorBin> bins;
   std::uint64_t records = 0;
@@ -234,13 +234,29 @@ const char* name_of(SectionKind kind) noexcept {
   return "unknown";
 }
 
-StoreFront read_front(const ReadOnlyFile& file) {
+/// What of the front of a far file did not come with its opening comes at once, the upper levels of
+/// the index too.
+void announce_front(const StoreFront& front, const ReadableFile& file) {
+  if (!file.is_far()) {
+    return;
+  }
+  constexpr std::uint64_t kMostUpperNodes = 16;
+  const IndexShape& index = front.index;
+  const std::uint64_t upper =
+      index.levels() < 2 ? index.total_nodes() : index.total_nodes() - index.nodes(0);
+  const ByteRange whole{0,
+                        front.index_offset + std::min(upper, kMostUpperNodes) * layout::kNodeBytes};
+  file.will_need(std::span(&whole, 1));
+}
+
+StoreFront read_front(const ReadableFile& file) {
   StoreFront front{};
   front.header = read_header(file);
   check_header(front.header, file);
   front.facts = facts_of(front.header);
   front.sections = read_table(front.header, file);
   place_index_and_pages(front, file.path());
+  announce_front(front, file);
   const std::vector<char> metadata =
       read_section<char>(front.sections, SectionKind::kMetadata, file);
   front.metadata.assign(metadata.begin(), metadata.end());

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "storage/file/read_only_file.h"
+#include "storage/file/readable_file.h"
 #include "storage/index_shape.h"
 #include "storage/layout.h"
 #include "storage/page_slots.h"
@@ -33,7 +33,7 @@ struct StoreFront {
 /// Reads the front of a file and checks everything that storage/FORMAT.md lists under "At opening".
 /// Cost: five reads, O(|T0|).
 /// @throws Error corruption, unsupported_version, io_error
-[[nodiscard]] StoreFront read_front(const ReadOnlyFile& file);
+[[nodiscard]] StoreFront read_front(const ReadableFile& file);
 
 /// The name of a section as `ptin info` shows it: "metadata", "t0 vertices", ..., "unknown".
 [[nodiscard]] const char* name_of(layout::SectionKind kind) noexcept;

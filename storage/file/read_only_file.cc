@@ -91,7 +91,14 @@ void ReadOnlyFile::expect_jumps() const noexcept {
   ::posix_fadvise(descriptor(), 0, 0, POSIX_FADV_RANDOM);
 }
 
-void ReadOnlyFile::will_need(std::uint64_t offset, std::uint64_t bytes) const noexcept {
+void ReadOnlyFile::will_need(std::span<const ByteRange> ranges) const noexcept {
+  for (const ByteRange& range : ranges) {
+    start_reading(range);
+  }
+}
+
+void ReadOnlyFile::start_reading(const ByteRange& range) const noexcept {
+  const auto [offset, bytes] = range;
   if (announcer_) {
     announcer_->announce(descriptor(), offset, bytes);
     return;

@@ -10,6 +10,7 @@
 #include <engine/error.h>
 #include <engine/geometry/orient.h>
 #include <engine/query/terrain.h>
+#include <engine/remote/remote_file.h>
 
 namespace {
 
@@ -51,6 +52,8 @@ void build_and_ask() {
   ptin::TinParts parts = terrain.parts({});
   ptin::walk_cells(parts, [&](const ptin::GridCell&, const ptin::Tin&, double) { ++cells; });
   expect(cells == 1, "a small terrain is one cell");
+  const ptin::Terrain far(ptin::open_remote_store("/vsisubfile/0,hill.ptin"));
+  expect(far.refine({}).vertices == report.vertices, "a file elsewhere is the same");
   try {
     static_cast<void>(ptin::Terrain::open("hill.xyz"));
     expect(false, "points are no store");

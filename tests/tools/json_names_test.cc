@@ -142,6 +142,7 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   ask({"build", file("dem.tif"), "-o", file("none.ptin"), "-q", "--dry-run"});
   ask({"build", "--discard", "-o", file("none.ptin"), "-q"}, 1);
   ask({"info", store});
+  ask({"info", "/vsisubfile/0," + store});  // as a file that lies elsewhere
   ask({"verify", store, "-q", "--against", file("dem.tif"), "--tolerance", "0", "5"});
   tools::testing::write_file(file("cut.ptin"), tools::testing::read_file(store).substr(0, 50000));
   ask({"verify", file("cut.ptin"), "-q"}, 1);

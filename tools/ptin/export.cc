@@ -321,7 +321,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   const ExportFormat& format = format_of(options);
   check_options(options, format);
   const auto start = std::chrono::steady_clock::now();
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   Exported made = export_as(format, options, terrain, context);
   made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -49,7 +49,7 @@ void print_text(const HighestResult& result, const HighestOptions& options, bool
 
 int run_highest(const HighestOptions& options, const Context& context) {
   check_detail(options.detail);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   HighestRequest request;

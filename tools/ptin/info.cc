@@ -67,6 +67,15 @@ nlohmann::json errors_json(const StoreFile& store, const char* key) {
   return rows;
 }
 
+/// What opening a file that lies elsewhere cost.
+nlohmann::json remote_json(const StoreFile& store) {
+  const std::optional<IoCounters> cost = store.remote_cost();
+  if (!cost) return nullptr;
+  return {{"rounds", cost->remote_rounds},
+          {"requests", cost->remote_requests},
+          {"bytes", cost->remote_bytes}};
+}
+
 nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
   const StoreFacts& facts = store.facts();
   const nlohmann::json metadata = metadata_of(store);
@@ -104,6 +113,7 @@ nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
           {"vertices_at_tolerance", levels},
           {"tree", tree_json(store)},
           {"sections", sections},
+          {"remote", remote_json(store)},
           {"metadata", metadata}};
 }
 
@@ -184,6 +194,11 @@ void print_errors(const StoreFile& store) {
 
 void print_info(const StoreFile& store, const CrsFacts& crs) {
   std::printf("file       %s, %s\n", store.path().c_str(), human_bytes(store.file_bytes()).c_str());
+  if (const std::optional<IoCounters> cost = store.remote_cost()) {
+    std::printf(
+        "elsewhere  opened by %s in %s, %s\n", counted(cost->remote_requests, "request").c_str(),
+        counted(cost->remote_rounds, "round").c_str(), human_bytes(cost->remote_bytes).c_str());
+  }
   print_place(store, crs);
   print_counts(store);
   print_errors(store);
@@ -202,8 +217,7 @@ Action declare_info(CLI::App& app, Context& context) {
   const auto options = std::make_shared<TerrainOptions>();
   add_terrain_options(app, *options, false);
   return [options, &context] {
-    const auto store =
-        StoreFile::open(options->file, options->no_mmap ? PageAccess::kPread : PageAccess::kMapped);
+    const auto store = open_store(*options, context);
     const CrsFacts crs = crs_facts(*store);
     context.json ? print_json(info_json(*store, crs)) : print_info(*store, crs);
     return kExitDone;

@@ -243,7 +243,7 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
 
 int run_isoline(const IsolineOptions& options, const Context& context) {
   check_options(options, context);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   IsolineRequest request;

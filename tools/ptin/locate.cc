@@ -120,7 +120,7 @@ int run_locate(const LocateOptions& options, const Context& context) {
   }
   check_detail(options.detail);
   const AnswerForm form = form_of(options.answer, context.json);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<MapPoint> asked = options.points.empty()

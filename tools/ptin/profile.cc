@@ -231,7 +231,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
            options.answer.output);
   }
   check_detail(options.detail);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<std::vector<MapPoint>> asked = read_lines(options.line, options.choice, crs.wkt);

@@ -8,6 +8,7 @@
 #include "engine/construct/process_limits.h"
 #include "engine/error.h"
 #include "engine/query/terrain.h"
+#include "engine/remote/remote_file.h"
 #include "storage/file/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"
 #include "tools/facts/human.h"
@@ -20,9 +21,18 @@
 namespace ptin::tools {
 
 void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index) {
-  app.add_option("FILE", options.file, "The .ptin file")->required();
+  app.add_option("FILE", options.file,
+                 "The .ptin file, or its URL: https, http, s3, gs, az (tools/API.md, \"Files "
+                 "elsewhere\")")
+      ->required();
   app.add_flag("--no-mmap", options.no_mmap,
                "Read with pread instead of mapping the file (network file systems)");
+  app.add_option("--remote-cache", options.remote_cache,
+                 "Of a URL: memory for the parts of the file that were read, as 64M (the default)")
+      ->type_name("SIZE");
+  app.add_option("--cache-folder", options.cache_folder,
+                 "Of a URL: a folder in which what was read is kept for the next time too")
+      ->type_name("DIR");
   if (!has_index) return;
   app.add_option("--index", options.index, "Which index finds the pages; the answer is the same")
       ->check(CLI::IsMember({"packed", "spatialindex"}))
@@ -32,12 +42,27 @@ void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index)
       ->type_name("DIR");
 }
 
-Terrain open_terrain(const TerrainOptions& options) {
+std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options, const Context& context) {
+  if (is_remote(options.file)) {
+    RemoteOptions remote;
+    remote.caches.folder = options.cache_folder;
+    if (!options.remote_cache.empty()) {
+      remote.caches.memory_bytes = parse_bytes(options.remote_cache, "--remote-cache");
+    }
+    remote.stop = context.stop;
+    return open_remote_store(options.file, remote);
+  }
   if (!options.no_mmap) install_sigbus_guard();
-  const auto store =
-      StoreFile::open(options.file, options.no_mmap ? PageAccess::kPread : PageAccess::kMapped);
+  return StoreFile::open(options.file, options.no_mmap ? PageAccess::kPread : PageAccess::kMapped);
+}
+
+Terrain open_terrain(const TerrainOptions& options, const Context& context) {
+  const auto store = open_store(options, context);
   Terrain terrain(store);
   if (options.index == "spatialindex") {
+    if (is_remote(options.file) && options.temporary_folder.empty()) {
+      refuse("--index spatialindex of a file that lies elsewhere needs --tmp", options.file);
+    }
     SpatialIndexOptions index;
     index.temporary_folder = options.temporary_folder;
     terrain.use_index(SpatialIndexRTree::open(store, index));
@@ -205,6 +230,9 @@ nlohmann::json cost_json(const QueryCost& cost) {
           {"index_nodes", cost.io.index_nodes},
           {"pages", cost.io.pages},
           {"bytes_read", cost.io.bytes_read},
+          {"remote_rounds", cost.io.remote_rounds},
+          {"remote_requests", cost.io.remote_requests},
+          {"remote_bytes", cost.io.remote_bytes},
           {"seconds", cost.seconds}};
 }
 

@@ -18,16 +18,21 @@
 
 namespace ptin::tools {
 
-/// FILE, --no-mmap, --index and --tmp.
+/// FILE, which may lie elsewhere, how it is read, --index and --tmp.
 struct TerrainOptions {
   std::string file;
+  std::string remote_cache;  ///< As parse_bytes; empty: the default.
+  std::string cache_folder;
   std::string index = "packed";
   std::string temporary_folder;
   bool no_mmap = false;
 };
 void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index);
-/// @throws Error as Terrain::open
-[[nodiscard]] Terrain open_terrain(const TerrainOptions& options);
+/// @throws Error as Terrain::open and open_remote_store
+[[nodiscard]] Terrain open_terrain(const TerrainOptions& options, const Context& context);
+/// The same without T0 as a mesh.
+[[nodiscard]] std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options,
+                                                          const Context& context);
 
 /// --window, --polygon, --point: at most one.
 struct RegionOptions {

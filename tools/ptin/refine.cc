@@ -125,11 +125,15 @@ void print_stats(const RefineOptions& options, const RefinedTin& refined) {
       grouped(cost.records_applied).c_str(), counted(cost.io.index_nodes, "index node").c_str(),
       counted(cost.io.pages, "page").c_str(), human_bytes(cost.io.bytes_read).c_str(),
       cost.seconds);
+  if (cost.io.remote_rounds == 0) return;
+  std::printf("  elsewhere  %s in %s, %s\n", counted(cost.io.remote_requests, "request").c_str(),
+              counted(cost.io.remote_rounds, "round").c_str(),
+              human_bytes(cost.io.remote_bytes).c_str());
 }
 
 int run_refine(const RefineOptions& options, const Context& context) {
   check_options(options);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request;

@@ -139,7 +139,7 @@ void warn_of_picture(const RefinedTin& refined, const StoreFile& store, const st
 
 int run_render(const RenderOptions& options, const Context& context) {
   check_options(options);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.error, context);
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "engine/error.h"
+#include "engine/remote/remote_file.h"
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
 #include "tools/http/server.h"
@@ -43,7 +44,8 @@ struct ServeCommand {
 serve::ServedFile served_file(const std::string& text) {
   const std::size_t equals = text.find('=');
   std::error_code unknown;
-  if (equals != std::string::npos && !std::filesystem::exists(text, unknown)) {
+  const bool has_name = equals != std::string::npos && !is_remote(text);  // URLs have = too
+  if (has_name && !std::filesystem::exists(text, unknown)) {
     return {text.substr(0, equals), text.substr(equals + 1)};
   }
   return {std::filesystem::path(text).stem().string(), text};

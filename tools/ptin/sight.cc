@@ -268,7 +268,7 @@ int run_sight(const SightOptions& options, const Context& context) {
   check_detail(options.detail);
   std::ignore = form_of(options.answer, context.json, true);  // before the work
   if (options.frequency) std::ignore = hertz_of(*options.frequency);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<SightPair> asked = pairs_of(options, crs.wkt);

@@ -92,7 +92,7 @@ void print_stats(const StreamOptions& options, const StreamSummary& s) {
 
 int run_stream(const StreamOptions& options, const Context& context) {
   check_options(options, context);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   const StoreFile& store = terrain.store();
   warn_of_terrain(store, options.wanted.error, context);
   StreamRequest request;

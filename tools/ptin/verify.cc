@@ -65,10 +65,11 @@ void verify_crs(const Terrain& terrain, Findings& findings) {
 constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;  ///< Unless --memory says otherwise.
 
 /// The terrain, unless there are faults; one more is a T0 that no mesh can begin with.
-std::optional<Terrain> open_if_sound(const VerifyCommand& command, Findings& findings) {
+std::optional<Terrain> open_if_sound(const VerifyCommand& command, const Context& context,
+                                     Findings& findings) {
   if (!findings.faults.empty()) return std::nullopt;
   try {
-    return open_terrain(command.terrain);
+    return open_terrain(command.terrain, context);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::corruption) throw;
     findings.faults.push_back({error.message(), error.context()});
@@ -138,6 +139,10 @@ void verify_source(const VerifyCommand& command, const Terrain& terrain, const C
 }
 
 Findings verify(const VerifyCommand& command, const Context& context) {
+  if (is_remote(command.terrain.file)) {
+    refuse("verify reads every byte of a file: copy it to this machine, and verify the copy",
+           command.terrain.file);
+  }
   Findings findings;
   Progress progress(Progress::style_for(context.quiet, stderr));
   VerifyOptions options;
@@ -150,7 +155,7 @@ Findings verify(const VerifyCommand& command, const Context& context) {
   findings.faults = findings.store.faults;
   findings.stopped_early = findings.store.stopped_early;
   // A damaged file answers no questions.
-  if (const auto terrain = open_if_sound(command, findings)) {
+  if (const auto terrain = open_if_sound(command, context, findings)) {
     verify_crs(*terrain, findings);
     verify_hierarchy(command, *terrain, context, progress, findings);
     if (findings.faults.empty() && !command.against.empty())

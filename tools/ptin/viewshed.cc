@@ -215,7 +215,7 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const StoreFil
 
 int run_viewshed(const ViewshedOptions& options, const Context& context) {
   check_options(options);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   // Without --pixel-size, a terrain of points is refused here: its grid is far finer than anybody
   // wants to see.

@@ -183,7 +183,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
                 "a volume is measured against --level H or --against OTHER; give one of them");
   }
   check_detail(options.detail);
-  const Terrain terrain = open_terrain(options.terrain);
+  const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   CrsFacts crs = crs_facts(terrain.store());
   std::optional<Terrain> other;
@@ -191,7 +191,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
   if (!options.against.empty()) {
     TerrainOptions of_other = options.terrain;
     of_other.file = options.against;
-    other = open_terrain(of_other);
+    other = open_terrain(of_other, context);
     warn_of_terrain(other->store(), options.detail.error, context);
     const CrsFacts crs_of_other = crs_facts(other->store());
     check_comparable(crs, crs_of_other, options, context);

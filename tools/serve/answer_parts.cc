@@ -151,7 +151,13 @@ void add_cost(http::Response& response, const QueryCost& cost) {
   value += ";desc=\"pages=" + std::to_string(cost.io.pages) +
            " stars=" + std::to_string(cost.stars_read) +
            " records=" + std::to_string(cost.records_retrieved) +
-           " bytes=" + std::to_string(cost.io.bytes_read) + "\"";
+           " bytes=" + std::to_string(cost.io.bytes_read);
+  if (cost.io.remote_rounds > 0) {
+    value += " remote_rounds=" + std::to_string(cost.io.remote_rounds) +
+             " remote_requests=" + std::to_string(cost.io.remote_requests) +
+             " remote_bytes=" + std::to_string(cost.io.remote_bytes);
+  }
+  value += "\"";
   response.add("Server-Timing", std::move(value));
 }
 

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "engine/error.h"
+#include "engine/remote/remote_file.h"
 #include "tools/http/etag.h"
 #include "tools/serve/places.h"
 
@@ -27,6 +28,22 @@ bool is_name(const std::string& id) {
          std::all_of(id.begin(), id.end(), is_plain);
 }
 
+Terrain opened(const std::string& path) {
+  return is_remote(path) ? Terrain(open_remote_store(path))
+                         : Terrain::open(path, PageAccess::kMapped, ReplacedFile::kAnswers);
+}
+
+/// Whether an object elsewhere was found to be another one than that which was opened.
+bool was_replaced(const StoreFile& store) {
+  if (!store.remote_cost()) return false;
+  try {
+    store.pages().check_unchanged();
+    return false;
+  } catch (const Error&) {
+    return true;
+  }
+}
+
 /// Whether trying again gives nothing else.
 bool is_damaged(const std::exception& error) {
   const auto* const known = dynamic_cast<const Error*>(&error);
@@ -41,6 +58,8 @@ std::string version_of(const Collection& collection, const std::string& program)
 }
 
 std::optional<FileIdentity> identity_of(const std::string& path) {
+  // An object elsewhere is not asked for its name's sake: its answers tell when it is another one.
+  if (is_remote(path)) return FileIdentity{};
   struct stat facts {};
   if (::stat(path.c_str(), &facts) != 0) return std::nullopt;
   return FileIdentity{facts.st_dev, facts.st_ino, static_cast<std::uint64_t>(facts.st_size),
@@ -50,7 +69,7 @@ std::optional<FileIdentity> identity_of(const std::string& path) {
 Collection::Collection(std::string name, const std::string& path)
     : id(std::move(name)),
       identity(identity_of(path).value_or(FileIdentity{})),
-      terrain(Terrain::open(path, PageAccess::kMapped, ReplacedFile::kAnswers)),
+      terrain(opened(path)),
       crs(crs_facts(terrain.store())),
       ground(ground_of(crs)),
       fingerprint(http::hex_of(terrain.store().fingerprint())) {
@@ -94,7 +113,7 @@ std::shared_ptr<const Collection> Catalogue::current(const std::string& id, Entr
   const std::optional<FileIdentity> now = identity_of(entry.path);
   const std::lock_guard lock(entry.mutex);
   const FileIdentity seen = now.value_or(FileIdentity{});
-  if (now && seen == entry.open->identity) {
+  if (now && seen == entry.open->identity && !was_replaced(entry.open->terrain.store())) {
     entry.is_stale = false;
     return entry.open;
   }
@@ -111,7 +130,8 @@ std::shared_ptr<const Collection> Catalogue::current(const std::string& id, Entr
     entry.open = std::make_shared<Collection>(id, entry.path);
     entry.is_stale = false;
   } catch (const std::exception& error) {
-    if (is_damaged(error)) entry.next_try = std::chrono::steady_clock::time_point::max();
+    if (is_damaged(error) && !is_remote(entry.path))
+      entry.next_try = std::chrono::steady_clock::time_point::max();
     if (is_known) return entry.open;
     warn_(id, std::string("the file that took its place cannot be opened: ") + error.what());
   }

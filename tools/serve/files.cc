@@ -107,6 +107,9 @@ http::Response answer_file(const Asked& asked) {
     throw Problem(403, "this service does not give out its files; it would with --files");
   }
   const StoreFile& store = asked.terrain().store();
+  if (store.remote_cost()) {
+    throw Problem(403, "the file lies elsewhere, and this service reads parts of it alone");
+  }
   const std::optional<FileIdentity> now = identity_of(store.path());
   if (!now) throw Problem(404, "the file is gone; questions are answered from what was open");
   const auto file = std::make_shared<Descriptor>(store.path());

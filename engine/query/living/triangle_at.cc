@@ -19,6 +19,9 @@ namespace {
 constexpr double kRecordsOfSpot = 128;
 /// So few spots of a region that is not dense are looked for one by one.
 constexpr std::size_t kFewSpots = 16;
+/// Of a far file so many are looked for together, wherever they lie: pages too many are read, and few
+/// rounds of them are waited for.
+constexpr std::size_t kFewFarSpots = 1024;
 
 std::array<VertexKey, 3> keys_of(const LivingTriangle& t) {
   std::array<VertexKey, 3> keys{};
@@ -95,6 +98,7 @@ class Finder {
   void find_one(Spot spot, TriangleAt& found);
   void find_together(std::span<const Spot> spots, std::span<TriangleAt> found);
   void search(const SpotSet& set);
+  void announce_far();
   void read(PageId page);
   void admit() const { context_.admit(held_ + stars_.bytes_aside()); }
   [[nodiscard]] bool is_dense(const GridBox& reach, std::size_t spots) const;
@@ -118,6 +122,19 @@ void Finder::search(const SpotSet& set) {
   store_.star_index().search_stars(filter_, pages_, context_.cost.io);
   filter_.also = nullptr;
   context_.check_stop();
+}
+
+/// Near ones are not announced: most of them are in memory, and each call costs.
+void Finder::announce_far() {
+  if (!store_.pages().is_far()) {
+    return;
+  }
+  std::vector<PageId> ids;
+  ids.reserve(pages_.size());
+  for (const StarPage& page : pages_) {
+    ids.push_back(page.id);
+  }
+  store_.pages().announce(ids, context_.cost.io);
 }
 
 void Finder::read(PageId page) { stars_.read(page, filter_, context_); }
@@ -156,6 +173,11 @@ class Finder::SmallestFirst final : public BestStarVisitor {
     }
     return {-area};
   }
+  /// On a vertex no triangle ends the search, and most positions of the grid have one.
+  [[nodiscard]] bool wants_all() const override {
+    constexpr std::int64_t kWithin = (std::int64_t{1} << kSpotBits) - 1;
+    return (spot_.x & kWithin) == 0 && (spot_.y & kWithin) == 0;
+  }
   Merit visit(PageId page, const StarAttributes&) override {
     finder_.context_.check_stop();
     finder_.read(page);
@@ -186,7 +208,8 @@ void Finder::find_one(Spot spot, TriangleAt& found) {
 
 /// Looks for the spots of a dense region together; else for those of its parts.
 void Finder::find(std::span<const Spot> spots, std::span<TriangleAt> found) {
-  if (spots.size() > 1 && is_dense(reach_of(spots), spots.size())) {
+  const bool is_far = store_.pages().is_far() && spots.size() <= kFewFarSpots;
+  if (spots.size() > 1 && (is_far || is_dense(reach_of(spots), spots.size()))) {
     find_together(spots, found);
   } else if (spots.size() > kFewSpots) {
     const std::size_t half = spots.size() / 2;
@@ -208,6 +231,7 @@ void Finder::find_together(std::span<const Spot> spots, std::span<TriangleAt> fo
   stars_.clear();
   offer_all(set, from_t0, spots, found);
   search(set);
+  announce_far();
   for (const StarPage& page : pages_) {
     context_.check_stop();
     read(page.id);

@@ -15,6 +15,9 @@ void QueryCost::add_counts(const QueryCost& part) noexcept {
   io.bytes_read += part.io.bytes_read;
   io.pages_verified += part.io.pages_verified;
   io.ranges_announced += part.io.ranges_announced;
+  io.remote_rounds += part.io.remote_rounds;
+  io.remote_requests += part.io.remote_requests;
+  io.remote_bytes += part.io.remote_bytes;
 }
 
 void QueryContext::throw_cancelled() const {

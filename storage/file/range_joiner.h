@@ -4,6 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <new>
+#include <vector>
+
+#include "storage/file/readable_file.h"
 
 namespace ptin {
 
@@ -40,6 +44,31 @@ class RangeJoiner {
   std::uint64_t gap_;
   std::uint64_t begin_ = 0, end_ = 0;
   std::uint64_t wanted_ = 0, wasted_ = 0;
+};
+
+/// Ranges that are announced at once, when this goes. A hint: what memory there is not for is left
+/// out.
+class RangesToCome {
+ public:
+  RangesToCome(const ReadableFile& file, IoCounters& counters) : file_(file), counters_(counters) {}
+  RangesToCome(const RangesToCome&) = delete;
+  RangesToCome& operator=(const RangesToCome&) = delete;
+  ~RangesToCome() { file_.will_need(ranges_); }
+
+  void add(const ByteRange& range) noexcept {
+    try {
+      ranges_.push_back(range);
+      ++counters_.ranges_announced;
+    } catch (const std::bad_alloc&) {
+      file_.will_need(ranges_);
+      ranges_.clear();
+    }
+  }
+
+ private:
+  const ReadableFile& file_;
+  IoCounters& counters_;
+  std::vector<ByteRange> ranges_;
 };
 
 }  // namespace ptin
