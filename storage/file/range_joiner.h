@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <new>
+#include <span>
 #include <vector>
 
 #include "storage/file/readable_file.h"
@@ -46,22 +47,29 @@ class RangeJoiner {
   std::uint64_t wanted_ = 0, wasted_ = 0;
 };
 
-/// Ranges that are announced at once, when this goes. A hint: what memory there is not for is left
-/// out.
+/// Ranges that are announced: of a far file together, when this goes; of another one each at once,
+/// without memory. A hint: what there is no memory for is left out.
 class RangesToCome {
  public:
   RangesToCome(const ReadableFile& file, IoCounters& counters) : file_(file), counters_(counters) {}
   RangesToCome(const RangesToCome&) = delete;
   RangesToCome& operator=(const RangesToCome&) = delete;
-  ~RangesToCome() { file_.will_need(ranges_); }
+  ~RangesToCome() {
+    if (file_.is_far()) {
+      file_.will_need(ranges_);
+    }
+  }
 
   void add(const ByteRange& range) noexcept {
+    ++counters_.ranges_announced;
+    if (!file_.is_far()) {
+      file_.will_need(std::span(&range, 1));
+      return;
+    }
     try {
       ranges_.push_back(range);
-      ++counters_.ranges_announced;
     } catch (const std::bad_alloc&) {
-      file_.will_need(ranges_);
-      ranges_.clear();
+      ranges_.clear();  // What comes one by one comes all the same.
     }
   }
 
