@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # The public headers: what another program may include. Run at installation, this file copies them from SOURCE into
-# INCLUDE_FOLDER/ptin. All other headers are how a room works inside. `tests/layering` reads the list: tools and the test of
+# INCLUDE_FOLDER/ptin, those of MPI where it is there (WITH_MPI). All other headers are how a room works inside. `tests/layering` reads the list: tools and the test of
 # the installation include nothing else, and a public header includes public headers alone.
 cmake_policy(VERSION 3.25)
 set(public_headers
@@ -126,6 +126,10 @@ set(public_headers
     storage/store_file.h
     storage/store_writer.h
     storage/verify.h)
+if(WITH_MPI)
+  list(APPEND public_headers
+    engine/mpi/mpi_job.h)
+endif()
 
 cmake_path(ABSOLUTE_PATH INCLUDE_FOLDER BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")
 foreach(header IN LISTS public_headers)

@@ -258,6 +258,8 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
       !driver->begin({index, workspace.folder(), workspace.temporary_folder(),
                       input_fingerprint(all_inputs(job.inputs, job.options))})) {
     job.goes_on_elsewhere = true;
+    // Hours of work will be in the folder, of which its manifest does not tell: no error may remove it.
+    workspace.append({{{"elsewhere", true}}});
     return;
   }
   const BuiltHierarchy built = build_hierarchy(

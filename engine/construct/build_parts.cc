@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -14,13 +16,14 @@
 #include "engine/construct/build_worker.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/source_kind.h"
+#include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/batch_order.h"
 #include "engine/construct/tasks/piece_runner.h"
 #include "engine/construct/tasks/task_driver.h"
 #include "engine/construct/tasks/task_graph.h"
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/construct/tasks/task_worker.h"
-#include "storage/file/file_questions.h"
+#include "storage/file/checksum.h"
 
 namespace ptin {
 
@@ -33,6 +36,10 @@ const char* name_of(PartsPhase phase) {
   return kNames[static_cast<std::size_t>(phase)];
 }
 
+FileLayer& files_of(const BuildResources& resources) {
+  return resources.files != nullptr ? *resources.files : FileLayer::system();
+}
+
 int parts_of(PartsPhase phase, int parts) { return phase == PartsPhase::kJoin ? 1 : parts; }
 
 // -------------------------------------------------------------------------------------------------
@@ -42,32 +49,63 @@ std::string told_in(const std::string& folder, PartsPhase phase, int part) {
   return folder + "/part-" + name_of(phase) + "-" + std::to_string(part);
 }
 
+Error to_do_again(PartsPhase phase, int part, const std::string& what, const std::string& where) {
+  return {ErrorCode::corruption,
+          what + "; do part " + std::to_string(part) + " of the phase " + name_of(phase) +
+              " again, then this job",
+          where};
+}
+
 void tell(FileLayer& files, const std::string& folder, PartsPhase phase, int part,
           const TaskResults& results) {
   std::string text;
   for (const auto& [name, result] : results) {
     text += line_of(name, result).dump() + "\n";
   }
+  text = std::to_string(checksum_of(std::as_bytes(std::span(text)))) + "\n" + text;
   ScratchFile file(files, folder, "part", false);
   file.write_at(std::as_bytes(std::span(text)), 0);
   file.publish_as(told_in(folder, phase, part), true);
 }
 
+/// A job whose files are damaged counts as not done.
+void forget_told(FileLayer& files, const std::string& folder, PartsPhase phase, int part) {
+  files.unlink(told_in(folder, phase, part));  // gone already where another job met the same
+}
+
 /// Takes up what a job told. False when it told nothing.
-bool take_told(const std::string& folder, PartsPhase phase, int part, TaskResults& results) {
-  std::ifstream file(told_in(folder, phase, part));
+/// @throws Error corruption  what it told is damaged: it is forgotten
+bool take_told(FileLayer& files, const std::string& folder, PartsPhase phase, int part,
+               TaskResults& results) {
+  std::ifstream file(told_in(folder, phase, part), std::ios::binary);
   if (!file) {
     return false;
   }
-  for (std::string line; std::getline(file, line);) {
+  std::string checksum;
+  std::getline(file, checksum);
+  std::ostringstream rest;
+  rest << file.rdbuf();
+  const std::string text = rest.str();
+  if (checksum != std::to_string(checksum_of(std::as_bytes(std::span(text))))) {
+    forget_told(files, folder, phase, part);
+    throw to_do_again(phase, part, "what a job told is not what it wrote",
+                      told_in(folder, phase, part));
+  }
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
     take_line(nlohmann::json::parse(line), results);
   }
   return true;
 }
 
-void require_told(const std::string& folder, PartsPhase phase, int parts, TaskResults& results) {
+constexpr std::chrono::milliseconds kPatienceForJobs{2000};
+
+void require_told(FileLayer& files, const std::string& folder, PartsPhase phase, int parts,
+                  std::chrono::milliseconds patience, TaskResults& results) {
   for (int part = 0; part < parts_of(phase, parts); ++part) {
-    if (!take_told(folder, phase, part, results)) {
+    // That a job was not done is likelier than that what it told shows late.
+    await_file(told_in(folder, phase, part), std::min(patience, kPatienceForJobs), {});
+    if (!take_told(files, folder, phase, part, results)) {
       throw Error(ErrorCode::invalid_argument,
                   "part " + std::to_string(part) + " of the phase " + name_of(phase) +
                       " is not done; do it first",
@@ -118,8 +156,9 @@ std::vector<TaskName> tasks_of(const BatchOrder& order, PartsPhase phase, int pa
   return tasks;
 }
 
-/// Which part wrote a file that is damaged.
-Error damaged(const DamagedInput& damage, const BatchOrder& order, int parts) {
+/// Finds which part wrote a file that is damaged, and counts it as not done.
+Error damaged(const DamagedInput& damage, const BatchOrder& order, FileLayer& files,
+              const std::string& folder, int parts) {
   const TaskName producer = damage.producer();
   const bool is_first = producer.kind == TaskKind::kCollapse || producer.kind == TaskKind::kJoin;
   const PartsPhase phase = is_first ? PartsPhase::kCollapse : PartsPhase::kTighten;
@@ -127,11 +166,8 @@ Error damaged(const DamagedInput& damage, const BatchOrder& order, int parts) {
     for (int part = 0; part < parts_of(p, parts); ++part) {
       const std::vector<TaskName> tasks = tasks_of(order, p, part, parts);
       if (std::find(tasks.begin(), tasks.end(), producer) != tasks.end()) {
-        return {damage.code(),
-                "a temporary file is not what was written; remove " + std::string("part-") +
-                    name_of(p) + "-" + std::to_string(part) + " beside it, and do part " +
-                    std::to_string(part) + " of the phase " + name_of(p) + " again",
-                damage.context()};
+        forget_told(files, folder, p, part);
+        return to_do_again(p, part, "a temporary file is not what was written", damage.context());
       }
     }
   }
@@ -199,12 +235,13 @@ class NoteTaker final : public TaskDriver {
 /// Goes on from what the jobs told.
 class Publisher final : public TaskDriver {
  public:
-  explicit Publisher(int parts) : parts_(parts) {}
+  Publisher(int parts, const BuildResources& resources)
+      : files_(files_of(resources)), parts_(parts), patience_(resources.patience) {}
 
   [[nodiscard]] bool begin(const BuildNote& note) override {
     for (const PartsPhase phase :
          {PartsPhase::kCollapse, PartsPhase::kJoin, PartsPhase::kTighten}) {
-      require_told(note.temporary, phase, parts_, told_);
+      require_told(files_, note.temporary, phase, parts_, patience_, told_);
     }
     return true;
   }
@@ -215,7 +252,9 @@ class Publisher final : public TaskDriver {
   }
 
  private:
+  FileLayer& files_;
   int parts_;
+  std::chrono::milliseconds patience_;
   TaskResults told_;
   ThreadDriver threads_;
 };
@@ -244,14 +283,14 @@ void do_part(const std::vector<std::string>& inputs, const BuildOptions& options
              int parts) {
   require_part(phase, part, parts);
   const std::string folder = note_in(note).temporary;
-  FileLayer& files = resources.files != nullptr ? *resources.files : FileLayer::system();
+  FileLayer& files = files_of(resources);
   TaskResults known;
-  if (take_told(folder, phase, part, known)) {
+  if (take_told(files, folder, phase, part, known)) {
     return;
   }
   for (const PartsPhase before : {PartsPhase::kCollapse, PartsPhase::kJoin}) {
     if (before < phase) {
-      require_told(folder, before, parts, known);
+      require_told(files, folder, before, parts, resources.patience, known);
     }
   }
   BuildWorker worker(inputs, options, resources, note);
@@ -270,14 +309,14 @@ void do_part(const std::vector<std::string>& inputs, const BuildOptions& options
   try {
     run_pieces(pieces, limits, resources.stop);
   } catch (const DamagedInput& damage) {
-    throw damaged(damage, order, parts);
+    throw damaged(damage, order, files, folder, parts);
   }
   tell(files, folder, phase, part, pieces.done());
 }
 
 BuildReport publish_parts(const std::vector<std::string>& inputs, const std::string& output,
                           const BuildOptions& options, const BuildResources& resources, int parts) {
-  Publisher publisher(parts);
+  Publisher publisher(parts, resources);
   BuildResources to_publish = resources;
   to_publish.driver = &publisher;
   to_publish.unfinished = Unfinished::kResume;

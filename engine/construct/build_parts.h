@@ -7,8 +7,9 @@
 //   join      one job: the other tiles above, up to the root
 //   tighten   `parts` jobs: batches again, and closing the tiles above that lie within the part
 //   publish   one job: closing the others, pages to their places, the index, the output's name
-// A job that is done again does nothing but what it had not told; one that died tells nothing. All of
-// them see the inputs and the folder beside the output under the same names.
+// A job that was done does nothing when it is done again; one that died tells nothing, and is done
+// anew. A job that meets damage makes the one that wrote it count as not done. All of them see the
+// inputs, the folder beside the output and --tmp under the same names.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +30,7 @@ enum class PartsPhase : std::uint8_t { kCollapse, kJoin, kTighten };
                                       const BuildResources& resources);
 
 /// One job. Of the join there is part 0 alone.
-/// @param resources  `memory_bytes`, `threads`, `files`, `stop` and `observer` count.
+/// @param resources  `memory_bytes`, `threads`, `patience`, `files`, `stop` and `observer` count.
 /// @throws Error invalid_argument  a job of the phase before has told nothing yet, or there is no
 ///                                 such part; corruption  a file of another job is damaged: the
 ///                                 message names the part to be done again; as build()

@@ -9,6 +9,7 @@
 #include "engine/construct/source_kind.h"
 #include "engine/construct/store_output.h"
 #include "engine/construct/tasks/batch_order.h"
+#include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/construct/tasks/task_worker.h"
 #include "engine/construct/tiled_source.h"
@@ -31,6 +32,19 @@ const BuildNote& require_same_inputs(const BuildNote& note, const std::vector<st
   return note;
 }
 
+/// @throws Error invalid_argument  this process does not see what the others write
+const BuildNote& require_shared_folders(const BuildNote& note, const BuildResources& resources) {
+  for (const std::string& folder : {note.folder, note.temporary}) {
+    if (!await_file(folder, resources.patience, resources.stop)) {
+      throw Error(ErrorCode::invalid_argument,
+                  "this process does not see the folder of the build; the output's folder, and "
+                  "--tmp where it is given, must be folders that all processes share",
+                  folder);
+    }
+  }
+  return note;
+}
+
 }  // namespace
 
 struct BuildWorker::Impl {
@@ -40,11 +54,12 @@ struct BuildWorker::Impl {
         files(given.files != nullptr ? *given.files : FileLayer::system()),
         memory(plan_memory(given.memory_bytes, source_kind(inputs, options))),
         cache(memory.gdal_cache),
-        source(inputs, options, require_same_inputs(note, inputs, options).index, note.temporary,
-               files, given.stop),
+        source(inputs, options,
+               require_same_inputs(require_shared_folders(note, given), inputs, options).index,
+               note.temporary, files, given.stop),
         packer(options, source.tiled().frame, files, note.folder),
         worker({source.tiled().tree, collapse_options(options, source.tiled()),
-                source.tiled().make_starter, packer, files, note.temporary, true},
+                source.tiled().make_starter, packer, files, note.temporary, true, given.patience},
                [](TaskKind, std::uint64_t) {}) {
     if (resources.observer != nullptr) {
       resources.observer->plan(plan());

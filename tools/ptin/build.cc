@@ -199,10 +199,14 @@ void tell(const BuildCommand& command, const BuildReport& report, const Context&
   }
 }
 
-/// True where this process is one of several that were started together, by mpirun or srun.
+/// True where this process is one of several that were started together, by mpirun or srun. Both set
+/// PMIX_RANK for a single one, too.
 bool is_started_with_others() {
-  const char* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE");
-  return (ranks != nullptr && std::string(ranks) != "1") || std::getenv("PMIX_RANK") != nullptr;
+  const auto are_several = [](const char* number) { return std::string(number) != "1"; };
+  if (const char* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE")) return are_several(ranks);
+  if (std::getenv("PMIX_RANK") == nullptr) return false;
+  const char* const tasks = std::getenv("SLURM_STEP_NUM_TASKS");
+  return tasks == nullptr || are_several(tasks);
 }
 
 /// The processes that build with this one; null where it is alone.
@@ -226,7 +230,9 @@ int work_in_cluster(BuildCommand& command, const Context& context, BuildCluster&
   silent.quiet = true;
   command.progress_fd = -1;
   BuildShow show(command, silent);
-  cluster.work(command.inputs, command.options, resources_of(command, context, show));
+  BuildResources resources = resources_of(command, context, show);
+  resources.patience = kPatience;
+  cluster.work(command.inputs, command.options, resources);
   return kExitDone;
 }
 

@@ -70,6 +70,7 @@ int run_build_part(const PartCommand& command, const Context& context) {
   install_sigbus_guard();
   BuildShow show(build, context);
   BuildResources resources = resources_of(build, context, show);
+  resources.patience = kPatience;
   if (command.phase == "publish") {
     const int status = publish(plan, resources, context);
     show.finish();

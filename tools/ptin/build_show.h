@@ -54,4 +54,8 @@ class BuildShow final : public BuildObserver {
 [[nodiscard]] BuildResources resources_of(const BuildCommand& command, const Context& context,
                                           BuildObserver& show);
 
+/// BuildResources::patience of processes that work for another one: as long as clients of NFS keep what
+/// a folder held, unless it is mounted otherwise.
+inline constexpr std::chrono::seconds kPatience{60};
+
 }  // namespace ptin::tools

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/construct/hierarchy/tighten.h"
+#include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/batch_order.h"
 #include "engine/error.h"
 #include "engine/stop.h"
@@ -65,6 +66,9 @@ class SegmentFiles {
 }  // namespace
 
 TaskResult TaskWorker::run(const Task& task, std::size_t thread, const std::stop_token& stop) {
+  for (const InputFile& input : task.inputs) {
+    await_file(path_of(setup_, input.tile, input.file), setup_.patience, stop);
+  }
   try {
     return run_one(task, thread, stop);
   } catch (const DamagedInput&) {

@@ -3,6 +3,7 @@
 // Does tasks: one of them at a time on each thread, from the files that it names to files again.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -33,6 +34,8 @@ struct TaskSetup {
   /// Makes files durable before a task is done: for workers whose files another process syncs in
   /// vain, since they are in the cache of another machine.
   bool syncs = false;
+  /// How long inputs are waited for that are not there yet (await_file()).
+  std::chrono::milliseconds patience{0};
 };
 
 /// Threads: run() from several at once, each with a number of its own.

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/tools/mpi_run.h"
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace ptin::tools::testing {
+
+namespace {
+
+std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(const_cast<char*>(text.c_str()));
+  return pointers;
+}
+
+std::string points_as_text(int count) {
+  std::mt19937 random(9);
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    const auto x = random() % 20000, y = random() % 20000;
+    text += std::to_string(x) + " " + std::to_string(y) + " " +
+            std::to_string((x / 9 + y / 13) % 700) + "\n";
+  }
+  return text;
+}
+
+/// Squares of two triangles, as OBJ.
+std::string triangles_as_text(int side) {
+  std::string text;
+  for (int i = 0; i < side * side; ++i) {
+    const int x = i % side, y = i / side;
+    text += "v " + std::to_string(x * 10 + y % 3) + " " + std::to_string(y * 10 + x % 4) + " " +
+            std::to_string(hills(x, y)) + "\n";
+  }
+  for (int i = 0; i < side * (side - 1); ++i) {
+    if (i % side == side - 1) continue;
+    const std::string a = std::to_string(i + 1), b = std::to_string(i + 2),
+                      c = std::to_string(i + side + 2), d = std::to_string(i + side + 1);
+    text += "f " + a + " " + b + " " + c + "\nf " + a + " " + c + " " + d + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+StartedProgram::StartedProgram(const std::vector<std::string>& command,
+                               const std::vector<std::string>& environment) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, folder_.file("out").c_str(), O_WRONLY | O_CREAT,
+                                   0600);
+  posix_spawn_file_actions_addopen(&actions, 2, folder_.file("err").c_str(), O_WRONLY | O_CREAT,
+                                   0600);
+  std::vector<char*> argv = pointers_to(command), envp = pointers_to(environment);
+  argv.push_back(nullptr);
+  for (char** variable = environ; *variable != nullptr; ++variable) envp.push_back(*variable);
+  envp.push_back(nullptr);
+  const int spawned = posix_spawnp(&pid_, argv[0], &actions, nullptr, argv.data(), envp.data());
+  posix_spawn_file_actions_destroy(&actions);
+  if (spawned != 0) throw std::runtime_error("cannot run " + command.front());
+}
+
+StartedProgram::~StartedProgram() {
+  if (is_running()) {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+}
+
+std::vector<pid_t> StartedProgram::children() const {
+  std::vector<pid_t> found;
+  std::error_code ignored;
+  const std::string tasks = "/proc/" + std::to_string(pid_) + "/task";
+  for (const auto& thread : std::filesystem::directory_iterator(tasks, ignored)) {
+    std::ifstream list(thread.path() / "children");
+    for (pid_t child = 0; list >> child;) found.push_back(child);
+  }
+  return found;
+}
+
+bool StartedProgram::is_running() {
+  int status = 0;
+  if (!has_ended_ && ::waitpid(pid_, &status, WNOHANG) == pid_) {
+    has_ended_ = true;
+    status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  return !has_ended_;
+}
+
+Outcome StartedProgram::wait() {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  while (is_running() && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  if (is_running()) {
+    ADD_FAILURE() << "still running after two minutes";
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+    has_ended_ = true;
+  }
+  return {status_, read_file(folder_.file("out")), read_file(folder_.file("err"))};
+}
+
+std::string mpi_program() {
+  const std::string beside = PTIN_PROGRAM "_with_mpi";
+  return std::filesystem::exists(beside) ? beside : PTIN_PROGRAM;
+}
+
+std::vector<std::string> mpi_environment() {
+  return {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+          "OMPI_MCA_btl_vader_single_copy_mechanism=none"};
+}
+
+std::vector<std::string> mpirun(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{"mpirun", "--oversubscribe", "--bind-to", "none"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return command;
+}
+
+const std::string& why_no_mpi() {
+  static const std::string why = []() -> std::string {
+    if (mpi_program() == PTIN_PROGRAM) {
+#ifndef PTIN_MPI
+      return "needs the program with MPI (Debian packages libopenmpi-dev, openmpi-bin; not under "
+             "sanitizers)";
+#endif
+    }
+    try {
+      const Outcome tried = StartedProgram(mpirun({"-n", "2", "true"}), mpi_environment()).wait();
+      return tried.status == 0 ? "" : "needs an mpirun that runs two processes: " + tried.err;
+    } catch (const std::runtime_error&) {
+      return "needs mpirun (Debian package openmpi-bin)";
+    }
+  }();
+  return why;
+}
+
+Outcome run_ranks(int ranks, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command = mpirun({"-n", std::to_string(ranks), mpi_program()});
+  if (ranks == 0) command = {mpi_program()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return StartedProgram(command, mpi_environment()).wait();
+}
+
+std::vector<std::string> ClusterSource::build(const std::string& output,
+                                              const std::vector<std::string>& more) const {
+  std::vector<std::string> arguments{"build", input, "-o", output, "-q"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+ClusterSource cluster_source(const TestFolder& folder, const std::string& kind) {
+  if (kind == "raster") return {test_data("mountains_257.tif"), {"--tile", "32"}};
+  if (kind == "points") {
+    write_file(folder.file("points.xyz"), points_as_text(20000));
+    return {folder.file("points.xyz"), {"--tile", "30"}};
+  }
+  write_file(folder.file("mesh.obj"), triangles_as_text(100));
+  return {folder.file("mesh.obj"), {"--tile", "20"}};
+}
+
+void expect_kills_lose_nothing(const std::string& kind, int times) {
+  const TestFolder folder;
+  const ClusterSource source = cluster_source(folder, kind);
+  const std::string plain = folder.file("plain.ptin"), killed_one = folder.file("k.ptin");
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(run_ranks(3, source.build(plain)).status, 0);
+  const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::steady_clock::now() - begin);
+  const std::string expected = read_file(plain);
+  std::mt19937 random(static_cast<unsigned>(times));
+  int killed = 0;
+  // A build that was through before its moment counts for nothing; on a busy machine many are.
+  for (int moment = 0; moment < 5 * times && killed < times; ++moment) {
+    std::vector<std::string> command = mpirun({"-n", "3", mpi_program()});
+    for (const std::string& argument : source.build(killed_one, {"--resume"}))
+      command.push_back(argument);
+    StartedProgram program(command, mpi_environment());
+    std::this_thread::sleep_for(
+        std::chrono::milliseconds(random() % static_cast<unsigned>(whole.count())));
+    const std::vector<pid_t> ranks = program.children();
+    const bool has_begun = std::filesystem::exists(folder.file(".k.ptin.ptin-build/manifest"));
+    if (!ranks.empty()) ::kill(ranks[random() % ranks.size()], SIGKILL);
+    const Outcome outcome = program.wait();
+    killed += outcome.status != 0 && has_begun ? 1 : 0;
+    const bool is_complete = std::filesystem::exists(killed_one);
+    EXPECT_TRUE(!is_complete || read_file(killed_one) == expected);
+    if (outcome.status != 0) {
+      constexpr int kRanks[] = {0, 2, 4};
+      const Outcome resumed =
+          run_ranks(kRanks[random() % 3], source.build(killed_one, {"--resume"}));
+      EXPECT_TRUE(resumed.status == 0 || (is_complete && resumed.status == 2)) << resumed.err;
+    }
+    EXPECT_TRUE(read_file(killed_one) == expected);
+    std::filesystem::remove(killed_one);
+    EXPECT_FALSE(std::filesystem::exists(folder.file(".k.ptin.ptin-build")));
+  }
+  EXPECT_EQ(killed, times);
+}
+
+}  // namespace ptin::tools::testing
