@@ -18,13 +18,13 @@
 //
 // usage: paper_figures [OUT.csv] [LARGEST]
 // sizes above LARGEST (default 50 000; 1 000 000 gives all) are left out
-#include <filesystem>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>

@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "engine/check.h"
-#include "storage/record_page.h"
 #include "storage/error_table.h"
 #include "storage/page_packer.h"
 #include "storage/record_order.h"
+#include "storage/record_page.h"
 
 namespace ptin {
 

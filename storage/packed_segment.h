@@ -31,9 +31,9 @@ struct PageCounts {
 /// Counts pages that were packed. None when a reader would not accept one of them, or they are not
 /// those of the descriptors.
 /// Cost: takes every record apart, some 20 ns each.
-[[nodiscard]] std::optional<PageCounts> count_pages(
-    std::span<const std::byte> pages, std::span<const layout::NodeEntry> descriptors,
-    const HeightEncoding& heights);
+[[nodiscard]] std::optional<PageCounts> count_pages(std::span<const std::byte> pages,
+                                                    std::span<const layout::NodeEntry> descriptors,
+                                                    const HeightEncoding& heights);
 
 /// Orders the records of a segment (storage/record_order.h) and packs them. The bytes depend on the
 /// set of records, their stars and the size of a page alone. Threads: any number at once.

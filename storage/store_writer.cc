@@ -189,8 +189,7 @@ void StoreWriterImpl::add_segment(const PackedSegment& segment, const HeightEnco
   PTIN_CHECK(!published_ &&
              segment.pages.size() == segment.descriptors.size() * options_.page_bytes);
   start(heights);
-  const std::optional<PageCounts> counts =
-      count_pages(segment.pages, segment.descriptors, heights);
+  const std::optional<PageCounts> counts = count_pages(segment.pages, segment.descriptors, heights);
   PTIN_CHECK(counts.has_value());
   file_.write_at(segment.pages, written_bytes_);
   add_placed(segment.descriptors, *counts, heights);
@@ -248,9 +247,9 @@ void StoreWriterImpl::restore_moved_pages() {
 // Reads the next page again, checks it, and counts it as add_segment() did.
 void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page) {
   file_.read_at(page, written_bytes_);
-  const std::optional<PageCounts> counts =
-      checksum_of(page) == entry.checksum ? count_pages(page, std::span(&entry, 1), *heights_)
-                                          : std::nullopt;
+  const std::optional<PageCounts> counts = checksum_of(page) == entry.checksum
+                                               ? count_pages(page, std::span(&entry, 1), *heights_)
+                                               : std::nullopt;
   if (!counts) {
     throw Error(ErrorCode::corruption,
                 "page " + std::to_string(written_bytes_ / options_.page_bytes) +

@@ -228,8 +228,7 @@ PreparedSegment StorePacker::prepare(StarredRecords& records) const {
                     [](const VertexSplit& r) { return (r.flags & VertexSplit::kAnyVoid) != 0; }));
   facts.worst = detail_.leave_out(records);
   PackedSegment packed = pack_segment(records, heights_, page_bytes_);
-  const std::optional<PageCounts> counts =
-      count_pages(packed.pages, packed.descriptors, heights_);
+  const std::optional<PageCounts> counts = count_pages(packed.pages, packed.descriptors, heights_);
   PTIN_CHECK(counts.has_value());
   facts.records = counts->records;
   facts.max_rank = counts->max_rank;
@@ -259,8 +258,7 @@ StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, b
     : path_(path),
       options_(options),
       frame_(frame),
-      writer_(
-          StoreWriter::create(path, writer_options(options, overwrite, files, work_folder))),
+      writer_(StoreWriter::create(path, writer_options(options, overwrite, files, work_folder))),
       packer_(options, frame, files, work_folder),
       base_error_(frame.height_rounding),
       base_deviation_(frame.height_rounding) {}

@@ -28,8 +28,7 @@ TiledSource tiled(const PointBuckets& points, const BuildOptions& options,
   const auto tree = std::make_shared<const TileTree>(point_tree(points, options.tile));
   const auto make_starter = [&points, tree, units, longest = options.max_edge,
                              stop]() -> LeafStarter {
-    const auto starter =
-        std::make_shared<PointTileStarter>(points, *tree, units, longest, stop);
+    const auto starter = std::make_shared<PointTileStarter>(points, *tree, units, longest, stop);
     return [tree, starter](const SampleRange& window) { return starter->start(window); };
   };
   return {points.frame(), units, *tree, make_starter};

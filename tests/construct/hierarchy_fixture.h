@@ -128,8 +128,7 @@ class RecordsInMemory final : public SegmentOutput {
     void place(std::span<const std::byte> pages, std::uint64_t offset) const override {
       const std::lock_guard lock(mutex_);
       bytes_.resize(std::max(bytes_.size(), static_cast<std::size_t>(offset) + pages.size()));
-      std::copy(pages.begin(), pages.end(),
-                bytes_.begin() + static_cast<std::ptrdiff_t>(offset));
+      std::copy(pages.begin(), pages.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(offset));
     }
     [[nodiscard]] std::vector<std::byte> part(std::size_t begin, std::size_t bytes) const {
       const std::lock_guard lock(mutex_);

@@ -46,9 +46,7 @@ class StageCounts {
   struct Counts {
     std::uint64_t samples = 0, leaves = 0;
   };
-  Counts& counts_of(TaskKind kind) {
-    return kind == TaskKind::kCollapse ? collapsed_ : tightened_;
-  }
+  Counts& counts_of(TaskKind kind) { return kind == TaskKind::kCollapse ? collapsed_ : tightened_; }
 
   const TileTree& tree_;
   const HierarchyOptions& options_;
@@ -64,12 +62,11 @@ void take_coarsest(const BuildLog& log, const TileTree& tree, const MeasureUnits
     const InputFile input{root, file, log.results().at(producer_of(root, file)).facts(file)};
     return read_input(log.workspace().temporary_folder(), input, with);
   };
-  Tile pushed = read(TileFile::kPushed,
-                     [&](ArrayFileReader& file) { return read_pushed(file, units); });
+  Tile pushed =
+      read(TileFile::kPushed, [&](ArrayFileReader& file) { return read_pushed(file, units); });
   if (root.level > 1) {  // else all tiles measured all their samples, and are final
-    const auto bounds = read(TileFile::kBounds, [](ArrayFileReader& file) {
-      return file.take_copy<RecordBounds>();
-    });
+    const auto bounds = read(TileFile::kBounds,
+                             [](ArrayFileReader& file) { return file.take_copy<RecordBounds>(); });
     PTIN_CHECK(bounds.size() == pushed.records.size());
     for (std::size_t i = 0; i < bounds.size(); ++i) {
       pushed.records[i].error = bounds[i].error;
@@ -97,8 +94,8 @@ BuiltHierarchy build_hierarchy(const std::function<LeafStarter()>& make_starter,
   const PieceLimits limits{options.threads, options.memory.for_tiles, options.give_back};
   BuiltHierarchy built;
   for (bool is_read = false; !is_read;) {
-    built.most_bytes = std::max(built.most_bytes,
-                                driver.run(schedule, worker, limits, options.stop));
+    built.most_bytes =
+        std::max(built.most_bytes, driver.run(schedule, worker, limits, options.stop));
     PTIN_CHECK(schedule.is_complete());
     log.checkpoint(true);
     try {

@@ -16,8 +16,9 @@ namespace ptin {
 
 /// A segment that is ready for the output.
 struct PreparedSegment {
-  std::vector<std::byte> pages;        ///< Final, whole pages.
-  std::vector<std::byte> description;  ///< What SegmentOutput::add() takes, bytes that only it reads.
+  std::vector<std::byte> pages;  ///< Final, whole pages.
+  std::vector<std::byte>
+      description;  ///< What SegmentOutput::add() takes, bytes that only it reads.
 };
 
 /// The part of an output that workers do: any number of threads at once, in any process that sees

@@ -3,8 +3,6 @@
 // Terrains built over a tree of tiles keep every promise of those built as one tile: the records of
 // all segments are refined and held against all samples, since witnesses order them and tightening
 // must make them true.
-#include "engine/construct/tasks/build_hierarchy.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -18,6 +16,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/construct/raster/raster_tile.h"
+#include "engine/construct/tasks/build_hierarchy.h"
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
 #include "tests/construct/hierarchy_fixture.h"
