@@ -9,7 +9,7 @@
 //   publish   one job: closing the others, pages to their places, the index, the output's name
 // A job that was done does nothing when it is done again; one that died tells nothing, and is done
 // anew. A job that meets damage makes the one that wrote it count as not done. All of them see the
-// inputs, the folder beside the output and --tmp under the same names.
+// inputs and the folder beside the output under the same names.
 #pragma once
 
 #include <cstdint>
