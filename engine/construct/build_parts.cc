@@ -49,6 +49,15 @@ std::string told_in(const std::string& folder, PartsPhase phase, int part) {
   return folder + "/part-" + name_of(phase) + "-" + std::to_string(part);
 }
 
+/// @throws Error invalid_argument  the note is none of begin_parts()
+std::string temporary_folder_in(const std::string& note) {
+  try {
+    return note_in(note).temporary;
+  } catch (const nlohmann::json::exception&) {
+    refuse("the note of the build in parts is damaged");
+  }
+}
+
 Error to_do_again(PartsPhase phase, int part, const std::string& what, const std::string& where) {
   return {ErrorCode::corruption,
           what + "; do part " + std::to_string(part) + " of the phase " + name_of(phase) +
@@ -282,7 +291,7 @@ void do_part(const std::vector<std::string>& inputs, const BuildOptions& options
              const BuildResources& resources, const std::string& note, PartsPhase phase, int part,
              int parts) {
   require_part(phase, part, parts);
-  const std::string folder = note_in(note).temporary;
+  const std::string folder = temporary_folder_in(note);
   FileLayer& files = files_of(resources);
   TaskResults known;
   if (take_told(files, folder, phase, part, known)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Ranks that are killed at twenty random moments: the build goes on with another number of them.
+// Builds by 2, 4 and 7 ranks, and ranks that are killed at twenty random moments in all: the build goes on
+// with another number of them.
 #include <gtest/gtest.h>
 
 #include "tests/tools/mpi_run.h"
@@ -8,14 +9,19 @@
 namespace ptin::tools {
 namespace {
 
-class RanksThatAreKilledSlow : public ::testing::TestWithParam<std::string> {};
+class RanksSlow : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(RanksThatAreKilledSlow, AtTwentyMomentsLoseNothing) {
+TEST_P(RanksSlow, KilledAtRandomMomentsLoseNothing) {
   if (!testing::why_no_mpi().empty()) GTEST_SKIP() << testing::why_no_mpi();
-  testing::expect_kills_lose_nothing(GetParam(), 10);
+  testing::expect_kills_lose_nothing(GetParam(), GetParam() == "tin" ? 4 : 8);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEachKind, RanksThatAreKilledSlow, ::testing::Values("raster", "points"),
+TEST_P(RanksSlow, GiveTheBytesOfOneProcess) {
+  if (!testing::why_no_mpi().empty()) GTEST_SKIP() << testing::why_no_mpi();
+  testing::expect_same_bytes_on_ranks(GetParam(), {2, 4, 7});
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEachKind, RanksSlow, ::testing::Values("raster", "points", "tin"),
                          [](const auto& kind) { return kind.param; });
 
 }  // namespace

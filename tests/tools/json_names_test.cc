@@ -141,6 +141,12 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   ask({"build", file("dem.tif"), "-o", store, "-q"});
   ask({"build", file("dem.tif"), "-o", file("none.ptin"), "-q", "--dry-run"});
   ask({"build", "--discard", "-o", file("none.ptin"), "-q"}, 1);
+  ask({"build", file("dem.tif"), "-o", file("parts.ptin"), "-q", "--parts", "1", "--plan",
+       file("plan")});
+  ask({"build-part", file("plan"), "collapse", "0", "-q"});
+  ask({"build-part", file("plan"), "join", "-q"});
+  ask({"build-part", file("plan"), "tighten", "0", "-q"});
+  ask({"build-part", file("plan"), "publish", "-q"});
   ask({"info", store});
   ask({"info", "/vsisubfile/0," + store});  // as a file that lies elsewhere
   ask({"verify", store, "-q", "--against", file("dem.tif"), "--tolerance", "0", "5"});

@@ -69,7 +69,13 @@ StartedProgram::StartedProgram(const std::vector<std::string>& command,
                                    0600);
   std::vector<char*> argv = pointers_to(command), envp = pointers_to(environment);
   argv.push_back(nullptr);
-  for (char** variable = environ; *variable != nullptr; ++variable) envp.push_back(*variable);
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string text = *variable;
+    const std::string name = text.substr(0, text.find('=') + 1);
+    const bool is_replaced = std::any_of(environment.begin(), environment.end(),
+                                         [&](const auto& e) { return e.starts_with(name); });
+    if (!is_replaced) envp.push_back(*variable);
+  }
   envp.push_back(nullptr);
   const int spawned = posix_spawnp(&pid_, argv[0], &actions, nullptr, argv.data(), envp.data());
   posix_spawn_file_actions_destroy(&actions);
@@ -174,6 +180,25 @@ ClusterSource cluster_source(const TestFolder& folder, const std::string& kind) 
   }
   write_file(folder.file("mesh.obj"), triangles_as_text(100));
   return {folder.file("mesh.obj"), {"--tile", "20"}};
+}
+
+void expect_same_bytes_on_ranks(const std::string& kind, const std::vector<int>& ranks) {
+  SCOPED_TRACE(kind);
+  const TestFolder folder;
+  const ClusterSource source = cluster_source(folder, kind);
+  const std::string output = folder.file("a.ptin");
+  std::string expected;
+  for (const std::string threads : {"1", "2"}) {
+    expect_done(source.build(output, {"--threads", threads, "--overwrite"}));
+    EXPECT_TRUE(expected.empty() || read_file(output) == expected);
+    expected = read_file(output);
+  }
+  for (const int number : ranks) {
+    const Outcome outcome = run_ranks(number, source.build(output, {"--overwrite"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(read_file(output) == expected) << number;
+    EXPECT_FALSE(std::filesystem::exists(folder.file(".a.ptin.ptin-build")));
+  }
 }
 
 void expect_kills_lose_nothing(const std::string& kind, int times) {

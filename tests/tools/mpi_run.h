@@ -18,7 +18,7 @@ namespace ptin::tools::testing {
 class StartedProgram {
  public:
   /// @param command      The program, looked for in PATH, and its arguments.
-  /// @param environment  "NAME=value", besides and before those of this process.
+  /// @param environment  "NAME=value", besides or in the place of those of this process.
   explicit StartedProgram(const std::vector<std::string>& command,
                           const std::vector<std::string>& environment = {});
   ~StartedProgram();
@@ -56,6 +56,9 @@ struct ClusterSource {
                                                const std::vector<std::string>& more = {}) const;
 };
 [[nodiscard]] ClusterSource cluster_source(const TestFolder& folder, const std::string& kind);
+
+/// Expects the same bytes of one thread, of two, and of each of these numbers of ranks.
+void expect_same_bytes_on_ranks(const std::string& kind, const std::vector<int>& ranks);
 
 /// Kills a random rank at a random moment of builds with three ranks, until that happened `times`
 /// times, and goes on each time with 0 (without MPI), 2 or 4 ranks. Expects the same bytes.
