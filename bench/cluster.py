@@ -11,12 +11,13 @@ usage: bench/cluster.py TIMES.jsonl [--workers N]... [--shared TIMES.jsonl]    t
                 each other (caches, memory, the disk)
 --disk MB/S     what the shared folder takes and gives, for all ranks together (default 2000)
 
-The model of --scale: what a batch takes grows with its samples, what a tile above takes with what it reads, which grows
-with its sides; constants are those of the measured build. It knows nothing of slow networks but --disk, of ranks that
+The model of --scale: what a batch takes and pushes up grows with its samples, what a tile above takes with what it reads;
+from level to level that grows as in the measured build. The first tile of each size is the default one. It knows nothing of slow networks but --disk, of ranks that
 differ, of batch systems that make jobs wait, and nothing of the memory that a larger tree takes at rank 0 but by the bytes
 of a result there.
 """
 import argparse
+import collections
 import heapq
 import json
 import math
@@ -25,6 +26,7 @@ import statistics
 COLLAPSE, JOIN, TIGHTEN, CLOSE, PLACE = range(5)
 NAMES = ["collapse", "join", "tighten", "close", "place"]
 LATENCY = 0.002  # from a rank's answer to its next task, beyond the schedule: both sides look every two milliseconds
+SCAN = 1e-9  # seconds a byte of the segments above a batch: checked once, looked through for each leaf; estimated, not measured
 RESULT_BYTES = 700  # of a task that is done, in the memory of rank 0: a node of a map, names and facts
 
 
@@ -95,7 +97,7 @@ def simulate(tasks, workers):
     collapse, tighten = list(reversed(tasks.batches)), list(reversed(tasks.batches)) if tasks.above else []
     missing = {(JOIN, tile): len(tasks.children[tile]) for tile in tasks.above}
     missing.update({(CLOSE, tile): len(tasks.children[tile]) for tile in tasks.above})
-    ready, to_place = [], []
+    ready, to_place = [], collections.deque()
     has_pages, next_place = set(), 0
     running = []   # (end, key)
     idle = workers
@@ -105,7 +107,7 @@ def simulate(tasks, workers):
 
     def take():
         if to_place:
-            return to_place.pop(0)
+            return to_place.popleft()
         if ready:
             return heapq.heappop(ready)
         if collapse:
@@ -181,62 +183,47 @@ class Model:
         self.pages = sum_of(COLLAPSE, "page_bytes") / total
         self.collapse_out = sum_of(COLLAPSE, "out") / total
         self.collapse_memory = max(j["memory"] for j in tasks.lines if j["task"] == COLLAPSE) / max(samples.values())
-        self.tighten = sum_of(TIGHTEN, "seconds") / total
+        self.tighten = (sum_of(TIGHTEN, "seconds") - SCAN * sum_of(TIGHTEN, "in")) / total
         self.join = sum_of(JOIN, "seconds") / sum_of(JOIN, "in")
         self.join_memory = max(j["memory"] / j["in"] for j in tasks.lines if j["task"] == JOIN)
         self.close = sum_of(CLOSE, "seconds") / sum_of(CLOSE, "in")
         self.close_pages = sum_of(CLOSE, "page_bytes") / sum_of(JOIN, "in")
         self.place = sum_of(PLACE, "seconds") / sum_of(PLACE, "in")
         self.schedule = {k: statistics.mean(j["schedule_seconds"] for j in tasks.lines if j["task"] == k) for k in range(5)}
-        # Of a tile at level l: bytes a sample of its side, of what it pushes up, of its segment and of its raises.
-        side = math.sqrt(statistics.median(samples.values()))
-        self.pushed, self.segment, self.bounds = {}, {}, {}
-        for level in range(1, levels + 1):
-            long = side * 2 ** (level - 1)
-            at = [j for (k, t), j in lines.items() if t[0] == level and k == (COLLAPSE if level == 1 else JOIN)]
-            self.pushed[level] = max(j["files"][0] for j in at) / long
-            if level > 1:
-                self.segment[level] = max(j["files"][1] for j in at) / long
-            at = [j for (k, t), j in lines.items() if t[0] == level and k == (TIGHTEN if level == 1 else CLOSE)]
-            self.bounds[level] = max(j["files"][2] for j in at) / long
-        # The highest two levels are small terrains' own: what lies below them grows with the sides.
-        middle = max(1, levels - 2)
-        self.pushed_side, self.bounds_side = self.pushed[middle], self.bounds[middle]
-        self.segment_side = self.segment[max(2, middle)]
+        # What a batch pushes up grows with its samples; each level above pushes up a little more than the one below.
+        def mean_of(level, kind, file):
+            at = [j["files"][file] for (k, t), j in lines.items() if t[0] == level and k == kind]
+            return statistics.mean(at)
+
+        self.pushed = mean_of(1, COLLAPSE, 0) / (total / len(samples))
+        self.bounds = mean_of(1, TIGHTEN, 2) / (total / len(samples))
+        below = {level: mean_of(level, JOIN, 0) for level in range(2, levels)}  # the root pushes up T0 alone
+        self.growth = (max(below.values()) * len(samples) / sum(j["files"][0] for j in tasks.lines if j["task"] == COLLAPSE)) ** (
+            1 / max(1, levels - 2))
+        inner = [j for (k, t), j in lines.items() if k == JOIN and t[0] < levels]
+        self.segment = sum(j["files"][1] for j in inner) / sum(j["in"] for j in inner)
         self.publish = tasks.stages["publishing"] / total
         self.reading = tasks.stages["reading"] / total
 
 
-def default_side(length):
-    if length <= 16385:
-        return 256
-    return math.ceil(math.sqrt(4 * length) / 32) * 32
-
-
-def made(model, samples):
-    length = math.sqrt(samples)
-    leaf = default_side(length)
-    count = math.ceil((length - 1) / leaf)
+def made(model, samples, leaf):
+    count = math.ceil((math.sqrt(samples) - 1) / leaf)
     tasks = Tasks()
-    segments_above = {}
-    batches = math.ceil(count / 2)
-    width = {1: batches}
-    level = 1
-    while width[level] > 1:
-        width[level + 1] = math.ceil(width[level] / 2)
-        level += 1
-    levels = level
-    for level in range(2, levels + 1):
-        segments_above[level] = sum(model.segment_side * leaf * 2 ** l for l in range(level, levels + 1))
+    width = [0, math.ceil(count / 2)]
+    while width[-1] > 1:
+        width.append(math.ceil(width[-1] / 2))
+    levels = len(width) - 1
     batch = (2 * leaf) ** 2
-    pushed = {level: model.pushed_side * leaf * 2 ** level for level in range(1, levels + 1)}
+    pushed = [0] + [model.pushed * batch * model.growth ** level for level in range(levels)]
+    raises = [0] + [model.bounds * batch * model.growth ** level for level in range(levels)]
+    segment = [0, 0] + [4 * pushed[level - 1] * model.segment for level in range(2, levels + 1)]
 
     def visit(level, x, y):
         if level == 1:
             tasks.add(COLLAPSE, (1, x, y), model.collapse * batch, model.schedule[COLLAPSE], model.collapse_out * batch,
                       model.collapse_memory * batch)
-            moved = segments_above.get(2, 0)
-            tasks.add(TIGHTEN, (1, x, y), model.tighten * batch, model.schedule[TIGHTEN], moved)
+            above = sum(segment)
+            tasks.add(TIGHTEN, (1, x, y), model.tighten * batch + SCAN * above, model.schedule[TIGHTEN], above)
             pages = model.pages * batch
         else:
             for cy in (2 * y, 2 * y + 1):
@@ -244,12 +231,11 @@ def made(model, samples):
                     if cx < width[level - 1] and cy < width[level - 1]:
                         visit(level - 1, cx, cy)
             read = 4 * pushed[level - 1]
-            segment = model.segment_side * leaf * 2 ** level
-            tasks.add(JOIN, (level, x, y), model.join * read, model.schedule[JOIN], read + segment + pushed[level],
+            tasks.add(JOIN, (level, x, y), model.join * read, model.schedule[JOIN], read + segment[level] + pushed[level],
                       model.join_memory * read)
-            bounds = 4 * model.bounds_side * leaf * 2 ** (level - 1)
+            read_again = segment[level] + 4 * raises[level - 1]
             pages = model.close_pages * read
-            tasks.add(CLOSE, (level, x, y), model.close * (segment + bounds), model.schedule[CLOSE], segment + bounds + pages)
+            tasks.add(CLOSE, (level, x, y), model.close * read_again, model.schedule[CLOSE], read_again + pages)
         tasks.add(PLACE, (level, x, y), model.place * pages, model.schedule[PLACE], 2 * pages)
 
     visit(levels, 0, 0)
@@ -263,24 +249,32 @@ def hours(seconds):
 
 def scale(measured, disk):
     model = Model(measured)
-    print("| samples | workers | tasks | reading | tasks' time | publishing | all | speed-up | shared folder alone | of this path: joins, "
-          "closings | memory a rank | at rank 0 |")
-    print("|---|---|---|---|---|---|---|---|---|---|---|---|")
-    for power in (10, 11, 12):
+    facts, times = [], []
+    for power, leaf in ((10, 640), (10, 256), (11, 1152), (11, 512), (12, 2016), (12, 1024)):
         samples = 10 ** power
-        tasks = made(model, samples)
+        tasks = made(model, samples, leaf)
+        # Segments above a batch are read for every batch, but lie in the cache of the machine that did the one before.
+        again = sum(tasks.bytes[key] for key in tasks.of_kind(TIGHTEN))
+        moved = sum(tasks.bytes.values()) - again
+        reading, publish, folder = model.reading * samples, model.publish * samples, moved / (disk * 1e6)
         one = sum(tasks.seconds.values())
-        moved = sum(tasks.bytes.values())
-        path = critical_path(tasks)
-        reading, publish = model.reading * samples, model.publish * samples
-        memory = max(tasks.memory.values())
-        at_zero = len(tasks.seconds) * RESULT_BYTES
+        facts.append(f"| 10^{power} | {leaf} | {len(tasks.seconds)} | {hours(reading)} | {hours(one)} | {hours(publish)} | "
+                     f"{hours(critical_path(tasks))} | {hours(sum(tasks.schedule.values()))} | {moved / 1e12:.2f} TB, {hours(folder)} | "
+                     f"{again / 1e12:.2f} TB | {max(tasks.memory.values()) / 2 ** 30:.1f} GiB | "
+                     f"{len(tasks.seconds) * RESULT_BYTES / 2 ** 20:.0f} MiB |")
+        row = f"| 10^{power} | {leaf} |"
         for workers in (16, 64, 256, 1024):
             seconds, _, _ = simulate(tasks, workers)
-            whole = reading + max(seconds, moved / (disk * 1e6)) + publish
-            print(f"| 10^{power} | {workers} | {len(tasks.seconds)} | {hours(reading)} | {hours(seconds)} | {hours(publish)} | "
-                  f"{hours(whole)} | {(reading + one + publish) / whole:.0f} | {moved / 1e12:.2f} TB, {hours(moved / (disk * 1e6))} | "
-                  f"{hours(path)} | {memory / 2 ** 30:.1f} GiB | {at_zero / 2 ** 20:.0f} MiB |", flush=True)
+            whole = reading + max(seconds, folder) + publish
+            slow = " (folder)" if folder > seconds else ""
+            row += f" {hours(whole)}, {(reading + one + publish) / whole:.0f}{slow} |"
+        times.append(row)
+    print("| samples | tile | tasks | reading, rank 0 | tasks, one after the other | publishing, rank 0 | longest path of joins and closings | "
+          "in the schedule, rank 0 | moved through the folder | segments read again | memory of the largest task | results at rank 0 |")
+    print("|---" * 12 + "|")
+    print("\n".join(facts))
+    print("\n| samples | tile | 16 workers: all, speed-up | 64 | 256 | 1024 |\n|---|---|---|---|---|---|")
+    print("\n".join(times))
 
 
 def main():
