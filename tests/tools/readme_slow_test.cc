@@ -33,6 +33,12 @@ std::vector<std::vector<std::string>> commands_of_readme() {
   return commands;
 }
 
+bool has_url(const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    return word.find("://") != std::string::npos;
+  });
+}
+
 bool has_word(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -50,8 +56,9 @@ TEST(Readme, CommandsRun) {
   std::filesystem::current_path(folder.path());
   int run = 0;
   for (std::vector<std::string> words : commands_of_readme()) {
-    // Pipes over ssh, a mosaic of hundreds of files and a layer are not here.
-    if (has_word(words, "|") || has_word(words, "huge.vrt") || has_word(words, "wells.gpkg"))
+    // Pipes over ssh, a mosaic of hundreds of files, a layer and web servers are not here.
+    if (has_word(words, "|") || has_word(words, "huge.vrt") || has_word(words, "wells.gpkg") ||
+        has_url(words))
       continue;
     if (words[0] == "bench") words.insert(words.end(), {"--count", "1", "--seconds", "2"});
     std::string line;
