@@ -34,9 +34,8 @@ std::vector<std::vector<std::string>> commands_of_readme() {
 }
 
 bool has_url(const std::vector<std::string>& words) {
-  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
-    return word.find("://") != std::string::npos;
-  });
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return word.find("://") != std::string::npos; });
 }
 
 bool has_word(const std::vector<std::string>& words, const std::string& word) {
