@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/check.h"
 #include "engine/construct/build_job.h"
 #include "engine/construct/build_worker.h"
 #include "engine/construct/memory_plan.h"
@@ -320,6 +321,7 @@ void do_part(const std::vector<std::string>& inputs, const BuildOptions& options
   } catch (const DamagedInput& damage) {
     throw damaged(damage, order, files, folder, parts);
   }
+  PTIN_CHECK(pieces.is_complete());
   tell(files, folder, phase, part, pieces.done());
 }
 

@@ -37,8 +37,8 @@ const BuildNote& require_shared_folders(const BuildNote& note, const BuildResour
   for (const std::string& folder : {note.folder, note.temporary}) {
     if (!await_file(folder, resources.patience, resources.stop)) {
       throw Error(ErrorCode::invalid_argument,
-                  "this process does not see the folder of the build; the output's folder, and "
-                  "--tmp where it is given, must be folders that all processes share",
+                  "this process does not see the folder of the build; it must be one that all "
+                  "processes share",
                   folder);
     }
   }

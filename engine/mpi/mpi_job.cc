@@ -69,7 +69,7 @@ void MpiDriver::hand_out(TaskSchedule& schedule) {
   }
 }
 
-std::uint64_t MpiDriver::run(TaskSchedule& schedule, TaskWorker& /*worker*/,
+std::uint64_t MpiDriver::run(TaskSchedule& schedule, TaskWorker& worker,
                              const PieceLimits& /*limits*/, const std::stop_token& stop) {
   Patience patience;
   for (hand_out(schedule); !running_.empty(); hand_out(schedule)) {
@@ -78,7 +78,9 @@ std::uint64_t MpiDriver::run(TaskSchedule& schedule, TaskWorker& /*worker*/,
       const TaskName name = running_.at(received->from);
       running_.erase(received->from);
       idle_.insert(received->from);
-      take_answer(name, received->text, schedule);
+      if (take_answer(name, received->text, schedule)) {
+        worker.tell_done(name);
+      }
       patience.reset();
     } else {
       patience.wait();

@@ -60,17 +60,19 @@ std::string answer_to(const std::string& message, TaskWorker& worker, std::size_
   }
 }
 
-void take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule) {
+bool take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule) {
   const nlohmann::json json = nlohmann::json::parse(answer);
   if (json.contains("damaged")) {
     const InputFile input{
         task_name_in(json["damaged"]).tile, static_cast<TileFile>(json.at("file").get<int>()), {}};
     schedule.failed(name, DamagedInput(input, error_in(json.at("error"))));
-  } else if (json.contains("error")) {
-    throw error_in(json["error"]);
-  } else {
-    schedule.done(name, task_result_in(json));
+    return false;
   }
+  if (json.contains("error")) {
+    throw error_in(json["error"]);
+  }
+  schedule.done(name, task_result_in(json));
+  return true;
 }
 
 }  // namespace ptin

@@ -40,8 +40,8 @@ struct BuildNote {
                                     std::size_t thread, const std::stop_token& stop);
 /// The answer of a process that could not begin, or to which something else happened.
 [[nodiscard]] std::string answer_of(const Error& error);
-/// Hands an answer to the schedule.
+/// Hands an answer to the schedule. False where the task met a damaged input, and is to be done again.
 /// @throws Error  the error that the answer tells; as TaskSchedule::done() and failed()
-void take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule);
+bool take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule);
 
 }  // namespace ptin

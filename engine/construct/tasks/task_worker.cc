@@ -79,6 +79,14 @@ TaskResult TaskWorker::run(const Task& task, std::size_t thread, const std::stop
   }
 }
 
+void TaskWorker::tell_done(const TaskName& name) const {
+  if (name.kind == TaskKind::kCollapse || name.kind == TaskKind::kTighten) {
+    for (const TileId& leaf : leaves_of_batch(setup_.tree, name.tile)) {
+      leaf_done_(name.kind, setup_.tree.window(leaf).samples());
+    }
+  }
+}
+
 TaskResult TaskWorker::run_one(const Task& task, std::size_t thread, const std::stop_token& stop) {
   switch (task.name.kind) {
     case TaskKind::kCollapse:

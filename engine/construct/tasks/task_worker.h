@@ -47,6 +47,8 @@ class TaskWorker {
   TaskWorker(TaskSetup setup, LeafDone leaf_done)
       : setup_(std::move(setup)), leaf_done_(std::move(leaf_done)) {}
 
+  /// Tells LeafDone the leaves of a task that another process did.
+  void tell_done(const TaskName& name) const;
   /// Does a task. A file of its name that is there already is replaced.
   /// @param thread  Number of the calling thread, from 0.
   /// @throws DamagedInput  an input is not what its task wrote
