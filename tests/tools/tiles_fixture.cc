@@ -63,6 +63,18 @@ double lat_of(const TileNumber& t, double v) {
   return -90.0 + std::ldexp(180.0, -t.z) * (static_cast<double>(t.y) + v / kTileSide);
 }
 
+namespace {
+
+/// Makes a raster, and the terrain of it.
+std::string built_of(const TestFolder& folder, const std::string& name,
+                     const RasterRecipe& recipe) {
+  make_raster(folder.file(name + ".tif"), recipe);
+  expect_done({"build", folder.file(name + ".tif"), "-o", folder.file(name + ".ptin"), "-q"});
+  return folder.file(name + ".ptin");
+}
+
+}  // namespace
+
 std::string built_in_feet(const TestFolder& folder) {
   const std::string path = folder.file("feet.ptin");
   expect_done({"build", test_data("ground_points.csv"), "--a-srs", "EPSG:2994", "-o", path, "-q"});
@@ -79,9 +91,7 @@ std::string built_with_holes(const TestFolder& folder) {
     const bool in_second = c > 70 && c < 95 && r > 40 && r < 75;
     return in_first || in_second || c + r < 25 ? -9999.0 : hills(c, r);
   };
-  make_raster(folder.file("holes.tif"), recipe);
-  expect_done({"build", folder.file("holes.tif"), "-o", folder.file("holes.ptin"), "-q"});
-  return folder.file("holes.ptin");
+  return built_of(folder, "holes", recipe);
 }
 
 std::string built_across_180(const TestFolder& folder) {
@@ -93,9 +103,7 @@ std::string built_across_180(const TestFolder& folder) {
   recipe.north = -16.0;
   recipe.pixel = 0.001;
   recipe.value = hills;
-  make_raster(folder.file("fiji.tif"), recipe);
-  expect_done({"build", folder.file("fiji.tif"), "-o", folder.file("fiji.ptin"), "-q"});
-  return folder.file("fiji.ptin");
+  return built_of(folder, "fiji", recipe);
 }
 
 std::string built_wide(const TestFolder& folder) {
@@ -107,9 +115,7 @@ std::string built_wide(const TestFolder& folder) {
   recipe.north = 5300000.0;
   recipe.nodata = -9999.0;
   recipe.value = [](int c, int r) { return c + r < 40 ? -9999.0 : c > 50 ? 3 * hills(c, r) : 0.0; };
-  make_raster(folder.file("wide.tif"), recipe);
-  expect_done({"build", folder.file("wide.tif"), "-o", folder.file("wide.ptin"), "-q"});
-  return folder.file("wide.ptin");
+  return built_of(folder, "wide", recipe);
 }
 
 std::string built_arctic(const TestFolder& folder) {
@@ -121,9 +127,7 @@ std::string built_arctic(const TestFolder& folder) {
   recipe.north = 1'200'000.0;
   recipe.pixel = 1000.0;
   recipe.value = hills;
-  make_raster(folder.file("arctic.tif"), recipe);
-  expect_done({"build", folder.file("arctic.tif"), "-o", folder.file("arctic.ptin"), "-q"});
-  return folder.file("arctic.ptin");
+  return built_of(folder, "arctic", recipe);
 }
 
 std::vector<std::string> tiled_terrains(const TestFolder& folder) {
