@@ -28,6 +28,7 @@
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/made_raster.h"
 #include "tests/support/replaced_new.h"
+#include "tests/support/share_of_cases.h"
 
 namespace {
 
@@ -194,10 +195,11 @@ class AllocationFaults : public ::testing::Test {
   }
 
   void expect_old_or_new_always() {
-    constexpr std::int64_t kOneByOne = 1000, kStrides = 1500;
+    const std::int64_t one_by_one = 1000 / test::share_of_cases(2);
+    const std::int64_t strides = 1500 / test::share_of_cases(3);
     const std::int64_t all = allocations_;
-    const std::int64_t stride = (all - kOneByOne) / kStrides + 1;
-    for (std::int64_t n = 1; n <= all && !HasFailure(); n += n < kOneByOne ? 1 : stride) {
+    const std::int64_t stride = (all - one_by_one) / strides + 1;
+    for (std::int64_t n = 1; n <= all && !HasFailure(); n += n < one_by_one ? 1 : stride) {
       SCOPED_TRACE("allocation " + std::to_string(n) + " of " + std::to_string(all));
       expect_old_or_new(n);
     }

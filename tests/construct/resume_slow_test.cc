@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Every call of the file layer fails in turn: the result is an error and no output, or the output;
+// Every call of the file layer fails in turn (each third, where not all are asked for): the result is an error and no output, or the output;
 // and the build can be resumed from there.
 #include <gtest/gtest.h>
 
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/resume_fixture.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -14,7 +15,7 @@ class ResumeSlow : public testing::TestWithParam<test::SourceKind> {};
 
 TEST_P(ResumeSlow, GivesTheSameBytesWhicheverCallFailed) {
   // A TIN is sorted several times: every fourth of its calls is as many as all of the others'.
-  const int step = GetParam() == test::SourceKind::kTin ? 4 : 1;
+  const int step = test::share_of_cases(3) * (GetParam() == test::SourceKind::kTin ? 4 : 1);
   int nth = 0;
   bool has_failed = true;
   while (has_failed) {

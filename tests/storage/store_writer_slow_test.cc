@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/storage/failing_files.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin::test {
 namespace {
@@ -14,7 +15,7 @@ TEST(StoreWriterFaults, LeaveTheOldFileOrTheNewOneWithASideFileToo) {
   options.segments = 2;
   options.records = 52000;  // 1300 pages: 23 leaves, and 16 are kept in memory
   options.side = 30000;
-  expect_old_or_new(random_content(options));
+  expect_old_or_new(random_content(options), share_of_cases(3));
 }
 
 }  // namespace

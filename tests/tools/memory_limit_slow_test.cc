@@ -5,11 +5,13 @@
 // used: stacks of threads, arenas of the heap, the data of libraries.
 #include <array>
 #include <fstream>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 
 #include "tests/support/resource_limit.h"
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -64,7 +66,7 @@ void make_hills(const TestFolder& folder) {
 TEST_F(MemoryLimitSlow, ABuildKeepsWithinItsMemoryAndAMarginThatTheSystemEnforces) {
   const TestFolder folder;
   make_hills(folder);
-  for (const rlim_t memory : {256, 512}) {
+  for (rlim_t memory = 256; memory <= rlim_t{512} / test::share_of_cases(2); memory *= 2) {
     SCOPED_TRACE(memory);
     const DataLimit limit(memory * kMiB + kMargin);
     const auto outcome =
@@ -109,7 +111,9 @@ TEST_F(MemoryLimitSlow, ATinKeepsWithinItsMemoryToo) {
   make_mesh(folder.file("mesh.ply"));
   constexpr rlim_t kMemory = 96;
   const DataLimit limit(kMemory * kMiB + kMargin);
-  for (const char* repair : {"--overwrite", "--repair"}) {
+  std::vector<const char*> ways{"--repair", "--overwrite"};
+  ways.resize(ways.size() / test::share_of_cases(2));
+  for (const char* repair : ways) {
     SCOPED_TRACE(repair);
     const auto outcome =
         spawn_ptin({"build", folder.file("mesh.ply"), "-o", folder.file("out.ptin"), "--overwrite",

@@ -8,6 +8,7 @@
 
 #include "tests/construct/delaunay/tiled_delaunay.h"
 #include "tests/construct/point_sets.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -19,7 +20,8 @@ TEST(TileDelaunayOfMany, TwoMillionPointsAreOneTriangulation) {
 TEST(TileDelaunayOfMany, EveryKindIsOneTriangulation) {
   for (const PointKind kind : kPointKinds) {
     SCOPED_TRACE(name_of(kind));
-    expect_one_triangulation(buckets_of(kind, 200'000, 2), 64);
+    expect_one_triangulation(
+        buckets_of(kind, 200'000 / static_cast<std::size_t>(test::share_of_cases(2)), 2), 64);
   }
 }
 

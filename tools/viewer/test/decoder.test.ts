@@ -23,11 +23,12 @@ for (const name of ['mountains_257', 'coast_257']) {
   });
 }
 
-test('cut at a hundred places it is what unstream makes of the same bytes', () => {
+test('cut anywhere it is what unstream makes of the same bytes', () => {
   const bytes = readFileSync(terrain('mountains_257', '--error', '4').stream);
-  const least = bytes.length / 101;
+  const cuts = process.env.PTIN_ALL_CASES === undefined ? 25 : 100;
+  const least = bytes.length / (cuts + 1);
   let meshes = 0;
-  for (let i = 1; i <= 100; ++i) {
+  for (let i = 1; i <= cuts; ++i) {
     const cut = bytes.subarray(0, Math.floor(i * least));
     const decoder = decoded(module, cut, 1 + (i * 37) % 5000);
     if (!decoder.hasMesh) continue;
@@ -39,7 +40,7 @@ test('cut at a hundred places it is what unstream makes of the same bytes', () =
     assert.equal(decoder.certificate.error, answer.certified_error);
     assert.deepEqual(trianglesOf(decoder.mesh, decoder.facts), trianglesOfPly(file('cut.ply')), `cut behind ${cut.length} bytes`);
   }
-  assert.ok(meshes > 80, `${meshes} of 100 cuts have a mesh`);
+  assert.ok(meshes > 0.8 * cuts, `${meshes} of ${cuts} cuts have a mesh`);
 });
 
 test('a stream that goes on from another is followed', () => {

@@ -2,12 +2,12 @@
 //
 // Heights, profiles and lines of sight on the mesh that is shown, against the program's on the same mesh.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { Frame, unitsOf } from '../src/frame';
 import { lineOver, locate, sight, stationsOf, stretches } from '../src/walk';
 import { heightAlong } from '../src/plot';
-import { decoded, decoderModule, ptin, terrain } from './support';
+import { decoded, decoderModule, file, ptin, terrain } from './support';
 
 const error = '5';
 const { store, stream } = terrain('mountains_257', '--error', error);
@@ -26,18 +26,21 @@ function place(i: number): { x: number; y: number } {
 }
 
 test('heights are those of locate at the same error', () => {
-  for (let i = 0; i < 60; ++i) {
-    const at = place(i);
-    const told = JSON.parse(ptin('locate', store, String(at.x), String(at.y), '--error', error, '--json')) as
-      { points: Array<{ state: string; height: number | null; height_min: number; height_max: number }> };
-    const [point] = told.points;
+  const places = Array.from({ length: 60 }, (_, i) => place(i));
+  writeFileSync(file('places.csv'), `x,y\n${places.map((at) => `${at.x},${at.y}\n`).join('')}`);
+  const locateAll = (...options: string[]) =>
+    (JSON.parse(ptin('locate', store, '--points', file('places.csv'), ...options, '--json')) as
+      { points: Array<{ state: string; height: number | null }> }).points;
+  const told = locateAll('--error', error), exact = locateAll();
+  for (const [i, at] of places.entries()) {
+    const point = told[i];
     const here = locate(mesh, facts, { x: frame.gridX(at.x), y: frame.gridY(at.y) });
     assert.equal(here.state, point.state);
     if (point.height === null || here.height === null) continue;
     // The engine rounds places to 2^-22 of a grid unit.
     assert.ok(Math.abs(here.height - point.height) < 1e-5, `${here.height} for ${point.height}`);
     const d = decoder.certificate.deviation;
-    const full = JSON.parse(ptin('locate', store, String(at.x), String(at.y), '--json')).points[0].height as number;
+    const full = exact[i].height as number;
     assert.ok(Math.abs(full - here.height) <= d + 1e-9, 'the full terrain is within the certificate');
   }
 });
