@@ -28,6 +28,7 @@ NAMES = ["collapse", "join", "tighten", "close", "place"]
 LATENCY = 0.002  # from a rank's answer to its next task, beyond the schedule: both sides look every two milliseconds
 SCAN = 1e-9  # seconds a byte of the segments above a batch: checked once, looked through for each leaf; estimated, not measured
 RESULT_BYTES = 700  # of a task that is done, in the memory of rank 0: a node of a map, names and facts
+BAND_SAMPLES = 2 ** 22  # of a task of the first reading (engine/construct/raster/raster_scan.h)
 
 
 def parent(tile):
@@ -265,11 +266,12 @@ def scale(measured, disk):
         row = f"| 10^{power} | {leaf} |"
         for workers in (16, 64, 256, 1024):
             seconds, _, _ = simulate(tasks, workers)
-            whole = reading + max(seconds, folder) + publish
+            bands = math.ceil(samples / BAND_SAMPLES)
+            whole = reading * math.ceil(bands / workers) / bands + max(seconds, folder) + publish
             slow = " (folder)" if folder > seconds else ""
             row += f" {hours(whole)}, {(reading + one + publish) / whole:.0f}{slow} |"
         times.append(row)
-    print("| samples | tile | tasks | reading, rank 0 | tasks, one after the other | publishing, rank 0 | longest path of joins and closings | "
+    print("| samples | tile | tasks | reading, one after the other | tasks, one after the other | publishing, rank 0 | longest path of joins and closings | "
           "in the schedule, rank 0 | moved through the folder | segments read again | memory of the largest task | results at rank 0 |")
     print("|---" * 12 + "|")
     print("\n".join(facts))

@@ -27,8 +27,12 @@ namespace {
 void build_raster(Job& job) {
   nlohmann::json began_with = fingerprint(job);  // before the first look into the inputs
   const GdalCacheLimit cache(job.memory.gdal_cache);
-  const RasterSource source = RasterSource::open(job.inputs, job.source_options(),
-                                                 job.resources.stop, job.stage("reading"));
+  if (job.resources.driver != nullptr) {
+    job.resources.driver->begin_reading({{}, "", "", began_with.at("inputs")});
+  }
+  const RasterSource source = RasterSource::open(
+      job.inputs, job.source_options(),
+      [&](const SourceStage& stage, StageWorker& worker) { return job.run_stage(stage, worker); });
   job.report.source_samples = source.valid_samples();
   job.report.void_samples = source.void_samples();
   job.report.height_rounding = source.frame().height_rounding;

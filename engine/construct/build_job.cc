@@ -10,6 +10,7 @@
 #include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
+#include "engine/construct/process_limits.h"
 #include "engine/construct/source_files.h"
 #include "engine/construct/store_output.h"
 #include "engine/construct/tasks/build_hierarchy.h"
@@ -154,6 +155,13 @@ std::function<void(const char*, std::uint64_t, std::uint64_t)> Job::stages() con
   return [this](const char* name, std::uint64_t done, std::uint64_t total) {
     tell({name, done, total, 0, 0});
   };
+}
+
+std::vector<std::string> Job::run_stage(const SourceStage& stage, StageWorker& worker) const {
+  const StageLimits limits{resources.threads > 0 ? resources.threads : allowed_threads(),
+                           memory.sorting, resources.stop, this->stage(stage.name.c_str())};
+  return resources.driver != nullptr ? resources.driver->run_stage(stage, worker, limits)
+                                     : ptin::run_stage(stage, worker, limits);
 }
 
 SourceOptions Job::source_options() const {

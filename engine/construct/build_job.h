@@ -14,6 +14,7 @@
 #include "engine/construct/build.h"
 #include "engine/construct/build_plan.h"
 #include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/hierarchy/tile_bytes.h"
 #include "engine/construct/lines/source_lines.h"
@@ -63,6 +64,10 @@ struct Job {
   [[nodiscard]] std::function<void(const char* name, std::uint64_t done, std::uint64_t total)>
   stages() const;
   [[nodiscard]] SourceOptions source_options() const;
+  /// Has a stage of reading done, by the driver or by threads of this process.
+  /// @throws Error as TaskDriver::run_stage()
+  [[nodiscard]] std::vector<std::string> run_stage(const SourceStage& stage,
+                                                   StageWorker& worker) const;
   /// Where the build's temporary files go: BuildResources::tmp, but for files that other processes
   /// read, too, which lie beside the output.
   [[nodiscard]] std::string exchange_folder() const {

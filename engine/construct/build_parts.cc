@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <fstream>
+#include <list>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -186,9 +187,12 @@ Error damaged(const DamagedInput& damage, const BatchOrder& order, FileLayer& fi
 
 class PartPieces final : public PieceSource {
  public:
-  PartPieces(std::vector<TaskName> tasks, const TaskGraph& graph, TaskResults known,
+  PartPieces(const std::vector<TaskName>& tasks, const TaskGraph& graph, TaskResults known,
              TaskWorker& worker)
-      : tasks_(std::move(tasks)), graph_(graph), known_(std::move(known)), worker_(worker) {}
+      : tasks_(tasks.begin(), tasks.end()),
+        graph_(graph),
+        known_(std::move(known)),
+        worker_(worker) {}
 
   [[nodiscard]] std::optional<std::uint64_t> next_bytes() override {
     const auto next = find_next();
@@ -210,7 +214,8 @@ class PartPieces final : public PieceSource {
   [[nodiscard]] bool is_complete() const noexcept { return tasks_.empty(); }
 
  private:
-  [[nodiscard]] std::vector<TaskName>::iterator find_next() {
+  /// Mostly the first: batches wait for nothing, and those above them come in an order that does.
+  [[nodiscard]] std::list<TaskName>::iterator find_next() {
     return std::find_if(tasks_.begin(), tasks_.end(), [&](const TaskName& name) {
       const auto inputs = graph_.inputs_of(name);
       return std::all_of(inputs.begin(), inputs.end(), [&](const auto& input) {
@@ -219,7 +224,7 @@ class PartPieces final : public PieceSource {
     });
   }
 
-  std::vector<TaskName> tasks_;
+  std::list<TaskName> tasks_;
   const TaskGraph& graph_;
   TaskResults known_, done_;
   TaskWorker& worker_;

@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "engine/construct/build_job.h"
+#include "engine/construct/build_note.h"
 #include "engine/construct/memory_plan.h"
-#include "engine/construct/source_files.h"
 #include "engine/construct/source_kind.h"
 #include "engine/construct/store_output.h"
-#include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/batch_order.h"
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/construct/tasks/task_worker.h"
@@ -17,35 +16,6 @@
 namespace ptin {
 
 using namespace build_internal;
-
-namespace {
-
-/// @throws Error invalid_argument  this process sees other inputs than the one that directs it
-const BuildNote& require_same_inputs(const BuildNote& note, const std::vector<std::string>& inputs,
-                                     const BuildOptions& options) {
-  if (input_fingerprint(all_inputs(inputs, options)) != note.inputs) {
-    throw Error(ErrorCode::invalid_argument,
-                "an input is not the one that the build began with: its size or time of change "
-                "differ; build anew, or give all processes the same files",
-                inputs.empty() ? "" : inputs.front());
-  }
-  return note;
-}
-
-/// @throws Error invalid_argument  this process does not see what the others write
-const BuildNote& require_shared_folders(const BuildNote& note, const BuildResources& resources) {
-  for (const std::string& folder : {note.folder, note.temporary}) {
-    if (!await_file(folder, resources.patience, resources.stop)) {
-      throw Error(ErrorCode::invalid_argument,
-                  "this process does not see the folder of the build; it must be one that all "
-                  "processes share",
-                  folder);
-    }
-  }
-  return note;
-}
-
-}  // namespace
 
 struct BuildWorker::Impl {
   Impl(const std::vector<std::string>& inputs, const BuildOptions& options,

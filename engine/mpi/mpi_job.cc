@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "engine/construct/build_worker.h"
+#include "engine/construct/source_reader.h"
 #include "engine/construct/tasks/task_driver.h"
 #include "engine/mpi/mpi_session.h"
 #include "engine/stop.h"
@@ -17,7 +18,7 @@ namespace ptin {
 namespace {
 
 // The first letter of a text from rank 0 says what it is.
-constexpr char kBuild = 'b', kTask = 't', kHome = 'h';
+constexpr char kReading = 'r', kStage = 's', kBuild = 'b', kTask = 't', kHome = 'h';
 
 /// Waits for messages without keeping a processor busy, which the ranks that compute need: MPI's own
 /// waiting does. Short at first, since answers often come together.
@@ -39,17 +40,24 @@ class MpiDriver final : public TaskDriver {
  public:
   explicit MpiDriver(const MpiSession& session) : session_(session) {}
 
+  void begin_reading(const BuildNote& note) override { tell_all(kReading + message_of(note)); }
+  [[nodiscard]] std::vector<std::string> run_stage(const SourceStage& stage, StageWorker& worker,
+                                                   const StageLimits& limits) override;
   [[nodiscard]] bool begin(const BuildNote& note) override {
-    for (int rank = 1; rank < session_.ranks(); ++rank) {
-      session_.send(rank, kBuild + message_of(note));
-      idle_.insert(rank);
-    }
+    tell_all(kBuild + message_of(note));
     return true;
   }
   std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& limits,
                     const std::stop_token& stop) override;
 
  private:
+  void tell_all(const std::string& text) {
+    for (int rank = 1; rank < session_.ranks(); ++rank) {
+      session_.send(rank, text);
+      idle_.insert(rank);
+    }
+  }
+  [[nodiscard]] MpiSession::Received wait_for_answer(const std::stop_token& stop) const;
   void hand_out(TaskSchedule& schedule);
 
   const MpiSession& session_;
@@ -57,6 +65,49 @@ class MpiDriver final : public TaskDriver {
   std::map<int, TaskName> running_;  ///< What the others do.
   std::uint64_t most_bytes_ = 0;
 };
+
+MpiSession::Received MpiDriver::wait_for_answer(const std::stop_token& stop) const {
+  for (Patience patience;; patience.wait()) {
+    stop_if_asked(stop, "the build");
+    if (auto received = session_.receive()) {
+      return *std::move(received);
+    }
+  }
+}
+
+/// The first error in the order of tasks is thrown when those that others do have ended.
+std::vector<std::string> MpiDriver::run_stage(const SourceStage& stage, StageWorker& /*worker*/,
+                                              const StageLimits& limits) {
+  std::vector<std::string> told(stage.sizes.size());
+  StageCount count(stage, limits);
+  std::map<int, std::size_t> running;
+  std::map<std::size_t, Error> errors;
+  for (std::size_t next = 0;;) {
+    for (; errors.empty() && next < told.size() && !idle_.empty(); ++next) {
+      const int rank = *idle_.begin();
+      session_.send(rank, kStage + message_of(stage, next));
+      idle_.erase(rank);
+      running[rank] = next;
+    }
+    if (running.empty()) {
+      break;
+    }
+    const MpiSession::Received received = wait_for_answer(limits.stop);
+    const std::size_t number = running.at(received.from);
+    running.erase(received.from);
+    idle_.insert(received.from);
+    try {
+      told[number] = told_in(received.text);
+      count.tell_all_of(number);
+    } catch (const Error& e) {
+      errors.emplace(number, e);
+    }
+  }
+  if (!errors.empty()) {
+    throw Error(errors.begin()->second);
+  }
+  return told;
+}
 
 void MpiDriver::hand_out(TaskSchedule& schedule) {
   while (!idle_.empty() && schedule.next_bytes()) {
@@ -71,19 +122,13 @@ void MpiDriver::hand_out(TaskSchedule& schedule) {
 
 std::uint64_t MpiDriver::run(TaskSchedule& schedule, TaskWorker& worker,
                              const PieceLimits& /*limits*/, const std::stop_token& stop) {
-  Patience patience;
   for (hand_out(schedule); !running_.empty(); hand_out(schedule)) {
-    stop_if_asked(stop, "the build");
-    if (const auto received = session_.receive()) {
-      const TaskName name = running_.at(received->from);
-      running_.erase(received->from);
-      idle_.insert(received->from);
-      if (take_answer(name, received->text, schedule)) {
-        worker.tell_done(name);
-      }
-      patience.reset();
-    } else {
-      patience.wait();
+    const MpiSession::Received received = wait_for_answer(stop);
+    const TaskName name = running_.at(received.from);
+    running_.erase(received.from);
+    idle_.insert(received.from);
+    if (take_answer(name, received.text, schedule)) {
+      worker.tell_done(name);
     }
   }
   return most_bytes_;
@@ -96,22 +141,35 @@ class RankWorker {
              const BuildResources& resources)
       : inputs_(inputs), options_(options), resources_(resources) {}
 
+  void begin_reading(const std::string& note) {
+    open([&] { reader_ = std::make_unique<SourceReader>(inputs_, options_, resources_, note); });
+  }
   void begin(const std::string& note) {
-    worker_.reset();
-    try {
-      worker_ = std::make_unique<BuildWorker>(inputs_, options_, resources_, note);
-    } catch (const Error& e) {
-      refusal_ = answer_of(e);
-    }
+    reader_.reset();
+    open([&] { worker_ = std::make_unique<BuildWorker>(inputs_, options_, resources_, note); });
+  }
+  [[nodiscard]] std::string answer_in_stage(const std::string& task) {
+    return reader_ ? reader_->answer(task) : refusal_;
   }
   [[nodiscard]] std::string answer(const std::string& task) {
     return worker_ ? worker_->answer(task) : refusal_;
   }
 
  private:
+  template <class Open>
+  void open(const Open& open_one) {
+    worker_.reset();
+    try {
+      open_one();
+    } catch (const Error& e) {
+      refusal_ = answer_of(e);
+    }
+  }
+
   const std::vector<std::string>& inputs_;
   const BuildOptions& options_;
   const BuildResources& resources_;
+  std::unique_ptr<SourceReader> reader_;
   std::unique_ptr<BuildWorker> worker_;
   std::string refusal_;
 };
@@ -150,13 +208,20 @@ void MpiJob::work(const std::vector<std::string>& inputs, const BuildOptions& op
     }
     patience.reset();
     const std::string text = received->text.substr(1);
-    if (received->text.front() == kHome) {
-      return;
-    }
-    if (received->text.front() == kBuild) {
-      worker.begin(text);
-    } else {
-      impl_->session.send(0, worker.answer(text));
+    switch (received->text.front()) {
+      case kHome:
+        return;
+      case kReading:
+        worker.begin_reading(text);
+        break;
+      case kStage:
+        impl_->session.send(0, worker.answer_in_stage(text));
+        break;
+      case kBuild:
+        worker.begin(text);
+        break;
+      default:
+        impl_->session.send(0, worker.answer(text));
     }
   }
 }

@@ -73,6 +73,18 @@ void HeightScan::test_decimals(double height) {
   decimals_ = fits ? decimals_ : kMaxDecimals + 1;
 }
 
+void HeightScan::join(const HeightScan& other) {
+  count_ += other.count_;
+  min_ = std::min(min_, other.min_);
+  max_ = std::max(max_, other.max_);
+  all_int32_ = all_int32_ && other.all_int32_;
+  all_float32_ = all_float32_ && other.all_float32_;
+  decimals_ = std::max(decimals_, other.decimals_);
+  for (std::size_t d = 0; d < decimal_rounding_.size(); ++d) {
+    decimal_rounding_[d] = std::max(decimal_rounding_[d], other.decimal_rounding_[d]);
+  }
+}
+
 HeightFit HeightScan::fit() const {
   HeightFit fit;
   fit.count = count_;

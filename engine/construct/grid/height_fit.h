@@ -40,6 +40,9 @@ class HeightScan {
   /// Adds a height. REQUIRES: finite, not beyond the range of a float32. Cost: 10 to 25 ns.
   void add(double height);
 
+  /// Adds the heights that another scan has seen. REQUIRES: both were given the same type.
+  void join(const HeightScan& other);
+
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] HeightFit fit() const;
 

@@ -12,19 +12,12 @@
 #include "engine/construct/grid/grid_precision.h"
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/raster/raster_mosaic.h"
+#include "engine/construct/raster/raster_scan.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
 #include "engine/geometry/point.h"
-#include "engine/stop.h"
 
 namespace ptin {
-namespace {
-
-/// About how many samples the first reading looks at together.
-constexpr std::int64_t kScanSamples = std::int64_t{1} << 20;
-
-}  // namespace
-
 struct RasterSource::Impl {
   explicit Impl(RasterMosaic files) : mosaic(std::move(files)) {}
 
@@ -39,10 +32,8 @@ struct RasterSource::Impl {
 
   void frame_mosaic(const std::string& path, const SourceOptions& options);
   void check_size() const;
-  void scan(const std::stop_token& stop, const Progress& progress);
-  template <class T>
-  void scan_as(const std::stop_token& stop, const Progress& progress);
-  [[nodiscard]] SampleRange scan_step() const;
+  [[nodiscard]] static std::unique_ptr<Impl> opened(const std::vector<std::string>& paths,
+                                                    const SourceOptions& options);
 };
 
 // ---------------------------------------------------------------------------------------------------
@@ -83,13 +74,28 @@ void RasterSource::Impl::check_size() const {
   }
 }
 
-RasterSource RasterSource::open(const std::vector<std::string>& paths, const SourceOptions& options,
-                                const std::stop_token& stop, const Progress& progress) {
+/// The files opened and looked over, no sample read.
+std::unique_ptr<RasterSource::Impl> RasterSource::Impl::opened(
+    const std::vector<std::string>& paths, const SourceOptions& options) {
   auto impl = std::make_unique<Impl>(RasterMosaic(paths, options));
   impl->frame_mosaic(paths.front(), options);
   impl->check_size();
-  impl->scan(stop, progress);
+  return impl;
+}
+
+RasterSource RasterSource::open(const std::vector<std::string>& paths, const SourceOptions& options,
+                                const RunStage& run) {
+  auto impl = Impl::opened(paths, options);
+  RasterScan scan(impl->mosaic.duplicate());
+  const HeightFit fit = scan.join(run(scan.stage(), scan));
+  set_heights(impl->frame, fit);
+  impl->valid_samples = fit.count;
   return RasterSource(std::move(impl));
+}
+
+std::unique_ptr<StageWorker> RasterSource::open_to_scan(const std::vector<std::string>& paths,
+                                                        const SourceOptions& options) {
+  return std::make_unique<RasterScan>(std::move(Impl::opened(paths, options)->mosaic));
 }
 
 ArrayFileFacts RasterSource::save(FileLayer& files, const std::string& index) const {
@@ -103,9 +109,7 @@ ArrayFileFacts RasterSource::save(FileLayer& files, const std::string& index) co
 RasterSource RasterSource::take_up(const std::vector<std::string>& paths,
                                    const SourceOptions& options, const std::string& index,
                                    const ArrayFileFacts& facts) {
-  auto impl = std::make_unique<Impl>(RasterMosaic(paths, options));
-  impl->frame_mosaic(paths.front(), options);
-  impl->check_size();
+  auto impl = Impl::opened(paths, options);
   ArrayFileReader file(index, facts);
   impl->frame = take_frame(file);
   impl->valid_samples = file.take<std::uint64_t>()[0];
@@ -129,80 +133,6 @@ RasterSource RasterSource::duplicate() const {
   copy->scale = impl_->scale;
   copy->offset = impl_->offset;
   return RasterSource(std::move(copy));
-}
-
-// ---------------------------------------------------------------------------------------------------
-// The first reading.
-
-/// The size of the windows of the first reading: whole rows where the blocks of the file are whole
-/// rows, else a few blocks side by side.
-SampleRange RasterSource::Impl::scan_step() const {
-  const auto [block_width, block_height] = mosaic.first().block;
-  const std::int64_t columns =
-      block_width >= mosaic.first().width
-          ? width
-          : std::min<std::int64_t>(width,
-                                   std::max<std::int64_t>(4096 / block_width, 1) * block_width);
-  const std::int64_t rows = std::max<std::int64_t>(kScanSamples / columns, 1);
-  return {0, 0, columns, rows > block_height ? rows / block_height * block_height : rows};
-}
-
-template <class T>
-void RasterSource::Impl::scan_as(const std::stop_token& stop, const Progress& progress) {
-  static constexpr bool kWhole = std::is_integral_v<T>;
-  HeightScan heights(std::is_same_v<T, float> ? HeightScan::Given::kFloat32
-                                              : HeightScan::Given::kFloat64);
-  T low = std::numeric_limits<T>::max(), high = std::numeric_limits<T>::lowest();
-  std::uint64_t count = 0, done = 0;
-  const std::uint64_t total =
-      static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  const SampleRange step = scan_step();
-  std::vector<T> values(static_cast<std::size_t>(step.width * std::min(step.height, height)));
-  std::vector<std::uint8_t> valid(values.size());
-  for (std::int64_t y = height; y > 0; y -= step.height) {  // from the north, as most files lie
-    for (std::int64_t x = 0; x < width; x += step.width) {
-      stop_if_asked(stop, "reading", mosaic.context());
-      const std::int64_t south = std::max<std::int64_t>(y - step.height, 0);
-      const SampleRange w{x, south, std::min(step.width, width - x), y - south};
-      const auto n = static_cast<std::size_t>(w.width * w.height);
-      mosaic.read<T>(w, std::span(values).first(n), std::span(valid).first(n));
-      for (std::size_t i = 0; i < n; ++i) {
-        if constexpr (kWhole) {
-          low = std::min(low, valid[i] ? values[i] : low);
-          high = std::max(high, valid[i] ? values[i] : high);
-          count += valid[i];
-        } else if (valid[i]) {
-          heights.add(offset + scale * static_cast<double>(values[i]));
-        }
-      }
-      done += n;
-      if (progress) {
-        progress(done, total);
-      }
-    }
-  }
-  HeightFit fit = heights.fit();
-  if constexpr (kWhole) {
-    const HeightEncoding encoding{HeightType::int32, scale, offset};
-    fit = {encoding, scale, 0.0, 0.0, -1.0, count};
-    if (count > 0) {
-      fit.min_height = encoding.height_of_code(low);
-      fit.max_height = encoding.height_of_code(high);
-    }
-  }
-  set_heights(frame, fit);
-  valid_samples = fit.count;
-}
-
-void RasterSource::Impl::scan(const std::stop_token& stop, const Progress& progress) {
-  switch (raw) {
-    case RawType::kInt32:
-      return scan_as<std::int32_t>(stop, progress);
-    case RawType::kFloat32:
-      return scan_as<float>(stop, progress);
-    case RawType::kFloat64:
-      return scan_as<double>(stop, progress);
-  }
 }
 
 // ---------------------------------------------------------------------------------------------------

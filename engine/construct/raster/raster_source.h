@@ -4,14 +4,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/array_file.h"
 
@@ -30,27 +29,28 @@ namespace ptin {
 /// Threads that are not to wait for each other need a duplicate() each.
 class RasterSource {
  public:
-  using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
-
   /// Opens the files and reads all samples once, block by block, to count them and to choose the
   /// encoding.
   /// @param paths     One raster, or several with the same steps, type, scale, offset and CRS whose
   ///                  samples lie on one grid to a hundredth of a pixel.
   /// @param options   `resolution`, `merge` and `points` do not concern rasters.
-  /// @param progress  Called after each block with samples done and in all; may be empty.
+  /// @param run       Has the samples looked at (raster_scan.h).
   /// @throws Error  not_found         a file does not exist
   ///                invalid_argument  not a raster; no band or several; rotated; more than 2^30
   ///                                  steps; a single row or column; no sample in `bbox`; an
   ///                                  infinite height (the message names its pixel); files that are
   ///                                  not of one grid. A raster without any height is no error.
   ///                io_error          a block cannot be read
-  ///                cancelled         `stop` fired
+  ///                and what `run` throws
   /// Cost: one reading of all files. Memory: a few MiB, and GDAL's block cache, whose size the
   /// caller sets.
   [[nodiscard]] static RasterSource open(const std::vector<std::string>& paths,
                                          const SourceOptions& options,
-                                         const std::stop_token& stop = {},
-                                         const Progress& progress = {});
+                                         const RunStage& run = run_alone);
+  /// What does tasks of that reading in another process.
+  /// @throws Error as open()
+  [[nodiscard]] static std::unique_ptr<StageWorker> open_to_scan(
+      const std::vector<std::string>& paths, const SourceOptions& options);
 
   /// Writes what open() found out by reading to the file `index`, for take_up() of other processes.
   /// @return  What take_up() needs to know of it.

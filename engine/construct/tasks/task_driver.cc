@@ -39,6 +39,13 @@ class TaskPieces final : public PieceSource {
 
 }  // namespace
 
+void TaskDriver::begin_reading(const BuildNote& /*note*/) {}
+
+std::vector<std::string> TaskDriver::run_stage(const SourceStage& stage, StageWorker& worker,
+                                               const StageLimits& limits) {
+  return ptin::run_stage(stage, worker, limits);
+}
+
 bool TaskDriver::begin(const BuildNote& /*note*/) { return true; }
 
 std::uint64_t ThreadDriver::run(TaskSchedule& schedule, TaskWorker& worker,

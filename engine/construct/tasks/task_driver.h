@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Who has the tasks of a build done: threads of this process, or other processes.
+// Who has the tasks of a build done, of reading its source and of its tiles: threads of this
+// process, or other processes.
 #pragma once
 
 #include <cstdint>
 #include <stop_token>
+#include <string>
+#include <vector>
 
+#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/tasks/piece_runner.h"
+#include "engine/construct/tasks/stage_runner.h"
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/construct/tasks/task_schedule.h"
 #include "engine/construct/tasks/task_worker.h"
@@ -21,7 +26,16 @@ class TaskDriver {
   TaskDriver& operator=(const TaskDriver&) = delete;
   virtual ~TaskDriver() = default;
 
-  /// Told of the build before its first task. By default it does nothing.
+  /// Told of the build before the first stage of reading, without what reading finds out. By default
+  /// it does nothing.
+  virtual void begin_reading(const BuildNote& note);
+  /// Has a stage of reading done: by default on threads of this process.
+  /// @param worker  Does its tasks in this process.
+  /// @throws Error  as RunStage
+  [[nodiscard]] virtual std::vector<std::string> run_stage(const SourceStage& stage,
+                                                           StageWorker& worker,
+                                                           const StageLimits& limits);
+  /// Told of the build before the first task of its tiles. By default it does nothing.
   /// @return  False: the build ends here, and its folder stays for those who do the tasks.
   [[nodiscard]] virtual bool begin(const BuildNote& note);
   /// @param worker  Does tasks in this process.

@@ -60,6 +60,33 @@ std::string answer_to(const std::string& message, TaskWorker& worker, std::size_
   }
 }
 
+std::string message_of(const SourceStage& stage, std::size_t number) {
+  return text_of({{"stage", stage.name}, {"number", number}, {"facts", stage.facts}});
+}
+
+std::string answer_to(const std::string& message, StageWorker& worker, std::uint64_t memory,
+                      const std::stop_token& stop) {
+  try {
+    const nlohmann::json json = nlohmann::json::parse(message);
+    return text_of({{"told", worker.run({json.at("stage").get<std::string>(),
+                                         json.at("number").get<std::size_t>(),
+                                         json.at("facts").get<std::string>(),
+                                         memory,
+                                         stop,
+                                         {}})}});
+  } catch (const Error& e) {
+    return answer_of(e);
+  }
+}
+
+std::string told_in(const std::string& answer) {
+  const nlohmann::json json = nlohmann::json::parse(answer);
+  if (json.contains("error")) {
+    throw error_in(json["error"]);
+  }
+  return json.at("told").get<std::string>();
+}
+
 bool take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule) {
   const nlohmann::json json = nlohmann::json::parse(answer);
   if (json.contains("damaged")) {

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/tasks/task.h"
 
 namespace ptin {
@@ -38,6 +39,15 @@ struct BuildNote {
 /// @param thread, stop  As TaskWorker::run().
 [[nodiscard]] std::string answer_to(const std::string& message, TaskWorker& worker,
                                     std::size_t thread, const std::stop_token& stop);
+/// The message that a task of a stage be done. At most 1 KB.
+[[nodiscard]] std::string message_of(const SourceStage& stage, std::size_t number);
+/// Does it, and tells what came of it: what it tells, or the error that it met.
+/// @param memory  What it may take, bytes.
+[[nodiscard]] std::string answer_to(const std::string& message, StageWorker& worker,
+                                    std::uint64_t memory, const std::stop_token& stop);
+/// What the task tells.
+/// @throws Error  the error that the answer tells
+[[nodiscard]] std::string told_in(const std::string& answer);
 /// The answer of a process that could not begin, or to which something else happened.
 [[nodiscard]] std::string answer_of(const Error& error);
 /// Hands an answer to the schedule. False where the task met a damaged input, and is to be done again.

@@ -9,6 +9,7 @@
 
 #include <sys/resource.h>
 
+#include "engine/construct/tasks/stage_runner.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/raster/raster_fixture.h"
 
@@ -187,7 +188,10 @@ TEST(RasterSource, ReportsItsProgressToTheEnd) {
     last = done;
     all = total;
   };
-  std::ignore = RasterSource::open({write(small())}, {}, {}, progress);
+  std::ignore =
+      RasterSource::open({write(small())}, {}, [&](const SourceStage& stage, StageWorker& worker) {
+        return run_stage(stage, worker, {1, 0, {}, progress});
+      });
   EXPECT_EQ(last, 6U);
   EXPECT_EQ(all, 6U);
 }

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The first reading of a raster: how many of its samples have a height, and which encoding holds the
+// heights.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "engine/construct/grid/height_fit.h"
+#include "engine/construct/grid/source_stage.h"
+#include "engine/construct/raster/raster_mosaic.h"
+
+namespace ptin {
+
+/// Looks at all samples once, in tasks: bands of so many samples or a few more, from the north. Which
+/// bands there are depends on the raster alone, not on who looks at them.
+class RasterScan final : public StageWorker {
+ public:
+  static constexpr std::int64_t kBandSamples = std::int64_t{1} << 22;
+  explicit RasterScan(RasterMosaic mosaic, std::int64_t band_samples = kBandSamples);
+
+  /// Its sizes count samples.
+  [[nodiscard]] SourceStage stage() const;
+  /// @throws Error  as RasterSource::open()
+  [[nodiscard]] std::string run(const StageTask& task) override;
+  /// What all tasks together found.
+  [[nodiscard]] HeightFit join(const std::vector<std::string>& results) const;
+
+ private:
+  struct Found;
+  [[nodiscard]] std::int64_t rows_of_band() const;
+  [[nodiscard]] SampleRange band(std::size_t number) const;
+  template <class T>
+  [[nodiscard]] Found scan(RasterMosaic& mosaic, const StageTask& task) const;
+  [[nodiscard]] std::unique_ptr<RasterMosaic> take_mosaic();
+  void put_back(std::unique_ptr<RasterMosaic> mosaic);
+
+  std::int64_t band_samples_;
+  RasterMosaic mosaic_;                              ///< Never read from: tasks take duplicates.
+  RasterShape shape_;                                ///< Of its first file.
+  SampleRange step_;                                 ///< The size of what is looked at together.
+  std::mutex mutex_;                                 ///< Guards the mosaics.
+  std::vector<std::unique_ptr<RasterMosaic>> idle_;  ///< Duplicates that no task uses.
+};
+
+}  // namespace ptin
