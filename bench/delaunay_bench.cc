@@ -4,6 +4,7 @@
 // tiles, so that margins count as work and not as output.
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <random>
 #include <string>
@@ -12,9 +13,11 @@
 #include <cpl_vsi.h>
 
 #include "engine/construct/delaunay/tile_delaunay.h"
-#include "engine/construct/points/point_buckets.h"
+#include "engine/construct/points/point_source.h"
+#include "engine/construct/tasks/stage_runner.h"
 #include "tests/construct/delaunay_tin.h"
 #include "tests/support/las_file.h"
+#include "tests/support/test_folder.h"
 
 namespace ptin {
 namespace {
@@ -47,6 +50,16 @@ std::string las_of(Kind kind, std::uint64_t n) {
   return las.bytes();
 }
 
+/// Reads and sorts a file on one thread. The files of the buckets have no names any more.
+PointBuckets sorted(const std::string& path, std::uint64_t memory) {
+  const RunStage run = [&](const SourceStage& stage, StageWorker& worker) {
+    return run_stage(stage, worker, {1, memory, {}, {}});
+  };
+  const test::TestFolder folder(std::filesystem::current_path());
+  PointSource source({path}, {}, {{FileLayer::system(), folder.path()}, run});
+  return source.sort(folder.file("buckets"), true);
+}
+
 const PointBuckets& buckets_of(Kind kind, std::uint64_t n) {
   static std::unique_ptr<PointBuckets> buckets;
   static int last_kind = -1;
@@ -56,8 +69,7 @@ const PointBuckets& buckets_of(Kind kind, std::uint64_t n) {
     VSILFILE* file = VSIFOpenL("/vsimem/bench.las", "wb");
     VSIFWriteL(bytes.data(), 1, bytes.size(), file);
     VSIFCloseL(file);
-    buckets = std::make_unique<PointBuckets>(
-        PointBuckets::read({"/vsimem/bench.las"}, {}, {FileLayer::system(), "."}));
+    buckets = std::make_unique<PointBuckets>(sorted("/vsimem/bench.las", 64U << 20));
     VSIUnlink("/vsimem/bench.las");
     last_kind = kind;
     last_n = n;
@@ -97,9 +109,8 @@ void Buckets(benchmark::State& state) {
   VSIFWriteL(bytes.data(), 1, bytes.size(), file);
   VSIFCloseL(file);
   for (auto _ : state) {
-    const PointBuckets buckets = PointBuckets::read(
-        {"/vsimem/bench.las"}, {},
-        {FileLayer::system(), ".", static_cast<std::uint64_t>(state.range(1)) << 20});
+    const PointBuckets buckets =
+        sorted("/vsimem/bench.las", static_cast<std::uint64_t>(state.range(1)) << 20);
     benchmark::DoNotOptimize(buckets.size());
   }
   VSIUnlink("/vsimem/bench.las");

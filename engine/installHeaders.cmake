@@ -26,6 +26,7 @@ set(public_headers
     engine/construct/read/layer_choice.h
     engine/construct/read/line_file.h
     engine/construct/read/point_stream.h
+    engine/construct/read/point_part.h
     engine/construct/read/text_rows.h
     engine/construct/read/text_table.h
     engine/construct/scratch/external_memory.h

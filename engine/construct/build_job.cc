@@ -22,7 +22,7 @@ namespace ptin::build_internal {
 namespace {
 
 /// Of the temporary files: to be raised when their bytes mean something else.
-constexpr int kTemporaryFormat = 5;
+constexpr int kTemporaryFormat = 6;
 
 /// The number of a file on its disk, which stays the same when it gets another name; none when
 /// there is no such file.

@@ -12,6 +12,8 @@
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/points/point_buckets.h"
 #include "engine/construct/points/point_count.h"
+#include "engine/construct/points/point_source.h"
+#include "engine/construct/source_files.h"
 #include "engine/construct/tin/tin_vertices.h"
 #include "engine/error.h"
 
@@ -19,8 +21,19 @@ namespace ptin::build_internal {
 
 namespace {
 
-ExternalMemory memory_for_sorting(const Job& job, const Workspace& workspace) {
-  return {job.files(), job.sorting_folder(workspace), job.memory.sorting};
+/// The files of the points' buckets while a boundary is laid on them.
+constexpr const char* kPointsBelow = "below";
+
+PointFiles point_files(const Job& job, const Workspace& workspace) {
+  return {job.files(), workspace.temporary_folder()};
+}
+
+PointWork work_of(const Job& job, const Workspace& workspace) {
+  return {point_files(job, workspace),
+          [&job](const SourceStage& stage, StageWorker& worker) {
+            return job.run_stage(stage, worker);
+          },
+          job.resources.stop, job.memory.sorting, job.stages()};
 }
 
 /// Vertices of TINs are sorted before they are points.
@@ -36,12 +49,10 @@ SourceDisk disk_of(const Job& job, const PointCount& count) {
   return disk;
 }
 
-/// Lays a boundary without heights on the points. They are read and sorted for this, and once more
-/// with the boundary.
-void lay_boundary(Job& job, Workspace& workspace) {
-  const PointBuckets points =
-      PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
-                         job.resources.stop, job.stages());
+/// Lays a boundary without heights on the points. They are sorted for this, and once more with the
+/// boundary.
+void lay_boundary(Job& job, const PointFiles& files, PointSource& source) {
+  const PointBuckets points = source.sort(files.path(kPointsBelow, 0), false);
   BoundaryDrape drape(job.lines.rings, points);
   LineSet laid = drape.lay(job.options.max_edge, job.memory.lines / kBytesOfLineVertex,
                            job.resources.stop, job.stage("laying the boundary"));
@@ -60,13 +71,22 @@ PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index
     index_facts = *facts;
     return PointBuckets::load(job.files(), buckets, index, *facts);
   }
-  workspace.remove(kPointBuckets);
-  if (job.lines.rings_are_flat) {
-    lay_boundary(job, workspace);
+  remove_files(job.files(), buckets + "-");
+  if (job.resources.driver != nullptr) {
+    job.resources.driver->begin_reading({{},
+                                         workspace.folder(),
+                                         workspace.temporary_folder(),
+                                         input_fingerprint(all_inputs(job.inputs, job.options))});
   }
-  PointBuckets points =
-      PointBuckets::read(job.inputs, job.source_options(), memory_for_sorting(job, workspace),
-                         job.resources.stop, job.stages(), buckets);
+  PointBuckets points = [&] {
+    PointSource source(job.inputs, job.source_options(), work_of(job, workspace));
+    if (job.lines.rings_are_flat) {
+      const PointFiles files = point_files(job, workspace);
+      lay_boundary(job, files, source);
+      files.remove_all(kPointsBelow);
+    }
+    return source.sort(buckets, true);
+  }();
   job.lines = {};  // the points have what they need of them
   index_facts = points.save(job.files(), index);
   note_index(workspace, "points", index_facts);

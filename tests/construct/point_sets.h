@@ -13,6 +13,7 @@
 #include "engine/construct/points/point_buckets.h"
 #include "engine/geometry/point.h"
 #include "tests/construct/memory_file.h"
+#include "tests/construct/read_buckets.h"
 
 namespace ptin {
 
@@ -107,7 +108,7 @@ inline std::string text_of(const std::vector<GridPoint>& points) {
 inline PointBuckets buckets_of(const std::vector<GridPoint>& points,
                                std::uint64_t memory_bytes = 1 << 20) {
   const MemoryFile file("set.xyz", text_of(points));
-  return PointBuckets::read({file.path()}, {}, {FileLayer::system(), "/tmp", memory_bytes});
+  return read_buckets({file.path()}, {}, memory_bytes);
 }
 
 inline PointBuckets buckets_of(PointKind kind, std::uint64_t n, std::uint64_t seed) {

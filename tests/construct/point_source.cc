@@ -9,9 +9,14 @@
 #include "engine/construct/grid/point_merge.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/points/point_portions.h"
 #include "engine/construct/points/point_reading.h"
+#include "engine/construct/points/point_spool.h"
+#include "engine/construct/points/point_tasks.h"
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
+#include "tests/construct/made_raster.h"
+#include "tests/construct/read_buckets.h"
 
 namespace ptin {
 namespace {
@@ -104,19 +109,47 @@ void check_area(const PointSet& set, const std::string& context) {
   }
 }
 
+/// All points that were read.
+std::vector<SourcePoint> spooled(const PointFiles& files, const PointReading& reading) {
+  std::vector<SourcePoint> points, block;
+  for (const PointReading::Spool& spool : reading.spools) {
+    ArrayFileReader facts(files.path("read", spool.number), spool.facts);
+    SpoolReader reader(files, files.path("spool", spool.number), spool.points,
+                       take_portion_read(facts).checksums);
+    for (std::uint64_t i = 0; i < spool_blocks(spool.points); ++i) {
+      reader.read(i, block);
+      points.insert(points.end(), block.begin(), block.end());
+    }
+  }
+  return points;
+}
+
 }  // namespace
 
 PointSet read_points(const std::vector<std::string>& paths, const SourceOptions& options,
                      const std::stop_token& stop, const Progress& progress) {
   const std::string context = paths.empty() ? "" : paths[0];
   PointSet set;
-  std::vector<SourcePoint> points;
-  const PointReading raw = read_sources(
-      paths, options, [&](const SourcePoint& p) { points.push_back(p); }, stop, progress);
+  const oracle::ScratchFolder folder(oracle::ScratchFolder::Size::kSmall);
+  const PointFiles files{FileLayer::system(), folder.path()};
+  PointTasks tasks(paths, options, files);
+  const ReadingPlan plan{0, cut_into_portions(paths, options)};
+  const std::vector<std::string> told =
+      run_told(1 << 20, stop, [&](const char*, std::uint64_t done, std::uint64_t total) {
+        if (progress) {
+          progress(done, total);
+        }
+      })(tasks.reading(plan), tasks);
+  std::vector<SpooledPortion> portions;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    portions.push_back({plan.portions[i], i, PointTasks::portion_in(told[i]).value()});
+  }
+  const PointReading raw = join_portions(paths, options, files, portions);
+  const PointGrid grid = grid_with_lines(raw, options);
   set_crs(set.frame, resolve_crs(raw.crs, options.a_srs, options.vertical_crs));
-  set.frame.map = raw.grid.map();
+  set.frame.map = grid.map();
   set.left_out_points = raw.left_out;
-  add_points(points, raw.grid, options.merge, set);
+  add_points(spooled(files, raw), grid, options.merge, set);
   check_area(set, context);
   return set;
 }

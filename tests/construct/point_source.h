@@ -32,10 +32,10 @@ struct PointSet {
 
 /// Reads the points of all files (point_stream.h says which) and puts them on one grid.
 ///
-/// By the rules of PointBuckets::read().
+/// By the rules of PointSource::sort().
 /// @param progress  Called now and then with points done and in all, or bytes of text (0 when a .gz
 /// hides that); may be empty.
-/// @throws Error  as PointBuckets::read()
+/// @throws Error  as PointSource
 /// Cost: O(n log n), about 0.4 us a point; 80 bytes a point while it runs.
 [[nodiscard]] PointSet read_points(
     const std::vector<std::string>& paths, const SourceOptions& options,

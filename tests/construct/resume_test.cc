@@ -120,7 +120,7 @@ TEST(Resume, ReadsPointsAndTrianglesNoMoreOnceTheyAreSorted) {
 
 TEST(Resume, RefusesSortedPointsAndTrianglesThatAreDamaged) {
   for (const std::string name :
-       {"points", "points.index", "tin.surface", "tin.voids", "tin.places", "tin.index"}) {
+       {"points-0", "points.index", "tin.surface", "tin.voids", "tin.places", "tin.index"}) {
     SCOPED_TRACE(name);
     const InterruptibleBuild interrupted(name.starts_with("tin") ? SourceKind::kTin
                                                                  : SourceKind::kPoints);

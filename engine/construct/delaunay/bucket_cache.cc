@@ -21,8 +21,8 @@ BucketCache::Bucket& BucketCache::load(std::uint64_t bucket) {
   if (!is_new) {
     return loaded;
   }
-  const std::uint64_t begin = bucket * buckets_.bucket_points();
-  const std::uint64_t end = std::min(begin + buckets_.bucket_points(), buckets_.size());
+  const std::uint64_t begin = buckets_.begin_of(bucket);
+  const std::uint64_t end = buckets_.begin_of(bucket + 1);
   buckets_.take(begin, end - begin, loaded.points);
   loaded.is_in.resize(loaded.points.size());
   loaded.boxes.resize((loaded.points.size() + kBlock - 1) / kBlock);

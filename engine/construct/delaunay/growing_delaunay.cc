@@ -140,8 +140,7 @@ void GrowingDelaunay::triangulate() {
     }
   };
   for (const std::uint64_t bucket : around) {
-    const std::uint64_t begin = bucket * buckets_.bucket_points();
-    gather(begin, std::min(begin + buckets_.bucket_points(), buckets_.size()));
+    gather(buckets_.begin_of(bucket), buckets_.begin_of(bucket + 1));
     if (contains(box_, buckets_.box(bucket))) {
       cache_.set_used_up(bucket);
     }

@@ -73,7 +73,7 @@ class GrowingDelaunay {
   template <class Meets>
   bool force_edges(const Meets& meets);
   [[nodiscard]] std::uint64_t bucket_of(std::uint64_t point) const noexcept {
-    return point / buckets_.bucket_points();
+    return buckets_.bucket_of(point);
   }
   [[nodiscard]] bool settle_star(VertexId v);
   [[nodiscard]] bool is_final(const Face_handle& face);

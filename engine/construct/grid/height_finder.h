@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 #include "engine/construct/grid/height_fit.h"
@@ -20,6 +21,23 @@ class HeightFinder {
   /// @param step   The height of one code, in the height's unit; unused unless `whole`.
   HeightFinder(bool whole, double step) : whole_(whole), step_(step) {}
 
+  /// As HeightScan::Known.
+  struct Known {
+    std::uint64_t whole;
+    double step, low, high;
+    HeightScan::Known scan;
+  };
+  [[nodiscard]] Known known() const noexcept {
+    return {whole_ ? 1U : 0U, step_, low_, high_, scan_.known()};
+  }
+  /// The finder that knew this.
+  explicit HeightFinder(const Known& known) noexcept
+      : whole_(known.whole != 0),
+        step_(known.step),
+        scan_(HeightScan::Given::kFloat64, known.scan),
+        low_(known.low),
+        high_(known.high) {}
+
   void add(double height) {
     if (whole_) {
       low_ = std::min(low_, height);
@@ -27,6 +45,12 @@ class HeightFinder {
     } else {
       scan_.add(height);
     }
+  }
+  /// Adds the heights that another finder has seen. REQUIRES: both were made alike.
+  void join(const HeightFinder& other) {
+    scan_.join(other.scan_);
+    low_ = std::min(low_, other.low_);
+    high_ = std::max(high_, other.high_);
   }
   [[nodiscard]] HeightFit fit() const {
     if (!whole_) {

@@ -40,6 +40,16 @@ class HeightScan {
   /// Adds a height. REQUIRES: finite, not beyond the range of a float32. Cost: 10 to 25 ns.
   void add(double height);
 
+  /// All that a scan knows, without a byte that means nothing: to be kept in a file.
+  struct Known {
+    std::uint64_t count, all_int32, all_float32, decimals;
+    double min, max;
+    std::array<double, 5> decimal_rounding;
+  };
+  [[nodiscard]] Known known() const noexcept;
+  /// The scan that knew this.
+  HeightScan(Given given, const Known& known) noexcept;
+
   /// Adds the heights that another scan has seen. REQUIRES: both were given the same type.
   void join(const HeightScan& other);
 

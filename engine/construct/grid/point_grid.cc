@@ -75,6 +75,20 @@ int DecimalRange::decimals() const noexcept {
   return 0;
 }
 
+void DecimalRange::join(const DecimalRange& other) noexcept {
+  for (std::size_t d = 0; d < extremes_.size(); ++d) {
+    extremes_[d].low = std::min(extremes_[d].low, other.extremes_[d].low);
+    extremes_[d].high = std::max(extremes_[d].high, other.extremes_[d].high);
+  }
+}
+
+void PointExtent::join(const PointExtent& other) noexcept {
+  x.join(other.x);
+  y.join(other.y);
+  z.join(other.z);
+  points += other.points;
+}
+
 std::int64_t DecimalRange::lowest(const StepCounter& counter) const noexcept {
   std::int64_t low = INT64_MAX;
   for (int d = 0; d <= decimals(); ++d) {
@@ -144,7 +158,7 @@ bool PointGridScan::lines_are_elsewhere() const noexcept {
   const auto apart = [&](const DecimalRange& points, const DecimalRange& lines) {
     return lines.lowest(fine) > points.highest(fine) || lines.highest(fine) < points.lowest(fine);
   };
-  return apart(x_, line_x_) || apart(y_, line_y_);
+  return apart(extent_.x, line_x_) || apart(extent_.y, line_y_);
 }
 
 void PointGridScan::choose_steps(PointGrid& grid) const {
@@ -156,26 +170,26 @@ void PointGridScan::choose_steps(PointGrid& grid) const {
   } else {
     const int of_lines =
         std::min(most_line_decimals_, std::max(line_x_.decimals(), line_y_.decimals()));
-    grid.x = grid.y =
-        StepCounter(std::max({plan_decimals_, x_.decimals(), y_.decimals(), of_lines}));
+    grid.x = grid.y = StepCounter(
+        std::max({plan_decimals_, extent_.x.decimals(), extent_.y.decimals(), of_lines}));
   }
 }
 
 PointGrid PointGridScan::grid() const {
   PointGrid grid;
   choose_steps(grid);
-  grid.west = std::min(x_.lowest(grid.x), line_x_.lowest(grid.x));
-  grid.south = std::min(y_.lowest(grid.y), line_y_.lowest(grid.y));
+  grid.west = std::min(extent_.x.lowest(grid.x), line_x_.lowest(grid.x));
+  grid.south = std::min(extent_.y.lowest(grid.y), line_y_.lowest(grid.y));
   // Differences of numbers up to 2^62 fit; as doubles they are near enough for a limit of 2^30.
-  grid.east = std::max(x_.highest(grid.x), line_x_.highest(grid.x));
-  grid.north = std::max(y_.highest(grid.y), line_y_.highest(grid.y));
+  grid.east = std::max(extent_.x.highest(grid.x), line_x_.highest(grid.x));
+  grid.north = std::max(extent_.y.highest(grid.y), line_y_.highest(grid.y));
   const double width = static_cast<double>(grid.east) - static_cast<double>(grid.west);
   const double height = static_cast<double>(grid.north) - static_cast<double>(grid.south);
   check_extent(std::max(width, height) * grid.x.unit(), grid.x.unit(), context_);
   const int of_lines = std::min(kMostLineDecimals, line_z_.decimals());
-  grid.heights = StepCounter(std::max({height_decimals_, z_.decimals(), of_lines}));
-  const auto low = std::min(z_.lowest(grid.heights), line_z_.lowest(grid.heights));
-  const auto high = std::max(z_.highest(grid.heights), line_z_.highest(grid.heights));
+  grid.heights = StepCounter(std::max({height_decimals_, extent_.z.decimals(), of_lines}));
+  const auto low = std::min(extent_.z.lowest(grid.heights), line_z_.lowest(grid.heights));
+  const auto high = std::max(extent_.z.highest(grid.heights), line_z_.highest(grid.heights));
   grid.whole =
       static_cast<double>(low) >= -kLargestCode && static_cast<double>(high) <= kLargestCode;
   return grid;

@@ -55,6 +55,8 @@ class DecimalRange {
     e.low = d.mantissa < e.low ? d.mantissa : e.low;
     e.high = d.mantissa > e.high ? d.mantissa : e.high;
   }
+  /// Adds what another range has seen.
+  void join(const DecimalRange& other) noexcept;
   /// The most digits after the point; 0 when nothing was added.
   [[nodiscard]] int decimals() const noexcept;
   /// The steps of the smallest decimal; INT64_MAX where none was added.
@@ -99,6 +101,21 @@ struct PointGrid {
   [[nodiscard]] AffineMap map() const noexcept;
 };
 
+/// What is known of many points together. A plain value.
+struct PointExtent {
+  DecimalRange x, y, z;
+  std::uint64_t points = 0;
+
+  void add(const SourcePoint& p) noexcept {
+    ++points;
+    x.add(p.x);
+    y.add(p.y);
+    z.add(p.z);
+  }
+  /// Adds what another one has seen.
+  void join(const PointExtent& other) noexcept;
+};
+
 /// Sees every point of all sources once, then gives their grid. PointBuckets::read() says by which
 /// rules (points/point_buckets.h).
 class PointGridScan {
@@ -110,16 +127,13 @@ class PointGridScan {
 
   /// To be called once for each file, before its points are added.
   void add_source(const PointStreamFacts& facts);
-  void add(const SourcePoint& p) noexcept {
-    ++points_;
-    x_.add(p.x);
-    y_.add(p.y);
-    z_.add(p.z);
-  }
+  void add(const SourcePoint& p) noexcept { extent_.add(p); }
+  /// Adds points that were seen elsewhere.
+  void add(const PointExtent& points) noexcept { extent_.join(points); }
   /// Vertices of lines extend the grid. Their digits count as those of points do, up to two after the
   /// point, or seven in degrees; more are kept where points have more.
   void add_line_vertex(const SourcePoint& v, bool has_height, bool degrees) noexcept;
-  [[nodiscard]] std::uint64_t points() const noexcept { return points_; }
+  [[nodiscard]] std::uint64_t points() const noexcept { return extent_.points; }
   /// True when the boxes of all points and of all vertices of lines so far have nothing in common.
   [[nodiscard]] bool lines_are_elsewhere() const noexcept;
   /// REQUIRES: there are points.
@@ -133,10 +147,9 @@ class PointGridScan {
   std::string context_;
   std::optional<SourceLattice> lattice_;
   int plan_decimals_ = 0, height_decimals_ = 0;
-  DecimalRange x_, y_, z_;
+  PointExtent extent_;
   DecimalRange line_x_, line_y_, line_z_;
   int most_line_decimals_ = 0;  ///< Of plan coordinates.
-  std::uint64_t points_ = 0;
 };
 
 /// True when a point is to be built from: its height is not `options.nodata`, and it lies in

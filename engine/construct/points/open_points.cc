@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/points/open_points.h"
 
+#include <algorithm>
+
 #include <cpl_vsi.h>
 
 #include "engine/construct/grid/gdal_session.h"
@@ -19,11 +21,13 @@ constexpr std::size_t kBatchPoints = 4096;
 /// Text, in batches.
 class TextPoints final : public PointStream {
  public:
-  TextPoints(const std::string& path, const PointChoice& choice) : reader_(path, choice.columns) {
+  TextPoints(const std::string& path, const PointChoice& choice, const PointPart& part)
+      : is_whole_(part.is_whole()), reader_(path, choice.columns, part) {
     const GdalSession session;
     VSIStatBufL status;
     if (!is_packed(path) && VSIStatL(path.c_str(), &status) == 0) {
-      total_ = static_cast<std::uint64_t>(status.st_size);
+      total_ = std::min(part.end, static_cast<std::uint64_t>(status.st_size));
+      total_ -= std::min(part.begin, total_);
     }
   }
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
@@ -35,10 +39,14 @@ class TextPoints final : public PointStream {
     }
     return !batch.empty();
   }
+  [[nodiscard]] std::optional<RowsOfPart> rows() const override {
+    return is_whole_ ? std::nullopt : std::optional(reader_.rows());
+  }
   [[nodiscard]] std::uint64_t done() const noexcept override { return reader_.bytes_read(); }
   [[nodiscard]] std::uint64_t total() const noexcept override { return total_; }
 
  private:
+  bool is_whole_;
   XyzReader reader_;
   PointStreamFacts facts_;
   std::uint64_t total_ = 0;
@@ -71,16 +79,17 @@ void check_choice(const std::string& path, const PointChoice& choice, PointForma
 
 std::unique_ptr<PointStream> open_point_stream(const std::string& path, const PointChoice& choice,
                                                std::optional<double> nodata,
-                                               const StreamResources& resources) {
+                                               const StreamResources& resources,
+                                               const PointPart& part) {
   const PointFormat format = point_format_of(path, choice);
   check_choice(path, choice, format);
   switch (format) {
     case PointFormat::kTin:
       return std::make_unique<TinVertices>(path, choice, nodata, resources);
     case PointFormat::kLas:
-      return std::make_unique<LasReader>(path, choice);
+      return std::make_unique<LasReader>(path, choice, part);
     case PointFormat::kText:
-      return std::make_unique<TextPoints>(path, choice);
+      return std::make_unique<TextPoints>(path, choice, part);
     case PointFormat::kLayer:
       break;
   }

@@ -19,11 +19,14 @@ namespace ptin {
 ///                   to a triangle with three heights, as when the TIN itself is built. Of other
 ///                   files, points with this height are handed out all the same.
 /// @param resources  For a TIN, while it is opened.
+/// @param part       What is read of the file. A TIN, a layer and text that is_packed() are read as a
+///                   whole.
 /// @throws Error  as those readers; invalid_argument also for a choice that means nothing for the
 ///                format
 [[nodiscard]] std::unique_ptr<PointStream> open_point_stream(const std::string& path,
                                                              const PointChoice& choice,
                                                              std::optional<double> nodata = {},
-                                                             const StreamResources& resources = {});
+                                                             const StreamResources& resources = {},
+                                                             const PointPart& part = {});
 
 }  // namespace ptin

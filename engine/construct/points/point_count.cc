@@ -10,6 +10,7 @@
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/points/open_points.h"
+#include "engine/construct/points/point_portions.h"
 #include "engine/construct/read/input_kind.h"
 #include "engine/construct/read/tin_count.h"
 
@@ -38,15 +39,6 @@ double unpacked_bytes(const std::string& path, std::uint64_t packed) {
   file.read(reinterpret_cast<char*>(b.data()), 4);
   const double last = b[0] + 256.0 * (b[1] + 256.0 * (b[2] + 256.0 * b[3]));
   return std::max(last, static_cast<double>(packed));
-}
-
-/// True for a pipe, a socket or a device: what is looked at before reading would be lost.
-bool can_be_read_once_only(const std::string& path) {
-  std::error_code ignored;
-  const auto type = std::filesystem::status(path, ignored).type();
-  return type == std::filesystem::file_type::fifo ||
-         type == std::filesystem::file_type::character ||
-         type == std::filesystem::file_type::socket;
 }
 
 /// Estimates the points of a text from its size and the bytes that its first points take. Exact for

@@ -1,55 +1,256 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/points/point_reading.h"
 
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
 #include "engine/construct/grid/crs.h"
-#include "engine/construct/grid/source_options.h"
-#include "engine/construct/grid/source_point.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/open_points.h"
+#include "engine/construct/points/point_spool.h"
+#include "engine/construct/read/column_names.h"
+#include "engine/construct/read/input_kind.h"
 #include "engine/construct/read/point_stream.h"
+#include "engine/construct/read/text_rows.h"
+#include "engine/construct/scratch/external_memory.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 
 namespace ptin {
 namespace {
 
-/// The CRS that all files share.
-class CommonCrs {
+/// So many samples are joined at most: all portions together have no more memory than few have.
+constexpr std::size_t kMostSamples = std::size_t{1} << 18;
+
+/// RowsOfPart without a byte that means nothing: what is done again is done with the same bytes.
+struct PlainRows {
+  std::uint64_t may_be, is_guess, by_one, has_repeats, has_decimals;
+  std::int64_t first, last;
+  std::uint64_t rows, lines, last_row;
+};
+
+PlainRows plain_of(const RowsOfPart& part) {
+  const RowNumbering& n = part.numbering;
+  const auto number = [](bool flag) { return std::uint64_t{flag ? 1U : 0U}; };
+  return {number(n.may_be),
+          number(n.is_guess),
+          number(n.by_one),
+          number(n.has_repeats),
+          number(n.has_decimals),
+          n.first,
+          n.last,
+          n.rows,
+          part.lines,
+          part.last_row};
+}
+
+RowsOfPart rows_of(const PlainRows& p) {
+  return {{p.may_be != 0, p.is_guess != 0, p.by_one != 0, p.has_repeats != 0, p.has_decimals != 0,
+           p.first, p.last, p.rows},
+          p.lines,
+          p.last_row};
+}
+
+/// The plain values of a portion.
+struct PlainRead {
+  PointExtent extent;
+  std::uint64_t seen, left_out, sample_step;
+  double largest_shift;
+  SourceLattice lattice;
+  PlainRows rows;
+  std::int32_t plan_decimals, height_decimals;
+  std::uint32_t has_lattice, has_rows;
+};
+static_assert(std::is_trivially_copyable_v<PlainRead>);
+
+void put_line(ArrayFileWriter& file, const std::string& text) {
+  file.put(std::span<const char>(text));
+}
+std::string take_line(ArrayFileReader& file) {
+  const std::span<const char> text = file.take<char>();
+  return {text.begin(), text.end()};
+}
+
+/// Tells how much of a portion is done, in its bytes.
+class PortionProgress {
  public:
-  void add(const std::string& crs, const std::string& path) {
-    if (first_ && !is_same_crs(crs_, crs)) {
-      refuse("this file has another CRS than '" + path_ + "', or one of them has none; transform " +
-                 "it first, or say with --a-srs what all of them are in",
-             path);
-    }
-    if (!first_) {
-      first_ = true;
-      crs_ = crs;
-      path_ = path;
-    }
-  }
-  [[nodiscard]] const std::string& text() const { return crs_; }
-  /// Lines without a CRS are taken to be in that of the points.
-  void check_lines(const std::string& crs, const std::string& path) const {
-    if (!crs.empty() && !is_same_in_plan(crs_, crs)) {
-      refuse("these lines have another CRS than '" + path_ +
-                 "', or that file has none; transform them first, or say with --a-srs what all of "
-                 "them are in",
-             path);
+  PortionProgress(const PointPortion& portion, const StageTask& task)
+      : bytes_(portion.bytes), task_(task) {}
+  void operator()(std::uint64_t done, std::uint64_t total) const {
+    if (task_.progress) {
+      const double share =
+          total == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(total);
+      task_.progress(static_cast<std::uint64_t>(share * static_cast<double>(bytes_)));
     }
   }
 
  private:
-  bool first_ = false;
-  std::string crs_, path_;
+  std::uint64_t bytes_;
+  const StageTask& task_;
+};
+
+}  // namespace
+
+void EvenSample::add(const SourcePoint& p) {
+  if (seen_++ % step_ != 0) {
+    return;
+  }
+  if (points_.size() == kMost) {  // an even number: this point stays one of every 2 k
+    for (std::size_t i = 0; i < kMost / 2; ++i) {
+      points_[i] = points_[2 * i];
+    }
+    points_.resize(kMost / 2);
+    step_ *= 2;
+  }
+  points_.push_back({p.x.mantissa, p.y.mantissa, p.x.decimals, p.y.decimals});
+}
+
+void put(ArrayFileWriter& file, const PortionRead& read) {
+  const PointStreamFacts& source = read.source;
+  const PlainRead plain{read.extent,
+                        read.seen,
+                        read.left_out,
+                        read.sample_step,
+                        read.largest_shift,
+                        source.lattice.value_or(SourceLattice{}),
+                        plain_of(read.rows.value_or(RowsOfPart{})),
+                        source.plan_decimals,
+                        source.height_decimals,
+                        source.lattice ? 1U : 0U,
+                        read.rows ? 1U : 0U};
+  file.put(std::span(&plain, 1));
+  for (const std::string* text :
+       {&source.crs, &source.vertical_crs, &source.units.plane, &source.units.heights}) {
+    put_line(file, *text);
+  }
+  file.put(read.samples);
+  file.put(read.checksums);
+}
+
+PortionRead take_portion_read(ArrayFileReader& file) {
+  const PlainRead plain = file.take<PlainRead>()[0];
+  PortionRead read;
+  read.extent = plain.extent;
+  read.seen = plain.seen;
+  read.left_out = plain.left_out;
+  read.sample_step = plain.sample_step;
+  read.largest_shift = plain.largest_shift;
+  read.rows = plain.has_rows != 0 ? std::optional(rows_of(plain.rows)) : std::nullopt;
+  read.source.plan_decimals = plain.plan_decimals;
+  read.source.height_decimals = plain.height_decimals;
+  read.source.lattice = plain.has_lattice != 0 ? std::optional(plain.lattice) : std::nullopt;
+  for (std::string* text : {&read.source.crs, &read.source.vertical_crs, &read.source.units.plane,
+                            &read.source.units.heights}) {
+    *text = take_line(file);
+  }
+  read.samples = file.take_copy<SampledPoint>();
+  read.checksums = file.take_copy<std::uint64_t>();
+  return read;
+}
+
+void put(ArrayFileWriter& file, const ReadingPlan& plan) {
+  file.put(std::span(&plan.first_number, 1));
+  file.put(plan.portions);
+}
+
+ReadingPlan take_reading_plan(ArrayFileReader& file) {
+  ReadingPlan plan;
+  plan.first_number = file.take<std::uint64_t>()[0];
+  plan.portions = file.take_copy<PointPortion>();
+  return plan;
+}
+
+PortionRead PortionReader::read_to_spool(const PointPortion& portion, const std::string& spool,
+                                         const StageTask& task) {
+  const std::string& path = inputs_[portion.input];
+  std::unique_lock alone(one_tin_, std::defer_lock);
+  if (point_format_of(path, options_.points) == PointFormat::kTin) {
+    alone.lock();
+  }
+  const PortionProgress progress(portion, task);
+  const ExternalMemory memory{files_.files, files_.folder, task.memory};
+  const auto stream = open_point_stream(path, options_.points, options_.nodata,
+                                        {&memory, task.stop, progress}, portion.part);
+  PortionRead result;
+  result.source = stream->facts();
+  SpoolWriter writer(files_.files, spool);
+  EvenSample sample;
+  std::vector<SourcePoint> batch;
+  while (stream->next(batch)) {
+    stop_if_asked(task.stop, "reading", path);
+    progress(stream->done(), stream->total());
+    result.seen += batch.size();
+    for (const SourcePoint& p : batch) {
+      if (is_wanted(p, options_)) {
+        result.extent.add(p);
+        sample.add(p);
+        writer.add(p);
+      }
+    }
+  }
+  result.left_out = stream->left_out();
+  result.largest_shift = stream->largest_shift();
+  result.rows = stream->rows();
+  result.checksums = writer.finish();
+  result.samples = sample.points();
+  result.sample_step = sample.step();
+  return result;
+}
+
+std::optional<ArrayFileFacts> PortionReader::read(const PointPortion& portion, std::uint64_t number,
+                                                  const StageTask& task) {
+  const std::string spool = files_.path("spool", number);
+  try {
+    const PortionRead result = read_to_spool(portion, spool, task);
+    ArrayFileWriter file(files_.files, files_.path("read", number));
+    put(file, result);
+    return file.facts();
+  } catch (const QuotesInPart&) {
+    without_old(files_.files, spool);
+    return std::nullopt;
+  }
+}
+
+namespace {
+
+/// Whether the texts of a source are ones of points, as only all parts of each show.
+class WholeTexts {
+ public:
+  explicit WholeTexts(const std::vector<std::string>& inputs) : inputs_(inputs) {}
+  void add(std::size_t input, const RowsOfPart& part) {
+    if (input != input_) {
+      check();
+      input_ = input;
+      all_ = {};
+    }
+    all_.numbering.join(part.numbering);
+    all_.last_row = part.last_row == 0 ? all_.last_row : all_.lines + part.last_row;
+    all_.lines += part.lines;
+  }
+  /// @throws Error invalid_argument  the first column of a text numbers its rows
+  void check() const {
+    if (const auto fault = fault_of(all_.numbering, point_roles())) {
+      refuse(*fault, inputs_[input_] + ":" + std::to_string(all_.last_row));
+    }
+  }
+
+ private:
+  const std::vector<std::string>& inputs_;
+  std::size_t input_ = 0;
+  RowsOfPart all_;
 };
 
 /// Lets lines extend the grid, after all points.
-void add_lines(const SourceLines& lines, const SourceOptions& options, const CommonCrs& crs,
-               PointGridScan& scan, const PointReading& reading) {
+void add_lines(const SourceLines& lines, const SourceOptions& options, const PointReading& reading,
+               PointGridScan& scan) {
   for (const LineFileFacts& file : lines.files) {
-    if (options.a_srs.empty()) {
-      crs.check_lines(file.crs, file.path);
+    // Lines without a CRS are taken to be in that of the points.
+    if (options.a_srs.empty() && !file.crs.empty() && !is_same_in_plan(reading.crs, file.crs)) {
+      refuse("these lines have another CRS than '" + reading.crs_path +
+                 "', or that file has none; transform them first, or say with --a-srs what all of "
+                 "them are in",
+             file.path);
     }
     if (file.units != DeclaredUnits{} && file.units != reading.units &&
         reading.units != DeclaredUnits{}) {
@@ -57,7 +258,7 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Com
              file.path);
     }
   }
-  const bool degrees = resolve_crs(crs.text(), options.a_srs, "").geographic;
+  const bool degrees = resolve_crs(reading.crs, options.a_srs, "").geographic;
   for (const LineSet* set : {&lines.breaklines, &lines.rings}) {
     const bool is_flat = set == &lines.rings && lines.rings_are_flat;
     for (std::size_t i = 0; i < set->vertices.size(); ++i) {
@@ -80,65 +281,65 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Com
   }
 }
 
+/// Every step-th of the samples of a portion; their weight grows by as much.
+void add_samples(const PortionRead& read, std::size_t step, PointReading& reading) {
+  for (std::size_t i = 0; i < read.samples.size(); i += step) {
+    reading.samples.push_back({read.samples[i], read.sample_step * step});
+  }
+}
+
 }  // namespace
 
-PointReading read_sources(const std::vector<std::string>& paths, const SourceOptions& options,
-                          const std::function<void(const SourcePoint&)>& take,
-                          const std::stop_token& stop,
-                          const std::function<void(std::uint64_t, std::uint64_t)>& progress,
-                          const ExternalMemory* memory) {
-  PointReading reading;
-  PointGridScan scan(options.resolution, paths.empty() ? "" : paths[0]);
-  CommonCrs crs, vertical_crs;
-  std::vector<SourcePoint> batch;
-  std::uint64_t count = 0;
-  for (const std::string& path : paths) {
-    const auto stream =
-        open_point_stream(path, options.points, options.nodata, {memory, stop, progress});
-    if (options.a_srs.empty()) {
-      crs.add(stream->facts().crs, path);
-      vertical_crs.add(stream->facts().vertical_crs, path);
+PointReading join_portions(const std::vector<std::string>& inputs, const SourceOptions& options,
+                           const PointFiles& files, const std::vector<SpooledPortion>& portions) {
+  const std::string context = inputs.empty() ? "" : inputs[0];
+  PointReading reading{{}, {}, {}, {}, PointGridScan(options.resolution, context), 0.0, 0, {}, {}};
+  SourceAgreement agreement(options);
+  WholeTexts texts(inputs);
+  std::uint64_t seen = 0;
+  const std::size_t sample_step = portions.size() * EvenSample::kMost / kMostSamples + 1;
+  for (std::size_t i = 0; i < portions.size(); ++i) {
+    const SpooledPortion& p = portions[i];
+    ArrayFileReader file = files.open(files.path("read", p.number), p.facts);
+    const PortionRead read = take_portion_read(file);
+    if (i == 0 || portions[i - 1].portion.input != p.portion.input) {
+      agreement.add(read.source, inputs[p.portion.input]);
+      reading.scan.add_source(read.source);
     }
-    scan.add_source(stream->facts());
-    if (path == paths.front()) {
-      reading.units = stream->facts().units;
-    } else if (reading.units != stream->facts().units) {
-      refuse("this file has other units than '" + paths.front() +
-                 "', or one of them names none; bring them to one unit first",
-             path);
+    if (read.rows) {
+      texts.add(p.portion.input, *read.rows);
     }
-    while (stream->next(batch)) {
-      stop_if_asked(stop, "reading", path);
-      if (progress) {
-        progress(stream->done(), stream->total());
-      }
-      count += batch.size();
-      for (const SourcePoint& p : batch) {
-        if (is_wanted(p, options)) {
-          scan.add(p);
-          take(p);
-        }
-      }
+    reading.scan.add(read.extent);
+    seen += read.seen;
+    reading.left_out += read.left_out;
+    reading.largest_shift = std::max(reading.largest_shift, read.largest_shift);
+    if (read.extent.points > 0) {
+      reading.spools.push_back({p.number, read.extent.points, p.facts});
     }
-    reading.left_out += stream->left_out();
-    reading.largest_shift = std::max(reading.largest_shift, stream->largest_shift());
+    add_samples(read, sample_step, reading);
   }
-  if (scan.points() == 0) {
-    refuse(count + reading.left_out == 0
+  texts.check();
+  if (reading.scan.points() == 0) {
+    refuse(seen + reading.left_out == 0
                ? "there is no point in this file"
                : "every point is left out: none lies in the bounds, with a height and of a chosen "
                  "class",
-           paths.empty() ? "" : paths[0]);
+           context);
   }
-  reading.left_out += count - scan.points();
-  reading.points = scan.points();
-  if (options.lines != nullptr && !options.lines->is_empty()) {
-    add_lines(*options.lines, options, crs, scan, reading);
-  }
-  reading.grid = scan.grid();
-  reading.crs = crs.text();
-  reading.vertical_crs = options.vertical_crs.empty() ? vertical_crs.text() : "";
+  reading.left_out += seen - reading.scan.points();
+  reading.crs = agreement.crs();
+  reading.vertical_crs = options.vertical_crs.empty() ? agreement.vertical_crs() : "";
+  reading.units = agreement.units();
+  reading.crs_path = agreement.path();
   return reading;
+}
+
+PointGrid grid_with_lines(const PointReading& reading, const SourceOptions& options) {
+  PointGridScan scan = reading.scan;
+  if (options.lines != nullptr && !options.lines->is_empty()) {
+    add_lines(*options.lines, options, reading, scan);
+  }
+  return scan.grid();
 }
 
 }  // namespace ptin

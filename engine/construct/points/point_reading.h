@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Reading all files of a source of points, once.
+// Reading a source of points: a portion at a time, by any process, and what all portions are together.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -12,31 +15,121 @@
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
-#include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/grid/source_stage.h"
+#include "engine/construct/points/point_files.h"
+#include "engine/construct/points/point_portions.h"
+#include "engine/construct/read/point_part.h"
+#include "engine/construct/scratch/array_file.h"
 
 namespace ptin {
 
-struct ExternalMemory;
+/// Where a point of a source lies: one of a few, evenly spread over the order of the source.
+struct SampledPoint {
+  std::int64_t x = 0, y = 0;  ///< The mantissas of its coordinates.
+  std::int32_t x_decimals = 0, y_decimals = 0;
+};
+
+/// Every k-th of some points, for the least power of two k that makes them few. Memory: kMost points.
+class EvenSample {
+ public:
+  static constexpr std::size_t kMost = 1024;
+  void add(const SourcePoint& p);
+  [[nodiscard]] const std::vector<SampledPoint>& points() const noexcept { return points_; }
+  /// k: how many points each one stands for.
+  [[nodiscard]] std::uint64_t step() const noexcept { return step_; }
+
+ private:
+  std::vector<SampledPoint> points_;
+  std::uint64_t seen_ = 0, step_ = 1;
+};
+
+/// What one portion is, when it has been read.
+struct PortionRead {
+  PointStreamFacts source;
+  PointExtent extent;          ///< Of the wanted points.
+  std::uint64_t seen = 0;      ///< Points that the stream handed out.
+  std::uint64_t left_out = 0;  ///< As PointStream::left_out().
+  double largest_shift = 0.0;  ///< As PointStream::largest_shift().
+  std::optional<RowsOfPart> rows;
+  std::vector<std::uint64_t> checksums;  ///< Of the blocks of the spool.
+  std::vector<SampledPoint> samples;
+  std::uint64_t sample_step = 1;
+};
+void put(ArrayFileWriter& file, const PortionRead& read);
+/// @throws Error corruption
+[[nodiscard]] PortionRead take_portion_read(ArrayFileReader& file);
+
+/// The portions of one stage of reading.
+struct ReadingPlan {
+  std::uint64_t first_number = 0;  ///< Of the files that the first of them is written to.
+  std::vector<PointPortion> portions;
+};
+void put(ArrayFileWriter& file, const ReadingPlan& plan);
+/// @throws Error corruption
+[[nodiscard]] ReadingPlan take_reading_plan(ArrayFileReader& file);
+
+/// Reads portions of a source. Threads: any number.
+class PortionReader {
+ public:
+  /// All must outlive this.
+  PortionReader(const std::vector<std::string>& inputs, const SourceOptions& options,
+                const PointFiles& files)
+      : inputs_(inputs), options_(options), files_(files) {}
+
+  /// Reads a portion, and writes the wanted points to the spool of this number, and what it is to the
+  /// file beside it.
+  /// @return  The facts of that file; none where the portion has quotes (QuotesInPart).
+  /// @throws Error as open_point_stream(), PointStream, resource_exhausted, io_error, cancelled
+  [[nodiscard]] std::optional<ArrayFileFacts> read(const PointPortion& portion,
+                                                   std::uint64_t number, const StageTask& task);
+
+ private:
+  [[nodiscard]] PortionRead read_to_spool(const PointPortion& portion, const std::string& spool,
+                                          const StageTask& task);
+
+  const std::vector<std::string>& inputs_;
+  const SourceOptions& options_;
+  const PointFiles& files_;
+  std::mutex one_tin_;  ///< TINs are sorted one at a time: so much disk is planned for.
+};
+
+/// A portion that was read, and where it is.
+struct SpooledPortion {
+  PointPortion portion;
+  std::uint64_t number = 0;
+  ArrayFileFacts facts;
+};
 
 /// What is known when the last point has been read.
 struct PointReading {
-  PointGrid grid;
   std::string crs;             ///< The CRS that all files declare; "" where a_srs replaces it.
-  std::string vertical_crs;    ///< Likewise; "" also where options.vertical_crs replaces it.
+  std::string vertical_crs;    ///< Likewise.
   DeclaredUnits units;         ///< Those of all files.
+  std::string crs_path;        ///< The file that declared these first.
+  PointGridScan scan;          ///< Of all points and files.
   double largest_shift = 0.0;  ///< The largest PointStream::largest_shift(), CRS units.
-  std::uint64_t points = 0;
   std::uint64_t left_out = 0;
+  struct Spool {
+    std::uint64_t number = 0;
+    std::uint64_t points = 0;
+    ArrayFileFacts facts;  ///< Of the file beside it.
+  };
+  std::vector<Spool> spools;  ///< In the order of the source; none is empty.
+  struct Sample {
+    SampledPoint point;
+    std::uint64_t weight = 1;  ///< The points that it stands for.
+  };
+  std::vector<Sample> samples;
 };
 
-/// Hands every wanted point to `take`, file after file.
-/// @param progress  Receives the progress in the file at hand (PointStream::done()); may be empty.
-/// @param memory    As StreamResources::memory.
-/// @throws Error as PointBuckets::read(), and what `take` throws
-[[nodiscard]] PointReading read_sources(
-    const std::vector<std::string>& paths, const SourceOptions& options,
-    const std::function<void(const SourcePoint&)>& take, const std::stop_token& stop,
-    const std::function<void(std::uint64_t done, std::uint64_t total)>& progress,
-    const ExternalMemory* memory = nullptr);
+/// Joins portions, which are in the order of the inputs.
+/// @throws Error  corruption; invalid_argument  as PointSource, of what only all portions together show
+[[nodiscard]] PointReading join_portions(const std::vector<std::string>& inputs,
+                                         const SourceOptions& options, const PointFiles& files,
+                                         const std::vector<SpooledPortion>& portions);
+
+/// The grid of all points, and of the lines where there are any.
+/// @throws Error invalid_argument  as PointSource::sort()
+[[nodiscard]] PointGrid grid_with_lines(const PointReading& reading, const SourceOptions& options);
 
 }  // namespace ptin

@@ -71,10 +71,12 @@ void LasReader::set_lattice() {
   facts_.height_decimals = axes_[2].decimals;
 }
 
-LasReader::LasReader(std::string path, const PointChoice& choice)
+LasReader::LasReader(std::string path, const PointChoice& choice, const PointPart& part)
     : path_(std::move(path)), returns_(choice.returns) {
   file_ = std::make_unique<File>(path_);
   header_ = read_las_header(*file_);
+  read_ = begin_ = std::min(part.begin, header_.points);
+  end_ = std::clamp(part.end, begin_, header_.points);
   facts_.crs = read_las_crs(*file_);
   for (const int c : choice.classes) {
     if (c < 0 || c > 255) {
@@ -122,9 +124,9 @@ bool LasReader::wanted(const unsigned char* record) const {
 
 bool LasReader::next(std::vector<SourcePoint>& batch) {
   batch.clear();
-  while (batch.empty() && read_ < header_.points) {
-    const std::uint64_t count = std::min(
-        std::max<std::uint64_t>(kBatchBytes / header_.record_bytes, 1), header_.points - read_);
+  while (batch.empty() && read_ < end_) {
+    const std::uint64_t count =
+        std::min(std::max<std::uint64_t>(kBatchBytes / header_.record_bytes, 1), end_ - read_);
     buffer_.resize(count * header_.record_bytes);
     file_->read(header_.first_point + read_ * header_.record_bytes, buffer_);
     for (std::uint64_t i = 0; i < count; ++i) {

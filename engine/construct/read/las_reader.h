@@ -46,15 +46,16 @@ class LasReader final : public PointStream {
   ///                unsupported_version    of a later version than 1.4
   /// Memory: 256 KiB of the file's points at a time; while the CRS is read, up to 64 MiB of records
   /// that declare it.
-  LasReader(std::string path, const PointChoice& choice);
+  /// @param part  The records that are read; beyond the last one there are none.
+  LasReader(std::string path, const PointChoice& choice, const PointPart& part = {});
   ~LasReader() override;
 
   [[nodiscard]] const LasHeader& header() const noexcept { return header_; }
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
   [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
-  [[nodiscard]] std::uint64_t done() const noexcept override { return read_; }
-  [[nodiscard]] std::uint64_t total() const noexcept override { return header_.points; }
+  [[nodiscard]] std::uint64_t done() const noexcept override { return read_ - begin_; }
+  [[nodiscard]] std::uint64_t total() const noexcept override { return end_ - begin_; }
 
  private:
   struct File;
@@ -82,7 +83,8 @@ class LasReader final : public PointStream {
   std::bitset<256> classes_;  ///< Those that are kept.
   ReturnChoice returns_ = ReturnChoice::kAll;
   std::vector<unsigned char> buffer_;
-  std::uint64_t read_ = 0;
+  std::uint64_t begin_ = 0, end_ = 0;  ///< The records of the part.
+  std::uint64_t read_ = 0;             ///< The next record.
   std::uint64_t left_out_ = 0;
 };
 

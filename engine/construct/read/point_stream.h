@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/point_part.h"
 
 namespace ptin {
 
@@ -47,6 +49,9 @@ class PointStream {
   /// The farthest that a point has been moved in plan so far, because the stream dropped digits
   /// that no grid keeps; CRS units.
   [[nodiscard]] virtual double largest_shift() const noexcept { return 0.0; }
+  /// Of a part of a text, when it has been read to its end: what tells whether the text is one of
+  /// points. Other streams have nothing to tell.
+  [[nodiscard]] virtual std::optional<RowsOfPart> rows() const { return std::nullopt; }
   /// Progress so far, in a unit of the stream's own: points, features or bytes.
   [[nodiscard]] virtual std::uint64_t done() const noexcept = 0;
   /// The progress at the end, in the unit of done(); 0 where it is unknown.

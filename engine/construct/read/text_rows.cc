@@ -49,6 +49,38 @@ std::int64_t whole_number(std::string_view field) {
 
 }  // namespace
 
+void RowNumbering::join(const RowNumbering& next) noexcept {
+  if (next.rows == 0) {
+    return;
+  }
+  if (rows == 0) {
+    *this = next;
+    return;
+  }
+  may_be = may_be && next.may_be;
+  by_one = by_one && next.by_one && next.first - 1 == last;
+  has_repeats = has_repeats || next.has_repeats;
+  has_decimals = has_decimals || next.has_decimals;
+  last = next.last;
+  rows += next.rows;
+}
+
+std::optional<std::string> fault_of(const RowNumbering& numbering,
+                                    std::span<const ColumnRole> roles) {
+  const bool is_numbering = numbering.is_guess ? numbering.by_one || numbering.has_decimals
+                                               : numbering.by_one && numbering.has_decimals;
+  if (!numbering.may_be || numbering.rows < kFewestCounted || !is_numbering ||
+      numbering.has_repeats) {
+    return std::nullopt;
+  }
+  const std::string manner =
+      numbering.by_one ? "one by one to " : "none of them twice, the last as ";
+  return "the first column numbers the lines, " + manner + std::to_string(numbering.last) +
+         ", and would be taken for " + name_of(roles[0]) +
+         ", since there is no header; name the columns with --columns, as in " +
+         (numbering.is_guess ? example_of(roles) : example_of(roles, "") + " if they are these");
+}
+
 TextRows::TextRows(TextTable& table, std::span<const ColumnRole> roles,
                    std::vector<std::string> columns)
     : table_(table), roles_(roles.begin(), roles.end()), given_(std::move(columns)) {
@@ -97,8 +129,8 @@ void TextRows::begin() {
                     "; name the one that is meant with --columns, and the other by any other name");
     }
   }
-  is_guess_ = header.empty() && count > roles_.size();
-  may_be_numbers_ = is_guess_ || (header.empty() && count >= kFewestNumbered);
+  numbering_.is_guess = header.empty() && count > roles_.size();
+  numbering_.may_be = numbering_.is_guess || (header.empty() && count >= kFewestNumbered);
 }
 
 bool TextRows::choose_id(const std::string& name) {
@@ -122,31 +154,24 @@ bool TextRows::choose_id(const std::string& name) {
 
 /// A column that numbers the rows is whole in each of them.
 void TextRows::note_numbering() {
+  RowNumbering& n = numbering_;
   const std::int64_t number = whole_number(fields_[0]);
-  may_be_numbers_ = number >= 0;
-  if (rows_ < kRowsCompared) {
+  n.may_be = number >= 0;
+  if (n.rows < kRowsCompared && table_.begins_text()) {
     numbers_.push_back(number);
   }
-  by_one_ = by_one_ && (rows_ == 0 || number - 1 == last_number_);
-  has_decimals_ = has_decimals_ || fields_[1].find('.') != std::string_view::npos;
-  last_number_ = number;
+  n.by_one = n.by_one && (n.rows == 0 || number - 1 == n.last);
+  n.has_decimals = n.has_decimals || fields_[1].find('.') != std::string_view::npos;
+  n.first = n.rows == 0 ? number : n.first;
+  n.last = number;
 }
 
-/// It holds no number twice either.
-void TextRows::check_numbering() {
-  const bool is_numbering = is_guess_ ? by_one_ || has_decimals_ : by_one_ && has_decimals_;
-  if (!may_be_numbers_ || rows_ < kFewestCounted || !is_numbering) {
-    return;
-  }
-  std::sort(numbers_.begin(), numbers_.end());
-  if (std::adjacent_find(numbers_.begin(), numbers_.end()) != numbers_.end()) {
-    return;
-  }
-  const std::string manner = by_one_ ? "one by one to " : "none of them twice, the last as ";
-  table_.refuse("the first column numbers the lines, " + manner + std::to_string(last_number_) +
-                ", and would be taken for " + name_of(roles_[0]) +
-                ", since there is no header; name the columns with --columns, as in " +
-                (is_guess_ ? example_of(roles_) : example_of(roles_, "") + " if they are these"));
+RowNumbering TextRows::numbering() const {
+  RowNumbering result = numbering_;
+  std::vector<std::int64_t> sorted = numbers_;
+  std::sort(sorted.begin(), sorted.end());
+  result.has_repeats = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+  return result;
 }
 
 bool TextRows::next() {
@@ -154,14 +179,18 @@ bool TextRows::next() {
     begin();
   }
   if (!table_.next()) {
-    check_numbering();
+    if (numbering_.may_be && table_.is_whole()) {
+      if (const auto fault = fault_of(numbering(), roles_)) {
+        table_.refuse(*fault);
+      }
+    }
     return false;
   }
   fields_ = table_.fields();
-  if (may_be_numbers_) {
+  if (numbering_.may_be) {
     note_numbering();
   }
-  ++rows_;
+  ++numbering_.rows;
   return true;
 }
 
@@ -172,9 +201,9 @@ void TextRows::refuse_field(std::size_t role, const std::string& what) const {
 }
 
 void TextRows::refuse_no_number(std::size_t role) const {
-  refuse_field(role,
-               why_no_number(field(role)) +
-                   (is_guess_ ? "; if the columns are others, name them with --columns, as in " +
+  refuse_field(role, why_no_number(field(role)) +
+                         (numbering_.is_guess
+                              ? "; if the columns are others, name them with --columns, as in " +
                                     example_of(roles_)
                               : ""));
 }

@@ -4,15 +4,24 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/construct/read/column_names.h"
+#include "engine/construct/read/point_part.h"
 #include "engine/construct/read/text_table.h"
 
 namespace ptin {
+
+/// What is wrong with a text whose first column numbers its rows and would be taken for a coordinate;
+/// none where it does not. It does where it is whole, and counts 1, 2, 3 ... or holds no number twice
+/// beside coordinates with decimals; where there are no more columns than coordinates, it has to do
+/// both.
+[[nodiscard]] std::optional<std::string> fault_of(const RowNumbering& numbering,
+                                                  std::span<const ColumnRole> roles);
 
 /// The rows of a text as points, or as pairs of points. Their columns are those that the caller
 /// named; else those that a header names; else the first ones, in the order of the roles. Not
@@ -34,12 +43,14 @@ class TextRows {
 
   /// Reads the next row; false at the end.
   /// @throws Error as TextTable::next(); invalid_argument also where a header lacks a column, where
-  ///         names it twice, there are too few, and, at the end, where nobody said which columns
-  ///         these are and the one taken for the first coordinate numbers the rows: it is whole, and
-  ///         counts 1, 2, 3 ... or holds no number twice beside coordinates with decimals. Where
-  ///         there are no more columns than coordinates, and three at least, it has to do both.
+  ///         names it twice, there are too few, and, at the end of a whole text, where nobody said
+  ///         which columns these are and the one taken for the first coordinate numbers the rows
+  ///         (fault_of()).
   /// Cost: 8 bytes of memory for each of the first 65536 rows while a column may number them.
   [[nodiscard]] bool next();
+
+  /// Whether the first column numbers the rows that were read so far.
+  [[nodiscard]] RowNumbering numbering() const;
 
   /// The field of a role, by its place among the roles.
   [[nodiscard]] std::string_view field(std::size_t role) const { return fields_[columns_[role]]; }
@@ -53,7 +64,6 @@ class TextRows {
  private:
   void begin();
   void note_numbering();
-  void check_numbering();
   /// The names of the columns: given, of the header, or none.
   [[nodiscard]] const std::vector<std::string>& names() {
     return given_.empty() ? table_.header() : given_;
@@ -67,14 +77,8 @@ class TextRows {
   std::span<const std::string_view> fields_;
   bool begun_ = false;
 
-  /// Nobody named the columns, and there are more of them than roles.
-  bool is_guess_ = false;
-  bool may_be_numbers_ = false;  ///< The first column may number the rows, as far as was read.
-  bool by_one_ = true;           ///< It rose by one from each row to the next.
-  bool has_decimals_ = false;    ///< The second column has.
-  std::vector<std::int64_t> numbers_;  ///< In the first column of the first rows.
-  std::int64_t last_number_ = 0;
-  std::uint64_t rows_ = 0;
+  RowNumbering numbering_;             ///< But for its repeats.
+  std::vector<std::int64_t> numbers_;  ///< In the first column of the first rows of the text.
 };
 
 }  // namespace ptin

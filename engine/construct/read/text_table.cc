@@ -15,6 +15,7 @@
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/read/column_names.h"
 #include "engine/construct/read/input_kind.h"
+#include "engine/construct/read/point_part.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -120,7 +121,8 @@ struct TextTable::File {
   }
 };
 
-TextTable::TextTable(std::string path) : path_(std::move(path)), file_(std::make_unique<File>()) {
+TextTable::TextTable(std::string path, const PointPart& part)
+    : path_(std::move(path)), part_(part), file_(std::make_unique<File>()) {
   const GdalSession session;
   file_->packed = is_packed(path_);
   file_->on_disk = !file_->packed && !path_.starts_with("/vsi");
@@ -157,7 +159,79 @@ TextTable::TextTable(std::string name, std::istream& in)
 TextTable::~TextTable() = default;
 
 void TextTable::refuse(const std::string& sentence) const {
-  throw Error(ErrorCode::invalid_argument, sentence, path_ + ":" + std::to_string(row_line_));
+  throw Error(ErrorCode::invalid_argument, sentence,
+              path_ + ":" + std::to_string(lines_before() + row_line_));
+}
+
+/// The lines of the text before its part. Only a fault needs their number.
+std::uint64_t TextTable::lines_before() const {
+  if (!has_moved_) {
+    return 0;
+  }
+  std::uint64_t lines = 0;
+  const GdalSession session;
+  VSILFILE* const file = VSIFOpenL(path_.c_str(), "rb");
+  std::string piece(file == nullptr ? 0 : kBufferBytes, '\0');
+  bool has_quotes = false;
+  for (std::uint64_t left = first_byte_; left > 0 && file != nullptr;) {
+    const std::size_t got =
+        VSIFReadL(piece.data(), 1, std::min<std::uint64_t>(left, piece.size()), file);
+    if (got == 0) {
+      break;
+    }
+    const std::string_view read(piece.data(), got);
+    lines += static_cast<std::uint64_t>(std::count(read.begin(), read.end(), '\n'));
+    has_quotes = has_quotes || read.find('"') != std::string_view::npos;
+    left -= got;
+  }
+  if (file != nullptr) {
+    VSIFCloseL(file);
+  }
+  if (has_quotes) {
+    throw QuotesInPart(path_);
+  }
+  return lines;
+}
+
+/// Goes on with the first line that begins in the part, and behind the first row of the text, which
+/// belongs to the first part.
+void TextTable::move_to_part() {
+  has_moved_ = true;
+  is_pending_ = false;
+  begin_ += row_bytes_;
+  bytes_read_ += row_bytes_;
+  row_bytes_ = 0;
+  if (part_.begin > bytes_read_) {
+    seek_line(part_.begin);
+  }
+  first_byte_ = bytes_read_;
+  line_ = row_line_ = 0;
+}
+
+/// Goes on with the first line that begins at byte `from` or behind it.
+void TextTable::seek_line(std::uint64_t from) {
+  buffer_.clear();
+  begin_ = 0;
+  at_end_ = false;
+  bytes_read_ = from - 1;  // a line that begins there begins behind the end of another
+  const GdalSession session;
+  if (VSIFSeekL(file_->handle, bytes_read_, SEEK_SET) != 0) {
+    throw Error(ErrorCode::io_error, session.explain("cannot read from the middle"), path_);
+  }
+  for (;;) {
+    begin_ = buffer_.size();
+    bytes_read_ += begin_;
+    fill();
+    if (at_end_) {
+      return;
+    }
+    const std::size_t end = buffer_.find('\n');
+    if (end != std::string::npos) {
+      begin_ = end + 1;
+      bytes_read_ += begin_;
+      return;
+    }
+  }
 }
 
 /// Keeps what is left in the buffer and reads on behind it.
@@ -181,10 +255,11 @@ void TextTable::fill() {
   }
   buffer_.resize(kept + got);
   if (failed) {
-    throw Error(ErrorCode::io_error,
-                session.explain("cannot read on behind line " + std::to_string(line_) +
-                                "; the file may be damaged or cut short"),
-                path_);
+    throw Error(
+        ErrorCode::io_error,
+        session.explain("cannot read on behind line " + std::to_string(lines_before() + line_) +
+                        "; the file may be damaged or cut short"),
+        path_);
   }
   at_end_ = got == 0;
 }
@@ -308,6 +383,9 @@ bool TextTable::split() {
   }
   fields_.clear();
   if (row_.find('"') != std::string_view::npos) {
+    if (begun_ && !part_.is_whole()) {
+      throw QuotesInPart(path_);
+    }
     return split_quoted(row_);
   }
   split_unquoted(row_);
@@ -320,13 +398,14 @@ bool TextTable::next_row() {
     begin_ += row_bytes_;
     bytes_read_ += file_->packed ? 0 : row_bytes_;
     row_bytes_ = 0;
-    if (!add_line()) {
+    if ((begun_ && bytes_read_ >= part_.end) || !add_line()) {
       return false;
     }
+    const bool is_first = line_ == 1 && !has_moved_;
     const std::string_view mark =
-        line_ == 1 && row_.starts_with(kByteOrderMark) ? kByteOrderMark : "";
+        is_first && row_.starts_with(kByteOrderMark) ? kByteOrderMark : "";
     for (const std::string_view wide : kByteOrderMarksOfUtf16) {
-      if (line_ == 1 && row_.starts_with(wide)) {
+      if (is_first && row_.starts_with(wide)) {
         refuse("this text is UTF-16; save it as UTF-8, as with 'iconv -f UTF-16 -t UTF-8'");
       }
     }
@@ -371,7 +450,9 @@ bool TextTable::next() {
   if (!begun_) {
     begin();
   }
-  if (std::exchange(is_pending_, false)) {
+  if (part_.begin > 0 && !has_moved_) {
+    move_to_part();
+  } else if (std::exchange(is_pending_, false)) {
     return true;
   }
   if (!next_row()) {

@@ -11,7 +11,18 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/construct/read/point_part.h"
+#include "engine/error.h"
+
 namespace ptin {
+
+/// Thrown where a part of a text has quotes: a quoted field may hold line ends, so that nobody knows
+/// from the middle of a text where its rows begin. The text is to be read as a whole.
+class QuotesInPart : public Error {
+ public:
+  explicit QuotesInPart(const std::string& path)
+      : Error(ErrorCode::internal, "a text with quotes is read in parts", path) {}
+};
 
 /// Reads rows of fields from text. Lines end in LF or CR LF; empty lines and comments (lines that
 /// begin with '#') are passed over, and so is a byte order mark. The first other line decides
@@ -28,7 +39,11 @@ class TextTable {
  public:
   /// @throws Error  not_found, io_error  the file cannot be opened
   ///                invalid_argument     it is a folder
-  explicit TextTable(std::string path);
+  explicit TextTable(std::string path) : TextTable(std::move(path), PointPart{}) {}
+  /// Reads a part of a text that is_packed() not: its rows, by the separator and the header of the
+  /// whole. Lines are told by their number in the whole.
+  /// @throws Error  QuotesInPart, also from next() and refuse()
+  TextTable(std::string path, const PointPart& part);
   /// Reads `text`, which it keeps; `name` stands for the path in errors.
   TextTable(std::string name, std::string text);
   /// Reads `in`, which outlives the table.
@@ -56,11 +71,16 @@ class TextTable {
   /// Of the first line: what each row has.
   [[nodiscard]] std::size_t field_count() const noexcept { return field_count_; }
 
-  /// The line that the row read last begins in, from 1.
+  /// True for a whole text, and for a part that has its first row.
+  [[nodiscard]] bool begins_text() const noexcept { return part_.begin == 0; }
+  [[nodiscard]] bool is_whole() const noexcept { return part_.is_whole(); }
+  /// The lines read so far, the part's alone.
+  [[nodiscard]] std::uint64_t lines() const noexcept { return line_; }
+  /// The line that the row read last begins in, from 1; in a part, from its first.
   [[nodiscard]] std::uint64_t line() const noexcept { return row_line_; }
-  /// Bytes of the text before the row that was read last; 0 where the file is packed, since they
-  /// are not known.
-  [[nodiscard]] std::uint64_t bytes_read() const noexcept { return bytes_read_; }
+  /// Bytes of the text, or of its part, before the row that was read last; 0 where the file is
+  /// packed, since they are not known.
+  [[nodiscard]] std::uint64_t bytes_read() const noexcept { return bytes_read_ - first_byte_; }
 
   /// @throws Error  invalid_argument  with this sentence, and "path:line" of the row read last
   [[noreturn]] void refuse(const std::string& sentence) const;
@@ -68,6 +88,9 @@ class TextTable {
  private:
   struct File;
   void fill();
+  void move_to_part();
+  void seek_line(std::uint64_t from);
+  [[nodiscard]] std::uint64_t lines_before() const;
   [[nodiscard]] bool add_line();
   [[nodiscard]] bool next_row();
   [[nodiscard]] bool split();
@@ -79,15 +102,18 @@ class TextTable {
   void begin();
 
   std::string path_;
+  PointPart part_;
+  bool has_moved_ = false;        ///< To the begin of a part that is not the first.
+  std::uint64_t first_byte_ = 0;  ///< Where the first line of such a part begins.
   std::unique_ptr<File> file_;
   std::string buffer_;
   std::size_t begin_ = 0;      ///< Where the row begins in buffer_.
   std::size_t row_bytes_ = 0;  ///< Of the row, with its line ends.
   std::string_view row_;       ///< Without the last line end.
   bool at_end_ = false;
-  std::uint64_t line_ = 0;      ///< Lines read so far.
-  std::uint64_t row_line_ = 0;  ///< The line that the row begins in.
-  std::uint64_t bytes_read_ = 0;
+  std::uint64_t line_ = 0;        ///< Lines read so far.
+  std::uint64_t row_line_ = 0;    ///< The line that the row begins in.
+  std::uint64_t bytes_read_ = 0;  ///< Where the row begins in the text.
 
   bool begun_ = false;       ///< The first row was read.
   bool is_pending_ = false;  ///< It is no header, and next() has still to return it.

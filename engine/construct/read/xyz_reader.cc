@@ -5,8 +5,8 @@
 
 namespace ptin {
 
-XyzReader::XyzReader(std::string path, std::vector<std::string> columns)
-    : table_(std::move(path)), rows_(table_, point_roles(), std::move(columns)) {}
+XyzReader::XyzReader(std::string path, std::vector<std::string> columns, const PointPart& part)
+    : table_(std::move(path), part), rows_(table_, point_roles(), std::move(columns)) {}
 
 XyzReader::XyzReader(std::string name, std::string text, std::vector<std::string> columns)
     : table_(std::move(name), std::move(text)), rows_(table_, point_roles(), std::move(columns)) {}

@@ -23,7 +23,9 @@ class XyzReader {
   /// @param columns  The names of the columns from the left (read/column_names.h); empty: those of
   ///                 a header.
   /// @throws Error as TextTable; invalid_argument  `columns` lacks a coordinate
-  explicit XyzReader(std::string path, std::vector<std::string> columns = {});
+  /// @param part     As of TextTable.
+  explicit XyzReader(std::string path, std::vector<std::string> columns = {},
+                     const PointPart& part = {});
   /// Reads `text`, which it keeps, instead of a file; `name` stands for the path in errors.
   XyzReader(std::string name, std::string text, std::vector<std::string> columns = {});
 
@@ -35,6 +37,11 @@ class XyzReader {
 
   /// The line of the point that was read last.
   [[nodiscard]] std::uint64_t line() const noexcept { return table_.line(); }
+  /// What the rows tell that were read.
+  [[nodiscard]] RowsOfPart rows() const {
+    const RowNumbering numbering = rows_.numbering();
+    return {numbering, table_.lines(), numbering.rows == 0 ? 0 : table_.line()};
+  }
   /// As of TextTable.
   [[nodiscard]] std::uint64_t bytes_read() const noexcept { return table_.bytes_read(); }
 

@@ -29,7 +29,8 @@ std::uint64_t chained(std::uint64_t checksum, const ArrayHeader& header) {
   return checksum_of_object(link);
 }
 
-/// Returns `path` after it has removed a file of that name, if there is one.
+}  // namespace
+
 const std::string& without_old(FileLayer& files, const std::string& path) {
   const int failure = files.unlink(path);
   if (failure != 0 && failure != ENOENT) {
@@ -38,7 +39,12 @@ const std::string& without_old(FileLayer& files, const std::string& path) {
   return path;
 }
 
-}  // namespace
+void refuse_damaged(const std::string& path) {
+  throw Error(ErrorCode::corruption,
+              "a temporary file of the build is not what was written; the disk or another program "
+              "damaged it: start again after --discard",
+              path);
+}
 
 ArrayFileWriter::ArrayFileWriter(FileLayer& files, const std::string& path)
     : file_(files, without_old(files, path), ScratchFile::Kept::kNew) {}
@@ -81,11 +87,14 @@ ArrayFileReader::ArrayFileReader(const std::string& path, const ArrayFileFacts& 
   }
 }
 
-void ArrayFileReader::refuse() const {
-  throw Error(ErrorCode::corruption,
-              "a temporary file of the build is not what was written; the disk or another program "
-              "damaged it: start again after --discard",
-              file_.path());
+void ArrayFileReader::skip() {
+  ArrayHeader header;
+  if (offset_ >= file_.bytes()) {
+    refuse();
+  }
+  std::copy_n(mapped_.at(offset_), sizeof header, reinterpret_cast<std::byte*>(&header));
+  mapped_.require_undamaged();
+  offset_ += sizeof header + padded(header.element_bytes * header.elements);
 }
 
 std::span<const std::byte> ArrayFileReader::take_bytes(std::size_t element) {

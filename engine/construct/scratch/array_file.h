@@ -24,6 +24,14 @@ struct ArrayFileFacts {
   friend bool operator==(const ArrayFileFacts&, const ArrayFileFacts&) = default;
 };
 
+/// Removes the file of a name, if there is one: what an interrupted build left. Returns the name.
+/// @throws Error io_error
+const std::string& without_old(FileLayer& files, const std::string& path);
+
+/// Says that a temporary file is not what was written.
+/// @throws Error corruption  always
+[[noreturn]] void refuse_damaged(const std::string& path);
+
 /// Writes arrays one after the other. A file of that name that is there already is replaced: it is
 /// what an interrupted build left.
 class ArrayFileWriter {
@@ -62,6 +70,9 @@ class ArrayFileReader {
   /// @throws Error corruption  the file is not the one of `facts`; io_error, not_found
   ArrayFileReader(const std::string& path, const ArrayFileFacts& facts);
 
+  /// Passes over the next array, whose content is not looked at.
+  /// @throws Error corruption  there is none
+  void skip();
   [[nodiscard]] bool at_end() const noexcept { return offset_ == file_.bytes(); }
   /// The next array.
   /// @throws Error corruption  it is not of elements of this size, or damaged, or there is none
@@ -85,7 +96,7 @@ class ArrayFileReader {
 
  private:
   std::span<const std::byte> take_bytes(std::size_t element);
-  [[noreturn]] void refuse() const;
+  [[noreturn]] void refuse() const { refuse_damaged(file_.path()); }
 
   ReadOnlyFile file_;
   MappedFile mapped_;

@@ -70,6 +70,11 @@ class ExternalSorter {
     buffer_.push_back(record);
     ++size_;
   }
+  /// So many records will come: as many as fit get their room at once. To be called before add().
+  void expect(std::uint64_t records) {
+    buffer_.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(records, capacity_)));
+    note_held(buffer_.capacity());
+  }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   [[nodiscard]] const SortCounts& counts() const noexcept { return counts_; }
 

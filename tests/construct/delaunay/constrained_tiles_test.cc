@@ -37,7 +37,7 @@ PointBuckets buckets_with(const std::vector<GridPoint>& points, const SourceLine
   const MemoryFile file("set.xyz", text);
   SourceOptions options;
   options.lines = &lines;
-  return PointBuckets::read({file.path()}, options, {FileLayer::system(), "/tmp", 1 << 20});
+  return read_buckets({file.path()}, options);
 }
 
 /// Positive when d lies inside of the circle of a, b and c, which turn left.

@@ -33,8 +33,7 @@ TEST(TileDelaunayOfMany, RealScansAreOneTriangulation) {
       GTEST_SKIP() << "needs " << name;
     }
     SCOPED_TRACE(name);
-    expect_one_triangulation(
-        PointBuckets::read({data + "/" + name}, {}, {FileLayer::system(), "/tmp"}), 64);
+    expect_one_triangulation(read_buckets({data + "/" + name}), 64);
   }
 }
 

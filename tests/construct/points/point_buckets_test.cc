@@ -14,15 +14,16 @@
 #include "engine/geometry/orient.h"
 #include "tests/construct/point_sets.h"
 #include "tests/construct/point_source.h"
+#include "tests/construct/read_buckets.h"
 
 namespace ptin {
 namespace {
 
 /// Buckets hold what read_points() gives, which keeps everything in memory.
-void expect_same(const std::string& path, const SourceOptions& options, std::uint64_t memory) {
+void expect_same(const std::string& path, const SourceOptions& options, std::uint64_t memory,
+                 const SortSizes& sizes = {}) {
   const PointSet set = read_points({path}, options);
-  const PointBuckets buckets =
-      PointBuckets::read({path}, options, {FileLayer::system(), "/tmp", memory});
+  const PointBuckets buckets = read_buckets({path}, options, memory, sizes);
   ASSERT_EQ(buckets.size(), set.positions.size());
   EXPECT_EQ(buckets.counts().merged_points, set.merged_points);
   EXPECT_EQ(buckets.counts().source_points, set.source_points);
@@ -37,7 +38,7 @@ void expect_same(const std::string& path, const SourceOptions& options, std::uin
   std::vector<BucketPoint> points;
   buckets.take(0, buckets.size(), points);
   for (std::uint64_t i = 0; i < points.size(); ++i) {
-    ASSERT_TRUE(contains(buckets.box(i / buckets.bucket_points()), points[i].position));
+    ASSERT_TRUE(contains(buckets.box(buckets.bucket_of(i)), points[i].position));
   }
   std::sort(points.begin(), points.end(), [](const BucketPoint& a, const BucketPoint& b) {
     return key_of(a.position) < key_of(b.position);
@@ -55,11 +56,13 @@ TEST(PointBuckets, HoldThePointsOfTheSource) {
     for (const std::uint64_t memory : {std::uint64_t{1} << 16, std::uint64_t{1} << 26}) {
       SCOPED_TRACE(name_of(kind));
       expect_same(file.path(), options, memory);
+      expect_same(file.path(), options, memory, small_sorting());
     }
     options.resolution = 7.0;
     for (const PointMerge rule : {PointMerge::kLowest, PointMerge::kHighest, PointMerge::kFirst}) {
       options.merge = rule;
       expect_same(file.path(), options, 1 << 18);
+      expect_same(file.path(), options, 1 << 16, small_sorting());
     }
   }
 }
@@ -72,6 +75,7 @@ TEST(PointBuckets, KeepHeightsThatAreNoCodes) {
   }
   const MemoryFile file("set.xyz", text);
   expect_same(file.path(), {}, 1 << 16);
+  expect_same(file.path(), {}, 1 << 16, small_sorting());
 }
 
 TEST(PointBuckets, ReadARealScanWithinLittleMemory) {
@@ -85,31 +89,35 @@ TEST(PointBuckets, ReadARealScanWithinLittleMemory) {
 TEST(PointBuckets, RefuseWhatHasNoArea) {
   for (const char* text : {"", "0 0 1\n", "0 0 1\n1 1 1\n0 0 2\n", "0 0 1\n5 5 1\n9 9 1\n"}) {
     const MemoryFile file("set.xyz", text);
-    EXPECT_THROW(std::ignore = PointBuckets::read({file.path()}, {}, {FileLayer::system(), "/tmp"}),
-                 Error)
-        << text;
+    EXPECT_THROW(std::ignore = read_buckets({file.path()}), Error) << text;
   }
 }
 
-TEST(PointBuckets, LeaveNothingBehindAndSayThatAFolderIsMissing) {
+TEST(PointSource, SaysThatAFolderIsMissing) {
   const MemoryFile file("set.xyz", text_of(points_of(PointKind::kEven, 5000, 1)));
-  EXPECT_THROW(
-      std::ignore = PointBuckets::read({file.path()}, {}, {FileLayer::system(), "/nowhere"}),
-      Error);
+  EXPECT_THROW(PointSource({file.path()}, {}, {{FileLayer::system(), "/nowhere"}, run_told(0)}),
+               Error);
 }
 
-TEST(PointBuckets, StopWhenAsked) {
+TEST(PointSource, StopsInEveryStageAndLeavesNothingBehind) {
   const MemoryFile file("set.xyz", text_of(points_of(PointKind::kEven, 5000, 1)));
-  for (const std::string at : {"reading", "sorting"}) {
+  for (const std::string at : {kReadingStage, kSharingStage, kSortingStage}) {
+    SCOPED_TRACE(at);
+    const oracle::ScratchFolder folder, kept;
     std::stop_source stop;
     const auto progress = [&](const std::string& stage, std::uint64_t, std::uint64_t) {
       if (stage == at) {
         stop.request_stop();
       }
     };
-    EXPECT_THROW(std::ignore = PointBuckets::read({file.path()}, {}, {FileLayer::system(), "/tmp"},
-                                                  stop.get_token(), progress),
-                 Error);
+    const auto sort = [&] {
+      PointSource source(
+          {file.path()}, {},
+          {{FileLayer::system(), folder.path()}, run_told(0, stop.get_token(), progress)});
+      std::ignore = source.sort(kept.file("buckets"), true);
+    };
+    EXPECT_THROW(sort(), Error);
+    EXPECT_EQ(folder.names(), std::vector<std::string>{});
   }
 }
 

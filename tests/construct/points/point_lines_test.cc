@@ -14,6 +14,7 @@
 #include "engine/error.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/memory_file.h"
+#include "tests/construct/read_buckets.h"
 
 namespace ptin {
 namespace {
@@ -32,7 +33,7 @@ SourceLines line_of(const std::vector<std::array<double, 3>>& vertices,
 PointBuckets read(const std::string& points, const SourceLines& lines, SourceOptions options = {}) {
   const MemoryFile file("points.xyz", points);
   options.lines = &lines;
-  return PointBuckets::read({file.path()}, options, {FileLayer::system(), "/tmp", 1 << 20});
+  return read_buckets({file.path()}, options);
 }
 
 std::string refusal_of(const std::function<void()>& call) {
@@ -124,9 +125,9 @@ TEST(PointLines, AreKeptWithTheBuckets) {
   const SourceLines lines = line_of({{1.5, 2.5, 1}, {7.25, 8.5, 2}, {9, 1, 3}});
   SourceOptions options;
   options.lines = &lines;
-  const PointBuckets read =
-      PointBuckets::read({file.path()}, options, {FileLayer::system(), "/tmp", 1 << 20}, {}, {},
-                         folder.file("buckets"));
+  PointSource source({file.path()}, options,
+                     {{FileLayer::system(), folder.path()}, run_told(1 << 20)});
+  const PointBuckets read = source.sort(folder.file("buckets"), true);
   const ArrayFileFacts facts = read.save(FileLayer::system(), folder.file("index"));
   const PointBuckets loaded =
       PointBuckets::load(FileLayer::system(), folder.file("buckets"), folder.file("index"), facts);

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/points/point_source.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/grid_precision.h"
+#include "engine/construct/grid/height_finder.h"
+#include "engine/construct/lines/lines_on_grid.h"
+#include "engine/construct/lines/source_lines.h"
+#include "engine/construct/points/point_shares.h"
+#include "engine/construct/points/range_buckets.h"
+#include "engine/error.h"
+#include "engine/stop.h"
+
+namespace ptin {
+
+namespace {
+
+void check_area(const ConvexHull& hull, std::uint64_t points, const std::string& context) {
+  if (points < 3) {
+    refuse("there are " + std::to_string(points) + " distinct points; a terrain needs at least 3",
+           context);
+  }
+  if (hull.corners().size() < 3) {
+    refuse("all points lie on one line; a terrain needs an area", context);
+  }
+}
+
+}  // namespace
+
+PointSource::PointSource(const std::vector<std::string>& inputs, const SourceOptions& options,
+                         PointWork work)
+    : inputs_(inputs),
+      options_(options),
+      work_(std::move(work)),
+      tasks_(inputs_, options_, work_.files) {
+  static_cast<void>(PointGridScan(options_.resolution, inputs_.empty() ? "" : inputs_[0]));
+  work_.files.remove_all();
+  try {
+    reading_ = join_portions(inputs_, options_, work_.files, read_all());
+  } catch (...) {
+    remove_files();
+    throw;
+  }
+}
+
+PointSource::~PointSource() { remove_files(); }
+
+void PointSource::remove_files() noexcept {
+  try {
+    work_.files.remove_all();
+  } catch (...) {  // the folder goes in the end, or the next build of this output removes them
+  }
+}
+
+/// Has a stage done by whomever, or by this thread alone.
+std::vector<std::string> PointSource::run(const SourceStage& stage, bool alone) {
+  if (!alone) {
+    return work_.run(stage, tasks_);
+  }
+  std::vector<std::string> told;
+  for (std::size_t number = 0; number < stage.sizes.size(); ++number) {
+    const auto progress = [&](std::uint64_t done) {
+      if (work_.progress) {
+        work_.progress(stage.name.c_str(), done, stage.sizes[number]);
+      }
+    };
+    told.push_back(
+        tasks_.run({stage.name, number, stage.facts, work_.memory, work_.stop, progress}));
+  }
+  return told;
+}
+
+/// Reads the portions of a plan; of those that have quotes there is none.
+std::vector<std::optional<SpooledPortion>> PointSource::read_some(const ReadingPlan& plan) {
+  const bool alone = std::any_of(inputs_.begin(), inputs_.end(), can_be_read_once_only);
+  const std::vector<std::string> told = run(tasks_.reading(plan), alone);
+  std::vector<std::optional<SpooledPortion>> portions;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const auto facts = PointTasks::portion_in(told[i]);
+    portions.push_back(
+        facts ? std::optional<SpooledPortion>({plan.portions[i], plan.first_number + i, *facts})
+              : std::nullopt);
+  }
+  return portions;
+}
+
+/// Reads all inputs. Texts of which a part has quotes are read once more, as a whole.
+std::vector<SpooledPortion> PointSource::read_all() {
+  const ReadingPlan plan{0, cut_into_portions(inputs_, options_, work_.portions)};
+  const auto parts = read_some(plan);
+  std::vector<bool> has_quotes(inputs_.size(), false);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    has_quotes[plan.portions[i].input] = has_quotes[plan.portions[i].input] || !parts[i];
+  }
+  ReadingPlan again{plan.portions.size(), {}};
+  std::vector<SpooledPortion> all;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::uint64_t input = plan.portions[i].input;
+    if (!has_quotes[input]) {
+      all.push_back(*parts[i]);
+      continue;
+    }
+    without_old(work_.files.files, work_.files.path("spool", i));
+    if (again.portions.empty() || again.portions.back().input != input) {
+      again.portions.push_back(whole_portion(inputs_, input));
+    }
+  }
+  if (!again.portions.empty()) {
+    for (const auto& whole : read_some(again)) {
+      all.push_back(*whole);
+    }
+    std::stable_sort(all.begin(), all.end(), [](const SpooledPortion& a, const SpooledPortion& b) {
+      return a.portion.input < b.portion.input;
+    });
+  }
+  return all;
+}
+
+/// What the reading and the grid tell of the buckets.
+PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
+  const std::string context = inputs_.empty() ? "" : inputs_[0];
+  PointBuckets::Index index;
+  set_crs(index.frame, resolve_crs(reading_->crs, options_.a_srs,
+                                   options_.vertical_crs.empty() ? reading_->vertical_crs
+                                                                 : options_.vertical_crs));
+  set_units(index.frame, reading_->units, options_.a_srs.empty(), context);
+  index.frame.map = grid.map();
+  require_resolvable(index.frame.map, grid.east - grid.west, grid.north - grid.south,
+                     "give a coarser --resolution", context);
+  require_latitudes(index.frame, grid.north - grid.south, context);
+  index.counts.source_points = reading_->scan.points();
+  index.counts.left_out_points = reading_->left_out;
+  return index;
+}
+
+void PointSource::join_ranges(const std::vector<std::string>& told, const SortPlan& plan,
+                              PointBuckets::Index& index) const {
+  HeightFinder heights(plan.grid.whole, plan.grid.heights.unit());
+  HullCollector hull;
+  for (std::size_t range = 0; range < told.size(); ++range) {
+    const RangeIndex of = index_of_range(work_.files, range, PointTasks::facts_in(told[range]));
+    if (of.points == 0) {
+      without_old(work_.files.files, plan.buckets_of(range));
+      continue;
+    }
+    index.ranges.push_back({range, index.size, index.boxes.size()});
+    index.size += of.points;
+    index.counts.largest_shift_height =
+        std::max(index.counts.largest_shift_height, of.largest_shift_height);
+    heights.join(of.heights);
+    for (const GridPoint corner : of.hull) {
+      hull.add(corner);
+    }
+    index.boxes.insert(index.boxes.end(), of.boxes.begin(), of.boxes.end());
+    index.ends.insert(index.ends.end(), of.ends.begin(), of.ends.end());
+    index.checksums.insert(index.checksums.end(), of.checksums.begin(), of.checksums.end());
+  }
+  const HeightFit fit = heights.fit();
+  set_heights(index.frame, fit);
+  index.hull = hull.hull();
+  index.codes_are_whole = plan.grid.whole;
+  index.counts.largest_shift_height *= plan.grid.whole ? fit.encoding.step : 1.0;
+  index.counts.merged_points = index.counts.source_points - index.size;
+}
+
+PointBuckets PointSource::sort(const std::string& buckets, bool is_last) {
+  const PointGrid grid = grid_with_lines(*reading_, options_);
+  PointBuckets::Index index = begin_index(grid);
+  LinesOnGrid lines;
+  if (options_.lines != nullptr && !options_.lines->is_empty()) {
+    lines = put_on_grid(*options_.lines, grid, work_.stop);
+  }
+  auto plan = std::make_shared<SortPlan>(plan_sorting(*reading_, grid, std::move(lines.edges),
+                                                      options_.merge, buckets, work_.sorting));
+  index.bucket_points = plan->bucket_points;
+  index.counts.largest_shift_plan = lines.largest_shift_plan;
+  const std::vector<std::string> shares = run(tasks_.sharing(plan), false);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const ShareCounts counts = counts_of_share(work_.files, i, PointTasks::facts_in(shares[i]));
+    index.counts.source_points -= counts.left_out;
+    index.counts.left_out_points += counts.left_out;
+    index.counts.largest_shift_plan =
+        std::max(index.counts.largest_shift_plan, counts.largest_shift_plan);
+  }
+  index.counts.source_points += plan->fixed.vertices().size();
+  index.counts.largest_shift_plan += reading_->largest_shift;
+  if (is_last) {
+    work_.files.remove_all("spool");
+  }
+  join_ranges(run(tasks_.sorting(shares), false), *plan, index);
+  work_.files.remove_all("share");
+  index.fixed = std::move(plan->fixed);
+  check_area(index.hull, index.size, inputs_.empty() ? "" : inputs_[0]);
+  return PointBuckets(work_.files.files, buckets, std::move(index));
+}
+
+}  // namespace ptin

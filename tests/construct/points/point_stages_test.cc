@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The stages of reading and sorting points: by whomever their tasks are done, and in which order.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/construct/grid/height_finder.h"
+#include "engine/construct/grid/point_grid.h"
+#include "engine/construct/lines/source_lines.h"
+#include "engine/construct/points/point_source.h"
+#include "engine/construct/tasks/stage_runner.h"
+#include "engine/error.h"
+#include "tests/construct/made_raster.h"
+#include "tests/construct/memory_file.h"
+#include "tests/construct/point_sets.h"
+#include "tests/construct/read_buckets.h"
+
+namespace ptin {
+namespace {
+
+using oracle::ScratchFolder;
+
+Decimal any_decimal() {
+  return {*rc::gen::inRange<std::int64_t>(-1'000'000, 1'000'000), *rc::gen::inRange(0, 7)};
+}
+
+RC_GTEST_PROP(PointExtent, JoinedIsThatOfAll, ()) {
+  PointExtent all;
+  std::vector<PointExtent> parts(static_cast<std::size_t>(*rc::gen::inRange(1, 5)));
+  for (int i = *rc::gen::inRange(0, 50); i > 0; --i) {
+    const SourcePoint p{any_decimal(), any_decimal(), any_decimal()};
+    all.add(p);
+    parts[*rc::gen::inRange<std::size_t>(0, parts.size())].add(p);
+  }
+  PointExtent joined;
+  for (const PointExtent& part : parts) {
+    joined.join(part);
+  }
+  RC_ASSERT(joined.points == all.points);
+  const StepCounter fine(7);
+  for (const auto range : {&PointExtent::x, &PointExtent::y, &PointExtent::z}) {
+    RC_ASSERT((joined.*range).decimals() == (all.*range).decimals());
+    RC_ASSERT((joined.*range).lowest(fine) == (all.*range).lowest(fine));
+    RC_ASSERT((joined.*range).highest(fine) == (all.*range).highest(fine));
+  }
+}
+
+RC_GTEST_PROP(HeightFinder, JoinedIsThatOfAll, ()) {
+  const bool whole = *rc::gen::arbitrary<bool>();
+  const double step = *rc::gen::element(1.0, 0.5, 0.1, 0.01, 1e-4, 1e-6);
+  HeightFinder all(whole, 0.25);
+  std::vector<HeightFinder> parts(static_cast<std::size_t>(*rc::gen::inRange(1, 5)), all);
+  for (int i = *rc::gen::inRange(1, 40); i > 0; --i) {
+    const double height = *rc::gen::inRange(-100'000, 100'000) * (whole ? 1.0 : step);
+    all.add(height);
+    parts[*rc::gen::inRange<std::size_t>(0, parts.size())].add(height);
+  }
+  HeightFinder joined(whole, 0.25);
+  for (const HeightFinder& part : parts) {
+    joined.join(HeightFinder(part.known()));
+  }
+  const HeightFit a = joined.fit(), b = all.fit();
+  RC_ASSERT(a.encoding == b.encoding);
+  RC_ASSERT(a.quantum == b.quantum && a.rounding == b.rounding && a.count == b.count);
+  RC_ASSERT(a.min_height == b.min_height && a.max_height == b.max_height);
+}
+
+TEST(EvenSample, TakesEveryKthOfAll) {
+  for (const std::uint64_t n :
+       {0ULL, 1ULL, 1023ULL, 1024ULL, 1025ULL, 2048ULL, 2049ULL, 70'000ULL}) {
+    EvenSample sample;
+    for (std::uint64_t i = 0; i < n; ++i) {
+      sample.add({{static_cast<std::int64_t>(i), 0}, {}, {}});
+    }
+    ASSERT_EQ(sample.points().size(), (n + sample.step() - 1) / sample.step());
+    EXPECT_LE(sample.points().size(), EvenSample::kMost);
+    EXPECT_TRUE(sample.step() == 1 || sample.points().size() > EvenSample::kMost / 2);
+    for (std::size_t i = 0; i < sample.points().size(); ++i) {
+      ASSERT_EQ(sample.points()[i].x, static_cast<std::int64_t>(i * sample.step()));
+    }
+  }
+}
+
+RC_GTEST_PROP(Split, MakesRangesOfEqualWeight, ()) {
+  std::vector<WeightedKey> keys;
+  const auto most = *rc::gen::element<std::uint64_t>(1, 3, 20, 1'000'000);
+  const auto heaviest = *rc::gen::element<std::uint64_t>(1, 9);
+  for (int i = *rc::gen::inRange(0, 300); i > 0; --i) {
+    keys.push_back({*rc::gen::inRange<std::uint64_t>(0, most),
+                    *rc::gen::inRange<std::uint64_t>(1, heaviest + 1)});
+  }
+  const auto ranges = *rc::gen::inRange<std::uint64_t>(1, 12);
+  SortPlan plan;
+  plan.splitters = split(keys, ranges);
+  RC_ASSERT(plan.ranges() <= ranges);
+  RC_ASSERT(std::adjacent_find(plan.splitters.begin(), plan.splitters.end(),
+                               std::greater_equal<>()) == plan.splitters.end());
+  std::vector<std::uint64_t> weights(plan.ranges(), 0);
+  std::map<std::uint64_t, std::uint64_t> by_key;
+  std::uint64_t all = 0;
+  for (const WeightedKey& k : keys) {
+    weights[plan.range_of(k.key)] += k.weight;
+    by_key[k.key] += k.weight;
+    all += k.weight;
+  }
+  std::uint64_t heaviest_key = 0;
+  for (const auto& [key, weight] : by_key) {
+    heaviest_key = std::max(heaviest_key, weight);
+  }
+  for (const std::uint64_t weight : weights) {  // what falls together cannot be divided
+    RC_ASSERT(weight <= all / ranges + 1 + 2 * heaviest_key);
+  }
+}
+
+/// All that sorting writes, by name.
+using Written = std::map<std::string, std::string>;
+
+Written written_in(const ScratchFolder& folder) {
+  Written written;
+  for (const std::string& name : folder.names()) {
+    written[name] = oracle::bytes_of(folder.file(name));
+  }
+  return written;
+}
+
+/// Sorts, has the tasks run as `run` says, and returns what stays.
+Written sorted_by(const RunStage& run, const std::vector<std::string>& paths,
+                  const SourceOptions& options) {
+  const ScratchFolder folder(ScratchFolder::Size::kSmall);
+  PointWork work{{FileLayer::system(), folder.path()}, run, {}, 0};
+  work.portions = {1000, 10};
+  work.sorting = small_sorting();
+  PointSource source(paths, options, work);
+  const PointBuckets buckets = source.sort(folder.file("buckets"), true);
+  EXPECT_EQ(buckets.counts().source_points + buckets.counts().left_out_points, 20'000U);
+  std::ignore = buckets.save(FileLayer::system(), folder.file("index"));
+  Written written = written_in(folder);
+  EXPECT_GT(written.size(), 3U);
+  std::erase_if(written, [](const auto& file) { return file.first.starts_with("sort."); });
+  return written;
+}
+
+/// Does tasks in another order, some of them twice, each with a worker that knows nothing of the others.
+RunStage shuffled(const std::vector<std::string>& paths, const SourceOptions& options,
+                  const std::string* folder) {
+  return [=](const SourceStage& stage, StageWorker&) {
+    std::vector<std::size_t> order(stage.sizes.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::mt19937_64 random(order.size());
+    for (std::size_t i = order.size(); i > 1; --i) {
+      std::swap(order[i - 1], order[random() % i]);
+    }
+    order.insert(order.end(), order.begin(), order.begin() + (order.size() + 1) / 2);
+    std::vector<std::string> told(stage.sizes.size());
+    for (const std::size_t number : order) {
+      PointTasks other(paths, options, {FileLayer::system(), *folder});
+      const std::string result =
+          other.run({stage.name, number, stage.facts, number * 10'000, {}, {}});
+      EXPECT_TRUE(told[number].empty() || told[number] == result) << stage.name << number;
+      told[number] = result;
+    }
+    return told;
+  };
+}
+
+TEST(PointStages, WriteTheSameBytesByWhomeverTheyAreDone) {
+  const std::string text = text_of(points_of(PointKind::kClusters, 10'000, 3));
+  const MemoryFile first("first.xyz", text),
+      second("second.xyz", text_of(points_of(PointKind::kDuplicates, 10'000, 4)));
+  const std::vector<std::string> paths{first.path(), second.path()};
+  SourceOptions options;
+  for (const PointMerge rule : {PointMerge::kMean, PointMerge::kFirst}) {
+    options.merge = rule;
+    const Written alone = sorted_by(run_alone, paths, options);
+    for (const int threads : {1, 2, 3}) {
+      EXPECT_EQ(sorted_by(
+                    [&](const SourceStage& stage, StageWorker& worker) {
+                      return run_stage(stage, worker, {threads, 1 << 20, {}, {}});
+                    },
+                    paths, options),
+                alone)
+          << threads;
+    }
+  }
+}
+
+TEST(PointStages, WriteTheSameBytesInAnyOrderByOtherProcesses) {
+  const MemoryFile file("first.xyz", text_of(points_of(PointKind::kEven, 20'000, 5)));
+  SourceOptions options;
+  options.merge = PointMerge::kFirst;
+  options.resolution = 70.0;
+  const Written alone = sorted_by(run_alone, {file.path()}, options);
+  const ScratchFolder folder(ScratchFolder::Size::kSmall);
+  const std::string name = folder.path();
+  PointWork work{{FileLayer::system(), name}, shuffled({file.path()}, options, &name), {}, 0};
+  work.portions = {1000, 10};
+  work.sorting = small_sorting();
+  {
+    PointSource source({file.path()}, options, work);
+    const PointBuckets buckets = source.sort(folder.file("buckets"), true);
+    std::ignore = buckets.save(FileLayer::system(), folder.file("index"));
+  }
+  EXPECT_EQ(written_in(folder), alone);
+}
+
+SourceLines ring_and_line(double from, double to) {
+  SourceLines lines;
+  const auto add = [](LineSet& set, double x, double y) {
+    set.vertices.push_back({decimal_of(x), decimal_of(y), decimal_of(5.0)});
+  };
+  for (const auto& [x, y] : {std::pair{from, from}, std::pair{to, from}, std::pair{to, to},
+                             std::pair{from, to}, std::pair{from, from}}) {
+    add(lines.rings, x, y);
+  }
+  lines.rings.ends.push_back(5);
+  add(lines.breaklines, (from + to) / 2, from + 10);
+  add(lines.breaklines, (from + to) / 2, to - 10);
+  lines.breaklines.ends.push_back(2);
+  lines.files.push_back({"lines", "", {}});
+  return lines;
+}
+
+TEST(PointStages, AddLinesAndKeepWhatTheBoundaryHolds) {
+  const std::vector<GridPoint> points = points_of(PointKind::kEven, 10'000, 7);
+  const MemoryFile file("points.xyz", text_of(points));
+  const SourceLines lines = ring_and_line(2000, 8000);
+  SourceOptions options;
+  options.lines = &lines;
+  const std::uint64_t inside =
+      static_cast<std::uint64_t>(std::count_if(points.begin(), points.end(), [](GridPoint p) {
+        return p.x >= 2000 && p.x <= 8000 && p.y >= 2000 && p.y <= 8000;
+      }));
+  const PointBuckets coarse = read_buckets({file.path()}, options);
+  const PointBuckets fine = read_buckets({file.path()}, options, 0, small_sorting());
+  EXPECT_EQ(fine.counts().left_out_points, points.size() - inside);
+  EXPECT_EQ(fine.counts().left_out_points, coarse.counts().left_out_points);
+  EXPECT_EQ(fine.counts().source_points, coarse.counts().source_points);
+  EXPECT_EQ(fine.hull().corners(), coarse.hull().corners());
+  ASSERT_EQ(fine.size(), coarse.size());
+  std::vector<BucketPoint> a, b;
+  fine.take(0, fine.size(), a);
+  coarse.take(0, coarse.size(), b);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].position, b[i].position);
+    ASSERT_EQ(a[i].height, b[i].height);
+  }
+}
+
+TEST(PointStages, SortOnceMoreFromWhatWasRead) {
+  const MemoryFile file("points.xyz", text_of(points_of(PointKind::kEven, 10'000, 7)));
+  const ScratchFolder folder(ScratchFolder::Size::kSmall);
+  SourceLines lines = ring_and_line(2000, 8000);
+  lines.rings_are_flat = true;
+  SourceOptions options;
+  options.lines = &lines;
+  std::map<std::string, int> stages;
+  const auto run = [&](const SourceStage& stage, StageWorker& worker) {
+    ++stages[stage.name];
+    return run_alone(stage, worker);
+  };
+  PointSource source({file.path()}, options, {{FileLayer::system(), folder.path()}, run, {}, 0});
+  EXPECT_EQ(source.sort(folder.file("below"), false).counts().left_out_points, 0U);
+  lines.rings_are_flat = false;
+  const PointBuckets twice = source.sort(folder.file("buckets"), true);
+  const PointBuckets once = read_buckets({file.path()}, options);
+  EXPECT_EQ(stages[kReadingStage], 1);
+  EXPECT_EQ(stages[kSortingStage], 2);
+  EXPECT_EQ(twice.size(), once.size());
+  EXPECT_EQ(twice.counts().left_out_points, once.counts().left_out_points);
+}
+
+TEST(PointBuckets, KnowTheBucketOfEachPoint) {
+  const MemoryFile file("points.xyz", text_of(points_of(PointKind::kEven, 20'000, 1)));
+  const PointBuckets buckets = read_buckets({file.path()}, {}, 0, small_sorting());
+  std::uint64_t bucket = 0;
+  for (std::uint64_t point = 0; point < buckets.size(); ++point) {
+    bucket += point == buckets.begin_of(bucket + 1) ? 1 : 0;
+    ASSERT_EQ(buckets.bucket_of(point), bucket);
+  }
+  EXPECT_EQ(bucket + 1, buckets.buckets());
+  EXPECT_EQ(buckets.begin_of(0), 0U);
+  EXPECT_EQ(buckets.begin_of(buckets.buckets()), buckets.size());
+  EXPECT_GT(buckets.buckets(), buckets.size() / buckets.bucket_points() + 1);  // some have fewer
+}
+
+TEST(PointStages, NameTheFileThatIsDamaged) {
+  const MemoryFile file("points.xyz", text_of(points_of(PointKind::kEven, 5'000, 2)));
+  for (const std::string kind : {"spool", "read", "plan", "share", "shared", "shares", "range"}) {
+    SCOPED_TRACE(kind);
+    for (const bool is_cut : {false, true}) {
+      const ScratchFolder folder(ScratchFolder::Size::kSmall);
+      bool is_done = false;
+      const auto damage = [&] {
+        const std::string name = folder.file("sort." + kind + "-0");
+        if (is_done || !std::filesystem::exists(name)) {
+          return;
+        }
+        is_done = true;
+        std::string bytes = oracle::bytes_of(name);
+        bytes[bytes.size() / 2] ^= 1;
+        oracle::write_text(name, is_cut ? bytes.substr(0, bytes.size() / 2) : bytes);
+      };
+      const auto run = [&](const SourceStage& stage, StageWorker&) {
+        damage();
+        PointTasks other({file.path()}, {}, {FileLayer::system(), folder.path()});
+        std::vector<std::string> told = run_alone(stage, other);
+        damage();
+        return told;
+      };
+      try {
+        PointSource source({file.path()}, {}, {{FileLayer::system(), folder.path()}, run, {}, 0});
+        std::ignore = source.sort(folder.file("buckets"), true);
+        ADD_FAILURE() << "sorted";
+      } catch (const Error& e) {
+        EXPECT_EQ(e.code(), ErrorCode::corruption) << e.what();
+        EXPECT_EQ(e.context(), folder.file("sort." + kind + "-0"));
+      }
+    }
+  }
+}
+
+TEST(PointStages, OfFilesThatAreWrongNameTheFirst) {
+  std::string many;
+  for (int i = 0; i < 5000; ++i) {
+    many += std::to_string(i) + " 1 1\n";
+  }
+  const MemoryFile good("good.xyz", "0 0 1\n"), slow("slow.xyz", many + "bad 1 1\n"),
+      quick("quick.xyz", "1 bad 1\n");
+  const ScratchFolder folder(ScratchFolder::Size::kSmall);
+  PointWork work{{FileLayer::system(), folder.path()},
+                 [](const SourceStage& stage, StageWorker& worker) {
+                   return run_stage(stage, worker, {3, 1 << 20, {}, {}});
+                 },
+                 {},
+                 0};
+  work.portions = {1000, 10};
+  for (int i = 0; i < 5; ++i) {
+    try {
+      const PointSource source({good.path(), slow.path(), quick.path()}, {}, work);
+      ADD_FAILURE() << "read";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.context(), slow.path() + ":5001");
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{});
+  }
+}
+
+/// What lies in a folder, bytes.
+std::uint64_t bytes_in(const ScratchFolder& folder) {
+  std::uint64_t bytes = 0;
+  for (const std::string& name : folder.names()) {
+    bytes += std::filesystem::file_size(folder.file(name));
+  }
+  return bytes;
+}
+
+TEST(PointStages, TakeNoMoreDiskThanIsPlanned) {
+  constexpr std::uint64_t kPoints = 300'000;
+  std::mt19937_64 random(1);
+  std::string text;
+  for (std::uint64_t i = 0; i < kPoints; ++i) {
+    text += std::to_string(random() % 1'000'000'000) + " " +
+            std::to_string(random() % 1'000'000'000) + " " +
+            std::to_string(random() % 2'000'000'000) + "\n";
+  }
+  const MemoryFile file("points.xyz", text);
+  for (const PointMerge rule : {PointMerge::kMean, PointMerge::kFirst}) {
+    const ScratchFolder folder(ScratchFolder::Size::kSmall);
+    SourceOptions options;
+    options.merge = rule;
+    std::uint64_t most = 0;
+    const auto run = [&](const SourceStage& stage, StageWorker& worker) {
+      std::vector<std::string> told;
+      for (std::size_t i = 0; i < stage.sizes.size(); ++i) {
+        told.push_back(worker.run({stage.name, i, stage.facts, 0, {}, {}}));
+        most = std::max(most, bytes_in(folder));
+      }
+      return told;
+    };
+    PointSource source({file.path()}, options, {{FileLayer::system(), folder.path()}, run, {}, 0});
+    std::ignore = source.sort(folder.file("buckets"), true);
+    const SourceDisk planned = PointBuckets::disk_of(kPoints, rule);
+    constexpr std::uint64_t kFacts =
+        200'000;  // samples and the like: a plan adds a MiB in any case
+    EXPECT_LE(most, planned.while_reading + kFacts);
+    EXPECT_LE(bytes_in(folder), planned.kept + kFacts);
+  }
+}
+
+}  // namespace
+}  // namespace ptin
