@@ -83,7 +83,10 @@ class PageBuffer {
  public:
   PageBuffer() {}  // NOLINT: not zeroed on purpose
   [[nodiscard]] std::span<std::byte> of(const DescribedPage& page) noexcept {
-    return {bytes_.data(), page.page_bytes()};
+    return of(page.page_bytes());
+  }
+  [[nodiscard]] std::span<std::byte> of(std::uint32_t page_bytes) noexcept {
+    return {bytes_.data(), page_bytes};
   }
 
  private:

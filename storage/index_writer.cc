@@ -66,6 +66,23 @@ void IndexWriter::finish_leaf() {
   }
 }
 
+void IndexWriter::walk(const PageVisitor& visit) const {
+  std::uint64_t page = 0;
+  const auto take = [&](const layout::IndexNode& leaf) {
+    for (std::uint32_t i = 0; i < leaf.entries; ++i) {
+      visit(page++, leaf.entry[i]);
+    }
+  };
+  std::vector<layout::IndexNode> leaves(spilled_ > 0 ? kBufferedLeaves
+                                                     : 0);  // spilled so many at once
+  for (std::uint64_t leaf = 0; leaf < spilled_; leaf += leaves.size()) {
+    side_file_->read_at(std::as_writable_bytes(std::span(leaves)), leaf * layout::kNodeBytes);
+    std::for_each(leaves.begin(), leaves.end(), take);
+  }
+  std::for_each(buffer_.begin(), buffer_.end(), take);
+  take(leaf_);
+}
+
 std::uint64_t IndexWriter::write_to(ScratchFile& out, std::uint64_t offset) {
   if (pages_ == 0) {
     return 0;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "storage/descriptor.h"
+#include "storage/directory_cells.h"
 #include "storage/file/file_layer.h"
 #include "storage/index_shape.h"
 
@@ -28,6 +29,11 @@ class IndexWriter {
   /// Adds the next page. @throws Error io_error, resource_exhausted
   void add(const layout::NodeEntry& page);
   [[nodiscard]] std::uint64_t pages() const noexcept { return pages_; }
+
+  /// Calls visit(page, descriptor) for all pages, in order. Before write_to(). Cost: reads the side
+  /// file.
+  /// @throws Error io_error
+  void walk(const PageVisitor& visit) const;
 
   /// Writes all nodes to `out` from `offset` on, the root first. Returns the checksum of the root,
   /// or 0 when there are no pages. Call once, after the last page.

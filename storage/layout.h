@@ -23,7 +23,10 @@ inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'T', 'I', 'N',
 inline constexpr std::array<std::uint8_t, 8> kStreamMagic = {0x89, 'P',  'T',  'S',
                                                              0x0D, 0x0A, 0x1A, 0x0A};
 inline constexpr std::uint16_t kMajorVersion = 2;
-inline constexpr std::uint16_t kMinorVersion = 0;
+/// The newest minor version that is known. A writer writes the lowest that holds what it has to say:
+/// 0, or 1 where there is a directory.
+inline constexpr std::uint16_t kMinorVersion = 1;
+inline constexpr std::uint16_t kMinorVersionOfDirectory = 1;
 
 inline constexpr std::uint32_t kMinPageBytes = 4096;
 inline constexpr std::uint32_t kMaxPageBytes = 65536;
@@ -68,6 +71,8 @@ enum class SectionKind : std::uint32_t {
   kErrorTable = 4,
   kIndex = 5,
   kPages = 6,
+  kDirectory = 7,       ///< Both or none.
+  kDirectoryNodes = 8,  ///< Kept between the index and the pages.
 };
 
 /// One line of the section table, which follows the header.
@@ -125,6 +130,33 @@ struct IndexNode {
 };
 static_assert(sizeof(IndexNode) == kNodeBytes && offsetof(IndexNode, entry) == 16);
 
+/// The directory begins with this. Then come, for each cell, the lower half of the checksum of its
+/// node (u32), the line that parts it from the cell before (u32; of cell 0 it is 0), and the number
+/// of its entries (u16): a column each (storage/directory_cells.h).
+struct DirectoryHead {
+  std::uint32_t cells;       //  0  from 1 to kMostDirectoryCells
+  std::uint16_t least;       //  4  short number of byte 1 of an error
+  std::uint16_t step_shift;  //  6  from there on, the binary logarithm of the step of short numbers
+  std::uint64_t entries;     //  8  of all cells
+};
+static_assert(sizeof(DirectoryHead) == 16 && offsetof(DirectoryHead, entries) == 8);
+inline constexpr std::uint32_t kMostDirectoryCells = 65536;
+inline constexpr std::size_t kDirectoryCellBytes = 10;
+/// Bit of a line: it is one of equal y, not of equal x.
+inline constexpr std::uint32_t kLineOfEqualY = 0x80000000U;
+
+/// What the columns of a directory's node hold of a page, in this order; a column of four bytes an
+/// entry has 32 bits for each, the others have one byte.
+struct DirectoryEntry {
+  std::uint32_t page;                  //  0
+  std::uint32_t checksum;              //  4  lower half of the page's
+  std::array<std::uint8_t, 4> box;     //  8  of the stars: min x, min y, max x, max y in the cell
+  std::uint8_t error_max, death_min;   // 12  on the scale of the head
+  std::array<std::uint8_t, 2> unused;  // 14  in no column
+};
+static_assert(sizeof(DirectoryEntry) == 16 && offsetof(DirectoryEntry, error_max) == 12);
+inline constexpr std::size_t kDirectoryEntryBytes = 14;
+
 /// What a page begins with: base and width of each column of numbers (storage/page_columns.h).
 struct PageHeader {
   std::uint16_t records, ring_bytes;                          //  0
@@ -153,7 +185,8 @@ inline constexpr bool kIsPlainBytes = std::is_trivially_copyable_v<T>&&
     std::is_standard_layout_v<T>&& std::has_unique_object_representations_v<T>;
 static_assert(kIsPlainBytes<FileHeader> && kIsPlainBytes<SectionEntry> && kIsPlainBytes<T0Vertex> &&
               kIsPlainBytes<T0Triangle> && kIsPlainBytes<ErrorBinEntry> &&
-              kIsPlainBytes<NodeEntry> && kIsPlainBytes<IndexNode> && kIsPlainBytes<PageHeader>);
+              kIsPlainBytes<NodeEntry> && kIsPlainBytes<IndexNode> && kIsPlainBytes<PageHeader> &&
+              kIsPlainBytes<DirectoryHead> && kIsPlainBytes<DirectoryEntry>);
 
 /// Bits of the largest float that is an error or a deviation: +infinity. Every NaN and every
 /// negative number, -0 too, has larger bits, so one unsigned comparison tells a valid value.

@@ -43,6 +43,21 @@ void DescribedPageStore::read(PageId id, std::span<std::byte> out, IoCounters& c
   read_described(id, nodes_.descriptor(id), out, counters);
 }
 
+void DescribedPageStore::read_checked(PageId id, std::uint32_t checksum, std::span<std::byte> out,
+                                      IoCounters& counters) const {
+  file_.read_at(out, slots_.offset_of(id));
+  ++counters.pages;
+  counters.bytes_read += out.size();
+  if (static_cast<std::uint32_t>(checksum_of(out)) != checksum) {
+    throw Error(ErrorCode::corruption,
+                "the page does not match the checksum in the directory; the file is damaged, "
+                "`ptin verify` tells where",
+                file_.path() + ", page " + std::to_string(index_of(id)));
+  }
+  ++counters.pages_verified;
+  file_.settle(counters);
+}
+
 void DescribedPageStore::verify(PageId id, const layout::NodeEntry& descriptor,
                                 std::span<const std::byte> copy) const {
   if (checksum_of(copy) != descriptor.checksum) {

@@ -32,6 +32,9 @@ class DescribedPageStore : public PageStore {
   /// out.size() == page_bytes().
   virtual void read_described(PageId id, const layout::NodeEntry& descriptor,
                               std::span<std::byte> out, IoCounters& counters) const = 0;
+  /// As read(), for a caller that has the lower half of the page's checksum. REQUIRES: as above.
+  void read_checked(PageId id, std::uint32_t checksum, std::span<std::byte> out,
+                    IoCounters& counters) const;
   /// As read_described(), but makes no copy of a page that is mapped and was verified before. The
   /// file may lose its bytes while they are looked at: so the caller calls require_undamaged()
   /// after the last look, and before it uses anything made of them.

@@ -2,6 +2,7 @@
 #include "storage/store_file.h"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "storage/index_nodes.h"
 #include "storage/packed_rtree.h"
 #include "storage/page_stores.h"
+#include "storage/point_directory.h"
 #include "storage/store_front.h"
 
 namespace ptin {
@@ -48,6 +50,9 @@ class StoreFileImpl final : public StoreFile {
   [[nodiscard]] const RecordIndex& index() const noexcept override { return *index_; }
   [[nodiscard]] const PackedRTree& star_index() const noexcept override { return *index_; }
   [[nodiscard]] const PageStore& pages() const noexcept override { return *pages_; }
+  [[nodiscard]] const PointDirectory* directory() const noexcept override {
+    return directory_.get();
+  }
   [[nodiscard]] PageInfo page_info(PageId id) const override;
   void read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const override;
   void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const override;
@@ -55,6 +60,11 @@ class StoreFileImpl final : public StoreFile {
                            IoCounters& counters) const override;
   std::uint32_t read_living(PageId id, const StarFilter& filter, LivingStars& out,
                             IoCounters& counters) const override;
+  std::uint32_t read_stars(const DirectoryPage& page, const StarFilter& filter, StarredRecords& out,
+                           IoCounters& counters) const override;
+  std::uint32_t read_living(const DirectoryPage& page, const StarFilter& filter, LivingStars& out,
+                            IoCounters& counters) const override;
+  void announce(std::span<const DirectoryPage> pages, IoCounters& counters) const noexcept override;
   std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
                               std::vector<VertexSplit>& out, IoCounters& counters) const override;
 
@@ -62,7 +72,12 @@ class StoreFileImpl final : public StoreFile {
   template <class Read, class Undo>
   std::uint32_t read_in_place(PageId id, IoCounters& counters, const Read& read,
                               const Undo& undo) const;
+  template <class Read>
+  std::uint32_t read_named(const DirectoryPage& named, IoCounters& counters,
+                           const Read& read) const;
   [[nodiscard]] DescribedPage described(PageId id) const;
+  [[nodiscard]] DescribedPage described(const DirectoryPage& named,
+                                        std::span<const std::byte> bytes) const;
 
   [[nodiscard]] IndexNodes::Root root() const {
     return {front_.index, front_.index_offset, front_.root_checksum};
@@ -77,6 +92,7 @@ class StoreFileImpl final : public StoreFile {
   std::unique_ptr<IndexNodes> nodes_;
   std::unique_ptr<DescribedPageStore> pages_;
   std::unique_ptr<PackedRTree> index_;
+  std::unique_ptr<PointDirectory> directory_;
 };
 
 /// Reads the front of a file. Reads of a store jump about: the read-ahead of the kernel would read
@@ -109,6 +125,10 @@ StoreFileImpl::StoreFileImpl(std::unique_ptr<RangedFile> file)
   far_->keep_on_disk(front_.header.header_checksum);
   read_by_copies();
   search_by_nodes();
+  if (front_.directory) {
+    directory_ = std::make_unique<PointDirectory>(*file_, *front_.directory, front_.facts.bounds,
+                                                  front_.header.page_count);
+  }
 }
 
 void StoreFileImpl::read_by_copies() {
@@ -135,6 +155,27 @@ std::vector<SectionInfo> StoreFileImpl::sections() const {
 
 DescribedPage StoreFileImpl::described(PageId id) const {
   return {file_->path(), id, nodes_->descriptor(id), front_.facts.heights, front_.slots.page_bytes};
+}
+
+/// What the directory and the page itself say of it; of heights and deviations they say nothing.
+DescribedPage StoreFileImpl::described(const DirectoryPage& named,
+                                       std::span<const std::byte> bytes) const {
+  layout::PageHeader header;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  const GridBox& bounds = front_.facts.bounds;
+  const HeightInterval none = no_heights(front_.facts.heights.type);
+  layout::NodeEntry d{};
+  d.min_x = d.star_min_x = bounds.min_x;
+  d.min_y = d.star_min_y = bounds.min_y;
+  d.max_x = d.star_max_x = bounds.max_x;
+  d.max_y = d.star_max_y = bounds.max_y;
+  d.height_lo = d.star_height_lo = none.hi;
+  d.height_hi = d.star_height_hi = none.lo;
+  d.error_max = named.error_max;
+  d.deviation_max = kShortInfinity;
+  d.death_min = named.death_min;
+  d.records = header.records;
+  return {file_->path(), named.id, d, front_.facts.heights, front_.slots.page_bytes};
 }
 
 StoreFile::PageInfo StoreFileImpl::page_info(PageId id) const {
@@ -178,6 +219,39 @@ std::uint32_t StoreFileImpl::read_in_place(PageId id, IoCounters& counters, cons
     throw;
   }
   return page.records();
+}
+
+template <class Read>
+std::uint32_t StoreFileImpl::read_named(const DirectoryPage& named, IoCounters& counters,
+                                        const Read& read) const {
+  PageBuffer buffer;
+  const std::span<std::byte> bytes = buffer.of(front_.slots.page_bytes);
+  pages_->read_checked(named.id, named.checksum, bytes, counters);
+  const DescribedPage page = described(named, bytes);
+  read(page, bytes);
+  return page.records();
+}
+
+std::uint32_t StoreFileImpl::read_stars(const DirectoryPage& page, const StarFilter& filter,
+                                        StarredRecords& out, IoCounters& counters) const {
+  return read_named(page, counters, [&](const DescribedPage& p, std::span<const std::byte> bytes) {
+    p.decode_stars(bytes, filter, out);
+  });
+}
+
+std::uint32_t StoreFileImpl::read_living(const DirectoryPage& page, const StarFilter& filter,
+                                         LivingStars& out, IoCounters& counters) const {
+  return read_named(page, counters, [&](const DescribedPage& p, std::span<const std::byte> bytes) {
+    p.decode_living(bytes, filter, out);
+  });
+}
+
+void StoreFileImpl::announce(std::span<const DirectoryPage> pages,
+                             IoCounters& counters) const noexcept {
+  RangesToCome ranges(*file_, counters);
+  for (const DirectoryPage& page : pages) {
+    pages_->add_ranges(std::span(&page.id, 1), ranges);
+  }
 }
 
 std::uint32_t StoreFileImpl::read_matching(PageId id, const AttributePredicate& predicate,

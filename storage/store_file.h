@@ -25,6 +25,8 @@
 namespace ptin {
 
 class PackedRTree;
+class PointDirectory;
+struct DirectoryPage;
 
 /// One bin of the table of errors: the records with error in (previous upper, upper]. Bins ascend,
 /// and each is an eighth of an octave wide. The first has upper 0 and holds records of error
@@ -98,6 +100,8 @@ class StoreFile {
   /// The same, for searches of stars (storage/packed_rtree.h).
   [[nodiscard]] virtual const PackedRTree& star_index() const noexcept = 0;
   [[nodiscard]] virtual const PageStore& pages() const noexcept = 0;
+  /// The directory, for points of a file that lies elsewhere; null when it does not, or has none.
+  [[nodiscard]] virtual const PointDirectory* directory() const noexcept = 0;
 
   /// What the descriptor of a page says.
   struct PageInfo {
@@ -133,6 +137,17 @@ class StoreFile {
   /// @throws Error corruption, io_error
   virtual std::uint32_t read_living(PageId id, const StarFilter& filter, LivingStars& out,
                                     IoCounters& counters) const = 0;
+
+  /// As read_stars() and read_living(), of pages that the directory named, without their descriptor:
+  /// a star is held against the bounds of the terrain, the page's largest error and its least death.
+  virtual std::uint32_t read_stars(const DirectoryPage& page, const StarFilter& filter,
+                                   StarredRecords& out, IoCounters& counters) const = 0;
+  virtual std::uint32_t read_living(const DirectoryPage& page, const StarFilter& filter,
+                                    LivingStars& out, IoCounters& counters) const = 0;
+
+  /// Announces pages that the directory named: each alone, since few are wanted of many.
+  virtual void announce(std::span<const DirectoryPage> pages,
+                        IoCounters& counters) const noexcept = 0;
 
   /// As read_records(), for those records alone whose attributes satisfy `predicate`. The others
   /// are not decoded, and not checked. Returns the number of records examined: all records of the

@@ -122,8 +122,8 @@ std::vector<SectionEntry> read_table(const FileHeader& h, const ReadableFile& fi
   return table;
 }
 
-const SectionEntry& find(const std::vector<SectionEntry>& table, SectionKind kind,
-                         const std::string& path) {
+const SectionEntry* find_any(const std::vector<SectionEntry>& table, SectionKind kind,
+                             const std::string& path) {
   const SectionEntry* found = nullptr;
   for (const SectionEntry& s : table) {
     if (s.kind == static_cast<std::uint32_t>(kind)) {
@@ -131,6 +131,12 @@ const SectionEntry& find(const std::vector<SectionEntry>& table, SectionKind kin
       found = &s;
     }
   }
+  return found;
+}
+
+const SectionEntry& find(const std::vector<SectionEntry>& table, SectionKind kind,
+                         const std::string& path) {
+  const SectionEntry* const found = find_any(table, kind, path);
   if (found == nullptr) {
     damaged(path, std::string("the section \"") + name_of(kind) + "\" is missing");
   }
@@ -214,6 +220,25 @@ void place_index_and_pages(StoreFront& front, const std::string& path) {
   front.slots = {h.page_count, h.first_page, pages.offset, h.page_bytes};
 }
 
+/// Of the directory nothing is read at the opening.
+std::optional<DirectoryPlace> place_of_directory(const StoreFront& front, const std::string& path) {
+  const SectionEntry* const root = find_any(front.sections, SectionKind::kDirectory, path);
+  const SectionEntry* const nodes = find_any(front.sections, SectionKind::kDirectoryNodes, path);
+  require((root == nullptr) == (nodes == nullptr), path,
+          "of the directory and its nodes one is missing");
+  if (root == nullptr) {
+    return std::nullopt;
+  }
+  constexpr std::uint64_t kMostBytes =
+      sizeof(layout::DirectoryHead) +
+      std::uint64_t{layout::kMostDirectoryCells} * layout::kDirectoryCellBytes;
+  require(root->bytes > sizeof(layout::DirectoryHead) && root->bytes <= kMostBytes, path,
+          "the directory has not the length of any number of cells");
+  require(nodes->bytes % layout::kDirectoryEntryBytes == 0, path,
+          "the nodes of the directory are no whole number of entries long");
+  return DirectoryPlace{{root->offset, root->bytes}, {nodes->offset, nodes->bytes}, root->checksum};
+}
+
 }  // namespace
 
 const char* name_of(SectionKind kind) noexcept {
@@ -230,6 +255,10 @@ const char* name_of(SectionKind kind) noexcept {
       return "index";
     case SectionKind::kPages:
       return "pages";
+    case SectionKind::kDirectory:
+      return "directory";
+    case SectionKind::kDirectoryNodes:
+      return "directory nodes";
   }
   return "unknown";
 }
@@ -256,6 +285,7 @@ StoreFront read_front(const ReadableFile& file) {
   front.facts = facts_of(front.header);
   front.sections = read_table(front.header, file);
   place_index_and_pages(front, file.path());
+  front.directory = place_of_directory(front, file.path());
   announce_front(front, file);
   const std::vector<char> metadata =
       read_section<char>(front.sections, SectionKind::kMetadata, file);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "storage/index_shape.h"
 #include "storage/layout.h"
 #include "storage/page_slots.h"
+#include "storage/point_directory.h"
 #include "storage/store_file.h"
 
 namespace ptin {
@@ -28,6 +30,7 @@ struct StoreFront {
   IndexShape index;
   std::uint64_t index_offset = 0;
   std::uint64_t root_checksum = 0;
+  std::optional<DirectoryPlace> directory;
 };
 
 /// Reads the front of a file and checks everything that storage/FORMAT.md lists under "At opening".

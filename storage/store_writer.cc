@@ -17,6 +17,7 @@
 #include "engine/error.h"
 #include "storage/described_page.h"
 #include "storage/descriptor.h"
+#include "storage/directory_writer.h"
 #include "storage/error_table.h"
 #include "storage/facts.h"
 #include "storage/file/checksum.h"
@@ -70,13 +71,29 @@ class Front {
         {static_cast<std::uint32_t>(kind), 0, bytes_.size(), content.size(), checksum_of(content)});
     bytes_.insert(bytes_.end(), content.begin(), content.end());
   }
+  // Room for a section, of which the content comes later.
+  void reserve(layout::SectionKind kind, std::uint64_t bytes) {
+    add(kind, std::vector<std::byte>(bytes));
+  }
+  void fill(layout::SectionKind kind, std::span<const std::byte> content) {
+    layout::SectionEntry& s = section(kind);
+    PTIN_CHECK(s.bytes == content.size());
+    std::copy(content.begin(), content.end(),
+              bytes_.begin() + static_cast<std::ptrdiff_t>(s.offset));
+    s.checksum = checksum_of(content);
+  }
   [[nodiscard]] std::uint64_t add_outside(layout::SectionKind kind, std::uint64_t offset,
                                           std::uint64_t bytes) {
     table_.push_back({static_cast<std::uint32_t>(kind), 0, offset, bytes, 0});
     return offset + bytes;
   }
   [[nodiscard]] std::uint64_t size() const { return bytes_.size(); }
-  [[nodiscard]] layout::SectionEntry& section(std::size_t i) { return table_[i]; }
+  // REQUIRES: it was added.
+  [[nodiscard]] layout::SectionEntry& section(layout::SectionKind kind) {
+    return *std::find_if(table_.begin(), table_.end(), [&](const layout::SectionEntry& s) {
+      return s.kind == static_cast<std::uint32_t>(kind);
+    });
+  }
 
   // All bytes up to `end`, with the header and the table in their places.
   std::span<const std::byte> finish(layout::FileHeader& header, std::uint64_t end) {
@@ -300,7 +317,13 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
   }
   start(facts.heights);
   const IndexShape shape(index_->pages());
-  Front front(6);
+  const PageWalk walk = [&](const PageVisitor& visit) { index_->walk(visit); };
+  std::optional<DirectoryWriter> directory;
+  if (index_->pages() >= options_.directory.least_pages) {
+    directory = DirectoryWriter::plan(facts.bounds, index_->pages(), options_.page_bytes,
+                                      options_.directory, walk);
+  }
+  Front front(directory ? 8 : 6);
   const std::vector<layout::T0Vertex> vertices = stored(t0.vertices, facts.heights.type);
   const std::vector<layout::T0Triangle> triangles = stored(t0.triangles);
   const std::vector<layout::ErrorBinEntry> bins = stored(errors_.bins());
@@ -308,21 +331,33 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
   front.add(layout::SectionKind::kT0Vertices, std::as_bytes(std::span(vertices)));
   front.add(layout::SectionKind::kT0Triangles, std::as_bytes(std::span(triangles)));
   front.add(layout::SectionKind::kErrorTable, std::as_bytes(std::span(bins)));
+  if (directory) {
+    front.reserve(layout::SectionKind::kDirectory, directory->root_bytes());
+  }
   const std::uint64_t index_offset = padded_to(front.size(), layout::kNodeBytes);
   const std::uint64_t index_end =
       front.add_outside(layout::SectionKind::kIndex, index_offset, shape.total_bytes());
-  const std::uint64_t front_bytes = padded_to(index_end, options_.page_bytes);
+  const std::uint64_t nodes_end = directory
+                                      ? front.add_outside(layout::SectionKind::kDirectoryNodes,
+                                                          index_end, directory->node_bytes())
+                                      : index_end;
+  const std::uint64_t front_bytes = padded_to(nodes_end, options_.page_bytes);
   layout::FileHeader header{};
   header.file_bytes = front.add_outside(layout::SectionKind::kPages, front_bytes, written_bytes_);
 
   const PageSlots slots = move_pages_behind(front_bytes);
-  front.section(4).checksum = index_->write_to(file_, index_offset);
-  const std::vector<std::byte> gap(front_bytes - index_end);
-  file_.write_at(gap, index_end);
+  if (directory) {
+    front.section(layout::SectionKind::kDirectoryNodes).checksum =
+        directory->write_nodes(walk, file_, index_end);
+    front.fill(layout::SectionKind::kDirectory, directory->root());
+  }
+  front.section(layout::SectionKind::kIndex).checksum = index_->write_to(file_, index_offset);
+  const std::vector<std::byte> gap(front_bytes - nodes_end);
+  file_.write_at(gap, nodes_end);
 
   header.magic = layout::kMagic;
   header.major_version = layout::kMajorVersion;
-  header.minor_version = layout::kMinorVersion;
+  header.minor_version = directory ? layout::kMinorVersionOfDirectory : 0;
   header.header_bytes = sizeof header;
   header.page_bytes = options_.page_bytes;
   header.page_count = slots.pages;

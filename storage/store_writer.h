@@ -17,6 +17,21 @@ namespace ptin {
 
 class FileLayer;
 
+/// When there is a directory for points (storage/FORMAT.md, "Directory"), and how it is cut.
+struct DirectoryOptions {
+  /// Fewer pages are found in as many rounds by the index, whose upper levels come with the opening.
+  std::uint64_t least_pages = 1024;
+  /// Own pages of a cell, where not too many cells come of that: the more, the longer a node; the
+  /// fewer, the more pages belong to several cells.
+  std::uint64_t pages_of_cell = 600;
+  /// So that the directory stays below 48 KiB, and with all else that comes at the opening of a file
+  /// that lies elsewhere below 64 KiB.
+  std::uint32_t most_cells = 4900;
+  /// The nodes take at most one byte for so many of the pages. Where they would take more there are
+  /// fewer cells, and at last none: the stars of most pages reach far.
+  std::uint64_t page_bytes_of_byte = 200;
+};
+
 struct StoreWriterOptions {
   /// Whether to replace an existing file. When off, an existing file is an invalid_argument.
   bool overwrite = false;
@@ -29,6 +44,7 @@ struct StoreWriterOptions {
   /// a checkpoint; the owner of the folder removes them. When it is not named, nothing is ever left
   /// behind.
   std::string work_folder = {};
+  DirectoryOptions directory = {};
 };
 
 /// The file in a work folder that holds the pages, one behind the other from its beginning.

@@ -14,6 +14,7 @@
 #include "engine/stop.h"
 #include "storage/described_page.h"
 #include "storage/descriptor.h"
+#include "storage/directory_cells.h"
 #include "storage/error_table.h"
 #include "storage/file/checksum.h"
 #include "storage/page_packer.h"
@@ -43,6 +44,7 @@ class Verifier {
                      const std::function<void(std::span<const std::byte>)>& take);
   void look_for_zeros(std::uint64_t begin, std::uint64_t end, const std::string& where);
   void look_at_tree();
+  void look_at_directory();
   // Looks at a node and at all below it. Returns the union over its entries; none when the node is
   // damaged.
   std::optional<layout::NodeEntry> look_at_node(std::uint32_t level, std::uint64_t number,
@@ -73,6 +75,7 @@ class Verifier {
   bool makes_void_ = false;
   Interval heights_{kInfinity, -kInfinity};  // of the vertices that have one
   std::uint64_t vertices_with_height_ = 0;
+  bool is_directory_whole_ = true;
   bool all_seen_ = true;  // no page was left out because of damage
   std::vector<std::byte> page_;
   StarredRecords records_;
@@ -128,6 +131,7 @@ void Verifier::run() {
     keys_->end();
   }
   compare_totals();
+  look_at_directory();
   file_.check_unchanged();
 }
 
@@ -149,8 +153,10 @@ void Verifier::look_at_sections() {
     RunningChecksum checksum;
     read_in_parts(s.offset, end, [&](std::span<const std::byte> part) { checksum.add(part); });
     if (checksum.value() != s.checksum) {
+      is_directory_whole_ = false;
       report("the section does not match its checksum",
-             "section of kind " + std::to_string(s.kind));
+             "section of kind " + std::to_string(s.kind) + " (" +
+                 name_of(static_cast<layout::SectionKind>(s.kind)) + ")");
     }
   }
 }
@@ -187,6 +193,54 @@ void Verifier::look_at_tree() {
   } else if (front_.root_checksum != 0) {
     report("the checksum of an index without nodes should be 0", "section \"index\"");
   }
+}
+
+// Makes the directory again, from its own lines and the index: all else follows from these.
+void Verifier::look_at_directory() {
+  if (!front_.directory || !all_seen_ || !is_directory_whole_) {
+    return;
+  }
+  const std::string where = "section \"directory\"";
+  const DirectoryPlace& place = *front_.directory;
+  std::optional<DirectoryRoot> root;
+  try {
+    root = DirectoryRoot::read(file_, place, front_.facts.bounds);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::corruption) {
+      throw;
+    }
+    report(e.message(), where);
+    return;
+  }
+  const PageWalk walk = [&](const PageVisitor& visit) {
+    layout::IndexNode leaf;
+    for (std::uint64_t number = 0; number < front_.index.nodes(0); ++number) {
+      check_stop();
+      file_.read_at(std::as_writable_bytes(std::span(&leaf, 1)),
+                    front_.index_offset + front_.index.position(0, number) * layout::kNodeBytes);
+      for (std::uint32_t i = 0; i < front_.index.entries(0, number); ++i) {
+        visit(number * layout::kFanOut + i, leaf.entry[i]);
+      }
+    }
+  };
+  const std::vector<std::uint64_t> entries = count_entries(root->cells, walk);
+  for (std::uint32_t cell = 0; cell < root->cells.count(); ++cell) {
+    if (root->entries_of(cell) != entries[cell]) {
+      report("cell " + std::to_string(cell) + " has another number of entries than pages", where);
+      return;
+    }
+  }
+  make_directory_nodes(
+      root->cells, entries, root->scale, walk,
+      [&](std::uint32_t cell, std::span<const std::byte> node) {
+        std::vector<std::byte> found(node.size());
+        file_.read_at(found, place.nodes.offset + root->range_of(cell).offset);
+        if (!std::ranges::equal(found, node) ||
+            static_cast<std::uint32_t>(checksum_of(node)) != root->checksums[cell]) {
+          report("the node does not say what the index says of its pages",
+                 "directory node " + std::to_string(cell));
+        }
+      });
 }
 
 std::optional<layout::NodeEntry> Verifier::look_at_node(std::uint32_t level, std::uint64_t number,

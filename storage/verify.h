@@ -46,6 +46,7 @@ using VerifyProgress = std::function<void(std::uint64_t done, std::uint64_t tota
 /// - every record with what a record can be;
 /// - every page descriptor with the union over its records, and every index entry with the union
 ///   over what it describes;
+/// - the directory, where there is one, with what the index says of the pages;
 /// - the number of records, the largest rank, the least and largest height (over the records'
 ///   intervals too), the flag of voids and the table of errors with the records;
 /// - all vertices with each other: no vertex comes twice.

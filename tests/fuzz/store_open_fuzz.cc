@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Any bytes as a store: opened both ways, searched, read and verified. Nothing may escape but an
+// Any bytes as a store: opened both ways and as one elsewhere, searched, read and verified. Nothing may escape but an
 // Error. The first byte says whether checksums are computed again: with them, changes reach what
 // lies behind.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,9 +16,11 @@
 #include <unistd.h>
 
 #include "engine/error.h"
+#include "storage/point_directory.h"
 #include "storage/store_file.h"
 #include "storage/verify.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/storage/noting_source.h"
 #include "tests/storage/seal.h"
 
 namespace {
@@ -55,6 +59,31 @@ void use(const std::string& path, PageAccess access) {
   }
 }
 
+/// As a file that lies elsewhere: by its directory.
+void use_far(const ptin::test::Bytes& file) {
+  const auto front = std::min<std::size_t>(file.size(), 4096);
+  const auto store = StoreFile::open(std::make_shared<ptin::test::NotingSource>(file, front));
+  if (store->directory() == nullptr) {
+    return;
+  }
+  const GridBox& b = store->facts().bounds;
+  const std::vector<GridBox> places{{b.min_x, b.min_y, b.min_x, b.min_y},
+                                    {b.max_x, b.max_y, b.max_x, b.max_y},
+                                    {b.min_x, b.max_y, b.min_x, b.max_y}};
+  std::vector<std::vector<DirectoryPage>> found(places.size());
+  IoCounters counters;
+  store->directory()->find(places, {}, found, counters);
+  for (const std::vector<DirectoryPage>& pages : found) {
+    store->announce(pages, counters);
+    for (const DirectoryPage& page : pages) {
+      LivingStars living;
+      StarredRecords stars;
+      store->read_living(page, {}, living, counters);
+      store->read_stars(page, {}, stars, counters);
+    }
+  }
+}
+
 }  // namespace
 
 PTIN_FUZZ_TARGET(store_open, data, size) {
@@ -76,6 +105,10 @@ PTIN_FUZZ_TARGET(store_open, data, size) {
       use(path, access);
     } catch (const ptin::Error&) {
     }
+  }
+  try {
+    use_far(file);
+  } catch (const ptin::Error&) {
   }
   try {
     ptin::VerifyOptions options;

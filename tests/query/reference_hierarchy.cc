@@ -390,7 +390,8 @@ Hierarchy random_hierarchy(std::uint64_t seed) {
   }
 }
 
-TemporaryStore::TemporaryStore(const Hierarchy& hierarchy, std::uint32_t page_bytes, int segments) {
+TemporaryStore::TemporaryStore(const Hierarchy& hierarchy, std::uint32_t page_bytes, int segments,
+                               const DirectoryOptions& directory) {
   static std::atomic<int> number{0};
   path = (std::filesystem::temp_directory_path() /
           ("ptin_query_" + std::to_string(::getpid()) + "_" + std::to_string(number++) + ".ptin"))
@@ -398,6 +399,7 @@ TemporaryStore::TemporaryStore(const Hierarchy& hierarchy, std::uint32_t page_by
   StoreWriterOptions options;
   options.overwrite = true;
   options.page_bytes = page_bytes;
+  options.directory = directory;
   const auto writer = StoreWriter::create(path, options);
   const StarredRecords records = test::changed_stars(hierarchy.stars, hierarchy.records);
   const std::size_t each = records.size() / static_cast<std::size_t>(segments) + 1;

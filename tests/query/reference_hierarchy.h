@@ -16,6 +16,7 @@
 #include "engine/mesh/tin.h"
 #include "storage/record.h"
 #include "storage/store_file.h"
+#include "storage/store_writer.h"
 
 namespace ptin::reference {
 
@@ -60,7 +61,7 @@ struct Options {
 struct TemporaryStore {
   std::string path;
   explicit TemporaryStore(const Hierarchy& hierarchy, std::uint32_t page_bytes = 4096,
-                          int segments = 3);
+                          int segments = 3, const DirectoryOptions& directory = {});
   ~TemporaryStore();
   TemporaryStore(const TemporaryStore&) = delete;
   TemporaryStore& operator=(const TemporaryStore&) = delete;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The bytes of format 2.0 are fixed: the golden file is written as it was, is read as it was, and
-// is the worked example of FORMAT.md.
+// The bytes of formats 2.0 and 2.1 are fixed: the golden files are written as they were, are read as
+// they were, and that of 2.0 is the worked example of FORMAT.md.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -23,10 +23,50 @@ namespace fs = std::filesystem;
 fs::path here() { return fs::path(__FILE__).parent_path(); }
 std::string golden() { return (here() / "golden" / "two_records_v2.0.ptin").string(); }
 
-TEST(Format, WritesTheGoldenFileByteForByte) {
+// The same with a directory of one cell.
+std::string golden_with_directory() {
+  return (here() / "golden" / "two_records_v2.1.ptin").string();
+}
+const StoreWriterOptions kWithDirectory{.overwrite = true, .directory = {.least_pages = 1}};
+
+TEST(Format, WritesTheGoldenFilesByteForByte) {
   const TestFolder folder;
   write_store(folder.file("a.ptin"), two_records());
   EXPECT_EQ(read_file(folder.file("a.ptin")), read_file(golden()));
+  write_store(folder.file("a.ptin"), two_records(), kWithDirectory);
+  EXPECT_EQ(read_file(folder.file("a.ptin")), read_file(golden_with_directory()));
+}
+
+TEST(Format, ReadsTheGoldenFileWithADirectory) {
+  ASSERT_TRUE(verify_store(golden_with_directory()).is_sound());
+  const auto store = StoreFile::open(golden_with_directory());
+  EXPECT_TRUE(are_same(read_all_starred(*store), two_records().segments[0]));
+  std::vector<std::string> names;
+  for (const SectionInfo& s : store->sections()) {
+    names.push_back(s.name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"header", "section table", "metadata", "t0 vertices",
+                                             "t0 triangles", "error table", "directory", "index",
+                                             "directory nodes", "pages"}));
+  // What FORMAT.md says of both sections.
+  const Bytes file = read_file(golden_with_directory());
+  const auto root = section_of(file, layout::SectionKind::kDirectory);
+  const auto nodes = section_of(file, layout::SectionKind::kDirectoryNodes);
+  const auto text = [&](const layout::SectionEntry& s) {
+    std::string hex;
+    for (std::uint64_t i = 0; i < s.bytes; ++i) {
+      constexpr const char* kDigits = "0123456789abcdef";
+      const auto b = static_cast<unsigned>(file[s.offset + i]);
+      hex += {kDigits[b / 16], kDigits[b % 16], ' '};
+    }
+    hex.pop_back();
+    return hex;
+  };
+  std::ifstream document(here() / ".." / ".." / "storage" / "FORMAT.md");
+  std::stringstream all;
+  all << document.rdbuf();
+  EXPECT_NE(all.str().find("`" + text(root) + "`"), std::string::npos) << text(root);
+  EXPECT_NE(all.str().find("`" + text(nodes) + "`"), std::string::npos) << text(nodes);
 }
 
 TEST(Format, ReadsTheGoldenFile) {
@@ -96,6 +136,7 @@ TEST(ErrorTable, HasEightBinsAnOctave) {
 TEST(Format, DISABLED_WritesTheGoldenFileAndTheFuzzSeedsAgain) {
   fs::create_directories(fs::path(golden()).parent_path());
   write_store(golden(), two_records(), {.overwrite = true});
+  write_store(golden_with_directory(), two_records(), kWithDirectory);
 
   const fs::path corpus = here() / ".." / "fuzz" / "corpus";
   const auto seed = [&](const char* target, const char* name, Bytes head, const Bytes& bytes) {
@@ -106,6 +147,8 @@ TEST(Format, DISABLED_WritesTheGoldenFileAndTheFuzzSeedsAgain) {
   const Bytes file = read_file(golden());
   seed("store_open", "two_records", {std::byte{0}}, file);
   seed("store_open", "two_records_sealed", {std::byte{1}}, file);
+
+  seed("store_open", "directory_sealed", {std::byte{1}}, read_file(golden_with_directory()));
 
   const TestFolder folder;
   StoreContent none = two_records();

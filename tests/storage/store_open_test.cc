@@ -341,6 +341,33 @@ TEST_F(StoreOpen, RejectsMapsThatLeadToNoPlaceOfTheTerrain) {
   EXPECT_EQ(code_of(bytes), std::nullopt);
 }
 
+TEST_F(StoreOpen, RejectsDirectoriesThatNoProgramPlaced) {
+  write_store(path_, random_content({.seed = 7, .segments = 2, .records = 70}),
+              {.overwrite = true, .directory = {.least_pages = 1}});
+  bytes_ = read_file(path_);
+  using Table = std::vector<SectionEntry>;
+  constexpr std::size_t kRoot = 4, kNodes = 6;
+  ASSERT_EQ(sections_of(bytes_)[kRoot].kind, static_cast<std::uint32_t>(SectionKind::kDirectory));
+  ASSERT_EQ(sections_of(bytes_)[kNodes].kind,
+            static_cast<std::uint32_t>(SectionKind::kDirectoryNodes));
+  for (const std::size_t i : {kRoot, kNodes}) {
+    expect_sections_rejected("missing", [=](Table& t) { t[i].kind = 77; });
+    expect_sections_rejected("twice", [=](Table& t) { t[i].kind = t[(i + 1) % 8].kind; });
+    expect_sections_rejected("too far", [=](Table& t) { t[i].offset += 1 << 30; });
+  }
+  expect_sections_rejected("no cell", [](Table& t) { t[kRoot].bytes = 16; });
+  expect_sections_rejected("no whole entry", [](Table& t) { t[kNodes].bytes -= 1; });
+  // A reader that knows neither answers by the index.
+  Bytes bytes = bytes_;
+  std::vector<SectionEntry> sections = sections_of(bytes);
+  sections[kRoot].kind = 77;
+  sections[kNodes].kind = 78;
+  set_sections(bytes, sections);
+  seal(bytes);
+  EXPECT_EQ(code_of(bytes), std::nullopt);
+  EXPECT_TRUE(verify_store(path_).is_sound());
+}
+
 TEST_F(StoreOpen, RejectsSectionTablesThatNoProgramWrote) {
   using Table = std::vector<SectionEntry>;
   for (std::size_t i = 0; i < 6; ++i) {

@@ -3,7 +3,8 @@
 
 namespace ptin {
 
-void LevelStars::read(PageId page, const StarFilter& filter, QueryContext& context) {
+template <class Page>
+void LevelStars::read_from(const Page& page, const StarFilter& filter, QueryContext& context) {
   living_.clear();
   stars_.clear();
   if (filter.with_ties) {
@@ -15,5 +16,8 @@ void LevelStars::read(PageId page, const StarFilter& filter, QueryContext& conte
     context.cost.stars_read += living_.stars.size();
   }
 }
+
+template void LevelStars::read_from(const PageId&, const StarFilter&, QueryContext&);
+template void LevelStars::read_from(const DirectoryPage&, const StarFilter&, QueryContext&);
 
 }  // namespace ptin

@@ -10,6 +10,7 @@
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
+#include "storage/point_directory.h"
 #include "storage/store_file.h"
 
 namespace ptin {
@@ -30,7 +31,13 @@ class LevelStars {
   /// Reads what the filter asks for of a page, in the place of the page before.
   /// @param filter  Of the level of detail (set_level()).
   /// @throws Error corruption, io_error
-  void read(PageId page, const StarFilter& filter, QueryContext& context);
+  void read(PageId page, const StarFilter& filter, QueryContext& context) {
+    read_from(page, filter, context);
+  }
+  /// The same of a page that the directory named.
+  void read(const DirectoryPage& page, const StarFilter& filter, QueryContext& context) {
+    read_from(page, filter, context);
+  }
   /// Calls visit(const LivingTriangle&) for triangles of T0, or of the page, whose box is wanted:
   /// wants(const GridBox&). Those of which the level does not tell are set aside.
   template <class Wants, class Visit>
@@ -59,6 +66,8 @@ class LevelStars {
   [[nodiscard]] std::uint64_t bytes_aside() const noexcept { return ties_.bytes(); }
 
  private:
+  template <class Page>
+  void read_from(const Page& page, const StarFilter& filter, QueryContext& context);
   template <class Wants, class Visit>
   void take(const LivingTriangle& t, const Wants& wants, const Visit& visit) {
     if (wants(box_of(t)) && !ties_.set_aside(t)) {
