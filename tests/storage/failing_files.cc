@@ -61,7 +61,7 @@ void expect_old_or_new(const StoreContent& new_content, int step) {
 
   int kept = 0, replaced = 0;
   for (const bool for_good : {false, true}) {
-    for (int nth = 1; nth <= counting.calls(); nth += step) {
+    for (int nth = counting.calls(); nth > 0; nth -= step) {
       for (const int failure : {ENOSPC, EIO}) {
         FailingFiles files(nth, failure, for_good);
         const auto code =

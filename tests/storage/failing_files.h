@@ -133,7 +133,7 @@ class PowerCutFiles final : public FileLayer {
 
 /// Publishes `content` over an older file, with each call of the file layer failing in turn: the
 /// result is the old file or the new one, and no other file.
-/// @param step  Every so many calls fail.
+/// @param step  Each so many calls one fails, the last among them.
 void expect_old_or_new(const StoreContent& content, int step = 1);
 
 }  // namespace ptin::test
