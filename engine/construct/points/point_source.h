@@ -43,7 +43,7 @@ struct PointWork {
 /// Disk, in files.folder, named: 27 bytes a point from when it is read, and 16 (for kFirst 24) more when
 /// it is shared out; then the former go, and buckets come, at most 16, mostly half of that
 /// (points/packed_bucket.h). Memory of a task: some MiB, and to sort a range as StageTask::memory
-/// says; here 32 bytes for each of at most 2^20 buckets, and 16 for each of at most 2^18 samples.
+/// says; here 32 bytes for each of at most 2^20 buckets, and 48 for each of at most 2^18 samples.
 class PointSource {
  public:
   /// Reads the points of all files. A pipe is read on this thread.
