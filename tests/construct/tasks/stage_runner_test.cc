@@ -73,8 +73,7 @@ TEST(StageRunner, ThrowsTheErrorOfTheFirstTaskThatFails) {
         later_has_failed = true;
         throw Error(ErrorCode::io_error, "the third");
       }
-      EXPECT_LT(task.number, 5U);
-      if (task.number == 4) {
+      if (task.number > 3) {  // begun before that one failed
         wait_until_stopped(task);
       }
       return "";
