@@ -7,9 +7,11 @@ namespace ptin {
 
 namespace {
 
+/// Without a byte that means nothing: the same frame makes the same file.
 struct PlainFrame {
   AffineMap map;
-  HeightEncoding heights;
+  std::uint64_t height_type;
+  double height_step, height_offset;
   double height_rounding, height_quantum, min_height, max_height;
   std::uint32_t vertical_crs_known, geographic;
 };
@@ -28,7 +30,9 @@ std::string take_text(ArrayFileReader& file) {
 
 void put_frame(ArrayFileWriter& file, const TerrainFrame& f) {
   const PlainFrame plain{f.map,
-                         f.heights,
+                         static_cast<std::uint64_t>(f.heights.type),
+                         f.heights.step,
+                         f.heights.offset,
                          f.height_rounding,
                          f.height_quantum,
                          f.min_height,
@@ -45,7 +49,7 @@ TerrainFrame take_frame(ArrayFileReader& file) {
   const PlainFrame plain = file.take<PlainFrame>()[0];
   TerrainFrame f;
   f.map = plain.map;
-  f.heights = plain.heights;
+  f.heights = {static_cast<HeightType>(plain.height_type), plain.height_step, plain.height_offset};
   f.height_rounding = plain.height_rounding;
   f.height_quantum = plain.height_quantum;
   f.min_height = plain.min_height;
