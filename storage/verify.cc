@@ -17,6 +17,7 @@
 #include "storage/directory_cells.h"
 #include "storage/error_table.h"
 #include "storage/file/checksum.h"
+#include "storage/file/read_only_file.h"
 #include "storage/page_packer.h"
 #include "storage/store_front.h"
 #include "storage/unique_keys.h"

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "tools/facts/numbers.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {

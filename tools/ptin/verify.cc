@@ -14,6 +14,7 @@
 #include <ogr_spatialref.h>
 
 #include "engine/crs/crs_facts.h"
+#include "engine/remote/remote_file.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
