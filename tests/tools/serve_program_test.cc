@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/error.h"
 #include "tests/tools/http_client.h"
 #include "tests/tools/program.h"
 #include "tools/serve/config_file.h"

@@ -18,6 +18,7 @@
 #include "engine/construct/build_parts.h"
 #include "engine/construct/build_worker.h"
 #include "engine/construct/tasks/await_file.h"
+#include "engine/construct/tasks/task_driver.h"
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/construct/tasks/task_worker.h"
 #include "tests/construct/resume_fixture.h"
