@@ -17,15 +17,6 @@ struct PlainFrame {
 };
 static_assert(std::is_trivially_copyable_v<PlainFrame>);
 
-void put_text(ArrayFileWriter& file, const std::string& text) {
-  file.put(std::span<const char>(text));
-}
-
-std::string take_text(ArrayFileReader& file) {
-  const std::span<const char> text = file.take<char>();
-  return {text.begin(), text.end()};
-}
-
 }  // namespace
 
 void put_frame(ArrayFileWriter& file, const TerrainFrame& f) {
@@ -41,7 +32,7 @@ void put_frame(ArrayFileWriter& file, const TerrainFrame& f) {
                          f.geographic ? 1U : 0U};
   file.put(std::span(&plain, 1));
   for (const std::string& text : {f.crs_wkt, f.horizontal_unit, f.vertical_unit}) {
-    put_text(file, text);
+    file.put_text(text);
   }
 }
 
@@ -56,9 +47,9 @@ TerrainFrame take_frame(ArrayFileReader& file) {
   f.max_height = plain.max_height;
   f.vertical_crs_known = plain.vertical_crs_known != 0;
   f.geographic = plain.geographic != 0;
-  f.crs_wkt = take_text(file);
-  f.horizontal_unit = take_text(file);
-  f.vertical_unit = take_text(file);
+  f.crs_wkt = file.take_text();
+  f.horizontal_unit = file.take_text();
+  f.vertical_unit = file.take_text();
   return f;
 }
 

@@ -6,6 +6,7 @@
 
 #include "engine/construct/grid/frame_file.h"
 #include "engine/construct/grid/point_sorter.h"
+#include "engine/construct/lines/edges_file.h"
 #include "engine/construct/points/packed_bucket.h"
 #include "engine/construct/points/point_buckets.h"
 #include "engine/construct/points/point_spool.h"
@@ -49,9 +50,7 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
   file.put(boxes_.boxes());
   file.put(index_.ends);
   file.put(index_.checksums);
-  file.put(index_.fixed.vertices());
-  file.put(index_.fixed.edges());
-  file.put(index_.fixed.sides_without_ground());
+  put_edges(file, index_.fixed);
   file.sync();
   return file.facts();
 }
@@ -71,12 +70,7 @@ PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
   result.boxes = file.take_copy<GridBox>();
   result.ends = file.take_copy<std::uint64_t>();
   result.checksums = file.take_copy<std::uint64_t>();
-  LineGraph lines;
-  lines.vertices = file.take_copy<LineVertex>();
-  lines.edges = file.take_copy<LineEdge>();
-  lines.without_ground = file.take_copy<SideWithoutGround>();
-  file.require_undamaged();
-  result.fixed = FixedEdges(std::move(lines));
+  result.fixed = take_edges(file);
   return PointBuckets(files, buckets, std::move(result));
 }
 

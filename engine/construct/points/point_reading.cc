@@ -64,14 +64,6 @@ struct PlainRead {
 };
 static_assert(std::is_trivially_copyable_v<PlainRead>);
 
-void put_line(ArrayFileWriter& file, const std::string& text) {
-  file.put(std::span<const char>(text));
-}
-std::string take_line(ArrayFileReader& file) {
-  const std::span<const char> text = file.take<char>();
-  return {text.begin(), text.end()};
-}
-
 /// Tells how much of a portion is done, in its bytes.
 class PortionProgress {
  public:
@@ -122,7 +114,7 @@ void put(ArrayFileWriter& file, const PortionRead& read) {
   file.put(std::span(&plain, 1));
   for (const std::string* text :
        {&source.crs, &source.vertical_crs, &source.units.plane, &source.units.heights}) {
-    put_line(file, *text);
+    file.put_text(*text);
   }
   file.put(read.samples);
   file.put(read.checksums);
@@ -142,7 +134,7 @@ PortionRead take_portion_read(ArrayFileReader& file) {
   read.source.lattice = plain.has_lattice != 0 ? std::optional(plain.lattice) : std::nullopt;
   for (std::string* text : {&read.source.crs, &read.source.vertical_crs, &read.source.units.plane,
                             &read.source.units.heights}) {
-    *text = take_line(file);
+    *text = file.take_text();
   }
   read.samples = file.take_copy<SampledPoint>();
   read.checksums = file.take_copy<std::uint64_t>();

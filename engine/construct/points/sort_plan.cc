@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "engine/construct/lines/edges_file.h"
 #include "engine/construct/points/point_spool.h"
 
 namespace ptin {
@@ -34,12 +35,10 @@ void put(ArrayFileWriter& file, const SortPlan& plan) {
                         plan.block_records, plan.bucket_points,
                         plan.least_memory};
   file.put(std::span(&plain, 1));
-  file.put(std::span<const char>(plan.buckets));
+  file.put_text(plan.buckets);
   file.put(plan.splitters);
   file.put(plan.spools);
-  file.put(plan.fixed.vertices());
-  file.put(plan.fixed.edges());
-  file.put(plan.fixed.sides_without_ground());
+  put_edges(file, plan.fixed);
 }
 
 SortPlan take_sort_plan(ArrayFileReader& file) {
@@ -52,15 +51,10 @@ SortPlan take_sort_plan(ArrayFileReader& file) {
   plan.block_records = plain.block_records;
   plan.bucket_points = plain.bucket_points;
   plan.least_memory = plain.least_memory;
-  const std::span<const char> buckets = file.take<char>();
-  plan.buckets.assign(buckets.begin(), buckets.end());
+  plan.buckets = file.take_text();
   plan.splitters = file.take_copy<std::uint64_t>();
   plan.spools = file.take_copy<PointReading::Spool>();
-  LineGraph lines;
-  lines.vertices = file.take_copy<LineVertex>();
-  lines.edges = file.take_copy<LineEdge>();
-  lines.without_ground = file.take_copy<SideWithoutGround>();
-  plan.fixed = FixedEdges(std::move(lines));
+  plan.fixed = take_edges(file);
   return plan;
 }
 

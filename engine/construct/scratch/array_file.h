@@ -49,6 +49,7 @@ class ArrayFileWriter {
   void put(const std::vector<T>& array) {
     put(std::span<const T>(array));
   }
+  void put_text(const std::string& text) { put(std::span<const char>(text)); }
 
   /// Of the arrays written so far.
   [[nodiscard]] const ArrayFileFacts& facts() const noexcept { return facts_; }
@@ -92,6 +93,11 @@ class ArrayFileReader {
     std::vector<T> copy(array.begin(), array.end());
     require_undamaged();
     return copy;
+  }
+  /// As take_copy(), of a text.
+  [[nodiscard]] std::string take_text() {
+    const std::vector<char> text = take_copy<char>();
+    return {text.begin(), text.end()};
   }
 
  private:
