@@ -33,19 +33,12 @@ HeightScan::Given given(RawType raw) {
 
 }  // namespace
 
-/// What the samples of a band are.
+/// What the samples of a band are. A plain value, without a byte that means nothing.
 struct RasterScan::Found {
-  HeightScan heights;  ///< Of rasters that do not hold whole codes.
+  HeightScan::Known heights{};  ///< Of rasters that do not hold whole codes.
   std::int64_t low = std::numeric_limits<std::int64_t>::max();  ///< Of whole codes.
   std::int64_t high = std::numeric_limits<std::int64_t>::min();
   std::uint64_t codes = 0;  ///< How many there are.
-
-  void join(const Found& other) {
-    heights.join(other.heights);
-    low = std::min(low, other.low);
-    high = std::max(high, other.high);
-    codes += other.codes;
-  }
 };
 
 RasterScan::RasterScan(RasterMosaic mosaic, std::int64_t band_samples)
@@ -68,6 +61,8 @@ SampleRange RasterScan::band(std::size_t number) const {
 
 SourceStage RasterScan::stage() const {
   SourceStage stage{"reading", {}, ""};
+  // The values of a step, of at most eight bytes, and whether each is one.
+  stage.task_bytes = 9 * step_.samples();
   const std::int64_t rows = rows_of_band();
   for (std::int64_t i = 0; i < (mosaic_.height() + rows - 1) / rows; ++i) {
     stage.sizes.push_back(band(static_cast<std::size_t>(i)).samples());
@@ -77,7 +72,8 @@ SourceStage RasterScan::stage() const {
 
 template <class T>
 RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const StageTask& task) const {
-  Found found{HeightScan(given(shape_.raw))};
+  HeightScan heights(given(shape_.raw));
+  Found found;
   const SampleRange whole = band(task.number);
   std::vector<T> values(
       static_cast<std::size_t>(step_.width * std::min(step_.height, whole.height)));
@@ -96,7 +92,7 @@ RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const StageTask& task) 
           found.high = valid[i] ? std::max<std::int64_t>(found.high, values[i]) : found.high;
           found.codes += valid[i];
         } else if (valid[i]) {
-          found.heights.add(shape_.offset + shape_.scale * static_cast<double>(values[i]));
+          heights.add(shape_.offset + shape_.scale * static_cast<double>(values[i]));
         }
       }
       done += n;
@@ -105,6 +101,7 @@ RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const StageTask& task) 
       }
     }
   }
+  found.heights = heights.known();
   return found;
 }
 
@@ -133,12 +130,17 @@ std::string RasterScan::run(const StageTask& task) {
 }
 
 HeightFit RasterScan::join(const std::vector<std::string>& results) const {
-  Found all{HeightScan(given(shape_.raw))};
+  HeightScan heights(given(shape_.raw));
+  Found all;
   for (const std::string& result : results) {
-    all.join(value_in_text<Found>(result));
+    const auto found = value_in_text<Found>(result);
+    heights.join(HeightScan(given(shape_.raw), found.heights));
+    all.low = std::min(all.low, found.low);
+    all.high = std::max(all.high, found.high);
+    all.codes += found.codes;
   }
   if (shape_.raw != RawType::kInt32) {
-    return all.heights.fit();
+    return heights.fit();
   }
   const HeightEncoding encoding{HeightType::int32, shape_.scale, shape_.offset};
   HeightFit fit{encoding, shape_.scale, 0.0, 0.0, -1.0, all.codes};
