@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/build_job.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <new>
 #include <string>
@@ -158,8 +159,14 @@ std::function<void(const char*, std::uint64_t, std::uint64_t)> Job::stages() con
 }
 
 std::vector<std::string> Job::run_stage(const SourceStage& stage, StageWorker& worker) const {
-  const StageLimits limits{resources.threads > 0 ? resources.threads : allowed_threads(),
-                           memory.sorting, resources.stop, this->stage(stage.name.c_str())};
+  const int wanted = resources.threads > 0 ? resources.threads : allowed_threads();
+  // No tile is in work yet: what is left for tiles is there for these tasks.
+  const std::uint64_t fit = memory.for_tiles(anonymous_bytes_now(), wanted) /
+                            std::max<std::uint64_t>(stage.task_bytes, 1);
+  const int threads =
+      static_cast<int>(std::clamp<std::uint64_t>(fit, 1, static_cast<std::uint64_t>(wanted)));
+  const StageLimits limits{threads, memory.sorting, resources.stop,
+                           this->stage(stage.name.c_str())};
   return resources.driver != nullptr ? resources.driver->run_stage(stage, worker, limits)
                                      : ptin::run_stage(stage, worker, limits);
 }

@@ -20,6 +20,7 @@ struct SourceStage {
   std::string name;                  ///< For progress: "reading".
   std::vector<std::uint64_t> sizes;  ///< Of each task, in a unit of the stage's own: for progress.
   std::string facts;                 ///< What each task is told; at most half a KB.
+  std::uint64_t task_bytes = 0;      ///< Memory that a task takes at least, by estimate.
 };
 
 /// One of them, as it is done.
@@ -55,6 +56,13 @@ using RunStage = std::function<std::vector<std::string>(const SourceStage&, Stag
 
 /// A RunStage: one task after the other, on this thread.
 [[nodiscard]] std::vector<std::string> run_alone(const SourceStage& stage, StageWorker& worker);
+/// The same, with what tasks may take, what stops them, and who is told how far they are: `progress`
+/// may be empty.
+/// @throws Error  as the first task that fails
+[[nodiscard]] std::vector<std::string> run_alone_within(
+    const SourceStage& stage, StageWorker& worker, std::uint64_t memory,
+    const std::stop_token& stop,
+    const std::function<void(std::uint64_t done, std::uint64_t total)>& progress);
 
 /// Bytes as two digits each, and back.
 [[nodiscard]] std::string digits_of(std::span<const std::byte> bytes);

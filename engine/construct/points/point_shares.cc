@@ -36,7 +36,6 @@ class ShareWriter {
     }
   }
   void finish(ArrayFileWriter& facts, ShareCounts counts) {
-    counts.records = records_;
     for (std::size_t range = 0; range < waiting_.size(); ++range) {
       write(range);
     }

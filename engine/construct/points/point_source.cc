@@ -61,17 +61,12 @@ std::vector<std::string> PointSource::run(const SourceStage& stage, bool alone) 
   if (!alone) {
     return work_.run(stage, tasks_);
   }
-  std::vector<std::string> told;
-  for (std::size_t number = 0; number < stage.sizes.size(); ++number) {
-    const auto progress = [&](std::uint64_t done) {
-      if (work_.progress) {
-        work_.progress(stage.name.c_str(), done, stage.sizes[number]);
-      }
-    };
-    told.push_back(
-        tasks_.run({stage.name, number, stage.facts, work_.memory, work_.stop, progress}));
-  }
-  return told;
+  return run_alone_within(stage, tasks_, work_.memory, work_.stop,
+                          [&](std::uint64_t done, std::uint64_t total) {
+                            if (work_.progress) {
+                              work_.progress(stage.name.c_str(), done, total);
+                            }
+                          });
 }
 
 /// Reads the portions of a plan; of those that have quotes there is none.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/construct/grid/point_sorter.h"
 #include "engine/construct/points/point_shares.h"
 #include "engine/construct/points/range_buckets.h"
 #include "engine/error.h"
@@ -16,6 +17,9 @@ namespace {
 constexpr const char* kReadingPlan = "portions";
 constexpr const char* kSortPlan = "plan";
 constexpr const char* kSharedPlan = "shares";
+
+/// What any task takes, of blocks, buffers and what it knows of files; bytes.
+constexpr std::uint64_t kTaskBytes = std::uint64_t{2} << 20;
 
 constexpr const char* kQuotes = "quotes";  ///< What a task tells of a portion that has them.
 
@@ -32,7 +36,7 @@ PointTasks::~PointTasks() = default;
 SourceStage PointTasks::reading(const ReadingPlan& plan) const {
   ArrayFileWriter file(files_.files, files_.path(kReadingPlan, 0));
   put(file, plan);
-  SourceStage stage{kReadingStage, {}, text_of_value(file.facts())};
+  SourceStage stage{kReadingStage, {}, text_of_value(file.facts()), kTaskBytes};
   for (const PointPortion& portion : plan.portions) {
     stage.sizes.push_back(portion.bytes);
   }
@@ -63,7 +67,8 @@ SourceStage PointTasks::sharing(std::shared_ptr<const SortPlan> plan) {
   plan_facts_ = file.facts();
   const std::vector<std::uint64_t> sizes(plan_->shares,
                                          std::max<std::uint64_t>(plan_->points / plan_->shares, 1));
-  return {kSharingStage, sizes, text_of_value(plan_facts_)};
+  return {kSharingStage, sizes, text_of_value(plan_facts_),
+          kTaskBytes + plan_->ranges() * plan_->block_records * sizeof(NumberedHeight)};
 }
 
 SourceStage PointTasks::sorting(const std::vector<std::string>& told) {
@@ -78,7 +83,7 @@ SourceStage PointTasks::sorting(const std::vector<std::string>& told) {
   file.put(shares);
   const std::vector<std::uint64_t> sizes(
       plan_->ranges(), std::max<std::uint64_t>(plan_->points / plan_->ranges(), 1));
-  return {kSortingStage, sizes, text_of_value(file.facts())};
+  return {kSortingStage, sizes, text_of_value(file.facts()), kTaskBytes + plan_->least_memory};
 }
 
 /// The plan, which is read once.

@@ -121,6 +121,21 @@ TEST(StageRunner, TellsHowFarItIs) {
   EXPECT_EQ(last, 9U);
 }
 
+TEST(RunAlone, GivesEachTaskTheMemoryAndAddsUpTheirProgress) {
+  Worker worker([](const StageTask& task) {
+    task.progress(1);
+    return std::to_string(task.number) + " " + std::to_string(task.memory);
+  });
+  std::vector<std::uint64_t> told;
+  const auto progress = [&](std::uint64_t done, std::uint64_t total) {
+    EXPECT_EQ(total, 9U);
+    told.push_back(done);
+  };
+  EXPECT_EQ(run_alone_within({"a", {3, 1, 5}, ""}, worker, 77, {}, progress),
+            (std::vector<std::string>{"0 77", "1 77", "2 77"}));
+  EXPECT_EQ(told, (std::vector<std::uint64_t>{1, 4, 5}));
+}
+
 TEST(StageRunner, IsTheSameThroughMessages) {
   const SourceStage stage{"reading", {1, 1}, std::string(400, 'f')};
   Worker worker([](const StageTask& task) -> std::string {
