@@ -9,32 +9,30 @@
 namespace ptin {
 
 PointStore::PointStore(std::uint64_t budget_bytes, std::string temporary_folder, FileLayer& files)
-    : block_points_(std::clamp<std::uint64_t>(budget_bytes / (4 * sizeof(MapPoint)), 1, 65536)),
-      most_blocks_(std::max<std::uint64_t>(budget_bytes / sizeof(MapPoint) / block_points_, 1)),
+    : most_points_(std::max<std::uint64_t>(budget_bytes / sizeof(MapPoint), 1)),
+      block_points_(std::clamp<std::uint64_t>(most_points_ / 4, 1, 65536)),
       folder_(std::move(temporary_folder)),
       files_(&files) {}
 
 void PointStore::add(std::span<const MapPoint> points) {
   while (!points.empty()) {
-    const std::uint64_t at = (size_ - spilled_) % block_points_;
-    if (at == 0) {
-      add_block();
+    if (size_ - spilled_ == most_points_) {
+      spill();
     }
-    const std::size_t n = std::min<std::size_t>(points.size(), block_points_ - at);
+    const std::uint64_t kept = size_ - spilled_;
+    const std::uint64_t at = kept % block_points_;
+    const std::uint64_t room = std::min(block_points_ - at, most_points_ - kept);
+    if (at == 0) {
+      blocks_.push_back(std::make_unique_for_overwrite<MapPoint[]>(room));
+    }
+    const std::size_t n = std::min<std::size_t>(points.size(), room);
     std::copy_n(points.begin(), n, blocks_.back().get() + at);
     size_ += n;
     points = points.subspan(n);
   }
 }
 
-void PointStore::add_block() {
-  if (blocks_.size() == most_blocks_) {
-    spill();
-  }
-  blocks_.push_back(std::make_unique_for_overwrite<MapPoint[]>(block_points_));
-}
-
-/// Writes all blocks, which are full, behind what is in the file.
+/// Writes what is in memory behind what is in the file.
 void PointStore::spill() {
   if (folder_.empty()) {
     throw Error(ErrorCode::resource_exhausted,
@@ -45,9 +43,9 @@ void PointStore::spill() {
     file_ = std::make_unique<ScratchFile>(*files_, folder_, "ptin-isolines", true);
   }
   for (const std::unique_ptr<MapPoint[]>& block : blocks_) {
-    file_->write_at(std::as_bytes(std::span(block.get(), block_points_)),
-                    spilled_ * sizeof(MapPoint));
-    spilled_ += block_points_;
+    const std::uint64_t n = std::min(block_points_, size_ - spilled_);
+    file_->write_at(std::as_bytes(std::span(block.get(), n)), spilled_ * sizeof(MapPoint));
+    spilled_ += n;
   }
   blocks_.clear();
 }

@@ -20,7 +20,8 @@ namespace ptin {
 /// owner.
 class PointStore {
  public:
-  /// @param budget_bytes      Bytes of points kept in memory, in blocks of at most a megabyte.
+  /// @param budget_bytes      Bytes of points kept in memory, in blocks of at most a megabyte. All of
+  ///                          them are used; one point fits any budget.
   /// @param temporary_folder  Where the file is made when the points do not fit; empty: no file.
   /// @param files             Borrowed for the life of the store.
   PointStore(std::uint64_t budget_bytes, std::string temporary_folder,
@@ -39,11 +40,11 @@ class PointStore {
   void add_block();
   void spill();
 
-  std::uint64_t block_points_;  ///< Points in a block.
-  std::uint64_t most_blocks_;   ///< Blocks in memory at most.
+  std::uint64_t most_points_;   ///< Points in memory at most.
+  std::uint64_t block_points_;  ///< Points in a block; fewer in the last one that fits.
   std::string folder_;
   FileLayer* files_;
-  std::vector<std::unique_ptr<MapPoint[]>> blocks_;  ///< The last points; all but the last full.
+  std::vector<std::unique_ptr<MapPoint[]>> blocks_;  ///< The last points, in order.
   std::uint64_t size_ = 0;
   std::uint64_t spilled_ = 0;          ///< Points in the file, before those in memory.
   std::unique_ptr<ScratchFile> file_;  ///< Made when it is needed.

@@ -105,6 +105,22 @@ TEST(PointStore, GivesBackWhatWasAddedFromMemoryAndFromAFileWithoutAName) {
   EXPECT_TRUE(folder.is_empty());
 }
 
+/// Without a folder a store is asked for as many points as its budget holds, and not for one less.
+TEST(PointStore, UsesAllOfItsBudget) {
+  const Folder folder;
+  for (std::size_t most = 1; most <= 41; ++most) {
+    SCOPED_TRACE(most);
+    PointStore kept(most * sizeof(MapPoint), {});
+    fill(kept, most);
+    expect_read_back(kept);
+    const MapPoint more = point(most);
+    EXPECT_THROW(kept.add({&more, 1}), Error);
+    PointStore spilled(most * sizeof(MapPoint), folder.path);
+    fill(spilled, 3 * most + 1);
+    expect_read_back(spilled);
+  }
+}
+
 TEST(PointStore, RefusesMoreThanItsBudgetWithoutAFolderThatTakesIt) {
   const Folder folder;
   EXPECT_EQ(refusal({kBudget, {}}), ErrorCode::resource_exhausted);
