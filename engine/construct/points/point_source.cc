@@ -31,6 +31,22 @@ void check_area(const ConvexHull& hull, std::uint64_t points, const std::string&
 
 }  // namespace
 
+/// Does work that reads temporary files. Where one is not what was written, all points are read once
+/// more and the work is done again; the second time is the last.
+template <class Work>
+auto PointSource::undamaged(const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corruption || was_damaged_ || is_read_once()) {
+      throw;
+    }
+  }
+  was_damaged_ = true;
+  reading_.reset();
+  return work();
+}
+
 PointSource::PointSource(const std::vector<std::string>& inputs, const SourceOptions& options,
                          PointWork work)
     : inputs_(inputs),
@@ -38,13 +54,24 @@ PointSource::PointSource(const std::vector<std::string>& inputs, const SourceOpt
       work_(std::move(work)),
       tasks_(inputs_, options_, work_.files) {
   static_cast<void>(PointGridScan(options_.resolution, inputs_.empty() ? "" : inputs_[0]));
-  work_.files.remove_all();
   try {
-    reading_ = join_portions(inputs_, options_, work_.files, read_all());
+    undamaged([&] { read(); });
   } catch (...) {
     remove_files();
     throw;
   }
+}
+
+/// Reads all points, if that was not done.
+void PointSource::read() {
+  if (!reading_) {
+    work_.files.remove_all();
+    reading_ = join_portions(inputs_, options_, work_.files, read_all());
+  }
+}
+
+bool PointSource::is_read_once() const {
+  return std::any_of(inputs_.begin(), inputs_.end(), can_be_read_once_only);
 }
 
 PointSource::~PointSource() { remove_files(); }
@@ -71,8 +98,7 @@ std::vector<std::string> PointSource::run(const SourceStage& stage, bool alone) 
 
 /// Reads the portions of a plan; of those that have quotes there is none.
 std::vector<std::optional<SpooledPortion>> PointSource::read_some(const ReadingPlan& plan) {
-  const bool alone = std::any_of(inputs_.begin(), inputs_.end(), can_be_read_once_only);
-  const std::vector<std::string> told = run(tasks_.reading(plan), alone);
+  const std::vector<std::string> told = run(tasks_.reading(plan), is_read_once());
   std::vector<std::optional<SpooledPortion>> portions;
   for (std::size_t i = 0; i < told.size(); ++i) {
     const auto facts = PointTasks::portion_in(told[i]);
@@ -163,6 +189,13 @@ void PointSource::join_ranges(const std::vector<std::string>& told, const SortPl
 }
 
 PointBuckets PointSource::sort(const std::string& buckets, bool is_last) {
+  return undamaged([&] {
+    read();
+    return sort_once(buckets, is_last);
+  });
+}
+
+PointBuckets PointSource::sort_once(const std::string& buckets, bool is_last) {
   const PointGrid grid = grid_with_lines(*reading_, options_);
   PointBuckets::Index index = begin_index(grid);
   LinesOnGrid lines;

@@ -52,6 +52,7 @@ class PointSource {
   ///                invalid_argument    as the streams; CRSs or units that differ; no points
   ///                resource_exhausted  the disk is full
   ///                cancelled           `work.stop` fired
+  ///                corruption          as sort()
   ///                Of several files that cannot be read, the first one's. All are opened before
   ///                any is read.
   PointSource(const std::vector<std::string>& inputs, const SourceOptions& options, PointWork work);
@@ -80,12 +81,18 @@ class PointSource {
   /// @throws Error  invalid_argument    fewer than 3 distinct points; all collinear; an extent of more
   ///                                    than 2^30 grid units (the message names a resolution); lines
   ///                                    that do not go together with the points
-  ///                corruption          a temporary file is not what was written
+  ///                corruption          a temporary file is not what was written, after all points were
+  ///                                    read once more for such a file, or from a pipe
   ///                io_error, resource_exhausted, cancelled  as the constructor
   [[nodiscard]] PointBuckets sort(const std::string& buckets, bool is_last);
 
  private:
   void remove_files() noexcept;
+  template <class Work>
+  auto undamaged(const Work& work);
+  void read();
+  [[nodiscard]] bool is_read_once() const;
+  [[nodiscard]] PointBuckets sort_once(const std::string& buckets, bool is_last);
   [[nodiscard]] std::vector<std::string> run(const SourceStage& stage, bool alone);
   [[nodiscard]] std::vector<SpooledPortion> read_all();
   [[nodiscard]] std::vector<std::optional<SpooledPortion>> read_some(const ReadingPlan& plan);
@@ -98,6 +105,7 @@ class PointSource {
   PointWork work_;
   PointTasks tasks_;
   std::optional<PointReading> reading_;
+  bool was_damaged_ = false;  ///< A temporary file was, and all points were read once more.
 };
 
 }  // namespace ptin

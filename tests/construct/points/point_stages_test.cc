@@ -293,37 +293,80 @@ TEST(PointBuckets, KnowTheBucketOfEachPoint) {
   EXPECT_GT(buckets.buckets(), buckets.size() / buckets.bucket_points() + 1);  // some have fewer
 }
 
-TEST(PointStages, NameTheFileThatIsDamaged) {
+/// Does stages by processes of their own, as it were, and damages a file of theirs so many times.
+class DamagedStages {
+ public:
+  DamagedStages(const MemoryFile& source, const ScratchFolder& folder, std::string file,
+                bool is_cut, int times)
+      : source_(source), folder_(folder), file_(std::move(file)), is_cut_(is_cut), times_(times) {}
+
+  [[nodiscard]] PointWork work() {
+    return {{FileLayer::system(), folder_.path()},
+            [this](const SourceStage& stage, StageWorker&) {
+              damage();
+              PointTasks other({source_.path()}, {}, {FileLayer::system(), folder_.path()});
+              std::vector<std::string> told = run_alone(stage, other);
+              if (stage.name == kReadingStage) {
+                is_new_ = true;
+              }
+              damage();
+              return told;
+            },
+            {},
+            0};
+  }
+  [[nodiscard]] int times_left() const { return times_; }
+
+ private:
+  /// Damages the file when it is there, once after each reading of all points.
+  void damage() {
+    if (times_ == 0 || !is_new_ || !std::filesystem::exists(file_)) {
+      return;
+    }
+    --times_;
+    is_new_ = false;
+    std::string bytes = oracle::bytes_of(file_);
+    bytes[bytes.size() / 2] ^= 1;
+    oracle::write_text(file_, is_cut_ ? bytes.substr(0, bytes.size() / 2) : bytes);
+  }
+
+  const MemoryFile& source_;
+  const ScratchFolder& folder_;
+  std::string file_;
+  bool is_cut_;
+  int times_;
+  bool is_new_ = false;
+};
+
+TEST(PointStages, ReadAllOnceMoreWhereAFileIsDamagedAndNameItTheSecondTime) {
   const MemoryFile file("points.xyz", text_of(points_of(PointKind::kEven, 5'000, 2)));
+  const auto written = [&](const ScratchFolder& folder, DamagedStages& stages) {
+    {
+      PointSource source({file.path()}, {}, stages.work());
+      const PointBuckets buckets = source.sort(folder.file("buckets"), true);
+      std::ignore = buckets.save(FileLayer::system(), folder.file("index"));
+    }
+    return written_in(folder);
+  };
+  const ScratchFolder undamaged(ScratchFolder::Size::kSmall);
+  DamagedStages sound(file, undamaged, "", false, 0);
+  const Written expected = written(undamaged, sound);
   for (const std::string kind : {"spool", "read", "plan", "share", "shared", "shares", "range"}) {
-    SCOPED_TRACE(kind);
     for (const bool is_cut : {false, true}) {
-      const ScratchFolder folder(ScratchFolder::Size::kSmall);
-      bool is_done = false;
-      const auto damage = [&] {
-        const std::string name = folder.file("sort." + kind + "-0");
-        if (is_done || !std::filesystem::exists(name)) {
-          return;
+      for (const int times : {1, 2}) {
+        SCOPED_TRACE(kind + (is_cut ? " cut " : " changed ") + std::to_string(times));
+        const ScratchFolder folder(ScratchFolder::Size::kSmall);
+        const std::string damaged = folder.file("sort." + kind + "-0");
+        DamagedStages stages(file, folder, damaged, is_cut, times);
+        try {
+          EXPECT_EQ(written(folder, stages), expected);
+          EXPECT_EQ(times, 1) << "sorted";
+        } catch (const Error& e) {
+          EXPECT_EQ(times, 2) << e.what();
+          EXPECT_EQ(e.code(), ErrorCode::corruption) << e.what();
+          EXPECT_EQ(e.context(), damaged);
         }
-        is_done = true;
-        std::string bytes = oracle::bytes_of(name);
-        bytes[bytes.size() / 2] ^= 1;
-        oracle::write_text(name, is_cut ? bytes.substr(0, bytes.size() / 2) : bytes);
-      };
-      const auto run = [&](const SourceStage& stage, StageWorker&) {
-        damage();
-        PointTasks other({file.path()}, {}, {FileLayer::system(), folder.path()});
-        std::vector<std::string> told = run_alone(stage, other);
-        damage();
-        return told;
-      };
-      try {
-        PointSource source({file.path()}, {}, {{FileLayer::system(), folder.path()}, run, {}, 0});
-        std::ignore = source.sort(folder.file("buckets"), true);
-        ADD_FAILURE() << "sorted";
-      } catch (const Error& e) {
-        EXPECT_EQ(e.code(), ErrorCode::corruption) << e.what();
-        EXPECT_EQ(e.context(), folder.file("sort." + kind + "-0"));
+        EXPECT_EQ(stages.times_left(), 0);
       }
     }
   }
