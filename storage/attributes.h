@@ -49,6 +49,12 @@ class StarPredicate {
   StarPredicate& operator=(const StarPredicate&) = default;
   virtual ~StarPredicate() = default;
   [[nodiscard]] virtual bool may_hold(const StarAttributes& a) const noexcept = 0;
+  /// Of a test that asks whether a box meets some place: a box around that place. What the test is true
+  /// of, it is then true of when its box is cut to reach() and grown by a unit. Of another test, and
+  /// where nothing better is known: the box of everything.
+  [[nodiscard]] virtual GridBox reach() const noexcept {
+    return {INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
+  }
 };
 
 /// Those of ascending steps, ordered heights (storage/page_columns.h), that lie above `low` and not

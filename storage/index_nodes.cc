@@ -72,7 +72,7 @@ layout::NodeEntry IndexNodes::descend_to(PageId page) const {
 
 void IndexNodes::add_ranges(std::uint32_t level, std::span<const std::uint64_t> numbers,
                             RangesToCome& ranges) const noexcept {
-  RangeJoiner range(layout::kNodeBytes);
+  RangeJoiner range(layout::kNodeBytes, file_.is_far());
   const auto send = [&] {
     if (range.size() > 0) {
       ranges.add({offset_of(range.begin()), range.size() * layout::kNodeBytes});

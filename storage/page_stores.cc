@@ -18,7 +18,7 @@ void DescribedPageStore::announce(std::span<const PageId> ids,
 
 void DescribedPageStore::add_ranges(std::span<const PageId> ids,
                                     RangesToCome& ranges) const noexcept {
-  RangeJoiner range(slots_.page_bytes);
+  RangeJoiner range(slots_.page_bytes, file_.is_far());
   const auto send = [&] {
     if (range.size() > 0) {
       ranges.add(

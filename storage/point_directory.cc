@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/error.h"
+#include "engine/geometry/infinity.h"
 #include "storage/file/checksum.h"
 #include "storage/file/range_joiner.h"
 
@@ -30,6 +31,9 @@ double rarity(const DirectoryPage& p) {
   return (static_cast<double>(p.box.max_x) - p.box.min_x + 1) *
          (static_cast<double>(p.box.max_y) - p.box.min_y + 1) * short_value(p.error_max);
 }
+
+/// A box of the grid with a unit around it.
+GridBox grown(const GridBox& b) { return {b.min_x - 1, b.min_y - 1, b.max_x + 1, b.max_y + 1}; }
 
 }  // namespace
 
@@ -74,20 +78,41 @@ ByteRange PointDirectory::range_of(const DirectoryRoot& root, std::uint32_t cell
   return {place_.nodes.offset + range.offset, range.bytes};
 }
 
-std::vector<std::byte> PointDirectory::read_node(const DirectoryRoot& root,
-                                                 std::uint32_t cell) const {
-  const ByteRange range = range_of(root, cell);
-  std::vector<std::byte> node(range.bytes);
-  if (!node.empty()) {
-    file_.read_at(node, range.offset);
+/// Reads and verifies the node of a cell, and calls visit(const DirectoryPage&) for those pages that
+/// may have stars that live at the filter's level.
+template <class Visit>
+void PointDirectory::read_node(const DirectoryRoot& root, const DirectoryCells::Cell& cell,
+                               const StarFilter& filter, IoCounters& counters,
+                               const Visit& visit) const {
+  const auto place = [&] {
+    return file_.path() + ", directory node " + std::to_string(cell.number);
+  };
+  const ByteRange range = range_of(root, cell.number);
+  std::vector<std::byte> bytes(range.bytes);
+  if (!bytes.empty()) {
+    file_.read_at(bytes, range.offset);
   }
-  if (static_cast<std::uint32_t>(checksum_of(node)) != root.checksums[cell]) {
+  ++counters.index_nodes;
+  counters.bytes_read += bytes.size();
+  if (static_cast<std::uint32_t>(checksum_of(bytes)) != root.checksums[cell.number]) {
     throw Error(
         ErrorCode::corruption,
         "the node does not match the checksum that the directory holds; the file is damaged",
-        file_.path() + ", directory node " + std::to_string(cell));
+        place());
   }
-  return node;
+  const std::int32_t level = level_bits(filter.level);
+  const DirectoryNode node(bytes);
+  for (std::size_t i = 0; i < node.count(); ++i) {
+    const layout::DirectoryEntry e = node.entry(i);
+    if (e.page >= pages_) {
+      throw Error(ErrorCode::corruption, "the node names a page that is not there", place());
+    }
+    const DirectoryPage page{PageId{e.page}, e.checksum, box_of_bytes(e.box, cell.box),
+                             root.scale.error_of(e.error_max), root.scale.death_of(e.death_min)};
+    if (page.error_max > level - (filter.with_ties ? 1 : 0) && page.death_min <= level + 1) {
+      visit(page);
+    }
+  }
 }
 
 void PointDirectory::find(std::span<const GridBox> places, const StarFilter& filter,
@@ -113,32 +138,17 @@ void PointDirectory::find(std::span<const GridBox> places, const StarFilter& fil
       }
     }
   }
-  const std::int32_t level = level_bits(filter.level);
   for (auto at = asked.begin(); at != asked.end();) {
     const DirectoryCells::Cell cell = at->cell;
     const auto next =
         std::find_if(at, asked.end(), [&](const Asked& a) { return a.cell.number != cell.number; });
-    const std::vector<std::byte> bytes = read_node(root, cell.number);
-    ++counters.index_nodes;
-    counters.bytes_read += bytes.size();
-    const DirectoryNode node(bytes);
-    for (std::size_t i = 0; i < node.count(); ++i) {
-      const layout::DirectoryEntry e = node.entry(i);
-      if (e.page >= pages_) {
-        throw Error(ErrorCode::corruption, "the node names a page that is not there",
-                    file_.path() + ", directory node " + std::to_string(cell.number));
-      }
-      const DirectoryPage page{PageId{e.page}, e.checksum, box_of_bytes(e.box, cell.box),
-                               root.scale.error_of(e.error_max), root.scale.death_of(e.death_min)};
-      if (page.error_max <= level - (filter.with_ties ? 1 : 0) || page.death_min > level + 1) {
-        continue;
-      }
+    read_node(root, cell, filter, counters, [&](const DirectoryPage& page) {
       for (auto a = at; a != next; ++a) {
         if (contains(page.box, places[a->place])) {
           found[a->place].push_back(page);
         }
       }
-    }
+    });
     at = next;
   }
   for (std::vector<DirectoryPage>& pages : found) {
@@ -148,6 +158,45 @@ void PointDirectory::find(std::span<const GridBox> places, const StarFilter& fil
     });
   }
   file_.settle(counters);
+}
+
+std::uint64_t PointDirectory::bytes_for(const GridBox& box) const {
+  const DirectoryRoot& root = this->root();
+  std::uint64_t bytes = 0;
+  root.cells.for_each(
+      box, [&](const DirectoryCells::Cell& c) { bytes += range_of(root, c.number).bytes; });
+  return bytes;
+}
+
+void PointDirectory::find_in(const StarFilter& filter, std::vector<DirectoryPage>& pages,
+                             IoCounters& counters) const {
+  const DirectoryRoot& root = this->root();
+  {
+    RangesToCome ranges(file_, counters);
+    root.cells.for_each(
+        filter.box, [&](const DirectoryCells::Cell& c) { ranges.add(range_of(root, c.number)); });
+  }
+  std::vector<DirectoryPage> named;
+  root.cells.for_each(filter.box, [&](const DirectoryCells::Cell& cell) {
+    read_node(root, cell, filter, counters, [&](const DirectoryPage& page) {
+      // What the stars have in common with the reach lies in some cell; regions are rounded outwards.
+      const StarAttributes cut{grown(page.box), kAllHeights, short_value(page.error_max),
+                               -kInfinity};
+      if (meets(page.box, filter.box) && (filter.also == nullptr || filter.also->may_hold(cut))) {
+        named.push_back(page);
+      }
+    });
+  });
+  file_.settle(counters);
+  std::sort(named.begin(), named.end(),
+            [](const DirectoryPage& a, const DirectoryPage& b) { return a.id < b.id; });
+  for (const DirectoryPage& page : named) {
+    if (!pages.empty() && pages.back().id == page.id) {
+      pages.back().box = united(pages.back().box, page.box);
+    } else {
+      pages.push_back(page);
+    }
+  }
 }
 
 }  // namespace ptin

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The directory of a file, read: from places to the pages that may have living stars there, by one
-// node a place.
+// The directory of a file, read: from places, or boxes, to the pages that may have living stars there,
+// by one node a place.
 #pragma once
 
 #include <cstdint>
@@ -74,11 +74,24 @@ class PointDirectory {
   void find(std::span<const GridBox> places, const StarFilter& filter,
             std::span<std::vector<DirectoryPage>> found, IoCounters& counters) const;
 
+  /// Appends the pages that may hold what the filter asks for, each once, ascending, with the box of
+  /// what lies in the cells that the filter's box meets. Of heights nothing is known here: those of
+  /// the filter are not asked, nor its steps.
+  /// REQUIRES: filter.also is null, or its reach lies within filter.box.
+  /// Cost: as above, of those cells.
+  /// @throws Error corruption, io_error
+  void find_in(const StarFilter& filter, std::vector<DirectoryPage>& pages,
+               IoCounters& counters) const;
+  /// Bytes of the nodes that find_in() reads for a box.
+  /// @throws Error as find_in()
+  [[nodiscard]] std::uint64_t bytes_for(const GridBox& box) const;
+
  private:
   [[nodiscard]] const DirectoryRoot& root() const;
   [[nodiscard]] ByteRange range_of(const DirectoryRoot& root, std::uint32_t cell) const noexcept;
-  [[nodiscard]] std::vector<std::byte> read_node(const DirectoryRoot& root,
-                                                 std::uint32_t cell) const;
+  template <class Visit>
+  void read_node(const DirectoryRoot& root, const DirectoryCells::Cell& cell,
+                 const StarFilter& filter, IoCounters& counters, const Visit& visit) const;
 
   const ReadableFile& file_;
   DirectoryPlace place_;

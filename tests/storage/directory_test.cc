@@ -168,6 +168,57 @@ TEST(PointDirectory, NamesEachPageWithLivingStarsAtAPlace) {
   }
 }
 
+/// The triangle below the diagonal of a box.
+class BelowDiagonal final : public StarPredicate {
+ public:
+  explicit BelowDiagonal(const GridBox& box) : box_(box) {}
+  [[nodiscard]] bool may_hold(const StarAttributes& a) const noexcept override {
+    return meets(a.box, box_) && std::int64_t{std::max(a.box.min_x, box_.min_x)} - box_.min_x +
+                                         std::max(a.box.min_y, box_.min_y) - box_.min_y <=
+                                     std::min(std::int64_t{box_.max_x} - box_.min_x,
+                                              std::int64_t{box_.max_y} - box_.min_y);
+  }
+  [[nodiscard]] GridBox reach() const noexcept override { return box_; }
+
+ private:
+  GridBox box_;
+};
+
+TEST(PointDirectory, NamesEachPageWithLivingStarsInABox) {
+  const TwoStores stores(HeightType::int32, 5);
+  const PointDirectory& directory = *stores.far->directory();
+  const GridBox& bounds = stores.near->facts().bounds;
+  std::mt19937_64 random(2);
+  std::size_t named = 0, expected = 0;
+  for (int i = 0; i < 100; ++i) {
+    StarFilter filter;
+    filter.box = i == 0 ? GridBox{INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX}
+                        : any_box(random, bounds.max_x);
+    filter.level = std::vector<double>{-1.0, 0.0, 0.5, 10.0, 1e30}[random() % 5];
+    filter.with_ties = random() % 2 == 0;
+    const BelowDiagonal below(filter.box);
+    filter.also = i > 0 && random() % 2 == 0 ? &below : nullptr;
+    std::vector<StarPage> pages;
+    std::vector<DirectoryPage> found;
+    IoCounters counters, cost;
+    stores.near->star_index().search_stars(filter, pages, counters);
+    directory.find_in(filter, found, cost);
+    for (std::size_t k = 1; k < found.size(); ++k) {
+      ASSERT_LT(found[k - 1].id, found[k].id);
+    }
+    EXPECT_EQ(cost.bytes_read, directory.bytes_for(filter.box));
+    for (const StarPage& page : pages) {
+      const auto at = std::lower_bound(found.begin(), found.end(), page.id,
+                                       [](const DirectoryPage& p, PageId id) { return p.id < id; });
+      EXPECT_TRUE(at != found.end() && at->id == page.id) << "box " << i;
+    }
+    named += found.size();
+    expected += pages.size();
+  }
+  EXPECT_LT(named, 2 * expected) << "boxes in bytes name more, not many";
+  EXPECT_GT(expected, 1000U);
+}
+
 TEST(PointDirectory, IsSoundByVerify) {
   for (const std::uint64_t pages_of_cell : {1U, 7U, 1000U}) {
     const TestFolder folder;

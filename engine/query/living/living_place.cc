@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/living/living_place.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "storage/packed_rtree.h"
 #include "storage/page_columns.h"
+#include "storage/point_directory.h"
 
 namespace ptin {
 
 namespace {
+
+/// With more bytes of nodes, of a large box, the index is asked: it leaves out what lies above the
+/// level by few nodes.
+constexpr std::uint64_t kMostDirectoryBytes = std::uint64_t{64} << 10;
+
+PageId id_of(PageId page) { return page; }
+PageId id_of(const DirectoryPage& page) { return page.id; }
 
 bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
                    const HeightEncoding& heights) {
@@ -38,21 +47,47 @@ bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingV
              .also = place.stars,
              .also_of_stars = place.asks_each_star};
   set_level(detail_, filter_);
-  std::vector<StarPage> pages;
-  store_.star_index().search_stars(filter_, pages, context.cost.io);
-  std::vector<PageId> ids(pages.size());
-  std::uint64_t records = 0;
-  for (std::size_t i = 0; i < pages.size(); ++i) {
-    ids[i] = pages[i].id;
-    records += pages[i].records;
+  if (asks_directory()) {
+    std::vector<DirectoryPage> named;
+    store_.directory()->find_in(filter_, named, context.cost.io);
+    const double records_of_page = static_cast<double>(store_.record_count()) /
+                                   static_cast<double>(store_.pages().page_count());
+    return take_all<DirectoryPage>(
+        named, static_cast<std::uint64_t>(records_of_page * static_cast<double>(named.size())),
+        place, context, visitor);
   }
+  std::vector<StarPage> found;
+  store_.star_index().search_stars(filter_, found, context.cost.io);
+  std::vector<PageId> pages;
+  std::uint64_t records = 0;
+  for (const StarPage& page : found) {
+    pages.push_back(page.id);
+    records += page.records;
+  }
+  return take_all<PageId>(pages, records, place, context, visitor);
+}
+
+/// Whether the directory is asked instead of the index: it is read in one round, and knows of boxes
+/// and of levels alone.
+bool LivingReader::asks_directory() const {
+  return store_.directory() != nullptr && filter_.heights == kAllHeights && filter_.steps.empty() &&
+         (filter_.also == nullptr || contains(filter_.box, filter_.also->reach())) &&
+         store_.directory()->bytes_for(filter_.box) <= kMostDirectoryBytes;
+}
+
+template <class Page>
+bool LivingReader::take_all(std::span<const Page> pages, std::uint64_t records,
+                            const LivingPlace& place, QueryContext& context,
+                            LivingVisitor& visitor) {
   if (!visitor.expect(records) || !visitor.begin(store_.t0().triangles.size())) {
     return false;
   }
   visit_living(store_.t0(), filter_.level,
                [&](const LivingTriangle& t) { offer(t, place, visitor); });
+  std::vector<PageId> ids(pages.size());
+  std::transform(pages.begin(), pages.end(), ids.begin(), [](const Page& p) { return id_of(p); });
   store_.pages().announce(ids, context.cost.io);
-  for (const PageId page : ids) {
+  for (const Page& page : pages) {
     context.check_stop();
     if (!(filter_.with_ties ? take_tied_page(page, place, context, visitor)
                             : take_page(page, place, context, visitor))) {
@@ -66,7 +101,8 @@ bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingV
   return true;
 }
 
-bool LivingReader::take_page(PageId page, const LivingPlace& place, QueryContext& context,
+template <class Page>
+bool LivingReader::take_page(const Page& page, const LivingPlace& place, QueryContext& context,
                              LivingVisitor& visitor) {
   living_.clear();
   context.cost.records_examined += store_.read_living(page, filter_, living_, context.cost.io);
@@ -86,7 +122,8 @@ bool LivingReader::take_page(PageId page, const LivingPlace& place, QueryContext
 }
 
 /// The same where the level cuts between records of one error.
-bool LivingReader::take_tied_page(PageId page, const LivingPlace& place, QueryContext& context,
+template <class Page>
+bool LivingReader::take_tied_page(const Page& page, const LivingPlace& place, QueryContext& context,
                                   LivingVisitor& visitor) {
   stars_.clear();
   context.cost.records_examined += store_.read_stars(page, filter_, stars_, context.cost.io);

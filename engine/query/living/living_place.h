@@ -37,7 +37,8 @@ class LivingVisitor {
   LivingVisitor(const LivingVisitor&) = delete;
   LivingVisitor& operator=(const LivingVisitor&) = delete;
   virtual ~LivingVisitor() = default;
-  /// Called once, before a page is read: `records` are on the pages that will be. False ends it.
+  /// Called once, before a page is read: about so many records are on the pages that will be. False
+  /// ends it.
   virtual bool expect(std::uint64_t /*records*/) { return true; }
   /// Called before the triangles of T0, and of each page: at most so many come, and those that the
   /// level has not decided yet. False ends it.
@@ -65,9 +66,15 @@ class LivingReader {
   bool read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor);
 
  private:
-  bool take_page(PageId page, const LivingPlace& place, QueryContext& context,
+  [[nodiscard]] bool asks_directory() const;
+  template <class Page>
+  bool take_all(std::span<const Page> pages, std::uint64_t records, const LivingPlace& place,
+                QueryContext& context, LivingVisitor& visitor);
+  template <class Page>
+  bool take_page(const Page& page, const LivingPlace& place, QueryContext& context,
                  LivingVisitor& visitor);
-  bool take_tied_page(PageId page, const LivingPlace& place, QueryContext& context,
+  template <class Page>
+  bool take_tied_page(const Page& page, const LivingPlace& place, QueryContext& context,
                       LivingVisitor& visitor);
   [[nodiscard]] bool is_wanted(const LivingTriangle& t, const LivingPlace& place) const;
   void offer(const LivingTriangle& t, const LivingPlace& place, LivingVisitor& visitor);

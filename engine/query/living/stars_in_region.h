@@ -16,6 +16,7 @@ class StarsInRegion final : public StarPredicate {
   [[nodiscard]] bool may_hold(const StarAttributes& a) const noexcept override {
     return region_->meets(a.box);
   }
+  [[nodiscard]] GridBox reach() const noexcept override { return region_->bounds(); }
 
  private:
   const GridRegion* region_;

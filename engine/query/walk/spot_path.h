@@ -30,6 +30,7 @@ class SpotPath final : public StarPredicate {
   [[nodiscard]] bool may_hold(const StarAttributes& a) const noexcept override {
     return meets(a.box);
   }
+  [[nodiscard]] GridBox reach() const noexcept override { return bounds(); }
   /// True when the closed box (grid units) shares a point with some segment. Exact. Cost: constant
   /// for a box that holds a long piece of the line or lies away from the line; otherwise
   /// logarithmic in the segments, plus the segments near the box.

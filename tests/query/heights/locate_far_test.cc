@@ -4,9 +4,6 @@
 // in few rounds.
 #include <algorithm>
 #include <bit>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <random>
 
@@ -16,13 +13,11 @@
 #include "engine/error.h"
 #include "engine/query/terrain.h"
 #include "engine/query/walk/spot_set.h"
-#include "storage/packed_segment.h"
-#include "storage/store_writer.h"
 #include "tests/query/built_terrain.h"
+#include "tests/query/far_file.h"
 #include "tests/query/line_oracle.h"
 #include "tests/query/reference_hierarchy.h"
-#include "tests/storage/noting_source.h"
-#include "tests/support/test_folder.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -30,49 +25,10 @@ namespace {
 using reference::Hierarchy;
 using reference::nasty_spot;
 using reference::TemporaryStore;
-using test::NotingSource;
-
-/// A directory of many cells, however small the file is and whatever it costs.
-DirectoryOptions small_cells(std::uint64_t pages_of_cell) {
-  return {.least_pages = 1, .pages_of_cell = pages_of_cell, .page_bytes_of_byte = 1};
-}
-
-std::vector<std::byte> bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string all{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  std::vector<std::byte> bytes(all.size());
-  std::memcpy(bytes.data(), all.data(), all.size());
-  return bytes;
-}
-
-constexpr std::size_t kFrontBytes = std::size_t{64} << 10;
-
-/// A file opened as one that lies elsewhere, and what was read of it.
-struct Far {
-  std::shared_ptr<NotingSource> source;
-  Terrain terrain;
-  explicit Far(const std::vector<std::byte>& bytes, std::size_t front = kFrontBytes)
-      : source(std::make_shared<NotingSource>(bytes, std::min(front, bytes.size()))),
-        terrain(StoreFile::open(source)) {}
-};
-
-/// The same file with a directory, and without one.
-struct TwoFiles {
-  test::TestFolder folder;
-  std::string path = folder.file("a.ptin");
-  std::vector<std::byte> with;
-  explicit TwoFiles(const StoreFile& store, const DirectoryOptions& directory) {
-    const auto writer = StoreWriter::create(path, {.overwrite = true, .directory = directory});
-    StarredRecords records;
-    IoCounters counters;
-    for (std::uint64_t i = 0; i < store.pages().page_count(); ++i) {
-      store.read_starred(PageId{i}, records, counters);
-    }
-    writer->add_segment(pack_segment(records, store.facts().heights, 4096), store.facts().heights);
-    writer->publish(store.facts(), store.t0(), std::string(store.metadata_json()));
-    with = bytes_of(path);
-  }
-};
+using test::bytes_of;
+using test::Far;
+using test::small_cells;
+using test::WithDirectory;
 
 bool are_same(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -138,11 +94,11 @@ std::vector<MapPoint> places(const StoreFacts& facts, std::size_t count) {
 }
 
 TEST(LocateFarTerrain, AnswersAsTheFileAtHand) {
-  for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
+  for (const char* name : test::some_of({"mountains_257.tif", "coast_257.tif"})) {
     const StoreFile& store = reference::built_terrain(name).store();
-    const TwoFiles files(store, small_cells(20));
+    const WithDirectory files(store, small_cells(20));
     const Terrain near = Terrain::open(files.path);
-    const Far far(files.with);
+    const Far far(files.bytes);
     const std::vector<MapPoint> points = places(store.facts(), 1500);
     for (const LocateRequest& request : levels(5.0, 3000)) {
       const LocateResult expected = near.locate(points, request);
@@ -162,16 +118,12 @@ TEST(LocateFarTerrain, AnswersAsTheFileAtHand) {
 /// One round for the node and one for the pages; a few points take a further one.
 TEST(LocateFarTerrain, TakesTwoRoundsBehindTheOpening) {
   const StoreFile& store = reference::built_terrain("mountains_257.tif").store();
-  const TwoFiles files(store, small_cells(40));
+  const WithDirectory files(store, small_cells(40));
   std::size_t further = 0;
   const std::vector<MapPoint> points = places(store.facts(), 200);
-  // Of so small a file nodes would come with the opening: here it ends with the directory's cells.
-  std::size_t front = 0;
-  for (const SectionInfo& s : Terrain::open(files.path).store().sections()) {
-    if (s.name == "index") front = s.offset;
-  }
+  const std::size_t front = test::front_with_directory(files.path);
   for (const MapPoint& at : points) {
-    const Far far(files.with, front);
+    const Far far(files.bytes, front);
     const LocateResult result = far.terrain.locate({&at, 1});
     EXPECT_LE(far.source->rounds.size(), 3U);
     EXPECT_EQ(result.cost.io.remote_rounds, far.source->rounds.size());
@@ -195,7 +147,7 @@ std::string message_of(const Far& far, const MapPoint& at) {
 /// Whatever is damaged of what is read is an error, and no other answer.
 TEST(LocateFarTerrain, NeverAnswersFromADamagedDirectory) {
   const StoreFile& store = reference::built_terrain("mountains_257.tif").store();
-  const TwoFiles files(store, small_cells(20));
+  const WithDirectory files(store, small_cells(20));
   const Terrain near = Terrain::open(files.path);
   const std::vector<MapPoint> points = places(store.facts(), 8);
   std::map<std::string, SectionInfo> section;
@@ -206,7 +158,7 @@ TEST(LocateFarTerrain, NeverAnswersFromADamagedDirectory) {
       {"pages", "the page does not match the checksum in the directory"}};
   for (const auto& [name, message] : expected) {
     ASSERT_TRUE(section.contains(name)) << name;
-    std::vector<std::byte> bytes = files.with;
+    std::vector<std::byte> bytes = files.bytes;
     const SectionInfo& s = section[name];
     for (std::uint64_t at = s.offset; at < s.offset + s.bytes; at += 97) bytes[at] ^= std::byte{4};
     for (const MapPoint& at : points) {

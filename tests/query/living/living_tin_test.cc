@@ -16,7 +16,9 @@
 #include "engine/mesh/validate.h"
 #include "engine/query/terrain.h"
 #include "tests/query/built_terrain.h"
+#include "tests/query/far_file.h"
 #include "tests/query/reference_hierarchy.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -58,6 +60,62 @@ DetailRequest of_error(double error) {
   return request;
 }
 
+/// By the directory: the pages that it names too many have no triangle of the box.
+RC_GTEST_PROP(LivingTin, OfAFileElsewhereIsThatOfTheFileAtHand, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const reference::Hierarchy h = reference::random_hierarchy(seed);
+  const TemporaryStore file(h, 4096, 3, test::small_cells(1));
+  const Terrain near(file.open());
+  const test::Far far(test::bytes_of(file.path));
+  const GridBox& bounds = h.facts.bounds;
+  const auto within = [&](std::int32_t low, std::int32_t high) {
+    return low + static_cast<std::int32_t>(random() % (std::uint64_t(high) - low + 1));
+  };
+  for (int i = 0; i < 6; ++i) {
+    GridBox box =
+        box_of(GridPoint{within(bounds.min_x, bounds.max_x), within(bounds.min_y, bounds.max_y)});
+    box = united(box,
+                 GridPoint{within(bounds.min_x, bounds.max_x), within(bounds.min_y, bounds.max_y)});
+    const auto vertices = near.t0().vertices.size() + random() % (near.store().record_count() + 2);
+    for (const DetailRequest& detail : {DetailRequest{}, of_error(2.0), of_vertices(vertices)}) {
+      RC_ASSERT(canonical(gathered(far.terrain, detail, box)) ==
+                canonical(gathered(near, detail, box)));
+    }
+  }
+}
+
+/// A window of a file elsewhere: one round for the nodes of its cells, one for its pages.
+TEST(LivingTin, OfAWindowElsewhereTakesTwoRounds) {
+  const StoreFile& store = reference::built_terrain("mountains_257.tif").store();
+  const test::WithDirectory file(store, test::small_cells(40));
+  const std::size_t front = test::front_with_directory(file.path);
+  const Terrain near = Terrain::open(file.path);
+  std::mt19937_64 random(4);
+  for (const char* shape : {"window", "polygon"}) {
+    for (int i = 0; i < 10; ++i) {
+      const double x = 20 + static_cast<double>(random() % 190);
+      const double y = 20 + static_cast<double>(random() % 190);
+      const auto at = [&](double dx, double dy) {
+        return store.facts().map.to_map(x + dx, y + dy);
+      };
+      RefineRequest request;
+      request.form = ResultForm::kMeetingRegion;
+      if (shape == std::string("window")) {
+        const MapPoint a = at(0, 0), b = at(25, 25);
+        request.region =
+            Window{std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+      } else {
+        request.region = Polygon{{{at(0, 0), at(25, 3), at(20, 25), at(10, 8)}}};
+      }
+      const test::Far far(file.bytes, front);
+      const RefinedTin tin = far.terrain.refine(request);
+      EXPECT_EQ(canonical(tin.tin), canonical(near.refine(request).tin));
+      EXPECT_LE(far.source->rounds.size(), 2U) << shape << " at " << x << " " << y;
+      EXPECT_GT(tin.tin.triangles.size(), 100U);
+    }
+  }
+}
+
 RC_GTEST_PROP(LivingTin, IsTheRefinementAtEveryNumberOfVertices, (std::uint64_t seed)) {
   const reference::Hierarchy h = reference::random_hierarchy(seed);
   const TemporaryStore file(h);
@@ -72,7 +130,7 @@ RC_GTEST_PROP(LivingTin, IsTheRefinementAtEveryNumberOfVertices, (std::uint64_t 
 }
 
 TEST(LivingTin, OfBuiltTerrainsIsTheirRefinement) {
-  for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
+  for (const char* name : test::some_of({"mountains_257.tif", "coast_257.tif"})) {
     const Terrain& terrain = reference::built_terrain(name);
     const std::uint64_t all = terrain.t0().vertices.size() + terrain.store().record_count();
     std::vector<DetailRequest> levels{{}, of_error(0.0), of_error(7.3)};
