@@ -84,6 +84,8 @@ def read(path):
                 tasks.add(j["task"], tuple(j["tile"]), j["seconds"], j["schedule_seconds"], j["in"] + j["out"], j["memory"])
             elif "stage" in j:
                 stages[j["stage"]] = j["seconds"]
+            elif "scheduling" in j:
+                tasks.scheduling, tasks.processor = j["scheduling"], j["processor"]
             else:
                 tasks.samples = j["samples"]
                 stages["total"] = j["total"]
@@ -299,7 +301,9 @@ def main():
               f"{sum(measured.schedule[k] for k in keys):.3f} | {sum(measured.bytes[k] for k in keys) / 1e6:.1f} |")
     alone = sum(measured.stages[s] for s in ("reading", "opening", "publishing"))
     print(f"\nreading {measured.stages['reading']:.2f} s, opening {measured.stages['opening']:.2f} s, "
-          f"publishing {measured.stages['publishing']:.2f} s, critical path {critical_path(measured):.2f} s\n")
+          f"publishing {measured.stages['publishing']:.2f} s, critical path {critical_path(measured):.2f} s; "
+          f"processor in the schedule {measured.scheduling:.2f} s of {measured.processor:.2f} s, "
+          f"{100 * measured.scheduling / measured.processor:.2f} %\n")
     print("| workers | tasks' time | all | workers at work |\n|---|---|---|---|")
     for workers in arguments.workers or [1, 2, 4]:
         tasks = shared if shared and workers > 1 else measured

@@ -8,10 +8,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -27,6 +30,9 @@ namespace {
 
 using ptin::Task;
 using ptin::TaskResult;
+
+/// Of the processor, by all threads.
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 class Stopwatch {
  public:
@@ -59,15 +65,26 @@ class TimedTasks final : public ptin::TaskDriver {
   std::uint64_t run(ptin::TaskSchedule& schedule, ptin::TaskWorker& /*worker*/,
                     const ptin::PieceLimits& /*limits*/, const std::stop_token& stop) override {
     std::uint64_t most_bytes = 0;
+    double last = processor_seconds(), scheduling = 0.0;
+    const auto lap = [&last] {
+      const double now = processor_seconds();
+      return now - std::exchange(last, now);
+    };
     while (schedule.next_bytes()) {
       const Task task = schedule.take();
       const double before = watch_.lap();
+      scheduling += lap();
       const TaskResult result = worker_->tasks().run(task, 0, stop);
       const double seconds = watch_.lap();
+      std::ignore = lap();
       schedule.done(task.name, result);
+      scheduling += lap();
       tell(task, result, before, seconds);
+      std::ignore = lap();
       most_bytes = std::max(most_bytes, task.bytes);
     }
+    scheduling += lap();
+    out_ << nlohmann::json{{"scheduling", scheduling}, {"processor", processor_seconds()}} << "\n";
     return most_bytes;
   }
 
