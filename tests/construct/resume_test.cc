@@ -22,6 +22,7 @@
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/resume_fixture.h"
 #include "tests/construct/told_build.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -34,7 +35,11 @@ using test::SourceKind;
 class Resumed : public testing::TestWithParam<SourceKind> {};
 
 TEST_P(Resumed, GivesTheSameBytesWhereverTheBuildWasStopped) {
+  std::vector<int> stops;
   for (int stop_at = 1; stop_at < 60; stop_at += 4) {
+    stops.push_back(stop_at);
+  }
+  for (const int stop_at : test::some_of(stops)) {
     SCOPED_TRACE(stop_at);
     const InterruptibleBuild interrupted(GetParam());
     std::stop_source source;
@@ -59,7 +64,7 @@ TEST_P(Resumed, GivesTheSameBytesWhereverTheBuildWasStopped) {
 }
 
 TEST_P(Resumed, GivesTheSameBytesAfterSomeFailedCalls) {
-  for (const int nth : {3, 8, 13, 31, 80, 201, 250}) {
+  for (const int nth : test::some_of({3, 8, 13, 31, 80, 201, 250})) {
     SCOPED_TRACE(nth);
     const InterruptibleBuild interrupted(GetParam());
     test::FailingFiles files(nth);

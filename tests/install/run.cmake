@@ -18,7 +18,8 @@ endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
 function(build source folder)
   run(${CMAKE_COMMAND} -S ${source} -B ${folder} -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix
-      -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${flags} -D CMAKE_BUILD_TYPE=Release ${ARGN})
+      -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${flags} -D CMAKE_BUILD_TYPE=Release
+      -D CMAKE_CXX_FLAGS_RELEASE=-O0 ${ARGN})
   run(${CMAKE_COMMAND} --build ${folder})
 endfunction()
 

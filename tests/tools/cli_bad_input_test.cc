@@ -332,14 +332,14 @@ TEST(CliBadInput, NumbersThatAreNone) {
   const std::string store = small_store(folder), raster = folder.file("hills.tif");
   const std::string tif = folder.file("a.tif"), layer = folder.file("a.gpkg");
   const std::string sent = folder.file("a.pts"), picture = folder.file("a.png");
-  using Words = std::vector<std::string>;
-  const Words build = {"build", raster, "-o", folder.file("b.ptin")};
-  const Words viewshed = {"viewshed", store, "500100", "3999900", "1", "-o", tif};
-  const Words sight = {"sight", store, "0", "0", "1", "9", "9", "1"};
-  const Words isoline = {"isoline", store, "-o", layer};
-  const Words stream = {"stream", store, "-o", sent};
-  const Words unstream = {"unstream", sent, "-o", layer};
-  const std::vector<std::pair<Words, std::string>> finite = {
+  using Command = std::vector<std::string>;
+  const Command build = {"build", raster, "-o", folder.file("b.ptin")};
+  const Command viewshed = {"viewshed", store, "500100", "3999900", "1", "-o", tif};
+  const Command sight = {"sight", store, "0", "0", "1", "9", "9", "1"};
+  const Command isoline = {"isoline", store, "-o", layer};
+  const Command stream = {"stream", store, "-o", sent};
+  const Command unstream = {"unstream", sent, "-o", layer};
+  const std::vector<std::pair<Command, std::string>> finite = {
       {build, "--max-error"},
       {build, "--void-slope"},
       {build, "--resolution"},
@@ -362,7 +362,7 @@ TEST(CliBadInput, NumbersThatAreNone) {
       {{"export", store, "-o", tif}, "--pixel-size"},
       {{"isoline", store, "-o", layer, "--interval", "9"}, "--base"}};
   const auto before = folder.names();
-  const auto refuse = [&](Words words, const std::string& option, const std::string& number) {
+  const auto refuse = [&](Command words, const std::string& option, const std::string& number) {
     words.insert(words.end(), {option, number});
     expect_refusal(run_ptin(words), 2, option + ": ");
   };
@@ -373,7 +373,7 @@ TEST(CliBadInput, NumbersThatAreNone) {
     expect_refusal(run_ptin({"sight", store, "1", "2", "3", "4", "5", number}), 2, "PAIR: must be");
     expect_refusal(run_ptin({"viewshed", store, "1", number, "2", "--radius", "9", "-o", tif}), 2,
                    "Y: must be a finite number, in map units");
-    Words words = build;
+    Command words = build;
     words.insert(words.end(), {"--bbox", "0", "0", number, "9"});
     expect_refusal(run_ptin(words), 2, "--bbox: must be");
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Builds by 2, 4 and 7 ranks, and ranks that are killed at random moments (ten in all; twenty where all cases are asked for): the build goes on
-// with another number of them.
+// Builds by 2, 4 and 7 ranks, and ranks that are killed at random moments (five in all; twenty where all cases
+// are asked for): the build goes on with another number of them.
 #include <gtest/gtest.h>
 
 #include "tests/support/share_of_cases.h"
@@ -15,7 +15,7 @@ class RanksSlow : public ::testing::TestWithParam<std::string> {};
 TEST_P(RanksSlow, KilledAtRandomMomentsLoseNothing) {
   if (!testing::why_no_mpi().empty()) GTEST_SKIP() << testing::why_no_mpi();
   testing::expect_kills_lose_nothing(GetParam(),
-                                     (GetParam() == "tin" ? 4 : 8) / test::share_of_cases(2));
+                                     (GetParam() == "tin" ? 4 : 8) / test::share_of_cases(4));
 }
 
 TEST_P(RanksSlow, GiveTheBytesOfOneProcess) {

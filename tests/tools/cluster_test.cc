@@ -135,11 +135,6 @@ TEST_F(Ranks, WaitForOneThatWasStoppedForTwoSeconds) {
   EXPECT_TRUE(read_file(output) == expected_);
 }
 
-TEST(RanksThatAreKilled, LoseNothing) {
-  if (!testing::why_no_mpi().empty()) GTEST_SKIP() << testing::why_no_mpi();
-  testing::expect_kills_lose_nothing("raster", 3);
-}
-
 TEST(BuildWithoutMpi, RefusesToBeStartedByMpirun) {
 #ifdef PTIN_MPI
   GTEST_SKIP() << "needs a program without MPI";

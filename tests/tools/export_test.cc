@@ -15,6 +15,7 @@
 
 #include "engine/error.h"
 #include "engine/query/terrain.h"
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
 #include "tools/export/raster_export.h"
@@ -103,7 +104,8 @@ ReadRaster read_raster(const std::string& path) {
 
 TEST(Export, EqualsRefineAsASetOfTriangles) {
   const TestFolder folder;
-  for (const char* name : {"coast_257.tif", "mountains_257.tif", "ground_points.csv"}) {
+  for (const char* name :
+       test::some_of({"coast_257.tif", "mountains_257.tif", "ground_points.csv"})) {
     const std::string file = built(folder, name);
     for (const std::vector<std::string>& level :
          {std::vector<std::string>{}, {"--error", "0"}, {"--error", "3"}}) {
@@ -227,7 +229,7 @@ std::uint64_t tightest_limit(const Terrain& terrain, PartRequest request) {
 
 TEST(Export, DoesNotDependOnTheCells) {
   const TestFolder folder;
-  for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
+  for (const char* name : test::some_of({"coast_257.tif", "ground_points.csv"})) {
     const Terrain terrain = Terrain::open(built(folder, name));
     std::array<PartRequest, 3> levels;
     levels[1].detail.tolerance = 1.0;
@@ -301,7 +303,7 @@ TEST(Export, WritesTheSameTrianglesAsFeatures) {
 
 TEST(ExportRaster, RasterOfTheFullTinIsTheSource) {
   const TestFolder folder;
-  for (const char* name : {"coast_257.tif", "mountains_257.tif"}) {
+  for (const char* name : test::some_of({"coast_257.tif", "mountains_257.tif"})) {
     const std::string file = built(folder, name);
     const ReadRaster source = read_raster(test_data(name));
     for (const char* format : {"GTiff", "COG"}) {
@@ -410,7 +412,7 @@ double height_at(const Tin& tin, const StoreFacts& facts, long double x, long do
 TEST(ExportRaster, RasterInterpolatesTheTriangles) {
   const TestFolder folder;
   std::mt19937 random(7);
-  for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
+  for (const char* name : test::some_of({"coast_257.tif", "ground_points.csv"})) {
     const Terrain terrain = Terrain::open(built(folder, name));
     RefineRequest request;
     request.detail.tolerance = 5.0;

@@ -60,12 +60,12 @@ nlohmann::json answer_alone(const Outcome& outcome, const std::string& file,
       text.replace(at, name.size(), "NAME");
     }
   }
-  nlohmann::json json = nlohmann::json::parse(text);
-  for (const char* name : {"cost", "base_cost", "remote", "seconds"}) json.erase(name);
-  if (json.contains("pairs")) {
-    for (nlohmann::json& pair : json["pairs"]) pair.erase("cost");
+  nlohmann::json answer = nlohmann::json::parse(text);
+  for (const char* name : {"cost", "base_cost", "remote", "seconds"}) answer.erase(name);
+  if (answer.contains("pairs")) {
+    for (nlohmann::json& pair : answer["pairs"]) pair.erase("cost");
   }
-  return json;
+  return answer;
 }
 
 struct Question {

@@ -75,7 +75,7 @@ std::string known_names() {
   return names;
 }
 
-std::uint64_t value_of(const LimitFact& limit, const std::string& text) {
+std::uint64_t number_in(const LimitFact& limit, const std::string& text) {
   if (limit.unit == "bytes" && text == "0") return 0;  // Which is no size elsewhere.
   if (limit.unit == "bytes") return tools::parse_bytes(text, "--limit");
   std::uint64_t value = 0;
@@ -96,7 +96,7 @@ void set_limit(ServeOptions& options, const std::string& name, const std::string
   if (limit == kLimits.end()) {
     refuse("no limit is called \"" + name + "\"; there are " + known_names(), "--limit");
   }
-  const std::uint64_t number = value_of(*limit, value);
+  const std::uint64_t number = number_in(*limit, value);
   if (number < limit->least) {
     refuse("the limit " + name + " is " + std::to_string(limit->least) + " at least", "--limit");
   }

@@ -17,6 +17,7 @@
 #include "engine/query/terrain.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -102,8 +103,8 @@ std::string check_lists(const TestTerrain& terrain, const Tile& tile) {
 }
 
 TEST(FirstPass, LeavesAMeshWithinTheToleranceAndEverySampleInIt) {
-  for (const RasterSpec& spec : specs()) {
-    for (const double tolerance : {0.5, 2.0, 7.0, 100.0}) {
+  for (const RasterSpec& spec : test::some_of(specs())) {
+    for (const double tolerance : test::some_of({0.5, 2.0, 7.0, 100.0})) {
       SCOPED_TRACE(spec.name + " within " + std::to_string(tolerance));
       TestTerrain terrain = oracle::make_raster(spec);
       run_first_pass(terrain.tile, *terrain.surface, box_of_samples(terrain), {}, tolerance);
@@ -205,7 +206,7 @@ std::string check_window(const TestTerrain& terrain, const Tile& tile, const Gri
 }
 
 TEST(FirstPass, NeighboursLeaveTheSameSamplesOnTheirCommonSide) {
-  for (RasterSpec spec : specs()) {
+  for (RasterSpec spec : test::some_of(specs())) {
     if (spec.origin != GridPoint{} || spec.width < 100) {
       continue;
     }
@@ -213,7 +214,7 @@ TEST(FirstPass, NeighboursLeaveTheSameSamplesOnTheirCommonSide) {
     spec.height = 149;
     const TestTerrain terrain = oracle::make_raster(spec);
     const SampleRange raster{0, 0, spec.width, spec.height};
-    for (const double tolerance : {0.5, 2.0, 7.0, 100.0}) {
+    for (const double tolerance : test::some_of({0.5, 2.0, 7.0, 100.0})) {
       SCOPED_TRACE(spec.name + " within " + std::to_string(tolerance));
       const std::array<SampleRange, 4> windows{
           {{0, 0, 65, 65}, {64, 0, 107, 65}, {0, 64, 65, 85}, {64, 64, 107, 85}}};
@@ -303,7 +304,7 @@ void check_build(const RasterSpec& spec, std::int64_t side) {
 /// Leaves thin their common sides where squares of right triangles fit them, 64 samples and more;
 /// else they keep all samples of sides, and squares leave a rest in each leaf: 48.
 TEST(FirstPass, ABuildKeepsItsPromisesAndNeedsHardlyMoreVertices) {
-  for (RasterSpec spec : specs()) {
+  for (RasterSpec spec : test::some_of(specs())) {
     spec.origin = {};
     check_build(spec, 48);
     if (spec.width > 100) {

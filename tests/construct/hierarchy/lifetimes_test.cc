@@ -30,6 +30,7 @@
 #include "tests/construct/point_sets.h"
 #include "tests/construct/surface_oracle.h"
 #include "tests/construct/test_terrain.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -140,7 +141,8 @@ class Hills {
 TEST(Lifetimes, AreThoseOfTheSplitsOverRasters) {
   for (const bool voids : {false, true}) {
     const Hills hills(65, voids ? 2U : 1U, voids);
-    for (const std::int64_t side : {8, 20, 1000}) {  // levels 0 to 3, 0 to 2, and 0 alone
+    for (const std::int64_t side :
+         test::some_of<std::int64_t>({8, 20, 1000})) {  // levels 0 to 3, 0 to 2, and 0 alone
       SCOPED_TRACE(std::to_string(side) + (voids ? ", voids" : ""));
       const BuiltStars built = build_stars(hills.tiled(side));
       expect_deaths(built);
@@ -202,7 +204,8 @@ TEST(Lifetimes, DoNotDependOnInterruptions) {
 TEST(Lifetimes, EndWithWhatTheFileLeavesOut) {
   for (const bool voids : {false, true}) {
     const Hills hills(65, 5, voids);
-    for (const StoredDetail detail : {StoredDetail{0.0, 20.0}, {0.25, 20.0}, {0.25, 0.0}}) {
+    for (const StoredDetail detail :
+         test::some_of<StoredDetail>({{0.0, 20.0}, {0.25, 20.0}, {0.25, 0.0}})) {
       for (const double first_pass : {0.0, 0.7 * detail.max_error}) {
         SCOPED_TRACE(std::to_string(detail.max_error) + ", first pass " +
                      std::to_string(first_pass) + (voids ? ", voids" : ""));
@@ -225,7 +228,7 @@ TEST(Lifetimes, EndWithWhatTheFileLeavesOut) {
 // Points and TINs.
 
 TEST(Lifetimes, AreThoseOfTheSplitsOverPoints) {
-  for (const PointKind kind : kPointKinds) {
+  for (const PointKind kind : test::some_of(kPointKinds)) {
     for (const std::optional<double> max_edge : {std::optional<double>(), {400.0}}) {
       SCOPED_TRACE(name_of(kind) + (max_edge ? ", voids" : ""));
       const PointBuckets points = buckets_of(kind, 900, 3);

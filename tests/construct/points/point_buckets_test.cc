@@ -15,6 +15,7 @@
 #include "tests/construct/point_sets.h"
 #include "tests/construct/point_source.h"
 #include "tests/construct/read_buckets.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -50,7 +51,7 @@ void expect_same(const std::string& path, const SourceOptions& options, std::uin
 }
 
 TEST(PointBuckets, HoldThePointsOfTheSource) {
-  for (const PointKind kind : kPointKinds) {
+  for (const PointKind kind : test::some_of(kPointKinds)) {
     const MemoryFile file("set.xyz", text_of(points_of(kind, 30'000, 5)));
     SourceOptions options;
     for (const std::uint64_t memory : {std::uint64_t{1} << 16, std::uint64_t{1} << 26}) {

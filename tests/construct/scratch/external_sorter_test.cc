@@ -64,7 +64,7 @@ constexpr std::size_t kRun = kLeast - Sorter::kBatch;
 constexpr std::size_t kWidest = kRun / Sorter::kLeastOfRun;
 
 TEST(ExternalSorter, MergesNoMoreRunsThanItsMemoryHolds) {
-  const std::size_t count = 3'000'000;  // runs of three levels
+  const std::size_t count = 1'500'000;  // runs of three levels
   const SortCounts counts = expect_sorted(numbers(count, 2), 1);
   EXPECT_GE(counts.runs, count / kRun);
   EXPECT_LE(counts.runs, count / (kRun / 2));
@@ -94,7 +94,7 @@ TEST(ExternalSorter, HoldsNoMoreThanItsMemory) {
     return m.uordblks + m.hblkhd;
   };
   const std::size_t memory = 64 * 1024;
-  const std::vector<std::uint64_t> records = numbers(6'000'000, 4);
+  const std::vector<std::uint64_t> records = numbers(1'500'000, 4);
   const std::size_t before = in_use();
   std::size_t most = 0;
   Sorter sorter(memory_of_records(memory));

@@ -19,6 +19,7 @@
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/query/volume/volume_oracle.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -296,7 +297,7 @@ TEST(Volume, AtAnErrorHoldsThatOfTheFullTinWithVoids) {
 
 TEST(Volume, IsBoundedAtAnyLevelOfDetail) {
   std::mt19937_64 random(5);
-  for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
+  for (const char* name : test::some_of({"coast_257.tif", "ground_points.csv"})) {
     SCOPED_TRACE(name);
     const Terrain& terrain = reference::built_terrain(name);
     for (int round = 0; round < 4; ++round) {
@@ -323,7 +324,7 @@ TEST(Volume, IsBoundedAtAnyLevelOfDetail) {
 TEST(Volume, IsBoundedInSmallWindows) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> share(0.0, 0.97), size(0.004, 0.03);
-  for (const char* name : {"coast_257.tif", "mountains_257.tif"}) {
+  for (const char* name : test::some_of({"coast_257.tif", "mountains_257.tif"})) {
     SCOPED_TRACE(name);
     const Terrain& terrain = reference::built_terrain(name);
     VolumeRequest request = built_request(terrain);
