@@ -118,6 +118,9 @@ Error error_in_flight() {
 }
 
 Error with_resume_hint(const Error& error, const std::string& folder) {
+  if (error.message().find("--discard") != std::string::npos) {
+    return error;  // It says already that there is nothing to go on from.
+  }
   return {error.code(),
           error.message() + "; what is done is kept in " + folder +
               ": go on by --resume, or remove it by --discard",

@@ -61,8 +61,9 @@ SampleRange RasterScan::band(std::size_t number) const {
 
 SourceStage RasterScan::stage() const {
   SourceStage stage{"reading", {}, ""};
-  // The values of a step, of at most eight bytes, and whether each is one.
-  stage.task_bytes = 9 * step_.samples();
+  // The values of a step, of at most eight bytes, and whether each is one; where rasters are laid over
+  // one another those of one of them besides; and a mask.
+  stage.task_bytes = (2 * (8 + 1) + 1) * step_.samples();
   const std::int64_t rows = rows_of_band();
   for (std::int64_t i = 0; i < (mosaic_.height() + rows - 1) / rows; ++i) {
     stage.sizes.push_back(band(static_cast<std::size_t>(i)).samples());

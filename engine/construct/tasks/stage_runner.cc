@@ -5,6 +5,7 @@
 #include <exception>
 #include <limits>
 #include <numeric>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -116,8 +117,11 @@ std::vector<std::string> run_stage(const SourceStage& stage, StageWorker& worker
   TasksOfStage tasks(stage, worker, limits, threads);
   {
     std::vector<std::jthread> others;
-    for (std::size_t i = 1; i < threads; ++i) {
-      others.emplace_back([&] { tasks.work(); });
+    try {
+      for (std::size_t i = 1; i < threads; ++i) {
+        others.emplace_back([&] { tasks.work(); });
+      }
+    } catch (const std::system_error&) {  // No more threads are given: those that are there do all.
     }
     tasks.work();
   }

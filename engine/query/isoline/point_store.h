@@ -37,7 +37,6 @@ class PointStore {
   void read(std::uint64_t first, std::size_t count, std::vector<MapPoint>& out) const;
 
  private:
-  void add_block();
   void spill();
 
   std::uint64_t most_points_;   ///< Points in memory at most.
