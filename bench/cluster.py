@@ -43,6 +43,7 @@ class Tasks:
         self.batches, self.above = [], []
         self.stages = {}
         self.samples = 0
+        self.scheduling = self.processor = math.nan
 
     def add(self, kind, tile, seconds, schedule, moved, memory=0):
         key = (kind, tile)

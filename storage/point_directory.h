@@ -77,12 +77,13 @@ class PointDirectory {
   /// Appends the pages that may hold what the filter asks for, each once, ascending, with the box of
   /// what lies in the cells that the filter's box meets. Of heights nothing is known here: those of
   /// the filter are not asked, nor its steps.
-  /// REQUIRES: filter.also is null, or its reach lies within filter.box.
+  /// REQUIRES: filter.also is null, or its reach is known and lies within filter.box.
   /// Cost: as above, of those cells.
   /// @throws Error corruption, io_error
   void find_in(const StarFilter& filter, std::vector<DirectoryPage>& pages,
                IoCounters& counters) const;
-  /// Bytes of the nodes that find_in() reads for a box.
+  /// Bytes of the nodes that find_in() reads for a box. Cost: that of the cells which the box meets;
+  /// the first call reads the root.
   /// @throws Error as find_in()
   [[nodiscard]] std::uint64_t bytes_for(const GridBox& box) const;
 

@@ -135,6 +135,13 @@ TEST(Resume, RefusesSortedPointsAndTrianglesThatAreDamaged) {
     bytes[bytes.size() / 2] ^= 1;
     oracle::write_text(file, bytes);
     EXPECT_EQ(interrupted.run(resuming()), ErrorCode::corruption);
+    try {
+      build({interrupted.input()}, interrupted.output(), interrupted.options(), resuming());
+      ADD_FAILURE() << "went on";
+    } catch (const Error& e) {  // one advice, and the one that helps
+      EXPECT_NE(e.message().find("--discard"), std::string::npos) << e.message();
+      EXPECT_EQ(e.message().find("--resume"), std::string::npos) << e.message();
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 #include "engine/query/living/living_place.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "storage/packed_rtree.h"
@@ -15,6 +16,12 @@ namespace {
 /// With more bytes of nodes, of a large box, the index is asked: it leaves out what lies above the
 /// level by few nodes.
 constexpr std::uint64_t kMostDirectoryBytes = std::uint64_t{64} << 10;
+
+/// Whether a condition is known to ask for a place, and that place lies within a box.
+bool asks_within(const StarPredicate& condition, const GridBox& box) {
+  constexpr GridBox kEverything{INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
+  return condition.reach() != kEverything && contains(box, condition.reach());
+}
 
 PageId id_of(PageId page) { return page; }
 PageId id_of(const DirectoryPage& page) { return page.id; }
@@ -71,7 +78,7 @@ bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingV
 /// and of levels alone.
 bool LivingReader::asks_directory() const {
   return store_.directory() != nullptr && filter_.heights == kAllHeights && filter_.steps.empty() &&
-         (filter_.also == nullptr || contains(filter_.box, filter_.also->reach())) &&
+         (filter_.also == nullptr || asks_within(*filter_.also, filter_.box)) &&
          store_.directory()->bytes_for(filter_.box) <= kMostDirectoryBytes;
 }
 

@@ -67,6 +67,8 @@ RC_GTEST_PROP(LivingTin, OfAFileElsewhereIsThatOfTheFileAtHand, (std::uint64_t s
   const TemporaryStore file(h, 4096, 3, test::small_cells(1));
   const Terrain near(file.open());
   const test::Far far(test::bytes_of(file.path));
+  const bool has_directory = far.terrain.store().directory() != nullptr;
+  RC_ASSERT(has_directory || near.store().pages().page_count() == 0);
   const GridBox& bounds = h.facts.bounds;
   const auto within = [&](std::int32_t low, std::int32_t high) {
     return low + static_cast<std::int32_t>(random() % (std::uint64_t(high) - low + 1));
