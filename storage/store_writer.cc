@@ -270,7 +270,7 @@ void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std:
   if (!counts) {
     throw Error(ErrorCode::corruption,
                 "page " + std::to_string(written_bytes_ / options_.page_bytes) +
-                    " of the unfinished build is damaged; start again after --discard",
+                    " of the unfinished build is damaged",
                 path_);
   }
   index_->add(entry);

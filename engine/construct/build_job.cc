@@ -23,7 +23,10 @@ namespace ptin::build_internal {
 namespace {
 
 /// Of the temporary files: to be raised when their bytes mean something else.
-constexpr int kTemporaryFormat = 6;
+constexpr int kTemporaryFormat = 7;
+
+/// Of a line of the manifest: the sorted source that an earlier line names is damaged.
+constexpr const char* kIsForgotten = "source_is_damaged";
 
 /// The number of a file on its disk, which stays the same when it gets another name; none when
 /// there is no such file.
@@ -53,11 +56,34 @@ void report_published(Job& job) {
   job.report.file_bytes = bytes_of_file(job.output);
 }
 
-/// Worth keeping: faults of the system, and whatever comes when hours of work may be there.
-bool is_kept(const Workspace& workspace, const Job& job, ErrorCode code) {
-  return workspace.has_work() || (!job.begins_anew && (code == ErrorCode::cancelled ||
-                                                       code == ErrorCode::resource_exhausted ||
-                                                       code == ErrorCode::io_error));
+/// True where the file at fault is of a sorted source, which can be sorted again from the inputs.
+bool is_of_sorted_source(const Workspace& workspace, const Error& error) {
+  const bool is_lost =
+      error.code() == ErrorCode::corruption || error.code() == ErrorCode::not_found;
+  return is_lost && (error.context().starts_with(workspace.temporary(kPointBuckets)) ||
+                     error.context().starts_with(workspace.temporary(kTinTriangles)));
+}
+
+constexpr const char* kGoOn = ": go on by --resume, or remove it by --discard";
+constexpr const char* kSortAgain =
+    ": go on by --resume, which reads the source again, or remove it by --discard";
+constexpr const char* kStartAgain = ", and cannot be gone on with: start again after --discard";
+
+Error with_advice(const Error& error, const std::string& folder, const char* advice) {
+  return {error.code(), error.message() + "; what is done is kept in " + folder + advice,
+          error.context()};
+}
+
+/// What is said where work is kept. It stays of use where a sorted source is damaged.
+Error error_with_work(Workspace& workspace, const Error& error) {
+  if (!is_of_sorted_source(workspace, error)) {
+    return with_resume_hint(error, workspace.folder());
+  }
+  try {
+    forget_index(workspace);
+  } catch (const Error&) {  // who goes on meets the damage again, and notes it then
+  }
+  return with_advice(error, workspace.folder(), kSortAgain);
 }
 
 /// Removes what a failed build began, and throws its error on, whatever becomes of that.
@@ -118,13 +144,7 @@ Error error_in_flight() {
 }
 
 Error with_resume_hint(const Error& error, const std::string& folder) {
-  if (error.message().find("--discard") != std::string::npos) {
-    return error;  // It says already that there is nothing to go on from.
-  }
-  return {error.code(),
-          error.message() + "; what is done is kept in " + folder +
-              ": go on by --resume, or remove it by --discard",
-          error.context()};
+  return with_advice(error, folder, error.code() == ErrorCode::corruption ? kStartAgain : kGoOn);
 }
 
 FileLayer& Job::files() const {
@@ -233,8 +253,8 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
       remove_done(workspace, job);
       return;
     }
-    if (is_kept(workspace, job, e.code())) {
-      throw with_resume_hint(e, workspace.folder());
+    if (workspace.has_work()) {
+      throw error_with_work(workspace, e);
     }
     give_up(workspace, e);
   }
@@ -292,18 +312,23 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
 }
 
 std::optional<ArrayFileFacts> kept_index(const Workspace& workspace, const std::string& key) {
+  std::optional<ArrayFileFacts> kept;
   for (const nlohmann::json& line : workspace.lines()) {
     if (line.contains(key)) {
       const auto& facts = line[key];
-      return ArrayFileFacts{facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()};
+      kept = {facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()};
+    } else if (line.contains(kIsForgotten)) {
+      kept.reset();
     }
   }
-  return std::nullopt;
+  return kept;
 }
 
 nlohmann::json index_json(const char* kind, const ArrayFileFacts& index) {
   return {{kind, {index.bytes, index.checksum}}};
 }
+
+void forget_index(Workspace& workspace) { workspace.append({{{kIsForgotten, true}}}); }
 
 void note_index(Workspace& workspace, const char* kind, const ArrayFileFacts& index) {
   workspace.sync_names();

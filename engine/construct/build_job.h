@@ -43,9 +43,6 @@ struct Job {
   SourceLines lines{};  ///< Beside the points, from when they are read.
   /// Of the finished pages, from when they are about to get the output's name.
   std::optional<std::uint64_t> inode_of_output{};
-  /// True while a resumed build would do all of the work again: an error then leaves no folder
-  /// behind.
-  bool begins_anew = false;
   /// True when the source is read and others do the rest (TaskDriver::begin): the folder stays.
   bool goes_on_elsewhere = false;
 
@@ -81,8 +78,8 @@ struct Job {
 /// the caller's. REQUIRES: an exception is being handled.
 [[nodiscard]] Error error_in_flight();
 
-/// The same error, whose message also says that the work in `folder` is kept, and by which option
-/// a build goes on with it.
+/// The same error, whose message also says that the work in `folder` is kept, and what to do: the one
+/// place where that is said. Who finds damage says only what is damaged.
 [[nodiscard]] Error with_resume_hint(const Error& error, const std::string& folder);
 
 /// The inputs, and the files of lines that the options name.
@@ -127,6 +124,25 @@ void plan_before_reading(const Job& job,
 /// where that build had not got so far.
 [[nodiscard]] std::optional<ArrayFileFacts> kept_index(const Workspace& workspace,
                                                        const std::string& key);
+/// Notes that the sorted source is damaged: kept_index() of a resumed build has none.
+/// @throws Error io_error, resource_exhausted
+void forget_index(Workspace& workspace);
+/// Calls `load`, which takes up the sorted source that an interrupted build had noted.
+/// @return  What it gives; none where a file of the source is damaged or gone, which is then noted.
+/// @throws Error  what else `load` throws; as forget_index()
+template <class Load>
+[[nodiscard]] auto taken_up(Workspace& workspace, const Load& load)
+    -> std::optional<decltype(load())> {
+  try {
+    return load();
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::corruption && e.code() != ErrorCode::not_found) {
+      throw;
+    }
+  }
+  forget_index(workspace);
+  return std::nullopt;
+}
 /// Notes the index of a sorted source in the manifest, so that a resumed build does not read and
 /// sort the source again.  @throws Error io_error
 void note_index(Workspace& workspace, const char* kind, const ArrayFileFacts& index);

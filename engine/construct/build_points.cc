@@ -67,9 +67,13 @@ PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index
   const std::string buckets = workspace.temporary(kPointBuckets);
   const std::string index = workspace.temporary(kPointsIndex);
   if (const auto facts = kept_index(workspace, "points")) {
-    job.lines = {};
-    index_facts = *facts;
-    return PointBuckets::load(job.files(), buckets, index, *facts);
+    auto points = taken_up(workspace,
+                           [&] { return PointBuckets::load(job.files(), buckets, index, *facts); });
+    if (points) {
+      job.lines = {};
+      index_facts = *facts;
+      return std::move(*points);
+    }
   }
   remove_files(job.files(), buckets + "-");
   if (job.resources.driver != nullptr) {
@@ -93,7 +97,10 @@ PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index
   return points;
 }
 
-void report_counts(BuildReport& report, const PointBuckets& points) {
+void report_counts(const Job& job, const PointBuckets& points, BuildReport& report) {
+  for (const std::uint64_t input : points.empty_inputs()) {
+    report.empty_inputs.push_back(job.inputs[input]);
+  }
   report.source_samples = report.vertices = points.size();
   report.left_out_points = points.counts().left_out_points;
   report.merged_points = points.counts().merged_points;
@@ -106,7 +113,7 @@ void report_counts(BuildReport& report, const PointBuckets& points) {
 void build_points_in(Workspace& workspace, Job& job) {
   ArrayFileFacts index;
   const PointBuckets points = sorted_points(job, workspace, index);
-  report_counts(job.report, points);
+  report_counts(job, points, job.report);
   const TiledSource tiles = tiled(points, job.options, job.resources.stop);
   const BuildPlan plan = plan_sorted(job, tiles.tree, PointBuckets::disk_of(points.size()));
   build_tiles(workspace, job, tiles, plan, index_json("points", index));

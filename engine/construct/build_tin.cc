@@ -20,8 +20,12 @@ TinTriangles sorted_triangles(Job& job, Workspace& workspace, ArrayFileFacts& in
   const std::string kept_as = workspace.temporary(kTinTriangles);
   const std::string index = workspace.temporary(kTinIndex);
   if (const auto facts = kept_index(workspace, "tin")) {
-    index_facts = *facts;
-    return TinTriangles::load(job.files(), kept_as, index, *facts);
+    auto triangles = taken_up(
+        workspace, [&] { return TinTriangles::load(job.files(), kept_as, index, *facts); });
+    if (triangles) {
+      index_facts = *facts;
+      return std::move(*triangles);
+    }
   }
   for (const std::string& name : TinTriangles::kept_files(kTinTriangles)) {
     workspace.remove(name);
@@ -47,10 +51,8 @@ void report_counts(BuildReport& report, const TinTriangles& triangles) {
 }
 
 void build_tin_in(Workspace& workspace, Job& job) {
-  job.begins_anew = true;
   ArrayFileFacts index;
   const TinTriangles triangles = sorted_triangles(job, workspace, index);
-  job.begins_anew = false;
   report_counts(job.report, triangles);
   const TiledSource tiles = tiled(triangles, job.options);
   const BuildPlan plan =

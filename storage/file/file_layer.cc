@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
@@ -253,14 +254,19 @@ void ScratchFile::sync() {
   }
 }
 
+void ScratchFile::close() {
+  const int failure = files_.close(std::exchange(fd_, -1));
+  if (failure != 0) {
+    throw system_error(failure, "cannot close", shown_);
+  }
+}
+
 void ScratchFile::publish_as(const std::string& target, bool replace) {
   int failure = files_.sync(fd_);
   if (failure != 0) {
     throw system_error(failure, "cannot sync", target);
   }
-  const int fd = fd_;
-  fd_ = -1;
-  failure = files_.close(fd);
+  failure = files_.close(std::exchange(fd_, -1));
   if (failure != 0) {
     throw system_error(failure, "cannot close", target);
   }

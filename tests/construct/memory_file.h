@@ -27,4 +27,17 @@ class MemoryFile {
   std::string path_;
 };
 
+/// The text as gzip packs it.
+inline std::string packed(const std::string& text) {
+  { const MemoryFile made("packing.gz", ""); }
+  VSILFILE* file = VSIFOpenL("/vsigzip//vsimem/packing.gz", "wb");
+  VSIFWriteL(text.data(), 1, text.size(), file);
+  VSIFCloseL(file);
+  vsi_l_offset bytes = 0;
+  const GByte* content = VSIGetMemFileBuffer("/vsimem/packing.gz", &bytes, FALSE);
+  const std::string result(reinterpret_cast<const char*>(content), bytes);
+  VSIUnlink("/vsimem/packing.gz");
+  return result;
+}
+
 }  // namespace ptin

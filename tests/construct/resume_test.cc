@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -20,6 +21,7 @@
 #include "engine/construct/scratch/workspace.h"
 #include "storage/file/sigbus_guard.h"
 #include "tests/construct/hierarchy_fixture.h"
+#include "tests/construct/memory_file.h"
 #include "tests/construct/resume_fixture.h"
 #include "tests/construct/told_build.h"
 #include "tests/support/share_of_cases.h"
@@ -39,6 +41,7 @@ TEST_P(Resumed, GivesTheSameBytesWhereverTheBuildWasStopped) {
   for (int stop_at = 1; stop_at < 60; stop_at += 4) {
     stops.push_back(stop_at);
   }
+  bool has_kept_work = false;
   for (const int stop_at : test::some_of(stops)) {
     SCOPED_TRACE(stop_at);
     const InterruptibleBuild interrupted(GetParam());
@@ -57,10 +60,14 @@ TEST_P(Resumed, GivesTheSameBytesWhereverTheBuildWasStopped) {
     };
     if (const auto code = interrupted.run(resources)) {
       EXPECT_EQ(*code, ErrorCode::cancelled);
-      EXPECT_EQ(interrupted.folder().names(), std::vector<std::string>{".out.ptin.ptin-build"});
+      std::vector<std::string> names = interrupted.folder().names();
+      has_kept_work = has_kept_work || !names.empty();
+      std::erase(names, ".out.ptin.ptin-build");  // kept only with work in it
+      EXPECT_EQ(names, std::vector<std::string>{});
     }
     interrupted.expect_resumed_to_the_same_bytes();
   }
+  EXPECT_TRUE(has_kept_work);
 }
 
 TEST_P(Resumed, GivesTheSameBytesAfterSomeFailedCalls) {
@@ -100,6 +107,11 @@ void stop_in(const InterruptibleBuild& interrupted, const std::string& stage) {
   ASSERT_EQ(interrupted.run(resources), ErrorCode::cancelled);
 }
 
+class NoRename final : public FileLayer {
+ public:
+  int rename(const std::string&, const std::string&, bool) noexcept override { return EIO; }
+};
+
 BuildResources resuming() {
   BuildResources resources = InterruptibleBuild::resources();
   resources.unfinished = Unfinished::kResume;
@@ -123,26 +135,55 @@ TEST(Resume, ReadsPointsAndTrianglesNoMoreOnceTheyAreSorted) {
   }
 }
 
-TEST(Resume, RefusesSortedPointsAndTrianglesThatAreDamaged) {
+/// What a build that goes on with this one says; "" where it ends well.
+std::string told_of_resuming(const InterruptibleBuild& interrupted) {
+  try {
+    build({interrupted.input()}, interrupted.output(), interrupted.options(), resuming());
+    return {};
+  } catch (const Error& e) {
+    EXPECT_TRUE(e.code() == ErrorCode::corruption || e.code() == ErrorCode::not_found) << e.what();
+    return e.message();
+  }
+}
+
+/// An index is read when a build goes on, and sorted again at once; other files are met later.
+TEST(Resume, SortsPointsAndTrianglesAgainThatAreDamagedOrGone) {
   for (const std::string name :
        {"points-0", "points.index", "tin.surface", "tin.voids", "tin.places", "tin.index"}) {
-    SCOPED_TRACE(name);
-    const InterruptibleBuild interrupted(name.starts_with("tin") ? SourceKind::kTin
-                                                                 : SourceKind::kPoints);
-    stop_in(interrupted, "collapsing");
-    const std::string file = interrupted.folder().file(".out.ptin.ptin-build/") + name;
-    std::string bytes = oracle::bytes_of(file);
-    bytes[bytes.size() / 2] ^= 1;
-    oracle::write_text(file, bytes);
-    EXPECT_EQ(interrupted.run(resuming()), ErrorCode::corruption);
-    try {
-      build({interrupted.input()}, interrupted.output(), interrupted.options(), resuming());
-      ADD_FAILURE() << "went on";
-    } catch (const Error& e) {  // one advice, and the one that helps
-      EXPECT_NE(e.message().find("--discard"), std::string::npos) << e.message();
-      EXPECT_EQ(e.message().find("--resume"), std::string::npos) << e.message();
+    for (const bool is_gone : {false, true}) {
+      SCOPED_TRACE(name + (is_gone ? " is gone" : " is damaged"));
+      const InterruptibleBuild interrupted(name.starts_with("tin") ? SourceKind::kTin
+                                                                   : SourceKind::kPoints);
+      stop_in(interrupted, "collapsing");
+      const std::string file = interrupted.folder().file(".out.ptin.ptin-build/") + name;
+      std::string bytes = oracle::bytes_of(file);
+      bytes[bytes.size() / 2] ^= 1;
+      is_gone ? static_cast<void>(std::filesystem::remove(file)) : oracle::write_text(file, bytes);
+      const std::string told = told_of_resuming(interrupted);
+      EXPECT_EQ(told.empty(), is_gone || name.ends_with("index")) << told;
+      EXPECT_EQ(told.empty(), told.find("go on by --resume, which reads") == std::string::npos);
+      EXPECT_EQ(told.find("start again"), std::string::npos) << "two advices: " << told;
+      interrupted.expect_resumed_to_the_same_bytes();
     }
   }
+}
+
+/// Pages are of work whose files are gone by then.
+TEST(Resume, SaysThatPagesThatAreDamagedCannotBeGoneOnWith) {
+  const InterruptibleBuild interrupted;
+  NoRename files;
+  BuildResources resources = InterruptibleBuild::resources();
+  resources.files = &files;
+  EXPECT_EQ(interrupted.run(resources), ErrorCode::io_error);
+  const std::string pages = interrupted.folder().file(".out.ptin.ptin-build/pages");
+  std::string bytes = oracle::bytes_of(pages);
+  for (std::size_t i = 0; i < bytes.size(); i += 512) {
+    bytes[i] ^= 1;
+  }
+  oracle::write_text(pages, bytes);
+  const std::string told = told_of_resuming(interrupted);
+  EXPECT_NE(told.find("start again after --discard"), std::string::npos) << told;
+  EXPECT_EQ(told.find("--resume"), std::string::npos) << "two advices: " << told;
 }
 
 TEST(Resume, RefusesAnInputThatHasChanged) {
@@ -169,7 +210,7 @@ void change_while_reading(const std::string& input, const std::string& output,
       std::filesystem::last_write_time(
           input, std::filesystem::last_write_time(input) - std::chrono::hours(1));
     }
-    if (std::string(name) == "collapsing" && ++calls == 2) {
+    if (std::string(name) == "tightening" && ++calls == 1) {  // some work is noted by then
       source.request_stop();
     }
   };
@@ -321,11 +362,6 @@ TEST(Resume, SeesThatTheOutputIsPublishedThoughItsPagesHaveTheirNameStill) {
   EXPECT_EQ(interrupted.folder().names(), std::vector<std::string>{"out.ptin"});
 }
 
-class NoRename final : public FileLayer {
- public:
-  int rename(const std::string&, const std::string&, bool) noexcept override { return EIO; }
-};
-
 TEST(Resume, TakesNoOlderOutputForTheNewOne) {
   const InterruptibleBuild interrupted;
   BuildOptions coarser = interrupted.options();
@@ -389,6 +425,69 @@ TEST(Build, OfATinThatIsRefusedLeavesNoFolder) {
   resources.stop = source.get_token();
   EXPECT_THROW(build({input}, folder.file("out.ptin"), {}, resources), Error);
   EXPECT_EQ(folder.names(), std::vector<std::string>{"in.obj"});
+}
+
+/// Nothing is there to go on with before a source is sorted, whatever went wrong.
+TEST(Build, OfASourceThatCannotBeReadToItsEndLeavesNoFolder) {
+  const ScratchFolder folder;
+  const std::string input = folder.file("in.xyz.gz");
+  const std::string text =
+      packed(oracle::bytes_of(InterruptibleBuild(SourceKind::kPoints).input()));
+  oracle::write_text(input, text.substr(0, text.size() - 20));
+  for (const bool tmp : {false, true}) {
+    const ScratchFolder other;
+    BuildResources resources;
+    resources.tmp = tmp ? other.path() : "";
+    try {
+      build({input}, folder.file("out.ptin"), {}, resources);
+      ADD_FAILURE() << "built";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::io_error) << e.what();
+      EXPECT_EQ(e.message().find("--resume"), std::string::npos) << e.message();
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"in.xyz.gz"});
+    EXPECT_TRUE(other.names().empty());
+  }
+}
+
+/// Neither option can know what is of it: all that they could remove is named by what is damaged.
+TEST(Workspace, SaysThatItsManifestIsDamagedAndTouchesNothing) {
+  const ScratchFolder folder;
+  FileLayer& files = FileLayer::system();
+  const std::string output = folder.file("a.ptin");
+  const std::string manifest = Workspace::folder_of(output) + "/manifest";
+  {
+    Workspace workspace(files, output, "", Unfinished::kRefuse, {{"of", 1}});
+    workspace.append({{{"work", 1}}});
+    oracle::write_text(workspace.temporary("file"), "something");
+  }
+  const std::string sound = oracle::bytes_of(manifest);
+  std::string damaged = sound;
+  damaged[3] ^= 1;
+  oracle::write_text(manifest, damaged);
+  const auto expect_refused = [&](const std::function<void()>& work) {
+    try {
+      work();
+      ADD_FAILURE() << "went on";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::corruption) << e.what();
+      EXPECT_NE(e.message().find("remove this folder"), std::string::npos) << e.message();
+    }
+    EXPECT_EQ(oracle::bytes_of(manifest), damaged);
+  };
+  for (const Unfinished u : {Unfinished::kRefuse, Unfinished::kResume, Unfinished::kDiscard}) {
+    expect_refused([&] { const Workspace again(files, output, "", u, {{"of", 1}}); });
+  }
+  expect_refused([&] { Workspace::discard(files, output); });
+  oracle::write_text(manifest, sound + "torn");
+  {
+    Workspace workspace(files, output, "", Unfinished::kResume, {{"of", 1}});
+    EXPECT_EQ(workspace.lines().size(), 1U);
+    EXPECT_EQ(oracle::bytes_of(manifest), sound + "torn");
+    workspace.append({{{"work", 2}}});
+  }
+  { EXPECT_EQ(Manifest(files, manifest).entries().size(), 3U); }
+  EXPECT_TRUE(Workspace::discard(files, output));
 }
 
 TEST(Workspace, LeavesAFolderAloneThatIsNotOneOfOurs) {
@@ -564,7 +663,7 @@ TEST(ArrayFile, SaysThatItWasCutShortWhileItWasRead) {
   {
     ArrayFileWriter file(FileLayer::system(), path);
     file.put(numbers);
-    facts = file.facts();
+    facts = file.finish();
   }
   ArrayFileReader file(path, facts);
   const auto span = file.take<std::uint64_t>();

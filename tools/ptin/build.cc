@@ -69,6 +69,15 @@ void warn_of_merging(const BuildCommand& command, const BuildReport& r, const Co
                short_number(r.height_quantum).c_str());
 }
 
+/// A file without points is mostly one that was not written, or not sent, to its end.
+void warn_of_empty_inputs(const BuildReport& r, const Context& context) {
+  if (r.empty_inputs.empty() || context.json || context.quiet) return;
+  const std::size_t others = r.empty_inputs.size() - 1;
+  std::fprintf(stderr, "ptin: warning: there is no point in %s%s; is all of the source there?\n",
+               r.empty_inputs.front().c_str(),
+               others == 0 ? "" : (", nor in " + counted(others, "other file")).c_str());
+}
+
 /// Nothing can be asked of a terrain that is void everywhere.
 void warn_of_no_surface(const BuildCommand& command, const BuildReport& r, const Context& context) {
   if (r.source_samples > r.lone_samples || context.json || context.quiet) return;
@@ -91,6 +100,7 @@ nlohmann::json report_json(const BuildCommand& command, const BuildReport& r,
           {"void_samples", r.void_samples},
           {"lone_samples", r.lone_samples},
           {"left_out_points", r.left_out_points},
+          {"empty_inputs", r.empty_inputs},
           {"left_out_triangles", r.left_out_triangles},
           {"void_triangles", r.void_triangles},
           {"merged_points", r.merged_points},
@@ -188,6 +198,7 @@ void print_report(const BuildCommand& command, const BuildReport& r, const FlatR
 /// The report, in text or JSON.
 void tell(const BuildCommand& command, const BuildReport& report, const Context& context) {
   warn_of_merging(command, report, context);
+  warn_of_empty_inputs(report, context);
   warn_of_no_surface(command, report, context);
   if (!context.json && context.quiet) return;
   const FlatRecords flat =

@@ -51,7 +51,7 @@ void take_digits(const std::string& text, std::span<std::byte> bytes) {
     bytes[i] = static_cast<std::byte>(value);
   }
   if (!is_one) {
-    throw Error(ErrorCode::corruption,
+    throw Error(ErrorCode::invalid_argument,
                 "what another process of the build tells is not what this program expects; let all "
                 "of them run the same program");
   }

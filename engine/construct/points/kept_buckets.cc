@@ -45,6 +45,7 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
   ArrayFileWriter file(files, index);
   file.put(std::span(&kept, 1));
   put_frame(file, index_.frame);
+  file.put(index_.empty_inputs);
   file.put(index_.hull.corners());
   file.put(index_.ranges);
   file.put(boxes_.boxes());
@@ -52,7 +53,7 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
   file.put(index_.checksums);
   put_edges(file, index_.fixed);
   file.sync();
-  return file.facts();
+  return file.finish();
 }
 
 PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
@@ -65,6 +66,7 @@ PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
   result.size = kept.size;
   result.bucket_points = kept.bucket_points;
   result.codes_are_whole = kept.codes_are_whole != 0;
+  result.empty_inputs = file.take_copy<std::uint64_t>();
   result.hull = ConvexHull(file.take_copy<GridPoint>());
   result.ranges = file.take_copy<Range>();
   result.boxes = file.take_copy<GridBox>();

@@ -6,7 +6,6 @@
 
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/points/packed_bucket.h"
-#include "engine/error.h"
 #include "storage/file/checksum.h"
 
 namespace ptin {
@@ -56,10 +55,7 @@ void PointBuckets::read_bucket(std::uint64_t bucket, std::vector<std::byte>& byt
   bytes.resize(count + kUnpackSlack);
   files_[range]->read_at(std::span(bytes).first(count), begin);
   if (checksum_of(std::span(bytes).first(count)) != index_.checksums[bucket]) {
-    throw Error(ErrorCode::corruption,
-                "the sorted points of the build are not what was written; the disk or another "
-                "program damaged them: start again after --discard",
-                path_ + "-" + std::to_string(index_.ranges[range].file));
+    refuse_damaged(path_ + "-" + std::to_string(index_.ranges[range].file));
   }
 }
 

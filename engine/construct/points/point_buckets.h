@@ -55,6 +55,7 @@ class PointBuckets {
   struct Index {
     TerrainFrame frame;
     PointCounts counts;
+    std::vector<std::uint64_t> empty_inputs;  ///< The numbers of those that have no point at all.
     ConvexHull hull;
     std::uint64_t size = 0;           ///< Distinct positions.
     std::uint64_t bucket_points = 0;  ///< Of a bucket that is not the last one of its range.
@@ -87,6 +88,10 @@ class PointBuckets {
 
   [[nodiscard]] const TerrainFrame& frame() const noexcept { return index_.frame; }
   [[nodiscard]] const PointCounts& counts() const noexcept { return index_.counts; }
+  /// The numbers of the inputs that have no point, not even one that was left out.
+  [[nodiscard]] const std::vector<std::uint64_t>& empty_inputs() const noexcept {
+    return index_.empty_inputs;
+  }
   [[nodiscard]] const ConvexHull& hull() const noexcept { return index_.hull; }
   /// The edges of breaklines and of the boundary. Their vertices are among the points.
   [[nodiscard]] const FixedEdges& fixed_edges() const noexcept { return index_.fixed; }

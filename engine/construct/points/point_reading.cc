@@ -117,7 +117,6 @@ void put(ArrayFileWriter& file, const PortionRead& read) {
     file.put_text(*text);
   }
   file.put(read.samples);
-  file.put(read.checksums);
 }
 
 PortionRead take_portion_read(ArrayFileReader& file) {
@@ -137,7 +136,6 @@ PortionRead take_portion_read(ArrayFileReader& file) {
     *text = file.take_text();
   }
   read.samples = file.take_copy<SampledPoint>();
-  read.checksums = file.take_copy<std::uint64_t>();
   return read;
 }
 
@@ -184,7 +182,7 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, const std:
   result.left_out = stream->left_out();
   result.largest_shift = stream->largest_shift();
   result.rows = stream->rows();
-  result.checksums = writer.finish();
+  writer.finish();
   result.samples = sample.points();
   result.sample_step = sample.step();
   return result;
@@ -197,7 +195,7 @@ std::optional<ArrayFileFacts> PortionReader::read(const PointPortion& portion, s
     const PortionRead result = read_to_spool(portion, spool, task);
     ArrayFileWriter file(files_.files, files_.path("read", number));
     put(file, result);
-    return file.facts();
+    return file.finish();
   } catch (const QuotesInPart&) {
     without_old(files_.files, spool);
     return std::nullopt;
@@ -285,10 +283,12 @@ void add_samples(const PortionRead& read, std::size_t step, PointReading& readin
 PointReading join_portions(const std::vector<std::string>& inputs, const SourceOptions& options,
                            const PointFiles& files, const std::vector<SpooledPortion>& portions) {
   const std::string context = inputs.empty() ? "" : inputs[0];
-  PointReading reading{{}, {}, {}, {}, PointGridScan(options.resolution, context), 0.0, 0, {}, {}};
+  PointReading reading{{},  {}, {}, {}, PointGridScan(options.resolution, context),
+                       0.0, 0,  {}, {}, {}};
   SourceAgreement agreement(options);
   WholeTexts texts(inputs);
   std::uint64_t seen = 0;
+  std::vector<std::uint64_t> points_of(inputs.size());
   const std::size_t sample_step = portions.size() * EvenSample::kMost / kMostSamples + 1;
   for (std::size_t i = 0; i < portions.size(); ++i) {
     const SpooledPortion& p = portions[i];
@@ -301,12 +301,13 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     if (read.rows) {
       texts.add(p.portion.input, *read.rows);
     }
+    points_of[p.portion.input] += read.seen + read.left_out;
     reading.scan.add(read.extent);
     seen += read.seen;
     reading.left_out += read.left_out;
     reading.largest_shift = std::max(reading.largest_shift, read.largest_shift);
     if (read.extent.points > 0) {
-      reading.spools.push_back({p.number, read.extent.points, p.facts});
+      reading.spools.push_back({p.number, read.extent.points});
     }
     add_samples(read, sample_step, reading);
   }
@@ -317,6 +318,11 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
                : "every point is left out: none lies in the bounds, with a height and of a chosen "
                  "class",
            context);
+  }
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (points_of[i] == 0) {
+      reading.empty_inputs.push_back(i);
+    }
   }
   reading.left_out += seen - reading.scan.points();
   reading.crs = agreement.crs();

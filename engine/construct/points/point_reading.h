@@ -51,7 +51,6 @@ struct PortionRead {
   std::uint64_t left_out = 0;  ///< As PointStream::left_out().
   double largest_shift = 0.0;  ///< As PointStream::largest_shift().
   std::optional<RowsOfPart> rows;
-  std::vector<std::uint64_t> checksums;  ///< Of the blocks of the spool.
   std::vector<SampledPoint> samples;
   std::uint64_t sample_step = 1;
 };
@@ -109,10 +108,10 @@ struct PointReading {
   PointGridScan scan;          ///< Of all points and files.
   double largest_shift = 0.0;  ///< The largest PointStream::largest_shift(), CRS units.
   std::uint64_t left_out = 0;
+  std::vector<std::uint64_t> empty_inputs;  ///< The numbers of those that have no point at all.
   struct Spool {
     std::uint64_t number = 0;
     std::uint64_t points = 0;
-    ArrayFileFacts facts;  ///< Of the file beside it.
   };
   std::vector<Spool> spools;  ///< In the order of the source; none is empty.
   struct Sample {

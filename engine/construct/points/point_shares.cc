@@ -39,6 +39,7 @@ class ShareWriter {
     for (std::size_t range = 0; range < waiting_.size(); ++range) {
       write(range);
     }
+    file_.close();
     counts.records = records_;
     facts.put(std::span<const ShareCounts>(&counts, 1));
     for (const std::vector<ShareBlock>& blocks : blocks_) {
@@ -82,15 +83,26 @@ void visit_blocks(const SortPlan& plan, const PointFiles& files, std::uint64_t s
     const std::uint64_t from = std::max(begin, first_block);
     const std::uint64_t to = std::min(end, first_block + blocks);
     if (from < to) {
-      ArrayFileReader facts = files.open(files.path("read", spool.number), spool.facts);
-      SpoolReader reader(files, files.path("spool", spool.number), spool.points,
-                         take_portion_read(facts).checksums);
+      SpoolReader reader(files, files.path("spool", spool.number), spool.points);
       for (std::uint64_t block = from - first_block; block < to - first_block; ++block) {
         visit(reader, block, first_point + block * kSpoolBlock);
       }
     }
     first_block += blocks;
     first_point += spool.points;
+  }
+}
+
+/// Calls add(key, height) for those vertices of lines that a share takes. No point of the source that
+/// is shared out lies where one of them does.
+template <class Add>
+void add_fixed_vertices(const SortPlan& plan, std::uint64_t share, const Add& add) {
+  const PointOrder order = plan.order();
+  const std::span<const LineVertex> all = plan.fixed.vertices();
+  const std::size_t begin = all.size() * share / plan.shares;
+  const std::size_t end = all.size() * (share + 1) / plan.shares;
+  for (const LineVertex& v : all.subspan(begin, end - begin)) {
+    add(order.key(v.position), v.height);
   }
 }
 
@@ -135,9 +147,12 @@ ArrayFileFacts share_out_as(const SortPlan& plan, const PointFiles& files, const
                    task.progress(done);
                  }
                });
+  add_fixed_vertices(plan, task.number, [&](std::uint64_t key, double height) {
+    writer.add(record_of<Record>(key, height, 0));
+  });
   ArrayFileWriter facts(files.files, files.path("shared", task.number));
   writer.finish(facts, counts);
-  return facts.facts();
+  return facts.finish();
 }
 
 }  // namespace

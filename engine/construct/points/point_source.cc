@@ -31,14 +31,16 @@ void check_area(const ConvexHull& hull, std::uint64_t points, const std::string&
 
 }  // namespace
 
-/// Does work that reads temporary files. Where one is not what was written, all points are read once
+/// Does work that reads temporary files. Where one is not what was written, or gone, all points are read once
 /// more and the work is done again; the second time is the last.
 template <class Work>
 auto PointSource::undamaged(const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::corruption || was_damaged_ || is_read_once()) {
+    const bool is_lost =
+        error.code() == ErrorCode::corruption || error.code() == ErrorCode::not_found;
+    if (!is_lost || was_damaged_ || is_read_once()) {
       throw;
     }
   }
@@ -155,6 +157,7 @@ PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
   require_latitudes(index.frame, grid.north - grid.south, context);
   index.counts.source_points = reading_->scan.points();
   index.counts.left_out_points = reading_->left_out;
+  index.empty_inputs = reading_->empty_inputs;
   return index;
 }
 

@@ -4,15 +4,29 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <utility>
 
 #include "storage/file/checksum.h"
 
 namespace ptin {
 
+namespace {
+
+constexpr std::uint64_t kChecksumBytes = sizeof(std::uint64_t);
+
+constexpr std::uint64_t begin_of_block(std::uint64_t block) {
+  return block * (kSpoolBlock * kSpooledBytes + kChecksumBytes);
+}
+
+/// Another one for the same points in another place.
+std::uint64_t checksum_of_block(std::uint64_t block, std::span<const std::byte> points) {
+  return checksum_of(points) ^ (block + 1);
+}
+
+}  // namespace
+
 SpoolWriter::SpoolWriter(FileLayer& files, const std::string& path)
     : file_(files, without_old(files, path), ScratchFile::Kept::kNew) {
-  block_.reserve(kSpoolBlock * kSpooledBytes);
+  block_.reserve(kSpoolBlock * kSpooledBytes + kChecksumBytes);
 }
 
 void SpoolWriter::add(const SourcePoint& p) {
@@ -29,22 +43,24 @@ void SpoolWriter::add(const SourcePoint& p) {
 }
 
 void SpoolWriter::flush() {
-  file_.write_at(block_, checksums_.size() * kSpoolBlock * kSpooledBytes);
-  checksums_.push_back(checksum_of(block_));
+  const std::uint64_t checksum = checksum_of_block(blocks_, block_);
+  const auto bytes = std::as_bytes(std::span(&checksum, 1));
+  block_.insert(block_.end(), bytes.begin(), bytes.end());
+  file_.write_at(block_, begin_of_block(blocks_));
+  ++blocks_;
   block_.clear();
 }
 
-std::vector<std::uint64_t> SpoolWriter::finish() {
+void SpoolWriter::finish() {
   if (!block_.empty()) {
     flush();
   }
-  return std::move(checksums_);
+  file_.close();
 }
 
-SpoolReader::SpoolReader(const PointFiles& files, const std::string& path, std::uint64_t points,
-                         std::vector<std::uint64_t> checksums)
-    : path_(path), file_(files.open(path)), points_(points), checksums_(std::move(checksums)) {
-  if (file_->size() != points * kSpooledBytes || checksums_.size() != spool_blocks(points)) {
+SpoolReader::SpoolReader(const PointFiles& files, const std::string& path, std::uint64_t points)
+    : path_(path), file_(files.open(path)), points_(points) {
+  if (file_->size() != points * kSpooledBytes + spool_blocks(points) * kChecksumBytes) {
     refuse_damaged(path_);
   }
 }
@@ -52,9 +68,11 @@ SpoolReader::SpoolReader(const PointFiles& files, const std::string& path, std::
 void SpoolReader::read(std::uint64_t block, std::vector<SourcePoint>& points) {
   const std::uint64_t first = block * kSpoolBlock;
   const auto count = static_cast<std::size_t>(std::min(kSpoolBlock, points_ - first));
-  bytes_.resize(count * kSpooledBytes);
-  file_->read_at(bytes_, first * kSpooledBytes);
-  if (checksum_of(bytes_) != checksums_[block]) {
+  bytes_.resize(count * kSpooledBytes + kChecksumBytes);
+  file_->read_at(bytes_, begin_of_block(block));
+  std::uint64_t checksum = 0;
+  std::memcpy(&checksum, bytes_.data() + count * kSpooledBytes, kChecksumBytes);
+  if (checksum_of_block(block, std::span(bytes_).first(count * kSpooledBytes)) != checksum) {
     refuse_damaged(path_);
   }
   points.clear();

@@ -21,11 +21,12 @@ inline constexpr std::size_t kSpooledBytes = 3 * 8 + 3;
 /// Points of a block, which are read together; the last block of a file may have fewer.
 inline constexpr std::uint64_t kSpoolBlock = 4096;
 
+// A block is checked by what stands behind it, so that no reader needs to know all checksums.
 [[nodiscard]] constexpr std::uint64_t spool_blocks(std::uint64_t points) noexcept {
   return (points + kSpoolBlock - 1) / kSpoolBlock;
 }
 
-/// Writes points in blocks. Memory: a block.
+/// Writes points in blocks, each with its checksum behind it. Memory: a block.
 class SpoolWriter {
  public:
   /// A file of that name is replaced.  @throws Error io_error, resource_exhausted
@@ -33,26 +34,22 @@ class SpoolWriter {
 
   /// @throws Error io_error, resource_exhausted
   void add(const SourcePoint& p);
-  /// Writes the last block.
-  /// @return The checksums of all blocks, which a SpoolReader needs.
-  /// @throws Error io_error, resource_exhausted
-  [[nodiscard]] std::vector<std::uint64_t> finish();
+  /// Writes the last block, and closes the file.  @throws Error io_error, resource_exhausted
+  void finish();
 
  private:
   void flush();
 
   ScratchFile file_;
   std::vector<std::byte> block_;
-  std::vector<std::uint64_t> checksums_;
+  std::uint64_t blocks_ = 0;  ///< Written so far.
 };
 
 /// Reads them back.
 class SpoolReader {
  public:
-  /// @param checksums  Of all blocks.
-  /// @throws Error not_found, io_error
-  SpoolReader(const PointFiles& files, const std::string& path, std::uint64_t points,
-              std::vector<std::uint64_t> checksums);
+  /// @throws Error corruption  the file has not the length of so many points; not_found, io_error
+  SpoolReader(const PointFiles& files, const std::string& path, std::uint64_t points);
 
   /// @param points  Receives the points of a block.
   /// @throws Error corruption  the block is not what was written; io_error
@@ -62,7 +59,6 @@ class SpoolReader {
   std::string path_;
   std::unique_ptr<ScratchFile> file_;
   std::uint64_t points_;
-  std::vector<std::uint64_t> checksums_;
   std::vector<std::byte> bytes_;
 };
 

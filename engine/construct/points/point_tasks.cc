@@ -36,7 +36,7 @@ PointTasks::~PointTasks() = default;
 SourceStage PointTasks::reading(const ReadingPlan& plan) const {
   ArrayFileWriter file(files_.files, files_.path(kReadingPlan, 0));
   put(file, plan);
-  SourceStage stage{kReadingStage, {}, text_of_value(file.facts()), kTaskBytes};
+  SourceStage stage{kReadingStage, {}, text_of_value(file.finish()), kTaskBytes};
   for (const PointPortion& portion : plan.portions) {
     stage.sizes.push_back(portion.bytes);
   }
@@ -64,7 +64,7 @@ SourceStage PointTasks::sharing(std::shared_ptr<const SortPlan> plan) {
   put(file, *plan);
   const std::lock_guard lock(mutex_);
   plan_ = std::move(plan);
-  plan_facts_ = file.facts();
+  plan_facts_ = file.finish();
   const std::vector<std::uint64_t> sizes(plan_->shares,
                                          std::max<std::uint64_t>(plan_->points / plan_->shares, 1));
   return {kSharingStage, sizes, text_of_value(plan_facts_),
@@ -83,7 +83,7 @@ SourceStage PointTasks::sorting(const std::vector<std::string>& told) {
   file.put(shares);
   const std::vector<std::uint64_t> sizes(
       plan_->ranges(), std::max<std::uint64_t>(plan_->points / plan_->ranges(), 1));
-  return {kSortingStage, sizes, text_of_value(file.facts()), kTaskBytes + plan_->least_memory};
+  return {kSortingStage, sizes, text_of_value(file.finish()), kTaskBytes + plan_->least_memory};
 }
 
 /// The plan, which is read once.

@@ -52,6 +52,7 @@ class BucketWriter {
     if (syncs_) {
       file_.sync();
     }
+    file_.close();
     index_.hull = hull_.hull().corners();
     return std::move(index_);
   }
@@ -102,26 +103,12 @@ class BucketWriter {
   std::optional<MergedHeight> merged_;
 };
 
-/// The vertices of lines that lie in a range. No point of the source lies where one of them does.
-template <class Add>
-void add_fixed_vertices(const SortPlan& plan, std::size_t range, const Add& add) {
-  const PointOrder order = plan.order();
-  for (const LineVertex& v : plan.fixed.vertices()) {
-    const std::uint64_t key = order.key(v.position);
-    if (plan.range_of(key) == range) {
-      add(key, v.height);
-    }
-  }
-}
-
 template <class Sorter, class Record>
 RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const PointFiles& files,
                    const StageTask& task) {
   const ExternalMemory memory{files.files, files.folder, std::max(task.memory, plan.least_memory)};
   Sorter sorter(memory, "points", task.stop);
-  std::uint64_t fixed = 0;
-  add_fixed_vertices(plan, task.number, [&](std::uint64_t, double) { ++fixed; });
-  sorter.expect(records.records() + fixed);
+  sorter.expect(records.records());
   const auto report = [&](std::uint64_t done) {
     stop_if_asked(task.stop, "sorting the points");
     if (task.progress) {
@@ -133,12 +120,6 @@ RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const Poi
       sorter.add(r);
     }
     report(sorter.size());
-  });
-  add_fixed_vertices(plan, task.number, [&](std::uint64_t key, double height) {
-    Record record{};
-    record.key = key;
-    record.height = height;
-    sorter.add(record);
   });
   BucketWriter writer(plan, files, plan.buckets_of(task.number));
   std::uint64_t done = sorter.size();
@@ -168,7 +149,7 @@ ArrayFileFacts sort_range(const SortPlan& plan, const std::vector<ArrayFileFacts
   file.put(index.boxes);
   file.put(index.ends);
   file.put(index.checksums);
-  return file.facts();
+  return file.finish();
 }
 
 RangeIndex index_of_range(const PointFiles& files, std::size_t range, const ArrayFileFacts& facts) {

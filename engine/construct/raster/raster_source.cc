@@ -103,7 +103,7 @@ ArrayFileFacts RasterSource::save(FileLayer& files, const std::string& index) co
   put_frame(file, impl_->frame);
   file.put(std::span<const std::uint64_t>(&impl_->valid_samples, 1));
   file.sync();
-  return file.facts();
+  return file.finish();
 }
 
 RasterSource RasterSource::take_up(const std::vector<std::string>& paths,

@@ -255,11 +255,11 @@ void TextTable::fill() {
   }
   buffer_.resize(kept + got);
   if (failed) {
-    throw Error(
-        ErrorCode::io_error,
-        session.explain("cannot read on behind line " + std::to_string(lines_before() + line_) +
-                        "; the file may be damaged or cut short"),
-        path_);
+    const std::uint64_t lines = lines_before() + line_;
+    const std::string what = lines == 0 ? "cannot read the first line"
+                                        : "cannot read on behind line " + std::to_string(lines);
+    throw Error(ErrorCode::io_error,
+                session.explain(what + "; the file may be damaged or cut short"), path_);
   }
   at_end_ = got == 0;
 }

@@ -41,8 +41,8 @@ const std::string& without_old(FileLayer& files, const std::string& path) {
 
 void refuse_damaged(const std::string& path) {
   throw Error(ErrorCode::corruption,
-              "a temporary file of the build is not what was written; the disk or another program "
-              "damaged it: start again after --discard",
+              "a temporary file of the build is not what was written: the disk or another program "
+              "damaged it",
               path);
 }
 

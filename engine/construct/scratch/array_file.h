@@ -28,7 +28,7 @@ struct ArrayFileFacts {
 /// @throws Error io_error
 const std::string& without_old(FileLayer& files, const std::string& path);
 
-/// Says that a temporary file is not what was written.
+/// Says that a temporary file is not what was written: the disk, or another program, damaged it.
 /// @throws Error corruption  always
 [[noreturn]] void refuse_damaged(const std::string& path);
 
@@ -51,10 +51,14 @@ class ArrayFileWriter {
   }
   void put_text(const std::string& text) { put(std::span<const char>(text)); }
 
-  /// Of the arrays written so far.
-  [[nodiscard]] const ArrayFileFacts& facts() const noexcept { return facts_; }
-  /// @throws Error io_error, resource_exhausted
+  /// Makes what was written durable.  @throws Error io_error, resource_exhausted
   void sync() { file_.sync(); }
+  /// Closes the file, after the last array (ScratchFile::close()).
+  /// @throws Error io_error, resource_exhausted
+  [[nodiscard]] ArrayFileFacts finish() {
+    file_.close();
+    return facts_;
+  }
 
  private:
   void put_bytes(std::span<const std::byte> bytes, std::size_t element);

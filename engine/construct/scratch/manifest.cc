@@ -51,10 +51,7 @@ void Manifest::read() {
     }
     bytes_ = end + 1;
   }
-  if (bytes_ != text.size()) {
-    file_.truncate(bytes_);
-    file_.sync();
-  }
+  file_bytes_ = text.size();
 }
 
 void Manifest::append(const std::vector<nlohmann::json>& group) {
@@ -62,8 +59,11 @@ void Manifest::append(const std::vector<nlohmann::json>& group) {
   const std::string body =
       nlohmann::json(group).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   const std::string text = checksum_text(body) + ' ' + body + '\n';
+  if (has_more()) {
+    file_.truncate(bytes_);
+  }
   file_.write_at(std::as_bytes(std::span(text)), bytes_);
-  bytes_ += text.size();
+  file_bytes_ = bytes_ += text.size();
   file_.sync();
 }
 

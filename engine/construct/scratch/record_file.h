@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/construct/scratch/array_file.h"
 #include "engine/construct/scratch/external_memory.h"
 #include "engine/error.h"
 #include "engine/stop.h"
@@ -72,7 +73,7 @@ class RecordFile {
     written_ = records;
     checksums_ = std::move(checksums);
     if (checksums_.size() != (records + kBlock - 1) / kBlock) {
-      refuse();
+      refuse_damaged(path_);
     }
   }
   [[nodiscard]] std::uint64_t size() const noexcept { return written_ + block_.size(); }
@@ -92,7 +93,7 @@ class RecordFile {
     for (std::uint64_t i = begin; i < end; i += kBlock) {
       const auto block = std::span(records).subspan(i - begin, std::min(kBlock, end - i));
       if (checksum_of(std::as_bytes(block)) != checksums_[i / kBlock]) {
-        refuse();
+        refuse_damaged(path_);
       }
     }
     records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(first - begin));
@@ -122,13 +123,6 @@ class RecordFile {
   static constexpr std::uint64_t kBlock = 1 << 13;
   static constexpr std::uint64_t padded(std::uint64_t records) {
     return (records + kBlock - 1) / kBlock * kBlock;
-  }
-  [[noreturn]] void refuse() const {
-    throw Error(
-        ErrorCode::corruption,
-        "what was sorted for the build is not what was written; the disk or another program "
-        "damaged it: start again after --discard",
-        path_);
   }
   std::unique_ptr<ScratchFile> file_;
   std::vector<Record> block_;

@@ -50,6 +50,18 @@ void require_ours(bool is_ours, const std::string& folder) {
   }
 }
 
+/// Of a manifest that tells nothing, though files are there beside it: it is another's, or damaged.
+void require_empty_beside(const Manifest& manifest, const std::string& folder) {
+  if (is_empty_but_for(folder, manifest_in(folder))) {
+    return;
+  }
+  require_ours(manifest.has_more(), folder);
+  throw Error(ErrorCode::corruption,
+              "what the unfinished build here has noted of its work is damaged, so that neither "
+              "--resume nor --discard knows its files; remove this folder, and begin anew",
+              folder);
+}
+
 std::uint64_t checksum_of_text(const std::string& text) {
   return checksum_of(std::as_bytes(std::span(text)));
 }
@@ -199,7 +211,7 @@ bool Workspace::discard(FileLayer& files, const std::string& output) {
   {
     const Manifest manifest(files, manifest_in(folder));
     if (manifest.entries().empty()) {
-      require_ours(is_empty_but_for(folder, manifest_in(folder)), folder);
+      require_empty_beside(manifest, folder);
     } else {
       tmp = tmp_of(manifest.entries().front(), folder);
       owner = owner_of(manifest.entries().front(), folder);
@@ -238,7 +250,7 @@ void Workspace::open_manifest(const std::string& output, const std::string& tmp)
     tmp_ = folder_in_tmp(output, tmp);
   }
   if (manifest_->entries().empty()) {
-    require_ours(is_empty_but_for(folder_, manifest), folder_);
+    require_empty_beside(*manifest_, folder_);
   }
 }
 

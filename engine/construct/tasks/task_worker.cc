@@ -114,7 +114,7 @@ void TaskWorker::finish(ArrayFileWriter& file, ArrayFileFacts& facts) const {
   if (setup_.syncs) {
     file.sync();
   }
-  facts = file.facts();
+  facts = file.finish();
 }
 
 void TaskWorker::write_pushed_of(const TileId& tile, const Tile& pushed, TaskResult& result) const {

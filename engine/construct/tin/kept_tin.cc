@@ -50,7 +50,7 @@ ArrayFileFacts TinTriangles::save(FileLayer& files, const std::string& index) {
     file.put(*checksums);
   }
   file.sync();
-  return file.facts();
+  return file.finish();
 }
 
 TinTriangles TinTriangles::load(FileLayer& files, const std::string& kept_as,

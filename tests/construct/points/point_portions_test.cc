@@ -100,6 +100,9 @@ std::string told_of(const std::vector<std::string>& paths, std::uint64_t text_by
       told += " " + std::to_string(p.position.x) + "," + std::to_string(p.position.y) + "," +
               std::to_string(p.height);
     }
+    for (const std::uint64_t input : buckets.empty_inputs()) {
+      told += " empty " + std::to_string(input);
+    }
     return told;
   } catch (const Error& e) {
     return e.what();
@@ -152,6 +155,8 @@ TEST(PointPortions, OfSeveralFilesMayBeEmpty) {
   const std::string whole = told_of(paths, 1 << 20, 1, options);
   EXPECT_TRUE(whole.starts_with("3/3 ")) << whole;
   EXPECT_EQ(told_of(paths, 1, 1, options), whole);
+  EXPECT_NE(whole.find(" empty 1"), std::string::npos)
+      << whole;  // not the third, left out as it is
 }
 
 TEST(PointPortions, OfFilesWithoutAPointAreRefused) {

@@ -293,12 +293,57 @@ TEST(PointBuckets, KnowTheBucketOfEachPoint) {
   EXPECT_GT(buckets.buckets(), buckets.size() / buckets.bucket_points() + 1);  // some have fewer
 }
 
+/// Files that are written where nothing is lost until they are closed, as over a network.
+class FailingToClose final : public FileLayer {
+ public:
+  /// @param nth  Of the files that are made: the one that cannot be closed, from 0.
+  explicit FailingToClose(int nth) : nth_(nth) {}
+  int create(const std::string& path, int& fd) noexcept override {
+    const int failure = FileLayer::create(path, fd);
+    if (failure == 0 && made_++ == nth_) {
+      fails_ = fd;
+    }
+    return failure;
+  }
+  int close(int fd) noexcept override {
+    const bool fails = fd == fails_;
+    fails_ = fails ? -1 : fails_;
+    const int failure = FileLayer::close(fd);
+    return fails ? EIO : failure;
+  }
+  [[nodiscard]] int made() const { return made_; }
+
+ private:
+  int nth_, made_ = 0, fails_ = -1;
+};
+
+TEST(PointStages, SayWhatAFileOfTheirsMeetsWhenItIsClosed) {
+  const MemoryFile file("points.xyz", text_of(points_of(PointKind::kEven, 5'000, 2)));
+  for (int nth = 0;; ++nth) {
+    SCOPED_TRACE(nth);
+    FailingToClose files(nth);
+    const ScratchFolder folder(ScratchFolder::Size::kSmall);
+    try {
+      PointSource source({file.path()}, {}, {{files, folder.path()}, run_told(1 << 20), {}, 0});
+      std::ignore = source.sort(folder.file("buckets"), true);
+      EXPECT_LE(files.made(), nth) << "nobody saw it";
+      EXPECT_GT(nth, 7);
+      break;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::io_error) << e.what();
+      EXPECT_EQ(e.message(), "cannot close: Input/output error") << e.what();
+    }
+  }
+}
+
+enum class Damage { kChanged, kCut, kGone };
+
 /// Does stages by processes of their own, as it were, and damages a file of theirs so many times.
 class DamagedStages {
  public:
   DamagedStages(const MemoryFile& source, const ScratchFolder& folder, std::string file,
-                bool is_cut, int times)
-      : source_(source), folder_(folder), file_(std::move(file)), is_cut_(is_cut), times_(times) {}
+                Damage damage, int times)
+      : source_(source), folder_(folder), file_(std::move(file)), how_(damage), times_(times) {}
 
   [[nodiscard]] PointWork work() {
     return {{FileLayer::system(), folder_.path()},
@@ -327,13 +372,17 @@ class DamagedStages {
     is_new_ = false;
     std::string bytes = oracle::bytes_of(file_);
     bytes[bytes.size() / 2] ^= 1;
-    oracle::write_text(file_, is_cut_ ? bytes.substr(0, bytes.size() / 2) : bytes);
+    if (how_ == Damage::kGone) {
+      std::filesystem::remove(file_);
+    } else {
+      oracle::write_text(file_, how_ == Damage::kCut ? bytes.substr(0, bytes.size() / 2) : bytes);
+    }
   }
 
   const MemoryFile& source_;
   const ScratchFolder& folder_;
   std::string file_;
-  bool is_cut_;
+  Damage how_;
   int times_;
   bool is_new_ = false;
 };
@@ -349,21 +398,23 @@ TEST(PointStages, ReadAllOnceMoreWhereAFileIsDamagedAndNameItTheSecondTime) {
     return written_in(folder);
   };
   const ScratchFolder undamaged(ScratchFolder::Size::kSmall);
-  DamagedStages sound(file, undamaged, "", false, 0);
+  DamagedStages sound(file, undamaged, "", Damage::kChanged, 0);
   const Written expected = written(undamaged, sound);
   for (const std::string kind : {"spool", "read", "plan", "share", "shared", "shares", "range"}) {
-    for (const bool is_cut : {false, true}) {
+    for (const Damage how : {Damage::kChanged, Damage::kCut, Damage::kGone}) {
       for (const int times : {1, 2}) {
-        SCOPED_TRACE(kind + (is_cut ? " cut " : " changed ") + std::to_string(times));
+        SCOPED_TRACE(kind + " " + std::to_string(static_cast<int>(how)) + " " +
+                     std::to_string(times));
         const ScratchFolder folder(ScratchFolder::Size::kSmall);
         const std::string damaged = folder.file("sort." + kind + "-0");
-        DamagedStages stages(file, folder, damaged, is_cut, times);
+        DamagedStages stages(file, folder, damaged, how, times);
         try {
           EXPECT_EQ(written(folder, stages), expected);
           EXPECT_EQ(times, 1) << "sorted";
         } catch (const Error& e) {
           EXPECT_EQ(times, 2) << e.what();
-          EXPECT_EQ(e.code(), ErrorCode::corruption) << e.what();
+          EXPECT_EQ(e.code(), how == Damage::kGone ? ErrorCode::not_found : ErrorCode::corruption)
+              << e.what();
           EXPECT_EQ(e.context(), damaged);
         }
         EXPECT_EQ(stages.times_left(), 0);

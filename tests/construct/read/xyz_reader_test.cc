@@ -263,18 +263,6 @@ TEST(XyzReader, SaysThatAFileDoesNotExist) {
   }
 }
 
-std::string packed(const std::string& text) {
-  { const MemoryFile made("packing.gz", ""); }
-  VSILFILE* file = VSIFOpenL("/vsigzip//vsimem/packing.gz", "wb");
-  VSIFWriteL(text.data(), 1, text.size(), file);
-  VSIFCloseL(file);
-  vsi_l_offset bytes = 0;
-  const GByte* content = VSIGetMemFileBuffer("/vsimem/packing.gz", &bytes, FALSE);
-  const std::string result(reinterpret_cast<const char*>(content), bytes);
-  VSIUnlink("/vsimem/packing.gz");
-  return result;
-}
-
 TEST(XyzReader, UnpacksGzip) {
   for (const char* name : {"points.xyz.gz", "POINTS.XYZ.GZ", "points.csv.Gz"}) {
     EXPECT_EQ(read(packed("1 2 3\n4 5 6\n"), name), (std::vector<Row>{{1, 2, 3}, {4, 5, 6}}))
