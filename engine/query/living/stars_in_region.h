@@ -16,7 +16,11 @@ class StarsInRegion final : public StarPredicate {
   [[nodiscard]] bool may_hold(const StarAttributes& a) const noexcept override {
     return region_->meets(a.box);
   }
-  [[nodiscard]] GridBox reach() const noexcept override { return region_->bounds(); }
+  /// A box that meets an edge but for its widening has a part of which that is true only where the part
+  /// is grown by as much.
+  [[nodiscard]] GridBox reach() const noexcept override {
+    return region_->widening() <= 1.0 ? region_->bounds() : StarPredicate::reach();
+  }
 
  private:
   const GridRegion* region_;

@@ -131,6 +131,8 @@ void GridRegion::add_edge(const WidenedPoint& a, const WidenedPoint& b) {
   const double far_y = std::max(std::abs(a.y), std::abs(kGridMax - a.y));
   e.slack = 8 * kUnit * (std::abs(e.nx) * far_x + std::abs(e.ny) * far_y) +
             2 * (std::abs(e.nx) * e.slack_x + std::abs(e.ny) * e.slack_y);
+  const double longer = std::max(std::abs(e.nx), std::abs(e.ny));
+  widening_ = std::max({widening_, e.slack_x, e.slack_y, longer > 0 ? e.slack / longer : 0.0});
   edges_.push_back(e);
 }
 

@@ -74,6 +74,10 @@ class GridRegion {
   /// larger than need be.
   [[nodiscard]] GridBox bounds() const noexcept;
 
+  /// How far, at most, an edge of a segment or a polygon is taken to be from where it is, grid units:
+  /// beyond one only where corners are some 10^15 units away.
+  [[nodiscard]] double widening() const noexcept { return widening_; }
+
   /// True only when `box` lies inside of the region: every box within `box` that is not empty meets
   /// the region. False where that is not certain, and always for segments. Law: contains(a) and b
   /// within a imply contains(b) and meets(b). REQUIRES: `box` not empty. Cost: as meets().
@@ -128,6 +132,7 @@ class GridRegion {
   /// 1]).
   std::vector<std::uint32_t> slab_begin_, slab_edges_;
   double slab_scale_ = 0;
+  double widening_ = 0;
 };
 
 }  // namespace ptin

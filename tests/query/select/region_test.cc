@@ -15,6 +15,7 @@
 
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
+#include "engine/query/living/stars_in_region.h"
 #include "tests/query/random_predicate.h"
 
 namespace ptin {
@@ -324,6 +325,21 @@ TEST(GridRegion, SortsAMillionEdgesFromTheBottomToTheTop) {
   constexpr int kEnd = Teeth::kEdges * Teeth::kStep;
   EXPECT_TRUE(region.meets(GridBox{kEnd, 0, kEnd + 9, 1}));
   EXPECT_FALSE(region.meets(GridBox{kEnd + 1, 0, kEnd + 9, Teeth::kTip}));
+}
+
+TEST(GridRegion, TellsHowFarItsEdgesAreWidened) {
+  const auto triangle = [](double far) {
+    return Region(Polygon{{{{0.0, 0.0}, {far, 1.0}, {1.0, far}}}});
+  };
+  EXPECT_EQ(GridRegion(Region(Window{0, 0, 1e18, 1e18}), kIdentity).widening(), 0.0);
+  for (const double far : {10.0, 1e9, 1e12}) {
+    const GridRegion region(triangle(far), kIdentity);
+    EXPECT_LT(region.widening(), 0.01) << far;
+    EXPECT_EQ(StarsInRegion(&region).reach(), region.bounds());
+  }
+  const GridRegion region(triangle(1e18), kIdentity);
+  EXPECT_GT(region.widening(), 1.0);
+  EXPECT_EQ(StarsInRegion(&region).reach().min_x, INT32_MIN) << "a directory may not be asked";
 }
 
 TEST(GridRegion, RejectsWhatIsNoRegion) {
