@@ -106,7 +106,6 @@ TEST(CliBadInput, FilesLargerThanTheLimitOfTheProcess) {
   expect_refusal(spawn_ptin({"stream", store, "-o", folder.file("a.pts")}), 7, "too large");
   EXPECT_EQ(
       spawn_ptin({"build", folder.file("hills.tif"), "-q", "-o", folder.file("b.ptin")}).status, 7);
-  EXPECT_EQ(spawn_ptin({"build", "--discard", "-q", "-o", folder.file("b.ptin")}).status, 0);
   EXPECT_EQ(folder.names(), before);
 }
 

@@ -94,7 +94,9 @@ TEST_F(Ranks, GoOnWhereOneHasNoMoreDisk) {
                      mpi_environment())
           .wait();
   EXPECT_EQ(outcome.status, 7) << outcome.err;
-  EXPECT_TRUE(says(outcome.err, "--resume")) << outcome.err;
+  EXPECT_EQ(says(outcome.err, "--resume"),
+            std::filesystem::exists(folder_.file(".a.ptin.ptin-build")))
+      << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(output));
   const Outcome resumed = run_ranks(3, source_.build(output, {"--resume"}));
   EXPECT_EQ(resumed.status, 0) << resumed.err;

@@ -123,7 +123,9 @@ TEST_P(KillSlow, ADiskThatFillsUpLosesNothing) {
   has_ended = true;
   somebody.join();
   EXPECT_EQ(outcome.status, 7) << outcome.err;
-  EXPECT_NE(outcome.err.find("--resume"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("--resume") != std::string::npos,
+            std::filesystem::exists(disk.path() + "/.k.ptin.ptin-build"))
+      << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(output));
   std::filesystem::remove(disk.path() + "/other");
   outcome = spawn_ptin(build(output, {"--resume"}));

@@ -66,7 +66,7 @@ using RunStage = std::function<std::vector<std::string>(const SourceStage&, Stag
 
 /// Bytes as two digits each, and back.
 [[nodiscard]] std::string digits_of(std::span<const std::byte> bytes);
-/// @throws Error corruption  the text is not what digits_of() makes of so many bytes
+/// @throws Error invalid_argument  the text is not what digits_of() makes of so many bytes
 void take_digits(const std::string& text, std::span<std::byte> bytes);
 
 /// A plain value as a text that another process of the same program takes up.

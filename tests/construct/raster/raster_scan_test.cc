@@ -98,7 +98,8 @@ TEST(RasterScan, NamesTheFirstOfSeveralHeightsThatAreInfinite) {
 
 TEST(RasterScan, RefusesWhatAnotherProgramTells) {
   const RasterScan scan(RasterMosaic({write(small())}, {}));
-  EXPECT_EQ(error_of([&] { std::ignore = scan.join({"00ff"}); }).code(), ErrorCode::corruption);
+  EXPECT_EQ(error_of([&] { std::ignore = scan.join({"00ff"}); }).code(),
+            ErrorCode::invalid_argument);
 }
 
 }  // namespace
