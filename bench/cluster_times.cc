@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include <malloc.h>
 #include <nlohmann/json.hpp>
 
 #include "engine/construct/build.h"
@@ -25,6 +26,7 @@
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/error.h"
 #include "engine/memory_units.h"
+#include "tools/freed_memory.h"
 
 namespace {
 
@@ -46,6 +48,15 @@ class Stopwatch {
 
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// Does with freed memory what `ptin build` does.
+class Memory final : public ptin::BuildObserver {
+ public:
+  Memory() { ptin::tools::return_freed_memory(1); }
+  void plan(const ptin::BuildPlan& plan) override { ptin::tools::keep_freed_memory(plan); }
+  void progress(const ptin::StageProgress& /*progress*/) override {}
+  void give_back_memory() override { malloc_trim(0); }
 };
 
 class TimedTasks final : public ptin::TaskDriver {
@@ -136,6 +147,8 @@ int run(const std::vector<std::string>& arguments) {
     if (arguments[i] == "--tile") options.tile = static_cast<std::int64_t>(value);
     if (arguments[i] == "--memory") resources.memory_bytes = value * ptin::kMiB;
   }
+  Memory memory;
+  resources.observer = &memory;
   TimedTasks driver(inputs, options, resources, out);
   ptin::BuildResources timed = resources;
   timed.driver = &driver;

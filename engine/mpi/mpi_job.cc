@@ -21,18 +21,20 @@ namespace {
 constexpr char kReading = 'r', kStage = 's', kBuild = 'b', kTask = 't', kHome = 'h';
 
 /// Waits for messages without keeping a processor busy, which the ranks that compute need: MPI's own
-/// waiting does. Short at first, since answers often come together.
+/// waiting does. Sleeps for an eighth of what it has waited, so that a message is seen about as late;
+/// the next task comes a few milliseconds after an answer.
 class Patience {
  public:
   void wait() {
-    std::this_thread::sleep_for(pause_);
-    pause_ = std::min(pause_ * 2, kLongest);
+    const std::chrono::microseconds pause = std::clamp(waited_ / 8, kShortest, kLongest);
+    std::this_thread::sleep_for(pause);
+    waited_ += pause;
   }
-  void reset() { pause_ = kShortest; }
+  void reset() { waited_ = {}; }
 
  private:
   static constexpr std::chrono::microseconds kShortest{20}, kLongest{2000};
-  std::chrono::microseconds pause_ = kShortest;
+  std::chrono::microseconds waited_{};
 };
 
 /// Rank 0: a task for each rank that waits.

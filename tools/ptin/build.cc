@@ -18,6 +18,7 @@
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
+#include "tools/freed_memory.h"
 #include "tools/output/output_file.h"
 #include "tools/ptin/build_cluster.h"
 #include "tools/ptin/build_command.h"

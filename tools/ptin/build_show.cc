@@ -10,6 +10,7 @@
 #include "engine/construct/memory_plan.h"
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
+#include "tools/freed_memory.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -54,24 +55,7 @@ void print_plan(const BuildPlan& p) {
   }
 }
 
-/// Where the limit leaves room for it, freed blocks are kept for the next tile: giving them back
-/// and taking fresh ones, page by page, is a sixth of the time of a build.
-void keep_freed_memory(const BuildPlan& plan) {
-  constexpr std::uint64_t kKeptByThread = std::uint64_t{64} << 20;  // measured
-  const std::uint64_t kept = kKeptByThread * static_cast<std::uint64_t>(plan.threads + 1);
-  if (plan.memory_expected + kept <= plan.memory.limit) {
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that malloc takes
-    mallopt(M_TRIM_THRESHOLD, 32 << 20);
-  }
-}
-
 }  // namespace
-
-void return_freed_memory(int threads) {
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  mallopt(M_TRIM_THRESHOLD, 4 << 20);
-  mallopt(M_ARENA_MAX, threads + 1);
-}
 
 BuildShow::BuildShow(const BuildCommand& command, const Context& context)
     : command_(command),

@@ -16,10 +16,6 @@
 
 namespace ptin::tools {
 
-/// Big blocks go back to the system as soon as they are freed, so that the limit holds between
-/// tiles too. To be called before a build.
-void return_freed_memory(int threads);
-
 /// a / b, and 0 where b is none.
 [[nodiscard]] inline double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
 
