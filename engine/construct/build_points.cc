@@ -39,10 +39,12 @@ PointWork work_of(const Job& job, const Workspace& workspace) {
 /// Vertices of TINs are sorted before they are points.
 SourceDisk disk_of(const Job& job, const PointCount& count) {
   SourceDisk disk = PointBuckets::disk_of(count.points, job.source_options().merge);
-  disk.while_reading =
-      std::max(disk.while_reading,
-               disk.spooled + count.of_largest_tin *
-                                  TinVertices::disk_of_vertex(job.options.nodata.has_value()));
+  const TaskDriver* const driver = job.resources.driver;
+  const std::uint64_t of_tins =
+      count.of_tins_at_once(driver == nullptr ? 1 : driver->processes_that_read());
+  disk.while_reading = std::max(
+      disk.while_reading,
+      disk.spooled + of_tins * TinVertices::disk_of_vertex(job.options.nodata.has_value()));
   if (job.lines.rings_are_flat) {
     disk.while_reading += disk.kept;  // the points below the boundary, until it lies on them
   }

@@ -43,6 +43,9 @@ class MpiDriver final : public TaskDriver {
   explicit MpiDriver(const MpiSession& session) : session_(session) {}
 
   void begin_reading(const BuildNote& note) override { tell_all(kReading + message_of(note)); }
+  [[nodiscard]] std::size_t processes_that_read() const noexcept override {
+    return static_cast<std::size_t>(session_.ranks() - 1);
+  }
   [[nodiscard]] std::vector<std::string> run_stage(const SourceStage& stage, StageWorker& worker,
                                                    const StageLimits& limits) override;
   [[nodiscard]] bool begin(const BuildNote& note) override {

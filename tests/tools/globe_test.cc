@@ -11,6 +11,7 @@
 #include <ogr_spatialref.h>
 
 #include "engine/error.h"
+#include "tests/tools/program.h"
 #include "tests/tools/tiles_fixture.h"
 
 namespace ptin::tools::testing {

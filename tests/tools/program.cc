@@ -2,21 +2,16 @@
 #include "tests/tools/program.h"
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
 
 #include <fcntl.h>
-#include <gdal_priv.h>
 #include <gtest/gtest.h>
-#include <ogr_spatialref.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -150,13 +145,6 @@ Outcome spawn_ptin_into(const std::string& output, const std::vector<std::string
   return outcome;
 }
 
-std::string read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  return content.str();
-}
-
 Outcome spawn_ptin_reading(const std::string& input, const std::vector<std::string>& arguments) {
   const TestFolder folder;
   write_file(folder.file("in"), input);
@@ -168,74 +156,12 @@ Outcome spawn_ptin_reading(const std::string& input, const std::vector<std::stri
   return outcome;
 }
 
-void write_file(const std::string& path, const std::string& content) {
-  std::ofstream(path, std::ios::binary) << content;
-}
-
 std::size_t lines_in(const std::string& text) {
   std::istringstream in(text);
   std::string line;
   std::size_t count = 0;
   while (std::getline(in, line)) count += !line.empty();
   return count;
-}
-
-void make_raster(const std::string& path, const RasterRecipe& r) {
-  GDALAllRegister();
-  CPLStringList creation;
-  for (const std::string& option : r.creation) creation.AddString(option.c_str());
-  const std::unique_ptr<GDALDataset> data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      path.c_str(), r.width, r.height, 1, GDALGetDataTypeByName(r.type.c_str()), creation.List()));
-  if (!data) throw std::runtime_error("cannot create " + path);
-  double transform[6] = {r.west, r.pixel, 0, r.north, 0, -r.pixel};
-  if (r.columns_go_west) {
-    transform[0] += r.width * r.pixel;
-    transform[1] = -r.pixel;
-  }
-  data->SetGeoTransform(transform);
-  OGRSpatialReference srs;
-  srs.importFromEPSG(r.epsg);
-  data->SetSpatialRef(&srs);
-  GDALRasterBand& band = *data->GetRasterBand(1);
-  if (r.nodata) band.SetNoDataValue(*r.nodata);
-  if (!r.unit.empty()) band.SetUnitType(r.unit.c_str());
-  std::vector<double> row(static_cast<std::size_t>(r.width));
-  for (int y = 0; y < r.height; ++y) {
-    for (int x = 0; x < r.width; ++x)
-      row[static_cast<std::size_t>(x)] = r.value ? r.value(x, y) : hills(x, y);
-    if (band.RasterIO(GF_Write, 0, y, r.width, 1, row.data(), r.width, 1, GDT_Float64, 0, 0,
-                      nullptr) != CE_None) {
-      throw std::runtime_error("cannot write " + path);
-    }
-  }
-}
-
-double hills(int column, int row) {
-  return std::round(500.0 * (2.0 + std::sin(column * 0.21) * std::cos(row * 0.17) +
-                             0.3 * std::sin(column * 0.73 + row * 0.41))) /
-         10.0;
-}
-
-std::string test_data(const std::string& name) {
-  return std::string(PTIN_TEST_DATA "/").append(name);
-}
-
-std::string built(const TestFolder& folder, const std::string& name,
-                  const std::string& store_name) {
-  static const TestFolder stores;
-  const std::string store = stores.file(name + ".ptin");
-  if (!std::filesystem::exists(store)) {
-    const Outcome outcome = run_ptin({"build", test_data(name), "-o", store, "-q"});
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(outcome.out + outcome.err, "");
-  }
-  const std::string path = folder.file(store_name);
-  std::filesystem::copy_file(store, path, std::filesystem::copy_options::overwrite_existing);
-  return path;
-}
-
-std::string built(const TestFolder& folder, const std::string& name) {
-  return built(folder, name, name + ".ptin");
 }
 
 nlohmann::json answer_of(const std::vector<std::string>& arguments) {

@@ -112,7 +112,7 @@ void ServeElsewhere::SetUpTestSuite() {
     recipe.unit = id == "metres" ? "m" : "ft";
     const std::string name = folder_->file(id);
     make_raster(name + ".tif", recipe);
-    expect_done({"build", name + ".tif", "-o", name + ".ptin", "-q"});
+    build_terrain(name + ".tif", name + ".ptin");
     options.files.push_back({id, name + ".ptin"});
   };
   add("feet", 32611, 600000, 4000000, 30);

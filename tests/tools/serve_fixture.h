@@ -14,8 +14,9 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/query/terrain.h"
+#include "storage/file/sigbus_guard.h"
 #include "tests/tools/http_client.h"
-#include "tests/tools/program.h"
+#include "tests/tools/small_terrains.h"
 #include "tools/serve/terrain_service.h"
 
 namespace ptin::tools::testing {
@@ -30,6 +31,7 @@ class ServedTerrains {
       : service_(options, [this](const std::string& line) { note(line); }),
         running_(options.http, service_),
         client_(running_.address()) {
+    install_sigbus_guard();  // as `ptin serve` does
     service_.watch(&running_.server());
   }
   ~ServedTerrains() {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/query/terrain.h"
+#include "tests/tools/program.h"
 #include "tests/tools/serve_fixture.h"
 
 namespace ptin::tools::testing {

@@ -11,6 +11,7 @@
 
 #include "engine/crs/ground.h"
 #include "engine/query/terrain.h"
+#include "tests/tools/program.h"
 #include "tests/tools/serve_fixture.h"
 
 namespace ptin::tools::testing {

@@ -71,7 +71,7 @@ namespace {
 std::string built_of(const TestFolder& folder, const std::string& name,
                      const RasterRecipe& recipe) {
   make_raster(folder.file(name + ".tif"), recipe);
-  expect_done({"build", folder.file(name + ".tif"), "-o", folder.file(name + ".ptin"), "-q"});
+  build_terrain(folder.file(name + ".tif"), folder.file(name + ".ptin"));
   return folder.file(name + ".ptin");
 }
 
@@ -79,7 +79,9 @@ std::string built_of(const TestFolder& folder, const std::string& name,
 
 std::string built_in_feet(const TestFolder& folder) {
   const std::string path = folder.file("feet.ptin");
-  expect_done({"build", test_data("ground_points.csv"), "--a-srs", "EPSG:2994", "-o", path, "-q"});
+  BuildOptions options;
+  options.a_srs = "EPSG:2994";
+  build_terrain(test_data("ground_points.csv"), path, options);
   return path;
 }
 

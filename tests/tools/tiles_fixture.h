@@ -23,7 +23,7 @@
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "engine/query/terrain.h"
-#include "tests/tools/program.h"
+#include "tests/tools/small_terrains.h"
 #include "tests/tools/tile_reader.h"
 #include "tools/tiles/terrain_tiles.h"
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <numeric>
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
@@ -64,6 +66,12 @@ std::uint64_t points_of_text(const std::string& path, PointStream& stream) {
 
 }  // namespace
 
+std::uint64_t PointCount::of_tins_at_once(std::size_t processes) const noexcept {
+  const auto last =
+      of_tins.begin() + static_cast<std::ptrdiff_t>(std::min(processes, of_tins.size()));
+  return std::accumulate(of_tins.begin(), last, std::uint64_t{0});
+}
+
 PointCount count_points(const std::vector<std::string>& inputs, const SourceOptions& options) {
   PointCount count;
   for (const std::string& input : inputs) {
@@ -75,12 +83,13 @@ PointCount count_points(const std::vector<std::string>& inputs, const SourceOpti
     if (format == PointFormat::kTin) {
       const std::uint64_t vertices = count_tin_vertices(input, options.points.layer);
       count.points += vertices;
-      count.of_largest_tin = std::max(count.of_largest_tin, vertices);
+      count.of_tins.push_back(vertices);
       continue;
     }
     const auto stream = open_point_stream(input, options.points, options.nodata);
     count.points += format == PointFormat::kText ? points_of_text(input, *stream) : stream->total();
   }
+  std::sort(count.of_tins.begin(), count.of_tins.end(), std::greater<>());
   count.points = std::max<std::uint64_t>(count.points, 3);
   count.may_be_less = !options.points.classes.empty() ||
                       options.points.returns != ReturnChoice::kAll || options.bbox ||

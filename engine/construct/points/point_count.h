@@ -3,6 +3,7 @@
 // How many points some inputs may hold, before they are read.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,9 +19,12 @@ struct PointCount {
   /// layer OGR says its features, or nothing, which counts as 0; text and TINs are estimated from
   /// how they begin (read/tin_count.h).
   std::uint64_t points = 0;
-  std::uint64_t of_largest_tin = 0;  ///< Vertices of the largest: TINs are sorted one at a time.
+  std::vector<std::uint64_t> of_tins;  ///< Vertices of each, the largest first.
   bool is_known = true;      ///< false: an input is no file (a pipe), and can be read only once.
   bool may_be_less = false;  ///< Classes, returns, bounds or nodata may leave out any part.
+
+  /// The most vertices of TINs that so many processes sort at once, of which each sorts one at a time.
+  [[nodiscard]] std::uint64_t of_tins_at_once(std::size_t processes) const noexcept;
 };
 
 /// Looks at headers, and at the first points of text and TINs. Cost: opens each input.

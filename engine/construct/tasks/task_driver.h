@@ -4,6 +4,7 @@
 // process, or other processes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <stop_token>
 #include <string>
@@ -29,6 +30,8 @@ class TaskDriver {
   /// Told of the build before the first stage of reading, without what reading finds out. By default
   /// it does nothing.
   virtual void begin_reading(const BuildNote& note);
+  /// How many processes do the tasks of reading at once.
+  [[nodiscard]] virtual std::size_t processes_that_read() const noexcept { return 1; }
   /// Has a stage of reading done: by default on threads of this process.
   /// @param worker  Does its tasks in this process.
   /// @throws Error  as RunStage

@@ -117,6 +117,20 @@ std::string mesh(const std::string& extension, int side) {
   return (extension == ".ply" ? header : "") + vertices + triangles;
 }
 
+TEST(PointCount, KnowsHowManyVerticesOfTinsAreSortedAtOnce) {
+  const oracle::ScratchFolder folder;
+  std::vector<std::string> paths;
+  for (const int side : {10, 30, 20}) {
+    paths.push_back(folder.file(std::to_string(side) + ".ply"));
+    oracle::write_text(paths.back(), mesh(".ply", side));
+  }
+  const PointCount count = count_points(paths, {});
+  EXPECT_EQ(count.of_tins_at_once(1), 900U);
+  EXPECT_EQ(count.of_tins_at_once(2), 1300U);
+  EXPECT_EQ(count.of_tins_at_once(9), 1400U);
+  EXPECT_EQ(count.points, 1400U);
+}
+
 TEST(PointCount, KnowsTheVerticesOfTinsWithoutReadingAllOfThem) {
   const oracle::ScratchFolder folder;
   for (const std::string extension : {".obj", ".2dm", ".ply"}) {
@@ -125,7 +139,7 @@ TEST(PointCount, KnowsTheVerticesOfTinsWithoutReadingAllOfThem) {
       const std::string path = folder.file("m" + extension);
       oracle::write_text(path, mesh(extension, side));
       const PointCount count = count_points({path}, {});
-      EXPECT_EQ(count.of_largest_tin, count.points);
+      EXPECT_EQ(count.of_tins_at_once(1), count.points);
       const double ratio = static_cast<double>(count.points) / (side * side);
       if (side == 30 || extension == ".ply") {
         EXPECT_EQ(ratio, 1.0);
