@@ -22,6 +22,8 @@ void keep_freed_memory(const BuildPlan& plan) {
     mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that malloc takes
     // Half of it at the end of a thread's memory; as much may be kept between blocks in use.
     mallopt(M_TRIM_THRESHOLD, static_cast<int>(kept / 2));
+  } else {
+    return_freed_memory(plan.threads);
   }
 }
 

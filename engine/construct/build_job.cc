@@ -42,11 +42,14 @@ bool is_published(const Job& job, const Workspace& workspace) {
     return inode_of(job.output) == job.inode_of_output;
   }
   const std::vector<nlohmann::json> lines = workspace.lines();
-  if (lines.empty() || !lines.back().contains("publishing")) {
-    return false;
-  }
-  return inode_of(job.output) == lines.back()["publishing"].get<std::uint64_t>();
+  const auto last = std::find_if(lines.rbegin(), lines.rend(), [](const nlohmann::json& line) {
+    return line.contains("publishing");
+  });
+  return last != lines.rend() && inode_of(job.output) == (*last)["publishing"].get<std::uint64_t>();
 }
+
+/// Thrown where a source is wanted for an output that is complete.
+struct AlreadyPublished {};
 
 void report_published(Job& job) {
   const auto store = StoreFile::open(job.output);
@@ -56,12 +59,20 @@ void report_published(Job& job) {
   job.report.file_bytes = bytes_of_file(job.output);
 }
 
-/// True where the file at fault is of a sorted source, which can be sorted again from the inputs.
-bool is_of_sorted_source(const Workspace& workspace, const Error& error) {
-  const bool is_lost =
-      error.code() == ErrorCode::corruption || error.code() == ErrorCode::not_found;
-  return is_lost && (error.context().starts_with(workspace.temporary(kPointBuckets)) ||
-                     error.context().starts_with(workspace.temporary(kTinTriangles)));
+/// True where faults of the system are worth keeping the folder for. Other processes may still write
+/// into it then: it cannot be removed under them.
+bool is_shared_fault(const Job& job, ErrorCode code) {
+  return job.resources.driver != nullptr &&
+         (code == ErrorCode::cancelled || code == ErrorCode::resource_exhausted ||
+          code == ErrorCode::io_error);
+}
+
+/// True for files of tasks and of sorting, which are made again. The pages of the output are not: they
+/// are of work whose files are gone.
+bool is_made_again(const Workspace& workspace, const std::string& path) {
+  return path.starts_with(workspace.temporary_folder() + "/") &&
+         !path.starts_with(pages_file_in(workspace.folder())) &&
+         !path.starts_with(workspace.folder() + "/descriptors");
 }
 
 constexpr const char* kGoOn = ": go on by --resume, or remove it by --discard";
@@ -76,12 +87,14 @@ Error with_advice(const Error& error, const std::string& folder, const char* adv
 
 /// What is said where work is kept. It stays of use where a sorted source is damaged.
 Error error_with_work(Workspace& workspace, const Error& error) {
-  if (!is_of_sorted_source(workspace, error)) {
-    return with_resume_hint(error, workspace.folder());
+  if (!is_lost_sorted_source(error, workspace.temporary_folder())) {
+    const bool is_over =
+        error.code() == ErrorCode::corruption && !is_made_again(workspace, error.context());
+    return with_advice(error, workspace.folder(), is_over ? kStartAgain : kGoOn);
   }
   try {
     forget_index(workspace);
-  } catch (const Error&) {  // who goes on meets the damage again, and notes it then
+  } catch (...) {  // who goes on meets the damage again, and notes it then
   }
   return with_advice(error, workspace.folder(), kSortAgain);
 }
@@ -144,7 +157,7 @@ Error error_in_flight() {
 }
 
 Error with_resume_hint(const Error& error, const std::string& folder) {
-  return with_advice(error, folder, error.code() == ErrorCode::corruption ? kStartAgain : kGoOn);
+  return with_advice(error, folder, kGoOn);
 }
 
 FileLayer& Job::files() const {
@@ -246,6 +259,8 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   job.report.source_bytes = bytes_in(fingerprint.at("inputs"));
   try {
     work(workspace);
+  } catch (const AlreadyPublished&) {
+    report_published(job);
   } catch (...) {
     const Error e = error_in_flight();
     if (e.code() == ErrorCode::resource_exhausted && is_published(job, workspace)) {
@@ -253,7 +268,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
       remove_done(workspace, job);
       return;
     }
-    if (workspace.has_work()) {
+    if (workspace.has_work() || is_shared_fault(job, e.code())) {
       throw error_with_work(workspace, e);
     }
     give_up(workspace, e);
@@ -311,14 +326,15 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
   job.stage("writing")(1, 1);
 }
 
-std::optional<ArrayFileFacts> kept_index(const Workspace& workspace, const std::string& key) {
-  std::optional<ArrayFileFacts> kept;
+KeptIndex kept_index(const Workspace& workspace, const std::string& key) {
+  KeptIndex kept;
   for (const nlohmann::json& line : workspace.lines()) {
     if (line.contains(key)) {
       const auto& facts = line[key];
-      kept = {facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()};
+      kept.facts = {facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()};
+      kept.is_sound = true;
     } else if (line.contains(kIsForgotten)) {
-      kept.reset();
+      kept.is_sound = false;
     }
   }
   return kept;
@@ -330,7 +346,23 @@ nlohmann::json index_json(const char* kind, const ArrayFileFacts& index) {
 
 void forget_index(Workspace& workspace) { workspace.append({{{kIsForgotten, true}}}); }
 
-void note_index(Workspace& workspace, const char* kind, const ArrayFileFacts& index) {
+void sort_again(const Job& job, Workspace& workspace) {
+  if (is_published(job, workspace)) {
+    throw AlreadyPublished();
+  }
+  forget_index(workspace);
+}
+
+void note_index(const Job& job, Workspace& workspace, const char* kind,
+                const ArrayFileFacts& index) {
+  const KeptIndex before = kept_index(workspace, kind);
+  if (before.facts && *before.facts != index) {
+    throw Error(
+        ErrorCode::corruption,
+        "the source reads otherwise than when this build began, and tiles of both would not "
+        "fit together",
+        job.inputs[0]);
+  }
   workspace.sync_names();
   workspace.append({index_json(kind, index)});
 }

@@ -120,32 +120,46 @@ void plan_before_reading(const Job& job,
 
 /// The facts of a source's index under the name of its kind.
 [[nodiscard]] nlohmann::json index_json(const char* kind, const ArrayFileFacts& index);
-/// The index of a source that an interrupted build had sorted on disk and noted under `key`; none
-/// where that build had not got so far.
-[[nodiscard]] std::optional<ArrayFileFacts> kept_index(const Workspace& workspace,
-                                                       const std::string& key);
+/// The index of a source that an interrupted build had sorted on disk.
+struct KeptIndex {
+  std::optional<ArrayFileFacts> facts;  ///< None where the build had not got so far.
+  bool is_sound = false;                ///< Nobody has noted that the source is damaged.
+};
+/// What was noted under `key`.
+[[nodiscard]] KeptIndex kept_index(const Workspace& workspace, const std::string& key);
 /// Notes that the sorted source is damaged: kept_index() of a resumed build has none.
 /// @throws Error io_error, resource_exhausted
 void forget_index(Workspace& workspace);
-/// Calls `load`, which takes up the sorted source that an interrupted build had noted.
-/// @return  What it gives; none where a file of the source is damaged or gone, which is then noted.
-/// @throws Error  what else `load` throws; as forget_index()
+/// forget_index(), but where the output is complete and the source no longer wanted: this then ends the
+/// build well.
+void sort_again(const Job& job, Workspace& workspace);
+/// Takes up the sorted source that an interrupted build had noted under `key`.
+/// @param load  Given the facts of its index.
+/// @return  What `load` gives; none where nothing was noted, or a file of the source is damaged or
+///     gone, which is then noted.
+/// @throws Error  what else `load` throws; as sort_again()
 template <class Load>
-[[nodiscard]] auto taken_up(Workspace& workspace, const Load& load)
-    -> std::optional<decltype(load())> {
+[[nodiscard]] auto taken_up(const Job& job, Workspace& workspace, const char* key, const Load& load)
+    -> std::optional<decltype(load(ArrayFileFacts{}))> {
+  const KeptIndex kept = kept_index(workspace, key);
+  if (!kept.is_sound) {
+    return std::nullopt;
+  }
   try {
-    return load();
+    return load(*kept.facts);
   } catch (const Error& e) {
-    if (e.code() != ErrorCode::corruption && e.code() != ErrorCode::not_found) {
+    if (!is_lost_sorted_source(e, workspace.temporary_folder())) {
       throw;
     }
   }
-  forget_index(workspace);
+  sort_again(job, workspace);
   return std::nullopt;
 }
 /// Notes the index of a sorted source in the manifest, so that a resumed build does not read and
-/// sort the source again.  @throws Error io_error
-void note_index(Workspace& workspace, const char* kind, const ArrayFileFacts& index);
+/// sort the source again.
+/// @throws Error corruption  it is another one than an interrupted build had noted; io_error
+void note_index(const Job& job, Workspace& workspace, const char* kind,
+                const ArrayFileFacts& index);
 /// Plans the tiles of a source that has been sorted, and tells the observer.
 /// @throws Error as plan_build()
 [[nodiscard]] BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk);

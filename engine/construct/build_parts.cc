@@ -67,6 +67,17 @@ Error to_do_again(PartsPhase phase, int part, const std::string& what, const std
           where};
 }
 
+/// Removes what is damaged of a sorted source: who makes the plan again sees that it is gone. A job does
+/// not write to the manifest, which is of one process.
+Error to_sort_again(const Error& lost, FileLayer& files) {
+  static_cast<void>(files.unlink(lost.context()));  // gone already where another job met the same
+  return {lost.code(),
+          lost.message() +
+              "; make the plan again with --resume, which reads the source again, then "
+              "do this job again",
+          lost.context()};
+}
+
 void tell(FileLayer& files, const std::string& folder, PartsPhase phase, int part,
           const TaskResults& results) {
   std::string text;
@@ -282,21 +293,9 @@ void require_part(PartsPhase phase, int part, int parts) {
   }
 }
 
-}  // namespace
-
-std::string begin_parts(const std::vector<std::string>& inputs, const std::string& output,
-                        const BuildOptions& options, const BuildResources& resources) {
-  NoteTaker taker;
-  BuildResources to_note = resources;
-  to_note.driver = &taker;
-  build(inputs, output, options, to_note);
-  return taker.note();
-}
-
-void do_part(const std::vector<std::string>& inputs, const BuildOptions& options,
-             const BuildResources& resources, const std::string& note, PartsPhase phase, int part,
-             int parts) {
-  require_part(phase, part, parts);
+void do_tasks(const std::vector<std::string>& inputs, const BuildOptions& options,
+              const BuildResources& resources, const std::string& note, PartsPhase phase, int part,
+              int parts) {
   const std::string folder = temporary_folder_in(note);
   FileLayer& files = files_of(resources);
   TaskResults known;
@@ -328,6 +327,31 @@ void do_part(const std::vector<std::string>& inputs, const BuildOptions& options
   }
   PTIN_CHECK(pieces.is_complete());
   tell(files, folder, phase, part, pieces.done());
+}
+
+}  // namespace
+
+std::string begin_parts(const std::vector<std::string>& inputs, const std::string& output,
+                        const BuildOptions& options, const BuildResources& resources) {
+  NoteTaker taker;
+  BuildResources to_note = resources;
+  to_note.driver = &taker;
+  build(inputs, output, options, to_note);
+  return taker.note();
+}
+
+void do_part(const std::vector<std::string>& inputs, const BuildOptions& options,
+             const BuildResources& resources, const std::string& note, PartsPhase phase, int part,
+             int parts) {
+  require_part(phase, part, parts);
+  try {
+    do_tasks(inputs, options, resources, note, phase, part, parts);
+  } catch (const Error& e) {
+    if (!is_lost_sorted_source(e, temporary_folder_in(note))) {
+      throw;
+    }
+    throw to_sort_again(e, files_of(resources));
+  }
 }
 
 BuildReport publish_parts(const std::vector<std::string>& inputs, const std::string& output,

@@ -68,14 +68,13 @@ void lay_boundary(Job& job, const PointFiles& files, PointSource& source) {
 PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index_facts) {
   const std::string buckets = workspace.temporary(kPointBuckets);
   const std::string index = workspace.temporary(kPointsIndex);
-  if (const auto facts = kept_index(workspace, "points")) {
-    auto points = taken_up(workspace,
-                           [&] { return PointBuckets::load(job.files(), buckets, index, *facts); });
-    if (points) {
-      job.lines = {};
-      index_facts = *facts;
-      return std::move(*points);
-    }
+  const auto load = [&](const ArrayFileFacts& facts) {
+    index_facts = facts;
+    return PointBuckets::load(job.files(), buckets, index, facts);
+  };
+  if (auto points = taken_up(job, workspace, "points", load)) {
+    job.lines = {};
+    return std::move(*points);
   }
   remove_files(job.files(), buckets + "-");
   if (job.resources.driver != nullptr) {
@@ -95,7 +94,7 @@ PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index
   }();
   job.lines = {};  // the points have what they need of them
   index_facts = points.save(job.files(), index);
-  note_index(workspace, "points", index_facts);
+  note_index(job, workspace, "points", index_facts);
   return points;
 }
 

@@ -2,6 +2,7 @@
 //
 // A build over somebody else's triangles: counted first, sorted on disk, then tiles.
 #include <algorithm>
+#include <utility>
 
 #include "engine/construct/build_job.h"
 #include "engine/construct/memory_plan.h"
@@ -19,13 +20,12 @@ namespace {
 TinTriangles sorted_triangles(Job& job, Workspace& workspace, ArrayFileFacts& index_facts) {
   const std::string kept_as = workspace.temporary(kTinTriangles);
   const std::string index = workspace.temporary(kTinIndex);
-  if (const auto facts = kept_index(workspace, "tin")) {
-    auto triangles = taken_up(
-        workspace, [&] { return TinTriangles::load(job.files(), kept_as, index, *facts); });
-    if (triangles) {
-      index_facts = *facts;
-      return std::move(*triangles);
-    }
+  const auto load = [&](const ArrayFileFacts& facts) {
+    index_facts = facts;
+    return TinTriangles::load(job.files(), kept_as, index, facts);
+  };
+  if (auto triangles = taken_up(job, workspace, "tin", load)) {
+    return std::move(*triangles);
   }
   for (const std::string& name : TinTriangles::kept_files(kTinTriangles)) {
     workspace.remove(name);
@@ -35,7 +35,7 @@ TinTriangles sorted_triangles(Job& job, Workspace& workspace, ArrayFileFacts& in
                          {job.files(), job.sorting_folder(workspace), job.memory.sorting},
                          job.resources.stop, job.stages(), kept_as);
   index_facts = triangles.save(job.files(), index);
-  note_index(workspace, "tin", index_facts);
+  note_index(job, workspace, "tin", index_facts);
   return triangles;
 }
 

@@ -54,6 +54,13 @@ CollapseOptions collapse_options(const BuildOptions& options, const TiledSource&
   return result;
 }
 
+bool is_lost_sorted_source(const Error& error, const std::string& folder) {
+  const bool is_lost = error.code() == ErrorCode::corruption ||
+                       error.code() == ErrorCode::not_found || error.code() == ErrorCode::io_error;
+  return is_lost && (error.context().starts_with(folder + "/" + kPointBuckets) ||
+                     error.context().starts_with(folder + "/" + kTinTriangles));
+}
+
 ReadSource::ReadSource(const std::vector<std::string>& inputs, const BuildOptions& options,
                        const nlohmann::json& index, const std::string& folder, FileLayer& files,
                        const std::stop_token& stop) {

@@ -21,6 +21,7 @@
 #include "engine/construct/scratch/workspace.h"
 #include "engine/construct/tile/tile_tree.h"
 #include "engine/construct/tin/tin_source.h"
+#include "engine/error.h"
 
 namespace ptin::build_internal {
 
@@ -48,6 +49,10 @@ inline constexpr const char* kPointBuckets = "points";
 inline constexpr const char* kPointsIndex = "points.index";
 inline constexpr const char* kTinTriangles = "tin";
 inline constexpr const char* kTinIndex = "tin.index";
+
+/// True where an error is that a file of a sorted source, in a folder of temporary files, cannot be read
+/// back: damaged, cut, gone, or on a disk that fails. It can be sorted again from the inputs.
+[[nodiscard]] bool is_lost_sorted_source(const Error& error, const std::string& folder);
 
 /// A source that another process has read: of a raster it knows the frame, of points and TINs it
 /// reads what was sorted.

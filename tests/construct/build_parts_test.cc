@@ -53,6 +53,11 @@ class InParts {
       job(phase, part);
     }
   }
+  void plan_again() {
+    BuildResources r = resources();
+    r.unfinished = Unfinished::kResume;
+    note_ = begin_parts({of_.input()}, of_.output(), of_.options(), r);
+  }
   void publish() { publish_parts({of_.input()}, of_.output(), of_.options(), resources(), parts_); }
   void rest_gives_the_same_bytes() {
     for (const PartsPhase p : {PartsPhase::kCollapse, PartsPhase::kJoin, PartsPhase::kTighten}) {
@@ -121,6 +126,25 @@ TEST(BuildPart, ThatWasDoneWritesNothingAgain) {
   std::filesystem::remove(in.file(file_name(first, TileFile::kPages)));
   in.job(PartsPhase::kCollapse, 0);
   EXPECT_FALSE(std::filesystem::exists(in.file(file_name(first, TileFile::kPages))));
+}
+
+TEST(BuildPart, ThatMeetsADamagedSourceSaysThatItIsToBePlannedAgain) {
+  for (const SourceKind kind : {SourceKind::kPoints, SourceKind::kTin}) {
+    const InterruptibleBuild of(kind);
+    InParts in(of, 2);
+    in.job(PartsPhase::kCollapse, 0);
+    const std::string name = kind == SourceKind::kPoints ? "points-0" : "tin.surface";
+    test::damage(in.file(name), test::Damage::kFlipped);
+    const std::string told = thrown_by(ErrorCode::corruption, [&] {
+      in.job(PartsPhase::kCollapse, 1);
+      in.job(PartsPhase::kJoin, 0);
+      in.job(PartsPhase::kTighten, 0);
+      in.job(PartsPhase::kTighten, 1);
+    });
+    EXPECT_TRUE(says(told, "make the plan again with --resume")) << told;
+    in.plan_again();
+    in.rest_gives_the_same_bytes();
+  }
 }
 
 /// Whatever it had written, what it did not tell does not count.

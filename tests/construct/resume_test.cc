@@ -23,6 +23,7 @@
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/memory_file.h"
 #include "tests/construct/resume_fixture.h"
+#include "tests/construct/tasks/damaging_driver.h"
 #include "tests/construct/told_build.h"
 #include "tests/support/share_of_cases.h"
 
@@ -32,6 +33,8 @@ namespace {
 using oracle::ScratchFolder;
 using test::InterruptibleBuild;
 
+using test::damage;
+using test::Damage;
 using test::SourceKind;
 
 class Resumed : public testing::TestWithParam<SourceKind> {};
@@ -146,26 +149,39 @@ std::string told_of_resuming(const InterruptibleBuild& interrupted) {
   }
 }
 
-/// An index is read when a build goes on, and sorted again at once; other files are met later.
+/// What is seen when a build goes on is sorted again at once; a changed bucket is met later.
 TEST(Resume, SortsPointsAndTrianglesAgainThatAreDamagedOrGone) {
   for (const std::string name :
        {"points-0", "points.index", "tin.surface", "tin.voids", "tin.places", "tin.index"}) {
-    for (const bool is_gone : {false, true}) {
-      SCOPED_TRACE(name + (is_gone ? " is gone" : " is damaged"));
+    for (const Damage how : {Damage::kFlipped, Damage::kCut, Damage::kRemoved}) {
+      SCOPED_TRACE(name + " " + std::to_string(static_cast<int>(how)));
       const InterruptibleBuild interrupted(name.starts_with("tin") ? SourceKind::kTin
                                                                    : SourceKind::kPoints);
       stop_in(interrupted, "collapsing");
-      const std::string file = interrupted.folder().file(".out.ptin.ptin-build/") + name;
-      std::string bytes = oracle::bytes_of(file);
-      bytes[bytes.size() / 2] ^= 1;
-      is_gone ? static_cast<void>(std::filesystem::remove(file)) : oracle::write_text(file, bytes);
+      damage(interrupted.folder().file(".out.ptin.ptin-build/") + name, how);
       const std::string told = told_of_resuming(interrupted);
-      EXPECT_EQ(told.empty(), is_gone || name.ends_with("index")) << told;
+      EXPECT_EQ(told.empty(), how != Damage::kFlipped || name.ends_with("index")) << told;
       EXPECT_EQ(told.empty(), told.find("go on by --resume, which reads") == std::string::npos);
       EXPECT_EQ(told.find("start again"), std::string::npos) << "two advices: " << told;
       interrupted.expect_resumed_to_the_same_bytes();
     }
   }
+}
+
+/// Where nothing but its content tells that a source is another one.
+TEST(Resume, SaysThatASourceThatIsSortedAgainIsAnotherOne) {
+  const InterruptibleBuild interrupted(SourceKind::kPoints);
+  stop_in(interrupted, "collapsing");
+  damage(interrupted.folder().file(".out.ptin.ptin-build/points.index"), Damage::kRemoved);
+  const auto time = std::filesystem::last_write_time(interrupted.input());
+  std::string text = oracle::bytes_of(interrupted.input());
+  const std::size_t digit = text.find_last_of("0123456789");
+  text[digit] = text[digit] == '1' ? '2' : '1';
+  oracle::write_text(interrupted.input(), text);
+  std::filesystem::last_write_time(interrupted.input(), time);
+  const std::string told = told_of_resuming(interrupted);
+  EXPECT_NE(told.find("reads otherwise"), std::string::npos) << told;
+  EXPECT_NE(told.find("start again after --discard"), std::string::npos) << told;
 }
 
 /// Pages are of work whose files are gone by then.

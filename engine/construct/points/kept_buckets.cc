@@ -73,7 +73,9 @@ PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
   result.ends = file.take_copy<std::uint64_t>();
   result.checksums = file.take_copy<std::uint64_t>();
   result.fixed = take_edges(file);
-  return PointBuckets(files, buckets, std::move(result));
+  PointBuckets points(files, buckets, std::move(result));
+  points.require_whole();
+  return points;
 }
 
 }  // namespace ptin

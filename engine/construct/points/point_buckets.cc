@@ -18,6 +18,17 @@ PointBuckets::PointBuckets(FileLayer& files, const std::string& buckets, Index i
   }
 }
 
+/// Refuses files that have lost bytes: a read behind their end would look like a fault of the disk.
+void PointBuckets::require_whole() const {
+  for (std::size_t range = 0; range < files_.size(); ++range) {
+    const std::uint64_t behind =
+        range + 1 < files_.size() ? index_.ranges[range + 1].first_bucket : buckets();
+    if (files_[range]->size() != index_.ends[behind - 1]) {
+      refuse_damaged(path_ + "-" + std::to_string(index_.ranges[range].file));
+    }
+  }
+}
+
 HeightBits PointBuckets::stored(double height) const {
   const HeightEncoding& heights = index_.frame.heights;
   return index_.codes_are_whole ? heights.bits(height) : encode_height(heights, height);

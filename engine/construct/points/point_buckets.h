@@ -81,7 +81,8 @@ class PointBuckets {
   [[nodiscard]] ArrayFileFacts save(FileLayer& files, const std::string& index) const;
   /// Takes up buckets, and what save() wrote to `index`.
   /// @param buckets  As of the constructor.
-  /// @throws Error corruption  the index is not what was written; not_found, io_error
+  /// @throws Error corruption  the index is not what was written, or a file of buckets has another
+  ///                           length; not_found, io_error
   /// Cost: reads the index; a bucket is checked whenever it is taken.
   static PointBuckets load(FileLayer& files, const std::string& buckets, const std::string& index,
                            const ArrayFileFacts& facts);
@@ -127,6 +128,7 @@ class PointBuckets {
 
  private:
   struct Kept;
+  void require_whole() const;
   /// A height as the file of buckets holds it, as terrains store it.
   [[nodiscard]] HeightBits stored(double height) const;
   /// The number of the range of a bucket.

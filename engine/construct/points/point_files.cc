@@ -17,6 +17,10 @@ std::string PointFiles::path(const char* kind, std::size_t number) const {
   return folder + "/" + kPrefix + kind + "-" + std::to_string(number);
 }
 
+bool PointFiles::is_one(const std::string& path) const {
+  return path.starts_with(folder + "/" + kPrefix);
+}
+
 std::unique_ptr<ScratchFile> PointFiles::open(const std::string& path) const {
   if (await) {
     await(path);

@@ -26,6 +26,8 @@ struct PointFiles {
 
   /// The path of file `number` of a kind.
   [[nodiscard]] std::string path(const char* kind, std::size_t number) const;
+  /// True for such a path.
+  [[nodiscard]] bool is_one(const std::string& path) const;
   /// Opens what another task wrote.
   /// @throws Error  not_found, io_error; ArrayFileReader: corruption
   [[nodiscard]] std::unique_ptr<ScratchFile> open(const std::string& path) const;

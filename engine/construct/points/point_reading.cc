@@ -151,7 +151,7 @@ ReadingPlan take_reading_plan(ArrayFileReader& file) {
   return plan;
 }
 
-PortionRead PortionReader::read_to_spool(const PointPortion& portion, const std::string& spool,
+PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint64_t number,
                                          const StageTask& task) {
   const std::string& path = inputs_[portion.input];
   std::unique_lock alone(one_tin_, std::defer_lock);
@@ -164,7 +164,7 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, const std:
                                         {&memory, task.stop, progress}, portion.part);
   PortionRead result;
   result.source = stream->facts();
-  SpoolWriter writer(files_.files, spool);
+  SpoolWriter writer(files_.files, files_.path("spool", number), number);
   EvenSample sample;
   std::vector<SourcePoint> batch;
   while (stream->next(batch)) {
@@ -190,14 +190,13 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, const std:
 
 std::optional<ArrayFileFacts> PortionReader::read(const PointPortion& portion, std::uint64_t number,
                                                   const StageTask& task) {
-  const std::string spool = files_.path("spool", number);
   try {
-    const PortionRead result = read_to_spool(portion, spool, task);
+    const PortionRead result = read_to_spool(portion, number, task);
     ArrayFileWriter file(files_.files, files_.path("read", number));
     put(file, result);
     return file.finish();
   } catch (const QuotesInPart&) {
-    without_old(files_.files, spool);
+    without_old(files_.files, files_.path("spool", number));
     return std::nullopt;
   }
 }

@@ -83,7 +83,7 @@ class PortionReader {
                                                    std::uint64_t number, const StageTask& task);
 
  private:
-  [[nodiscard]] PortionRead read_to_spool(const PointPortion& portion, const std::string& spool,
+  [[nodiscard]] PortionRead read_to_spool(const PointPortion& portion, std::uint64_t number,
                                           const StageTask& task);
 
   const std::vector<std::string>& inputs_;

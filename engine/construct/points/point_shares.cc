@@ -83,7 +83,7 @@ void visit_blocks(const SortPlan& plan, const PointFiles& files, std::uint64_t s
     const std::uint64_t from = std::max(begin, first_block);
     const std::uint64_t to = std::min(end, first_block + blocks);
     if (from < to) {
-      SpoolReader reader(files, files.path("spool", spool.number), spool.points);
+      SpoolReader reader(files, spool.number, spool.points);
       for (std::uint64_t block = from - first_block; block < to - first_block; ++block) {
         visit(reader, block, first_point + block * kSpoolBlock);
       }

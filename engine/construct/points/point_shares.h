@@ -31,7 +31,8 @@ struct ShareBlock {
 
 /// The points of a share of the source that task `task.number` of plan.shares takes: a place along the
 /// curve and a height for each, to a file in which the records of a range are told, and what is where
-/// to a file beside it; and the vertices of lines that it takes. Left out are points that fall on a vertex of a line, or beyond the boundary.
+/// to a file beside it; likewise some of the vertices of lines. Left out are points that fall on such a
+/// vertex, or beyond the boundary.
 /// Memory: plan.ranges() * plan.block_records records.
 /// @return  The facts of the latter file.
 /// @throws Error corruption, not_found, io_error, resource_exhausted, cancelled

@@ -31,8 +31,8 @@ void check_area(const ConvexHull& hull, std::uint64_t points, const std::string&
 
 }  // namespace
 
-/// Does work that reads temporary files. Where one is not what was written, or gone, all points are read once
-/// more and the work is done again; the second time is the last.
+/// Does work that reads temporary files. Where one is not what was written, or gone, all points are
+/// read once more and the work is done again; the second time is the last.
 template <class Work>
 auto PointSource::undamaged(const Work& work) {
   try {
@@ -40,7 +40,7 @@ auto PointSource::undamaged(const Work& work) {
   } catch (const Error& error) {
     const bool is_lost =
         error.code() == ErrorCode::corruption || error.code() == ErrorCode::not_found;
-    if (!is_lost || was_damaged_ || is_read_once()) {
+    if (!is_lost || !work_.files.is_one(error.context()) || was_damaged_ || is_read_once()) {
       throw;
     }
   }

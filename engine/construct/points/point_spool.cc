@@ -18,14 +18,15 @@ constexpr std::uint64_t begin_of_block(std::uint64_t block) {
 }
 
 /// Another one for the same points in another place.
-std::uint64_t checksum_of_block(std::uint64_t block, std::span<const std::byte> points) {
-  return checksum_of(points) ^ (block + 1);
+std::uint64_t checksum_of_block(std::uint64_t spool, std::uint64_t block,
+                                std::span<const std::byte> points) {
+  return checksum_of_object(std::array{spool, block, checksum_of(points)});
 }
 
 }  // namespace
 
-SpoolWriter::SpoolWriter(FileLayer& files, const std::string& path)
-    : file_(files, without_old(files, path), ScratchFile::Kept::kNew) {
+SpoolWriter::SpoolWriter(FileLayer& files, const std::string& path, std::uint64_t number)
+    : file_(files, without_old(files, path), ScratchFile::Kept::kNew), number_(number) {
   block_.reserve(kSpoolBlock * kSpooledBytes + kChecksumBytes);
 }
 
@@ -43,7 +44,7 @@ void SpoolWriter::add(const SourcePoint& p) {
 }
 
 void SpoolWriter::flush() {
-  const std::uint64_t checksum = checksum_of_block(blocks_, block_);
+  const std::uint64_t checksum = checksum_of_block(number_, blocks_, block_);
   const auto bytes = std::as_bytes(std::span(&checksum, 1));
   block_.insert(block_.end(), bytes.begin(), bytes.end());
   file_.write_at(block_, begin_of_block(blocks_));
@@ -58,8 +59,11 @@ void SpoolWriter::finish() {
   file_.close();
 }
 
-SpoolReader::SpoolReader(const PointFiles& files, const std::string& path, std::uint64_t points)
-    : path_(path), file_(files.open(path)), points_(points) {
+SpoolReader::SpoolReader(const PointFiles& files, std::uint64_t number, std::uint64_t points)
+    : number_(number),
+      path_(files.path("spool", number)),
+      file_(files.open(path_)),
+      points_(points) {
   if (file_->size() != points * kSpooledBytes + spool_blocks(points) * kChecksumBytes) {
     refuse_damaged(path_);
   }
@@ -72,7 +76,8 @@ void SpoolReader::read(std::uint64_t block, std::vector<SourcePoint>& points) {
   file_->read_at(bytes_, begin_of_block(block));
   std::uint64_t checksum = 0;
   std::memcpy(&checksum, bytes_.data() + count * kSpooledBytes, kChecksumBytes);
-  if (checksum_of_block(block, std::span(bytes_).first(count * kSpooledBytes)) != checksum) {
+  if (checksum_of_block(number_, block, std::span(bytes_).first(count * kSpooledBytes)) !=
+      checksum) {
     refuse_damaged(path_);
   }
   points.clear();

@@ -21,16 +21,17 @@ inline constexpr std::size_t kSpooledBytes = 3 * 8 + 3;
 /// Points of a block, which are read together; the last block of a file may have fewer.
 inline constexpr std::uint64_t kSpoolBlock = 4096;
 
-// A block is checked by what stands behind it, so that no reader needs to know all checksums.
 [[nodiscard]] constexpr std::uint64_t spool_blocks(std::uint64_t points) noexcept {
   return (points + kSpoolBlock - 1) / kSpoolBlock;
 }
 
-/// Writes points in blocks, each with its checksum behind it. Memory: a block.
+/// Writes points in blocks, each with its checksum behind it, so that no reader needs to know all of
+/// them. Memory: a block.
 class SpoolWriter {
  public:
   /// A file of that name is replaced.  @throws Error io_error, resource_exhausted
-  SpoolWriter(FileLayer& files, const std::string& path);
+  /// @param number  Of the spool: a block of another one is none of this.
+  SpoolWriter(FileLayer& files, const std::string& path, std::uint64_t number);
 
   /// @throws Error io_error, resource_exhausted
   void add(const SourcePoint& p);
@@ -41,6 +42,7 @@ class SpoolWriter {
   void flush();
 
   ScratchFile file_;
+  std::uint64_t number_;
   std::vector<std::byte> block_;
   std::uint64_t blocks_ = 0;  ///< Written so far.
 };
@@ -49,13 +51,14 @@ class SpoolWriter {
 class SpoolReader {
  public:
   /// @throws Error corruption  the file has not the length of so many points; not_found, io_error
-  SpoolReader(const PointFiles& files, const std::string& path, std::uint64_t points);
+  SpoolReader(const PointFiles& files, std::uint64_t number, std::uint64_t points);
 
   /// @param points  Receives the points of a block.
   /// @throws Error corruption  the block is not what was written; io_error
   void read(std::uint64_t block, std::vector<SourcePoint>& points);
 
  private:
+  std::uint64_t number_;
   std::string path_;
   std::unique_ptr<ScratchFile> file_;
   std::uint64_t points_;

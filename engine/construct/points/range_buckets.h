@@ -29,7 +29,8 @@ struct RangeIndex {
   std::vector<std::uint64_t> checksums;  ///< Of the buckets.
 };
 
-/// Sorts range `task.number` of what was shared out, and writes its buckets to plan.buckets_of(), and their index to a file of its own.
+/// Sorts range `task.number` of what was shared out, and writes its buckets to plan.buckets_of(), and
+/// their index to a file of its own.
 /// Memory: task.memory, or plan.least_memory where that is more. Disk: where that is too little, as
 /// much as the records of the range take, once more.
 /// @param shares  The facts of all shares.

@@ -72,7 +72,8 @@ class RecordFile {
     path_ = path;
     written_ = records;
     checksums_ = std::move(checksums);
-    if (checksums_.size() != (records + kBlock - 1) / kBlock) {
+    if (checksums_.size() != (records + kBlock - 1) / kBlock ||
+        file_->size() != records * sizeof(Record)) {
       refuse_damaged(path_);
     }
   }

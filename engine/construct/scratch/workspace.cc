@@ -56,10 +56,11 @@ void require_empty_beside(const Manifest& manifest, const std::string& folder) {
     return;
   }
   require_ours(manifest.has_more(), folder);
-  throw Error(ErrorCode::corruption,
-              "what the unfinished build here has noted of its work is damaged, so that neither "
-              "--resume nor --discard knows its files; remove this folder, and begin anew",
-              folder);
+  throw Error(
+      ErrorCode::corruption,
+      "the manifest that tells whose files these are is damaged, so that neither --resume nor "
+      "--discard touches them; where they are of an unfinished build, remove this folder",
+      folder);
 }
 
 std::uint64_t checksum_of_text(const std::string& text) {
@@ -112,24 +113,35 @@ void make_folder(FileLayer& files, const std::string& path) {
   }
 }
 
+void remove_file(FileLayer& files, const std::string& name) {
+  const int failure = files.unlink(name);
+  if (failure != 0 && failure != ENOENT) {
+    throw system_error(failure, "cannot remove a temporary file", name);
+  }
+}
+
 /// Removes a folder of ours with its files. Does nothing where there is no such folder.
 void remove_folder(FileLayer& files, const std::string& path) {
-  std::error_code ignored;  // what cannot be listed cannot be removed either, which says why
-  std::vector<std::string> names;
-  for (fs::directory_iterator entry(path, ignored); !ignored && entry != fs::directory_iterator();
-       entry.increment(ignored)) {
-    names.push_back(entry->path().string());
-  }
-  // The manifest goes last: without it nobody would know what the rest is.
-  std::stable_partition(names.begin(), names.end(), [&](const std::string& n) {
-    return n != manifest_in(path) && n != owner_in(path);
-  });
-  for (const std::string& name : names) {
-    const int failure = files.unlink(name);
-    if (failure != 0 && failure != ENOENT) {
-      throw system_error(failure, "cannot remove a temporary file", name);
+  const auto tells_whose = [&](const std::string& n) {
+    return n == manifest_in(path) || n == owner_in(path);
+  };
+  // The manifest goes last, when nothing else is there: without it nobody would know what the rest is. A
+  // process that worked here may add a file meanwhile.
+  std::vector<std::string> names{path};
+  for (int i = 0; i < kMostTries && !names.empty(); ++i) {
+    names.clear();
+    std::error_code ignored;  // what cannot be listed cannot be removed either, which says why
+    for (fs::directory_iterator entry(path, ignored); !ignored && entry != fs::directory_iterator();
+         entry.increment(ignored)) {
+      names.push_back(entry->path().string());
+    }
+    std::erase_if(names, tells_whose);
+    for (const std::string& name : names) {
+      remove_file(files, name);
     }
   }
+  remove_file(files, owner_in(path));
+  remove_file(files, manifest_in(path));
   const int failure = files.remove_folder(path);
   if (failure != 0 && failure != ENOENT) {
     throw system_error(failure, "cannot remove the folder of temporary files", path);
