@@ -11,6 +11,7 @@
 #include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
+#include "engine/construct/points/point_portions.h"
 #include "engine/construct/process_limits.h"
 #include "engine/construct/source_files.h"
 #include "engine/construct/store_output.h"
@@ -86,10 +87,10 @@ Error with_advice(const Error& error, const std::string& folder, const char* adv
 }
 
 /// What is said where work is kept. It stays of use where a sorted source is damaged.
-Error error_with_work(Workspace& workspace, const Error& error) {
+Error error_with_work(Workspace& workspace, const Job& job, const Error& error) {
   if (!is_lost_sorted_source(error, workspace.temporary_folder())) {
-    const bool is_over =
-        error.code() == ErrorCode::corruption && !is_made_again(workspace, error.context());
+    const bool is_over = job.inputs_changed || (error.code() == ErrorCode::corruption &&
+                                                !is_made_again(workspace, error.context()));
     return with_advice(error, workspace.folder(), is_over ? kStartAgain : kGoOn);
   }
   try {
@@ -257,6 +258,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
                       fingerprint);
   job.report.resumed = !workspace.lines().empty();
   job.report.source_bytes = bytes_in(fingerprint.at("inputs"));
+  job.began_with = fingerprint.at("inputs");
   try {
     work(workspace);
   } catch (const AlreadyPublished&) {
@@ -269,7 +271,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
       return;
     }
     if (workspace.has_work() || is_shared_fault(job, e.code())) {
-      throw error_with_work(workspace, e);
+      throw error_with_work(workspace, job, e);
     }
     give_up(workspace, e);
   }
@@ -298,6 +300,26 @@ HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
   return options;
 }
 
+namespace {
+
+/// Refuses to publish what was read of inputs that are others now: what is in the file may be of both.
+/// What can be read only once is not looked at again.
+void require_unchanged(Job& job) {
+  const std::vector<std::string> all = all_inputs(job.inputs, job.options);
+  const nlohmann::json now = std::any_of(all.begin(), all.end(), can_be_read_once_only)
+                                 ? job.began_with
+                                 : input_fingerprint(all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (now.at(i) != job.began_with.at(i)) {
+      job.inputs_changed = true;
+      throw Error(ErrorCode::invalid_argument, "this input changed while the build read it",
+                  all[i]);
+    }
+  }
+}
+
+}  // namespace
+
 void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan,
                  const nlohmann::json& index) {
   if (is_published(job, workspace)) {
@@ -318,6 +340,7 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
   const BuiltHierarchy built = build_hierarchy(
       source.make_starter, source.tree, hierarchy_options(job, source, plan), workspace, store);
   job.report.lone_samples = built.lone_samples;
+  require_unchanged(job);
   job.stage("writing")(0, 1);
   const std::uint64_t inode = inode_of(pages_file_in(workspace.folder())).value_or(0);
   workspace.append({{{"publishing", inode}}});

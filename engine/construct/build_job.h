@@ -43,6 +43,8 @@ struct Job {
   SourceLines lines{};  ///< Beside the points, from when they are read.
   /// Of the finished pages, from when they are about to get the output's name.
   std::optional<std::uint64_t> inode_of_output{};
+  nlohmann::json began_with{};  ///< input_fingerprint() before anything was read.
+  bool inputs_changed = false;  ///< Since then: what was read of them may be of both.
   /// True when the source is read and others do the rest (TaskDriver::begin): the folder stays.
   bool goes_on_elsewhere = false;
 

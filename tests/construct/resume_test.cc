@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -244,18 +245,60 @@ void expect_resume_refused(const std::string& input, const std::string& output,
   }
 }
 
-TEST(Resume, RefusesARasterThatWasReplacedWhileItWasRead) {
-  const ScratchFolder folder;
-  const std::string input = folder.file("in.asc"), output = folder.file("out.ptin");
+/// A raster of 33 x 33 samples, as a file.
+std::string written_raster(const ScratchFolder& folder) {
   std::string text = "ncols 33\nnrows 33\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
   for (int i = 0; i < 33 * 33; ++i) {
     text += std::to_string(i * i % 13) + (i % 33 == 32 ? "\n" : " ");
   }
-  oracle::write_text(input, text);
+  oracle::write_text(folder.file("in.asc"), text);
+  return folder.file("in.asc");
+}
+
+BuildOptions in_small_tiles() {
   BuildOptions options;
   options.tile = 8;
-  change_while_reading(input, output, options);
-  expect_resume_refused(input, output, options);
+  return options;
+}
+
+TEST(Resume, RefusesARasterThatWasReplacedWhileItWasRead) {
+  const ScratchFolder folder;
+  const std::string input = written_raster(folder), output = folder.file("out.ptin");
+  change_while_reading(input, output, in_small_tiles());
+  expect_resume_refused(input, output, in_small_tiles());
+}
+
+/// Builds to the end, and makes the input another file when the last tiles are in work.
+void expect_not_published(const std::string& input, const std::string& output,
+                          const BuildOptions& options) {
+  BuildResources resources = InterruptibleBuild::resources();
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  bool has_changed = false;
+  told.on_stage = [&](const char* name, std::uint64_t, std::uint64_t) {
+    if (std::string(name) == "tightening" && !std::exchange(has_changed, true)) {
+      std::filesystem::last_write_time(
+          input, std::filesystem::last_write_time(input) - std::chrono::hours(1));
+    }
+  };
+  try {
+    build({input}, output, options, resources);
+    ADD_FAILURE() << "published";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument) << e.what();
+    EXPECT_EQ(e.context(), input);
+    EXPECT_NE(e.message().find("start again after --discard"), std::string::npos) << e.what();
+  }
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+TEST(Build, OfAnInputThatChangesMeanwhileIsNotPublished) {
+  const ScratchFolder folder;
+  expect_not_published(written_raster(folder), folder.file("out.ptin"), in_small_tiles());
+  for (const SourceKind kind : {SourceKind::kPoints, SourceKind::kTin}) {
+    const InterruptibleBuild changing(kind);
+    expect_not_published(changing.input(), changing.output(), changing.options());
+  }
 }
 
 /// A grid of 24 x 24 vertices as a TIN.

@@ -43,10 +43,11 @@ bool is_empty_but_for(const std::string& folder, const std::string& name) {
 /// a folder that holds something else is refused.
 void require_ours(bool is_ours, const std::string& folder) {
   if (!is_ours) {
-    throw Error(ErrorCode::invalid_argument,
-                "this folder has the name of one for temporary files and holds something else; "
-                "move it away",
-                folder);
+    throw Error(
+        ErrorCode::invalid_argument,
+        "this folder has the name of one for temporary files, and nothing in it tells that it "
+        "is one; move it away, or remove it where it is left of a build",
+        folder);
   }
 }
 
@@ -344,7 +345,8 @@ void Workspace::take_up(const nlohmann::json& fingerprint) {
   }
   if (!is_there(tmp_)) {
     throw Error(ErrorCode::not_found,
-                "the temporary files of the unfinished build are not there; is their disk mounted?",
+                "the temporary files of the unfinished build are not there; is their disk mounted? "
+                "Where they are lost, start again after --discard",
                 tmp_);
   }
   require_ours(is_owned(tmp_, owner_of(first, folder_)), tmp_);
