@@ -134,6 +134,11 @@ TextTable::TextTable(std::string path, const PointPart& part)
   if (is_there && VSI_ISDIR(status.st_mode) != 0) {
     throw Error(ErrorCode::invalid_argument, "is a folder; name a file of text", path_);
   }
+  if (is_there && file_->packed && VSI_ISREG(status.st_mode) != 0 && status.st_size == 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "this file has no byte, and even a packed text of none has some; it was cut short",
+                path_);
+  }
   if (file_->handle == nullptr) {
     const bool is_refused = failure != 0 && failure != ENOENT && failure != ENOTDIR;
     if (!is_there && !is_refused) {

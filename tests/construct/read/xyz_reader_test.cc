@@ -292,6 +292,13 @@ TEST(XyzReader, ReportsPackedFilesThatAreDamagedOrCutShort) {
           << e.what();
     }
   }
+  try {
+    read("", "points.xyz.gz");
+    FAIL() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::invalid_argument) << e.what();
+    EXPECT_NE(e.message().find("cut short"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace
