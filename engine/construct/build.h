@@ -38,6 +38,8 @@ struct BuildResources {
   BuildObserver* observer = nullptr;  ///< Who is told of the work; null: nobody. Borrowed.
 };
 
+/// Of a build that is resumed though its output was complete already, points and TINs have no counts but
+/// those that the file tells.
 struct BuildReport {
   std::uint64_t source_samples = 0;  ///< With a height; of points and TINs, distinct positions.
   std::uint64_t void_samples = 0;    ///< Rasters: without a height.

@@ -49,11 +49,10 @@ bool is_published(const Job& job, const Workspace& workspace) {
   return last != lines.rend() && inode_of(job.output) == (*last)["publishing"].get<std::uint64_t>();
 }
 
-/// Thrown where a source is wanted for an output that is complete.
-struct AlreadyPublished {};
-
 void report_published(Job& job) {
   const auto store = StoreFile::open(job.output);
+  job.report.source_samples = store->facts().source_samples;
+  job.report.vertices = store->record_count() + store->t0().vertices.size();
   job.report.records = store->record_count();
   job.report.t0_vertices = store->t0().vertices.size();
   job.report.max_rank = store->max_rank();
@@ -259,10 +258,13 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   job.report.resumed = !workspace.lines().empty();
   job.report.source_bytes = bytes_in(fingerprint.at("inputs"));
   job.began_with = fingerprint.at("inputs");
+  if (is_published(job, workspace)) {  // its source may be gone by now, and is not wanted
+    report_published(job);
+    remove_done(workspace, job);
+    return;
+  }
   try {
     work(workspace);
-  } catch (const AlreadyPublished&) {
-    report_published(job);
   } catch (...) {
     const Error e = error_in_flight();
     if (e.code() == ErrorCode::resource_exhausted && is_published(job, workspace)) {
@@ -306,14 +308,26 @@ namespace {
 /// What can be read only once is not looked at again.
 void require_unchanged(Job& job) {
   const std::vector<std::string> all = all_inputs(job.inputs, job.options);
-  const nlohmann::json now = std::any_of(all.begin(), all.end(), can_be_read_once_only)
-                                 ? job.began_with
-                                 : input_fingerprint(all);
+  if (std::any_of(all.begin(), all.end(), can_be_read_once_only)) {
+    return;
+  }
+  const nlohmann::json now = input_fingerprint(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (now.at(i) != job.began_with.at(i)) {
-      job.inputs_changed = true;
-      throw Error(ErrorCode::invalid_argument, "this input changed while the build read it",
-                  all[i]);
+    const nlohmann::json &before = job.began_with.at(i).at(1), &files = now.at(i).at(1);
+    for (const nlohmann::json& file : before) {
+      if (std::find(files.begin(), files.end(), file) == files.end()) {
+        job.inputs_changed = true;
+        throw Error(ErrorCode::invalid_argument, "this file changed while the build read it",
+                    file.at(0).get<std::string>());
+      }
+    }
+    for (const nlohmann::json& file : files) {
+      if (std::find(before.begin(), before.end(), file) == before.end()) {
+        throw Error(ErrorCode::invalid_argument,
+                    "this file appeared beside an input while the build read that; where it means "
+                    "nothing for heights, as statistics do, remove it first",
+                    file.at(0).get<std::string>());
+      }
     }
   }
 }
@@ -322,10 +336,6 @@ void require_unchanged(Job& job) {
 
 void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan,
                  const nlohmann::json& index) {
-  if (is_published(job, workspace)) {
-    report_published(job);
-    return;
-  }
   StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame, job.files(),
                     workspace.folder());
   TaskDriver* const driver = job.resources.driver;
@@ -368,13 +378,6 @@ nlohmann::json index_json(const char* kind, const ArrayFileFacts& index) {
 }
 
 void forget_index(Workspace& workspace) { workspace.append({{{kIsForgotten, true}}}); }
-
-void sort_again(const Job& job, Workspace& workspace) {
-  if (is_published(job, workspace)) {
-    throw AlreadyPublished();
-  }
-  forget_index(workspace);
-}
 
 void note_index(const Job& job, Workspace& workspace, const char* kind,
                 const ArrayFileFacts& index) {

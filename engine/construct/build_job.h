@@ -80,8 +80,8 @@ struct Job {
 /// the caller's. REQUIRES: an exception is being handled.
 [[nodiscard]] Error error_in_flight();
 
-/// The same error, whose message also says that the work in `folder` is kept, and what to do: the one
-/// place where that is said. Who finds damage says only what is damaged.
+/// The same error, whose message also says that the work in `folder` is kept, and by which option
+/// a build goes on with it.
 [[nodiscard]] Error with_resume_hint(const Error& error, const std::string& folder);
 
 /// The inputs, and the files of lines that the options name.
@@ -104,8 +104,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
 [[nodiscard]] HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
                                                  const BuildPlan& plan);
 
-/// Collapses all tiles, tightens them and publishes the file. Where an interrupted build had
-/// published it already, only reports it.
+/// Collapses all tiles, tightens them and publishes the file, unless an input changed meanwhile.
 /// @param index  index_json() of the source, for other processes of the build (ReadSource).
 /// @throws Error as build_hierarchy() and StoreOutput
 void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan,
@@ -132,16 +131,13 @@ struct KeptIndex {
 /// Notes that the sorted source is damaged: kept_index() of a resumed build has none.
 /// @throws Error io_error, resource_exhausted
 void forget_index(Workspace& workspace);
-/// forget_index(), but where the output is complete and the source no longer wanted: this then ends the
-/// build well.
-void sort_again(const Job& job, Workspace& workspace);
 /// Takes up the sorted source that an interrupted build had noted under `key`.
 /// @param load  Given the facts of its index.
 /// @return  What `load` gives; none where nothing was noted, or a file of the source is damaged or
 ///     gone, which is then noted.
-/// @throws Error  what else `load` throws; as sort_again()
+/// @throws Error  what else `load` throws; as forget_index()
 template <class Load>
-[[nodiscard]] auto taken_up(const Job& job, Workspace& workspace, const char* key, const Load& load)
+[[nodiscard]] auto taken_up(Workspace& workspace, const char* key, const Load& load)
     -> std::optional<decltype(load(ArrayFileFacts{}))> {
   const KeptIndex kept = kept_index(workspace, key);
   if (!kept.is_sound) {
@@ -154,7 +150,7 @@ template <class Load>
       throw;
     }
   }
-  sort_again(job, workspace);
+  forget_index(workspace);
   return std::nullopt;
 }
 /// Notes the index of a sorted source in the manifest, so that a resumed build does not read and

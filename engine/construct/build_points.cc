@@ -72,7 +72,7 @@ PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index
     index_facts = facts;
     return PointBuckets::load(job.files(), buckets, index, facts);
   };
-  if (auto points = taken_up(job, workspace, "points", load)) {
+  if (auto points = taken_up(workspace, "points", load)) {
     job.lines = {};
     return std::move(*points);
   }

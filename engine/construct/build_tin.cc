@@ -24,7 +24,7 @@ TinTriangles sorted_triangles(Job& job, Workspace& workspace, ArrayFileFacts& in
     index_facts = facts;
     return TinTriangles::load(job.files(), kept_as, index, facts);
   };
-  if (auto triangles = taken_up(job, workspace, "tin", load)) {
+  if (auto triangles = taken_up(workspace, "tin", load)) {
     return std::move(*triangles);
   }
   for (const std::string& name : TinTriangles::kept_files(kTinTriangles)) {

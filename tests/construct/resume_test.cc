@@ -4,23 +4,15 @@
 // gives the bytes of one that was not.
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include "engine/construct/scratch/array_file.h"
-#include "engine/construct/scratch/manifest.h"
 #include "engine/construct/scratch/workspace.h"
-#include "storage/file/sigbus_guard.h"
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/memory_file.h"
 #include "tests/construct/resume_fixture.h"
@@ -116,6 +108,13 @@ class NoRename final : public FileLayer {
   int rename(const std::string&, const std::string&, bool) noexcept override { return EIO; }
 };
 
+/// Builds by files that fail somewhere.
+void fail_by(FileLayer& files, const InterruptibleBuild& interrupted) {
+  BuildResources resources = InterruptibleBuild::resources();
+  resources.files = &files;
+  EXPECT_EQ(interrupted.run(resources), ErrorCode::io_error);
+}
+
 BuildResources resuming() {
   BuildResources resources = InterruptibleBuild::resources();
   resources.unfinished = Unfinished::kResume;
@@ -189,9 +188,7 @@ TEST(Resume, SaysThatASourceThatIsSortedAgainIsAnotherOne) {
 TEST(Resume, SaysThatPagesThatAreDamagedCannotBeGoneOnWith) {
   const InterruptibleBuild interrupted;
   NoRename files;
-  BuildResources resources = InterruptibleBuild::resources();
-  resources.files = &files;
-  EXPECT_EQ(interrupted.run(resources), ErrorCode::io_error);
+  fail_by(files, interrupted);
   const std::string pages = interrupted.folder().file(".out.ptin.ptin-build/pages");
   std::string bytes = oracle::bytes_of(pages);
   for (std::size_t i = 0; i < bytes.size(); i += 512) {
@@ -287,6 +284,7 @@ void expect_not_published(const std::string& input, const std::string& output,
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::invalid_argument) << e.what();
     EXPECT_EQ(e.context(), input);
+    EXPECT_NE(e.message().find("this file changed"), std::string::npos) << e.what();
     EXPECT_NE(e.message().find("start again after --discard"), std::string::npos) << e.what();
   }
   EXPECT_FALSE(std::filesystem::exists(output));
@@ -299,6 +297,31 @@ TEST(Build, OfAnInputThatChangesMeanwhileIsNotPublished) {
     const InterruptibleBuild changing(kind);
     expect_not_published(changing.input(), changing.output(), changing.options());
   }
+}
+
+/// A look at a raster with another program may leave its statistics there: hours of work are not lost.
+TEST(Build, OfAnInputWithANewFileBesideItGoesOnWhenThatIsGone) {
+  const ScratchFolder folder;
+  const std::string input = written_raster(folder), output = folder.file("out.ptin");
+  const std::string statistics = input + ".aux.xml";
+  BuildResources resources = InterruptibleBuild::resources();
+  oracle::ToldBuild told;
+  resources.observer = &told;
+  told.on_stage = [&](const char* name, std::uint64_t, std::uint64_t) {
+    if (std::string(name) == "tightening") {
+      oracle::write_text(statistics, "<PAMDataset></PAMDataset>");
+    }
+  };
+  try {
+    build({input}, output, in_small_tiles(), resources);
+    ADD_FAILURE() << "published";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.context(), statistics);
+    EXPECT_NE(e.message().find("go on by --resume"), std::string::npos) << e.what();
+  }
+  std::filesystem::remove(statistics);
+  build({input}, output, in_small_tiles(), resuming());
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"in.asc", "out.ptin"}));
 }
 
 /// A grid of 24 x 24 vertices as a TIN.
@@ -363,34 +386,6 @@ TEST(Resume, IsOfferedAndRefusedAsItShould) {
   EXPECT_EQ(interrupted.folder().names(), std::vector<std::string>{"out.ptin"});
 }
 
-TEST(Workspace, IsOneBuildsOnly) {
-  const ScratchFolder folder;
-  FileLayer& files = FileLayer::system();
-  const std::string output = folder.file("a.ptin");
-  {
-    Workspace workspace(files, output, "", Unfinished::kRefuse, {{"of", 1}});
-    EXPECT_THROW(Workspace(files, output, "", Unfinished::kResume, {{"of", 1}}), Error);
-    EXPECT_THROW(Workspace::discard(files, output), Error);
-  }
-  EXPECT_THROW(Workspace(files, output, "", Unfinished::kRefuse, {{"of", 1}}), Error);
-  EXPECT_THROW(Workspace(files, output, "", Unfinished::kResume, {{"of", 2}}), Error);
-  { const Workspace again(files, output, "", Unfinished::kResume, {{"of", 1}}); }
-  EXPECT_TRUE(Workspace::discard(files, output));
-  EXPECT_FALSE(Workspace::discard(files, output));
-  EXPECT_TRUE(folder.names().empty());
-}
-
-TEST(Workspace, KeepsTemporaryFilesWhereItIsTold) {
-  const ScratchFolder folder, tmp;
-  const std::string at = std::filesystem::path(tmp.file("x")).parent_path().string();
-  Workspace workspace(FileLayer::system(), folder.file("a.ptin"), at, Unfinished::kRefuse, {});
-  std::ofstream(workspace.temporary("file")) << "something";
-  EXPECT_EQ(tmp.names().size(), 1U);
-  workspace.remove_all();
-  EXPECT_TRUE(tmp.names().empty());
-  EXPECT_TRUE(folder.names().empty());
-}
-
 /// Rename without replacing by two steps, of which the second does not happen.
 class KilledBetweenLinkAndUnlink final : public FileLayer {
  public:
@@ -409,16 +404,31 @@ class NothingIsWritten final : public FileLayer {
 TEST(Resume, SeesThatTheOutputIsPublishedThoughItsPagesHaveTheirNameStill) {
   const InterruptibleBuild interrupted;
   KilledBetweenLinkAndUnlink files;
-  BuildResources resources = InterruptibleBuild::resources();
-  resources.files = &files;
-  EXPECT_EQ(interrupted.run(resources), ErrorCode::io_error);
+  fail_by(files, interrupted);
   const std::string published = oracle::bytes_of(interrupted.output());
   NothingIsWritten untouched;  // the pages are the output: who writes them damages it
-  resources = resuming();
+  BuildResources resources = resuming();
   resources.files = &untouched;
   EXPECT_EQ(interrupted.run(resources), std::nullopt);
   EXPECT_TRUE(oracle::bytes_of(interrupted.output()) == published);
   EXPECT_EQ(interrupted.folder().names(), std::vector<std::string>{"out.ptin"});
+}
+
+/// Killed while it removed what it needed no more.
+TEST(Resume, OfACompleteOutputWantsNoSource) {
+  for (const SourceKind kind : {SourceKind::kPoints, SourceKind::kTin}) {
+    const InterruptibleBuild interrupted(kind);
+    KilledBetweenLinkAndUnlink files;
+    fail_by(files, interrupted);
+    for (const std::string name : {"pages", "points-0", "tin.surface"}) {
+      std::filesystem::remove(interrupted.folder().file(".out.ptin.ptin-build/" + name));
+    }
+    const BuildReport report =
+        build({interrupted.input()}, interrupted.output(), interrupted.options(), resuming());
+    EXPECT_GT(report.source_samples, 1000U);
+    EXPECT_EQ(report.vertices, report.records + report.t0_vertices);
+    interrupted.expect_resumed_to_the_same_bytes();
+  }
 }
 
 TEST(Resume, TakesNoOlderOutputForTheNewOne) {
@@ -507,250 +517,6 @@ TEST(Build, OfASourceThatCannotBeReadToItsEndLeavesNoFolder) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"in.xyz.gz"});
     EXPECT_TRUE(other.names().empty());
   }
-}
-
-/// Neither option can know what is of it: all that they could remove is named by what is damaged.
-TEST(Workspace, SaysThatItsManifestIsDamagedAndTouchesNothing) {
-  const ScratchFolder folder;
-  FileLayer& files = FileLayer::system();
-  const std::string output = folder.file("a.ptin");
-  const std::string manifest = Workspace::folder_of(output) + "/manifest";
-  {
-    Workspace workspace(files, output, "", Unfinished::kRefuse, {{"of", 1}});
-    workspace.append({{{"work", 1}}});
-    oracle::write_text(workspace.temporary("file"), "something");
-  }
-  const std::string sound = oracle::bytes_of(manifest);
-  std::string damaged = sound;
-  damaged[3] ^= 1;
-  oracle::write_text(manifest, damaged);
-  const auto expect_refused = [&](const std::function<void()>& work) {
-    try {
-      work();
-      ADD_FAILURE() << "went on";
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ErrorCode::corruption) << e.what();
-      EXPECT_NE(e.message().find("remove this folder"), std::string::npos) << e.message();
-    }
-    EXPECT_EQ(oracle::bytes_of(manifest), damaged);
-  };
-  for (const Unfinished u : {Unfinished::kRefuse, Unfinished::kResume, Unfinished::kDiscard}) {
-    expect_refused([&] { const Workspace again(files, output, "", u, {{"of", 1}}); });
-  }
-  expect_refused([&] { Workspace::discard(files, output); });
-  oracle::write_text(manifest, sound + "torn");
-  {
-    Workspace workspace(files, output, "", Unfinished::kResume, {{"of", 1}});
-    EXPECT_EQ(workspace.lines().size(), 1U);
-    EXPECT_EQ(oracle::bytes_of(manifest), sound + "torn");
-    workspace.append({{{"work", 2}}});
-  }
-  { EXPECT_EQ(Manifest(files, manifest).entries().size(), 3U); }
-  EXPECT_TRUE(Workspace::discard(files, output));
-}
-
-TEST(Workspace, LeavesAFolderAloneThatIsNotOneOfOurs) {
-  const ScratchFolder folder, tmp;
-  FileLayer& files = FileLayer::system();
-  const std::string output = folder.file("a.ptin");
-  const std::string at = Workspace::folder_of(output);
-  std::filesystem::create_directory(at);
-  oracle::write_text(at + "/letters.txt", "dear");
-  for (const Unfinished u : {Unfinished::kRefuse, Unfinished::kResume, Unfinished::kDiscard}) {
-    EXPECT_THROW(Workspace(files, output, "", u, {{"of", 1}}), Error);
-  }
-  EXPECT_THROW(Workspace::discard(files, output), Error);
-  EXPECT_EQ(oracle::bytes_of(at + "/letters.txt"), "dear");
-  std::filesystem::remove_all(at);
-
-  // A folder in --tmp of the right name.
-  const std::string in = std::filesystem::path(tmp.file("x")).parent_path().string();
-  {
-    Workspace workspace(files, output, in, Unfinished::kRefuse, {{"of", 1}});
-    workspace.remove_all();
-  }
-  std::string name;
-  {
-    Workspace workspace(files, output, in, Unfinished::kRefuse, {{"of", 1}});
-    name = workspace.temporary_folder();
-    workspace.remove_all();
-  }
-  std::filesystem::create_directory(name);
-  oracle::write_text(name + "/letters.txt", "dear");
-  EXPECT_THROW(Workspace(files, output, in, Unfinished::kRefuse, {{"of", 1}}), Error);
-  EXPECT_EQ(oracle::bytes_of(name + "/letters.txt"), "dear");
-  EXPECT_TRUE(folder.names().empty());
-}
-
-/// The system's files, until the process dies with one of the calls that change something.
-class DyingFiles : public FileLayer {
- public:
-  explicit DyingFiles(int calls) : left_(calls) {}
-  int create(const std::string& path, int& fd) noexcept override {
-    count();
-    return FileLayer::create(path, fd);
-  }
-  int write_at(int fd, std::span<const std::byte> bytes, std::uint64_t offset,
-               std::size_t& written) noexcept override {
-    count();
-    return FileLayer::write_at(fd, bytes, offset, written);
-  }
-  int sync(int fd) noexcept override {
-    count();
-    return FileLayer::sync(fd);
-  }
-  int unlink(const std::string& path) noexcept override {
-    count();
-    return FileLayer::unlink(path);
-  }
-  int make_folder(const std::string& path) noexcept override {
-    count();
-    return FileLayer::make_folder(path);
-  }
-  int sync_folder(const std::string& path) noexcept override {
-    count();
-    return FileLayer::sync_folder(path);
-  }
-
- private:
-  void count() noexcept {
-    if (left_-- == 0) {
-      ::_exit(7);
-    }
-  }
-  int left_;
-};
-
-/// Begins a build in a process of its own that dies with its n-th call. False when it lived.
-bool dies_beginning(const std::string& output, const std::string& tmp, int calls) {
-  const pid_t child = ::fork();
-  if (child == 0) {
-    DyingFiles files(calls);
-    const Workspace workspace(files, output, tmp, Unfinished::kRefuse, {{"of", 1}});
-    ::_exit(0);
-  }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return WIFEXITED(status) && WEXITSTATUS(status) == 7;
-}
-
-TEST(Workspace, IsFoundWheneverItsProcessWasKilled) {
-  const ScratchFolder folder, tmp;
-  FileLayer& files = FileLayer::system();
-  const std::string output = folder.file("a.ptin");
-  const std::string in = std::filesystem::path(tmp.file("x")).parent_path().string();
-  int calls = 0;
-  for (; dies_beginning(output, in, calls); ++calls) {
-    SCOPED_TRACE(calls);
-    Workspace::discard(files, output);
-    EXPECT_TRUE(folder.names().empty());
-    EXPECT_TRUE(tmp.names().empty());
-    ASSERT_TRUE(dies_beginning(output, in, calls));
-    // A build that has not begun is begun, whatever it is asked; one that has is resumed.
-    Workspace again(files, output, in, Unfinished::kResume, {{"of", 1}});
-    EXPECT_EQ(tmp.names().size(), 1U);
-    again.remove_all();
-    EXPECT_TRUE(folder.names().empty());
-    EXPECT_TRUE(tmp.names().empty());
-  }
-  EXPECT_GT(calls, 6);
-  EXPECT_TRUE(Workspace::discard(files, output));
-  EXPECT_TRUE(tmp.names().empty());
-}
-
-TEST(Workspace, TakesUpAndDiscardsOnlyAFolderThatIsItsOwn) {
-  const ScratchFolder folder, tmp;
-  FileLayer& files = FileLayer::system();
-  const std::string output = folder.file("a.ptin");
-  const std::string in = std::filesystem::path(tmp.file("x")).parent_path().string();
-  std::string name;
-  {
-    Workspace workspace(files, output, in, Unfinished::kRefuse, {{"of", 1}});
-    name = workspace.temporary_folder();
-    workspace.append({{{"work", 1}}});
-  }
-  const std::string owner = oracle::bytes_of(name + "/owner");
-  oracle::write_text(name + "/owner", "/of/somebody/else");
-  oracle::write_text(name + "/letters.txt", "dear");
-  EXPECT_THROW(Workspace(files, output, in, Unfinished::kResume, {{"of", 1}}), Error);
-  EXPECT_THROW(Workspace::discard(files, output), Error);
-  EXPECT_EQ(oracle::bytes_of(name + "/letters.txt"), "dear");
-  oracle::write_text(name + "/owner", owner);
-  { const Workspace workspace(files, output, in, Unfinished::kResume, {{"of", 1}}); }
-  EXPECT_TRUE(Workspace::discard(files, output));
-  EXPECT_TRUE(tmp.names().empty());
-}
-
-/// The output is named from its folder first, then from the root, and then from another folder.
-TEST(Workspace, IsTakenUpHoweverItsOutputIsNamed) {
-  namespace fs = std::filesystem;
-  FileLayer& files = FileLayer::system();
-  const fs::path before = fs::current_path();
-  for (const bool is_moved : {false, true}) {
-    const ScratchFolder folder, other;
-    const fs::path home = fs::path(folder.file("a.ptin")).parent_path();
-    fs::current_path(home);
-    {
-      Workspace workspace(files, "a.ptin", "", Unfinished::kRefuse, {{"of", 1}});
-      workspace.append({{{"work", 1}}});
-    }
-    fs::path now = home;
-    if (is_moved) {
-      now = fs::path(other.file("moved"));
-      fs::rename(home, now);
-      fs::create_directory(home);
-    }
-    fs::current_path("/");
-    const std::string whole = (now / "a.ptin").string();
-    {
-      const Workspace workspace(files, whole, "", Unfinished::kResume, {{"of", 1}});
-      EXPECT_EQ(workspace.lines().size(), 1U);
-    }
-    fs::current_path(now.parent_path());
-    EXPECT_TRUE(Workspace::discard(files, now.filename().string() + "/a.ptin"));
-    EXPECT_TRUE(fs::is_empty(now));
-    fs::current_path(before);
-  }
-}
-
-TEST(ArrayFile, SaysThatItWasCutShortWhileItWasRead) {
-  install_sigbus_guard();
-  const ScratchFolder folder;
-  const std::string path = folder.file("array");
-  const std::vector<std::uint64_t> numbers(10000, 7);
-  ArrayFileFacts facts;
-  {
-    ArrayFileWriter file(FileLayer::system(), path);
-    file.put(numbers);
-    facts = file.finish();
-  }
-  ArrayFileReader file(path, facts);
-  const auto span = file.take<std::uint64_t>();
-  EXPECT_NO_THROW(file.require_undamaged());
-  std::filesystem::resize_file(path, 4096);
-  EXPECT_NE(span[9999], 7U);  // a hole, not a crash
-  EXPECT_THROW(file.require_undamaged(), Error);
-}
-
-TEST(Manifest, BelievesLinesUpToTheFirstThatIsNotWhole) {
-  const ScratchFolder folder;
-  const std::string path = folder.file("manifest");
-  {
-    Manifest manifest(FileLayer::system(), path);
-    manifest.append({{{"a", 1}}, {{"b", 2}}});
-    manifest.append({{{"c", 3}}});
-  }
-  const std::string whole = oracle::bytes_of(path);
-  for (std::size_t length = 0; length <= whole.size(); ++length) {
-    oracle::write_text(path, whole.substr(0, length));
-    const Manifest manifest(FileLayer::system(), path);
-    const bool has_first = length > whole.find('\n');
-    EXPECT_EQ(manifest.entries().size(), length == whole.size() ? 3U : has_first ? 2U : 0U);
-  }
-  std::string damaged = whole;
-  damaged[whole.find("\"c\":3") + 4] = '9';
-  oracle::write_text(path, damaged);
-  EXPECT_EQ(Manifest(FileLayer::system(), path).entries().size(), 2U);
 }
 
 }  // namespace

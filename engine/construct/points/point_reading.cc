@@ -282,8 +282,7 @@ void add_samples(const PortionRead& read, std::size_t step, PointReading& readin
 PointReading join_portions(const std::vector<std::string>& inputs, const SourceOptions& options,
                            const PointFiles& files, const std::vector<SpooledPortion>& portions) {
   const std::string context = inputs.empty() ? "" : inputs[0];
-  PointReading reading{{},  {}, {}, {}, PointGridScan(options.resolution, context),
-                       0.0, 0,  {}, {}, {}};
+  PointReading reading{.scan = PointGridScan(options.resolution, context)};
   SourceAgreement agreement(options);
   WholeTexts texts(inputs);
   std::uint64_t seen = 0;

@@ -101,24 +101,24 @@ struct SpooledPortion {
 
 /// What is known when the last point has been read.
 struct PointReading {
-  std::string crs;             ///< The CRS that all files declare; "" where a_srs replaces it.
-  std::string vertical_crs;    ///< Likewise.
-  DeclaredUnits units;         ///< Those of all files.
-  std::string crs_path;        ///< The file that declared these first.
+  std::string crs{};           ///< The CRS that all files declare; "" where a_srs replaces it.
+  std::string vertical_crs{};  ///< Likewise.
+  DeclaredUnits units{};       ///< Those of all files.
+  std::string crs_path{};      ///< The file that declared these first.
   PointGridScan scan;          ///< Of all points and files.
   double largest_shift = 0.0;  ///< The largest PointStream::largest_shift(), CRS units.
   std::uint64_t left_out = 0;
-  std::vector<std::uint64_t> empty_inputs;  ///< The numbers of those that have no point at all.
+  std::vector<std::uint64_t> empty_inputs{};  ///< The numbers of those that have no point at all.
   struct Spool {
     std::uint64_t number = 0;
     std::uint64_t points = 0;
   };
-  std::vector<Spool> spools;  ///< In the order of the source; none is empty.
+  std::vector<Spool> spools{};  ///< In the order of the source; none is empty.
   struct Sample {
     SampledPoint point;
     std::uint64_t weight = 1;  ///< The points that it stands for.
   };
-  std::vector<Sample> samples;
+  std::vector<Sample> samples{};
 };
 
 /// Joins portions, which are in the order of the inputs.

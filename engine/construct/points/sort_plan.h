@@ -60,13 +60,6 @@ void put(ArrayFileWriter& file, const SortPlan& plan);
 /// @throws Error corruption
 [[nodiscard]] SortPlan take_sort_plan(ArrayFileReader& file);
 
-/// What tasks are told that join what was shared out: nothing that a plan does not say but the facts
-/// of each share.
-struct SharedPlan {
-  ArrayFileFacts plan;
-  std::vector<ArrayFileFacts> shares;
-};
-
 /// The plan of a source. It depends on the points, the lines and the sizes alone.
 [[nodiscard]] SortPlan plan_sorting(const PointReading& reading, const PointGrid& grid,
                                     FixedEdges fixed, PointMerge rule, std::string buckets,

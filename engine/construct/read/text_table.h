@@ -38,7 +38,7 @@ class QuotesInPart : public Error {
 class TextTable {
  public:
   /// @throws Error  not_found, io_error  the file cannot be opened
-  ///                invalid_argument     it is a folder
+  ///                invalid_argument     it is a folder, or is_packed() and has no byte
   explicit TextTable(std::string path) : TextTable(std::move(path), PointPart{}) {}
   /// Reads a part of a text that is_packed() not: its rows, by the separator and the header of the
   /// whole. Lines are told by their number in the whole.
