@@ -48,6 +48,33 @@ TEST(Cli, EverySubcommandTakesTheCommonOptions) {
   }
 }
 
+TEST(Cli, ABuildIsSilentWhereItIsToBeQuiet) {
+  const TestFolder folder;
+  for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
+    const Outcome outcome = run_ptin({"build", test_data(name), "-o", folder.file(name), "-q"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out + outcome.err, "");
+  }
+}
+
+TEST(Cli, ABuildNamesFilesWithoutAPoint) {
+  const TestFolder folder;
+  const std::string points = folder.file("points.xyz"), empty = folder.file("empty.xyz"),
+                    header = folder.file("header.xyz"), out = folder.file("a.ptin");
+  write_file(points, "x y z\n0 0 1\n5 0 2\n0 5 3\n");
+  write_file(empty, "");
+  write_file(header, "x y z\n");
+  const Outcome one = run_ptin({"build", points, empty, "-o", out});
+  EXPECT_EQ(one.status, 0) << one.err;
+  EXPECT_NE(one.err.find("there is no point in " + empty + ";"), std::string::npos) << one.err;
+  const Outcome two = run_ptin({"build", empty, points, header, "-o", out, "--overwrite"});
+  EXPECT_NE(two.err.find(empty + ", nor in 1 other file;"), std::string::npos) << two.err;
+  const json told = answer_of({"build", empty, points, header, "-o", out, "--overwrite", "--json"});
+  EXPECT_EQ(told.at("empty_inputs"), json({empty, header}));
+  EXPECT_EQ(run_ptin({"build", points, "-o", out, "--overwrite"}).err.find("no point"),
+            std::string::npos);
+}
+
 TEST(Cli, QuestionsAreAnsweredQuietlyToo) {
   const TestFolder folder;
   const std::string coarse = folder.file("coarse.ptin");
