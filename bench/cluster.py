@@ -25,7 +25,7 @@ import statistics
 
 COLLAPSE, JOIN, TIGHTEN, CLOSE, PLACE = range(5)
 NAMES = ["collapse", "join", "tighten", "close", "place"]
-LATENCY = 0.002  # from a rank's answer to its next task, beyond the schedule: both sides look every two milliseconds
+LATENCY = 0.002  # from a rank's answer to its next task, beyond the schedule: both sides look at least every two milliseconds
 SCAN = 1e-9  # seconds a byte of the segments above a batch: checked once, looked through for each leaf; estimated, not measured
 RESULT_BYTES = 700  # of a task that is done, in the memory of rank 0: a node of a map, names and facts
 BAND_SAMPLES = 2 ** 22  # of a task of the first reading (engine/construct/raster/raster_scan.h)

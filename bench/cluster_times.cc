@@ -17,7 +17,6 @@
 #include <utility>
 #include <vector>
 
-#include <malloc.h>
 #include <nlohmann/json.hpp>
 
 #include "engine/construct/build.h"
@@ -56,7 +55,7 @@ class Memory final : public ptin::BuildObserver {
   Memory() { ptin::tools::return_freed_memory(1); }
   void plan(const ptin::BuildPlan& plan) override { ptin::tools::keep_freed_memory(plan); }
   void progress(const ptin::StageProgress& /*progress*/) override {}
-  void give_back_memory() override { malloc_trim(0); }
+  void give_back_memory() override { ptin::tools::give_back_freed_memory(); }
 };
 
 class TimedTasks final : public ptin::TaskDriver {

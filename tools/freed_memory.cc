@@ -27,4 +27,6 @@ void keep_freed_memory(const BuildPlan& plan) {
   }
 }
 
+void give_back_freed_memory() { malloc_trim(0); }
+
 }  // namespace ptin::tools

@@ -16,4 +16,7 @@ void return_freed_memory(int threads);
 /// plan of the build is known.
 void keep_freed_memory(const BuildPlan& plan);
 
+/// Gives back all that is kept, at once: where the next tile would not fit beside it.
+void give_back_freed_memory();
+
 }  // namespace ptin::tools

@@ -5,8 +5,6 @@
 #include <csignal>
 #include <cstdio>
 
-#include <malloc.h>
-
 #include "engine/construct/memory_plan.h"
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
@@ -104,7 +102,7 @@ void BuildShow::progress(const StageProgress& p) {
   progress_.report(p.stage, p.done, p.total, seconds_ > 1.0 && p.total > 1 ? detail() : "");
 }
 
-void BuildShow::give_back_memory() { malloc_trim(0); }
+void BuildShow::give_back_memory() { give_back_freed_memory(); }
 
 void BuildShow::finish() {
   end_stage();
