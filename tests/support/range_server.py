@@ -25,6 +25,7 @@ first. What comes first in the path says how the server behaves; the rest names 
   /shifted/F            after the first request, other bytes than were asked for, and it does not say so
   /packed/F             Content-Encoding: gzip
   /silent/F             after the first request, nothing is ever sent
+  /gate-N/F             after the first request, answers wait until N requests are under way at once; for a minute at most
   /moved/F              a redirection to /plain/F
   /bucket/F             as a store of objects: a signature of AWS4-HMAC-SHA256 in the query, by KEY and SECRET below
 
@@ -51,7 +52,7 @@ KEY, SECRET, REGION = "PTINTESTKEY", "ptin/test+secret", "us-east-1"
 
 class Counts:
     def __init__(self):
-        self.lock = threading.Lock()
+        self.lock = threading.Condition()
         self.reset()
 
     def reset(self):
@@ -116,6 +117,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
             counts.now += 1
             counts.most = max(counts.most, counts.now)
             counts.ranges.append(self.headers.get("Range", ""))
+            counts.lock.notify_all()
         try:
             time.sleep(self.delay)
             self.answer(path, query, number)
@@ -172,6 +174,9 @@ class Handler(http.server.BaseHTTPRequestHandler):
         elif mode == "silent" and number > 0:
             time.sleep(600)
         else:
+            if mode == "gate" and number > 0:
+                with self.counts.lock:
+                    self.counts.lock.wait_for(lambda: self.counts.most >= least, timeout=60)
             if mode in ("replaced", "swapped", "weak", "deaf") and number >= least:
                 name += ".other"
             self.send_range(mode, name, number, least)

@@ -233,7 +233,7 @@ void expect_kills_lose_nothing(const std::string& kind, int times) {
   std::mt19937 random(static_cast<unsigned>(times));
   int killed = 0;
   // A build that was through before its moment counts for nothing; on a busy machine many are.
-  for (int moment = 0; moment < 5 * times && killed < times; ++moment) {
+  for (int moment = 0; moment < 20 * times && killed < times; ++moment) {
     const auto program = started(source.build(killed_one, {"--resume"}));
     // Some are killed before they have begun, and do not count: to start takes the ranks long.
     if (moment % 4 != 3) await_begin(*program, folder, "k.ptin");

@@ -13,7 +13,9 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "tools/ptin/cli.h"
@@ -46,6 +48,12 @@ int status_of(pid_t child) {
   int status = 0;
   waitpid(child, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+bool has_ended(pid_t child) {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+         info.si_pid == child;
 }
 
 /// Has the streams of this process go elsewhere while it lives.
@@ -119,6 +127,35 @@ void await_readiness(pid_t child, int signal) {
   }
 }
 
+/// Waits until a process has worked for so long, whatever else the machine does meanwhile, or has
+/// ended.
+void await_work(pid_t child, std::chrono::milliseconds time) {
+  clockid_t clock{};
+  if (::clock_getcpuclockid(child, &clock) != 0) return;
+  while (!has_ended(child)) {
+    timespec worked{};
+    if (::clock_gettime(clock, &worked) != 0) return;
+    if (std::chrono::seconds(worked.tv_sec) + std::chrono::nanoseconds(worked.tv_nsec) >= time) {
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+Outcome outcome_of(pid_t child, const TestFolder& folder) {
+  rusage used{};
+  int status = 0;
+  ::wait4(child, &status, 0, &used);
+  Outcome outcome;
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.worked =
+      std::chrono::milliseconds((used.ru_utime.tv_sec + used.ru_stime.tv_sec) * 1000 +
+                                (used.ru_utime.tv_usec + used.ru_stime.tv_usec) / 1000);
+  outcome.out = read_file(folder.file("out"));
+  outcome.err = read_file(folder.file("err"));
+  return outcome;
+}
+
 }  // namespace
 
 Outcome spawn_ptin(const std::vector<std::string>& arguments, std::optional<int> signal,
@@ -127,14 +164,21 @@ Outcome spawn_ptin(const std::vector<std::string>& arguments, std::optional<int>
   const pid_t child = start_ptin(arguments, folder.file("out"), folder.file("err"));
   if (signal) {
     await_readiness(child, *signal);
-    std::this_thread::sleep_for(after);
+    await_work(child, after);
     kill(child, *signal);
   }
-  Outcome outcome;
-  outcome.status = status_of(child);
-  outcome.out = read_file(folder.file("out"));
-  outcome.err = read_file(folder.file("err"));
-  return outcome;
+  return outcome_of(child, folder);
+}
+
+Outcome spawn_ptin_until(const std::string& told, int signal,
+                         const std::vector<std::string>& arguments) {
+  const TestFolder folder;
+  const pid_t child = start_ptin(arguments, folder.file("out"), folder.file("err"));
+  while (!has_ended(child) && read_file(folder.file("out")).find(told) == std::string::npos) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  kill(child, signal);
+  return outcome_of(child, folder);
 }
 
 Outcome spawn_ptin_into(const std::string& output, const std::vector<std::string>& arguments) {

@@ -21,6 +21,8 @@ struct Outcome {
   int status = -1;  ///< Exit status; 128 + signal when a signal ended it.
   std::string out;
   std::string err;
+  /// Of a process that was started: the processor time that it took.
+  std::chrono::milliseconds worked{0};
 };
 
 /// Runs `ptin ARGUMENTS` within this process: all of the program but main(), with standard input
@@ -29,10 +31,15 @@ struct Outcome {
 /// REQUIRES: nothing else of this process writes to stdout or stderr meanwhile.
 Outcome run_ptin(const std::vector<std::string>& arguments);
 
-/// Runs the program that was built. With `signal`, sends it `after` the program is ready to take it.
+/// Runs the program that was built. With `signal`, sends it once the program is ready to take it and
+/// has worked for `after`: processor time, so that it is at the same place on a busy machine.
 Outcome spawn_ptin(const std::vector<std::string>& arguments,
                    std::optional<int> signal = std::nullopt,
                    std::chrono::milliseconds after = std::chrono::milliseconds(0));
+
+/// Runs the program that was built, and sends it a signal once its standard output holds a text.
+Outcome spawn_ptin_until(const std::string& told, int signal,
+                         const std::vector<std::string>& arguments);
 
 /// Runs the program that was built with its output going to a file that is there. Only status and
 /// err are set.

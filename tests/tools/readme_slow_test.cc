@@ -65,7 +65,7 @@ TEST(Readme, CommandsRun) {
     const bool is_service = words[0] == "serve";  // runs until it is told to end
     if (is_service) words.insert(words.end(), {"--listen", "127.0.0.1:0"});
     const auto outcome =
-        is_service ? spawn_ptin(words, SIGTERM, std::chrono::milliseconds(300)) : spawn_ptin(words);
+        is_service ? spawn_ptin_until("SIGTERM ends it", SIGTERM, words) : spawn_ptin(words);
     EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
     EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << line << outcome.err;
     ++run;

@@ -20,8 +20,8 @@ namespace {
 TEST(ServeProgram, EndsWithStatus0AfterSigterm) {
   TestFolder folder;
   const Outcome outcome =
-      spawn_ptin({"serve", built(folder, "mountains_257.tif"), "--listen", "127.0.0.1:0"}, SIGTERM,
-                 std::chrono::milliseconds(300));
+      spawn_ptin_until("SIGTERM ends it", SIGTERM,
+                       {"serve", built(folder, "mountains_257.tif"), "--listen", "127.0.0.1:0"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("http://127.0.0.1:"), std::string::npos);
 }
