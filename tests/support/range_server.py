@@ -53,10 +53,11 @@ KEY, SECRET, REGION = "PTINTESTKEY", "ptin/test+secret", "us-east-1"
 class Counts:
     def __init__(self):
         self.lock = threading.Condition()
+        self.now = 0  # not reset: a request whose answer has arrived may not have ended here
         self.reset()
 
     def reset(self):
-        self.requests = self.bytes = self.now = self.most = 0
+        self.requests = self.bytes = self.most = 0
         self.ranges = []
         self.seen = {}  # requests by path
 

@@ -41,7 +41,7 @@ class HttpClient {
   HttpClient& operator=(const HttpClient&) = delete;
 
   void send(std::string_view bytes);
-  /// The next answer; none where the server closes first, or sends nothing for ten seconds.
+  /// The next answer; none where the server closes first, or sends nothing for two minutes.
   [[nodiscard]] std::optional<HttpAnswer> receive(bool has_body = true);
   /// Whether the server closed, within the time.
   [[nodiscard]] bool is_closed_within(std::chrono::milliseconds time);
@@ -85,7 +85,7 @@ class RunningServer {
   std::thread thread_;
 };
 
-/// Waits until `is_so`, for ten seconds at most.
+/// Waits until `is_so`, for two minutes at most.
 [[nodiscard]] bool comes_true(const std::function<bool()>& is_so);
 
 }  // namespace ptin::tools::testing
