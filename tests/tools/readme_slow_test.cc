@@ -16,6 +16,7 @@ namespace ptin::tools {
 namespace {
 
 using testing::spawn_ptin;
+using testing::spawn_ptin_until;
 using testing::TestFolder;
 
 /// The words of the lines that begin "$ ptin", without comments; quotes are not used in what is
