@@ -29,6 +29,10 @@ class TextPoints final : public PointStream {
       total_ = std::min(part.end, static_cast<std::uint64_t>(status.st_size));
       total_ -= std::min(part.begin, total_);
     }
+    facts_.units = reader_.units();
+    if (facts_.units.plane == "degree") {
+      facts_.units.plane.clear();  // A CRS alone tells what degrees are on the ground.
+    }
   }
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override {
