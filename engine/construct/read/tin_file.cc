@@ -2,6 +2,7 @@
 #include "engine/construct/read/tin_file.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <unordered_map>
@@ -110,6 +111,31 @@ std::int64_t whole_of(std::string_view word, const std::string& place) {
   return value;
 }
 
+void TinReceiver::refuse_corners(std::uint64_t count, const std::string& place) {
+  refuse("a face has " + std::to_string(count) +
+             (count < 3 ? " corners, which are no surface; leave it out"
+                        : " corners; triangles and quads are read: triangulate it first, since a "
+                          "face that is not flat is another surface by each triangulation"),
+         place);
+}
+
+void TinReceiver::add_face(std::span<const std::int64_t> ids, const std::string& place) {
+  if (ids.size() != 3 && ids.size() != 4) {
+    refuse_corners(ids.size(), place);
+  }
+  look_around();
+  ++facts_.faces;
+  if (ids.size() == 4) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (ids[i] == ids[(i + 1) % 4]) {
+        sink_.add_face(std::array{ids[(i + 1) % 4], ids[(i + 2) % 4], ids[(i + 3) % 4]});
+        return;
+      }
+    }
+  }
+  sink_.add_face(ids);
+}
+
 void TinReceiver::look_around() {
   constexpr std::uint64_t kInterval = 1 << 16;
   if (++added_ % kInterval != 0) {
@@ -122,7 +148,7 @@ void TinReceiver::look_around() {
 }
 
 TinFileFacts TinReceiver::finish() {
-  if (facts_.vertices == 0 || facts_.triangles == 0) {
+  if (facts_.vertices == 0 || facts_.faces == 0) {
     refuse(facts_.vertices == 0 ? "there is no vertex in this file"
            : facts_.hidden_triangles > 0
                ? "every triangle in this file is hidden"

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,12 +48,13 @@ class TinReceiver {
     ++facts_.vertices;
     sink_.add_vertex(id, p);
   }
-  /// @param ids  Of the corners: numbers from 0 where vertices are numbered, else their own ids.
-  void add_triangle(const std::array<std::int64_t, 3>& ids) {
-    look_around();
-    ++facts_.triangles;
-    sink_.add_triangle(ids);
-  }
+  /// A face. A quad one of whose sides ends where it begins is the triangle of the others.
+  /// @param ids    Of the corners: numbers from 0 where vertices are numbered, else their own ids.
+  /// @param place  The context of errors.
+  /// @throws Error invalid_argument  it has not three or four corners
+  void add_face(std::span<const std::int64_t> ids, const std::string& place);
+  /// @throws Error invalid_argument  a face has so many corners, which are not three or four; always
+  [[noreturn]] static void refuse_corners(std::uint64_t count, const std::string& place);
   /// A triangle that the file marks as invisible: counted, and not passed on.
   void add_hidden() { ++facts_.hidden_triangles; }
   void set_crs(std::string crs, std::string vertical_crs = {}) {

@@ -20,11 +20,6 @@ namespace ptin {
 
 namespace {
 
-GridTriangle turned(GridTriangle t) {
-  std::swap(t.corners[1], t.corners[2]);
-  return t;
-}
-
 template <class Record>
 RecordFile<Record> new_file(const ExternalMemory& memory, const std::string& name) {
   return name.empty() ? RecordFile<Record>(memory, "tin")
@@ -44,7 +39,7 @@ RecordFile<Record> named(RecordFile<Record> file, const ExternalMemory& memory,
   return to;
 }
 
-/// Writes the triangles along the curve, all counter-clockwise, and mends their slivers.
+/// Writes the triangles along the curve, and mends their slivers.
 /// @param kept_as  Name of the file in which they stay; "" for one without a name.
 MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory& memory,
                    const std::string& path, const std::string& kept_as, TinCounts& counts,
@@ -55,7 +50,7 @@ MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory
   tin.triangles->merge(
       [&](std::span<const GridTriangle> batch) {
         for (const GridTriangle& t : batch) {
-          mesh.triangles.add(tin.is_clockwise ? turned(t) : t);
+          mesh.triangles.add(t);
         }
       },
       stop);
@@ -68,9 +63,6 @@ MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory
                     " triangles are flattened by the grid, more than can be mended; give a finer "
                     "--resolution, or let --repair triangulate the points anew",
                 path);
-  }
-  for (GridTriangle& t : slivers) {
-    t = tin.is_clockwise ? turned(t) : t;
   }
   counts.mended_triangles = mend_slivers(mesh, slivers, order, memory, faults, path, stop);
   if (!is_final) {
@@ -229,7 +221,6 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   to.counts_.largest_shift_plan = tin.largest_shift_plan;
   TinFaults faults;
   faults.no_area = tin.faults.no_area;
-  faults.turned_over = tin.faults.turned_over;
   faults.heights = tin.heights_differ;
   const PointOrder order(tin.grid.largest());
   const std::array<std::string, 3> names =
