@@ -3,7 +3,8 @@
 // Wavefront OBJ: `v x y z` and `f a b c`, also of four corners (a/t/n too; negative indices count
 // from the last vertex), z up. All objects and groups are one TIN. A line that ends in a backslash
 // goes on in the next one. Comments (#, to the end of the line), lines, points, normals, textures,
-// materials and what follows the coordinates of a vertex are passed over.
+// materials and what follows the coordinates of a vertex are passed over; comments before the first
+// vertex may name the CRS, as in `# crs: EPSG:25832`.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -35,7 +36,11 @@ class ObjReader {
   TinFileFacts read() {
     std::string_view line;
     while (next(line)) {
-      split_words(line.substr(0, line.find('#')), words_);
+      const std::size_t mark = line.find('#');
+      if (mark != std::string_view::npos && tin_.vertices() == 0) {
+        tin_.note_comment(line.substr(mark + 1));
+      }
+      split_words(line.substr(0, mark), words_);
       if (!words_.empty()) {
         read_words();
       }

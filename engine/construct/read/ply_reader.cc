@@ -15,7 +15,6 @@
 
 #include "engine/construct/read/column_names.h"
 #include "engine/construct/read/tin_reader.h"
-#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -64,8 +63,7 @@ struct Element {
 struct Header {
   Encoding encoding = Encoding::kAscii;
   std::vector<Element> elements;
-  std::string crs, vertical_crs;
-  DeclaredUnits units;
+  std::vector<std::string> comments;
 };
 
 // ---------------------------------------------------------------------------------------------------
@@ -88,7 +86,11 @@ class HeaderReader {
     constexpr int kMostLines = 10'000;
     for (int i = 0; i < kMostLines && in_.line(line); ++i) {
       split_words(line, words_);
-      if (words_.empty() || words_[0] == "obj_info") {
+      if (words_.empty()) {
+        continue;
+      }
+      if (words_[0] == "obj_info") {
+        header_.comments.emplace_back(line.substr(line.find("obj_info") + 8));
         continue;
       }
       if (words_[0] == "end_header") {
@@ -105,7 +107,7 @@ class HeaderReader {
  private:
   void read_line(std::string_view line) {
     if (words_[0] == "comment") {
-      read_comment(line);
+      header_.comments.emplace_back(line.substr(line.find("comment") + 7));
     } else if (words_[0] == "format" && words_.size() == 3) {
       read_format();
     } else if (words_[0] == "element" && words_.size() == 3) {
@@ -119,24 +121,6 @@ class HeaderReader {
     } else {
       refuse_at(in_, "the header has a line that PLY does not know: '" +
                          std::string(line.substr(0, 60)) + "'");
-    }
-  }
-
-  void read_comment(std::string_view line) {
-    if (words_.size() < 3 || (!words_[1].ends_with(':') && !words_[1].ends_with('='))) {
-      return;
-    }
-    const std::string_view key = words_[1].substr(0, words_[1].size() - 1);
-    const std::string value(line.substr(static_cast<std::size_t>(words_[2].data() - line.data())));
-    if (equal_in_any_case(key, "crs") || equal_in_any_case(key, "srs")) {
-      header_.crs = value;
-    } else if (equal_in_any_case(key, "epsg")) {
-      header_.crs = "EPSG:" + value;
-    } else if (equal_in_any_case(key, "vertical_crs")) {
-      header_.vertical_crs = value;
-    } else if (equal_in_any_case(key, "units") || equal_in_any_case(key, "unit")) {
-      const std::string unit = height_unit_named(value);
-      header_.units = {unit, unit};
     }
   }
 
@@ -396,8 +380,9 @@ TinFileFacts read_ply(ByteReader& in, const TinReading& reading, TinFileSink& si
   const Header header = HeaderReader(in).read();
   check_counts(header, in);
   TinReceiver tin(in, reading, sink);
-  tin.set_crs(header.crs, header.vertical_crs);
-  tin.set_units(header.units);
+  for (const std::string& comment : header.comments) {
+    tin.note_comment(comment);
+  }
   Values values(in, header.encoding);
   for (const Element& element : header.elements) {
     if (element.name == "vertex") {

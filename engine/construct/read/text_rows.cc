@@ -177,6 +177,22 @@ DeclaredUnits TextRows::units() {
   return {x.empty() ? y : x, z};
 }
 
+std::string TextRows::unknown_unit() {
+  if (!begun_) {
+    begin();
+  }
+  const std::vector<std::string>& all = names();
+  for (const std::size_t column : columns_) {
+    if (column < all.size()) {
+      const std::string_view unit = named_column(all[column]).unit;
+      if (!unit.empty() && unit_of_column(all[column]).empty()) {
+        return std::string(unit.substr(0, 40));
+      }
+    }
+  }
+  return {};
+}
+
 bool TextRows::choose_id(const std::string& name) {
   const std::vector<std::string>& all = names();
   const auto found = std::find_if(all.begin(), all.end(), [&](const std::string& n) {

@@ -46,6 +46,9 @@ class TextRows {
   /// "degree". Reads the first row.
   /// @throws Error as next(); invalid_argument  those of x and y differ
   [[nodiscard]] DeclaredUnits units();
+  /// What the name of a coordinate's column says in brackets and is no known unit; "" for nothing.
+  /// @throws Error as next()
+  [[nodiscard]] std::string unknown_unit();
 
   /// Reads the next row; false at the end.
   /// @throws Error as TextTable::next(); invalid_argument also where a header lacks a column, where

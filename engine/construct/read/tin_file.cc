@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/column_names.h"
 #include "engine/construct/read/tin_reader.h"
+#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 
@@ -86,7 +88,9 @@ Decimal coordinate_of(std::string_view word, const std::string& place) {
     case NumberKind::kNoNumber:
       break;
   }
-  refuse("'" + std::string(word.substr(0, 40)) + "' stands where a number belongs", place);
+  refuse(word.empty() ? "a number is absent, where a coordinate belongs"
+                      : "'" + std::string(word.substr(0, 40)) + "' stands where a number belongs",
+         place);
 }
 
 Decimal coordinate_of(double value, const std::string& place) {
@@ -106,7 +110,10 @@ std::int64_t whole_of(std::string_view word, const std::string& place) {
   std::int64_t value = 0;
   const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (status != std::errc() || end != word.data() + word.size()) {
-    refuse("'" + std::string(word.substr(0, 40)) + "' stands where a whole number belongs", place);
+    refuse(word.empty()
+               ? "a whole number is absent, where an id or a count belongs"
+               : "'" + std::string(word.substr(0, 40)) + "' stands where a whole number belongs",
+           place);
   }
   return value;
 }
@@ -134,6 +141,52 @@ void TinReceiver::add_face(std::span<const std::int64_t> ids, const std::string&
     }
   }
   sink_.add_face(ids);
+}
+
+bool TinReceiver::follow_comment(std::string_view comment) {
+  split_words(comment, words_);
+  if (words_.size() < 2 || (!words_[0].ends_with(':') && !words_[0].ends_with('='))) {
+    return false;
+  }
+  const std::string_view key = words_[0].substr(0, words_[0].size() - 1);
+  const std::string value(
+      comment.substr(static_cast<std::size_t>(words_[1].data() - comment.data())));
+  if (equal_in_any_case(key, "crs") || equal_in_any_case(key, "srs")) {
+    facts_.crs = value;
+  } else if (equal_in_any_case(key, "epsg")) {
+    facts_.crs = "EPSG:" + value;
+  } else if (equal_in_any_case(key, "vertical_crs")) {
+    facts_.vertical_crs = value;
+  } else if (equal_in_any_case(key, "units") || equal_in_any_case(key, "unit")) {
+    const std::string unit = height_unit_named(value);
+    facts_.units = {unit, unit};
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void TinReceiver::note_comment(std::string_view comment) {
+  if (follow_comment(comment)) {
+    return;
+  }
+  constexpr std::array<std::string_view, 9> kTelling = {
+      "shift", "offset", "origin", "translation", "scale", "crs", "srs", "epsg", "projection"};
+  std::string small(comment.substr(0, 200));
+  std::transform(small.begin(), small.end(), small.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  const bool has_digit = small.find_first_of("0123456789") != std::string::npos;
+  for (const std::string_view word : kTelling) {
+    if (has_digit && small.find(word) != std::string::npos) {
+      warn({.kind = "comment_not_followed",
+            .message = "a comment tells of coordinates what is not followed, '" +
+                       std::string(comment.substr(0, 80)) +
+                       "'; bring the coordinates to their CRS first, and name that with --a-srs",
+            .file = in_.path()});
+      return;
+    }
+  }
 }
 
 void TinReceiver::look_around() {

@@ -64,17 +64,22 @@ class TinReceiver {
   void warn(SourceWarning warning) { facts_.warnings.add(std::move(warning)); }
   void set_units(DeclaredUnits units) { facts_.units = std::move(units); }
   [[nodiscard]] std::uint64_t vertices() const noexcept { return facts_.vertices; }
+  /// Takes what a comment declares, as "crs: EPSG:25832", "vertical_crs: ..." and "units: m". Warns
+  /// of one that tells of a CRS, or of a shift or scale of coordinates, in other words.
+  void note_comment(std::string_view comment);
   /// To be called at the end of the file.
   /// @throws Error invalid_argument  there was no vertex, or no triangle
   [[nodiscard]] TinFileFacts finish();
 
  private:
   void look_around();
+  [[nodiscard]] bool follow_comment(std::string_view comment);
 
   const ByteReader& in_;
   const TinReading& reading_;
   TinFileSink& sink_;
   TinFileFacts facts_;
+  std::vector<std::string_view> words_;
   std::uint64_t added_ = 0;
 };
 

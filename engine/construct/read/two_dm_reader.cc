@@ -72,6 +72,16 @@ void read_card(const ByteReader& in, const std::vector<std::string_view>& words,
                     coordinate_of(words[4], place)});
     return;
   }
+  if (words[0] == "NUM_MATERIALS_PER_ELEM" && words.size() > 1 && words[1] != "0" &&
+      words[1] != "1") {
+    tin.warn({.kind = "values_of_elements",
+              .message =
+                  "elements have several values of their own (NUM_MATERIALS_PER_ELEM), among "
+                  "which some programs keep a height of the bed; the heights of nodes are "
+                  "taken, and those are not",
+              .file = in.path()});
+    return;
+  }
   const auto kind = std::find_if(kElements.begin(), kElements.end(),
                                  [&](const ElementKind& k) { return k.card == words[0]; });
   if (kind != kElements.end()) {
@@ -88,7 +98,13 @@ TinFileFacts read_two_dm(ByteReader& in, const TinReading& reading, TinFileSink&
   bool has_begun = false;
   while (in.line(line)) {
     split_words(line, words);
-    if (words.empty() || words[0].starts_with('#')) {
+    if (words.empty()) {
+      continue;
+    }
+    if (words[0].starts_with('#')) {
+      if (tin.vertices() == 0) {
+        tin.note_comment(line.substr(line.find('#') + 1));
+      }
       continue;
     }
     if (!has_begun) {

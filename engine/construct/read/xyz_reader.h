@@ -37,6 +37,7 @@ class XyzReader {
 
   /// As of TextRows.
   [[nodiscard]] DeclaredUnits units() { return rows_.units(); }
+  [[nodiscard]] std::string unknown_unit() { return rows_.unknown_unit(); }
 
   /// The line of the point that was read last.
   [[nodiscard]] std::uint64_t line() const noexcept { return table_.line(); }

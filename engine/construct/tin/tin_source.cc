@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/construct/grid/area_of_use.h"
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/grid_precision.h"
 #include "engine/construct/grid/height_fit.h"
@@ -216,6 +217,23 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   set_heights(to.frame_, tin.heights);
   to.codes_are_whole_ = tin.grid.whole;
   to.warnings_ = std::move(tin.warnings);
+  if (are_axes_exchanged(to.frame_, tin.grid.east - tin.grid.west,
+                         tin.grid.north - tin.grid.south)) {
+    to.warnings_.add(
+        {.kind = "exchanged_axes",
+         .message =
+             "the vertices lie outside of the area in which their CRS is used, and inside of "
+             "it with x and y exchanged; where another order is written than the format "
+             "has, exchange them first",
+         .file = path});
+  }
+  if (tin.turned_triangles > 0) {
+    to.warnings_.add({.kind = "turned_triangles",
+                      .message = "triangles go another way round than most, and each was turned; "
+                                 "look at them where the surface should be of one piece",
+                      .file = path,
+                      .count = tin.turned_triangles});
+  }
   to.counts_.left_out_triangles = tin.left_out_triangles;
   to.counts_.unused_vertices = tin.unused_vertices;
   to.counts_.merged_vertices = tin.merged_vertices;
