@@ -25,7 +25,12 @@ inline int fuzz_reader(TinReader& read, const std::uint8_t* data, std::size_t si
         if (v >= soup.vertices.size()) std::abort();
       }
     }
-    if (soup.triangles.empty() || soup.vertices.size() > size) std::abort();
+    for (const auto& q : soup.quads) {
+      for (const std::uint32_t v : q) {
+        if (v >= soup.vertices.size()) std::abort();
+      }
+    }
+    if (soup.triangles.size() + soup.quads.size() == 0 || soup.vertices.size() > size) std::abort();
   } catch (const Error& e) {
     if (e.code() != ErrorCode::invalid_argument || !e.context().starts_with("fuzz")) {
       std::abort();

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -19,6 +20,7 @@ namespace ptin::test {
 struct TinSoup {
   std::vector<SourcePoint> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<std::uint32_t, 4>> quads;
   TinFileFacts facts;
 };
 
@@ -43,31 +45,46 @@ class SoupCollector final : public TinFileSink {
     }
     soup_.vertices.push_back(p);
   }
-  void add_triangle(const std::array<std::int64_t, 3>& ids) override { triangles_.push_back(ids); }
+  /// Of quads, which are cut when the heights are known, as they are.
+  void add_face(std::span<const std::int64_t> ids) override {
+    if (ids.size() == 4) {
+      quads_.push_back({ids[0], ids[1], ids[2], ids[3]});
+    } else {
+      triangles_.push_back({ids[0], ids[1], ids[2]});
+    }
+  }
 
   TinSoup finish(TinFileFacts facts) {
     soup_.facts = std::move(facts);
-    soup_.triangles.reserve(triangles_.size());
-    for (const auto& ids : triangles_) {
-      std::array<std::uint32_t, 3> corners{};
-      for (std::size_t i = 0; i < 3; ++i) {
+    take(triangles_, soup_.triangles);
+    take(quads_, soup_.quads);
+    return std::move(soup_);
+  }
+
+ private:
+  template <std::size_t kCorners>
+  void take(const std::vector<std::array<std::int64_t, kCorners>>& from,
+            std::vector<std::array<std::uint32_t, kCorners>>& to) const {
+    to.reserve(from.size());
+    for (const auto& ids : from) {
+      std::array<std::uint32_t, kCorners> corners{};
+      for (std::size_t i = 0; i < kCorners; ++i) {
         const auto found = index_of_.find(ids[i]);
         if (found == index_of_.end()) {
-          throw_refusal("triangle " + std::to_string(soup_.triangles.size()) + " names vertex " +
+          throw_refusal("triangle " + std::to_string(to.size()) + " names vertex " +
                             std::to_string(ids[i]) + ", which is not there",
                         path_);
         }
         corners[i] = found->second;
       }
-      soup_.triangles.push_back(corners);
+      to.push_back(corners);
     }
-    return std::move(soup_);
   }
 
- private:
   std::string path_;
   TinSoup soup_;
   std::vector<std::array<std::int64_t, 3>> triangles_;
+  std::vector<std::array<std::int64_t, 4>> quads_;
   std::unordered_map<std::int64_t, std::uint32_t> index_of_;
 };
 

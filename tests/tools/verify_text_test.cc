@@ -50,6 +50,30 @@ class VerifyText : public ::testing::Test {
   TestFolder folder_;
 };
 
+TEST_F(VerifyText, EndsLinesAsTheBuildDoes) {
+  std::string text = lines_of("", x_y_z);
+  for (char& c : text) c = c == '\n' ? '\r' : c;
+  expect_sound("cr.csv", text);
+  text[text.find('\r')] = '\n';
+  text.insert(text.rfind("8,8"), "\n\f\r\n");
+  expect_sound("mixed.csv", text + "\x1a");
+}
+
+TEST_F(VerifyText, TakesHeadersOfCommentsAndUnitsInNames) {
+  const auto y_x_z = [](const std::string& x, const std::string& y, const std::string& z) {
+    return y + " " + x + " " + z;
+  };
+  for (const char* header :
+       {"# x y z\n# lat lon ele\n# by hand\n", "//Y X Z of the survey\n", "% columns: y x z\n",
+        "y[m] x[m] z_ft\n", "Northing (m) Easting (m) Height (ft)\n", "# \"y\";\"x\";\"z\"\n"}) {
+    expect_sound("header.txt", lines_of(header, y_x_z));
+  }
+  const auto with_words = [](const std::string& x, const std::string& y, const std::string& z) {
+    return x_y_z(x, y, z) + ",tree" + (x == "3" ? ", old oak" : "");
+  };
+  expect_sound("description.csv", lines_of("x,y,z,what\n", with_words));
+}
+
 TEST_F(VerifyText, KnowsEveryNameThatAColumnMayHave) {
   const char* const names[][3] = {{"x", "y", "z"},
                                   {"easting", "northing", "height"},

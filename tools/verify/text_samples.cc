@@ -13,6 +13,7 @@
 #include <cpl_vsi.h>
 
 #include "engine/construct/read/input_kind.h"
+#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 #include "tools/output/file_name.h"
 
@@ -22,14 +23,17 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
-constexpr const char* kBlanks = " \t\r";
+constexpr const char* kBlanks = " \t\r\n\f\v\x1a";
 
 /// The names of the columns x, y and z, in the order in which they are looked for.
 const std::array<std::vector<std::string>, 3>& column_names() {
   static const std::array<std::vector<std::string>, 3> names = {
-      {{"x", "easting", "east", "e", "longitude", "lon", "long", "point_x"},
-       {"y", "northing", "north", "n", "latitude", "lat", "point_y"},
-       {"z", "height", "h", "elevation", "elev", "ele", "altitude", "alt", "point_z"}}};
+      {{"x", "easting", "eastings", "east", "e", "longitude", "lon", "long", "lng", "point_x",
+        "x_coord", "xcoord"},
+       {"y", "northing", "northings", "north", "n", "latitude", "lat", "point_y", "y_coord",
+        "ycoord"},
+       {"z", "height", "h", "elevation", "elev", "ele", "altitude", "alt", "point_z", "z_coord",
+        "zcoord"}}};
   return names;
 }
 
@@ -42,7 +46,7 @@ std::string_view trimmed(std::string_view text, const char* blanks = kBlanks) {
 bool is_any_of(char c, std::string_view all) { return all.find(c) != std::string_view::npos; }
 
 /// What may stand around a field without being of it.
-const char* blanks_beside(char separator) { return separator == '\t' ? " \r" : kBlanks; }
+const char* blanks_beside(char separator) { return separator == '\t' ? " \r\n\f\v\x1a" : kBlanks; }
 
 /// For each character whether it is outside of quotes; nothing where the text ends within them.
 /// Quotes open at the begin of a field alone. Before the separator is known ('\0') a field begins
@@ -84,6 +88,64 @@ std::string unquoted(std::string_view field) {
 }
 
 std::string as_name(const std::string& field) { return lower_case(std::string(trimmed(field))); }
+
+/// A name in small letters without the unit behind it: "z [ft]", "z(ft)" and "z_ft" are z.
+std::string without_unit(const std::string& field) {
+  std::string name = as_name(field);
+  if (!name.empty() && (name.back() == ')' || name.back() == ']')) {
+    const std::size_t open = name.rfind(name.back() == ')' ? '(' : '[');
+    if (open != std::string::npos && open > 0) return std::string(trimmed(name.substr(0, open)));
+  }
+  const std::size_t line = name.rfind('_');
+  if (line == std::string::npos || line == 0) return name;
+  const std::string unit = name.substr(line + 1);
+  const bool is_degree =
+      unit == "deg" || unit == "degree" || unit == "degrees" || unit == "dd" || unit == "\u00b0";
+  return is_degree || metres_in(height_unit_named(unit)) ? name.substr(0, line) : name;
+}
+
+/// The column of an axis; names.size() where none is it. Names without a unit come first.
+std::size_t column_of(const std::vector<std::string>& names, std::size_t axis) {
+  for (const bool with_unit : {false, true}) {
+    for (const std::string& known : column_names()[axis]) {
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        if ((with_unit ? without_unit(names[i]) : as_name(names[i])) == known) return i;
+      }
+    }
+  }
+  return names.size();
+}
+
+bool is_coordinate(const std::string& name) {
+  for (const std::size_t axis : {0U, 1U, 2U}) {
+    if (column_of({name}, axis) == 0) return true;
+  }
+  return false;
+}
+
+/// The text of a comment without its mark; none where the line is no comment.
+std::optional<std::string_view> text_of_comment(std::string_view line) {
+  if (line.starts_with("//"))
+    return line.substr(std::min(line.find_first_not_of('/'), line.size()));
+  if (line.empty() || !is_any_of(line.front(), "#%!>")) return std::nullopt;
+  return line.substr(std::min(line.find_first_not_of("#%!>"), line.size()));
+}
+
+/// Units in brackets that stand behind their names.
+void join_units(std::vector<std::string>& names) {
+  const auto is_unit = [](const std::string& s) {
+    return s.size() > 2 &&
+           ((s.front() == '(' && s.back() == ')') || (s.front() == '[' && s.back() == ']'));
+  };
+  for (std::size_t i = 1; i < names.size();) {
+    if (is_unit(names[i]) && !is_unit(names[i - 1])) {
+      names[i - 1] += " " + names[i];
+      names.erase(names.begin() + static_cast<std::ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
+  }
+}
 
 /// The number in a field; none where the field is no number. NaN and infinities are numbers.
 std::optional<double> number_of(std::string_view field) {
@@ -178,27 +240,34 @@ void TextSamples::fill() {
 }
 
 bool TextSamples::next_line(std::string_view& line) {
-  std::size_t end = buffer_.find('\n', begin_);
-  while (end == std::string::npos && !at_end_ && buffer_.size() - begin_ <= kLongestLine) {
+  std::size_t end = buffer_.find_first_of("\r\n", begin_);
+  // A CR at the end of what is at hand may be the first half of a line end.
+  while (!at_end_ && (end == std::string::npos ? buffer_.size() - begin_ <= kLongestLine
+                                               : end + 1 == buffer_.size())) {
     fill();
-    end = buffer_.find('\n', begin_);
+    end = buffer_.find_first_of("\r\n", begin_);
   }
+  const bool is_pair = end != std::string::npos && buffer_.compare(end, 2, "\r\n") == 0;
   if (end == std::string::npos) end = buffer_.size();
   if (begin_ == buffer_.size()) return false;
   ++number_;
   if (end - begin_ > kLongestLine)
     refuse("a line is longer than 64 KiB; this does not look like points as text");
   line = std::string_view(buffer_).substr(begin_, end - begin_);
-  begin_ = std::min(end + 1, buffer_.size());
+  begin_ = std::min(end + (is_pair ? 2 : 1), buffer_.size());
   return true;
 }
 
 bool TextSamples::next_text(std::string& text) {
   std::string_view line;
-  do {
+  for (;;) {
     if (!next_line(line)) return false;
     if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-  } while (trimmed(line).empty() || trimmed(line).front() == '#');
+    if (trimmed(line).empty()) continue;
+    const std::optional<std::string_view> comment = text_of_comment(trimmed(line));
+    if (!comment) break;
+    if (field_count_ == 0) comments_.emplace_back(comment->substr(0, 4096));
+  }
   first_ = number_;
   text = line;
   if (text.find('"') == std::string::npos) return true;
@@ -236,36 +305,78 @@ void TextSamples::split(std::string_view text) {
 bool TextSamples::begin(std::string_view text) {
   split(text);
   field_count_ = fields_.size();
-  const auto names = [&](std::size_t axis) {
-    return std::any_of(fields_.begin(), fields_.end(), [&](const std::string& field) {
-      const auto& known = column_names()[axis];
-      return std::find(known.begin(), known.end(), as_name(field)) != known.end();
-    });
-  };
   const bool is_header =
-      std::none_of(fields_.begin(), fields_.end(), begins_as_number) || (names(0) && names(1));
-  if (!given_.empty()) {
-    choose_columns(given_);
-  } else if (is_header) {
-    choose_columns(fields_);
+      std::none_of(fields_.begin(), fields_.end(), begins_as_number) ||
+      (column_of(fields_, 0) < field_count_ && column_of(fields_, 1) < field_count_);
+  std::vector<std::string> names = is_header ? fields_ : names_in_comments();
+  if (is_header && separator_ == ' ') {
+    join_units(names);
+    field_count_ = names.size();
+  }
+  if (!given_.empty()) names = given_;
+  if (!names.empty()) {
+    choose_columns(names);
   } else if (field_count_ < 3) {
     refuse("the first line has fewer than three fields, so no x, y and z");
   }
+  may_go_on_ = names.size() >= field_count_ &&
+               std::find(columns_.begin(), columns_.end(), field_count_ - 1) == columns_.end();
   return is_header;
 }
 
-void TextSamples::choose_columns(const std::vector<std::string>& names) {
-  std::vector<std::string> header;
-  for (const std::string& name : names) header.push_back(as_name(name));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    columns_[axis] = header.size();
-    for (const std::string& name : column_names()[axis]) {
-      const auto found = std::find(header.begin(), header.end(), name);
-      if (found == header.end()) continue;
-      columns_[axis] = static_cast<std::size_t>(found - header.begin());
-      break;
+/// True where a comment names x and y, one beside the other or with coordinates alone between them,
+/// and names no more columns than there are; or the coordinates of all columns, and then a remark.
+bool TextSamples::names_columns(std::string_view comment, std::vector<std::string>& names) const {
+  const std::string text(trimmed(comment));
+  const char separator = separator_of(text);
+  names.clear();
+  std::string name;
+  const auto end_name = [&] {
+    std::string_view bare = trimmed(name);
+    if (bare.size() > 1 && bare.front() == '"' && bare.back() == '"')
+      bare = trimmed(bare.substr(1, bare.size() - 2));
+    if (!bare.empty() || separator != ' ') names.emplace_back(bare);
+    name.clear();
+  };
+  for (const char c : text) {
+    if (separator == ' ' ? is_any_of(c, kBlanks) : c == separator) {
+      end_name();
+    } else {
+      name += c;
     }
-    if (columns_[axis] >= field_count_) {
+  }
+  end_name();
+  if (separator == ' ') join_units(names);
+  if (names.size() > field_count_) {
+    names.resize(field_count_);
+    if (!std::all_of(names.begin(), names.end(), is_coordinate)) return false;
+  }
+  const std::size_t x = column_of(names, 0), y = column_of(names, 1);
+  if (x == names.size() || y == names.size()) return false;
+  for (std::size_t i = std::min(x, y); i < std::max(x, y); ++i) {
+    if (!is_coordinate(names[i])) return false;
+  }
+  return true;
+}
+
+/// The names of the columns in the last comment that tells them; nothing where none does.
+std::vector<std::string> TextSamples::names_in_comments() const {
+  std::vector<std::string> names;
+  for (auto comment = comments_.rbegin(); comment != comments_.rend(); ++comment) {
+    const std::size_t colon = comment->find(':');
+    if (names_columns(*comment, names) ||
+        (colon != std::string::npos && names_columns(comment->substr(colon + 1), names))) {
+      names.resize(field_count_);
+      return names;
+    }
+  }
+  return {};
+}
+
+void TextSamples::choose_columns(const std::vector<std::string>& names) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    columns_[axis] = column_of(names, axis);
+    if (columns_[axis] >= std::min(field_count_, names.size())) {
       refuse(std::string("neither a raster that GDAL reads nor points as text: the first "
                          "line, or --columns of the build, names no column for ") +
              "xyz"[axis]);
@@ -274,7 +385,9 @@ void TextSamples::choose_columns(const std::vector<std::string>& names) {
 }
 
 void TextSamples::read_numbers(Line& line) const {
-  if (fields_.size() != field_count_) {
+  const bool goes_on =
+      may_go_on_ && fields_.size() > field_count_ && !begins_as_number(fields_[field_count_ - 1]);
+  if (fields_.size() != field_count_ && !goes_on) {
     line.misfit = "this line has " + std::to_string(fields_.size()) + " fields, the first one " +
                   std::to_string(field_count_);
     return;

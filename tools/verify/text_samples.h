@@ -15,10 +15,12 @@
 
 namespace ptin::tools {
 
-/// The points of one file of text. The first line that is neither empty nor a comment ('#') decides
-/// the separator (semicolon, else comma, else tab, else blanks), the number of fields, and whether
-/// that line is a header: no field of it begins as a number, or it names columns for x and y. Empty
-/// fields between semicolons, commas or tabs count, and fields may be quoted as in RFC 4180. A byte
+/// The points of one file of text. Lines end in LF, CR LF or CR. The first line that is neither empty
+/// nor a comment ('#', '%', '!', '>', "//") decides the separator (semicolon, else comma, else tab,
+/// else blanks), the number of fields, and whether that line is a header: no field of it begins as a
+/// number, or it names columns for x and y; else the last comment before it that names columns is
+/// one. Empty fields between semicolons, commas or tabs count, and fields may be quoted as in RFC
+/// 4180. Where the last column has a name that is no coordinate's, it may hold separators. A byte
 /// order mark is passed over. A file whose name ends in .gz, in any case, is unpacked on the way.
 class TextSamples {
  public:
@@ -51,6 +53,8 @@ class TextSamples {
   /// Looks at the first line; true when it is a header.
   [[nodiscard]] bool begin(std::string_view text);
   void choose_columns(const std::vector<std::string>& names);
+  [[nodiscard]] bool names_columns(std::string_view comment, std::vector<std::string>& names) const;
+  [[nodiscard]] std::vector<std::string> names_in_comments() const;
   void read_numbers(Line& line) const;
   [[noreturn]] void refuse(const std::string& sentence) const;
 
@@ -65,6 +69,8 @@ class TextSamples {
   char separator_ = '\0';           ///< '\0' before the first line, ' ' for blanks and tabs.
   std::array<std::size_t, 3> columns_{0, 1, 2};
   std::size_t field_count_ = 0;
+  bool may_go_on_ = false;             ///< The last column has a name, and is no coordinate.
+  std::vector<std::string> comments_;  ///< Before the first line of fields.
   std::vector<std::string> fields_;
 };
 

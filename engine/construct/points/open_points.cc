@@ -29,6 +29,11 @@ class TextPoints final : public PointStream {
       total_ = std::min(part.end, static_cast<std::uint64_t>(status.st_size));
       total_ -= std::min(part.begin, total_);
     }
+    facts_.units = reader_.units();
+    if (facts_.units.plane == "degree") {
+      facts_.units.plane.clear();  // A CRS alone tells what degrees are on the ground.
+    }
+    note_unknown_units(path);
   }
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override {
@@ -39,6 +44,7 @@ class TextPoints final : public PointStream {
     }
     return !batch.empty();
   }
+  [[nodiscard]] SourceWarnings warnings() const override { return warnings_; }
   [[nodiscard]] std::optional<RowsOfPart> rows() const override {
     return is_whole_ ? std::nullopt : std::optional(reader_.rows());
   }
@@ -47,8 +53,21 @@ class TextPoints final : public PointStream {
 
  private:
   bool is_whole_;
+  /// Warns of what names of columns say in brackets and nobody understands.
+  void note_unknown_units(const std::string& path) {
+    const std::string remark = reader_.unknown_unit();
+    if (!remark.empty()) {
+      warnings_.add({.kind = "unknown_unit",
+                     .message = "the name of a coordinate's column says '" + remark +
+                                "', which is no unit that is known and not used; say with --a-srs "
+                                "and --vertical-crs what the coordinates are",
+                     .file = path});
+    }
+  }
+
   XyzReader reader_;
   PointStreamFacts facts_;
+  SourceWarnings warnings_;
   std::uint64_t total_ = 0;
 };
 

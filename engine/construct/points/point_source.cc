@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "engine/construct/grid/area_of_use.h"
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/grid_precision.h"
 #include "engine/construct/grid/height_finder.h"
@@ -159,6 +160,14 @@ PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
   index.counts.left_out_points = reading_->left_out;
   index.empty_inputs = reading_->empty_inputs;
   index.warnings = reading_->warnings;
+  if (are_axes_exchanged(index.frame, grid.east - grid.west, grid.north - grid.south)) {
+    index.warnings.add(
+        {.kind = "exchanged_axes",
+         .message = "the points lie outside of the area in which their CRS is used, and inside of "
+                    "it with x and y exchanged; where northings stand before eastings, name the "
+                    "columns of a text with --columns, as in --columns y x z",
+         .file = context});
+  }
   return index;
 }
 

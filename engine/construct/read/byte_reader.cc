@@ -7,6 +7,8 @@
 
 #include <sys/stat.h>
 
+#include "engine/construct/read/line_end.h"
+#include "engine/construct/read/text_encoding.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -62,25 +64,32 @@ bool ByteReader::line(std::string_view& text) {
   }
   const auto find = [&] {
     const char* from = buffer_.data() + begin_;
-    return static_cast<const char*>(std::memchr(from, '\n', std::min(end_ - begin_, kLongest)));
+    return end_of_line(from, from + std::min(end_ - begin_, kLongest));
   };
-  const char* newline = find();
-  if (newline == nullptr) {
-    want(kLongest);
-    newline = find();
+  const char* end = find();
+  if (end == nullptr || end + 1 == buffer_.data() + end_) {
+    want(kLongest + 2);
+    end = find();
   }
   ++line_;
   const char* const from = buffer_.data() + begin_;
-  if (newline == nullptr && end_ - begin_ >= kLongest) {
+  if (end == nullptr && end_ - begin_ >= kLongest) {
     throw Error(ErrorCode::invalid_argument, "this line is longer than 64 KiB", place());
   }
-  const std::size_t length =
-      newline != nullptr ? static_cast<std::size_t>(newline - from) : end_ - begin_;
-  text = {from, length};
-  if (text.ends_with('\r')) {
-    text.remove_suffix(1);
+  const std::size_t length = end != nullptr ? static_cast<std::size_t>(end - from) : end_ - begin_;
+  std::size_t passed = length;
+  if (end != nullptr) {
+    passed += only_cr_ ? 1 : bytes_of_line_end(end, buffer_.data() + end_);
   }
-  take(length + (newline != nullptr ? 1 : 0));
+  ended_in_cr_ = end != nullptr && *end == '\r' && passed == length + 1;
+  text = {from, length};
+  if (line_ == 1) {
+    if (const auto fault = fault_of_encoding(text, true)) {
+      throw Error(ErrorCode::invalid_argument, *fault, place());
+    }
+    text.remove_prefix(bytes_of_byte_order_mark(text));
+  }
+  take(passed);
   return true;
 }
 

@@ -23,9 +23,15 @@ class ByteReader {
   /// Reads `content`, which it keeps, instead of a file; `name` stands for the path in errors.
   ByteReader(std::string name, std::string content);
 
-  /// The next line without its end (LF, CR LF); false at the end of the file.
-  /// @throws Error invalid_argument  longer than 64 KiB; io_error
+  /// The next line without its end (LF, CR LF, a CR alone); false at the end of the file. A byte
+  /// order mark of UTF-8 is no part of the first line.
+  /// @throws Error invalid_argument  longer than 64 KiB; the file is UTF-16 or UTF-32; io_error
   [[nodiscard]] bool line(std::string_view& text);
+  /// The line that was handed out last ended in a CR alone.
+  [[nodiscard]] bool ended_in_cr() const noexcept { return ended_in_cr_; }
+  /// From here on a line ends behind a CR, whatever follows. To be called where other bytes than
+  /// text may follow the last line: the first of them may be an LF by chance.
+  void end_lines_in_cr() noexcept { only_cr_ = true; }
   /// The next `count` bytes, at most 64 KiB; fewer at the end of the file.  @throws Error io_error
   [[nodiscard]] std::span<const char> bytes(std::size_t count);
   /// Some further bytes, at most 64 KiB; none at the end of the file.  @throws Error io_error
@@ -56,6 +62,7 @@ class ByteReader {
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;  ///< The bytes of buffer_ still to be handed out.
   std::uint64_t size_ = 0, position_ = 0, line_ = 0;
+  bool ended_in_cr_ = false, only_cr_ = false;
 };
 
 /// @throws Error invalid_argument  at the place that `in` has reached; always

@@ -4,18 +4,22 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 
+#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 
 namespace ptin {
 namespace {
 
-constexpr std::array<std::string_view, 8> kNamesOfX = {"x",         "easting", "east", "e",
-                                                       "longitude", "lon",     "long", "point_x"};
-constexpr std::array<std::string_view, 7> kNamesOfY = {"y",        "northing", "north",  "n",
-                                                       "latitude", "lat",      "point_y"};
-constexpr std::array<std::string_view, 9> kNamesOfZ = {
-    "z", "height", "h", "elevation", "elev", "ele", "altitude", "alt", "point_z"};
+constexpr std::array<std::string_view, 12> kNamesOfX = {"x",   "easting",   "eastings", "east",
+                                                        "e",   "longitude", "lon",      "long",
+                                                        "lng", "point_x",   "x_coord",  "xcoord"};
+constexpr std::array<std::string_view, 10> kNamesOfY = {
+    "y", "northing", "northings", "north", "n", "latitude", "lat", "point_y", "y_coord", "ycoord"};
+constexpr std::array<std::string_view, 11> kNamesOfZ = {
+    "z",        "height", "h",       "elevation", "elev",  "ele",
+    "altitude", "alt",    "point_z", "z_coord",   "zcoord"};
 constexpr std::array<ColumnRole, 3> kPointRoles = {
     {{Coordinate::kX}, {Coordinate::kY}, {Coordinate::kZ}}};
 
@@ -23,7 +27,23 @@ std::span<const std::string_view> names_of(Coordinate which) {
   if (which == Coordinate::kX) {
     return kNamesOfX;
   }
-  return which == Coordinate::kY ? std::span<const std::string_view>(kNamesOfY) : kNamesOfZ;
+  return which == Coordinate::kY ? std::span<const std::string_view>(kNamesOfY)
+                                 : std::span<const std::string_view>(kNamesOfZ);
+}
+
+std::string known_unit(std::string_view unit) {
+  for (const std::string_view degree : {"deg", "degree", "degrees", "dd", "\u00b0"}) {
+    if (equal_in_any_case(unit, degree)) {
+      return "degree";
+    }
+  }
+  const std::string name = height_unit_named(std::string(unit));
+  return metres_in(name) ? name : "";
+}
+
+std::string_view without_blanks_behind(std::string_view text) {
+  const std::size_t last = text.find_last_not_of(" \t");
+  return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
 }
 
 /// The name without the number of an end behind it; empty where another number or none is there.
@@ -56,13 +76,35 @@ std::string name_of(ColumnRole role) {
   return "xyh"[static_cast<std::size_t>(role.coordinate)] + std::to_string(role.end);
 }
 
+NamedColumn named_column(std::string_view name) {
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+    const std::size_t at = name.rfind(open);
+    if (at != std::string_view::npos && at > 0 && name.back() == close) {
+      return {without_blanks_behind(name.substr(0, at)), name.substr(at + 1, name.size() - at - 2)};
+    }
+  }
+  const std::size_t line = name.rfind('_');
+  if (line != std::string_view::npos && line > 0 && !known_unit(name.substr(line + 1)).empty()) {
+    return {name.substr(0, line), name.substr(line + 1)};
+  }
+  return {name, {}};
+}
+
+std::string unit_of_column(std::string_view name) {
+  const NamedColumn column = named_column(name);
+  return column.unit.empty() ? "" : known_unit(column.unit);
+}
+
 std::size_t find_column(std::span<const std::string> names, ColumnRole role) {
-  for (const std::string_view known : names_of(role.coordinate)) {
-    const auto found = std::find_if(names.begin(), names.end(), [&](std::string_view name) {
-      return equal_in_any_case(without_end(name, role.end), known);
-    });
-    if (found != names.end()) {
-      return static_cast<std::size_t>(found - names.begin());
+  for (const bool may_have_unit : {false, true}) {
+    for (const std::string_view known : names_of(role.coordinate)) {
+      const auto found = std::find_if(names.begin(), names.end(), [&](std::string_view name) {
+        return equal_in_any_case(
+            without_end(may_have_unit ? named_column(name).name : name, role.end), known);
+      });
+      if (found != names.end()) {
+        return static_cast<std::size_t>(found - names.begin());
+      }
     }
   }
   return names.size();

@@ -25,12 +25,25 @@ struct ColumnRole {
 
 /// Which of the names tells a role. These are known, in any case; where several of them are there,
 /// the one that stands first here decides:
-///   x: x, easting, east, e, longitude, lon, long, point_x
-///   y: y, northing, north, n, latitude, lat, point_y
-///   z: z, height, h, elevation, elev, ele, altitude, alt, point_z
-/// Those of an end have its number behind them, as x1, lat_2.
+///   x: x, easting, eastings, east, e, longitude, lon, long, lng, point_x, x_coord, xcoord
+///   y: y, northing, northings, north, n, latitude, lat, point_y, y_coord, ycoord
+///   z: z, height, h, elevation, elev, ele, altitude, alt, point_z, z_coord, zcoord
+/// Those of an end have its number behind them, as x1, lat_2. A unit may follow (named_column());
+/// names without one come first.
 /// @return  An index into `names`; names.size() where none of them tells the role.
 [[nodiscard]] std::size_t find_column(std::span<const std::string> names, ColumnRole role);
+
+/// A name and the unit that it tells of its column.
+struct NamedColumn {
+  std::string_view name;
+  std::string_view unit;  ///< Empty where it tells none.
+};
+/// Takes the unit off a name: what stands in brackets behind it, as in "z [ft]" and "z(m)", or a
+/// known unit behind a line, as in "z_ft".
+[[nodiscard]] NamedColumn named_column(std::string_view name);
+
+/// The unit as a CRS names it, as of height_unit_named(), or "degree"; "" where it is not known.
+[[nodiscard]] std::string unit_of_column(std::string_view name);
 
 /// True for the names that find_column() knows, of points and of ends.
 [[nodiscard]] bool is_coordinate_name(std::string_view name);

@@ -2,10 +2,12 @@
 #include "engine/construct/read/land_xml.h"
 
 #include <cstdint>
+#include <initializer_list>
 #include <utility>
 
 #include <expat.h>
 
+#include "engine/construct/read/xml_encoding.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
 
@@ -17,6 +19,15 @@ constexpr int kDeepest = 64;                       // elements inside of element
 constexpr int kUnitsDepth = 3;                     // LandXML/Units/Metric
 constexpr std::uint64_t kLongestToken = 1U << 20;  // bytes without an event
 
+constexpr std::size_t kLongestName = 100;  // in a message
+
+/// True for digits that are not all 0.
+bool is_code(std::string_view text) {
+  return !text.empty() && text.size() < 10 &&
+         text.find_first_not_of("0123456789") == std::string_view::npos &&
+         text.find_first_not_of('0') != std::string_view::npos;
+}
+
 std::string_view local_name(const XML_Char* name) {
   const std::string_view all(name);
   const std::size_t colon = all.rfind(':');
@@ -24,6 +35,10 @@ std::string_view local_name(const XML_Char* name) {
 }
 
 }  // namespace
+
+bool is_surface_named(const std::string& wish, std::string_view name, std::uint64_t number) {
+  return wish.empty() || name == wish || wish == "#" + std::to_string(number);
+}
 
 void LandXmlElements::ParserFree::operator()(XML_ParserStruct* p) const { XML_ParserFree(p); }
 
@@ -35,6 +50,7 @@ LandXmlElements::LandXmlElements(ByteReader& in) : in_(in), parser_(XML_ParserCr
   XML_SetElementHandler(parser_.get(), &LandXmlElements::start, &LandXmlElements::end);
   XML_SetCharacterDataHandler(parser_.get(), &LandXmlElements::add_text);
   XML_SetStartDoctypeDeclHandler(parser_.get(), &LandXmlElements::doctype);
+  XML_SetUnknownEncodingHandler(parser_.get(), &find_xml_encoding, nullptr);
 }
 
 LandXmlElements::~LandXmlElements() = default;
@@ -48,8 +64,9 @@ void LandXmlElements::parse() {
       std::rethrow_exception(failure_);
     }
     if (status == XML_STATUS_ERROR) {
-      refuse_here(std::string("this is no XML that can be read: ") +
-                  XML_ErrorString(XML_GetErrorCode(parser_.get())));
+      const XML_Error error = XML_GetErrorCode(parser_.get());
+      refuse_here(std::string("this is no XML that can be read: ") + XML_ErrorString(error) +
+                  (error == XML_ERROR_UNKNOWN_ENCODING ? "; save it as UTF-8" : ""));
     }
     const XML_Index at = XML_GetCurrentByteIndex(parser_.get());
     if (at >= 0 && in_.position() - static_cast<std::uint64_t>(at) > kLongestToken + (1U << 17)) {
@@ -138,7 +155,7 @@ void LandXmlElements::begin(std::string_view name, const char** attributes) {
   if (depth_ == 1 && name != "LandXML") {
     refuse_here("the first element is '" + std::string(name.substr(0, 40)) + "', not LandXML");
   }
-  if (name == "CoordinateSystem") {
+  if (depth_ == 2 && name == "CoordinateSystem") {
     read_crs(attributes);
   } else if (depth_ == kUnitsDepth && (name == "Metric" || name == "Imperial")) {
     read_units(attributes);
@@ -147,12 +164,54 @@ void LandXmlElements::begin(std::string_view name, const char** attributes) {
   }
 }
 
+void LandXmlElements::warn(std::string kind, std::string message) {
+  warnings_.add({.kind = std::move(kind), .message = std::move(message), .file = in_.path()});
+}
+
 void LandXmlElements::read_crs(const char** attributes) {
-  const std::string code(attribute(attributes, "epsgCode"));
-  const bool is_number = !code.empty() && code.size() < 10 &&
-                         code.find_first_not_of("0123456789") == std::string::npos;
-  if (is_number && code != "0") {
+  const auto told = [&](std::string_view name) {
+    return std::string(attribute(attributes, name).substr(0, kLongestName));
+  };
+  const auto first_of = [&](std::initializer_list<std::string_view> names) {
+    for (const std::string_view name : names) {
+      if (!attribute(attributes, name).empty()) {
+        return told(name);
+      }
+    }
+    return std::string();
+  };
+  std::string code = told("epsgCode");
+  if (code.starts_with("EPSG:")) {
+    code.erase(0, 5);
+  }
+  const std::string wkt(attribute(attributes, "ogcWktCode"));
+  if (is_code(code)) {
     crs_ = "EPSG:" + code;
+  } else if (!wkt.empty()) {
+    crs_ = wkt;
+  } else if (const std::string name =
+                 first_of({"horizontalCoordinateSystemName", "projectedCoordinateSystemName",
+                           "geographicCoordinateSystemName", "horizontalDatum", "datum", "epsgCode",
+                           "name", "desc"});
+             !name.empty()) {
+    warn("crs_in_words", "the CRS is told as '" + name +
+                             "' and by no code, which is not understood; name it with --a-srs");
+  }
+  const std::string vertical = first_of({"verticalCoordinateSystemName", "verticalDatum"});
+  const std::string vertical_code = vertical.starts_with("EPSG:") ? vertical.substr(5) : vertical;
+  if (is_code(vertical_code)) {
+    vertical_crs_ = "EPSG:" + vertical_code;
+  } else if (!vertical.empty()) {
+    warn("vertical_crs_in_words",
+         "the heights are told to be above '" + vertical +
+             "', which is no code and not used; name the vertical CRS with --vertical-crs");
+  }
+  const std::string angle = told("rotationAngle");
+  if (angle.find_first_of("123456789") != std::string::npos) {
+    warn("turned_coordinates",
+         "the file says that its coordinate system is turned by " + angle +
+             " against the CRS, which is not undone; bring the coordinates to "
+             "the CRS first where they are not in it");
   }
 }
 

@@ -3,19 +3,27 @@
 // What the readers of LandXML share: elements and texts from expat, units and CRS.
 #pragma once
 
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/byte_reader.h"
 
 struct XML_ParserStruct;
 
 namespace ptin {
 
-/// Reads LandXML as a stream, and tells a derived class of its elements. A document type declaration
+/// A surface that a caller names, among those of a file: by its name, or by its place in the file as
+/// "#2", since several may have one name.
+/// @param number  Of the surface, from 1.
+[[nodiscard]] bool is_surface_named(const std::string& wish, std::string_view name,
+                                    std::uint64_t number);
+
+/// Reads LandXML as a stream, in any encoding that it names, and tells a derived class of its elements. A document type declaration
 /// is refused, and with it every entity that a file could define. Errors are kept and thrown outside
 /// of expat, which is C.
 class LandXmlElements {
@@ -45,8 +53,12 @@ class LandXmlElements {
 
   ByteReader& in_;
   std::string text_;
-  std::string crs_;      ///< As PointStreamFacts::crs, from when it was read.
-  DeclaredUnits units_;  ///< Likewise.
+  std::string crs_;           ///< As PointStreamFacts::crs, from when it was read.
+  std::string vertical_crs_;  ///< Likewise.
+  DeclaredUnits units_;       ///< Likewise.
+  SourceWarnings warnings_;   ///< Of what the file declares and nobody follows.
+
+  void warn(std::string kind, std::string message);
 
  private:
   template <typename Handler>

@@ -37,7 +37,13 @@ class LandXmlLines final : public LandXmlElements {
                  (surfaces_.empty() ? "" : "; its surfaces are " + surfaces_),
              in_.path());
     }
-    return {crs_, units_, is_flat_};
+    if (outer_ == 0 && voids_ > 0) {
+      refuse(
+          "the boundary has voids and no outer ring, and what lies within a ring is kept; give it "
+          "the ring that is around them",
+          in_.path());
+    }
+    return {crs_, units_, is_flat_, warnings_};
   }
 
  private:
@@ -48,10 +54,13 @@ class LandXmlLines final : public LandXmlElements {
       if (surfaces_.size() < kMostNames) {
         surfaces_ += (surfaces_.empty() ? "'" : ", '") + surface.substr(0, 60) + "'";
       }
-      is_wanted_ = wish_.layer.empty() || surface == wish_.layer;
+      is_wanted_ = is_surface_named(wish_.layer, surface, ++number_);
       lines_of_surface_ = 0;
     } else if (name == element_) {
       in_line_ = is_wanted_;
+      if (in_line_) {
+        note_type(attributes);
+      }
     } else if (in_line_ && (name == "PntList3D" || (name == "PntList2D" && wants_areas()))) {
       numbers_of_vertex_ = name == "PntList3D" ? 3 : 2;
       gather(kLongestList, "a list of points holds more text than 16 MiB");
@@ -72,11 +81,28 @@ class LandXmlLines final : public LandXmlElements {
     }
   }
 
+  /// The kind of a boundary or breakline.
+  void note_type(const char** attributes) {
+    if (wants_areas()) {
+      ++(attribute(attributes, "bndType") == "void" ? voids_ : outer_);
+      return;
+    }
+    const std::string_view type = attribute(attributes, "brkType");
+    if (type == "wall" || type == "proximity") {
+      warnings_.add({.kind = "breakline_type",
+                     .message = "breaklines of the type " + std::string(type) +
+                                " are taken as they are drawn, at the heights of their vertices",
+                     .file = in_.path(),
+                     .subject = std::string(type),
+                     .count = 1});
+    }
+  }
+
   void end_line() {
     stop_if_asked(stop_, "reading", in_.path());
     if (lines_of_surface_++ == 0 && lines_ > 0) {
       refuse_here("several surfaces have such lines, " + surfaces_ + "; name one with " +
-                  wish_.option);
+                  wish_.option + ", or by its place as '#2'");
     }
     for (char& c : text_) {
       if (c == '\n' || c == '\r') {
@@ -113,6 +139,8 @@ class LandXmlLines final : public LandXmlElements {
   std::stop_token stop_;
   bool is_wanted_ = false, in_line_ = false;
   std::uint64_t lines_ = 0, lines_of_surface_ = 0;
+  std::uint64_t number_ = 0;             ///< Of the surface, from 1.
+  std::uint64_t outer_ = 0, voids_ = 0;  ///< Boundaries by their type.
   std::size_t numbers_of_vertex_ = 3;
   bool is_flat_ = false;
   std::string surfaces_;

@@ -153,7 +153,7 @@ LineFileCrs read_line_file(const std::string& path, const LineWish& wish, const 
                " in layer '" + layer.GetName() + "'; leave the file out, or name another layer",
            path);
   }
-  return {crs_of(layer), {}, features.is_flat()};
+  return {crs_of(layer), {}, features.is_flat(), {}};
 }
 
 }  // namespace ptin

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Wavefront OBJ: `v x y z` and `f a b c` (a/t/n too; negative indices count from the last vertex),
-// z up. Comments (#, to the end of the line) and everything else are passed
-// over.
+// Wavefront OBJ: `v x y z` and `f a b c`, also of four corners (a/t/n too; negative indices count
+// from the last vertex), z up. All objects and groups are one TIN. A line that ends in a backslash
+// goes on in the next one. Comments (#, to the end of the line), lines, points, normals, textures,
+// materials and what follows the coordinates of a vertex are passed over; comments before the first
+// vertex may name the CRS, as in `# crs: EPSG:25832`.
+#include <algorithm>
+#include <array>
+#include <string>
+
 #include "engine/construct/read/tin_reader.h"
 #include "engine/error.h"
 
 namespace ptin {
 
 namespace {
+
+constexpr std::size_t kLongestLine = std::size_t{1} << 20;  // with those that it goes on in
 
 /// The index of a corner, from 0.
 std::int64_t corner_of_word(std::string_view word, std::uint64_t vertices,
@@ -20,39 +28,92 @@ std::int64_t corner_of_word(std::string_view word, std::uint64_t vertices,
   return n > 0 ? n - 1 : static_cast<std::int64_t>(vertices) + n;
 }
 
+class ObjReader {
+ public:
+  ObjReader(ByteReader& in, const TinReading& reading, TinFileSink& sink)
+      : in_(in), tin_(in, reading, sink) {}
+
+  TinFileFacts read() {
+    std::string_view line;
+    while (next(line)) {
+      const std::size_t mark = line.find('#');
+      if (mark != std::string_view::npos && tin_.vertices() == 0) {
+        tin_.note_comment(line.substr(mark + 1));
+      }
+      split_words(line.substr(0, mark), words_);
+      if (!words_.empty()) {
+        read_words();
+      }
+    }
+    return tin_.finish();
+  }
+
+ private:
+  /// The next line with those that it goes on in; `place_` tells where it begins.
+  bool next(std::string_view& line) {
+    if (!in_.line(line)) {
+      return false;
+    }
+    place_ = in_.place();
+    if (!goes_on(line)) {
+      return true;
+    }
+    joined_.clear();
+    for (;;) {
+      const bool is_last = !goes_on(line);
+      joined_.append(line);
+      if (is_last) {
+        break;
+      }
+      joined_.back() = ' ';
+      if (joined_.size() > kLongestLine) {
+        refuse("a line goes on for more than a mebibyte", place_);
+      }
+      if (!in_.line(line)) {
+        break;
+      }
+    }
+    line = joined_;
+    return true;
+  }
+  [[nodiscard]] static bool goes_on(std::string_view& line) {
+    const std::size_t last = line.find_last_not_of(" \t");
+    line = line.substr(0, last == std::string_view::npos ? 0 : last + 1);
+    return line.ends_with('\\') && line.find('#') == std::string_view::npos;
+  }
+
+  void read_words() {
+    if (words_[0] == "v") {
+      if (words_.size() < 4) {
+        refuse("a vertex needs x, y and z", place_);
+      }
+      tin_.add_vertex({coordinate_of(words_[1], place_), coordinate_of(words_[2], place_),
+                       coordinate_of(words_[3], place_)});
+    } else if (words_[0] == "f") {
+      ids_.clear();
+      for (std::size_t i = 1; i < words_.size(); ++i) {
+        ids_.push_back(corner_of_word(words_[i], tin_.vertices(), place_));
+      }
+      tin_.add_face(ids_, place_);
+    } else if (words_[0] == "surf" || words_[0] == "call") {
+      refuse(words_[0] == "surf"
+                 ? "there is a surface of curves (surf); save it as triangles or quads"
+                 : "the file goes on in another one (call); save both as one",
+             place_);
+    }
+  }
+
+  ByteReader& in_;
+  TinReceiver tin_;
+  std::string joined_, place_;
+  std::vector<std::string_view> words_;
+  std::vector<std::int64_t> ids_;
+};
+
 }  // namespace
 
 TinFileFacts read_obj(ByteReader& in, const TinReading& reading, TinFileSink& sink) {
-  TinReceiver tin(in, reading, sink);
-  std::string_view line;
-  std::vector<std::string_view> words;
-  while (in.line(line)) {
-    split_words(line.substr(0, line.find('#')), words);
-    if (words.empty()) {
-      continue;
-    }
-    if (words[0] == "v") {
-      if (words.size() < 4) {
-        throw Error(ErrorCode::invalid_argument, "a vertex needs x, y and z", in.place());
-      }
-      const std::string place = in.place();
-      tin.add_vertex({coordinate_of(words[1], place), coordinate_of(words[2], place),
-                      coordinate_of(words[3], place)});
-    } else if (words[0] == "f") {
-      if (words.size() != 4) {
-        throw Error(ErrorCode::invalid_argument,
-                    "a face has " + std::to_string(words.size() - 1) +
-                        " corners; triangulate the mesh first",
-                    in.place());
-      }
-      std::array<std::int64_t, 3> ids{};
-      for (std::size_t i = 0; i < 3; ++i) {
-        ids[i] = corner_of_word(words[i + 1], tin.vertices(), in.place());
-      }
-      tin.add_triangle(ids);
-    }
-  }
-  return tin.finish();
+  return ObjReader(in, reading, sink).read();
 }
 
 }  // namespace ptin

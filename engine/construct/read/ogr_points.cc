@@ -12,6 +12,8 @@
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/column_names.h"
+#include "engine/construct/read/dxf_units.h"
 #include "engine/construct/read/layer_choice.h"
 #include "engine/error.h"
 
@@ -20,6 +22,8 @@ namespace ptin {
 namespace {
 
 constexpr std::size_t kBatchPoints = 4096;
+/// Less means no value, by the specification of shapefiles.
+constexpr double kLeastHeight = -1e38;
 
 bool is_numeric(OGRFieldType type) {
   return type == OFTReal || type == OFTInteger || type == OFTInteger64;
@@ -31,6 +35,7 @@ struct OgrPoints::Layer {
   GDALDatasetUniquePtr data;
   OGRLayer* layer = nullptr;
   int z_field = -1;
+  int altitude_mode = -1;  ///< The attribute in which KML tells what its heights are above.
 
   void open(const std::string& path, const PointChoice& choice);
   void choose_height(const std::string& path, const std::string& field);
@@ -50,6 +55,9 @@ void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice) 
   }
   layer = &choose_layer(*data, {LayerKind::kPoints, choice.layer}, path);
   choose_height(path, choice.z_field);
+  if (z_field < 0 && EQUAL(data->GetDriverName(), "LIBKML")) {
+    altitude_mode = layer->GetLayerDefn()->GetFieldIndex("altitudeMode");
+  }
 }
 
 void OgrPoints::Layer::choose_height(const std::string& path, const std::string& field) {
@@ -87,6 +95,19 @@ OgrPoints::OgrPoints(std::string path, const PointChoice& choice)
   layer_->open(path_, choice);
   const GdalSession session;
   facts_.crs = crs_of(*layer_->layer);
+  facts_.units.heights = unit_of_column(choice.z_field);
+  if (facts_.units.heights == "degree") {
+    facts_.units.heights.clear();
+  }
+  if (EQUAL(layer_->data->GetDriverName(), "DXF") && !path_.starts_with("/vsi")) {
+    note_unit(unit_of_dxf(path_));
+  }
+  if (layer_->layer->GetLayerDefn()->GetGeomFieldCount() > 1) {
+    warnings_.add({.kind = "several_geometries",
+                   .message = "the layer has several geometries a feature, and only the first of "
+                              "them is read; give a layer of the one that is meant",
+                   .file = path_});
+  }
   if (layer_->layer->TestCapability(OLCFastFeatureCount) != 0) {
     total_ = static_cast<std::uint64_t>(std::max<GIntBig>(layer_->layer->GetFeatureCount(), 0));
   }
@@ -129,8 +150,45 @@ void OgrPoints::add_point(const void* any, double field_height, std::vector<Sour
                 "this point has no z; name the attribute that holds heights with --z-field",
                 path_ + ": feature " + std::to_string(feature_));
   }
-  batch.push_back({number(point.getX(), "x"), number(point.getY(), "y"),
-                   number(layer_->z_field < 0 ? point.getZ() : field_height, "height")});
+  const double height = layer_->z_field < 0 ? point.getZ() : field_height;
+  if (height < kLeastHeight && std::isfinite(height)) {
+    ++left_out_;
+    return;
+  }
+  batch.push_back({number(point.getX(), "x"), number(point.getY(), "y"), number(height, "height")});
+}
+
+/// Takes the unit that a DXF declares. Many programs write inches for want of knowing.
+void OgrPoints::note_unit(const std::string& unit) {
+  if (unit == "inch") {
+    warnings_.add({.kind = "dxf_inches",
+                   .message = "the file says that it is in inches ($INSUNITS), which is not used, "
+                              "since many programs write it whatever the unit is; say with --a-srs "
+                              "in which CRS the points are",
+                   .file = path_});
+    return;
+  }
+  facts_.units = {unit, facts_.units.heights.empty() ? unit : facts_.units.heights};
+}
+
+/// Warns of a feature whose z is no height of its own.
+void OgrPoints::note_altitude_mode(const void* any) {
+  const auto& feature = *static_cast<const OGRFeature*>(any);
+  const int field = layer_->altitude_mode;
+  if (field < 0 || feature.IsFieldSetAndNotNull(field) == 0) {
+    return;
+  }
+  const std::string mode = feature.GetFieldAsString(field);
+  if (!mode.empty() && mode != "absolute") {
+    warnings_.add(
+        {.kind = "altitude_mode",
+         .message = "the altitudeMode of points is " + mode +
+                    ", and their z is taken for a height above the sea all the same; leave "
+                    "these points out, or give them heights",
+         .file = path_,
+         .subject = mode,
+         .count = 1});
+  }
 }
 
 void OgrPoints::add_feature(void* any, std::vector<SourcePoint>& batch) {
@@ -141,6 +199,7 @@ void OgrPoints::add_feature(void* any, std::vector<SourcePoint>& batch) {
     ++left_out_;
     return;
   }
+  note_altitude_mode(&feature);
   const double height = layer_->z_field < 0 ? 0.0 : feature.GetFieldAsDouble(layer_->z_field);
   switch (wkbFlatten(geometry->getGeometryType())) {
     case wkbPoint:

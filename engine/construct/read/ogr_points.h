@@ -15,10 +15,13 @@
 namespace ptin {
 
 /// The points (and multipoints) of one layer as a stream. The height is the geometry's z, or the
-/// number in the attribute PointChoice::z_field. Left out are features without a geometry, and
-/// features in which a chosen attribute is not set. Coordinates are taken as the shortest decimals
-/// that read back as the same doubles, so that a layer gives the same terrain as the text that it
-/// was made of.
+/// number in the attribute PointChoice::z_field, whose name may tell its unit
+/// (read/column_names.h). Left out are features without a geometry, features in which a chosen
+/// attribute is not set, and heights below -10^38, by which a shapefile says that it has none. Of DXF
+/// the unit is $INSUNITS, but inches, which are warned of; so are altitude modes of KML other than
+/// absolute, and further geometries of a feature. Coordinates are taken as the shortest decimals that
+/// read back as the same doubles, so that a layer gives the same terrain as the text that it was made
+/// of.
 class OgrPoints final : public PointStream {
  public:
   /// @throws Error  not_found         there is no such file
@@ -30,6 +33,7 @@ class OgrPoints final : public PointStream {
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
   [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
+  [[nodiscard]] SourceWarnings warnings() const override { return warnings_; }
   [[nodiscard]] std::uint64_t done() const noexcept override { return read_; }
   [[nodiscard]] std::uint64_t total() const noexcept override { return total_; }
 
@@ -41,6 +45,8 @@ class OgrPoints final : public PointStream {
   // OGR's types stay out of this header: a feature is an OGRFeature, a point an OGRPoint.
   void add_feature(void* feature, std::vector<SourcePoint>& batch);
   void add_point(const void* point, double field_height, std::vector<SourcePoint>& batch);
+  void note_altitude_mode(const void* feature);
+  void note_unit(const std::string& unit);
   [[nodiscard]] Decimal number(double value, const char* role) const;
 
   std::string path_;
@@ -48,6 +54,7 @@ class OgrPoints final : public PointStream {
   PointStreamFacts facts_;
   std::int64_t feature_ = 0;  ///< Number of the feature that was read last, for errors.
   std::uint64_t read_ = 0, total_ = 0, left_out_ = 0;
+  SourceWarnings warnings_;
 };
 
 }  // namespace ptin

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // PLY: ASCII and binary of both byte orders. Elements `vertex` with x, y, z of any type and `face`
-// with a list vertex_indices (or vertex_index) of three; other properties and elements are passed
-// over. `comment crs: ...` and `comment vertical_crs: ...` name the CRS, as MDAL has it.
+// with a list vertex_indices (or vertex_index) of three or four, names in any case; other properties
+// and elements are passed over. `comment crs: ...` and `comment vertical_crs: ...` name the CRS, as
+// MDAL has it, `comment units: ...` the unit of coordinates and heights.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,7 +11,9 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <span>
 
+#include "engine/construct/read/column_names.h"
 #include "engine/construct/read/tin_reader.h"
 #include "engine/error.h"
 
@@ -60,7 +63,7 @@ struct Element {
 struct Header {
   Encoding encoding = Encoding::kAscii;
   std::vector<Element> elements;
-  std::string crs, vertical_crs;
+  std::vector<std::string> comments;
 };
 
 // ---------------------------------------------------------------------------------------------------
@@ -72,13 +75,22 @@ class HeaderReader {
 
   Header read() {
     std::string_view line;
-    if (!in_.line(line) || line != "ply") {
+    const bool has_line = in_.line(line);
+    split_words(line, words_);
+    if (!has_line || words_.size() != 1 || words_[0] != "ply") {
       refuse_at(in_, "a PLY file begins with the line 'ply'");
+    }
+    if (in_.ended_in_cr()) {
+      in_.end_lines_in_cr();
     }
     constexpr int kMostLines = 10'000;
     for (int i = 0; i < kMostLines && in_.line(line); ++i) {
       split_words(line, words_);
-      if (words_.empty() || words_[0] == "obj_info") {
+      if (words_.empty()) {
+        continue;
+      }
+      if (words_[0] == "obj_info") {
+        header_.comments.emplace_back(line.substr(line.find("obj_info") + 8));
         continue;
       }
       if (words_[0] == "end_header") {
@@ -95,7 +107,7 @@ class HeaderReader {
  private:
   void read_line(std::string_view line) {
     if (words_[0] == "comment") {
-      read_comment(line);
+      header_.comments.emplace_back(line.substr(line.find("comment") + 7));
     } else if (words_[0] == "format" && words_.size() == 3) {
       read_format();
     } else if (words_[0] == "element" && words_.size() == 3) {
@@ -109,22 +121,6 @@ class HeaderReader {
     } else {
       refuse_at(in_, "the header has a line that PLY does not know: '" +
                          std::string(line.substr(0, 60)) + "'");
-    }
-  }
-
-  void read_comment(std::string_view line) {
-    const auto value_after = [&](std::string_view key) -> std::string {
-      const std::size_t at = line.find(key);
-      if (at == std::string_view::npos) {
-        return {};
-      }
-      const std::size_t begin = line.find_first_not_of(" \t", at + key.size());
-      return begin == std::string_view::npos ? "" : std::string(line.substr(begin));
-    };
-    if (words_.size() > 1 && words_[1] == "crs:") {
-      header_.crs = value_after("crs:");
-    } else if (words_.size() > 1 && words_[1] == "vertical_crs:") {
-      header_.vertical_crs = value_after("vertical_crs:");
     }
   }
 
@@ -194,6 +190,12 @@ class Values {
       split_words(line, words_);
     } while (words_.empty());
     next_ = 0;
+  }
+  /// To be called behind each row.
+  void end_row() const {
+    if (encoding_ == Encoding::kAscii && next_ < words_.size()) {
+      refuse_at(in_, "this line has more values than the header says");
+    }
   }
 
   std::int64_t whole(Type type) {
@@ -281,14 +283,19 @@ class Values {
   std::size_t next_ = 0;
 };
 
-/// Where x, y and z stand among the properties.
+/// Where x, y and z stand among the properties: names as they are, else in any case.
 std::array<std::size_t, 3> axes_of(const Element& element, const ByteReader& in) {
   std::array<std::size_t, 3> axes{};
   constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto found =
-        std::find_if(element.properties.begin(), element.properties.end(),
-                     [&](const Property& p) { return p.name == kNames[a] && !p.count; });
+    const auto find = [&](const auto& is_name) {
+      return std::find_if(element.properties.begin(), element.properties.end(),
+                          [&](const Property& p) { return !p.count && is_name(p.name); });
+    };
+    auto found = find([&](std::string_view name) { return name == kNames[a]; });
+    if (found == element.properties.end()) {
+      found = find([&](std::string_view name) { return equal_in_any_case(name, kNames[a]); });
+    }
     if (found == element.properties.end()) {
       refuse_at(in, "vertices have no property " + std::string(kNames[a]));
     }
@@ -312,13 +319,15 @@ void read_vertices(const Element& element, const ByteReader& in, Values& values,
             values.coordinate(element.properties[i].type);
       }
     }
+    values.end_row();
     tin.add_vertex({p[0], p[1], p[2]});
   }
 }
 
 void read_faces(const Element& element, const ByteReader& in, Values& values, TinReceiver& tin) {
   const auto is_corners = [](const Property& p) {
-    return p.count && (p.name == "vertex_indices" || p.name == "vertex_index");
+    return p.count && (equal_in_any_case(p.name, "vertex_indices") ||
+                       equal_in_any_case(p.name, "vertex_index"));
   };
   if (std::none_of(element.properties.begin(), element.properties.end(), is_corners)) {
     refuse_at(in, "faces have no list vertex_indices");
@@ -331,18 +340,17 @@ void read_faces(const Element& element, const ByteReader& in, Values& values, Ti
         continue;
       }
       const std::int64_t count = values.list_count(p);
-      if (count != 3) {
-        throw Error(ErrorCode::invalid_argument,
-                    "face " + std::to_string(row) + " has " + std::to_string(count) +
-                        " corners; triangulate the mesh first",
-                    in.path());
+      if (count != 3 && count != 4) {
+        TinReceiver::refuse_corners(static_cast<std::uint64_t>(count),
+                                    in.path() + ": face " + std::to_string(row));
       }
-      std::array<std::int64_t, 3> ids{};
-      for (std::int64_t& id : ids) {
-        id = values.whole(p.type);
+      std::array<std::int64_t, 4> ids{};
+      for (std::int64_t i = 0; i < count; ++i) {
+        ids[static_cast<std::size_t>(i)] = values.whole(p.type);
       }
-      tin.add_triangle(ids);
+      tin.add_face(std::span(ids).first(static_cast<std::size_t>(count)), in.path());
     }
+    values.end_row();
   }
 }
 
@@ -372,19 +380,24 @@ TinFileFacts read_ply(ByteReader& in, const TinReading& reading, TinFileSink& si
   const Header header = HeaderReader(in).read();
   check_counts(header, in);
   TinReceiver tin(in, reading, sink);
-  tin.set_crs(header.crs, header.vertical_crs);
+  for (const std::string& comment : header.comments) {
+    tin.note_comment(comment);
+  }
   Values values(in, header.encoding);
   for (const Element& element : header.elements) {
     if (element.name == "vertex") {
       read_vertices(element, in, values, tin);
     } else if (element.name == "face") {
       read_faces(element, in, values, tin);
+    } else if (element.name == "tristrips" && element.count > 0) {
+      refuse_at(in, "there are strips of triangles (tristrips); save them as faces");
     } else {
       for (std::uint64_t row = 0; row < element.count; ++row) {
         values.begin_row();
         for (const Property& p : element.properties) {
           values.skip(p);
         }
+        values.end_row();
       }
     }
   }

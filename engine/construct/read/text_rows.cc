@@ -102,14 +102,18 @@ void TextRows::begin() {
       table_.refuse("--columns names " + std::to_string(given_.size()) +
                     " columns, and the first line has " + std::to_string(count));
     }
+    let_last_go_on(given_.size());
     return;
   }
   for (std::size_t i = 0; i < roles_.size(); ++i) {
     columns_.push_back(header.empty() ? i : find_column(header, roles_[i]));
     if (columns_[i] == count && !header.empty()) {
       table_.refuse(
-          "the first line is taken for a header, since no field of it is a number, but names no "
-          "column for " +
+          (table_.is_told_by_comment()
+               ? "the last comment before the first line names columns, but none for "
+               : "the first line is taken for a header, since no field of it is a number, but "
+                 "names "
+                 "no column for ") +
           name_of(roles_[i]) +
           "; columns are named x, y, z or easting, northing, height or lon, lat, elevation" +
           (roles_[i].end == 0 ? "" : ", with 1 and 2 behind them for the two ends") +
@@ -120,17 +124,73 @@ void TextRows::begin() {
     table_.refuse("there are " + std::to_string(count) + " fields in the first line, where " +
                   listed(roles_) + " are expected");
   }
+  if (!header.empty()) {
+    refuse_twins(header);
+    let_last_go_on(count);
+  }
+  numbering_.is_guess = header.empty() && count > roles_.size();
+  numbering_.may_be = numbering_.is_guess || (header.empty() && count >= kFewestNumbered);
+}
+
+/// Refuses a header in which another column has the name of one that is used.
+void TextRows::refuse_twins(const std::vector<std::string>& header) const {
   for (const std::size_t column : columns_) {
-    const auto is_same = [&](const std::string& name) {
-      return equal_in_any_case(name, header[column]);
+    // A name without a unit comes before the same with one.
+    const bool has_unit = !named_column(header[column]).unit.empty();
+    const auto plain = [&](std::string_view name) {
+      return has_unit ? named_column(name).name : name;
     };
-    if (!header.empty() && std::count_if(header.begin(), header.end(), is_same) > 1) {
+    const auto is_same = [&](const std::string& name) {
+      return equal_in_any_case(plain(name), plain(header[column]));
+    };
+    if (std::count_if(header.begin(), header.end(), is_same) > 1) {
       table_.refuse("the header names two columns " + shown_field(header[column]) +
                     "; name the one that is meant with --columns, and the other by any other name");
     }
   }
-  numbering_.is_guess = header.empty() && count > roles_.size();
-  numbering_.may_be = numbering_.is_guess || (header.empty() && count >= kFewestNumbered);
+}
+
+/// Lets the last column hold separators where it has a name and is no coordinate.
+/// @param named  So many columns have names.
+void TextRows::let_last_go_on(std::size_t named) {
+  const std::size_t last = table_.field_count() - 1;
+  if (named > last && std::find(columns_.begin(), columns_.end(), last) == columns_.end()) {
+    table_.let_last_go_on();
+  }
+}
+
+DeclaredUnits TextRows::units() {
+  if (!begun_) {
+    begin();
+  }
+  const std::vector<std::string>& all = names();
+  const auto unit_of = [&](std::size_t role) {
+    return role < columns_.size() && columns_[role] < all.size()
+               ? unit_of_column(all[columns_[role]])
+               : std::string();
+  };
+  const std::string x = unit_of(0), y = unit_of(1), z = unit_of(2);
+  if (x != y && !x.empty() && !y.empty()) {
+    table_.refuse("the names of the columns say that x is in units of '" + x + "' and y in '" + y +
+                  "'; bring them to one unit first");
+  }
+  return {x.empty() ? y : x, z};
+}
+
+std::string TextRows::unknown_unit() {
+  if (!begun_) {
+    begin();
+  }
+  const std::vector<std::string>& all = names();
+  for (const std::size_t column : columns_) {
+    if (column < all.size()) {
+      const std::string_view unit = named_column(all[column]).unit;
+      if (!unit.empty() && unit_of_column(all[column]).empty()) {
+        return std::string(unit.substr(0, 40));
+      }
+    }
+  }
+  return {};
 }
 
 bool TextRows::choose_id(const std::string& name) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/column_names.h"
 #include "engine/construct/read/point_part.h"
 #include "engine/construct/read/text_table.h"
@@ -41,6 +42,14 @@ class TextRows {
   /// @throws Error  invalid_argument  no column has this name; also as next()
   [[nodiscard]] bool choose_id(const std::string& name);
 
+  /// The units that the names of the columns tell of x and y, and of z, as in "x[m]" and "z_ft"; also
+  /// "degree". Reads the first row.
+  /// @throws Error as next(); invalid_argument  those of x and y differ
+  [[nodiscard]] DeclaredUnits units();
+  /// What the name of a coordinate's column says in brackets and is no known unit; "" for nothing.
+  /// @throws Error as next()
+  [[nodiscard]] std::string unknown_unit();
+
   /// Reads the next row; false at the end.
   /// @throws Error as TextTable::next(); invalid_argument also where a header lacks a column, where
   ///         names it twice, there are too few, and, at the end of a whole text, where nobody said
@@ -64,8 +73,10 @@ class TextRows {
  private:
   void begin();
   void note_numbering();
+  void refuse_twins(const std::vector<std::string>& header) const;
+  void let_last_go_on(std::size_t named);
   /// The names of the columns: given, of the header, or none.
-  [[nodiscard]] const std::vector<std::string>& names() {
+  [[nodiscard]] const std::vector<std::string>& names() const {
     return given_.empty() ? table_.header() : given_;
   }
 

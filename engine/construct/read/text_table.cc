@@ -2,7 +2,6 @@
 #include "engine/construct/read/text_table.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <istream>
@@ -13,9 +12,11 @@
 
 #include "engine/construct/grid/decimal.h"
 #include "engine/construct/grid/gdal_session.h"
-#include "engine/construct/read/column_names.h"
 #include "engine/construct/read/input_kind.h"
+#include "engine/construct/read/line_end.h"
 #include "engine/construct/read/point_part.h"
+#include "engine/construct/read/text_encoding.h"
+#include "engine/construct/read/text_header.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -23,88 +24,9 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 constexpr std::size_t kLongestRow = std::size_t{1} << 16;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr std::array<std::string_view, 2> kByteOrderMarksOfUtf16 = {"\xFF\xFE", "\xFE\xFF"};
-constexpr std::string_view kBlanks = " \t\r";
 
-std::string_view trimmed(std::string_view text, std::string_view blanks) {
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) {
-    return text.substr(text.size());
-  }
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-/// Where the quoted field that begins at `at` ends: behind its last quote; npos when it does not.
-std::size_t end_of_quoted(std::string_view row, std::size_t at) {
-  for (at = row.find('"', at + 1); at != std::string_view::npos; at = row.find('"', at + 2)) {
-    if (at + 1 == row.size() || row[at + 1] != '"') {
-      return at + 1;
-    }
-  }
-  return at;
-}
-
-/// True for a number, and for a field that was meant as one: with a unit or a decimal comma.
-bool begins_as_number(std::string_view field) {
-  Decimal ignored;
-  const std::size_t digit = field.find_first_not_of("'+-.");
-  return parse_number(field, ignored) != NumberKind::kNoNumber ||
-         (digit != std::string_view::npos && field[digit] >= '0' && field[digit] <= '9');
-}
-
-/// True when two words of a text, set apart by blanks, begin as numbers do.
-bool has_two_numbers(std::string_view text) {
-  int numbers = 0;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t end = std::min(text.find_first_of(kBlanks, i), text.size());
-    numbers += begins_as_number(text.substr(i, end - i)) ? 1 : 0;
-    i = end + 1;
-  }
-  return numbers > 1;
-}
-
-/// True where blanks separate numbers in the row though it has tabs too.
-bool has_numbers_between_tabs(std::string_view row) {
-  for (std::size_t i = 0; i <= row.size();) {
-    const std::size_t end = std::min(row.find('\t', i), row.size());
-    if (has_two_numbers(row.substr(i, end - i))) {
-      return true;
-    }
-    i = end + 1;
-  }
-  return false;
-}
-
-/// The separator of a row: what stands outside of its quoted fields decides.
-char separator_of(std::string_view row) {
-  bool has_comma = false, has_tab = false;
-  bool is_begin = true;  // of a field, or of a word of one
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    if (row[i] == '"' && is_begin) {
-      i = end_of_quoted(row, i);
-      if (i == std::string_view::npos) {
-        break;
-      }
-      --i;
-      is_begin = false;
-      continue;
-    }
-    if (row[i] == ';') {
-      return ';';
-    }
-    has_comma = has_comma || row[i] == ',';
-    has_tab = has_tab || row[i] == '\t';
-    is_begin = row[i] == ',' || kBlanks.find(row[i]) != std::string_view::npos;
-  }
-  return has_comma ? ',' : has_tab && !has_numbers_between_tabs(row) ? '\t' : ' ';
-}
-
-bool is_header(std::span<const std::string_view> fields, std::span<const std::string> names) {
-  return std::none_of(fields.begin(), fields.end(), begins_as_number) ||
-         (find_column(names, {Coordinate::kX}) != names.size() &&
-          find_column(names, {Coordinate::kY}) != names.size());
-}
+/// A text before its header holds hardly more comments than these; the last ones count.
+constexpr std::size_t kMostComments = 64;
 
 }  // namespace
 
@@ -177,7 +99,7 @@ std::uint64_t TextTable::lines_before() const {
   const GdalSession session;
   VSILFILE* const file = VSIFOpenL(path_.c_str(), "rb");
   std::string piece(file == nullptr ? 0 : kBufferBytes, '\0');
-  bool has_quotes = false;
+  bool has_quotes = false, is_behind_cr = false;
   for (std::uint64_t left = first_byte_; left > 0 && file != nullptr;) {
     const std::size_t got =
         VSIFReadL(piece.data(), 1, std::min<std::uint64_t>(left, piece.size()), file);
@@ -185,7 +107,10 @@ std::uint64_t TextTable::lines_before() const {
       break;
     }
     const std::string_view read(piece.data(), got);
-    lines += static_cast<std::uint64_t>(std::count(read.begin(), read.end(), '\n'));
+    for (const char c : read) {
+      lines += c == '\r' || (c == '\n' && !is_behind_cr) ? 1U : 0U;
+      is_behind_cr = c == '\r';
+    }
     has_quotes = has_quotes || read.find('"') != std::string_view::npos;
     left -= got;
   }
@@ -230,12 +155,22 @@ void TextTable::seek_line(std::uint64_t from) {
     if (at_end_) {
       return;
     }
-    const std::size_t end = buffer_.find('\n');
-    if (end != std::string::npos) {
-      begin_ = end + 1;
-      bytes_read_ += begin_;
-      return;
+    const char* const last = buffer_.data() + buffer_.size();
+    const char* const end = end_of_line(buffer_.data(), last);
+    if (end == nullptr) {
+      continue;
     }
+    begin_ = static_cast<std::size_t>(end - buffer_.data());
+    if (*end == '\r' && end + 1 == last) {
+      bytes_read_ += begin_;
+      fill();  // the LF of a CR LF
+      bytes_read_ -= begin_;
+    }
+    const char* const at = buffer_.data() + begin_;
+    const std::size_t passed = bytes_of_line_end(at, buffer_.data() + buffer_.size());
+    begin_ += passed;
+    bytes_read_ += begin_;
+    return;
   }
 }
 
@@ -275,15 +210,16 @@ bool TextTable::add_line() {
   for (;;) {
     const std::size_t left = buffer_.size() - begin_;
     const char* row = buffer_.data() + begin_;
-    const auto* end = static_cast<const char*>(
-        left == from ? nullptr : std::memchr(row + from, '\n', left - from));
+    const char* const last = row + left;
+    const char* const end = end_of_line(row + from, last);
     const std::size_t length = end == nullptr ? left : static_cast<std::size_t>(end - row);
     if (length > kLongestRow) {
       row_line_ = from == 0 ? line_ + 1 : row_line_;
       refuse(from == 0 ? "a line is longer than 64 KiB; this does not look like points as text"
                        : "a quoted field that begins in this line does not end within 64 KiB");
     }
-    if (end == nullptr && !at_end_) {
+    const bool may_be_cut = end == nullptr || (*end == '\r' && end + 1 == last);
+    if (may_be_cut && !at_end_) {
       fill();
       continue;
     }
@@ -293,17 +229,17 @@ bool TextTable::add_line() {
     ++line_;
     row_line_ = from == 0 ? line_ : row_line_;
     row_ = {row, length};
-    row_bytes_ = length + (end == nullptr ? 0 : 1);
+    row_bytes_ = length + (end == nullptr ? 0 : bytes_of_line_end(end, last));
     return true;
   }
 }
 
 bool TextTable::is_blank(char c) const noexcept {
-  return c == ' ' || c == '\r' || (c == '\t' && separator_ != '\t');
+  return is_blank_character(c) && (c != '\t' || separator_ != '\t');
 }
 
 bool TextTable::is_separator(char c) const noexcept {
-  return separator_ == ' ' ? c == ' ' || c == '\t' || c == '\r' : c == separator_;
+  return separator_ == ' ' ? is_blank_character(c) : c == separator_;
 }
 
 std::string_view TextTable::without_blanks(std::string_view text) const noexcept {
@@ -407,26 +343,40 @@ bool TextTable::next_row() {
       return false;
     }
     const bool is_first = line_ == 1 && !has_moved_;
-    const std::string_view mark =
-        is_first && row_.starts_with(kByteOrderMark) ? kByteOrderMark : "";
-    for (const std::string_view wide : kByteOrderMarksOfUtf16) {
-      if (is_first && row_.starts_with(wide)) {
-        refuse("this text is UTF-16; save it as UTF-8, as with 'iconv -f UTF-16 -t UTF-8'");
+    if (!begun_) {
+      if (const auto fault = fault_of_encoding(row_, is_first)) {
+        refuse(*fault);
       }
     }
-    row_.remove_prefix(mark.size());
-    const std::string_view text = trimmed(row_, kBlanks);
-    if (text.empty() || text.front() == '#') {
+    const std::size_t mark = is_first ? bytes_of_byte_order_mark(row_) : 0;
+    row_.remove_prefix(mark);
+    const std::string_view text = trimmed(row_);
+    if (text.empty()) {
+      continue;
+    }
+    if (comment_mark(text) > 0) {
+      if (!begun_) {
+        note_comment(text);
+      }
       continue;
     }
     while (!split()) {
       if (!add_line()) {
         refuse("a quoted field that begins in this line does not end");
       }
-      row_.remove_prefix(mark.size());
+      row_.remove_prefix(mark);
     }
     return true;
   }
+}
+
+/// Keeps a comment that stands before the first row.
+void TextTable::note_comment(std::string_view text) {
+  if (comments_.size() == kMostComments) {
+    comments_.erase(comments_.begin());
+  }
+  constexpr std::size_t kLongest = 4096;
+  comments_.emplace_back(text.substr(0, kLongest));
 }
 
 /// Looks at the first row: separator, number of fields, header.
@@ -435,13 +385,19 @@ void TextTable::begin() {
   begun_ = true;
   field_count_ = fields_.size();
   for (const std::string_view field : fields_) {
-    header_.emplace_back(trimmed(field, kBlanks));
+    header_.emplace_back(trimmed(field));
   }
-  if (is_pending_ && is_header(fields_, header_)) {
+  if (is_pending_ && is_header(header_)) {
     is_pending_ = false;
+    if (separator_ == ' ') {
+      join_units(header_);
+      field_count_ = header_.size();
+    }
   } else {
-    header_.clear();
+    header_ = header_in_comments(comments_, field_count_).value_or(std::vector<std::string>());
+    is_told_by_comment_ = !header_.empty();
   }
+  comments_.clear();
 }
 
 const std::vector<std::string>& TextTable::header() {
@@ -449,6 +405,13 @@ const std::vector<std::string>& TextTable::header() {
     begin();
   }
   return header_;
+}
+
+/// True where the row has more fields than the first one, since the text of its last column has the
+/// separator. A number there is more likely a coordinate whose decimal comma divides it.
+bool TextTable::goes_on_in_last() const {
+  return may_last_go_on_ && fields_.size() > field_count_ &&
+         !begins_as_number(fields_[field_count_ - 1]);
 }
 
 bool TextTable::next() {
@@ -463,7 +426,7 @@ bool TextTable::next() {
   if (!next_row()) {
     return false;
   }
-  if (fields_.size() != field_count_) {
+  if (fields_.size() != field_count_ && !goes_on_in_last()) {
     refuse("there are " + std::to_string(fields_.size()) + " fields where the first line has " +
            std::to_string(field_count_) +
            (separator_ == ',' && fields_.size() > field_count_

@@ -24,14 +24,16 @@ class QuotesInPart : public Error {
       : Error(ErrorCode::internal, "a text with quotes is read in parts", path) {}
 };
 
-/// Reads rows of fields from text. Lines end in LF or CR LF; empty lines and comments (lines that
-/// begin with '#') are passed over, and so is a byte order mark. The first other line decides
+/// Reads rows of fields from text. Lines end in LF, CR LF or a CR alone; empty lines and comments
+/// (lines that begin with '#', '%', '!', '>' or "//") are passed over, and so is a byte order mark of
+/// UTF-8. The first other line decides
 ///   - the separator: semicolons where it has any, else commas, else tabs, unless two numbers stand
 ///     between them, else spaces; spaces in any number count as one, and where they separate so do
 ///     tabs;
 ///   - the number of fields, which is that of all rows;
 ///   - whether it is a header, which it is when none of its fields begins as a number does, or when
-///     it names a column for x and one for y (read/column_names.h).
+///     it names a column for x and one for y (read/column_names.h). Where it is none, the last
+///     comment before it that names columns is the header (read/text_header.h).
 /// A field may be quoted by RFC 4180: between quotes separators, line ends and '#' are text, and
 /// two quotes are one. Blanks around a field are no part of it. A file that is_packed()
 /// (read/input_kind.h) is unpacked while it is read. Not thread-safe.
@@ -56,10 +58,16 @@ class TextTable {
   /// it was not read yet, and line() is then its line.
   /// @throws Error as next()
   [[nodiscard]] const std::vector<std::string>& header();
+  /// True where the header is a comment.
+  [[nodiscard]] bool is_told_by_comment() const noexcept { return is_told_by_comment_; }
+
+  /// From here on a row may have more fields than the first one: what follows the last column goes
+  /// on in it, as a comma in a description does, where that column begins with no number.
+  void let_last_go_on() noexcept { may_last_go_on_ = true; }
 
   /// Reads the next row below the header; false at the end.
-  /// @throws Error  invalid_argument  a row has another number of fields; a quoted field does not
-  ///                                  end, or goes on behind its end; a row is longer than 64 KiB.
+  /// @throws Error  invalid_argument  a row has another number of fields; the text is UTF-16 or
+  ///                                  UTF-32; a quoted field does not end, or goes on behind its end; a row is longer than 64 KiB.
   ///                                  The context is "path:line".
   ///                io_error          the text cannot be read on, or is damaged (.gz)
   /// Cost: about 50 ns a line; 1 MiB of memory whatever the text's size.
@@ -100,6 +108,8 @@ class TextTable {
   [[nodiscard]] bool is_separator(char c) const noexcept;
   [[nodiscard]] std::string_view without_blanks(std::string_view text) const noexcept;
   void begin();
+  void note_comment(std::string_view text);
+  [[nodiscard]] bool goes_on_in_last() const;
 
   std::string path_;
   PointPart part_;
@@ -120,6 +130,9 @@ class TextTable {
   char separator_ = '\0';    ///< ' ' for spaces and tabs.
   std::size_t field_count_ = 0;
   std::vector<std::string> header_;
+  std::vector<std::string> comments_;  ///< Before the first row, until it was read.
+  bool is_told_by_comment_ = false;
+  bool may_last_go_on_ = false;
   std::vector<std::string_view> fields_;
   std::string unquoted_;  ///< What quoted fields of the row hold.
 };

@@ -29,8 +29,9 @@ class CountingSink final : public TinFileSink {
   void add_vertex(std::int64_t /*id*/, const SourcePoint& /*p*/) override {
     vertices_.add(passed());
   }
-  void add_triangle(const std::array<std::int64_t, 3>& /*ids*/) override {
+  void add_face(std::span<const std::int64_t> ids) override {
     triangles_.add(passed());
+    triangles_.count += ids.size() - 3;
   }
 
   /// The number of vertices in the file's header, where there is one.

@@ -2,13 +2,16 @@
 #include "engine/construct/read/tin_file.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/column_names.h"
 #include "engine/construct/read/tin_reader.h"
+#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 
@@ -85,7 +88,9 @@ Decimal coordinate_of(std::string_view word, const std::string& place) {
     case NumberKind::kNoNumber:
       break;
   }
-  refuse("'" + std::string(word.substr(0, 40)) + "' stands where a number belongs", place);
+  refuse(word.empty() ? "a number is absent, where a coordinate belongs"
+                      : "'" + std::string(word.substr(0, 40)) + "' stands where a number belongs",
+         place);
 }
 
 Decimal coordinate_of(double value, const std::string& place) {
@@ -105,9 +110,83 @@ std::int64_t whole_of(std::string_view word, const std::string& place) {
   std::int64_t value = 0;
   const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (status != std::errc() || end != word.data() + word.size()) {
-    refuse("'" + std::string(word.substr(0, 40)) + "' stands where a whole number belongs", place);
+    refuse(word.empty()
+               ? "a whole number is absent, where an id or a count belongs"
+               : "'" + std::string(word.substr(0, 40)) + "' stands where a whole number belongs",
+           place);
   }
   return value;
+}
+
+void TinReceiver::refuse_corners(std::uint64_t count, const std::string& place) {
+  refuse("a face has " + std::to_string(count) +
+             (count < 3 ? " corners, which are no surface; leave it out"
+                        : " corners; triangles and quads are read: triangulate it first, since a "
+                          "face that is not flat is another surface by each triangulation"),
+         place);
+}
+
+void TinReceiver::add_face(std::span<const std::int64_t> ids, const std::string& place) {
+  if (ids.size() != 3 && ids.size() != 4) {
+    refuse_corners(ids.size(), place);
+  }
+  look_around();
+  ++facts_.faces;
+  if (ids.size() == 4) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (ids[i] == ids[(i + 1) % 4]) {
+        sink_.add_face(std::array{ids[(i + 1) % 4], ids[(i + 2) % 4], ids[(i + 3) % 4]});
+        return;
+      }
+    }
+  }
+  sink_.add_face(ids);
+}
+
+bool TinReceiver::follow_comment(std::string_view comment) {
+  split_words(comment, words_);
+  if (words_.size() < 2 || (!words_[0].ends_with(':') && !words_[0].ends_with('='))) {
+    return false;
+  }
+  const std::string_view key = words_[0].substr(0, words_[0].size() - 1);
+  const std::string value(
+      comment.substr(static_cast<std::size_t>(words_[1].data() - comment.data())));
+  if (equal_in_any_case(key, "crs") || equal_in_any_case(key, "srs")) {
+    facts_.crs = value;
+  } else if (equal_in_any_case(key, "epsg")) {
+    facts_.crs = "EPSG:" + value;
+  } else if (equal_in_any_case(key, "vertical_crs")) {
+    facts_.vertical_crs = value;
+  } else if (equal_in_any_case(key, "units") || equal_in_any_case(key, "unit")) {
+    const std::string unit = height_unit_named(value);
+    facts_.units = {unit, unit};
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void TinReceiver::note_comment(std::string_view comment) {
+  if (follow_comment(comment)) {
+    return;
+  }
+  constexpr std::array<std::string_view, 9> kTelling = {
+      "shift", "offset", "origin", "translation", "scale", "crs", "srs", "epsg", "projection"};
+  std::string small(comment.substr(0, 200));
+  std::transform(small.begin(), small.end(), small.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  const bool has_digit = small.find_first_of("0123456789") != std::string::npos;
+  for (const std::string_view word : kTelling) {
+    if (has_digit && small.find(word) != std::string::npos) {
+      warn({.kind = "comment_not_followed",
+            .message = "a comment tells of coordinates what is not followed, '" +
+                       std::string(comment.substr(0, 80)) +
+                       "'; bring the coordinates to their CRS first, and name that with --a-srs",
+            .file = in_.path()});
+      return;
+    }
+  }
 }
 
 void TinReceiver::look_around() {
@@ -122,7 +201,7 @@ void TinReceiver::look_around() {
 }
 
 TinFileFacts TinReceiver::finish() {
-  if (facts_.vertices == 0 || facts_.triangles == 0) {
+  if (facts_.vertices == 0 || facts_.faces == 0) {
     refuse(facts_.vertices == 0 ? "there is no vertex in this file"
            : facts_.hidden_triangles > 0
                ? "every triangle in this file is hidden"

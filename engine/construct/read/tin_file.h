@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A TIN as a file holds it: vertices and triangles, unchecked. Readers for PLY, OBJ, 2DM, LandXML,
+// A TIN as a file holds it: vertices, triangles and quads, unchecked. Readers for PLY, OBJ, 2DM, LandXML,
 // which hand it out piece by piece.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -33,8 +33,9 @@ class TinFileSink {
   /// `id` is the file's own, or the vertex's number from 0 where the format has no ids. A file at
   /// fault may give an id twice.
   virtual void add_vertex(std::int64_t id, const SourcePoint& p) = 0;
-  /// `ids` are those of the corners. The vertices that have them may come later, or not at all.
-  virtual void add_triangle(const std::array<std::int64_t, 3>& ids) = 0;
+  /// A triangle or a quad. `ids` are those of its three or four corners, one after the other around
+  /// it. The vertices that have them may come later, or not at all.
+  virtual void add_face(std::span<const std::int64_t> ids) = 0;
 };
 
 /// What a file declares, and how much was read from it.
@@ -42,7 +43,7 @@ struct TinFileFacts {
   std::string crs;           ///< Anything GDAL understands; "" when the file is silent.
   std::string vertical_crs;  ///< Likewise.
   DeclaredUnits units;
-  std::uint64_t vertices = 0, triangles = 0;
+  std::uint64_t vertices = 0, faces = 0;
   std::uint64_t hidden_triangles = 0;  ///< Marked invisible (LandXML): left out.
   SourceWarnings warnings;
 };
@@ -60,11 +61,11 @@ struct TinReading {
 [[nodiscard]] bool may_have_surfaces(std::string_view path);
 
 /// Reads a TIN in the format that the extension of its name tells. At least one vertex and one
-/// triangle are handed out, else it is an error.
+/// face are handed out, else it is an error.
 /// @throws Error  not_found, io_error
 ///                invalid_argument    not what the format says, or cut short: the context names the
-///                                    place; a face that is no triangle; coordinates that are no
-///                                    finite numbers; no vertex, or no triangle
+///                                    place; a face of less than three or more than four corners;
+///                                    coordinates that are no finite numbers; no vertex, or no face
 ///                cancelled           `reading.stop` fired
 ///                and what the sink throws
 /// Memory: some hundred KiB, whatever the file's size.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,12 +48,13 @@ class TinReceiver {
     ++facts_.vertices;
     sink_.add_vertex(id, p);
   }
-  /// @param ids  Of the corners: numbers from 0 where vertices are numbered, else their own ids.
-  void add_triangle(const std::array<std::int64_t, 3>& ids) {
-    look_around();
-    ++facts_.triangles;
-    sink_.add_triangle(ids);
-  }
+  /// A face. A quad one of whose sides ends where it begins is the triangle of the others.
+  /// @param ids    Of the corners: numbers from 0 where vertices are numbered, else their own ids.
+  /// @param place  The context of errors.
+  /// @throws Error invalid_argument  it has not three or four corners
+  void add_face(std::span<const std::int64_t> ids, const std::string& place);
+  /// @throws Error invalid_argument  a face has so many corners, which are not three or four; always
+  [[noreturn]] static void refuse_corners(std::uint64_t count, const std::string& place);
   /// A triangle that the file marks as invisible: counted, and not passed on.
   void add_hidden() { ++facts_.hidden_triangles; }
   void set_crs(std::string crs, std::string vertical_crs = {}) {
@@ -62,17 +64,22 @@ class TinReceiver {
   void warn(SourceWarning warning) { facts_.warnings.add(std::move(warning)); }
   void set_units(DeclaredUnits units) { facts_.units = std::move(units); }
   [[nodiscard]] std::uint64_t vertices() const noexcept { return facts_.vertices; }
+  /// Takes what a comment declares, as "crs: EPSG:25832", "vertical_crs: ..." and "units: m". Warns
+  /// of one that tells of a CRS, or of a shift or scale of coordinates, in other words.
+  void note_comment(std::string_view comment);
   /// To be called at the end of the file.
   /// @throws Error invalid_argument  there was no vertex, or no triangle
   [[nodiscard]] TinFileFacts finish();
 
  private:
   void look_around();
+  [[nodiscard]] bool follow_comment(std::string_view comment);
 
   const ByteReader& in_;
   const TinReading& reading_;
   TinFileSink& sink_;
   TinFileFacts facts_;
+  std::vector<std::string_view> words_;
   std::uint64_t added_ = 0;
 };
 

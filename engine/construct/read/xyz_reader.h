@@ -35,6 +35,10 @@ class XyzReader {
   /// Cost: about 0.1 us a line; 1 MiB of memory whatever the file's size.
   [[nodiscard]] bool next(XyzPoint& point);
 
+  /// As of TextRows.
+  [[nodiscard]] DeclaredUnits units() { return rows_.units(); }
+  [[nodiscard]] std::string unknown_unit() { return rows_.unknown_unit(); }
+
   /// The line of the point that was read last.
   [[nodiscard]] std::uint64_t line() const noexcept { return table_.line(); }
   /// What the rows tell that were read.

@@ -38,7 +38,7 @@ struct TinFault {
 /// Everything that can be wrong with triangles.
 struct TinFaults {
   TinFault no_area;       ///< Triangles whose corners lie on one line or coincide.
-  TinFault turned_over;   ///< Triangles that run clockwise while most do not.
+  TinFault turned_over;   ///< Triangles that the grid turned over, beyond mending.
   TinFault heights;       ///< Positions with several heights.
   TinFault shared_edges;  ///< Edges that more than one triangle has on the same side.
   TinFault t_junctions;   ///< Vertices inside of an edge of the border.

@@ -8,7 +8,7 @@ namespace ptin {
 
 namespace {
 
-std::uint64_t triangle_of(const NamedCorner& c) { return c.place / 4; }
+std::uint64_t face_of(std::uint64_t place) { return place / 4; }
 
 struct ById {
   bool operator()(const NamedVertex& a, const NamedVertex& b) const noexcept { return a.id < b.id; }
@@ -18,7 +18,7 @@ struct ByName {
     return a.id != b.id ? a.id < b.id : a.place < b.place;
   }
 };
-struct ByTriangle {
+struct ByFace {
   bool operator()(const NamedCorner& a, const NamedCorner& b) const noexcept {
     return a.place < b.place;
   }
@@ -37,18 +37,18 @@ class NameSink final : public TinFileSink {
   void add_vertex(std::int64_t id, const SourcePoint& p) override {
     vertices.add(NamedVertex(id, p));
   }
-  void add_triangle(const std::array<std::int64_t, 3>& ids) override {
-    for (std::size_t i = 0; i < 3; ++i) {
-      corners.add({ids[i], 4 * triangles_ + i});
+  void add_face(std::span<const std::int64_t> ids) override {
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      corners.add({ids[i], 4 * faces_ + i});
     }
-    ++triangles_;
+    ++faces_;
   }
 
   VertexSorter vertices;
   NameSorter corners;
 
  private:
-  std::uint64_t triangles_ = 0;
+  std::uint64_t faces_ = 0;
 };
 
 class NameReader {
@@ -60,7 +60,7 @@ class NameReader {
         tin_{RecordFile<NamedVertex>(memory, "vertices"),
              RecordFile<NamedCorner>(memory, "corners"),
              {}},
-        without_height_(memory, "triangles", reading.stop) {}
+        without_height_(memory, "corners", reading.stop) {}
 
   NamedTin read() {
     match();
@@ -86,11 +86,11 @@ class NameReader {
   const TinGridReading& reading_;
   const ExternalMemory& memory_;
   NamedTin tin_;
-  NumberSorter without_height_;  ///< Triangles with a corner without a height, once for each.
+  NumberSorter without_height_;  ///< The places of corners without a height.
 };
 
 /// Finds the vertex of every corner: both are sorted by id and merged. Keeps the vertices that a
-/// corner names, and notes triangles with a corner without a height.
+/// corner names, and notes corners without a height.
 void NameReader::match() {
   NameSink file(memory_, reading_.stop);
   const auto progress = [&](std::uint64_t done, std::uint64_t total) {
@@ -114,7 +114,7 @@ void NameReader::match() {
     for (; corners.now() != nullptr && corners.now()->id == v.id; corners.next()) {
       tin_.corners.add(*corners.now());
       if (!has_height(v)) {
-        without_height_.add(triangle_of(*corners.now()));
+        without_height_.add(corners.now()->place);
       }
       is_used = true;
     }
@@ -125,7 +125,7 @@ void NameReader::match() {
     }
   }
   if (const NamedCorner* left = corners.now()) {
-    refuse("triangle " + std::to_string(triangle_of(*left)) + " names vertex " +
+    refuse("triangle " + std::to_string(face_of(left->place)) + " names vertex " +
                std::to_string(left->id) + ", which is not there",
            path_);
   }
@@ -133,30 +133,41 @@ void NameReader::match() {
   tin_.corners.finish();
 }
 
-/// Drops the corners of the triangles in without_height_.
+/// Drops the corners in without_height_, and faces that keep less than three.
 void NameReader::leave_out_triangles() {
-  ExternalSorter<NamedCorner, ByTriangle> by_triangle(memory_, "corners", reading_.stop);
-  tin_.corners.visit([&](const NamedCorner& c) { by_triangle.add(c); }, reading_.stop);
+  ExternalSorter<NamedCorner, ByFace> by_face(memory_, "corners", reading_.stop);
+  tin_.corners.visit([&](const NamedCorner& c) { by_face.add(c); }, reading_.stop);
   NameSorter kept(memory_, "corners", reading_.stop);
   InOrder out = in_order(without_height_, reading_.stop);
-  const auto advance = [&](std::uint64_t to) {
-    while (out.now() != nullptr && *out.now() < to) {
-      out.next();
+  std::vector<NamedCorner> face;  // that have heights
+  std::size_t corners = 0;
+  const auto end_face = [&] {
+    const std::size_t stay = face.size() < 3 ? 0 : face.size() - 2;
+    tin_.left_out_triangles += corners == 0 ? 0 : corners - 2 - stay;
+    for (std::size_t i = 0; i < face.size() && stay > 0; ++i) {
+      kept.add(face[i]);
     }
+    face.clear();
+    corners = 0;
   };
-  by_triangle.merge(
+  std::uint64_t last = 0;
+  by_face.merge(
       [&](std::span<const NamedCorner> batch) {
         for (const NamedCorner& c : batch) {
-          advance(triangle_of(c));
-          const bool is_out = out.now() != nullptr && *out.now() == triangle_of(c);
-          if (!is_out) {
-            kept.add(c);
-          } else if (c.place % 4 == 0) {
-            ++tin_.left_out_triangles;
+          if (face_of(c.place) != face_of(last)) {
+            end_face();
+          }
+          last = c.place;
+          ++corners;
+          if (out.now() != nullptr && *out.now() == c.place) {
+            out.next();
+          } else {
+            face.push_back(c);
           }
         }
       },
       reading_.stop);
+  end_face();
   tin_.corners = RecordFile<NamedCorner>(memory_, "corners");
   kept.merge(
       [&](std::span<const NamedCorner> batch) {

@@ -85,13 +85,14 @@ struct NamedVertex {
   }
 };
 
-/// A corner of a triangle, which names its vertex.
+/// A corner of a face, which names its vertex.
 struct NamedCorner {
   std::int64_t id = 0;      ///< Of the vertex.
-  std::uint64_t place = 0;  ///< 4 t + c for corner c (0, 1, 2) of triangle t of the file.
+  std::uint64_t place = 0;  ///< 4 f + c for corner c (0 to 3) of face f of the file.
 };
 
-/// A file's terrain: triangles whose corners all have a height, and the vertices that they name.
+/// A file's terrain: triangles and quads whose corners all have a height, and the vertices that they
+/// name. Of a quad three of whose corners have a height the triangle of these is there.
 struct NamedTin {
   RecordFile<NamedVertex> vertices;  ///< Ascending by id, each once.
   RecordFile<NamedCorner> corners;   ///< Ascending by id, then place; each id is in `vertices`.

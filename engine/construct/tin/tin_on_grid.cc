@@ -52,36 +52,83 @@ long double source_area(const std::array<JoinedCorner, 3>& c) {
 
 int sign_of(long double v) { return v > 0 ? 1 : (v < 0 ? -1 : 0); }
 
-/// Collects the faults of triangles for either way round, since only the last triangle shows which
-/// one most triangles have.
+using Quad = std::array<JoinedCorner, 4>;
+
+/// True where the diagonal from corner `i` (0 or 1) cuts the quad into two triangles that go the same
+/// way round: it lies inside.
+template <class SignOfArea>
+bool is_inside(const Quad& quad, std::size_t i, const SignOfArea& sign) {
+  const int first = sign({quad[i], quad[i + 1], quad[i + 2]});
+  return first != 0 && first == sign({quad[i], quad[i + 2], quad[(i + 3) % 4]});
+}
+
+/// The corner, 0 or 1, from which a quad is cut into two triangles. Of a quad that is not convex only
+/// one diagonal lies inside. Else it is the one whose ends differ less in height, as of a raster's
+/// cells, else the shorter one, else the one from the corner with the smallest key.
+std::size_t begin_of_cut(const Quad& quad) {
+  const auto on_grid = [](const std::array<JoinedCorner, 3>& c) {
+    return sign_of(static_cast<long double>(
+        orient(c[0].vertex.position, c[1].vertex.position, c[2].vertex.position)));
+  };
+  const auto in_file = [](const std::array<JoinedCorner, 3>& c) { return sign_of(source_area(c)); };
+  bool first = is_inside(quad, 0, on_grid), second = is_inside(quad, 1, on_grid);
+  if (!first && !second) {  // spoiled by the grid, or no quad at all
+    first = is_inside(quad, 0, in_file);
+    second = is_inside(quad, 1, in_file);
+  }
+  if (first != second) {
+    return first ? 0 : 1;
+  }
+  const auto rise = [&](std::size_t i) {
+    return std::abs(quad[i].vertex.height - quad[i + 2].vertex.height);
+  };
+  const auto length = [&](std::size_t i) {
+    const GridPoint a = quad[i].vertex.position, b = quad[i + 2].vertex.position;
+    const std::int64_t x = std::int64_t{a.x} - b.x, y = std::int64_t{a.y} - b.y;
+    return x * x + y * y;
+  };
+  const auto least_key = [&](std::size_t i) {
+    return std::min(key_of(quad[i].vertex.position), key_of(quad[i + 2].vertex.position));
+  };
+  if (rise(0) != rise(1)) {
+    return rise(0) < rise(1) ? 0 : 1;
+  }
+  if (length(0) != length(1)) {
+    return length(0) < length(1) ? 0 : 1;
+  }
+  return least_key(0) < least_key(1) ? 0 : 1;
+}
+
+/// Turns triangles that are clockwise in their file, and collects what is wrong with them. Programs
+/// write some triangles the one way round and some the other; what comes out is a terrain where they
+/// lie beside one another, and the border tells where they do not.
 class Orientations {
  public:
+  /// Returns `t` as it is to be.
   /// @param in_file  The sign of the triangle's area in the file.
-  void add(const GridTriangle& t, int in_file) {
+  GridTriangle upright(GridTriangle t, int in_file) {
     const int on_grid = sign_of(static_cast<long double>(t.area()));
-    excess_ += on_grid;
-    for (const int upright : {1, -1}) {
-      OrientationFaults& faults = faults_[upright > 0 ? 0 : 1];
-      if (on_grid == upright) {
-        continue;
-      }
-      if (in_file == upright) {
-        if (faults.slivers.size() < kMostSlivers) {
-          faults.slivers.push_back(t);
-        } else {
-          ++faults.more_slivers;
-        }
-      } else {
-        (on_grid == 0 ? faults.no_area : faults.turned_over).add(t.corners[0].position);
-      }
+    const int way = in_file != 0 ? in_file : on_grid;
+    if (way < 0) {
+      std::swap(t.corners[1], t.corners[2]);
     }
+    ++(way < 0 ? clockwise_ : others_);
+    if (way == 0) {
+      faults_.no_area.add(t.corners[0].position);
+    } else if (on_grid != way && faults_.slivers.size() < kMostSlivers) {
+      faults_.slivers.push_back(t);
+    } else if (on_grid != way) {
+      ++faults_.more_slivers;
+    }
+    return t;
   }
-  [[nodiscard]] bool is_clockwise() const noexcept { return excess_ < 0; }
-  [[nodiscard]] OrientationFaults take() { return std::move(faults_[excess_ < 0 ? 1 : 0]); }
+  /// Triangles that go another way round than most.
+  [[nodiscard]] std::uint64_t minority() const noexcept { return std::min(clockwise_, others_); }
+  [[nodiscard]] OrientationFaults take() { return std::move(faults_); }
 
  private:
-  std::int64_t excess_ = 0;
-  std::array<OrientationFaults, 2> faults_;
+  std::uint64_t clockwise_ = 0, others_ = 0;
+  OrientationFaults faults_;
 };
 
 /// Puts one file on the grid.
@@ -173,28 +220,38 @@ void GridReader::join() {
   named_.reset();
 }
 
-/// Puts corners together to triangles.
+/// Puts corners together to triangles, and cuts quads.
 void GridReader::assemble() {
   tin_.triangles = std::make_unique<TriangleSorter>(memory_, "triangles", reading_.stop);
   Orientations orientations;
-  std::array<JoinedCorner, 3> corners;
+  std::vector<JoinedCorner> face;
+  const auto add = [&](const std::array<JoinedCorner, 3>& c) {
+    const GridTriangle t = grid_triangle({c[0].vertex, c[1].vertex, c[2].vertex}, *order_);
+    tin_.triangles->add(orientations.upright(t, sign_of(source_area(c))));
+  };
+  const auto end_face = [&] {
+    if (face.size() == 3) {
+      add({face[0], face[1], face[2]});
+    } else if (face.size() == 4) {
+      const std::size_t from = begin_of_cut({face[0], face[1], face[2], face[3]});
+      add({face[from], face[from + 1], face[from + 2]});
+      add({face[from], face[from + 2], face[(from + 3) % 4]});
+    }
+    face.clear();
+  };
   corners_->merge(
       [&](std::span<const JoinedCorner> batch) {
         for (const JoinedCorner& corner : batch) {
-          corners[corner.place % 4] = corner;
-          if (corner.place % 4 != 2) {
-            continue;
+          if (!face.empty() && face.back().place / 4 != corner.place / 4) {
+            end_face();
           }
-          const std::array<GridVertex, 3> v{corners[0].vertex, corners[1].vertex,
-                                            corners[2].vertex};
-          const GridTriangle t = grid_triangle(v, *order_);
-          orientations.add(t, sign_of(source_area(corners)));
-          tin_.triangles->add(t);
+          face.push_back(corner);
         }
       },
       reading_.stop);
+  end_face();
   corners_.reset();
-  tin_.is_clockwise = orientations.is_clockwise();
+  tin_.turned_triangles = orientations.minority();
   tin_.faults = orientations.take();
 }
 

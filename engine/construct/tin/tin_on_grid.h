@@ -56,12 +56,11 @@ struct ByPlace {
 };
 using TriangleSorter = ExternalSorter<GridTriangle, ByPlace>;
 
-/// Triangles that are wrong by themselves, given that one way round, counter-clockwise or
-/// clockwise, is the right one.
+/// Triangles that are wrong by themselves.
 struct OrientationFaults {
-  TinFault no_area, turned_over;
-  /// Triangles that go the right way round in the file, and do not on the grid: snapping spoiled
-  /// them. At most 65536 are kept.
+  TinFault no_area;
+  /// Triangles that have an area in the file, and on the grid none or go the other way round:
+  /// snapping spoiled them. At most 65536 are kept.
   std::vector<GridTriangle> slivers;
   std::uint64_t more_slivers = 0;  ///< How many slivers there are besides.
 };
@@ -73,12 +72,13 @@ struct TinOnGrid {
   DeclaredUnits units;
   SourceWarnings warnings;
   HeightFit heights;
-  std::unique_ptr<TriangleSorter> triangles;  ///< The way round that they have in the file.
+  /// Counter-clockwise, those that are clockwise in the file turned; but for slivers.
+  std::unique_ptr<TriangleSorter> triangles;
   /// Distinct positions of the vertices of triangles, along the curve.
   std::unique_ptr<RecordFile<std::uint64_t>> places;
-  bool is_clockwise = false;  ///< Most triangles are clockwise: all are to be turned.
-  OrientationFaults faults;   ///< With the way round of most triangles as the right one.
-  TinFault heights_differ;    ///< Positions with several heights.
+  std::uint64_t turned_triangles = 0;  ///< That went another way round than most.
+  OrientationFaults faults;
+  TinFault heights_differ;  ///< Positions with several heights.
   // As TinCounts (tin/tin_source.h).
   std::uint64_t left_out_triangles = 0;
   std::uint64_t unused_vertices = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/construct/grid/area_of_use.h"
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/grid_precision.h"
 #include "engine/construct/grid/height_fit.h"
@@ -19,11 +20,6 @@
 namespace ptin {
 
 namespace {
-
-GridTriangle turned(GridTriangle t) {
-  std::swap(t.corners[1], t.corners[2]);
-  return t;
-}
 
 template <class Record>
 RecordFile<Record> new_file(const ExternalMemory& memory, const std::string& name) {
@@ -44,7 +40,7 @@ RecordFile<Record> named(RecordFile<Record> file, const ExternalMemory& memory,
   return to;
 }
 
-/// Writes the triangles along the curve, all counter-clockwise, and mends their slivers.
+/// Writes the triangles along the curve, and mends their slivers.
 /// @param kept_as  Name of the file in which they stay; "" for one without a name.
 MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory& memory,
                    const std::string& path, const std::string& kept_as, TinCounts& counts,
@@ -55,7 +51,7 @@ MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory
   tin.triangles->merge(
       [&](std::span<const GridTriangle> batch) {
         for (const GridTriangle& t : batch) {
-          mesh.triangles.add(tin.is_clockwise ? turned(t) : t);
+          mesh.triangles.add(t);
         }
       },
       stop);
@@ -68,9 +64,6 @@ MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory
                     " triangles are flattened by the grid, more than can be mended; give a finer "
                     "--resolution, or let --repair triangulate the points anew",
                 path);
-  }
-  for (GridTriangle& t : slivers) {
-    t = tin.is_clockwise ? turned(t) : t;
   }
   counts.mended_triangles = mend_slivers(mesh, slivers, order, memory, faults, path, stop);
   if (!is_final) {
@@ -224,13 +217,29 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   set_heights(to.frame_, tin.heights);
   to.codes_are_whole_ = tin.grid.whole;
   to.warnings_ = std::move(tin.warnings);
+  if (are_axes_exchanged(to.frame_, tin.grid.east - tin.grid.west,
+                         tin.grid.north - tin.grid.south)) {
+    to.warnings_.add(
+        {.kind = "exchanged_axes",
+         .message =
+             "the vertices lie outside of the area in which their CRS is used, and inside of "
+             "it with x and y exchanged; where another order is written than the format "
+             "has, exchange them first",
+         .file = path});
+  }
+  if (tin.turned_triangles > 0) {
+    to.warnings_.add({.kind = "turned_triangles",
+                      .message = "triangles go another way round than most, and each was turned; "
+                                 "look at them where the surface should be of one piece",
+                      .file = path,
+                      .count = tin.turned_triangles});
+  }
   to.counts_.left_out_triangles = tin.left_out_triangles;
   to.counts_.unused_vertices = tin.unused_vertices;
   to.counts_.merged_vertices = tin.merged_vertices;
   to.counts_.largest_shift_plan = tin.largest_shift_plan;
   TinFaults faults;
   faults.no_area = tin.faults.no_area;
-  faults.turned_over = tin.faults.turned_over;
   faults.heights = tin.heights_differ;
   const PointOrder order(tin.grid.largest());
   const std::array<std::string, 3> names =

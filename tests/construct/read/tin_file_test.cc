@@ -119,6 +119,150 @@ TEST(TinSoup, KnowsTinsByTheirNames) {
   for (const char* name : {"a.tif", "ply", "a.ply.gz", "a.csv"}) EXPECT_FALSE(is_tin_file(name));
 }
 
+TEST(TinSoup, EveryTextMayEndItsLinesInCr) {
+  const auto with_ends = [](const std::string& text, const std::string& end) {
+    std::string all;
+    for (const char c : text) {
+      if (c == '\n') {
+        all += end;
+      } else if (c != '\r') {
+        all += c;
+      }
+    }
+    return all;
+  };
+  for (const char* end : {"\r", "\r\n", "\n\r"}) {
+    expect_square(parse(read_ply, with_ends(kAsciiPly, end)));
+    expect_square(parse(read_obj, with_ends(kObj, end)));
+    expect_square(parse(read_two_dm, "\xEF\xBB\xBF" + with_ends(kTwoDm, end)));
+  }
+  for (TinReader* const read : {read_ply, read_obj, read_two_dm}) {
+    EXPECT_TRUE(says(refusal_of(read, "\xFF\xFEv"), "UTF-16"));
+  }
+}
+
+/// The first byte behind a header of CRs is an LF by chance.
+TEST(Ply, EndsAHeaderOfCrsInItsCr) {
+  std::string text =
+      "ply\rformat binary_little_endian 1.0\relement vertex 3\rproperty uchar x\rproperty uchar y\r"
+      "property uchar z\relement face 1\rproperty list uchar uchar vertex_index\rend_header\r";
+  text += {'\n', 0, 0, 9, 0, 0, 0, 9, 0, 3, 0, 1, 2};
+  const TinSoup soup = parse(read_ply, text);
+  ASSERT_EQ(soup.vertices.size(), 3U);
+  EXPECT_EQ(soup.vertices[0].x, (Decimal{10, 0}));
+}
+
+TEST(Ply, TakesNamesInCapitalsAndBlanksBehindThem) {
+  expect_square(parse(read_ply,
+                      "ply \t\nformat ascii 1.0 \ncomment made by hand\nelement vertex 4\n"
+                      "property double X\nproperty double Y\nproperty double Z\n"
+                      "element face 2\nproperty list uchar int Vertex_Indices\nend_header\n"
+                      "0.1 0 -1\n10 0.5 0\n10 10 1\n0 10 2\n3 0 1 2\n3 0 2 3\n"));
+  const std::string file =
+      "ply\nformat ascii 1.0\ncomment EPSG: 25832\ncomment units: ft\nelement vertex 3\nproperty "
+      "float x\nproperty float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0";
+  const TinFileFacts facts = parse(read_ply, file + "\n3 0 1 2").facts;
+  EXPECT_EQ(facts.crs, "EPSG:25832");
+  EXPECT_EQ(facts.units, (DeclaredUnits{"foot", "foot"}));
+  EXPECT_TRUE(says(refusal_of(read_ply, file + " 7\n3 0 1 2\n"), "more values"));
+}
+
+using Quads = std::vector<std::array<std::uint32_t, 4>>;
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+TEST(TinSoup, HoldsQuads) {
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  EXPECT_EQ(parse(read_obj, obj + "f 1 2 3 4\n").quads, (Quads{{0, 1, 2, 3}}));
+  EXPECT_EQ(parse(read_obj, obj + "f 1 2 3 3\n").triangles, (Triangles{{2, 0, 1}}));
+  EXPECT_EQ(parse(read_obj, obj + "f 1 2\\\n  3 \\ \n4\nf 1 2 3").quads, (Quads{{0, 1, 2, 3}}));
+  const std::string nodes =
+      "mesh2d\nND 1 0 0 0\nND 2 1 0 0\nND 3 2 0 0\nND 4 2 1 0\nND 5 2 2 0\nND 6 1 2 0\nND 7 0 2 0\n"
+      "ND 8 0 1 0\nND 9 1 1 0\nE2L 7 1 2 1\n";
+  EXPECT_EQ(parse(read_two_dm, nodes + "E4Q 1 1 3 5 7 1\n").quads, (Quads{{0, 2, 4, 6}}));
+  const TinSoup six = parse(read_two_dm, nodes + "E6T 1 1 2 3 9 7 8 1\n");
+  EXPECT_EQ(six.triangles, (Triangles{{0, 1, 7}, {2, 8, 1}, {6, 7, 8}, {1, 8, 7}}));
+  const TinSoup eight = parse(read_two_dm, nodes + "E8Q 1 1 2 3 4 5 6 7 8 1\n");
+  EXPECT_EQ(eight.triangles, (Triangles{{0, 1, 7}, {2, 3, 1}, {4, 5, 3}, {6, 7, 5}}));
+  EXPECT_EQ(eight.quads, (Quads{{1, 3, 5, 7}}));
+  EXPECT_EQ(parse(read_two_dm, nodes + "E9Q 1 1 2 3 4 5 6 7 8 9 1\n").quads,
+            (Quads{{0, 1, 8, 7}, {2, 3, 8, 1}, {4, 5, 8, 3}, {6, 7, 8, 5}}));
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty int x\nproperty int y\nproperty int z\n"
+      "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 "
+      "0\n";
+  EXPECT_EQ(parse(read_ply, ply + "4 0 1 2 3\n").quads, (Quads{{0, 1, 2, 3}}));
+  EXPECT_TRUE(says(refusal_of(read_ply, ply + "5 0 1 2 3 3\n"), "face 0: a face has 5 corners"));
+}
+
+TEST(LandXml, NumbersPointsThatHaveNoId) {
+  const auto with = [](const std::string& points) {
+    return land_xml("<Surface name='s'><Definition><Pnts>" + points +
+                    "</Pnts><Faces><F>1 2 3 4</F></Faces></Definition></Surface>");
+  };
+  EXPECT_EQ(
+      parse(read_land_xml, with("<P>0 0 1</P><P>0 9 1</P><P>9 9 1</P><P id=''>9 0 1</P>")).quads,
+      (Quads{{0, 1, 2, 3}}));
+  EXPECT_TRUE(
+      says(refusal_of(read_land_xml, with("<P>0 0 1</P><P id='2'>0 9 1</P>")), "has an id"));
+  EXPECT_TRUE(
+      says(refusal_of(read_land_xml, with("<P id='1'>0 0 1</P><P>0 9 1</P>")), "has no id"));
+  EXPECT_TRUE(says(refusal_of(read_land_xml, with("<P id='1' pntRef='CP7'/>")), "'CP7' (pntRef)"));
+  EXPECT_TRUE(says(refusal_of(read_land_xml, with("<P id='1'>0 0</P>")), "has 2 numbers"));
+}
+
+TEST(LandXml, NamesASurfaceByItsPlace) {
+  const std::string two = land_xml(kSurface + "<Surface name='top'/>" + kSurface);
+  expect_square(parse(read_land_xml, two, {"#1", {}, {}}));
+  expect_square(parse(read_land_xml, two, {"#3", {}, {}}));
+  EXPECT_TRUE(says(refusal_of(read_land_xml, two, {"top", {}, {}}), "as in --layer '#3'"));
+  EXPECT_TRUE(says(refusal_of(read_land_xml, two), "as in --layer '#3'"));
+  EXPECT_TRUE(says(refusal_of(read_land_xml, two, {"#4", {}, {}}), "no surface '#4'"));
+  expect_square(
+      parse(read_land_xml, land_xml("<Surface name='lines'><SourceData/></Surface>" + kSurface)));
+}
+
+TEST(LandXml, IsReadInTheEncodingThatItNames) {
+  const auto in_encoding = [](const std::string& encoding, const std::string& name) {
+    std::string text = land_xml(kSurface);
+    text.replace(0, text.find('>') + 1, "<?xml version=\"1.0\" encoding=\"" + encoding + "\"?>");
+    return text.replace(text.find("top"), 3, name);
+  };
+  const TinReading wanted{"Gel\u00e4nde \u20ac", {}, {}};
+  expect_square(parse(read_land_xml, in_encoding("Windows-1252", "Gel\xE4nde \x80"), wanted));
+  expect_square(parse(read_land_xml, in_encoding("ISO-8859-15", "Gel\xE4nde \xA4"), wanted));
+  expect_square(
+      parse(read_land_xml, in_encoding("Shift_JIS", "\x92\x6E\x8C\x60"), {"\u5730\u5f62", {}, {}}));
+  EXPECT_TRUE(says(refusal_of(read_land_xml, in_encoding("no-such", "a")), "save it as UTF-8"));
+}
+
+std::vector<std::string> kinds_of(const TinFileFacts& facts) {
+  std::vector<std::string> kinds;
+  for (const SourceWarning& w : facts.warnings.all()) kinds.push_back(w.kind);
+  return kinds;
+}
+
+TEST(LandXml, WarnsOfWhatIsToldInWords) {
+  const auto with_system = [](const std::string& attributes) {
+    std::string text = land_xml(kSurface);
+    const std::size_t at = text.find("epsgCode=\"3007\"");
+    return text.replace(at, 15, attributes);
+  };
+  const auto facts_of = [&](const std::string& attributes) {
+    return parse(read_land_xml, with_system(attributes)).facts;
+  };
+  EXPECT_EQ(facts_of("epsgCode='EPSG:3007'").crs, "EPSG:3007");
+  EXPECT_EQ(facts_of("ogcWktCode='LOCAL_CS[&quot;site&quot;]'").crs, "LOCAL_CS[\"site\"]");
+  EXPECT_EQ(facts_of("epsgCode='3007' verticalDatum='5613'").vertical_crs, "EPSG:5613");
+  EXPECT_EQ(kinds_of(facts_of("horizontalDatum='NAD83'")),
+            std::vector<std::string>{"crs_in_words"});
+  EXPECT_EQ(kinds_of(facts_of("epsgCode='3007' verticalDatum='NAVD88'")),
+            std::vector<std::string>{"vertical_crs_in_words"});
+  EXPECT_EQ(kinds_of(facts_of("epsgCode='3007' rotationAngle='12.5'")),
+            std::vector<std::string>{"turned_coordinates"});
+  EXPECT_EQ(kinds_of(facts_of("epsgCode='3007' rotationAngle='0.0'")), std::vector<std::string>{});
+}
+
 TEST(LandXml, NamesItsUnits) {
   const struct {
     const char* units;
@@ -182,8 +326,10 @@ TEST(TinSoup, RefusesWhatIsNoTriangleMesh) {
                               "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty "
                               "float y\nend_header\n1 2\n"),
                    "no property z"));
+  EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\nv 1 0 0\nf 1 2\n"), "2 corners"));
   EXPECT_TRUE(
-      says(refusal_of(read_obj, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"), "4 corners"));
+      says(refusal_of(read_obj, "v 0 0 0\nf 1 1 1 1 1\n"), "5 corners; triangles and quads"));
+  EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\nsurf 0 1 0 1 1 1\n"), "surface of curves"));
   EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\nf 1 2 3\n"), "vertex 1, which is not there"));
   EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\nf -1 -2 1\n"), "which is not there"));
   EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\nf 0 1 1\n"), "numbered from 1"));
@@ -193,7 +339,7 @@ TEST(TinSoup, RefusesWhatIsNoTriangleMesh) {
   EXPECT_TRUE(says(refusal_of(read_obj, "v 0 0 0\n"), "no triangle"));
   EXPECT_TRUE(says(refusal_of(read_obj, ""), "no vertex"));
   EXPECT_TRUE(says(refusal_of(read_obj, std::string(70'000, 'v')), "64 KiB"));
-  EXPECT_TRUE(says(refusal_of(read_two_dm, "MESH2D\nE4Q 1 1 2 3 4 1\n"), "only triangles"));
+  EXPECT_TRUE(says(refusal_of(read_two_dm, "MESH2D\nE4Q 1 1 2 3\n"), "an id and 4 nodes"));
   EXPECT_TRUE(says(refusal_of(read_two_dm, "MESH2D\nND 1 0 0 0\nND 1 1 0 0\n"),
                    "two vertices have the id 1"));
   EXPECT_TRUE(says(refusal_of(read_two_dm, "ND 1 0 0 0\n"), "MESH2D"));

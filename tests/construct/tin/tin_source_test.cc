@@ -37,6 +37,59 @@ TEST(TinSource, TurnsATinThatIsClockwiseThroughout) {
   expect_sound(read(kSquare, {{2, 1, 0}, {3, 2, 0}}), 2, 0);
 }
 
+TEST(TinSource, TurnsSingleTriangles) {
+  std::vector<Vertex3> strip = kSquare;
+  strip.push_back({20, 0, 0});
+  expect_sound(read(strip, {{0, 1, 2}, {0, 2, 3}, {4, 1, 2}}), 3, 0);
+  expect_sound(read(kSquare, {{0, 1, 2}, {3, 2, 0}}), 2, 0);
+}
+
+/// The surface triangles of the quads of an OBJ file.
+std::set<KeyTriangle> cut(const std::vector<Vertex3>& vertices, const std::string& faces,
+                          const SourceOptions& options = {}) {
+  const TestFile file(".obj", obj_of(vertices, {}) + faces);
+  return triangles_of(TinTerrain(triangles_in(file.path(), options)).tin, TriangleClass::kSurface);
+}
+
+TEST(TinSource, CutsQuadsAsCellsOfRastersAre) {
+  const auto keys = [](const std::vector<Face>& faces, const std::vector<GridPoint>& at) {
+    std::set<KeyTriangle> all;
+    for (const Face& f : faces) {
+      KeyTriangle t{};
+      for (std::size_t i = 0; i < 3; ++i) t[i] = key_of(at[static_cast<std::size_t>(f[i])]);
+      std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+      all.insert(t);
+    }
+    return all;
+  };
+  const std::vector<GridPoint> square = {{0, 0}, {9, 0}, {9, 9}, {0, 9}};
+  const auto with_heights = [](double a, double b, double c, double d) {
+    return std::vector<Vertex3>{{0, 0, a}, {9, 0, b}, {9, 9, c}, {0, 9, d}};
+  };
+  const auto rising = keys({{0, 1, 2}, {0, 2, 3}}, square);
+  const auto falling = keys({{0, 1, 3}, {1, 2, 3}}, square);
+  // Whichever corner comes first, and whichever way round.
+  for (const char* quad : {"f 1 2 3 4\n", "f 2 3 4 1\n", "f 4 3 2 1\n", "f 3 2 1 4\n"}) {
+    EXPECT_EQ(cut(with_heights(0, 5, 1, 9), quad), rising) << quad;
+    EXPECT_EQ(cut(with_heights(5, 0, 9, 1), quad), falling) << quad;
+    EXPECT_EQ(cut(with_heights(1, 2, 3, 4), quad), rising) << quad << "from the least corner";
+  }
+  // Only one diagonal lies inside of a dart.
+  const std::vector<Vertex3> dart = {{0, 0, 0}, {9, 0, 50}, {3, 3, 70}, {0, 9, 50}};
+  EXPECT_EQ(cut(dart, "f 1 2 3 4\n"),
+            keys({{0, 1, 2}, {0, 2, 3}}, {{0, 0}, {9, 0}, {3, 3}, {0, 9}}));
+  // Of equal heights the shorter one.
+  const std::vector<Vertex3> kite = {{0, 0, 1}, {9, 0, 1}, {20, 20, 1}, {0, 9, 1}};
+  EXPECT_EQ(cut(kite, "f 1 2 3 4\n"),
+            keys({{0, 1, 3}, {1, 2, 3}}, {{0, 0}, {9, 0}, {20, 20}, {0, 9}}));
+  // Without a corner's height the triangle of the others.
+  SourceOptions options;
+  options.nodata = -1.0;
+  EXPECT_EQ(cut(with_heights(0, 1, 2, -1), "f 1 2 3 4\n", options).size(), 1U);
+  const TestFile bow(".obj", obj_of(kSquare, {}) + "f 1 3 2 4\n");
+  EXPECT_THROW(static_cast<void>(triangles_in(bow.path())), Error);
+}
+
 TEST(TinSource, FillsConcaveBordersHolesAndGaps) {
   // An L: one pocket.
   const std::vector<Vertex3> corner = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0},
@@ -75,9 +128,9 @@ TEST(TinSource, NamesEveryFault) {
   EXPECT_NE(refusal({{0, 0, 0}, {4, 0, 0}, {8, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {0, 2, 3}})
                 .find("1 triangle has no area (it is at 0 0)"),
             std::string::npos);
-  std::vector<Vertex3> strip = kSquare;
-  strip.push_back({20, 0, 0});
-  EXPECT_NE(refusal(strip, {{0, 1, 2}, {0, 2, 3}, {4, 1, 2}}).find("1 triangle is turned over"),
+  // A surface that folds over itself: each triangle by itself is one.
+  EXPECT_NE(refusal({{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {6, 5, 3}}, {{0, 1, 2}, {0, 2, 3}})
+                .find("1 edge has two triangles"),
             std::string::npos);
   EXPECT_NE(refusal(kSquare, {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}).find("3 edges have two triangles"),
             std::string::npos);

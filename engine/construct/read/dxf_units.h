@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The unit that a DXF file declares, which OGR does not hand on.
+#pragma once
+
+#include <string>
+
+namespace ptin {
+
+/// The unit of a DXF's coordinates by $INSUNITS of its header, as height_unit_named() has it; "" where
+/// the file tells none, or one that is not known.
+/// @throws Error  not_found, io_error
+/// Cost: reads the header, some hundred lines.
+[[nodiscard]] std::string unit_of_dxf(const std::string& path);
+
+}  // namespace ptin
