@@ -56,6 +56,9 @@ TEST_F(Serve, DescribesItselfAsOpenApi) {
   }
   EXPECT_EQ(ids.size(), operations);
   EXPECT_TRUE(api["components"]["responses"]["Problem"].contains("content"));
+  EXPECT_EQ(api["paths"]["/v1/{path}"]["get"]["responses"]["4XX"]["$ref"],
+            "#/components/responses/Refusal");
+  EXPECT_TRUE(api["components"]["responses"]["Refusal"]["content"].contains("application/json"));
   EXPECT_TRUE(api["paths"].contains("/collections/{id}/position"));
   EXPECT_TRUE(api["paths"]["/collections/{id}/sight"]["post"]["requestBody"]["content"].contains(
       "application/x-www-form-urlencoded"));

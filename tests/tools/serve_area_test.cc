@@ -2,9 +2,12 @@
 //
 // Areas as coverages, and what OGC's clients send.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -30,9 +33,9 @@ TEST_F(Serve, GivesCoveragesWithOneMeaningOfNull) {
   const json coverage = answer.json();
   const json& heights = coverage["ranges"]["height"];
   const json& states = coverage["ranges"]["state"]["values"];
-  EXPECT_EQ(heights["shape"], (json{11, 21}));
-  EXPECT_EQ(heights["values"].size(), 231U);
-  EXPECT_EQ(coverage["domain"]["axes"]["x"]["num"], 21);
+  EXPECT_EQ(heights["shape"], (json{10, 20}));
+  EXPECT_EQ(heights["values"].size(), 200U);
+  EXPECT_EQ(coverage["domain"]["axes"]["x"]["num"], 20);
   std::set<int> seen;
   for (std::size_t i = 0; i < states.size(); ++i) {
     EXPECT_EQ(heights["values"][i].is_null(), states[i] != 0) << i;
@@ -40,12 +43,69 @@ TEST_F(Serve, GivesCoveragesWithOneMeaningOfNull) {
   }
   EXPECT_TRUE(seen.count(0) != 0 && seen.count(3) != 0);
   // A height of the grid is the height at that position.
-  const double x = w.min_x + (w.max_x - w.min_x) * 18 / 20,
-               y = w.min_y + (w.max_y - w.min_y) * 1 / 10;
+  const double x = w.min_x + (w.max_x - w.min_x) * 18 / 19,
+               y = w.min_y + (w.max_y - w.min_y) * 1 / 9;
   const json point = get(in("coast", "position?crs=native&f=json&coords=" +
                                          encoded("POINT(" + text_of({x, y}) + ")")))
                          .json();
-  EXPECT_EQ(heights["values"][1 * 21 + 18], point["points"][0]["height"]);
+  EXPECT_EQ(heights["values"][1 * 20 + 18], point["points"][0]["height"]);
+}
+
+/// The number of positions along x and along y.
+std::pair<int, int> sides_of(const json& coverage) {
+  const json& shape = coverage["ranges"]["height"]["shape"];
+  return {shape[1].get<int>(), shape[0].get<int>()};
+}
+
+TEST_F(Serve, CountsThePositionsOfAGrid) {
+  const std::string area =
+      in("mountains",
+         "area?crs=native&coords=" + encoded("POLYGON((377000 3802000,381000 3802000,381000 "
+                                             "3804000,377000 3804000,377000 3802000))"));
+  using Sides = std::pair<int, int>;
+  EXPECT_EQ(sides_of(get(area + "&resolution-x=5&resolution-y=7").json()), Sides(5, 7));
+  EXPECT_EQ(sides_of(get(area + "&resolution-x=5").json()), Sides(5, 3));  // Squares of 1 km.
+  EXPECT_EQ(sides_of(get(area + "&resolution-y=5").json()), Sides(9, 5));
+  EXPECT_EQ(sides_of(get(area).json()), Sides(65, 33));
+  EXPECT_EQ(sides_of(get(area + "&resolution-x=1&resolution-y=2").json()), Sides(1, 2));
+  const json axes = get(area + "&resolution-x=5").json()["domain"]["axes"];
+  EXPECT_EQ(axes["x"], json({{"start", 377000.0}, {"stop", 381000.0}, {"num", 5}}));
+  const HttpAnswer many = get(area + "&resolution-x=20000&resolution-y=1");
+  EXPECT_EQ(many.status, 413);
+  EXPECT_EQ(many.json()["parameter"], "resolution-x");
+}
+
+TEST_F(Serve, GivesTheSamplesOfTheTerrainAsTheyAreStored) {
+  const StoreFacts& facts = mountains_->store().facts();
+  const AffineMap& map = facts.map;
+  const MapPoint a = map.to_map(facts.bounds.min_x + 9.6, facts.bounds.min_y + 19.5);
+  const MapPoint b = map.to_map(facts.bounds.min_x + 15.2, facts.bounds.min_y + 22.4);
+  const std::string ring = "POLYGON((" + text_of(a) + "," + text_of({b.x, a.y}) + "," + text_of(b) +
+                           "," + text_of({a.x, b.y}) + "," + text_of(a) + "))";
+  const std::string area = in("mountains", "area?crs=native&coords=" + encoded(ring));
+  for (const char* asked :
+       {"&resolution-x=0&resolution-y=0", "&resolution-x=0", "&resolution-y=0"}) {
+    const json coverage = get(area + asked).json();
+    EXPECT_EQ(sides_of(coverage), std::pair(6, 3)) << asked;
+    const MapPoint first = map.to_map(facts.bounds.min_x + 10, facts.bounds.min_y + 20);
+    EXPECT_EQ(coverage["domain"]["axes"]["x"]["start"], first.x);
+    EXPECT_EQ(coverage["domain"]["axes"]["y"]["start"], first.y);
+    const std::vector<MapPoint> at{map.to_map(facts.bounds.min_x + 12, facts.bounds.min_y + 21)};
+    EXPECT_EQ(coverage["ranges"]["height"]["values"][6 + 2],
+              mountains_->locate(at).points[0].height);
+  }
+  // In another CRS they are as near to each other.
+  const std::string box =
+      encoded("POLYGON((-118.31 34.35,-118.309 34.35,-118.309 34.351,-118.31 34.35))");
+  const auto [columns, rows] =
+      sides_of(get(in("mountains", "area?resolution-x=0&coords=" + box)).json());
+  const double east = 1e-3 * 111320 * std::cos(34.35 * M_PI / 180) / map.step_x;
+  EXPECT_NEAR(columns, east, 2);
+  EXPECT_NEAR(rows, 1e-3 * 110922 / map.step_y, 2);
+  EXPECT_EQ(get(in("mountains", "area?resolution-x=0&resolution-y=0&coords=" +
+                                    encoded("POLYGON((-119 34,-118 34,-118 35,-119 34))")))
+                .status,
+            413);
 }
 
 TEST_F(Serve, TakesWhatOgcAndOthersClientsSend) {

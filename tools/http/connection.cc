@@ -21,6 +21,8 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "tools/http/partial_target.h"
+
 namespace ptin::http {
 
 namespace {
@@ -244,6 +246,7 @@ void Connection::take_body(const Status& status) {
 
 void Connection::take_request(const std::shared_ptr<Request>& request) {
   request_ = request;
+  request->path = path_of(request->target);  // Where the rest of the target is refused.
   try {
     Target target = parse_target(request->target);
     request->path = std::move(target.path);
@@ -304,6 +307,11 @@ void Connection::refuse(const Problem& problem) {
   auto request = std::make_shared<Request>();
   request->id = host_.next_request++;
   request->remote = address_of(socket_);
+  const auto& target = parser_->get().target();
+  request->path = path_of(
+      !target.empty()
+          ? std::string_view(target.data(), target.size())
+          : target_of_line({static_cast<const char*>(buffer_.data().data()), buffer_.size()}));
   request_ = std::move(request);
   Response response = problem.response();
   host_.service.finish(*request_, response);

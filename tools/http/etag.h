@@ -18,7 +18,8 @@ namespace ptin::http {
 /// The tag of the same answer under gzip, which has other bytes.
 [[nodiscard]] std::string gzip_etag_of(const std::string& etag);
 
-/// Whether a header If-None-Match names the tag, or its gzip form.
-[[nodiscard]] bool names_etag(std::string_view if_none_match, const std::string& etag);
+/// Whether a list of tags, as of If-None-Match, names the tag or its other form under gzip.
+/// @param weak_too  A weak tag (W/) names them as well.
+[[nodiscard]] bool names_etag(std::string_view list, const std::string& etag, bool weak_too = true);
 
 }  // namespace ptin::http

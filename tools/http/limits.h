@@ -11,10 +11,10 @@ namespace ptin::http {
 
 /// Every one is told to a client that goes beyond it, under its name here.
 struct Limits {
-  std::size_t request_line_bytes = std::size_t{8} << 10;  ///< Beyond: 414.
-  std::size_t header_bytes = std::size_t{8} << 10;        ///< Of all header lines. Beyond: 431.
-  std::size_t body_bytes = std::size_t{1} << 20;          ///< Beyond: 413.
-  std::size_t connections = 1024;                         ///< Beyond: 503.
+  std::size_t request_line_bytes = std::size_t{32} << 10;  ///< Beyond: 414.
+  std::size_t header_bytes = std::size_t{8} << 10;         ///< Of all header lines. Beyond: 431.
+  std::size_t body_bytes = std::size_t{1} << 20;           ///< Beyond: 413.
+  std::size_t connections = 1024;                          ///< Beyond: 503.
   std::size_t waiting = 64;  ///< Requests that wait for a thread. Beyond: 503.
   std::size_t threads = 1;   ///< Requests that are computed at once.
   std::uint64_t memory_bytes = std::uint64_t{192} << 20;  ///< Of all questions. Beyond: 503.

@@ -7,11 +7,14 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "tools/http/response.h"
 
 namespace ptin::http {
+
+constexpr std::string_view kProblemJson = "application/problem+json";
 
 /// A request that is refused. Thrown where that is known, and answered where requests are.
 class Problem : public std::exception {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/pixel_size.h"
 
-#include <cstdint>
 #include <utility>
 
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "tools/facts/quantity.h"
-#include "tools/ptin/source_counts.h"
+#include "tools/facts/source_count.h"
 
 namespace ptin::tools {
 
@@ -56,19 +55,11 @@ MapPoint middle_of(const std::optional<Window>& window, const StoreFacts& facts)
 }
 
 std::array<double, 2> own_pixel_size(const StoreFile& store) {
-  const StoreFacts& facts = store.facts();
-  const std::uint64_t samples = facts.source_samples + source_count(store, "void_samples") +
-                                source_count(store, "lone_samples");
-  const std::uint64_t places =
-      (static_cast<std::uint64_t>(facts.bounds.max_x - facts.bounds.min_x) + 1) *
-      (static_cast<std::uint64_t>(facts.bounds.max_y - facts.bounds.min_y) + 1);
-  if (samples < places) {
-    throw Error(ErrorCode::invalid_argument,
-                "this terrain was not built from a raster, so it has no pixel size of its own; "
-                "give --pixel-size",
-                store.path());
-  }
-  return {facts.map.step_x, facts.map.step_y};
+  if (const std::optional<MapPoint> own = own_pixel_of(store)) return {own->x, own->y};
+  throw Error(ErrorCode::invalid_argument,
+              "this terrain was not built from a raster, so it has no pixel size of its own; "
+              "give --pixel-size",
+              store.path());
 }
 
 }  // namespace ptin::tools

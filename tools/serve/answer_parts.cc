@@ -9,6 +9,7 @@
 #include "engine/error.h"
 #include "engine/stop.h"
 #include "tools/formats/number_text.h"
+#include "tools/http/list_header.h"
 #include "tools/http/problem.h"
 
 namespace ptin::serve {
@@ -40,15 +41,14 @@ std::string_view next_part(std::string_view& list, char mark) {
 }
 
 /// What the header Accept, in lower case, says of a media type: the range counts that is closest.
-Liking liking_of(std::string_view accept, std::string_view media) {
-  media = media.substr(0, media.find(';'));
+Liking named_liking_of(std::string_view accept, std::string_view media) {
   Liking liking;
   while (!accept.empty()) {
     std::string_view range = next_part(accept, ',');
     const std::string_view name = next_part(range, ';');
     const bool is_of_kind =
         name.ends_with("/*") && media.starts_with(name.substr(0, name.size() - 1));
-    const int closeness = name == media ? 3 : is_of_kind ? 2 : name == "*/*" ? 1 : 0;
+    const int closeness = name == media ? 3 : name == "*/*" ? 1 : is_of_kind ? 2 : 0;
     if (closeness <= liking.closeness) continue;
     liking = {1.0, closeness};
     while (!range.empty()) {
@@ -58,6 +58,21 @@ Liking liking_of(std::string_view accept, std::string_view media) {
     }
   }
   return liking;
+}
+
+/// The same, where application/json stands for all that is JSON: libraries send it with every
+/// request, and it chooses between kinds of JSON only for a client that takes nothing else.
+Liking liking_of(std::string_view accept, std::string_view media) {
+  media = media.substr(0, media.find(';'));
+  Liking liking = named_liking_of(accept, media);
+  const bool is_kind_of_json = media.ends_with("+json") && liking.closeness < 2;
+  if (!is_kind_of_json && media != kJson) return liking;
+  const Liking json = named_liking_of(accept, kJson);
+  const bool takes_anything = named_liking_of(accept, "*/*").quality > 0;
+  if (is_kind_of_json && json.closeness == 3) {
+    liking.quality = std::max(liking.quality, json.quality);
+  }
+  return {liking.quality, takes_anything ? 1 : liking.closeness};
 }
 
 }  // namespace
@@ -71,7 +86,7 @@ const OfferedFormat& format_of(const Asked& asked, std::span<const OfferedFormat
       if (format.name == chosen) return format;
     }
   }
-  const std::string accept = lower_case(asked.request.header("accept").value_or(""));
+  const std::string accept = lower_case(http::list_of(asked.request, "accept"));
   const OfferedFormat* best = &offered.front();
   Liking most;
   for (const OfferedFormat& format : offered) {

@@ -43,9 +43,13 @@ Json responses_of(const Endpoint& endpoint) {
     content[std::string(media.substr(0, end))] = Json::object();
     media.remove_prefix(std::min(end + 1, media.size()));
   }
-  return {{"200", {{"description", endpoint.about}, {"content", std::move(content)}}},
-          {"4XX", {{"$ref", "#/components/responses/Problem"}}},
-          {"default", {{"$ref", "#/components/responses/Problem"}}}};
+  Json responses = {{"200", {{"description", endpoint.about}, {"content", std::move(content)}}},
+                    {"4XX", {{"$ref", "#/components/responses/Problem"}}}};
+  if (endpoint.refusal != nullptr) {
+    responses["4XX"] = responses["5XX"] = {{"$ref", "#/components/responses/Refusal"}};
+  }
+  responses["default"] = {{"$ref", "#/components/responses/Problem"}};
+  return responses;
 }
 
 /// The parameters as members of an object, or as fields of a form.
@@ -101,6 +105,26 @@ Json problem_response() {
                   {"limit", {{"type", "string"}}}}}}}}}}}};
 }
 
+/// Of `/v1`.
+Json refusal_response() {
+  return {{"description", "what is wrong, as Google's Elevation API tells it"},
+          {"content",
+           {{"application/json",
+             {{"schema",
+               {{"type", "object"},
+                {"required", {"status", "error_message", "results"}},
+                {"properties",
+                 {{"status",
+                   {{"type", "string"},
+                    {"enum",
+                     {"INVALID_REQUEST", "REQUEST_DENIED", "OVER_QUERY_LIMIT", "UNKNOWN_ERROR"}}}},
+                  {"error_message", {{"type", "string"}}},
+                  {"error", {{"type", "string"}}},
+                  {"results", {{"type", "array"}, {"items", Json::object()}}},
+                  {"parameter", {{"type", "string"}}},
+                  {"limit", {{"type", "string"}}}}}}}}}}}};
+}
+
 }  // namespace
 
 http::Response answer_api(const Asked& asked) {
@@ -115,7 +139,8 @@ http::Response answer_api(const Asked& asked) {
     if (endpoint.takes_post) paths[path]["post"] = operation_of(endpoint, true);
   }
   Json security = Json::array();
-  Json components = {{"responses", {{"Problem", problem_response()}}}};
+  Json components = {
+      {"responses", {{"Problem", problem_response()}, {"Refusal", refusal_response()}}}};
   if (!asked.options.token.empty()) {
     security.push_back({{"bearer", Json::array()}});
     components["securitySchemes"] = {{"bearer", {{"type", "http"}, {"scheme", "bearer"}}}};

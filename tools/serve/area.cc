@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/stop.h"
+#include "tools/facts/source_count.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/coverage.h"
@@ -22,9 +24,12 @@ namespace {
 constexpr auto kAreaParameters = std::to_array<ParameterFact>(
     {{"coords", "string", "the area as WKT, POLYGON or MULTIPOLYGON",
       "POLYGON((-118.31 34.34, -118.3 34.34, -118.3 34.35, -118.31 34.34))", true},
-     {"resolution-x", "integer", "steps of the grid along x; without it 64 along the longer side",
+     {"resolution-x", "integer",
+      "positions along x, both ends included; 0: those of the terrain's samples; without it as "
+      "many "
+      "as make squares with those along y, or 65 along the longer side",
       "50"},
-     {"resolution-y", "integer", "steps of the grid along y", "50"},
+     {"resolution-y", "integer", "the same along y", "50"},
      kErrorParameter,
      kVerticesParameter,
      kCrsParameter,
@@ -37,21 +42,24 @@ constexpr auto kAreaFormats = std::to_array<OfferedFormat>(
     {{"covjson", kCoverageJson}, {"geojson", kGeoJson}, {"csv", kCsv}});
 constexpr double kStepsOfGrid = 64;
 
-/// Positions at equal steps over a box, row by row from the south, in the CRS of the client.
+/// Positions at equal steps along a side of a grid: `count` of them from `first` to `last`.
+struct Side {
+  double first = 0.0, last = 0.0;
+  std::size_t count = 1;
+
+  [[nodiscard]] double at(std::size_t i) const {
+    if (count == 1) return first;
+    return first + (last - first) * (static_cast<double>(i) / static_cast<double>(count - 1));
+  }
+};
+
+/// Positions at equal steps along both sides, row by row from the south, in the CRS of the client.
 struct Grid {
-  Window box{};
-  std::size_t columns = 1, rows = 1;
+  Side x, y;
 
-  [[nodiscard]] double x(std::size_t column) const {
-    return box.min_x + (box.max_x - box.min_x) * share(column, columns);
-  }
-  [[nodiscard]] double y(std::size_t row) const {
-    return box.min_y + (box.max_y - box.min_y) * share(row, rows);
-  }
-
- private:
-  static double share(std::size_t i, std::size_t n) {
-    return n == 1 ? 0.0 : static_cast<double>(i) / static_cast<double>(n - 1);
+  [[nodiscard]] std::size_t size() const { return x.count * y.count; }
+  [[nodiscard]] MapPoint at(std::size_t column, std::size_t row) const {
+    return {x.at(column), y.at(row)};
   }
 };
 
@@ -67,25 +75,106 @@ Window box_of(const Polygon& polygon) {
   return box;
 }
 
-Grid grid_of(const Asked& asked, const Polygon& polygon) {
-  Grid grid{box_of(polygon), 1, 1};
-  const double width = grid.box.max_x - grid.box.min_x, height = grid.box.max_y - grid.box.min_y;
-  const double step = std::max(width, height) / kStepsOfGrid;
-  const auto steps_along = [&](const char* name, double length) {
-    const auto otherwise =
-        static_cast<std::uint64_t>(step > 0 ? std::max(1.0, std::ceil(length / step)) : 1.0);
-    const std::uint64_t steps = asked.question.count(name).value_or(otherwise);
-    if (steps >= 1 && steps <= asked.options.question.points) return steps + 1;
+std::size_t corners_of(const Polygon& polygon) {
+  std::size_t corners = 0;
+  for (const auto& ring : polygon.rings) corners += ring.size();
+  return corners;
+}
+
+/// The polygon that `coords` holds. Across the antimeridian its longitudes go on beyond 180.
+Polygon polygon_of(const Asked& asked, const Places& places) {
+  Polygon polygon = polygon_of_wkt(asked.question.needed("coords"), "coords");
+  check_count(corners_of(polygon), asked.options.question.points, "positions", "points", "coords");
+  for (auto& ring : polygon.rings) places.go_on(ring, polygon.rings[0][0].x);
+  return polygon;
+}
+
+/// So many steps along a side as one of this length comes next to, one at least where it has a length.
+double steps_of(double length, double step) {
+  return length > 0 && step > 0 ? std::max(1.0, std::round(length / step)) : 0.0;
+}
+
+/// A number of positions, both ends included, within the limit.
+std::size_t checked_count(const Asked& asked, const char* name, double count) {
+  const std::size_t most = asked.options.question.points;
+  if (count <= static_cast<double>(most)) return static_cast<std::size_t>(count);
+  throw http::Problem(
+      413, "a grid has at most " + std::to_string(most) + " positions along a side; ask in parts")
+      .at(name)
+      .beyond("points");
+}
+
+/// The positions of the terrain's samples along a side, at equal steps.
+/// @param anchor  Such a position, of which the next one is `step` away.
+Side stored_side(const Asked& asked, const char* name, Side side, double anchor, double step) {
+  constexpr double kSame = 1e-6;  // Of a step: what a transformation rounds.
+  const double first = std::ceil((side.first - anchor) / step - kSame);
+  const double last = std::floor((side.last - anchor) / step + kSame);
+  if (!(first <= last)) {
+    throw http::Problem(400,
+                        "no sample of the terrain lies along this side of the area; ask for a "
+                        "number of positions")
+        .at(name);
+  }
+  return {anchor + first * step, anchor + last * step,
+          checked_count(asked, name, last - first + 1)};
+}
+
+/// A sample next to the middle of a box in the client's CRS, and how far the next ones are from it
+/// along x and along y. In another CRS than the terrain's they are so in the middle alone.
+struct StoredSample {
+  MapPoint at, step;
+};
+
+StoredSample stored_sample(const Asked& asked, const Places& places, const Window& box) {
+  const std::optional<MapPoint> pixel = tools::own_pixel_of(asked.terrain().store());
+  if (!pixel) {
     throw http::Problem(
-        steps == 0 ? 400 : 413,
-        "a grid has 1 to " + std::to_string(asked.options.question.points) + " steps along a side")
-        .at(name)
-        .beyond("points");
-  };
-  grid.columns = steps_along("resolution-x", width);
-  grid.rows = steps_along("resolution-y", height);
-  check_count(grid.columns * grid.rows, asked.options.question.points, "positions", "points",
-              "resolution-x");
+        400,
+        "this terrain was not built from a raster and has no resolution of its own; "
+        "ask for a number of positions")
+        .at(asked.question.count("resolution-x") == 0 ? "resolution-x" : "resolution-y");
+  }
+  const AffineMap& map = asked.facts().map;
+  const MapPoint middle{(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2};
+  const MapPoint at = map.to_grid(places.to_terrain(middle));
+  const double x = std::round(at.x), y = std::round(at.y);
+  std::array<MapPoint, 3> samples{map.to_map(x, y), map.to_map(x + 1, y), map.to_map(x, y + 1)};
+  places.from_terrain(samples);
+  places.go_on(samples, middle.x);
+  const auto& [here, east, north] = samples;
+  return {here,
+          {std::max(std::abs(east.x - here.x), std::abs(north.x - here.x)),
+           std::max(std::abs(east.y - here.y), std::abs(north.y - here.y))}};
+}
+
+Grid grid_of(const Asked& asked, const Places& places, const Polygon& polygon) {
+  constexpr const char *kX = "resolution-x", *kY = "resolution-y";
+  const Window box = box_of(polygon);
+  const double width = box.max_x - box.min_x, height = box.max_y - box.min_y;
+  std::optional<std::uint64_t> columns = asked.question.count(kX), rows = asked.question.count(kY);
+  if (!columns && rows == 0U) columns = 0;
+  if (!rows && columns == 0U) rows = 0;
+  Grid grid{{box.min_x, box.max_x}, {box.min_y, box.max_y}};
+  if (columns == 0U || rows == 0U) {
+    const StoredSample sample = stored_sample(asked, places, box);
+    if (columns == 0U) grid.x = stored_side(asked, kX, grid.x, sample.at.x, sample.step.x);
+    if (rows == 0U) grid.y = stored_side(asked, kY, grid.y, sample.at.y, sample.step.y);
+  }
+  // Squares, of the side that is told, or else of a step along the longer one.
+  double step = std::max(width, height) / kStepsOfGrid;
+  if (columns > 1U) step = width / static_cast<double>(*columns - 1);
+  if (rows > 1U) step = height / static_cast<double>(*rows - 1);
+  if (columns != 0U) {
+    const double otherwise = steps_of(width, step) + 1;
+    grid.x.count = checked_count(asked, kX, columns ? static_cast<double>(*columns) : otherwise);
+  }
+  if (rows != 0U) {
+    const double otherwise = steps_of(height, step) + 1;
+    grid.y.count = checked_count(asked, kY, rows ? static_cast<double>(*rows) : otherwise);
+  }
+  check_count(grid.x.count * grid.y.count, asked.options.question.points, "positions", "points",
+              kX);
   return grid;
 }
 
@@ -102,9 +191,9 @@ bool is_within(const Polygon& polygon, MapPoint p) {
   return is_inside;
 }
 
-Json axis_json(double start, double stop, std::size_t count) {
-  if (count == 1) return {{"values", {start}}};
-  return {{"start", start}, {"stop", stop}, {"num", count}};
+Json axis_json(const Side& side) {
+  if (side.count == 1) return {{"values", {side.first}}};
+  return {{"start", side.first}, {"stop", side.last}, {"num", side.count}};
 }
 
 /// The positions of a grid that lie within a polygon.
@@ -117,13 +206,13 @@ struct Inner {
 /// Cost: positions of the grid times corners, both within the limit `points`.
 Inner inner_of(const Asked& asked, const Grid& grid, const Polygon& polygon) {
   Inner inner;
-  inner.number.assign(grid.columns * grid.rows, Inner::kNone);
-  for (std::size_t row = 0; row < grid.rows; ++row) {
+  inner.number.assign(grid.size(), Inner::kNone);
+  for (std::size_t row = 0; row < grid.y.count; ++row) {
     stop_if_asked(asked.limits.stop, "the area");
-    for (std::size_t column = 0; column < grid.columns; ++column) {
-      const MapPoint p{grid.x(column), grid.y(row)};
+    for (std::size_t column = 0; column < grid.x.count; ++column) {
+      const MapPoint p = grid.at(column, row);
       if (!is_within(polygon, p)) continue;
-      inner.number[row * grid.columns + column] = inner.at.size();
+      inner.number[row * grid.x.count + column] = inner.at.size();
       inner.at.push_back(p);
     }
   }
@@ -132,9 +221,8 @@ Inner inner_of(const Asked& asked, const Grid& grid, const Polygon& polygon) {
 
 Coverage coverage_of(const Grid& grid, const Inner& inner, const LocateResult& result) {
   Coverage coverage;
-  coverage.grid_axes = {{"x", axis_json(grid.box.min_x, grid.box.max_x, grid.columns)},
-                        {"y", axis_json(grid.box.min_y, grid.box.max_y, grid.rows)}};
-  coverage.shape = {grid.rows, grid.columns};
+  coverage.grid_axes = {{"x", axis_json(grid.x)}, {"y", axis_json(grid.y)}};
+  coverage.shape = {grid.y.count, grid.x.count};
   coverage.axes = {"y", "x"};
   coverage.size = inner.number.size();
   coverage.value = [&inner, &result](std::size_t i) {
@@ -145,12 +233,6 @@ Coverage coverage_of(const Grid& grid, const Inner& inner, const LocateResult& r
   return coverage;
 }
 
-std::size_t corners_of(const Polygon& polygon) {
-  std::size_t corners = 0;
-  for (const auto& ring : polygon.rings) corners += ring.size();
-  return corners;
-}
-
 }  // namespace
 
 std::span<const ParameterFact> area_parameters() noexcept { return kAreaParameters; }
@@ -159,12 +241,12 @@ http::Response answer_area(const Asked& asked) {
   static_cast<void>(asked_names(asked.question));
   const OfferedFormat& format = format_of(asked, kAreaFormats);
   const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
-  const Polygon polygon = polygon_of_wkt(asked.question.needed("coords"), "coords");
-  check_count(corners_of(polygon), asked.options.question.points, "positions", "points", "coords");
-  const Grid grid = grid_of(asked, polygon);
-  const Inner inner = inner_of(asked, grid, polygon);
+  const Polygon polygon = polygon_of(asked, places);
+  const Grid grid = grid_of(asked, places, polygon);
+  Inner inner = inner_of(asked, grid, polygon);
   std::vector<MapPoint> at = inner.at;
   places.to_terrain(at);
+  places.wrap(inner.at);
   LocateRequest request;
   request.detail = detail_of(asked);
   request.limits = engine_limits(asked, inner.number.size() * kAnswerBytesOfPlace);

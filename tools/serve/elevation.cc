@@ -14,6 +14,7 @@
 #include "tools/facts/answers.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
+#include "tools/serve/geodesic_path.h"
 #include "tools/serve/polyline.h"
 #include "tools/serve/questions.h"
 
@@ -23,19 +24,33 @@ namespace {
 
 using http::Problem;
 
+/// What others' clients, and libraries below them, put into every request.
+constexpr ParameterFact ignored(std::string_view name) {
+  return {name, "string", "accepted and without effect"};
+}
+
 constexpr auto kElevationParameters = std::to_array<ParameterFact>(
     {{"locations", "string", "lat,lng|lat,lng... or an encoded polyline",
       "34.34,-118.3|34.35,-118.29"},
      {"path", "string", "instead of locations; with samples, positions along it"},
-     {"samples", "integer", "positions at equal distances along the path or the locations", "10"},
+     {"samples", "integer",
+      "positions at equal distances along the path or the locations, by the shortest way over "
+      "ground",
+      "10"},
      {"interpolation", "string", "accepted and without effect: a TIN is linear", "bilinear"},
      {"nodata_value", "string", "what stands for no elevation: null, nan or a whole number",
       "null"},
      {"format", "string", "json or geojson", "json"},
-     {"key", "string", "accepted and without effect"},
-     {"sensor", "string", "accepted and without effect"},
-     {"language", "string", "accepted and without effect"},
-     {"region", "string", "accepted and without effect"},
+     ignored("key"),
+     ignored("client"),
+     ignored("signature"),
+     ignored("channel"),
+     ignored("solution_channel"),
+     ignored("sensor"),
+     ignored("language"),
+     ignored("region"),
+     ignored("units"),
+     ignored("_"),
      {"error", "number", "certified error allowed, in metres; without it: full detail", "5"}});
 
 /// A position of latitude and longitude, as MapPoint{longitude, latitude}.
@@ -64,27 +79,6 @@ std::vector<MapPoint> places_of(std::string_view text) {
   return places;
 }
 
-/// So many positions at equal distances along a path, over a sphere's latitudes and longitudes.
-std::vector<MapPoint> along(const std::vector<MapPoint>& path, std::uint64_t samples) {
-  std::vector<double> reached{0.0};
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const double shrink = std::cos((path[i].y + path[i - 1].y) / 2 * 3.14159265358979323846 / 180);
-    reached.push_back(reached.back() +
-                      std::hypot((path[i].x - path[i - 1].x) * shrink, path[i].y - path[i - 1].y));
-  }
-  std::vector<MapPoint> places;
-  std::size_t i = 1;
-  for (std::uint64_t s = 0; s < samples; ++s) {
-    const double at = reached.back() * static_cast<double>(s) / static_cast<double>(samples - 1);
-    while (i + 1 < path.size() && reached[i] < at) ++i;
-    const double length = reached[i] - reached[i - 1];
-    const double share = length > 0 ? std::clamp((at - reached[i - 1]) / length, 0.0, 1.0) : 0.0;
-    places.push_back({path[i - 1].x + share * (path[i].x - path[i - 1].x),
-                      path[i - 1].y + share * (path[i].y - path[i - 1].y)});
-  }
-  return places;
-}
-
 std::vector<MapPoint> asked_places(const Asked& asked) {
   const Question& q = asked.question;
   if (q.has("locations") == q.has("path")) {
@@ -101,7 +95,7 @@ std::vector<MapPoint> asked_places(const Asked& asked) {
   if (*samples < 2 || given.size() < 2) {
     throw Problem(400, "a path has two positions at least, and so have its samples").at("samples");
   }
-  return along(given, *samples);
+  return along_geodesics(given, *samples);
 }
 
 /// What stands where there is no elevation.
@@ -235,13 +229,22 @@ http::Response answer_elevation(const Asked& asked) {
   return response;
 }
 
-http::Response refuse_elevation(const Problem& problem) {
-  http::Response response = json_response({{"error", problem.detail()},
-                                           {"error_message", problem.detail()},
-                                           {"results", Json::array()},
-                                           {"status", "INVALID_REQUEST"}});
-  response.status = problem.status();
-  return response;
+void refuse_elevation(http::Response& refusal) {
+  const Json problem = Json::parse(refusal.body);
+  const bool is_denied = refusal.status == 401 || refusal.status == 403;
+  const bool is_overload = refusal.status == 429 || refusal.status == 503;
+  Json json = {{"error", problem["detail"]},
+               {"error_message", problem["detail"]},
+               {"results", Json::array()},
+               {"status", is_denied               ? "REQUEST_DENIED"
+                          : is_overload           ? "OVER_QUERY_LIMIT"
+                          : refusal.status >= 500 ? "UNKNOWN_ERROR"
+                                                  : "INVALID_REQUEST"}};
+  for (const char* name : {"parameter", "limit"}) {
+    if (problem.contains(name)) json[name] = problem[name];
+  }
+  refusal.content_type = kJson;
+  refusal.body = json.dump() + "\n";
 }
 
 }  // namespace ptin::serve

@@ -46,8 +46,9 @@ struct Endpoint {
   Reserves reserves;
   /// May throw http::Problem, or Error as the engine.
   http::Response (*answer)(const Asked& asked);
-  /// A refusal as the clients of this question expect it; null: as the Problem has it.
-  http::Response (*refusal)(const http::Problem& problem) = nullptr;
+  /// Gives a refusal, which is as http::Problem has it, the form that clients of this question expect;
+  /// null: it stays. Whatever refuses a request of this path: the question, or the server before it.
+  void (*refusal)(http::Response& refusal) = nullptr;
 };
 
 /// Every question, in the order of the documentation.

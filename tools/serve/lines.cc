@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/serve/lines.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 
 #include "tools/http/problem.h"
 #include "tools/serve/wkt_places.h"
@@ -14,14 +18,40 @@ namespace {
 
 using Lines = std::vector<std::vector<MapPoint>>;
 
-/// The lines of `coords`, in the terrain's CRS.
-Lines lines_of(const Asked& asked, const Places& places) {
+/// Lines in the terrain's CRS, with the number of the client's line that each of them is: one that
+/// leaves a terrain around the whole Earth at one end and enters it at the other is there twice.
+struct LinesThere {
+  Lines lines;
+  std::vector<std::uint32_t> number;
+};
+
+LinesThere lines_of(const Asked& asked, const Places& places) {
   Lines lines = lines_of_wkt(asked.question.needed("coords"), "coords");
   std::size_t positions = 0;
   for (const std::vector<MapPoint>& line : lines) positions += line.size();
   check_count(positions, asked.options.question.points, "positions", "points", "coords");
-  for (std::vector<MapPoint>& line : lines) places.to_terrain(line);
-  return lines;
+  LinesThere there;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (std::vector<MapPoint>& line : places.line_to_terrain(std::move(lines[i]))) {
+      there.lines.push_back(std::move(line));
+      there.number.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  return there;
+}
+
+/// Makes one line of those that are the same one in several turns around the Earth: of each what lies
+/// in the terrain's turn.
+void join_turns(std::vector<ProfilePoint>& points, const LinesThere& there, const Places& places) {
+  std::vector<std::size_t> copies(there.number.empty() ? 0 : there.number.back() + 1);
+  for (const std::uint32_t number : there.number) ++copies[number];
+  std::erase_if(points, [&](ProfilePoint& p) {
+    p.line = there.number[p.line];
+    return copies[p.line] > 1 && !places.is_in_turn_of_terrain(p.position.x);
+  });
+  std::stable_sort(points.begin(), points.end(), [](const ProfilePoint& a, const ProfilePoint& b) {
+    return a.line != b.line ? a.line < b.line : a.distance < b.distance;
+  });
 }
 
 /// Distances as the command line has them: in map units, of degrees in metres.
@@ -32,10 +62,12 @@ std::function<double(MapPoint, MapPoint)> distance_of(const Collection& collecti
   };
 }
 
-double length_of(const Lines& lines, const Collection& collection) {
+double length_of(const LinesThere& there, const Collection& collection) {
   const auto distance = distance_of(collection);
   double length = 0.0;
-  for (const std::vector<MapPoint>& line : lines) {
+  for (std::size_t l = 0; l < there.lines.size(); ++l) {
+    if (l > 0 && there.number[l] == there.number[l - 1]) continue;
+    const std::vector<MapPoint>& line = there.lines[l];
     for (std::size_t i = 1; i < line.size(); ++i) {
       const MapPoint &a = line[i - 1], &b = line[i];
       length += distance ? distance(a, b) : std::hypot(b.x - a.x, b.y - a.y);
@@ -61,8 +93,8 @@ double station_step_of(const Asked& asked, double length) {
 
 AlongLines walk_lines(const Asked& asked, const Places& places) {
   const Collection& collection = *asked.collection;
-  const Lines lines = lines_of(asked, places);
-  const double length = length_of(lines, collection);
+  const LinesThere there = lines_of(asked, places);
+  const double length = length_of(there, collection);
   if (length == 0) throw http::Problem(400, "no line has a length").at("coords");
   ProfileRequest request;
   request.ground_distance = distance_of(collection);
@@ -71,7 +103,10 @@ AlongLines walk_lines(const Asked& asked, const Places& places) {
   request.limits = engine_limits(asked);
   AlongLines along;
   along.length_unit = collection.ground.geographic ? "metre" : collection.crs.horizontal_unit;
-  along.profile = asked.terrain().profile(lines, request);
+  along.profile = asked.terrain().profile(there.lines, request);
+  if (there.number.back() + 1 < there.number.size()) {
+    join_turns(along.profile.points, there, places);
+  }
   check_count(along.profile.points.size(), asked.options.question.vertices, "points of the profile",
               "vertices", "coords");
   along.client.reserve(along.profile.points.size());

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 #include <vector>
 
 #include <ogr_spatialref.h>
 
 #include "tools/http/problem.h"
+#include "tools/serve/transformations.h"
 #include "tools/tiles/curve_range.h"
 
 namespace ptin::serve {
@@ -19,14 +19,11 @@ namespace {
 
 constexpr std::string_view kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
 constexpr std::string_view kEpsg = "http://www.opengis.net/def/crs/EPSG/0/";
+constexpr std::string_view kEpsgUrn = "urn:ogc:def:crs:EPSG::";
 /// Steps along a side of a window: a straight side may be bent in the other CRS.
 constexpr int kStepsOfSide = 32;
 constexpr double kQuarterTurn = 90, kHalfTurn = 180, kTurn = 360;  // degrees
 
-using Transformation = std::unique_ptr<OGRCoordinateTransformation>;
-struct BothWays {
-  Transformation there, back;
-};
 /// One of them, and the one against it.
 struct Way {
   OGRCoordinateTransformation *there, *back;
@@ -38,10 +35,10 @@ Way back(const BothWays& ways) { return {ways.back.get(), ways.there.get()}; }
 std::optional<std::string> name_of(const std::string& asked) {
   if (asked == "native") return std::nullopt;
   if (asked == "CRS84" || asked == "OGC:CRS84" || asked == kCrs84) return "OGC:CRS84";
-  const std::string_view text = asked;
   std::string_view code;
-  if (text.starts_with("EPSG:")) code = text.substr(5);
-  if (text.starts_with(kEpsg)) code = text.substr(kEpsg.size());
+  for (const std::string_view before : {std::string_view("EPSG:"), kEpsg, kEpsgUrn}) {
+    if (asked.starts_with(before)) code = std::string_view(asked).substr(before.size());
+  }
   const bool is_number = !code.empty() && code.size() < 8 &&
                          code.find_first_not_of("0123456789") == std::string_view::npos;
   if (is_number) return "EPSG:" + std::string(code);
@@ -49,33 +46,6 @@ std::optional<std::string> name_of(const std::string& asked) {
                       "no CRS that is known here; expected CRS84, native, EPSG:CODE, or the "
                       "URI of one of them at http://www.opengis.net/def/crs/")
       .at("crs");
-}
-
-BothWays make_both_ways(const std::string& client, const std::string& wkt) {
-  OGRSpatialReference from, to;
-  if (from.SetFromUserInput(client.c_str()) != OGRERR_NONE ||
-      to.importFromWkt(wkt.c_str()) != OGRERR_NONE) {
-    return {};
-  }
-  for (OGRSpatialReference* plane : {&from, &to}) {
-    plane->DemoteTo2D(nullptr);
-    plane->StripVertical();
-    plane->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  }
-  return {Transformation(OGRCreateCoordinateTransformation(&from, &to)),
-          Transformation(OGRCreateCoordinateTransformation(&to, &from))};
-}
-
-/// Making a transformation takes milliseconds, and none may be used by two threads: each thread
-/// keeps those that it made.
-std::shared_ptr<BothWays> both_ways(const std::string& client, const std::string& wkt) {
-  static thread_local std::map<std::pair<std::string, std::string>, std::shared_ptr<BothWays>> made;
-  constexpr std::size_t kMostKept = 64;  // A client may ask for any of some thousand codes.
-  const std::pair key{client, wkt};
-  if (made.size() >= kMostKept && made.count(key) == 0) made.clear();
-  const auto [at, is_new] = made.try_emplace(key);
-  if (is_new) at->second = std::make_shared<BothWays>(make_both_ways(client, wkt));
-  return at->second->there && at->second->back ? at->second : nullptr;
 }
 
 /// Whether x of a CRS is a longitude, and whether that is in degrees.
@@ -112,8 +82,30 @@ std::vector<MapPoint> along_side(const Window& w, std::size_t side) {
   return path;
 }
 
-/// The multiple of a turn that brings a longitude nearest to another one.
-double turns_towards(double x, double other) { return kTurn * std::round((other - x) / kTurn); }
+/// The multiple of a turn that brings an x nearest to another one.
+double turns_towards(double x, double other, double turn = kTurn) {
+  return turn * std::round((other - x) / turn);
+}
+
+/// The turn of x in the plane of a cylinder around the Earth, such as Mercator's: x grows in
+/// proportion to longitude alone. 0 of any other plane.
+/// @param way  To longitude and latitude, and back.
+double turn_of_cylinder(const Way& way, const Window& bounds) {
+  constexpr double kStep = 0.5, kSame = 1e-11;
+  MapPoint middle{(bounds.min_x + bounds.max_x) / 2, (bounds.min_y + bounds.max_y) / 2};
+  if (!transform(*way.there, middle)) return 0;
+  const double north = middle.y > 0 ? -kStep : kStep;
+  const auto step_east = [&](double lon, double lat) {
+    MapPoint a{lon, lat}, b{lon + kStep, lat};
+    if (!transform(*way.back, a) || !transform(*way.back, b) || a.y != b.y) return 0.0;
+    return b.x - a.x;
+  };
+  for (const double lon : {middle.x, middle.x - kStep}) {  // One of them is not across the seam.
+    const double step = step_east(lon, middle.y), other = step_east(lon, middle.y + north);
+    if (step > 0 && std::abs(step - other) < kSame * step) return step / kStep * kTurn;
+  }
+  return 0;
+}
 
 /// Whether a pole is one position of a CRS, and lies in a window of it or on its border.
 /// @param way  From longitude and latitude.
@@ -128,17 +120,17 @@ bool holds_pole(OGRCoordinateTransformation& way, const Window& w, double lat) {
 
 /// The box that holds a window's sides in the other CRS; none where one of their positions has none
 /// there.
-/// @param turns  x there is a longitude in degrees. It jumps by a turn at the antimeridian, which is
-///               taken out along the sides: the box may reach beyond 180.
+/// @param turn  Of x there, 360 of a longitude in degrees; 0: none. x jumps by it at the
+///              antimeridian, which is taken out along the sides: the box may reach beyond 180.
 std::optional<Window> box_of_sides(OGRCoordinateTransformation& way, const Window& window,
-                                   bool turns) {
+                                   double turn) {
   tools::CurveRange x, y;
   std::optional<double> last;
   for (std::size_t side = 0; side < 4; ++side) {
     std::vector<double> xs, ys;
     for (MapPoint p : along_side(window, side)) {
       if (!transform(way, p)) return std::nullopt;
-      if (turns && last) p.x += turns_towards(p.x, *last);
+      if (turn > 0 && last) p.x += turns_towards(p.x, *last, turn);
       last = p.x;
       xs.push_back(p.x);
       ys.push_back(p.y);
@@ -151,9 +143,9 @@ std::optional<Window> box_of_sides(OGRCoordinateTransformation& way, const Windo
 
 /// The box that holds a window in the other CRS, as above. A pole within the window makes it all
 /// longitudes, up to the pole.
-std::optional<Window> box_around(const Way& way, const Window& window, bool turns) {
-  std::optional<Window> box = box_of_sides(*way.there, window, turns);
-  if (!box || !turns) return box;
+std::optional<Window> box_around(const Way& way, const Window& window, double turn) {
+  std::optional<Window> box = box_of_sides(*way.there, window, turn);
+  if (!box || turn != kTurn) return box;
   const bool north = holds_pole(*way.back, window, kQuarterTurn);
   const bool south = holds_pole(*way.back, window, -kQuarterTurn);
   box->min_y = south ? -kQuarterTurn : std::max(box->min_y, -kQuarterTurn);
@@ -188,20 +180,21 @@ bool is_in_degrees(const CrsFacts& crs) {
 }  // namespace
 
 struct Places::Inside {
-  std::shared_ptr<BothWays> ways;  ///< Null: nothing is transformed.
+  std::shared_ptr<const BothWays> ways;  ///< Null: nothing is transformed.
 };
 
 Places::Places(const CrsFacts& terrain, const std::string& asked,
                const std::optional<Window>& bounds)
-    : inside_(std::make_unique<Inside>()), turns_(is_in_degrees(terrain)) {
-  if (turns_) bounds_ = bounds;
+    : inside_(std::make_unique<Inside>()),
+      turn_(is_in_degrees(terrain) ? kTurn : 0),
+      bounds_(bounds) {
   const bool is_known = !terrain.wkt.empty();
   const std::optional<std::string> name =
       asked.empty() && !is_known ? std::nullopt : name_of(asked.empty() ? "CRS84" : asked);
   if (!name) {
     uri_ = uri_of(terrain);
     geographic_ = terrain.geographic;
-    client_turns_ = turns_;
+    client_turns_ = turn_ > 0;
     return;
   }
   if (!is_known) {
@@ -209,10 +202,8 @@ Places::Places(const CrsFacts& terrain, const std::string& asked,
         .at("crs");
   }
   inside_->ways = both_ways(*name, terrain.wkt);
-  if (inside_->ways == nullptr) {
-    throw http::Problem(400, "there is no transformation between " + *name +
-                                 " and the CRS of this collection; ask with crs=native")
-        .at("crs");
+  if (bounds && !terrain.geographic) {
+    turn_ = turn_of_cylinder(back(*both_ways("OGC:CRS84", terrain.wkt)), *bounds);
   }
   uri_ = *name == "OGC:CRS84" ? std::string(kCrs84) : std::string(kEpsg) + name->substr(5);
   const Longitudes longitudes =
@@ -234,20 +225,34 @@ bool Places::is_north_first() const {
 }
 
 double Places::turned(double x) const noexcept {
-  if (!bounds_) return x;
-  // Between -180 and 180 both a client and a terrain are where they say.
-  const bool is_plain = std::abs(x) <= kHalfTurn && std::abs(bounds_->min_x) <= kHalfTurn &&
-                        std::abs(bounds_->max_x) <= kHalfTurn;
-  return is_plain ? x : x + turns_towards(x, (bounds_->min_x + bounds_->max_x) / 2);
+  if (turn_ == 0 || !bounds_ || (x >= bounds_->min_x && x <= bounds_->max_x)) return x;
+  return x + turns_towards(x, (bounds_->min_x + bounds_->max_x) / 2, turn_);
+}
+
+std::vector<double> Places::shifts_onto_terrain(double low, double high) const {
+  if (turn_ == 0 || !bounds_) return {0.0};
+  std::vector<double> shifts;
+  const double first = std::ceil((bounds_->min_x - high) / turn_);
+  const double last = std::floor((bounds_->max_x - low) / turn_);
+  for (double k = first; k <= last; ++k) {
+    const double shift = k * turn_, from = low + shift, to = high + shift;
+    if (from >= bounds_->min_x && to <= bounds_->max_x) return {shift};
+    const bool only_touches = from == bounds_->max_x || to == bounds_->min_x;
+    if (!only_touches) shifts.push_back(shift);
+  }
+  if (shifts.empty()) shifts.push_back(turned(low) - low);
+  return shifts;
 }
 
 void Places::to_terrain(std::span<MapPoint> places, std::string_view parameter) const {
   if (is_native()) return;
+  transform_to_terrain(places, parameter);
+  for (MapPoint& place : places) place.x = turned(place.x);
+}
+
+void Places::transform_to_terrain(std::span<MapPoint> places, std::string_view parameter) const {
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (transform(*inside_->ways->there, places[i])) {
-      places[i].x = turned(places[i].x);
-      continue;
-    }
+    if (transform(*inside_->ways->there, places[i])) continue;
     throw http::Problem(400,
                         "position " + std::to_string(i + 1) +
                             " is nowhere in the CRS of this collection; expected x (longitude) "
@@ -259,6 +264,46 @@ void Places::to_terrain(std::span<MapPoint> places, std::string_view parameter) 
 MapPoint Places::to_terrain(MapPoint place, std::string_view parameter) const {
   to_terrain({&place, 1}, parameter);
   return place;
+}
+
+std::vector<std::vector<MapPoint>> Places::line_to_terrain(std::vector<MapPoint> line,
+                                                           std::string_view parameter) const {
+  if (is_native() || line.empty()) return {std::move(line)};
+  transform_to_terrain(line, parameter);
+  if (turn_ == 0) return {std::move(line)};
+  double low = line[0].x, high = line[0].x;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    line[i].x += turns_towards(line[i].x, line[i - 1].x, turn_);
+    low = std::min(low, line[i].x);
+    high = std::max(high, line[i].x);
+  }
+  std::vector<std::vector<MapPoint>> lines;
+  for (const double shift : shifts_onto_terrain(low, high)) {
+    lines.push_back(line);
+    for (MapPoint& p : lines.back()) p.x += shift;
+  }
+  return lines;
+}
+
+bool Places::is_in_turn_of_terrain(double x) const noexcept {
+  if (turn_ == 0 || !bounds_) return true;
+  const double from_middle = x - (bounds_->min_x + bounds_->max_x) / 2;
+  return from_middle >= -turn_ / 2 && from_middle < turn_ / 2;
+}
+
+void Places::go_on(std::span<MapPoint> line, double from) const {
+  if (!client_turns_ || is_native()) return;
+  for (MapPoint& p : line) {
+    p.x += turns_towards(p.x, from);
+    from = p.x;
+  }
+}
+
+void Places::wrap(std::span<MapPoint> places) const {
+  if (!client_turns_ || is_native()) return;
+  for (MapPoint& p : places) {
+    if (std::abs(p.x) > kHalfTurn) p.x += turns_towards(p.x, 0);
+  }
 }
 
 void Places::from_terrain(std::span<MapPoint> places) const {
@@ -286,7 +331,7 @@ Window Places::to_terrain(const Window& given) const {
     window.max_x += kTurn;
   }
   if (!is_native()) {
-    const std::optional<Window> box = box_around(forth(*inside_->ways), window, turns_);
+    const std::optional<Window> box = box_around(forth(*inside_->ways), window, turn_);
     if (!box) {
       throw http::Problem(400,
                           "the window reaches where the CRS of this collection has no positions; "
@@ -295,27 +340,36 @@ Window Places::to_terrain(const Window& given) const {
     }
     window = *box;
   }
-  if (!bounds_) return window;
-  if (window.max_x - window.min_x >= kTurn) {  // Every longitude, in whatever turn.
+  if (turn_ == 0 || !bounds_) return window;
+  if (window.max_x - window.min_x >= turn_) {  // Every longitude, in whatever turn.
     return {bounds_->min_x, window.min_y, bounds_->max_x, window.max_y};
   }
-  const double middle = (window.min_x + window.max_x) / 2;
-  const double off = turned(middle) - middle;
-  return {window.min_x + off, window.min_y, window.max_x + off, window.max_y};
+  const std::vector<double> shifts = shifts_onto_terrain(window.min_x, window.max_x);
+  if (shifts.size() > 1) {
+    throw http::Problem(400,
+                        "the window lies on both sides of the longitude at which this terrain "
+                        "begins and ends; ask for each side by itself")
+        .at("bbox");
+  }
+  return {window.min_x + shifts[0], window.min_y, window.max_x + shifts[0], window.max_y};
 }
 
 std::optional<Window> Places::from_terrain(const Window& window) const {
   if (is_native()) return window;
-  const std::optional<Window> box = box_around(back(*inside_->ways), window, client_turns_);
+  const std::optional<Window> box =
+      box_around(back(*inside_->ways), window, client_turns_ ? kTurn : 0);
   return box && client_turns_ ? wrapped(*box) : box;
 }
 
 std::optional<Window> lon_lat_of(const Window& window, const CrsFacts& terrain) {
   if (terrain.wkt.empty()) return std::nullopt;
-  const std::shared_ptr<BothWays> ways = both_ways("OGC:CRS84", terrain.wkt);
-  if (ways == nullptr) return std::nullopt;
-  const std::optional<Window> box = box_around(back(*ways), window, true);
-  return box ? std::optional(wrapped(*box)) : std::nullopt;
+  try {
+    const std::optional<Window> box =
+        box_around(back(*both_ways("OGC:CRS84", terrain.wkt)), window, kTurn);
+    return box ? std::optional(wrapped(*box)) : std::nullopt;
+  } catch (const http::Problem&) {  // There is no transformation.
+    return std::nullopt;
+  }
 }
 
 std::string uri_of(const CrsFacts& terrain) {

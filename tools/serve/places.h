@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
@@ -20,11 +21,11 @@ class Places {
  public:
   /// @param asked  "CRS84" or its URI, "native", or "EPSG:25832" or its URI; empty: CRS84, or native
   ///               where the terrain's CRS is not known.
-  /// @param bounds Of the terrain, map units. Where they are degrees, a longitude of the client is
-  ///               taken into their turn of the circle: -179.96 is 180.04 of a terrain that lies
-  ///               across the antimeridian.
-  /// @throws http::Problem 400  no CRS that is known here; the terrain's is not known; there is no
-  ///                            transformation
+  /// @param bounds Of the terrain, map units. Where their x turns around the Earth (degrees, and the
+  ///               planes of cylinders such as Mercator's), a position of the client is taken into
+  ///               their turn: -179.96 is 180.04 of a terrain that lies across the antimeridian.
+  /// @throws http::Problem 400  no CRS that is known here; the terrain's is not known; as both_ways()
+  ///                       503  as both_ways()
   Places(const CrsFacts& terrain, const std::string& asked,
          const std::optional<Window>& bounds = std::nullopt);
   ~Places();
@@ -35,12 +36,28 @@ class Places {
   /// @throws http::Problem 400  no position of the terrain's CRS; names the first one
   void to_terrain(std::span<MapPoint> places, std::string_view parameter = "coords") const;
   [[nodiscard]] MapPoint to_terrain(MapPoint place, std::string_view parameter = "coords") const;
+  /// A line, whose every vertex is reached from the one before it the shorter way around the Earth;
+  /// in `native` as the numbers say. Its vertices alone are transformed. Where it leaves a terrain
+  /// that goes around the whole Earth at one end and enters it at the other, it is given once for
+  /// each, a turn apart, and is_in_turn_of_terrain() tells which part of which counts.
+  /// @throws as to_terrain()
+  [[nodiscard]] std::vector<std::vector<MapPoint>> line_to_terrain(
+      std::vector<MapPoint> line, std::string_view parameter = "coords") const;
+  /// Whether an x of the terrain's CRS lies within half a turn of its middle.
+  [[nodiscard]] bool is_in_turn_of_terrain(double x) const noexcept;
+  /// Takes each longitude of the client to within half a turn of the one before it, the first one of
+  /// `from`: a polygon across the antimeridian does not go around the Earth. Other coordinates, and
+  /// `native` ones, stay.
+  void go_on(std::span<MapPoint> line, double from) const;
+  /// Takes longitudes of the client to -180 to 180, each by itself.
+  void wrap(std::span<MapPoint> places) const;
   /// Positions that have none in the client's CRS become NaN. Of degrees the first one is from -180
   /// to 180, and the others go on from it: a line across the antimeridian does not jump.
   void from_terrain(std::span<MapPoint> places) const;
   /// The smallest window of the terrain's CRS that holds one of the client's, which may lie across
   /// the antimeridian (west larger than east).
-  /// @throws http::Problem 400  it reaches where the terrain's CRS has no positions; it is inverted
+  /// @throws http::Problem 400  it reaches where the terrain's CRS has no positions; it is inverted; it
+  ///                            holds both ends of a terrain that goes around the whole Earth
   [[nodiscard]] Window to_terrain(const Window& window) const;
   /// The window of the client's CRS around one of the terrain's, across the antimeridian as above;
   /// none where a part of it has no positions there.
@@ -56,16 +73,20 @@ class Places {
   [[nodiscard]] bool is_native() const noexcept;
 
  private:
-  /// A longitude of the terrain's CRS in the turn of the circle that the terrain lies in.
+  /// An x of the terrain's CRS in the turn around the Earth that the terrain lies in.
   [[nodiscard]] double turned(double x) const noexcept;
+  /// What is added to a range of x of the terrain's CRS so that it meets the terrain: several where
+  /// it meets it in several turns and lies within it in none.
+  [[nodiscard]] std::vector<double> shifts_onto_terrain(double low, double high) const;
+  void transform_to_terrain(std::span<MapPoint> places, std::string_view parameter) const;
 
   struct Inside;
   std::unique_ptr<Inside> inside_;
   std::string uri_;
   bool geographic_ = false;
-  bool client_turns_ = false;     ///< x of the client is a longitude in degrees.
-  bool turns_ = false;            ///< x of the terrain is a longitude in degrees.
-  std::optional<Window> bounds_;  ///< Of a terrain whose x is one.
+  bool client_turns_ = false;  ///< x of the client is a longitude in degrees.
+  double turn_ = 0;            ///< Of the terrain's x around the Earth; 0: it does not turn.
+  std::optional<Window> bounds_;
 };
 
 /// The window of CRS84 around a window of the terrain's CRS, longitudes from -180 to 180: across the

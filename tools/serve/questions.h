@@ -18,7 +18,7 @@ Answer answer_position, answer_trajectory, answer_area, answer_elevation, answer
     answer_isolines, answer_highest, answer_viewshed, answer_profile, answer_sight, answer_stream,
     answer_file, answer_tiles, answer_tileset, answer_subtree, answer_content;
 /// As clients of Google's Elevation API and of opentopodata expect a refusal.
-[[nodiscard]] http::Response refuse_elevation(const http::Problem& problem);
+void refuse_elevation(http::Response& refusal);
 Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_collections,
     answer_collection;
 

@@ -129,9 +129,17 @@ std::vector<SightPair> pairs_of(const Asked& asked, const Places& places) {
   const std::size_t most = asked.options.question.pairs;
   std::vector<SightPair> pairs = q.has("pairs") ? pairs_of_json(q, most) : pairs_of_coords(q);
   check_count(pairs.size(), most, "pairs", "pairs", "coords");
+  const char* parameter = q.has("pairs") ? "pairs" : "coords";
   for (SightPair& pair : pairs) {
-    pair.a = places.to_terrain(pair.a, q.has("pairs") ? "pairs" : "coords");
-    pair.b = places.to_terrain(pair.b, q.has("pairs") ? "pairs" : "coords");
+    const auto lines = places.line_to_terrain({pair.a, pair.b}, parameter);
+    if (lines.size() > 1) {
+      throw Problem(400,
+                    "a line of sight crosses the longitude at which this terrain begins and ends; "
+                    "it is answered on one side of it alone")
+          .at(parameter);
+    }
+    pair.a = lines[0][0];
+    pair.b = lines[0][1];
   }
   return pairs;
 }

@@ -12,7 +12,10 @@
 #include "tools/error_status.h"
 #include "tools/http/etag.h"
 #include "tools/http/gzip.h"
+#include "tools/http/list_header.h"
+#include "tools/http/preconditions.h"
 #include "tools/http/problem.h"
+#include "tools/http/range.h"
 
 namespace ptin::serve {
 
@@ -239,12 +242,7 @@ Response TerrainService::answer(const Request& request) {
                                                   : "only GET and HEAD are answered here")
         .allow(methods_of(found.endpoint));
   }
-  try {
-    return answer_endpoint(request, found);
-  } catch (const Problem& problem) {
-    if (found.endpoint->refusal == nullptr || problem.status() >= 500) throw;
-    return found.endpoint->refusal(problem);
-  }
+  return answer_endpoint(request, found);
 }
 
 /// What an answer depends on: the file, the question, and what the client takes.
@@ -253,7 +251,7 @@ std::string TerrainService::key_of(const Request& request, const Match& found,
   std::string key = options_.version + "\n" + std::string(found.endpoint->path) + "\n";
   if (collection != nullptr) key += collection->fingerprint + collection->id;
   return key + "\n" + found.rest + "\n" + question.canonical() + "\n" +
-         std::string(request.header("accept").value_or(""));
+         http::list_of(request, "accept");
 }
 
 std::shared_ptr<const Collection> TerrainService::collection_of(const Match& found) const {
@@ -429,7 +427,13 @@ Response TerrainService::failure_told(const Request& request, std::exception_ptr
   }
 }
 
-void TerrainService::finish(const Request&, Response& response) {
+void TerrainService::finish(const Request& request, Response& response) {
+  http::check_preconditions(request, response);
+  http::select_range(request, response);
+  if (response.content_type == http::kProblemJson) {
+    const Endpoint* const asked = match(request).endpoint;
+    if (asked != nullptr && asked->refusal != nullptr) asked->refusal(response);
+  }
   if (!options_.cors_origin.empty()) {
     response.add("Access-Control-Allow-Origin", options_.cors_origin);
     response.add("Access-Control-Expose-Headers",
