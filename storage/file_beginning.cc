@@ -68,10 +68,15 @@ constexpr auto kBeginnings = std::to_array<Beginning>({
     {"{"sv, "a JSON file", "`ptin build` takes GeoJSON"},
 });
 
+/// No control characters, and mostly ASCII, as texts in any encoding of Europe's are.
 bool is_text(std::string_view text) {
-  return std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return c >= ' ' ? c != 0x7f : c == '\t' || c == '\n' || c == '\r';
-  });
+  const auto is_control = [](unsigned char c) {
+    return c == 0x7f || (c < ' ' && c != '\t' && c != '\n' && c != '\r');
+  };
+  const auto beyond_ascii =
+      std::count_if(text.begin(), text.end(), [](unsigned char c) { return c >= 0x80; });
+  return 2 * static_cast<std::size_t>(beyond_ascii) < text.size() &&
+         std::none_of(text.begin(), text.end(), is_control);
 }
 
 bool begins_with(std::string_view text, const std::array<std::uint8_t, 8>& magic) {

@@ -156,7 +156,9 @@ TEST_F(Solid, HasVoidsAsHolesThrough) {
     const Facets refined = read_stl(file("a.stl"));
     expect_closed(refined);
     EXPECT_GT(volume_of(refined), 0);
-    if (more.empty()) EXPECT_NEAR(volume_of(refined), expected, 1e-5 * expected);
+    if (more.empty()) {
+      EXPECT_NEAR(volume_of(refined), expected, 1e-5 * expected);
+    }
     words[0] = "export";
     expect_done(words);
     const Facets exported = read_stl(file("a.stl"));
@@ -196,7 +198,7 @@ TEST_F(Solid, RefusesABaseThatIsNotBelowAndOtherFormats) {
   const std::string terrain = store([](int, int) { return false; });
   const std::string out = file("a.stl");
   for (const char* command : {"refine", "export"}) {
-    expect_refusal(run_ptin({command, terrain, "--solid", "5000", "-o", out}), 2,
+    expect_refusal(run_ptin({command, terrain, "--solid", "5000", "-q", "-o", out}), 2,
                    "--solid: the base must be below");
     expect_refusal(run_ptin({command, terrain, "--solid", "nan", "-o", out}), 2, "--solid");
     expect_refusal(run_ptin({command, terrain, "--scale", "1:0", "-o", out}), 2, "no scale");

@@ -70,12 +70,15 @@ TEST(Usage, SaysHowManyValuesThereAreAndWhich) {
                  "--window takes 4 values with spaces between, XMIN YMIN XMAX YMAX");
   expect_refusal(run_ptin({"highest", "a.ptin", "--error", "1", "--error", "2"}), 2,
                  "--error takes one value, E, and 2 were given: 1 2");
+  expect_refusal(run_ptin({"info", "a.ptin", "b.ptin", "c.ptin"}), 2,
+                 "b.ptin c.ptin are words too many: ptin info takes FILE and options");
   expect_refusal(run_ptin({"info", "my", "terrain.ptin"}), 2,
                  "terrain.ptin is a word too many: ptin info takes FILE and options");
   expect_refusal(run_ptin({"locate", "a.ptin", "1", "2", "3", "4"}), 2,
-                 "3 4 are words too many: ptin locate takes FILE X Y and options");
+                 "X Y are 2 values with a space between, and 4 were given: 1 2 3 4");
   expect_refusal(run_ptin({"highest", "a.ptin", "--error", "5m"}), 2, "--error: 5m is no number");
-  expect_refusal(run_ptin({"highest", "a.ptin", "-k", "1.5"}), 2, "1.5 is no whole number");
+  expect_refusal(run_ptin({"refine", "a.ptin", "--vertices", "1.5", "-o", "a.ply"}), 2,
+                 "--vertices: 1.5 is no whole number");
 }
 
 TEST(NearestName, IsWithinAThirdOfTheWord) {

@@ -2,13 +2,14 @@
 #include "tools/formats/solid_stream.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "engine/error.h"
 #include "tools/formats/mesh_writer.h"
-#include "tools/formats/number_text.h"
 
 namespace ptin::tools {
 
@@ -33,9 +34,13 @@ class Solid final : public MeshStream {
 
   void add_vertex(const Point& point) override {
     if (!(point[2] > base_)) {
-      std::string message = "the base must be below all that is written, and there is a height of ";
-      append_number(message, point[2]);
-      throw Error(ErrorCode::invalid_argument, message + "; give a lower one", "--solid");
+      std::array<char, 32> height{};
+      std::snprintf(height.data(), height.size(), "%.7g", point[2]);
+      throw Error(
+          ErrorCode::invalid_argument,
+          std::string("the base must be below all that is written, and there is a height of ") +
+              height.data() + "; give a lower one",
+          "--solid");
     }
     inner_->add_vertex(point);
     inner_->add_vertex(below(point));

@@ -65,7 +65,9 @@ std::string joined(const std::vector<std::string>& words) {
 
 /// What the values of an option are called: "X Y" of the argument X_Y and of --point.
 std::string names_of_values(const CLI::Option& option) {
-  std::string names = option.get_positional() ? option.get_name() : option.get_type_name();
+  const std::string type = option.get_type_name();
+  const bool has_names = !option.get_positional() || type.find(' ') != std::string::npos;
+  std::string names = has_names ? type : option.get_name();
   std::replace(names.begin(), names.end(), '_', ' ');
   return names;
 }
