@@ -123,11 +123,11 @@ std::string arguments_of(const CLI::App& app) {
 }
 
 std::string too_many_words(const CLI::App& app, const std::string& message) {
-  const std::string words = message.substr(message.find(": ") + 2);
+  const std::vector<std::string> extra = app.remaining();
+  const std::string words = extra.empty() ? message.substr(message.find(": ") + 2) : joined(extra);
   const std::string name = app.get_parent() == nullptr ? "ptin" : "ptin " + app.get_name();
-  const bool is_one = words.find(' ') == std::string::npos;
-  return words + (is_one ? " is a word" : " are words") + " too many: " + name + " takes" +
-         arguments_of(app) + " and options; what has blanks in it wants quotes";
+  return words + (extra.size() == 1 ? " is a word" : " are words") + " too many: " + name +
+         " takes" + arguments_of(app) + " and options; what has blanks in it wants quotes";
 }
 
 std::string no_number(const std::string& rest) {
