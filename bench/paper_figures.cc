@@ -11,8 +11,9 @@
 // Random TINs are uniform points in the unit square under Delaunay; real ones take the 10 000 or
 // 20 000 most important vertices of a built store as points. "Retrieved" is what our engine
 // retrieves and applies: records whose saturated box meets the query, so that the mesh stays valid
-// everywhere. The paper counts for its own box and its own collapse; the number to hold against its
-// 70 splits a point is the one of own polygons, which are the splits that change the surface over
+// everywhere. The paper counts the splits performed for its own box and its own collapse, and says
+// that a point never needs more than 70; that is the number of those retrieved here, which is larger.
+// Own polygons are another number: the splits that change the surface over
 // the point. Everything is counted here in memory by brute force; for one size the store is
 // written, opened and asked the same, and the program fails when the answers differ.
 //

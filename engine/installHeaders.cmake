@@ -114,6 +114,7 @@ set(public_headers
     storage/file/range_source.h
     storage/file/replaced_file.h
     storage/file/sigbus_guard.h
+    storage/file_beginning.h
     storage/index.h
     storage/index_shape.h
     storage/layout.h

@@ -10,6 +10,7 @@
 #include "storage/error_table.h"
 #include "storage/facts.h"
 #include "storage/file/checksum.h"
+#include "storage/file_beginning.h"
 #include "storage/metadata_text.h"
 #include "storage/short_float.h"
 
@@ -31,25 +32,53 @@ void require(bool condition, const std::string& path, const char* message) {
   }
 }
 
-/// Refuses a file that is a stream: nothing is damaged then, the wrong file was named.
-void refuse_stream(const ReadableFile& file) {
-  std::array<std::uint8_t, layout::kStreamMagic.size()> magic{};
-  if (file.bytes() < magic.size()) return;
-  file.read_at(std::as_writable_bytes(std::span(magic)), 0);
-  if (magic != layout::kStreamMagic) return;
-  throw Error(ErrorCode::invalid_argument,
-              "this is a stream, not a store; `ptin unstream` makes a mesh of it", file.path());
+using Magic = std::array<std::uint8_t, layout::kMagic.size()>;
+
+std::ptrdiff_t agreeing_bytes(std::span<const std::byte> first, const Magic& magic) {
+  std::ptrdiff_t agree = 0;
+  for (std::size_t i = 0; i < std::min(first.size(), magic.size()); ++i) {
+    agree += first[i] == std::byte{magic[i]} ? 1 : 0;
+  }
+  return agree;
+}
+
+/// Whether a file that does not begin like a store was one: most of the first bytes are there, or a
+/// header is sound but for them, or all are zero, as those of a copy that was not finished.
+bool was_store(std::span<const std::byte> first, FileHeader header) {
+  const auto bytes = static_cast<std::ptrdiff_t>(std::min(first.size(), layout::kMagic.size()));
+  if (2 * agreeing_bytes(first, layout::kMagic) > bytes) return true;
+  header.magic = layout::kMagic;
+  const auto checked =
+      std::as_bytes(std::span(&header, 1)).first(offsetof(FileHeader, header_checksum));
+  return header.header_checksum == checksum_of(checked) ||
+         std::all_of(first.begin(), first.end(), [](std::byte b) { return b == std::byte{0}; });
+}
+
+/// Refuses a file that is no store. Where it is another file altogether nothing is damaged: the wrong
+/// one was named.
+void check_beginning(const ReadableFile& file, const FileHeader& header, std::uint64_t bytes) {
+  const auto there = std::as_bytes(std::span(&header, 1)).first(bytes);
+  const auto first = there.first(std::min<std::size_t>(there.size(), kBeginningBytes));
+  const auto bytes_of_magic = static_cast<std::ptrdiff_t>(layout::kMagic.size());
+  if (agreeing_bytes(first, layout::kMagic) == bytes_of_magic) return;
+  if (agreeing_bytes(first, layout::kStreamMagic) == bytes_of_magic) {
+    throw Error(ErrorCode::invalid_argument,
+                "this is a stream, not a store; `ptin unstream` makes a mesh of it", file.path());
+  }
+  if (!first.empty() && was_store(first, header))
+    damaged(file.path(), "the file does not begin like a .ptin file; it is damaged");
+  throw Error(ErrorCode::invalid_argument, "this is not a .ptin file: " + beginning_of(first),
+              file.path());
 }
 
 FileHeader read_header(const ReadableFile& file) {
   const std::string& path = file.path();
-  FileHeader h;
-  refuse_stream(file);
-  require(file.bytes() >= sizeof h, path,
-          "the file is shorter than the header of a .ptin file; it is none, or cut short");
-  file.read_at(std::as_writable_bytes(std::span(&h, 1)), 0);
-  require(h.magic == layout::kMagic, path,
-          "the file does not begin like a .ptin file; it is none, or damaged");
+  FileHeader h{};
+  const auto there = std::min<std::uint64_t>(file.bytes(), sizeof h);
+  file.read_at(std::as_writable_bytes(std::span(&h, 1)).first(there), 0);
+  check_beginning(file, h, there);
+  require(there == sizeof h, path,
+          "the file is shorter than the header of a .ptin file; it was cut short");
   if (h.major_version > layout::kMajorVersion) {
     throw Error(ErrorCode::unsupported_version,
                 "the file has format version " + std::to_string(h.major_version) + "." +

@@ -18,9 +18,9 @@ namespace ip = boost::interprocess;
 
 namespace {
 
-[[noreturn]] void throw_irregular(const std::string& path) {
-  throw Error(ErrorCode::invalid_argument, "this is no regular file; a .ptin file is expected",
-              path);
+[[noreturn]] void throw_irregular(const std::string& path, const struct stat& facts) {
+  const std::string kind = S_ISDIR(facts.st_mode) ? "a folder" : "no regular file";
+  throw Error(ErrorCode::invalid_argument, "this is " + kind + "; a .ptin file is expected", path);
 }
 
 // Looked at before opening, since opening a pipe would wait for its other end.
@@ -30,7 +30,7 @@ void require_regular(const std::string& path) {
     throw system_error(errno, "cannot open", path);
   }
   if (!S_ISREG(s.st_mode)) {
-    throw_irregular(path);
+    throw_irregular(path, s);
   }
 }
 
@@ -61,7 +61,7 @@ ReadOnlyFile::Seen ReadOnlyFile::look() const {
   }
   // Another file can have taken the name since require_regular() looked at it.
   if (!S_ISREG(s.st_mode)) {
-    throw_irregular(path_);
+    throw_irregular(path_, s);
   }
   return {static_cast<std::uint64_t>(s.st_size), s.st_mtim.tv_sec, s.st_mtim.tv_nsec,
           s.st_ctim.tv_sec, s.st_ctim.tv_nsec};

@@ -58,7 +58,7 @@ void build_and_ask() {
     static_cast<void>(ptin::Terrain::open("hill.xyz"));
     expect(false, "points are no store");
   } catch (const ptin::Error& e) {
-    expect(e.code() == ptin::ErrorCode::corruption, "points are a damaged store");
+    expect(e.code() == ptin::ErrorCode::invalid_argument, "points are another file");
   }
 }
 

@@ -4,6 +4,7 @@
 // damage of a small file goes unseen.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -24,6 +25,7 @@ namespace {
 using layout::FileHeader;
 using layout::SectionEntry;
 using layout::SectionKind;
+using namespace std::string_literals;
 
 class StoreOpen : public testing::Test {
  protected:
@@ -119,12 +121,46 @@ TEST_F(StoreOpen, RefusesAFolderAndAPipe) {
   }
 }
 
-TEST_F(StoreOpen, RefusesWhatIsNoStore) {
-  expect_corruption("empty", {});
-  expect_corruption("text", Bytes(5000, std::byte{'a'}));
-  Bytes magic = bytes_;
-  magic[0] = std::byte{0};
-  expect_corruption("magic", magic);
+TEST_F(StoreOpen, RefusesWhatIsNoStoreAndSaysWhatItBeginsLike) {
+  const auto expect_other = [&](const Bytes& bytes, const std::string& words) {
+    try {
+      write_file(path_, bytes);
+      StoreFile::open(path_);
+      FAIL() << words;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::invalid_argument) << e.what();
+      EXPECT_NE(e.message().find("not a .ptin file: " + words), std::string::npos) << e.what();
+    }
+  };
+  const auto beginning = [](const std::string& text, std::size_t bytes) {
+    Bytes whole(bytes, std::byte{0x81});
+    std::memcpy(whole.data(), text.data(), std::min(text.size(), bytes));
+    return whole;
+  };
+  expect_other({}, "it is empty");
+  expect_other(Bytes(5000, std::byte{'a'}), "it begins like a text");
+  expect_other(beginning("II*\0"s, 5000), "it begins like a TIFF");
+  expect_other(beginning("II*\0"s, 4), "it begins like a TIFF");
+  expect_other(beginning("LASF\0\0"s, 300), "it begins like a LAS");
+  expect_other(beginning("\x89PNG\r\n\x1a\n"s, 300), "it begins like a PNG image");
+  expect_other(beginning("<!DOCTYPE html>", 300), "it begins like a web page");
+  expect_other(Bytes(3, std::byte{0x81}), "it begins like no file");
+}
+
+TEST_F(StoreOpen, OfAStoreWhoseFirstBytesAreDamagedSaysSo) {
+  for (std::size_t i = 0; i < layout::kMagic.size(); ++i) {
+    Bytes one = bytes_;
+    one[i] = std::byte{0};
+    expect_corruption("one byte of the magic", one);
+  }
+  Bytes all = bytes_;
+  std::fill_n(all.begin(), layout::kMagic.size(), std::byte{'x'});
+  expect_corruption("the magic, the header is sound", all);
+  expect_corruption("zeros", Bytes(5000));
+  for (const std::size_t bytes : {5U, 8U, 100U}) {
+    expect_corruption("cut short",
+                      Bytes(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(bytes)));
+  }
 }
 
 TEST_F(StoreOpen, RefusesANewerMajorVersionWhateverTheRestIs) {
@@ -173,7 +209,7 @@ TEST_F(StoreOpen, IgnoresSectionsOfANewerMinorVersion) {
 TEST_F(StoreOpen, RejectsEveryTruncation) {
   // Every length of the front, and of the pages one in 37.
   const std::size_t front = section_of(bytes_, SectionKind::kPages).offset;
-  for (std::size_t length = bytes_.size(); length > 0;) {
+  for (std::size_t length = bytes_.size(); length > 1;) {  // an empty file is no store
     length -= length > front ? std::min<std::size_t>(length - front, 37) : 1;
     std::filesystem::resize_file(path_, length);
     ASSERT_EQ(code_of_file(), ErrorCode::corruption) << length;

@@ -305,7 +305,7 @@ TEST_F(CadFormats, RefuseWhatTheyCannotHold) {
     EXPECT_NE(unknown.err.find(".xml, .dxf, .stl"), std::string::npos) << unknown.err;
   }
   EXPECT_NE(run_ptin({"export", store, "-o", file("a.x"), "--format", "KML"})
-                .err.find("PLY, LandXML, DXF, STL, GPKG, FlatGeobuf, GTiff, COG"),
+                .err.find("PLY, OBJ, 2DM, LandXML, DXF, STL, GPKG, FlatGeobuf, GTiff, COG"),
             std::string::npos);
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"dem.ptin", "dem.tif"}));
   expect_done({"export", store, "-o", file("a.faces"), "--format", "dxf", "-q"});

@@ -38,7 +38,6 @@ void expect_no_build(const TestFolder& folder, const std::string& input, int sta
 }
 
 TEST(CliBadUse, IsStatus2WithOneSentence) {
-  expect_refusal(run_ptin({}), 2, "--help");
   expect_refusal(run_ptin({"frobnicate"}), 2, "frobnicate; see ptin --help");
   expect_refusal(run_ptin({"build"}), 2, "ptin build --help");
   expect_refusal(run_ptin({"refine", "a.ptin", "--window", "1", "2", "3", "-o", "x.ply"}), 2,
@@ -317,9 +316,12 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
   refuse({"volume"}, 2, "--level H or --against OTHER");
   refuse({"volume", "--level", "1", "--against", store}, 2, "--against");
   refuse({"volume", "--level", "nan"}, 2, "--level: must be a finite number");
-  refuse({"volume", "--level", "1", "--memory", "1"}, 7, "more than the limit of 1 KiB");
+  refuse({"volume", "--level", "1", "--memory", "1K"}, 7, "more than the limit of 1");
+  refuse({"volume", "--level", "1", "--memory", "128"}, 2,
+         "--memory: 128 is 128 bytes; did you mean 128M?");
+  refuse({"highest", "--memory", "4"}, 2, "--memory: 4 is 4 bytes; did you mean 4G?");
   refuse({"volume", "--against", folder.file("none.ptin")}, 3, "none.ptin");
-  refuse({"highest", "-k", "1000", "--memory", "1"}, 7, "more than the limit of 1 KiB");
+  refuse({"highest", "-k", "1000", "--memory", "1K"}, 7, "more than the limit of 1");
   refuse({"highest", "-k", "0"}, 2, "-k");
   refuse({"highest", "--window", "3", "2", "1", "4"}, 2, "inverted");
   refuse({"viewshed", "0", "0", "1", "--radius", "9", "-o", folder.file("v.png")}, 2,

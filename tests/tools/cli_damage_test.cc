@@ -32,10 +32,6 @@ TEST(CliBadInput, DamagedStores) {
   expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
   expect_refusal(refine(), 4, "bad.ptin");
   EXPECT_EQ(run_ptin({"verify", bad, "-q"}).status, 1);
-  write_file(bad, "");
-  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
-  write_file(bad, "POINTS ARE NOT A STORE, WHATEVER THEIR NAME SAYS");
-  expect_refusal(run_ptin({"info", bad}), 4, "bad.ptin");
   std::string flipped = sound;
   flipped[flipped.size() - 2000] = static_cast<char>(flipped[flipped.size() - 2000] ^ 0x10);
   write_file(bad, flipped);
@@ -46,6 +42,32 @@ TEST(CliBadInput, DamagedStores) {
   EXPECT_NE(verified.out.find("page"), std::string::npos) << verified.out;
   const std::vector<std::string> left = {"bad.ptin", "hills.ptin", "hills.tif"};
   EXPECT_EQ(folder.names(), left);
+}
+
+TEST(CliBadInput, FilesThatAreNoStores) {
+  const TestFolder folder;
+  const std::string raster = PTIN_TEST_DATA "/mountains_257.tif";
+  write_file(folder.file("empty.ptin"), "");
+  write_file(folder.file("prose.ptin"), "POINTS ARE NOT A STORE, WHATEVER THEIR NAME SAYS");
+  const auto refused = [&](const std::string& path, const std::string& words) {
+    for (const std::vector<std::string>& question :
+         std::vector<std::vector<std::string>>{{"info", path},
+                                               {"verify", path, "-q"},
+                                               {"locate", path, "0", "0"},
+                                               {"highest", path},
+                                               {"serve", path, "--listen", "127.0.0.1:0"},
+                                               {"volume", path, "--level", "0"},
+                                               {"stream", path, "-o", folder.file("a.ptins")},
+                                               {"export", path, "-o", folder.file("a.ply")}}) {
+      SCOPED_TRACE(question[0]);
+      expect_refusal(run_ptin(question), 2, words);
+    }
+  };
+  refused(folder.file("empty.ptin"), "this is not a .ptin file: it is empty");
+  refused(folder.file("prose.ptin"), "it begins like a text");
+  refused(raster, "it begins like a TIFF, as GeoTIFFs do; `ptin build` makes a .ptin file of it");
+  refused(folder.path().string(), "folder");
+  EXPECT_EQ(folder.names().size(), 2U);
 }
 
 /// The store with another `source` in its metadata, every checksum right; no longer than before.

@@ -102,6 +102,26 @@ ReadRaster read_raster(const std::string& path) {
   return raster;
 }
 
+TEST(Export, WritesTextMeshesPieceByPieceAsRefineDoes) {
+  const TestFolder folder;
+  const std::string store = built(folder, "coast_257.tif", "c.ptin");
+  for (const auto& [name, read] :
+       {std::pair{"a.obj", &testing::read_obj}, std::pair{"a.2dm", &testing::read_2dm}}) {
+    const std::string path = folder.file(name);
+    expect_done({"refine", store, "--error", "5", "-q", "-o", path});
+    const ReadMesh refined = read(read_file(path));
+    expect_done(
+        {"export", store, "--error", "5", "-q", "--memory", "32M", "-o", path, "--overwrite"});
+    const ReadMesh exported = read(read_file(path));
+    EXPECT_GT(exported.triangles.size(), 100U);
+    EXPECT_EQ(facets_of(exported), facets_of(refined)) << name;
+    EXPECT_EQ(exported.header, refined.header);
+  }
+  const Outcome glb = run_ptin({"export", store, "-o", folder.file("a.glb")});
+  EXPECT_EQ(glb.status, 2);
+  EXPECT_NE(glb.err.find("which `ptin refine` does"), std::string::npos) << glb.err;
+}
+
 TEST(Export, EqualsRefineAsASetOfTriangles) {
   const TestFolder folder;
   for (const char* name :

@@ -361,10 +361,11 @@ TEST(PointQuestions, AnswerAtTheFirstVertices) {
   EXPECT_EQ(run_ptin({"locate", terrain, at_x, at_y, "--vertices", "-5"}).status, 2);
   EXPECT_EQ(run_ptin({"locate", terrain, at_x, at_y, "--vertices", "500", "--error", "1"}).status,
             2);
-  EXPECT_EQ(run_ptin({"locate", terrain, at_x, at_y, "--memory", "1", "--by", "splits"}).status, 7);
+  EXPECT_EQ(run_ptin({"locate", terrain, at_x, at_y, "--memory", "1K", "--by", "splits"}).status,
+            7);
   const std::string across = "LINESTRING(" + at_x + " " + at_y + "," + at_x + " " +
                              std::to_string(info["bounds"]["max_y"].get<double>()) + ")";
-  EXPECT_EQ(run_ptin({"profile", terrain, "--line", across, "--memory", "1"}).status, 7);
+  EXPECT_EQ(run_ptin({"profile", terrain, "--line", across, "--memory", "1K"}).status, 7);
 }
 
 TEST(SightCommand, SeesOverAndNotThroughAWall) {

@@ -366,6 +366,9 @@ TEST_F(SlopeExport, CertifiesHeightsAlone) {
   const auto told = run_ptin(
       {"export", store, "--error", "5", "--what", "aspect", "--overwrite", "-o", file("o.tif")});
   EXPECT_NE(told.out.find("aspect of a TIN that is within"), std::string::npos) << told.out;
+  const auto whole =
+      run_ptin({"export", store, "--what", "slope", "--overwrite", "-o", file("o.tif")});
+  EXPECT_NE(whole.out.find("; slope of the full TIN\n"), std::string::npos) << whole.out;
 }
 
 TEST_F(SlopeExport, GivesTrianglesTheirFields) {

@@ -194,7 +194,16 @@ TEST_F(StreamCli, SaysWhatIsWrong) {
     refused({command, file("s.pts")}, 2, "s.pts: this is a stream, not a store");
   }
   write_file(file("prose.pts"), "It was a dark and stormy night.");
-  refused({"unstream", file("prose.pts")}, 4, "the first bytes are others\n");
+  refused({"unstream", file("prose.pts")}, 2, "not a stream of ptin: it begins like a text");
+  write_file(file("nothing.bin"), "");
+  refused({"unstream", file("nothing.bin")}, 2, "not a stream of ptin: it is empty");
+  refused({"unstream", PTIN_TEST_DATA "/mountains_257.tif"}, 2, "it begins like a TIFF");
+  std::string headless = read_file(file("s.pts"));
+  headless[3] ^= 1;
+  write_file(file("headless.pts"), headless);
+  refused({"unstream", file("headless.pts")}, 4, "it is damaged");
+  write_file(file("behind.pts"), read_file(file("s.pts")) + "It was a dark and stormy night.");
+  refused({"unstream", file("behind.pts")}, 4, "it is damaged");
   refused({"unstream", file("delta.pts")}, 4, "goes on from another");
   refused({"unstream", file("s.pts"), file("s.pts")}, 4, "begins anew");
   refused({"unstream", file("s.pts"), file("delta.pts")}, 4, "another mesh");

@@ -325,6 +325,24 @@ void expect_not_the_source(const Outcome& outcome, const std::string& words) {
   EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
 }
 
+/// Before pages and splits are looked at, which takes minutes of a large file: the page that is damaged
+/// here is not found.
+TEST(Verify, RefusesTheSourceOfAnotherTerrainAtOnce) {
+  const TestFolder folder;
+  const std::string store = built_raster(folder, hills_with_voids());
+  std::string bytes = testing::read_file(store);
+  bytes[bytes.size() / 2] ^= 1;
+  testing::write_file(store, bytes);
+  RasterRecipe elsewhere = hills_with_voids();
+  elsewhere.west += 300000;
+  make_raster(folder.file("elsewhere.tif"), elsewhere);
+  expect_not_the_source(verified(store, folder.file("elsewhere.tif")), "reach from");
+  std::string points;
+  for (int i = 0; i < 6000; ++i) points += std::to_string(i) + " " + std::to_string(i % 7) + " 1\n";
+  testing::write_file(folder.file("far.xyz"), points);
+  expect_not_the_source(verified(store, folder.file("far.xyz")), "reach from");
+}
+
 TEST(Verify, RefusesARasterThatLiesElsewhere) {
   const TestFolder folder;
   const std::string store = built_raster(folder, hills_with_voids());

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The formats of tools/formats/mesh_stream.h, fed by patches.
+#include <utility>
+
 #include "tools/export/tin_sink.h"
 #include "tools/formats/mesh_stream.h"
+#include "tools/formats/solid_stream.h"
 
 namespace ptin::tools {
 
@@ -30,14 +33,25 @@ class MeshStreamSink final : public TinSink {
 
 std::unique_ptr<TinSink> sink_of(std::unique_ptr<MeshStream> (*make)(const MeshStreamTarget&),
                                  const SinkTarget& target) {
-  return std::make_unique<MeshStreamSink>(
-      make({target.path, target.overwrite, target.crs, target.frame}));
+  std::unique_ptr<MeshStream> stream =
+      make({target.path, target.overwrite, target.crs, target.frame});
+  if (target.solid_base)
+    stream = make_solid(std::move(stream), *target.solid_base, target.border_bytes);
+  return std::make_unique<MeshStreamSink>(std::move(stream));
 }
 
 }  // namespace
 
 std::unique_ptr<TinSink> make_land_xml_sink(const SinkTarget& target) {
   return sink_of(make_land_xml, target);
+}
+
+std::unique_ptr<TinSink> make_obj_sink(const SinkTarget& target) {
+  return sink_of(make_obj, target);
+}
+
+std::unique_ptr<TinSink> make_two_dm_sink(const SinkTarget& target) {
+  return sink_of(make_two_dm, target);
 }
 
 std::unique_ptr<TinSink> make_dxf_sink(const SinkTarget& target) {

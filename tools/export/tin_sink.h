@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/crs/crs_facts.h"
@@ -19,6 +20,7 @@ struct SinkTarget {
   bool overwrite = false;
   CrsFacts crs;
   LocalFrame frame;                                      ///< Of STL.
+  std::optional<double> solid_base;                      ///< Of STL: it is a solid (make_solid).
   bool slope_in_percent = false;                         ///< Of the field `slope`: else in degrees.
   std::uint64_t border_bytes = std::uint64_t{64} << 20;  ///< What PatchMaker::make() may take.
   std::uint64_t index_bytes = std::uint64_t{256} << 20;  ///< For an index of features.
@@ -55,6 +57,8 @@ class TinSink {
 
 /// As tools/formats/mesh_stream.h has them.
 [[nodiscard]] std::unique_ptr<TinSink> make_land_xml_sink(const SinkTarget& target);
+[[nodiscard]] std::unique_ptr<TinSink> make_obj_sink(const SinkTarget& target);
+[[nodiscard]] std::unique_ptr<TinSink> make_two_dm_sink(const SinkTarget& target);
 [[nodiscard]] std::unique_ptr<TinSink> make_dxf_sink(const SinkTarget& target);
 [[nodiscard]] std::unique_ptr<TinSink> make_stl_sink(const SinkTarget& target);
 

@@ -64,6 +64,20 @@ std::string printable(std::string text) {
   return text;
 }
 
+std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
+  std::vector<std::string> lines;
+  std::size_t begin = 0;
+  while (text.size() - begin > width) {
+    std::size_t end = text.rfind(' ', begin + width);
+    if (end == std::string::npos || end <= begin) end = text.find(' ', begin + width);
+    if (end == std::string::npos) break;
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  lines.push_back(text.substr(begin));
+  return lines;
+}
+
 std::string shell_word(const std::string& name) {
   const bool is_plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("-_./+,:=@%").find(c) != std::string_view::npos;
@@ -103,6 +117,17 @@ std::uint64_t parse_bytes(const std::string& text, const std::string& option) {
                 option);
   }
   return static_cast<std::uint64_t>(value * factor);
+}
+
+std::uint64_t parse_memory(const std::string& text, const std::string& option) {
+  const std::uint64_t bytes = parse_bytes(text, option);
+  const bool has_suffix = std::isalpha(static_cast<unsigned char>(text.back())) != 0;
+  constexpr std::uint64_t kFewestBytes = 65536;
+  if (has_suffix || bytes >= kFewestBytes) return bytes;
+  throw Error(ErrorCode::invalid_argument,
+              text + " is " + counted(bytes, "byte") + "; did you mean " + text +
+                  (bytes < 16 ? "G?" : "M?"),
+              option);
 }
 
 }  // namespace ptin::tools

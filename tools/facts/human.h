@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace ptin::tools {
 
@@ -22,6 +23,8 @@ namespace ptin::tools {
 /// The text with question marks in the place of control characters: what a file says must not steer
 /// the terminal.
 [[nodiscard]] std::string printable(std::string text);
+/// The words of a text in lines of at most `width` bytes; a longer word has a line of its own.
+[[nodiscard]] std::vector<std::string> wrapped(const std::string& text, std::size_t width);
 /// A file's name as a word of a shell's command: in quotes where it holds anything but letters,
 /// digits and the signs that no shell minds.
 [[nodiscard]] std::string shell_word(const std::string& name);
@@ -31,5 +34,8 @@ namespace ptin::tools {
 /// @param option  Gave the text; named in errors.
 /// @throws Error invalid_argument
 [[nodiscard]] std::uint64_t parse_bytes(const std::string& text, const std::string& option);
+/// A size of memory, as parse_bytes. A number below 65 536 without a suffix is refused: nobody means
+/// 128 bytes by 128.
+[[nodiscard]] std::uint64_t parse_memory(const std::string& text, const std::string& option);
 
 }  // namespace ptin::tools

@@ -55,6 +55,13 @@ class MeshStream {
 /// @throws Error invalid_argument  the CRS is geographic: LandXML has a plane
 [[nodiscard]] std::unique_ptr<MeshStream> make_land_xml(const MeshStreamTarget& target);
 
+/// Wavefront OBJ: map coordinates with every digit that a double needs; faces wait in a nameless file
+/// beside the target.
+[[nodiscard]] std::unique_ptr<MeshStream> make_obj(const MeshStreamTarget& target);
+
+/// SMS 2DM: elements, then nodes, which wait in a nameless file beside the target.
+[[nodiscard]] std::unique_ptr<MeshStream> make_two_dm(const MeshStreamTarget& target);
+
 /// DXF of release 12, which every CAD program reads: a 3DFACE a triangle on the layer TIN, in map
 /// coordinates with every digit that a double needs; an ASCII file. The CRS is a comment.
 [[nodiscard]] std::unique_ptr<MeshStream> make_dxf(const MeshStreamTarget& target);

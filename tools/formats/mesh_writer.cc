@@ -13,22 +13,13 @@ namespace {
 
 constexpr std::array<MeshFormat, 7> kMeshFormats = {{
     {"ply", "PLY, binary, double coordinates (QGIS, Blender, MeshLab)", write_ply, nullptr},
-    {"obj", "Wavefront OBJ, text", write_obj, nullptr},
-    {"2dm", "SMS 2DM, text (QGIS, hydraulic models)", write_2dm, nullptr},
+    {"obj", "Wavefront OBJ, text", nullptr, make_obj},
+    {"2dm", "SMS 2DM, text (QGIS, hydraulic models)", nullptr, make_two_dm},
     {"glb", "glTF 2.0 binary, around a local origin (viewers, Blender, web)", write_glb, nullptr},
     {"xml", "LandXML 1.2, a TIN surface (CAD, machine control)", nullptr, make_land_xml},
     {"dxf", "DXF, a 3DFACE a triangle (CAD)", nullptr, make_dxf},
     {"stl", "STL, binary, around a local origin (3D printing)", nullptr, make_stl},
 }};
-
-void write_in_pieces(const Mesh& mesh, MeshStream& stream) {
-  for (const auto& vertex : mesh.vertices) stream.add_vertex(vertex);
-  for (const auto& t : mesh.triangles) {
-    stream.add_triangle(
-        {{{t[0], mesh.vertices[t[0]]}, {t[1], mesh.vertices[t[1]]}, {t[2], mesh.vertices[t[2]]}}});
-  }
-  stream.publish();
-}
 
 }  // namespace
 
@@ -45,6 +36,15 @@ const MeshFormat& mesh_format_of(const std::string& path) {
   std::string what = "the name has no extension";
   if (!extension.empty()) what = std::string("unknown extension .").append(extension);
   throw Error(ErrorCode::invalid_argument, what.append("; known are ").append(known), path);
+}
+
+void write_in_pieces(const Mesh& mesh, MeshStream& stream) {
+  for (const auto& vertex : mesh.vertices) stream.add_vertex(vertex);
+  for (const auto& t : mesh.triangles) {
+    stream.add_triangle(
+        {{{t[0], mesh.vertices[t[0]]}, {t[1], mesh.vertices[t[1]]}, {t[2], mesh.vertices[t[2]]}}});
+  }
+  stream.publish();
 }
 
 void write_mesh(const Mesh& mesh, const std::string& path, bool overwrite) {

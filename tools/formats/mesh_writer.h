@@ -35,10 +35,11 @@ struct MeshFormat {
 /// the mesh
 void write_mesh(const Mesh& mesh, const std::string& path, bool overwrite);
 
+/// Feeds a mesh to a stream, and publishes it.
+void write_in_pieces(const Mesh& mesh, MeshStream& stream);
+
 // The writers of whole meshes. Each documents its own conventions.
 void write_ply(const Mesh& mesh, ByteSink& out);
-void write_obj(const Mesh& mesh, ByteSink& out);
-void write_2dm(const Mesh& mesh, ByteSink& out);
 void write_glb(const Mesh& mesh, ByteSink& out);
 
 }  // namespace ptin::tools

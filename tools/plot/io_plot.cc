@@ -16,7 +16,7 @@ namespace ptin::tools {
 namespace {
 
 constexpr int kIoSheetWidth = 1200, kIoLegendHeight = 36;
-constexpr double kIoMargin = 24, kIoTitleHeight = 74, kLowerHeight = 240;
+constexpr double kIoMargin = 24, kIoTitleHeight = 36, kIoLineHeight = 18, kLowerHeight = 240;
 constexpr Colour kPackedColour{24, 26, 34}, kSecondColour{150, 60, 160};
 
 Colour colour_of(ReadWay way) {
@@ -131,6 +131,16 @@ std::vector<LegendEntry> io_legend() {
           {nullptr, "cold: dropped from the page cache; what lies below it is not visible"}};
 }
 
+/// What the figures come to, in lines that the sheet has room for.
+std::vector<std::string> best_lines(const IoReport& report) {
+  const auto best = best_way(report);
+  if (!best) return {};
+  constexpr std::size_t kLetters = 160;
+  std::vector<std::string> lines = wrapped(best->sentence, kLetters);
+  for (std::string& line : wrapped(best->beside, kLetters)) lines.push_back(std::move(line));
+  return lines;
+}
+
 }  // namespace
 
 void plot_io(const std::string& path, bool overwrite, const IoRequest& request,
@@ -140,18 +150,17 @@ void plot_io(const std::string& path, bool overwrite, const IoRequest& request,
   const RowChart searches(search_rows(report.index), "milliseconds a search, index alone",
                           "cold, from the device");
   const double lower = std::max(kLowerHeight, searches.height());
-  Canvas canvas(
-      path, overwrite, kIoSheetWidth,
-      static_cast<int>(kIoTitleHeight + questions.height() + lower) + 20 + kIoLegendHeight);
-  const auto best = best_way(report);
+  const std::vector<std::string> said = best_lines(report);
+  const double head = kIoTitleHeight + kIoLineHeight * static_cast<double>(said.size()) + 2;
+  Canvas canvas(path, overwrite, kIoSheetWidth,
+                static_cast<int>(head + questions.height() + lower) + 20 + kIoLegendHeight);
   canvas.text({kIoMargin, 18}, facts_of_run(request, report), {.size = 14, .is_bold = true});
-  if (best) {
-    canvas.text({kIoMargin, 42}, best->sentence);
-    canvas.text({kIoMargin, 60}, best->beside);
+  for (std::size_t i = 0; i < said.size(); ++i) {
+    canvas.text({kIoMargin, 42 + kIoLineHeight * static_cast<double>(i)}, said[i]);
   }
   const double width = kIoSheetWidth - 2 * kIoMargin;
-  questions.draw(canvas, {kIoMargin, kIoTitleHeight}, width);
-  const double top = kIoTitleHeight + questions.height() + 10;
+  questions.draw(canvas, {kIoMargin, head}, width);
+  const double top = head + questions.height() + 10;
   constexpr double kChartWidth = 265;
   double left = kIoMargin;
   for (const QuestionKind kind : {QuestionKind::kPoint, QuestionKind::kWindow10000th}) {

@@ -62,18 +62,12 @@ class AlignedTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// The words of a sentence in lines.
-std::string wrapped(const std::string& sentence) {
+/// A sentence in lines.
+std::string in_lines(const std::string& sentence) {
   constexpr std::size_t kWidth = 110;
   std::string text;
-  std::size_t begin = 0;
-  while (sentence.size() - begin > kWidth) {
-    const std::size_t end = sentence.rfind(' ', begin + kWidth);
-    if (end == std::string::npos || end <= begin) break;
-    text += sentence.substr(begin, end - begin) + "\n";
-    begin = end + 1;
-  }
-  return text + sentence.substr(begin) + "\n";
+  for (const std::string& line : wrapped(sentence, kWidth)) text += line + "\n";
+  return text;
 }
 
 /// Times, and those left out because they were not cold: "40", "38 of 40".
@@ -318,14 +312,22 @@ nlohmann::json second_index_json(const IndexFigures& index) {
 nlohmann::json best_json(const IoReport& report) {
   const auto best = best_way(report);
   if (!best) return nullptr;
-  nlohmann::json ways = nlohmann::json::array();
-  for (const auto& [way, ratio] : best->over_best) {
-    ways.push_back({{"by", name_of(way)}, {"ratio", ratio}});
+  nlohmann::json others = nlohmann::json::array();
+  for (const WayRatio& other : best->others) {
+    others.push_back({{"by", name_of(other.way)},
+                      {"ratio", other.ratio},
+                      {"at_least", other.at_least},
+                      {"at_most", other.at_most},
+                      {"verdict", name_of(other.verdict())},
+                      {"kinds_less", other.kinds_less}});
   }
-  return {{"by", name_of(best->way)},
+  const bool is_one = best->verdict == Verdict::kFaster;
+  return {{"by", is_one ? nlohmann::json(name_of(best->way)) : nlohmann::json()},
+          {"verdict", name_of(best->verdict)},
           {"cold", best->is_cold},
           {"kinds", best->kinds},
-          {"over_best", ways},
+          {"over", name_of(best->way)},
+          {"others", others},
           {"sentence", best->sentence + " " + best->beside}};
 }
 
@@ -335,7 +337,7 @@ std::string text_of(const IoRequest& request, const IoReport& report) {
   std::string text = head_text(request, report) + questions_text(report) + threads_text(report) +
                      indexes_text(report);
   if (const auto best = best_way(report))
-    text += "\n" + wrapped(best->sentence) + wrapped(best->beside);
+    text += "\n" + in_lines(best->sentence) + in_lines(best->beside);
   return text;
 }
 

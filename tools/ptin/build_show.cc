@@ -137,7 +137,7 @@ BuildResources resources_of(const BuildCommand& command, const Context& context,
   BuildResources resources;
   resources.overwrite = command.overwrite;
   resources.stop = context.stop;
-  if (!command.memory.empty()) resources.memory_bytes = parse_bytes(command.memory, "--memory");
+  if (!command.memory.empty()) resources.memory_bytes = parse_memory(command.memory, "--memory");
   resources.threads = command.threads;
   resources.tmp = command.tmp;
   resources.unfinished = command.resume    ? Unfinished::kResume

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <iostream>
+#include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <cpl_error.h>
 #include <gdal.h>
@@ -15,7 +17,9 @@
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
 #include "tools/output/standard_output.h"
+#include "tools/ptin/help_text.h"
 #include "tools/ptin/kept_inputs.h"
+#include "tools/ptin/usage_fault.h"
 #include "tools/refused_memory.h"
 
 namespace ptin::tools {
@@ -231,12 +235,11 @@ constexpr const char* kExitStatuses =
     "fault of ours.\n";
 
 /// The first word of the command line, where it is no option and names no subcommand; else empty.
-std::string unknown_subcommand(std::span<const char* const> words) {
-  if (words.empty() || words[0][0] == '-') return {};
-  const std::string word = words[0];
+std::string unknown_subcommand(std::span<const std::string> words) {
+  if (words.empty() || words[0].starts_with('-')) return {};
   const bool known = std::any_of(kCommands.begin(), kCommands.end(),
-                                 [&](const Command& command) { return word == command.name; });
-  return known ? std::string() : word;
+                                 [&](const Command& command) { return words[0] == command.name; });
+  return known ? std::string() : words[0];
 }
 
 /// Declares what holds for every subcommand; last, so that --help ends with it.
@@ -247,59 +250,32 @@ void add_common_options(CLI::App& app, Context& context) {
 }
 
 /// The app that reads the options: that of the subcommand which the first word names, if it does.
-const CLI::App& app_of(const CLI::App& program, std::span<const char* const> words) {
-  const bool is_named = !words.empty() && words[0][0] != '-' && unknown_subcommand(words).empty();
+const CLI::App& app_of(const CLI::App& program, std::span<const std::string> words) {
+  const bool is_named =
+      !words.empty() && !words[0].starts_with('-') && unknown_subcommand(words).empty();
   return is_named ? *program.get_subcommand(words[0]) : program;
-}
-
-bool has_option(const CLI::App& app, const std::string& name) {
-  return app.get_option_no_throw(name) != nullptr;
-}
-
-/// "-of" where --of is an option, as GDAL's tools write it; else empty. It would be read as `-o f`.
-std::string one_hyphen_too_few(const CLI::App& app, std::span<const char* const> words) {
-  for (const std::string word : words) {
-    const std::string name = word.substr(0, word.find('='));
-    if (name.size() > 2 && name[0] == '-' && name[1] != '-' && has_option(app, "-" + name))
-      return name;
-  }
-  return {};
-}
-
-/// The first word that can only be meant as an option and is none; else empty. A number below 0 and
-/// a single hyphen are values.
-std::string unknown_option(const CLI::App& app, std::span<const char* const> words) {
-  for (const std::string word : words) {
-    if (word == "--") break;
-    const bool is_number = word.size() > 1 && word[1] >= '0' && word[1] <= '9';
-    if (word.size() < 2 || word[0] != '-' || is_number) continue;
-    const bool is_long = word[1] == '-';
-    const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
-    if (!has_option(app, name)) return is_long ? name : word;
-  }
-  return {};
 }
 
 /// Writes a sentence about wrong use, and how to get help.
 /// @returns the exit status
-int report_wrong_use(const CLI::App& app, std::string message, bool json) {
-  for (char& c : message) {
-    if (c == '\n') c = ' ';
-  }
+int report_wrong_use(const CLI::App& app, const std::string& message, bool json) {
   const std::string name = app.get_parent() == nullptr ? "" : app.get_name() + " ";
   report_error({ErrorCode::invalid_argument, message + "; see ptin " + name + "--help"}, json);
   return status_of(ErrorCode::invalid_argument).exit;
 }
 
-/// What is wrong with words that do not parse. CLI11 takes an option that it does not know, and
-/// what follows it, for further values of other options: so those are looked for first.
-std::string fault_of(const CLI::App& app, std::span<const char* const> words,
-                     const CLI::ParseError& error) {
-  if (const std::string word = unknown_subcommand(words); !word.empty())
-    return "there is no subcommand " + word;
-  if (const std::string word = unknown_option(app, words); !word.empty())
-    return "there is no option " + word;
-  return error.what();
+/// The words of the command line. `ptin help build` is `ptin build --help`.
+std::vector<std::string> words_of(int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty() || words[0] != "help") return words;
+  words.erase(words.begin());
+  words.insert(words.begin() + (words.empty() ? 0 : 1), "--help");
+  return words;
+}
+
+/// Parses words, which CLI11 wants from the last to the first.
+void parse(CLI::App& app, const std::vector<std::string>& words) {
+  app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
 }
 
 }  // namespace
@@ -315,6 +291,7 @@ CommandLine make_command_line(Context& context) {
   line.app->set_version_flag("--version", std::string("ptin ").append(PTIN_VERSION));
   line.app->set_help_flag("-h,--help", "Print help and exit");
   line.app->require_subcommand(1);
+  line.app->formatter(std::make_shared<HelpText>());
   line.app->footer(std::string("`ptin SUBCOMMAND --help` tells more and gives examples.\n\n")
                        .append(kExitStatuses));
   for (const Command& command : kCommands) {
@@ -333,19 +310,24 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
   const bool json = context.json;
   tell_refused_memory_as_json(json);
   const CommandLine line = make_command_line(context);
-  const std::span<const char* const> words(argv + 1,
-                                           static_cast<std::size_t>(std::max(argc, 1) - 1));
+  const std::vector<std::string> words = words_of(argc, argv);
+  if (words.empty()) {
+    std::fputs(line.app->help().c_str(), stderr);
+    return status_of(ErrorCode::invalid_argument).exit;
+  }
+  if (const std::string word = unknown_subcommand(words); !word.empty())
+    return report_wrong_use(*line.app, unknown_subcommand_sentence(*line.app, word), json);
   const CLI::App& app = app_of(*line.app, words);
   if (const std::string word = one_hyphen_too_few(app, words); !word.empty())
     return report_wrong_use(app, word + " has one hyphen; the option is -" + word, json);
   try {
-    line.app->parse(argc, argv);
+    parse(*line.app, words);
   } catch (const CLI::Success& success) {  // --help, --version
     const int status = line.app->exit(success);
     finish_stdout();
     return status;
   } catch (const CLI::ParseError& error) {
-    return report_wrong_use(app, fault_of(app, words, error), json);
+    return report_wrong_use(app, usage_fault(app, words, error), json);
   }
   for (std::size_t i = 0; i < kCommands.size(); ++i) {
     if (!line.app->got_subcommand(kCommands[i].name)) continue;

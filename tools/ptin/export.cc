@@ -19,6 +19,7 @@
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
 #include "tools/ptin/export_report.h"
+#include "tools/ptin/model_options.h"
 #include "tools/ptin/pixel_content.h"
 #include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
@@ -33,6 +34,7 @@ struct ExportOptions {
   TerrainOptions terrain;
   RegionOptions region;
   DetailOptions detail;
+  ModelOptions model;
   std::vector<std::string> pixel_size;
   PixelContentOptions content;
   std::optional<double> nodata;
@@ -51,8 +53,10 @@ struct ExportFormat {
   std::unique_ptr<TinSink> (*make_sink)(const SinkTarget& target);  ///< Null for rasters.
   bool is_cog;
 };
-constexpr std::array<ExportFormat, 8> kFormats = {
+constexpr std::array<ExportFormat, 10> kFormats = {
     {{"PLY", ".ply", make_ply_sink, false},
+     {"OBJ", ".obj", make_obj_sink, false},
+     {"2DM", ".2dm", make_two_dm_sink, false},
      {"LandXML", ".xml", make_land_xml_sink, false},
      {"DXF", ".dxf", make_dxf_sink, false},
      {"STL", ".stl", make_stl_sink, false},
@@ -89,6 +93,14 @@ const ExportFormat& format_of(const ExportOptions& options) {
   if (!options.format.empty()) {
     throw Error(ErrorCode::invalid_argument, "unknown format; known are " + known_formats(),
                 options.format);
+  }
+  if (extension == ".glb" && options.format.empty()) {
+    throw Error(
+        ErrorCode::invalid_argument,
+        "a GLB is written from a whole mesh, which `ptin refine` does; export writes meshes "
+        "of any size, as " +
+            known_extensions(),
+        options.output);
   }
   throw Error(
       ErrorCode::invalid_argument,
@@ -145,6 +157,7 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
                 "GDAL makes a folder of a FlatGeobuf whose name does not end in .fgb; name it so",
                 options.output);
   }
+  check_model(options.model, options.output);
   check_output(options.output, options.overwrite);
 }
 
@@ -232,14 +245,11 @@ SinkTarget sink_target(const ExportFormat& format, const ExportOptions& options,
   const StoreFile& store = parts.terrain().store();
   const CrsFacts crs = crs_facts(store);
   const ExportMemory memory = memory_of(options);
-  return {options.output,
-          options.overwrite,
-          crs,
-          frame_of(store.facts(), crs),
-          content_of(options, format).in_percent,
-          memory.buffers,
-          memory.index,
-          parts.triangles()};
+  LocalFrame frame = frame_of(store.facts(), crs);
+  apply_model(options.model, options.output, frame.scale);
+  return {options.output, options.overwrite,  crs,
+          frame,          options.model.base, content_of(options, format).in_percent,
+          memory.buffers, memory.index,       parts.triangles()};
 }
 
 void warn_of_triangles(const Exported& made, const ExportFormat& format, const SinkTarget& target) {
@@ -356,6 +366,7 @@ Action declare_export(CLI::App& app, Context& context) {
       ->expected(1, 2)
       ->type_name("SIZE");
   add_pixel_content_options(app, options->content);
+  add_model_options(app, options->model);
   app.add_option("--nodata", options->nodata,
                  "Rasters of heights: the value where there is no surface (default -9999)")
       ->type_name("V");

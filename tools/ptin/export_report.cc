@@ -29,6 +29,17 @@ const char* left_out_text(bool has_moved, bool has_lone) {
   return has_lone ? " (but lone ones)" : "";
 }
 
+/// "within 2 at every sample, 3.1 at any point", "slope of the full TIN".
+std::string certainty_text(const Exported& made, const std::string& left_out) {
+  const bool is_height = made.what == "height";
+  const Certificate& certificate = made.certificate;
+  if (!is_height && certificate.error == 0 && certificate.deviation == 0)
+    return made.what + " of the full TIN";
+  return (is_height ? "" : made.what + " of a TIN that is ") + "within " +
+         short_number(certificate.error) + " at every sample" + left_out + ", " +
+         short_number(certificate.deviation) + " at any point";
+}
+
 }  // namespace
 
 nlohmann::json json_of(const Exported& made, const StoreFile& store) {
@@ -66,12 +77,9 @@ void print_exported(const Exported& made, const StoreFacts& facts) {
   const bool may_move = !facts.free_of_voids && !made.certificate.complete;
   const bool has_moved =
       may_move && (!made.changes || made.changes->to_void + made.changes->to_surface > 0);
-  std::printf("%s: %s, %s, %.2f s; %swithin %s at every sample%s, %s at any point\n",
-              made.output.c_str(), size_text(made).c_str(), human_bytes(made.bytes).c_str(),
-              made.seconds, made.what == "height" ? "" : (made.what + " of a TIN that is ").c_str(),
-              short_number(made.certificate.error).c_str(),
-              left_out_text(has_moved, made.lone_samples > 0),
-              short_number(made.certificate.deviation).c_str());
+  std::printf("%s: %s, %s, %.2f s; %s\n", made.output.c_str(), size_text(made).c_str(),
+              human_bytes(made.bytes).c_str(), made.seconds,
+              certainty_text(made, left_out_text(has_moved, made.lone_samples > 0)).c_str());
   if (made.lone_samples > 0) {
     std::printf("  lone     %s of the source without a triangle, treated as void\n",
                 counted(made.lone_samples, "sample").c_str());

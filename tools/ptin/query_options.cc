@@ -47,7 +47,7 @@ std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options, const
     RemoteOptions remote;
     remote.caches.folder = options.cache_folder;
     if (!options.remote_cache.empty()) {
-      remote.caches.memory_bytes = parse_bytes(options.remote_cache, "--remote-cache");
+      remote.caches.memory_bytes = parse_memory(options.remote_cache, "--remote-cache");
     }
     remote.stop = context.stop;
     return open_remote_store(options.file, remote);
@@ -218,7 +218,7 @@ QueryLimits limits_of(const std::string& memory, const Context& context) {
 }
 
 std::uint64_t memory_limit_of(const std::string& memory, std::uint64_t otherwise) {
-  if (!memory.empty()) return parse_bytes(memory, "--memory");
+  if (!memory.empty()) return parse_memory(memory, "--memory");
   return std::min(otherwise, allowed_memory() / 4 * 3);  // as builds do by themselves
 }
 

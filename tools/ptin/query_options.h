@@ -21,7 +21,7 @@ namespace ptin::tools {
 /// FILE, which may lie elsewhere, how it is read, --index and --tmp.
 struct TerrainOptions {
   std::string file;
-  std::string remote_cache;  ///< As parse_bytes; empty: the default.
+  std::string remote_cache;  ///< As parse_memory; empty: the default.
   std::string cache_folder;
   std::string index = "packed";
   std::string temporary_folder;
@@ -96,7 +96,7 @@ void add_memory_option(CLI::App& app, std::string& memory);
 /// --by: stars or splits.
 void add_by_option(CLI::App& app, AnswerBy& by);
 /// The bytes that --memory names. Without --memory: `otherwise`, or three quarters of what the
-/// process is allowed where that is less.  @throws Error invalid_argument as parse_bytes
+/// process is allowed where that is less.  @throws Error invalid_argument as parse_memory
 [[nodiscard]] std::uint64_t memory_limit_of(const std::string& memory,
                                             std::uint64_t otherwise = std::uint64_t{4} << 30);
 

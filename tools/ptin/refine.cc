@@ -11,7 +11,9 @@
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
 #include "tools/formats/mesh_writer.h"
+#include "tools/formats/solid_stream.h"
 #include "tools/output/output_file.h"
+#include "tools/ptin/model_options.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/cut.h"
 #include "tools/region/mesh_crs.h"
@@ -25,6 +27,7 @@ struct RefineOptions {
   TerrainOptions terrain;
   RegionOptions region;
   DetailOptions detail;
+  ModelOptions model;
   std::optional<std::uint64_t> triangles;
   bool clip = false;
   bool cut = false;
@@ -45,9 +48,11 @@ void check_options(const RefineOptions& options) {
   }
   check_detail(options.detail);
   static_cast<void>(mesh_format_of(options.output));
+  check_model(options.model, options.output);
   check_output(options.output, options.overwrite);
 }
 
+/// @param mesh  As it is written.
 nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
                          const StoreFile& store, const CrsFacts& crs) {
   nlohmann::json answer = {
@@ -148,15 +153,23 @@ int run_refine(const RefineOptions& options, const Context& context) {
   Mesh mesh =
       options.cut ? cut_to_region(refined, facts, *request.region) : surface_mesh(refined, facts);
   set_crs(mesh, crs, facts);
-  write_mesh(mesh, options.output, options.overwrite);
+  apply_model(options.model, options.output, mesh.frame.scale);
+  apply_model(options.model, options.output, mesh.metres_per_unit);
+  const Mesh solid = options.model.base ? solid_of(mesh, *options.model.base) : Mesh{};
+  const Mesh& written = options.model.base ? solid : mesh;
+  write_mesh(written, options.output, options.overwrite);
   if (mesh.triangles.empty() && !context.quiet) {
     std::fprintf(stderr, "ptin: warning: the region holds no surface; %s has no triangle\n",
                  options.output.c_str());
   }
   if (context.json) {
-    print_json(answer_of(options, refined, mesh, terrain.store(), crs));
+    print_json(answer_of(options, refined, written, terrain.store(), crs));
   } else if (!context.quiet) {
     print_written(options, refined, mesh, terrain.store());
+    if (options.model.base) {
+      std::printf("  solid      %s with walls and base\n",
+                  counted(solid.triangles.size(), "triangle").c_str());
+    }
     if (options.stats) print_stats(options, refined);
   }
   return kExitDone;
@@ -191,6 +204,7 @@ Action declare_refine(CLI::App& app, Context& context) {
                  "The mesh to write; its extension chooses the format: " + formats)
       ->type_name("OUT")
       ->required();
+  add_model_options(app, options->model);
   app.add_flag("--stats", options->stats, "Print what is certified and what it cost, too");
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");

@@ -98,6 +98,8 @@ class Receiver {
       }
     }
     if (std::ferror(file.get()) != 0) throw system_error(errno, "cannot read", path);
+    if (!begun && !reader_.has_mesh() && path != "-")
+      refuse("this is not a stream of ptin: it is empty", path);
     if (begun && within_ && reader_.has_mesh()) note();
     if (within_) reader_.begin_next();
   }

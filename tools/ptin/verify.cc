@@ -119,13 +119,31 @@ std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
   return tolerances;
 }
 
-void verify_source(const VerifyCommand& command, const Terrain& terrain, const Context& context,
-                   Progress& progress, Findings& findings) {
+SampleResources resources_of(const VerifyCommand& command, const Context& context) {
   const ExternalMemory memory{FileLayer::system(),
                               command.tmp.empty() ? folder_of(command.terrain.file) : command.tmp,
                               memory_limit_of(command.memory, kMemory)};
+  return {memory, context.stop, command.lines};
+}
+
+/// Refuses the source of another terrain before anything is verified, which may take long. A file
+/// that cannot be opened has faults, which are told later.
+void check_source(const VerifyCommand& command, const Context& context) {
+  if (command.against.empty()) return;
+  std::shared_ptr<const StoreFile> store;
+  try {
+    store = open_store(command.terrain, context);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corruption) throw;
+    return;
+  }
+  check_is_source(command.against, *store, resources_of(command, context));
+}
+
+void verify_source(const VerifyCommand& command, const Terrain& terrain, const Context& context,
+                   Progress& progress, Findings& findings) {
   const std::unique_ptr<SourceSamples> source =
-      open_samples(command.against, terrain.store(), {memory, context.stop, command.lines});
+      open_samples(command.against, terrain.store(), resources_of(command, context));
   AgainstOptions options;
   options.tolerances = tolerances_of(command, terrain.store());
   options.listed_faults = command.faults;
@@ -144,6 +162,7 @@ Findings verify(const VerifyCommand& command, const Context& context) {
     refuse("verify reads every byte of a file: copy it to this machine, and verify the copy",
            command.terrain.file);
   }
+  check_source(command, context);
   Findings findings;
   Progress progress(Progress::style_for(context.quiet, stderr));
   VerifyOptions options;

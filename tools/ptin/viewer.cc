@@ -5,13 +5,16 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "storage/file_beginning.h"
 #include "storage/layout.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
@@ -48,13 +51,18 @@ std::ifstream open_to_copy(const std::string& path) {
 void check_stream(const std::string& path) {
   if (fs::is_directory(path)) refuse("this is a folder, not a stream", path);
   std::ifstream in = open_to_copy(path);
-  std::array<std::uint8_t, layout::kStreamMagic.size()> magic{};
-  in.read(reinterpret_cast<char*>(magic.data()), magic.size());
-  if (magic == layout::kMagic) {
+  std::array<char, kBeginningBytes> first{};
+  in.read(first.data(), first.size());
+  const auto bytes = std::as_bytes(std::span(first)).first(static_cast<std::size_t>(in.gcount()));
+  const auto begins_with = [&](const auto& magic) {
+    return bytes.size() >= magic.size() &&
+           std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+  };
+  if (begins_with(layout::kMagic)) {
     refuse("this is a store, not a stream; `ptin stream` makes one of it", path);
   }
-  if (magic != layout::kStreamMagic) {
-    refuse("this does not begin like a stream; `ptin stream` makes one", path);
+  if (!begins_with(layout::kStreamMagic)) {
+    refuse("this does not begin like a stream: " + beginning_of(bytes), path);
   }
 }
 

@@ -48,6 +48,7 @@ bool was_replaced(const StoreFile& store) {
 bool is_damaged(const std::exception& error) {
   const auto* const known = dynamic_cast<const Error*>(&error);
   return known != nullptr && (known->code() == ErrorCode::corruption ||
+                              known->code() == ErrorCode::invalid_argument ||  // no store at all
                               known->code() == ErrorCode::unsupported_version);
 }
 

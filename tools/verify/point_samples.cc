@@ -18,6 +18,25 @@ namespace ptin::tools {
 
 namespace {
 
+/// Where a position lies on the grid of a terrain. A step that was chosen counts from 0, not from the
+/// grid's origin: that decides where a position in the middle between two grid points goes.
+MapPoint grid_point_of(MapPoint p, const StoreFacts& facts, const SampleChoices& choices) {
+  const AffineMap& map = facts.map;
+  if (choices.resolution) {
+    const double step = *choices.resolution;
+    return {std::round(p.x / step) - std::round(map.origin_x / step),
+            std::round(p.y / step) - std::round(map.origin_y / step)};
+  }
+  const MapPoint grid = map.to_grid(p);
+  return {std::round(grid.x), std::round(grid.y)};
+}
+
+bool is_left_out(const std::array<double, 3>& p, const SampleChoices& choices) {
+  if (choices.nodata && p[2] == *choices.nodata) return true;
+  const auto& box = choices.asked_bbox;
+  return box && (p[0] < (*box)[0] || p[1] < (*box)[1] || p[0] > (*box)[2] || p[1] > (*box)[3]);
+}
+
 /// True for a file that the reader of text takes: anything that is not known as LAS, a TIN or a
 /// layer.
 bool is_text(const std::string& path) {
@@ -65,7 +84,6 @@ class PointSamples final : public SourceSamples {
  private:
   void read_text(const std::string& path, const std::stop_token& stop);
   void read_stream(const std::string& path, const SampleResources& resources);
-  [[nodiscard]] MapPoint grid_point_of(MapPoint p) const;
   void add(const std::array<double, 3>& p);
   void add_sample(GridPoint p, double height);
 
@@ -105,26 +123,9 @@ void PointSamples::read_stream(const std::string& path, const SampleResources& r
   }
 }
 
-/// The grid point of a position. A step that was chosen counts from 0, not from the grid's origin:
-/// that decides where a position in the middle between two grid points goes.
-MapPoint PointSamples::grid_point_of(MapPoint p) const {
-  const AffineMap& map = facts_.map;
-  if (choices_.resolution) {
-    const double step = *choices_.resolution;
-    return {std::round(p.x / step) - std::round(map.origin_x / step),
-            std::round(p.y / step) - std::round(map.origin_y / step)};
-  }
-  const MapPoint grid = map.to_grid(p);
-  return {std::round(grid.x), std::round(grid.y)};
-}
-
 void PointSamples::add(const std::array<double, 3>& p) {
-  if (choices_.nodata && p[2] == *choices_.nodata) return;
-  if (const auto& box = choices_.asked_bbox;
-      box && (p[0] < (*box)[0] || p[1] < (*box)[1] || p[0] > (*box)[2] || p[1] > (*box)[3])) {
-    return;
-  }
-  const MapPoint grid = grid_point_of({p[0], p[1]});
+  if (is_left_out(p, choices_)) return;
+  const MapPoint grid = grid_point_of({p[0], p[1]}, facts_, choices_);
   const GridBox& b = facts_.bounds;
   if (grid.x < b.min_x || grid.x > b.max_x || grid.y < b.min_y || grid.y > b.max_y) {
     if (!lines_.has_boundary()) extent_.add(grid.x, grid.y);
@@ -144,7 +145,58 @@ void PointSamples::add_sample(GridPoint p, double height) {
   if (contains(facts_.bounds, p)) samples_.add(p, height);
 }
 
+/// The first points of an input: enough to see that it is the source of another terrain.
+class FirstPoints {
+ public:
+  FirstPoints(const std::string& path, const StoreFile& store, const SampleResources& resources)
+      : facts_(store.facts()), choices_(choices_of(store)) {
+    if (is_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
+      TextSamples text(path, choices_.points.columns);
+      TextSamples::Line line;
+      for (int lines = 0; lines < kMost && text.next(line); ++lines) {
+        if (line.misfit.empty()) add(line.point);
+      }
+      return;
+    }
+    const auto stream = open_point_stream(path, choices_.points, choices_.nodata,
+                                          {&resources.memory, resources.stop, {}});
+    std::vector<SourcePoint> batch;
+    while (seen_ < kMost && stream->next(batch)) {
+      for (const SourcePoint& p : batch) add({to_double(p.x), to_double(p.y), to_double(p.z)});
+    }
+  }
+  void check(const std::vector<std::string>& paths) const {
+    if (seen_ > 0 && !meets_) check_extent(extent_, paths, facts_, choices_);
+  }
+
+ private:
+  static constexpr int kMost = 4096;
+
+  void add(const std::array<double, 3>& p) {
+    if (is_left_out(p, choices_)) return;
+    ++seen_;
+    const MapPoint grid = grid_point_of({p[0], p[1]}, facts_, choices_);
+    extent_.add(grid.x, grid.y);
+    const GridBox& b = facts_.bounds;
+    meets_ = meets_ ||
+             (grid.x >= b.min_x && grid.x <= b.max_x && grid.y >= b.min_y && grid.y <= b.max_y);
+  }
+
+  const StoreFacts& facts_;
+  SampleChoices choices_;
+  SourceExtent extent_;
+  int seen_ = 0;
+  bool meets_ = false;
+};
+
 }  // namespace
+
+void check_first_points(const std::vector<std::string>& paths, const StoreFile& store,
+                        const SampleResources& resources) {
+  // Points that lie outside of a boundary are dropped, however many come first.
+  if (!resources.lines.is_empty()) return;
+  FirstPoints(paths.front(), store, resources).check(paths);
+}
 
 std::unique_ptr<SourceSamples> open_point_samples(const std::vector<std::string>& paths,
                                                   const StoreFile& store,

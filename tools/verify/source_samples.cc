@@ -108,14 +108,28 @@ void check_extent(const SourceExtent& extent, const std::vector<std::string>& pa
               inputs_text(paths));
 }
 
-std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
-                                            const StoreFile& store,
-                                            const SampleResources& resources) {
+namespace {
+
+void check_all_there(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     if (path.rfind("/vsi", 0) != 0 && !is_there(path)) {
       throw Error(ErrorCode::not_found, "no such file", path);
     }
   }
+}
+
+}  // namespace
+
+void check_is_source(const std::vector<std::string>& paths, const StoreFile& store,
+                     const SampleResources& resources) {
+  check_all_there(paths);
+  if (!open_raster_samples(paths, store)) check_first_points(paths, store, resources);
+}
+
+std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
+                                            const StoreFile& store,
+                                            const SampleResources& resources) {
+  check_all_there(paths);
   std::unique_ptr<SourceSamples> samples = open_raster_samples(paths, store);
   if (samples && !resources.lines.is_empty()) {
     throw Error(ErrorCode::invalid_argument,

@@ -128,6 +128,17 @@ struct SampleResources {
                                                           const StoreFile& store,
                                                           const SampleResources& resources);
 
+/// Refuses what is the source of another terrain as far as a short look tells: the grid and the extent
+/// of rasters; of points, that none of the first few thousand lies on the terrain. Cheap, whatever
+/// the size of the source.
+/// @throws Error as open_samples()
+void check_is_source(const std::vector<std::string>& paths, const StoreFile& store,
+                     const SampleResources& resources);
+
+/// As check_is_source(), of points.
+void check_first_points(const std::vector<std::string>& paths, const StoreFile& store,
+                        const SampleResources& resources);
+
 /// The two kinds of sources; open_samples() chooses. open_raster_samples() returns null when GDAL
 /// does not know one of the files as a raster; a file that cannot be read is an error.
 [[nodiscard]] std::unique_ptr<SourceSamples> open_raster_samples(

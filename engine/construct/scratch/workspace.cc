@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "engine/construct/scratch/build_difference.h"
 #include "engine/error.h"
 #include "storage/file/checksum.h"
 #include "storage/file/file_questions.h"
@@ -326,12 +327,13 @@ Workspace::Workspace(FileLayer& files, const std::string& output, const std::str
 /// Checks that the interrupted build is of the same inputs and options, and all there.
 void Workspace::take_up(const nlohmann::json& fingerprint) {
   const nlohmann::json& first = manifest_->entries().front();
-  if (first.value("ptin_build", 0) != 1 ||
-      first.value("of", nlohmann::json()) != as_read_back(fingerprint)) {
+  const nlohmann::json begun_with =
+      first.value("ptin_build", 0) == 1 ? first.value("of", nlohmann::json()) : nlohmann::json();
+  if (const nlohmann::json now = as_read_back(fingerprint); begun_with != now) {
     throw Error(ErrorCode::invalid_argument,
-                "the unfinished build here is of other inputs, of inputs that have changed, of "
-                "other options or of another version of ptin; repeat those, or remove it by "
-                "--discard",
+                "the unfinished build here was begun with something else: " +
+                    what_differs(begun_with, now) +
+                    "; give what it was begun with, or remove it by --discard",
                 folder_);
   }
   tmp_ = tmp_of(first, folder_);

@@ -29,9 +29,13 @@ void QueryContext::throw_exhausted(std::uint64_t bytes) const {
     return b < (16 << 20) ? std::to_string((b + 0x3FF) >> 10) + " KiB"
                           : std::to_string((b + 0xFFFFF) >> 20) + " MiB";
   };
+  const bool reads_alike = size(bytes) == size(limits_.memory_bytes);
+  const auto told = [&](std::uint64_t b) {
+    return reads_alike ? std::to_string(b) + " bytes" : size(b);
+  };
   throw Error(ErrorCode::resource_exhausted,
-              "the answer may take " + size(bytes) + ", more than the limit of " +
-                  size(limits_.memory_bytes) +
+              "the answer may take " + told(bytes) + ", more than the limit of " +
+                  told(limits_.memory_bytes) +
                   ": ask for a smaller region, a larger tolerance or fewer vertices, raise the "
                   "limit, or use export",
               file_);

@@ -14,6 +14,7 @@
 #include "engine/stop.h"
 #include "storage/coarsest_tin.h"
 #include "storage/facts.h"
+#include "storage/file_beginning.h"
 #include "storage/metadata_text.h"
 
 namespace ptin {
@@ -171,7 +172,17 @@ void StreamReader::check_magic() const {
                 "stream",
                 name_);
   }
-  reject("this is no stream of ptin; the first bytes are others");
+  const auto first =
+      std::span(std::as_const(waiting_)).first(std::min(waiting_.size(), kBeginningBytes));
+  std::size_t agree = 0;
+  for (std::size_t i = 0; i < std::min(first.size(), stream::kMagic.size()); ++i) {
+    agree += first[i] == std::byte{stream::kMagic[i]} ? 1 : 0;
+  }
+  // What follows another stream, or begins nearly like one, was meant to be one.
+  if (has_mesh() || 2 * agree > std::min(first.size(), stream::kMagic.size()))
+    reject("the first bytes are not those of a stream; it is damaged");
+  throw Error(ErrorCode::invalid_argument, "this is not a stream of ptin: " + beginning_of(first),
+              name_);
 }
 
 void StreamReader::take_head(std::span<const std::byte> bytes) {
