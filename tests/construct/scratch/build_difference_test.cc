@@ -10,12 +10,12 @@ namespace {
 using nlohmann::json;
 
 json begun() {
-  return {{"options", {{"max_error", 0.0}, {"a_srs", "EPSG:2154"}, {"tile", nullptr}}},
-          {"page_bytes", 4096},
-          {"inputs",
-           {{"/d/a.tif", {{"/d/a.tif", 100, 7}, {"/d/a.tif.aux.xml", 5, 7}}},
-            {"/d/b.tif", {{"/d/b.tif", 50, 3}}}}},
-          {"program", {"0.1", 3}}};
+  return json::parse(R"({
+    "options": {"max_error": 0.0, "a_srs": "EPSG:2154", "tile": null},
+    "page_bytes": 4096,
+    "inputs": [["/d/a.tif", [["/d/a.tif", 100, 7], ["/d/a.tif.aux.xml", 5, 7]]],
+               ["/d/b.tif", [["/d/b.tif", 50, 3]]]],
+    "program": ["0.1", 3]})");
 }
 
 TEST(WhatDiffers, NamesTheOptionWithBothValues) {
