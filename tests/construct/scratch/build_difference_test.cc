@@ -27,7 +27,7 @@ TEST(WhatDiffers, NamesTheOptionWithBothValues) {
   now["options"]["tile"] = 256;
   EXPECT_EQ(what_differs(begun(), now),
             "--a-srs was EPSG:2154 and is not given; --class was not given and is 2 9; --max-error "
-            "was 0.0 and is 5.0; --repair was not given and is given; --tile was not given and is "
+            "was 0 and is 5; --repair was not given and is given; --tile was not given and is "
             "256");
 }
 
