@@ -65,7 +65,7 @@ class StoreFile {
   /// whatever the number of records.
   /// @param announcer  Is told what is read next; null: the kernel is. The store shares it.
   /// @throws Error not_found, io_error, corruption, unsupported_version; invalid_argument when it
-  ///               is no regular file, or a stream
+  ///               is no regular file, a stream, or begins like no store at all
   static std::shared_ptr<const StoreFile> open(const std::string& path,
                                                PageAccess access = PageAccess::kMapped,
                                                std::shared_ptr<Announcer> announcer = nullptr,

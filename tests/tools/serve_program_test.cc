@@ -36,7 +36,7 @@ TEST(ServeProgram, RefusesWhatItCannotServe) {
   } all[] = {
       {{}, 2, "no file is given"},
       {{"missing.ptin"}, 3, "missing.ptin"},
-      {{test_data("mountains_257.tif")}, 4, "mountains_257.tif"},
+      {{test_data("mountains_257.tif")}, 2, "mountains_257.tif: this is not a .ptin file"},
       {{store, store}, 2, "two files have the name"},
       {{"a/b=" + store}, 2, "cannot be the name"},
       {{store, "--listen", "nowhere"}, 2, "ADDRESS:PORT"},

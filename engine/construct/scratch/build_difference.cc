@@ -19,7 +19,10 @@ std::string told(const json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "given" : "not given";
   if (value.is_null()) return "not given";
-  if (!value.is_array()) return value.dump();
+  if (!value.is_array()) {
+    const std::string text = value.dump();
+    return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
+  }
   std::string all;
   for (const json& one : value) all += (all.empty() ? "" : " ") + told(one);
   return all.empty() ? "not given" : all;

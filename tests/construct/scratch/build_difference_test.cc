@@ -10,12 +10,12 @@ namespace {
 using nlohmann::json;
 
 json begun() {
-  return {{"options", {{"max_error", 0.0}, {"a_srs", "EPSG:2154"}, {"tile", nullptr}}},
-          {"page_bytes", 4096},
-          {"inputs",
-           {{"/d/a.tif", {{"/d/a.tif", 100, 7}, {"/d/a.tif.aux.xml", 5, 7}}},
-            {"/d/b.tif", {{"/d/b.tif", 50, 3}}}}},
-          {"program", {"0.1", 3}}};
+  return json::parse(R"({
+    "options": {"max_error": 0.0, "a_srs": "EPSG:2154", "tile": null},
+    "page_bytes": 4096,
+    "inputs": [["/d/a.tif", [["/d/a.tif", 100, 7], ["/d/a.tif.aux.xml", 5, 7]]],
+               ["/d/b.tif", [["/d/b.tif", 50, 3]]]],
+    "program": ["0.1", 3]})");
 }
 
 TEST(WhatDiffers, NamesTheOptionWithBothValues) {
@@ -27,7 +27,7 @@ TEST(WhatDiffers, NamesTheOptionWithBothValues) {
   now["options"]["tile"] = 256;
   EXPECT_EQ(what_differs(begun(), now),
             "--a-srs was EPSG:2154 and is not given; --class was not given and is 2 9; --max-error "
-            "was 0.0 and is 5.0; --repair was not given and is given; --tile was not given and is "
+            "was 0 and is 5; --repair was not given and is given; --tile was not given and is "
             "256");
 }
 
