@@ -59,6 +59,21 @@ TEST(LocateCommand, TellsThreeStatesApart) {
   EXPECT_EQ(off.at("state"), "outside");
 }
 
+TEST(LocateCommand, ReadsLinesThatEndInCrUnderAComment) {
+  const TestFolder folder;
+  const std::string terrain = wall(folder);
+  const std::string first = east(15.5) + " " + south(20), second = east(3) + " " + south(3);
+  write_file(folder.file("p.txt"), first + "\n" + second + "\n0 0\n");
+  write_file(folder.file("cr.txt"), first + "\r" + second + "\r\n0 0");
+  write_file(folder.file("comment.txt"), "# northing easting\r" + south(20) + " " + east(15.5) +
+                                             "\r" + south(3) + " " + east(3) + "\r0 0\r");
+  const Outcome usual = run_ptin({"locate", terrain, "--points", folder.file("p.txt")});
+  EXPECT_EQ(lines_in(usual.out), 4u);
+  for (const char* name : {"cr.txt", "comment.txt"}) {
+    EXPECT_EQ(run_ptin({"locate", terrain, "--points", folder.file(name)}).out, usual.out) << name;
+  }
+}
+
 TEST(LocateCommand, ReadsManyPointsAndKeepsTheirOrder) {
   const TestFolder folder;
   const std::string terrain = wall(folder);

@@ -50,7 +50,7 @@ TEST(TinInput, IsRefusedWhenBrokenAndRepairedWhenAsked) {
   testing::write_file(mesh, "v 0 0 0\nv 9 0 1\nv 9 9 2\nv 0 9 3\nf 1 2 3\nf 1 4 3\nf 2 3 1\n");
   const Outcome refused = run_ptin({"build", mesh, "-o", folder.file("m.ptin"), "-q"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("1 triangle is turned over"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("3 edges have two triangles"), std::string::npos) << refused.err;
   EXPECT_NE(refused.err.find("--repair"), std::string::npos);
   EXPECT_EQ(folder.names(), std::vector<std::string>{"m.obj"});
   expect_done({"build", mesh, "-o", folder.file("m.ptin"), "-q", "--repair"});

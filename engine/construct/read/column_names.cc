@@ -137,9 +137,11 @@ std::vector<std::size_t> columns_of(std::span<const std::string> names,
     if (column == names.size()) {
       refuse("there is no column for " + name_of(role));
     }
+    // A name without a unit comes before the same with one, which then names another column.
+    const bool has_unit = !named_column(names[column]).unit.empty();
     const auto is_it = [&](const std::string& name) {
       const std::array<std::string, 1> alone = {name};
-      return find_column(alone, role) == 0;
+      return find_column(alone, role) == 0 && (has_unit || named_column(name).unit.empty());
     };
     if (std::count_if(names.begin(), names.end(), is_it) > 1) {
       refuse("there are two columns for " + name_of(role));

@@ -234,6 +234,9 @@ TEST(ColumnNames, MayHaveAUnitBehindThem) {
   EXPECT_EQ(find_column(names, {Coordinate::kX}), 2U);
   EXPECT_EQ(find_column(names, {Coordinate::kY}), 1U);
   EXPECT_TRUE(is_coordinate_name("x [m]"));
+  const std::vector<std::string> both = {"x", "y", "z_ft", "z"}, twins = {"x", "y", "z_ft", "z(m)"};
+  EXPECT_EQ(columns_of(both, point_roles()), (std::vector<std::size_t>{0, 1, 3}));
+  EXPECT_THROW(static_cast<void>(columns_of(twins, point_roles())), Error);
   EXPECT_FALSE(is_coordinate_name("point_m"));
 }
 

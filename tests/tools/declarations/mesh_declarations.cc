@@ -51,6 +51,29 @@ std::string system_of(const std::string& attributes) {
   return "<CoordinateSystem " + attributes + "/>";
 }
 
+/// Points, and beside them lines of LandXML by this option.
+Declaration lines(const std::string& key, const std::string& option, const std::string& declared,
+                  const std::string& undeclared) {
+  return {key, [=](const TestFolder& folder, bool is_declared) -> std::vector<std::string> {
+            write_file(folder.file("points.xyz"), "0 0 0\n9 0 0\n9 9 0\n0 9 0\n");
+            write_file(folder.file("source.xml"),
+                       "<LandXML><Surfaces><Surface name='s'><SourceData>" +
+                           (is_declared ? declared : undeclared) +
+                           "</SourceData></Surface></Surfaces></LandXML>");
+            return {folder.file("points.xyz"), option, folder.file("source.xml")};
+          }};
+}
+
+std::string breakline(const std::string& type) {
+  return "<Breaklines><Breakline brkType='" + type +
+         "'><PntList3D>2 2 1 5 5 2</PntList3D></Breakline></Breaklines>";
+}
+
+std::string boundary(const std::string& type) {
+  return "<Boundaries><Boundary bndType='" + type +
+         "'><PntList2D>1 1 1 8 8 8</PntList2D></Boundary></Boundaries>";
+}
+
 }  // namespace
 
 std::vector<Declaration> mesh_declarations() {
@@ -89,6 +112,8 @@ std::vector<Declaration> mesh_declarations() {
           land_xml(
               "", "", kPoints, kFaces,
               "<SourceData><Boundaries><Boundary bndType='outer'/></Boundaries></SourceData>")),
+      lines("mesh.landxml_breakline", "--breaklines", breakline("wall"), breakline("standard")),
+      lines("mesh.landxml_void", "--boundary", boundary("void"), boundary("outer")),
       xml("mesh.landxml_grid", land_xml("", " surfType='grid'")),
       xml("mesh.landxml_reference",
           land_xml("", "", "<P id='1' pntRef='CP1'/>" + kPoints.substr(kPoints.find("<P id='2'")))),
