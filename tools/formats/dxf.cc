@@ -4,6 +4,7 @@
 // hatches, and no faces; of this release a header and the entities are enough.
 #include <algorithm>
 
+#include "tools/formats/dxf_units.h"
 #include "tools/formats/mesh_stream.h"
 #include "tools/formats/number_text.h"
 #include "tools/output/output_file.h"
@@ -20,7 +21,12 @@ class Dxf final : public MeshStream {
     // A value has at most 255 characters, which WKT does not keep to.
     const std::string name = crs.code.empty() ? crs.name : crs.code;
     if (!name.empty()) text += "999\ncrs: " + on_one_line(name) + "\n";
-    text += "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n";
+    if (crs.vertical_unit != "unknown" && crs.vertical_unit != crs.horizontal_unit)
+      text += "999\nheights: " + on_one_line(crs.vertical_unit) + "\n";
+    const DxfUnits units = dxf_units(crs);
+    text += "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n" +
+            std::to_string(units.insunits) + "\n9\n$MEASUREMENT\n70\n" +
+            std::to_string(units.measurement) + "\n0\nENDSEC\n";
     text += "0\nSECTION\n2\nENTITIES\n";
     out_.write(text);
   }

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include <cpl_conv.h>
+#include <cpl_string.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 #include <ogrsf_frmts.h>
@@ -184,7 +185,9 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     GDALDriver& driver = driver_named(driver_.c_str());
     const UnsafeSqlite unsafe;
     CPLErrorReset();
-    dataset_.reset(driver.Create(target.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    CPLStringList creation;
+    for (const std::string& option : layer.creation) creation.AddString(option.c_str());
+    dataset_.reset(driver.Create(target.c_str(), 0, 0, 0, GDT_Unknown, creation.List()));
     const std::unique_ptr<OGRSpatialReference> reference = reference_of(layer.crs_wkt);
     if (dataset_) {
       layer_ = dataset_->CreateLayer(layer.name, reference.get(), layer.geometry, nullptr);

@@ -57,6 +57,7 @@ class VectorFile {
     std::string crs_wkt;  ///< Empty: unknown.
     /// GDAL's name of a format that only some layers fit, as DXF; null: by the file's extension.
     const char* driver = nullptr;
+    std::vector<std::string> creation{};  ///< Options of that driver, as "NAME=VALUE".
   };
   /// A number that is infinite or unknown leaves its field null.
   using Value = std::variant<std::int64_t, double, std::string>;

@@ -57,7 +57,11 @@ IsolineLayer::IsolineLayer(const Options& options)
   if (format_ == IsolineFormat::kLandXml) {
     contours_.emplace(options.path, options.overwrite, options.crs);
   } else {
-    file_.emplace(options.path, options.overwrite, layer_of(options));
+    VectorFile::Layer layer = layer_of(options);
+    if (format_ == IsolineFormat::kDxf) {
+      layer.creation = {header_.emplace(options.crs).option()};
+    }
+    file_.emplace(options.path, options.overwrite, layer);
   }
 }
 

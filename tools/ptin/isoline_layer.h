@@ -12,6 +12,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
+#include "tools/formats/dxf_units.h"
 #include "tools/formats/land_xml_contours.h"
 #include "tools/formats/vector_file.h"
 
@@ -77,6 +78,7 @@ class IsolineLayer {
 
   Options options_;
   IsolineFormat format_;
+  std::optional<DxfHeader> header_;          ///< Of a drawing, which needs it until it is closed.
   std::optional<VectorFile> file_;           ///< Unless it is LandXML,
   std::optional<LandXmlContours> contours_;  ///< which is here.
   std::uint64_t next_id_ = 0;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <optional>
 
 #include <gdal_priv.h>
 
@@ -28,6 +30,10 @@ struct RasterFile {
   int y_step = -1;
   int columns = 0;
   int rows = 0;
+  GDALRasterBand* heights = nullptr;  ///< Of `data`, as the next one.
+  GDALRasterBand* alpha = nullptr;    ///< Null where there is none.
+  std::optional<double> nodata;       ///< That the file declares.
+  int bits_of_float = 32;             ///< Of a value of Float32.
   double scale = 1.0;
   double offset = 0.0;
 
@@ -109,22 +115,34 @@ void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   }
 }
 
-/// True for signed bytes. They come from GDAL before 3.7 as 0 to 255, and its mask does not know a
-/// nodata value below 0.
+/// True for signed bytes. They come from GDAL before 3.7 as 0 to 255.
 bool is_signed_byte(GDALRasterBand& band) {
   const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
   return type != nullptr && EQUAL(type, "SIGNEDBYTE");
 }
 
-/// @param with_nodata  Whether the band's own nodata value masks samples out.
-void take_signs(GDALRasterBand& band, bool with_nodata, std::vector<double>& values,
-                std::vector<std::uint8_t>& mask) {
-  int has_nodata = 0;
-  const double nodata = band.GetNoDataValue(&has_nodata);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i] > 127) values[i] -= 256;
-    if (with_nodata && has_nodata != 0 && values[i] == nodata) mask[i] = 0;
+/// True where a stored value is the nodata value, as the file's type may have rounded that. Floats of
+/// fewer bits than Float32 are looked at by their own last place.
+bool is_nodata(double stored, double nodata, GDALDataType type, int bits_of_float) {
+  if (stored == nodata) return true;
+  if (type != GDT_Float32 && type != GDT_Float64) return false;
+  constexpr double kNoHeight = 1e30;  // from here on a nodata value has but three sure digits
+  if (std::abs(nodata) >= kNoHeight) {
+    const bool overflows = type == GDT_Float32 && std::abs(nodata) >= 3.41e38;
+    const double most = std::numeric_limits<float>::max();
+    return overflows ? stored * std::copysign(1.0, nodata) >= most
+                     : std::abs(stored - nodata) <= 1e-3 * std::abs(nodata);
   }
+  if (type == GDT_Float32 && bits_of_float == 16 && std::abs(nodata) > 65504)
+    return stored * std::copysign(1.0, nodata) >= 65504;
+  if (type == GDT_Float32 && bits_of_float < 32) {
+    const int kept = bits_of_float == 16 ? 10 : 16;
+    return std::abs(stored - nodata) < std::ldexp(1.0, std::ilogb(nodata) - kept);
+  }
+  const double single = static_cast<float>(nodata);
+  return type == GDT_Float32
+             ? stored == single
+             : std::min(single, nodata) <= stored && stored <= std::max(single, nodata);
 }
 
 SampleWindow RasterSamples::read(const GridBox& box) {
@@ -154,18 +172,29 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   std::vector<double> values(count);
   std::vector<std::uint8_t> mask(count, 255);
-  GDALRasterBand& band = *file.data->GetRasterBand(1);
+  GDALRasterBand& band = *file.heights;
   CPLErr status = band.RasterIO(GF_Read, column, row, width, height, values.data(), width, height,
                                 GDT_Float64, 0, 0, nullptr);
-  // A nodata value given at the build takes the place of the band's own; a mask band stays.
-  if (status == CE_None && !(choices_.nodata && (band.GetMaskFlags() & GMF_NODATA) != 0)) {
+  // A nodata value given at the build takes the place of the file's own; other masks stay. What a
+  // mask makes of the band's nodata value alone is left to is_nodata(), and of alpha to its band.
+  const int flags = band.GetMaskFlags();
+  const bool is_own =
+      (flags & GMF_NODATA) != 0 && (choices_.nodata.has_value() || (flags & GMF_PER_DATASET) == 0);
+  if (status == CE_None && !is_own && (flags & GMF_ALPHA) == 0) {
     status = band.GetMaskBand()->RasterIO(GF_Read, column, row, width, height, mask.data(), width,
                                           height, GDT_Byte, 0, 0, nullptr);
   }
+  std::vector<double> alpha(count, 1.0);
+  if (status == CE_None && file.alpha != nullptr) {
+    status = file.alpha->RasterIO(GF_Read, column, row, width, height, alpha.data(), width, height,
+                                  GDT_Float64, 0, 0, nullptr);
+  }
   if (status != CE_None)
     throw Error(ErrorCode::io_error, "GDAL cannot read its samples", file.path);
-  const bool is_float = band.GetRasterDataType() == GDT_Float32;
-  if (is_signed_byte(band)) take_signs(band, !choices_.nodata, values, mask);
+  if (is_signed_byte(band)) {
+    for (double& value : values) value -= value > 127 ? 256 : 0;
+  }
+  const std::optional<double> nodata = choices_.nodata ? choices_.nodata : file.nodata;
   const std::size_t stride = static_cast<std::size_t>(box.max_x - box.min_x) + 1;
   for (int j = 0; j < height; ++j) {
     const std::int64_t y = file.y_step < 0 ? high_y - j : low_y + j;
@@ -174,17 +203,38 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
       const std::size_t from = static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
                                static_cast<std::size_t>(i);
       const double value = values[from];
-      const bool is_nodata =
-          choices_.nodata &&
-          (value == *choices_.nodata ||
-           (is_float && static_cast<float>(value) == static_cast<float>(*choices_.nodata)));
-      if (mask[from] == 0 || std::isnan(value) || is_nodata) continue;
+      const bool is_void =
+          mask[from] == 0 || !(alpha[from] > 0) || std::isnan(value) ||
+          (nodata && is_nodata(value, *nodata, band.GetRasterDataType(), file.bits_of_float));
+      if (is_void) continue;
       SourceSample& sample = window.samples[static_cast<std::size_t>(y - box.min_y) * stride +
                                             static_cast<std::size_t>(x - box.min_x)];
       sample.height = file.offset + file.scale * value;
       sample.is_void = false;
     }
   }
+}
+
+/// Of two bands one may be alpha.
+void choose_bands(RasterFile& file) {
+  file.heights = file.data->GetRasterBand(1);
+  if (file.data->GetRasterCount() == 2) {
+    GDALRasterBand* second = file.data->GetRasterBand(2);
+    if (second->GetColorInterpretation() == GCI_AlphaBand) file.alpha = second;
+    if (file.alpha == nullptr && file.heights->GetColorInterpretation() == GCI_AlphaBand) {
+      file.alpha = file.heights;
+      file.heights = second;
+    }
+  }
+  int has = 0;
+  const GDALDataType type = file.heights->GetRasterDataType();
+  const double nodata =
+      type == GDT_Int64    ? static_cast<double>(file.heights->GetNoDataValueAsInt64(&has))
+      : type == GDT_UInt64 ? static_cast<double>(file.heights->GetNoDataValueAsUInt64(&has))
+                           : file.heights->GetNoDataValue(&has);
+  if (has != 0) file.nodata = nodata;
+  const char* bits = file.heights->GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
+  if (bits != nullptr) file.bits_of_float = std::atoi(bits);
 }
 
 }  // namespace
@@ -201,7 +251,8 @@ std::unique_ptr<SourceSamples> open_raster_samples(const std::vector<std::string
     // GDAL's XYZ driver reads some point files as rasters; text is left to the reader of points.
     if (!file.data || file.data->GetRasterCount() < 1 || EQUAL(file.data->GetDriverName(), "XYZ"))
       return nullptr;
-    GDALRasterBand& band = *file.data->GetRasterBand(1);
+    choose_bands(file);
+    GDALRasterBand& band = *file.heights;
     file.columns = band.GetXSize();
     file.rows = band.GetYSize();
     file.scale = band.GetScale(nullptr);

@@ -112,6 +112,19 @@ OGRSpatialReference with_vertical(OGRSpatialReference horizontal, const std::str
   return compound;
 }
 
+/// Depths grow downwards: taken for heights, the terrain would be upside down.
+void require_upwards(const OGRSpatialReference& srs) {
+  OGRAxisOrientation orientation = OAO_Other;
+  if (srs.GetAxis(srs.IsCompound() != 0 ? "COMPD_CS|VERT_CS" : nullptr,
+                  srs.IsCompound() != 0 ? 0 : 2, &orientation) != nullptr &&
+      orientation == OAO_Down) {
+    throw Error(ErrorCode::invalid_argument,
+                "the vertical axis of the CRS '" + or_unknown(srs.GetName()) +
+                    "' points down: it counts depths, and a terrain has heights; turn the sign of "
+                    "the values, and name a vertical CRS of heights with --vertical-crs");
+  }
+}
+
 Crs describe(const OGRSpatialReference& srs) {
   Crs crs;
   crs.wkt = to_wkt2(srs);
@@ -125,6 +138,7 @@ Crs describe(const OGRSpatialReference& srs) {
   crs.horizontal_unit = or_unknown(name);
   crs.vertical_known = srs.IsCompound() != 0 || srs.GetAxesCount() == 3;
   if (crs.vertical_known) {
+    require_upwards(srs);
     crs.vertical_unit = vertical_unit(srs);
   }
   return crs;

@@ -29,8 +29,8 @@ struct Crs {
 ///                      is.
 /// No text makes GDAL open a file or use the network.
 /// @throws Error  invalid_argument  GDAL does not understand a text; `a_srs` or `declared` is
-///                                  neither geographic nor projected nor local; `vertical_crs` is
-///                                  not a vertical CRS, or there is no horizontal one to add it to
+///                                  neither geographic nor projected nor local; its vertical axis points
+///                                  down; `vertical_crs` is not a vertical CRS, or there is no horizontal one to add it to
 /// Cost: up to milliseconds (PROJ's database). Threads: any number of calls at once.
 [[nodiscard]] Crs resolve_crs(const std::string& declared, const std::string& a_srs,
                               const std::string& vertical_crs);

@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
 #include <utility>
 
+#include <gdal.h>
 #include <sys/resource.h>
 
 #include "engine/construct/grid/crs.h"
+#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 #include "engine/geometry/point.h"
 
@@ -37,25 +41,59 @@ std::size_t most_open_files(std::size_t sources) {
 constexpr double kFileSlack = 0.01;
 constexpr double kBoundsSlack = 1e-6;
 
+/// How to bring rasters onto one grid: all of them, since the first one's need not be such a grid.
+constexpr const char* kOneGrid =
+    "; bring all of them onto one grid with 'gdalwarp -t_srs CRS -tr WIDTH HEIGHT -tap'";
+
+/// A type that holds the values of both without loss.
+std::string wider_type(const RasterShape& a, const RasterShape& b) {
+  return GDALGetDataTypeName(GDALDataTypeUnion(a.stored.type, b.stored.type));
+}
+
+std::string scaling_of(const RasterShape& shape) {
+  char text[96];
+  std::snprintf(text, sizeof text, "scale %.10g and offset %.10g", shape.scale, shape.offset);
+  return text;
+}
+
+/// Why the units of heights of two rasters do not go together; empty when they do.
+std::string unit_mismatch(const RasterShape& a, const RasterShape& b) {
+  if (a.unit.empty() || b.unit.empty() || height_unit_named(a.unit) == height_unit_named(b.unit)) {
+    return "";
+  }
+  return "its heights are in '" + b.unit + "', those of another raster before it in '" + a.unit +
+         "'; convert them first, as with 'gdal_translate -scale 0 1 0 FACTOR -ot Float32', and "
+         "state the unit with 'gdal_edit.py -units'";
+}
+
 /// Why `b` cannot stand beside `a` in one terrain; empty when it can.
 std::string mismatch(const RasterShape& a, const RasterShape& b, bool compare_crs) {
   if (!a.georeferenced || !b.georeferenced) {
     return "several rasters make one terrain only where each has a geotransform";
   }
-  if (a.type_name != b.type_name || a.scale != b.scale || a.offset != b.offset) {
-    return "its type, scale or offset (" + b.type_name + ") is not that of the first raster (" +
-           a.type_name + "); rewrite it with 'gdal_translate -ot " + a.type_name + "'";
-  }
   if (compare_crs && !is_same_crs(a.crs, b.crs)) {
-    return "its CRS is not that of the first raster; warp it with 'gdalwarp -t_srs', or name the "
-           "CRS of all by --a-srs";
+    return std::string("its CRS is not that of the first raster") + kOneGrid +
+           ", or name the CRS of all by --a-srs where they merely say it otherwise";
+  }
+  if (a.scale != b.scale || a.offset != b.offset) {
+    return "its " + scaling_of(b) + " are not those of the first raster, " + scaling_of(a) +
+           "; rewrite all of them with 'gdal_translate -unscale -ot Float64'";
+  }
+  if (a.type_name != b.type_name || a.stored.signed_bytes != b.stored.signed_bytes) {
+    const std::string wide = wider_type(a, b);
+    return "its type " + b.type_name + " is not that of the first raster, " + a.type_name +
+           "; rewrite " +
+           (b.type_name == wide   ? "those of " + a.type_name
+            : a.type_name == wide ? "it"
+                                  : "all of them") +
+           " with 'gdal_translate -ot " + wide + "', which keeps every value";
   }
   const auto extent = static_cast<double>(std::max({a.width, a.height, b.width, b.height}));
   if (std::abs(b.map.step_x / a.map.step_x - 1.0) * extent > kFileSlack ||
       std::abs(b.map.step_y / a.map.step_y - 1.0) * extent > kFileSlack) {
-    return "its pixel size is not that of the first raster; warp it with 'gdalwarp -tr'";
+    return std::string("its pixel size is not that of the first raster") + kOneGrid;
   }
-  return "";
+  return unit_mismatch(a, b);
 }
 
 /// Whole steps from `a` to `b`. Refuses the file `path`, whose origin is `b`, when their difference
@@ -66,10 +104,7 @@ std::int64_t steps_between(double a, double b, double step, const std::string& p
     refuse("it lies more than 2^30 pixels from the first raster", path);
   }
   if (std::abs(steps - std::nearbyint(steps)) > kFileSlack) {
-    refuse(
-        "its samples lie between those of the first raster; warp it onto that grid with "
-        "'gdalwarp -tap' or '-te'",
-        path);
+    refuse(std::string("its samples lie between those of the first raster") + kOneGrid, path);
   }
   return std::llround(steps);
 }
@@ -81,15 +116,18 @@ RasterMosaic::RasterMosaic(const std::vector<std::string>& paths, const SourceOp
     refuse("no raster was named", "");
   }
   parts_.reserve(paths.size());
+  RasterShape like;  // what all are to be like: the first, with the first unit that is declared
   for (const std::string& path : paths) {
     parts_.push_back({RasterPart(path, options.nodata)});
     touch(parts_.back());
+    const RasterShape& shape = parts_.back().part.shape();
     const std::string problem =
-        parts_.size() == 1 ? ""
-                           : mismatch(first(), parts_.back().part.shape(), options.a_srs.empty());
+        parts_.size() == 1 ? "" : mismatch(like, shape, options.a_srs.empty());
     if (!problem.empty()) {
       refuse(problem, path);
     }
+    like = parts_.size() == 1 ? shape : like;
+    like.unit = like.unit.empty() ? shape.unit : like.unit;
   }
   place();
 }
@@ -120,6 +158,21 @@ std::string RasterMosaic::context() const {
   return parts_.size() == 1
              ? parts_[0].part.path()
              : parts_[0].part.path() + " and " + std::to_string(parts_.size() - 1) + " more";
+}
+
+std::string RasterMosaic::unit() const {
+  const auto declares = [](const PlacedPart& p) { return !p.part.shape().unit.empty(); };
+  const auto first = std::find_if(parts_.begin(), parts_.end(), declares);
+  return first == parts_.end() ? "" : first->part.shape().unit;
+}
+
+const std::string& RasterMosaic::path_at(std::int64_t x, std::int64_t y) const {
+  const auto covers = [&](const PlacedPart& p) {
+    return x >= p.x && x < p.x + p.part.shape().width && y >= p.y &&
+           y < p.y + p.part.shape().height;
+  };
+  const auto last = std::find_if(parts_.rbegin(), parts_.rend(), covers);
+  return (last == parts_.rend() ? parts_.front() : *last).part.path();
 }
 
 SourceWarnings RasterMosaic::warnings() const {

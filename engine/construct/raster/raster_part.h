@@ -13,6 +13,7 @@
 
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/raster/raster_nodata.h"
 #include "engine/construct/tile/tile_tree.h"
 
 namespace ptin {
@@ -33,9 +34,9 @@ struct RasterShape {
   std::string crs;                 ///< WKT2:2019 as declared; empty when unknown.
   std::string unit;                ///< Of heights; empty when unknown.
   RawType raw = RawType::kInt32;
-  std::string type_name;      ///< GDAL's: "Int16", "Float32" ...
-  bool signed_bytes = false;  ///< Values are -128 to 127, though the type is Byte (GDAL < 3.7).
-  double scale = 1.0;         ///< height = offset + scale * raw value
+  std::string type_name;  ///< GDAL's: "Int16", "Float32" ...
+  StoredType stored;
+  double scale = 1.0;  ///< height = offset + scale * raw value
   double offset = 0.0;
   std::array<int, 2> block = {1, 1};  ///< Width and height of the file's own blocks.
 };
@@ -46,8 +47,8 @@ class RasterPart {
   /// Opens the file.
   /// @param nodata_override  Replaces the nodata value that the file declares; none keeps that.
   /// @throws Error  not_found         no such file
-  ///                invalid_argument  not a raster, no band or several, complex numbers, rotated,
-  ///                                  placed by ground control points alone, beyond the grid's size
+  ///                invalid_argument  not a raster, no band or several, complex numbers, as
+  ///                                  describe_place()
   RasterPart(std::string path, std::optional<double> nodata_override);
   /// A copy that is closed: it opens the file again, with a descriptor of its own.
   [[nodiscard]] RasterPart closed_copy() const { return RasterPart(*this); }
@@ -80,7 +81,7 @@ class RasterPart {
 
   std::string path_;
   std::optional<double> nodata_override_;
-  std::optional<double> nodata_;  ///< The nodata value in force, compared with raw values.
+  NodataRange nodata_;  ///< Of the nodata value in force, compared with stored values.
   RasterShape shape_;
   SourceWarnings warnings_;
   std::unique_ptr<Bands> bands_;

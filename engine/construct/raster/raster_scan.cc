@@ -39,6 +39,7 @@ struct RasterScan::Found {
   std::int64_t low = std::numeric_limits<std::int64_t>::max();  ///< Of whole codes.
   std::int64_t high = std::numeric_limits<std::int64_t>::min();
   std::uint64_t codes = 0;  ///< How many there are.
+  RasterSuspects::Known suspects{};
 };
 
 RasterScan::RasterScan(RasterMosaic mosaic, std::int64_t band_samples)
@@ -74,6 +75,7 @@ SourceStage RasterScan::stage() const {
 template <class T>
 RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const StageTask& task) const {
   HeightScan heights(given(shape_.raw));
+  RasterSuspects suspects;
   Found found;
   const SampleRange whole = band(task.number);
   std::vector<T> values(
@@ -87,14 +89,29 @@ RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const StageTask& task) 
       const SampleRange w{x, south, std::min(step_.width, whole.width - x), north - south};
       const auto n = static_cast<std::size_t>(w.width * w.height);
       mosaic.read<T>(w, std::span(values).first(n), std::span(valid).first(n));
+      T low = std::numeric_limits<T>::max(), high = std::numeric_limits<T>::lowest();
       for (std::size_t i = 0; i < n; ++i) {
-        if constexpr (std::is_integral_v<T>) {
-          found.low = valid[i] ? std::min<std::int64_t>(found.low, values[i]) : found.low;
-          found.high = valid[i] ? std::max<std::int64_t>(found.high, values[i]) : found.high;
-          found.codes += valid[i];
-        } else if (valid[i]) {
-          heights.add(shape_.offset + shape_.scale * static_cast<double>(values[i]));
+        low = valid[i] ? std::min(low, values[i]) : low;
+        high = valid[i] ? std::max(high, values[i]) : high;
+        found.codes += valid[i];
+        if constexpr (!std::is_integral_v<T>) {
+          if (valid[i]) {
+            heights.add(shape_.offset + shape_.scale * static_cast<double>(values[i]));
+          }
         }
+      }
+      if (low <= high) {
+        if constexpr (std::is_integral_v<T>) {
+          found.low = std::min<std::int64_t>(found.low, low);
+          found.high = std::max<std::int64_t>(found.high, high);
+        }
+        suspects.add<T>(std::span(values).first(n), std::span(valid).first(n),
+                        static_cast<double>(low), static_cast<double>(high), [&](std::size_t i) {
+                          const auto column = w.x0 + static_cast<std::int64_t>(i) % w.width;
+                          const auto row =
+                              mosaic.height() - 1 - w.y0 - static_cast<std::int64_t>(i) / w.width;
+                          return static_cast<std::uint64_t>(row * mosaic.width() + column);
+                        });
       }
       done += n;
       if (task.progress) {
@@ -103,6 +120,7 @@ RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const StageTask& task) 
     }
   }
   found.heights = heights.known();
+  found.suspects = suspects.known();
   return found;
 }
 
@@ -130,18 +148,20 @@ std::string RasterScan::run(const StageTask& task) {
   return text_of_value(found);
 }
 
-HeightFit RasterScan::join(const std::vector<std::string>& results) const {
+RasterScan::Joined RasterScan::join(const std::vector<std::string>& results) const {
   HeightScan heights(given(shape_.raw));
+  RasterSuspects suspects;
   Found all;
   for (const std::string& result : results) {
     const auto found = value_in_text<Found>(result);
     heights.join(HeightScan(given(shape_.raw), found.heights));
+    suspects.join(found.suspects);
     all.low = std::min(all.low, found.low);
     all.high = std::max(all.high, found.high);
     all.codes += found.codes;
   }
   if (shape_.raw != RawType::kInt32) {
-    return heights.fit();
+    return {heights.fit(), suspects.apart()};
   }
   const HeightEncoding encoding{HeightType::int32, shape_.scale, shape_.offset};
   HeightFit fit{encoding, shape_.scale, 0.0, 0.0, -1.0, all.codes};
@@ -149,7 +169,7 @@ HeightFit RasterScan::join(const std::vector<std::string>& results) const {
     fit.min_height = encoding.height_of_code(static_cast<double>(all.low));
     fit.max_height = encoding.height_of_code(static_cast<double>(all.high));
   }
-  return fit;
+  return {fit, suspects.apart()};
 }
 
 }  // namespace ptin

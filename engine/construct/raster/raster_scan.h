@@ -13,6 +13,7 @@
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/grid/source_stage.h"
 #include "engine/construct/raster/raster_mosaic.h"
+#include "engine/construct/raster/raster_suspects.h"
 
 namespace ptin {
 
@@ -27,8 +28,12 @@ class RasterScan final : public StageWorker {
   [[nodiscard]] SourceStage stage() const;
   /// @throws Error  as RasterSource::open()
   [[nodiscard]] std::string run(const StageTask& task) override;
-  /// What all tasks together found.
-  [[nodiscard]] HeightFit join(const std::vector<std::string>& results) const;
+  /// What all tasks together found: the encoding, and values that may stand for no height.
+  struct Joined {
+    HeightFit fit;
+    std::vector<RasterSuspects::Suspect> suspects;
+  };
+  [[nodiscard]] Joined join(const std::vector<std::string>& results) const;
 
  private:
   struct Found;

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "engine/construct/grid/crs.h"
@@ -31,14 +34,35 @@ struct RasterSource::Impl {
   std::mutex mutex;  ///< Guards the mosaic.
   RasterMosaic mosaic;
 
+  void take_unit(const std::string& declared, const std::string& path);
   void frame_mosaic(const std::string& path, const SourceOptions& options);
   void check_size() const;
+  void warn_of(const std::vector<RasterSuspects::Suspect>& suspects);
   [[nodiscard]] static std::unique_ptr<Impl> opened(const std::vector<std::string>& paths,
                                                     const SourceOptions& options);
 };
 
 // ---------------------------------------------------------------------------------------------------
 // Opening.
+
+/// Takes the unit that the bands declare where the CRS has none; warns where the two differ.
+void RasterSource::Impl::take_unit(const std::string& declared, const std::string& path) {
+  const std::string unit = height_unit_named(declared);
+  if (frame.vertical_unit == "unknown") {
+    frame.vertical_unit = unit;
+    return;
+  }
+  const std::optional<double> said = metres_in(unit);
+  const std::optional<double> meant = metres_in(height_unit_named(frame.vertical_unit));
+  if (said && meant && *said != *meant) {
+    warnings.add({"height_unit",
+                  "the band says that heights are in '" + declared +
+                      "', and the vertical CRS that they are in '" + frame.vertical_unit +
+                      "', which is believed; if the band is right, name another one with "
+                      "--vertical-crs",
+                  path});
+  }
+}
 
 /// Takes over what the files say: types, CRS, units and the map, bounds applied.
 /// @param path  The first file, for errors.
@@ -47,10 +71,12 @@ void RasterSource::Impl::frame_mosaic(const std::string& path, const SourceOptio
   raw = first.raw;
   scale = first.scale;
   offset = first.offset;
-  set_crs(frame, resolve_crs(first.crs, options.a_srs, options.vertical_crs));
-  if (frame.vertical_unit == "unknown") {
-    frame.vertical_unit = height_unit_named(first.unit);
+  try {
+    set_crs(frame, resolve_crs(first.crs, options.a_srs, options.vertical_crs));
+  } catch (const Error& e) {
+    throw e.context().empty() ? Error(e.code(), e.message(), path) : e;
   }
+  take_unit(mosaic.unit(), path);
   frame.map = mosaic.map();
   require_resolvable(frame.map, mosaic.width() - 1, mosaic.height() - 1,
                      "is its geotransform what was meant?", path);
@@ -75,6 +101,23 @@ void RasterSource::Impl::check_size() const {
   }
 }
 
+/// Values that may stand for no height, each with its first place in map units.
+void RasterSource::Impl::warn_of(const std::vector<RasterSuspects::Suspect>& suspects) {
+  for (const RasterSuspects::Suspect& s : suspects) {
+    const auto columns = static_cast<std::uint64_t>(width);
+    const auto x = static_cast<std::int64_t>(s.first % columns);
+    const std::int64_t y = height - 1 - static_cast<std::int64_t>(s.first / columns);
+    const MapPoint p = frame.map.to_map(static_cast<double>(x), static_cast<double>(y));
+    char value[32], text[256];
+    std::snprintf(value, sizeof value, "%.9g", s.value);
+    std::snprintf(text, sizeof text,
+                  "the stored value %s lies apart from all others and is taken for a height, as at "
+                  "x %.12g, y %.12g; if it means none, build with --nodata %s",
+                  value, p.x, p.y, value);
+    warnings.add({"undeclared_nodata", text, mosaic.path_at(x, y), value, 0, s.count});
+  }
+}
+
 /// The files opened and looked over, no sample read.
 std::unique_ptr<RasterSource::Impl> RasterSource::Impl::opened(
     const std::vector<std::string>& paths, const SourceOptions& options) {
@@ -88,10 +131,11 @@ RasterSource RasterSource::open(const std::vector<std::string>& paths, const Sou
                                 const RunStage& run) {
   auto impl = Impl::opened(paths, options);
   RasterScan scan(impl->mosaic.duplicate());
-  const HeightFit fit = scan.join(run(scan.stage(), scan));
-  set_heights(impl->frame, fit);
-  impl->valid_samples = fit.count;
-  impl->warnings = impl->mosaic.warnings();
+  const RasterScan::Joined found = scan.join(run(scan.stage(), scan));
+  set_heights(impl->frame, found.fit);
+  impl->valid_samples = found.fit.count;
+  impl->warnings.join(impl->mosaic.warnings());
+  impl->warn_of(found.suspects);
   return RasterSource(std::move(impl));
 }
 

@@ -27,7 +27,7 @@ struct LineFileCrs {
   DeclaredUnits units;  ///< As PointStreamFacts::units.
   /// Some polygon has no heights: then z means nothing of any of them.
   bool is_flat = false;
-  SourceWarnings warnings;
+  SourceWarnings warnings{};
 };
 
 /// True where the name tells LandXML: .xml or .landxml, in any case.

@@ -25,6 +25,15 @@ constexpr std::size_t kBatchPoints = 4096;
 /// Less means no value, by the specification of shapefiles.
 constexpr double kLeastHeight = -1e38;
 
+bool has_geometry(GDALDataset& data) {
+  for (int i = 0; i < data.GetLayerCount(); ++i) {
+    if (data.GetLayer(i)->GetGeomType() != wkbNone) {
+      return true;
+    }
+  }
+  return false;
+}
+
 bool is_numeric(OGRFieldType type) {
   return type == OFTReal || type == OFTInteger || type == OFTInteger64;
 }
@@ -121,12 +130,22 @@ OgrPoints::~OgrPoints() {
 
 bool OgrPoints::reads(const std::string& path) {
   const GdalSession session;
-  const auto opens = [&](unsigned kind) {
-    const GDALDatasetUniquePtr data(GDALDataset::Open(path.c_str(), kind | GDAL_OF_READONLY));
-    return data != nullptr &&
-           (kind == GDAL_OF_VECTOR ? data->GetLayerCount() : data->GetRasterCount()) > 0;
+  const auto opened = [&](unsigned kind) {
+    return GDALDatasetUniquePtr(GDALDataset::Open(path.c_str(), kind | GDAL_OF_READONLY));
   };
-  return opens(GDAL_OF_VECTOR) && !opens(GDAL_OF_RASTER);
+  const GDALDatasetUniquePtr layers = opened(GDAL_OF_VECTOR);
+  if (layers == nullptr || layers->GetLayerCount() == 0) {
+    return false;
+  }
+  const GDALDatasetUniquePtr raster = opened(GDAL_OF_RASTER);
+  if (raster == nullptr) {
+    return true;
+  }
+  // A file of several rasters has no band itself, and drivers find tables without geometry in it.
+  char** const inside = raster->GetMetadata("SUBDATASETS");
+  const bool holds_rasters =
+      raster->GetRasterCount() > 0 || (inside != nullptr && inside[0] != nullptr);
+  return !holds_rasters || (raster->GetRasterCount() == 0 && has_geometry(*layers));
 }
 
 Decimal OgrPoints::number(double value, const char* role) const {

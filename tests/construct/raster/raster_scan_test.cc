@@ -46,7 +46,7 @@ HeightFit fit_in_bands(const Made& made, std::int64_t samples, std::size_t least
   for (const std::size_t number : order) {
     results[number] = scan.run({stage.name, number, stage.facts, 0, {}, {}});
   }
-  return scan.join(results);
+  return scan.join(results).fit;
 }
 
 void expect_same(const HeightFit& a, const HeightFit& b) {

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/raster/raster_place.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include <cpl_conv.h>
+#include <ogr_spatialref.h>
+
+#include "engine/error.h"
+#include "engine/geometry/point.h"
+
+namespace ptin {
+namespace {
+
+constexpr std::array<double, 6> kIdentity{0, 1, 0, 0, 0, 1};
+
+/// Refuses a raster without a geotransform that is placed otherwise, or that names a CRS; warns of any
+/// other, which lies nowhere.
+void describe_no_place(GDALDataset& data, const std::string& path, bool has_crs,
+                       SourceWarnings& warnings) {
+  const auto has = [&](const char* domain) {
+    char** const items = data.GetMetadata(domain);
+    return items != nullptr && items[0] != nullptr;
+  };
+  if (data.GetGCPCount() > 0) {
+    refuse("this raster is placed by ground control points alone; warp it with 'gdalwarp' first",
+           path);
+  }
+  if (has("RPC")) {
+    refuse(
+        "this raster is placed by rational polynomials (RPC) alone; warp it with 'gdalwarp -rpc "
+        "-t_srs CRS' first",
+        path);
+  }
+  if (has("GEOLOCATION")) {
+    refuse(
+        "this raster is placed by arrays of coordinates (GEOLOCATION) alone; warp it with "
+        "'gdalwarp -geoloc -t_srs CRS' first",
+        path);
+  }
+  if (has_crs) {
+    refuse(
+        "this raster names a CRS, but not where in it its pixels lie: it has no geotransform, or "
+        "the one that means none (0, 1, 0, 0, 0, 1); state its corners with 'gdal_translate "
+        "-a_ullr WEST NORTH EAST SOUTH'",
+        path);
+  }
+  warnings.add({"no_georeference",
+                "this raster does not say where it lies: x and y count its pixels, from the "
+                "south-western one; state its corners and its CRS with 'gdal_translate -a_ullr "
+                "WEST NORTH EAST SOUTH -a_srs CRS'",
+                path});
+}
+
+/// The affine map of the file, turned so that both axes grow and samples stand at pixel centres.
+/// GDAL's geotransform speaks of pixel corners whether the file calls its pixels areas or points.
+void set_map(const std::array<double, 6>& t, const std::string& path, RasterShape& shape) {
+  shape.georeferenced = true;
+  if (!std::all_of(t.begin(), t.end(), [](double v) { return std::isfinite(v); }) || t[1] == 0 ||
+      t[5] == 0) {
+    refuse("this raster has an impossible geotransform", path);
+  }
+  const double skew = std::max(std::abs(t[2] / t[1]) * static_cast<double>(shape.height),
+                               std::abs(t[4] / t[5]) * static_cast<double>(shape.width));
+  if (skew > 1e-3) {
+    refuse("this raster is rotated or sheared; make it north-up with 'gdalwarp' first", path);
+  }
+  shape.columns_from_east = t[1] < 0;
+  shape.rows_from_south = t[5] > 0;
+  const double west = shape.columns_from_east ? static_cast<double>(shape.width) - 0.5 : 0.5;
+  const double south = shape.rows_from_south ? 0.5 : static_cast<double>(shape.height) - 0.5;
+  shape.map = {t[0] + t[1] * west, t[3] + t[5] * south, std::abs(t[1]), std::abs(t[5])};
+}
+
+std::string wkt_of(const OGRSpatialReference& srs) {
+  char* text = nullptr;
+  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  srs.exportToWkt(&text, options);
+  std::string wkt = text == nullptr ? "" : text;
+  CPLFree(text);
+  return wkt;
+}
+
+OGRAxisOrientation orientation_of(const OGRSpatialReference& srs, int axis) {
+  OGRAxisOrientation orientation = OAO_Other;
+  srs.GetAxis(nullptr, axis, &orientation);
+  return orientation;
+}
+
+/// Looks at the axes of a CRS that x and y of the raster run along.
+void check_axes(const OGRSpatialReference& srs, const std::string& path, SourceWarnings& warnings) {
+  const std::vector<int>& mapping = srs.GetDataAxisToSRSAxisMapping();
+  if (mapping.size() < 2 || srs.IsLocal() != 0) {
+    return;
+  }
+  const auto axis_of = [&](int i) {
+    return orientation_of(srs, std::abs(mapping[static_cast<std::size_t>(i)]) - 1);
+  };
+  const OGRAxisOrientation x = axis_of(0), y = axis_of(1);
+  const auto is_of_y = [](OGRAxisOrientation o) { return o == OAO_North || o == OAO_South; };
+  const auto is_of_x = [](OGRAxisOrientation o) { return o == OAO_East || o == OAO_West; };
+  if (is_of_y(x) && is_of_x(y)) {
+    refuse(
+        "the first coordinate of this raster is a northing or a latitude, by the order of axes "
+        "that "
+        "it declares; bring x before y with 'gdalwarp', or state the CRS with 'gdal_edit.py "
+        "-a_srs'",
+        path);
+  }
+  if (x == OAO_West || (y == OAO_South && is_of_x(x))) {
+    warnings.add(
+        {"axis_direction",
+         "the axes of the CRS point " + std::string(x == OAO_West ? "west" : "east") + " and " +
+             (y == OAO_South ? "south" : "north") +
+             ", and x is taken to grow to the east and y to the north, so the terrain may be "
+             "turned or mirrored; warp it to another CRS with 'gdalwarp' first",
+         path});
+  }
+}
+
+void warn_of_epoch(const OGRSpatialReference& srs, const std::string& path,
+                   SourceWarnings& warnings) {
+  if (const double epoch = srs.GetCoordinateEpoch(); epoch > 0) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.8g", epoch);
+    warnings.add({"coordinate_epoch",
+                  "the coordinates are of the epoch " + std::string(text) +
+                      ", which a terrain does not keep; where centimetres matter, warp it to a CRS "
+                      "that is fixed to its plate",
+                  path});
+  }
+}
+
+}  // namespace
+
+void describe_place(GDALDataset& data, const std::string& path, RasterShape& shape,
+                    SourceWarnings& warnings) {
+  shape.width = data.GetRasterXSize();
+  shape.height = data.GetRasterYSize();
+  if (shape.width - 1 > kGridMax || shape.height - 1 > kGridMax) {
+    refuse("this raster has more than 2^30 columns or rows, which is the limit of the grid", path);
+  }
+  const OGRSpatialReference* srs = data.GetSpatialRef();
+  const bool has_crs = srs != nullptr && !srs->IsEmpty();
+  std::array<double, 6> t{};
+  if (data.GetGeoTransform(t.data()) != CE_None || t == kIdentity) {
+    describe_no_place(data, path, has_crs, warnings);
+  } else {
+    set_map(t, path, shape);
+  }
+  if (has_crs) {
+    shape.crs = wkt_of(*srs);
+    check_axes(*srs, path, warnings);
+    warn_of_epoch(*srs, path, warnings);
+  }
+}
+
+}  // namespace ptin
