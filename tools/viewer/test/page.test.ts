@@ -547,6 +547,7 @@ test('keys tilt, leave no ring, and the pointer costs nothing while it moves', a
     const { relief } = w.ptinViewer;
     const pick = relief.pick.bind(relief);
     w.picks = 0;
+    document.getElementById('place')!.textContent = '';
     relief.pick = (x, y) => { ++w.picks; return pick(x, y); };
     // As a pointer that moves without a rest.
     for (let i = 0; i < 15; ++i) {
