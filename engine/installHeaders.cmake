@@ -40,6 +40,7 @@ set(public_headers
     engine/crs/border_move.h
     engine/crs/crs_facts.h
     engine/crs/ground.h
+    engine/crs/ground_facts.h
     engine/crs/height_unit.h
     engine/error.h
     engine/geometry/affine.h
@@ -76,6 +77,7 @@ set(public_headers
     engine/query/living/grid_cell.h
     engine/query/living/living_triangle.h
     engine/query/living/tin_parts.h
+    engine/query/received/received_mesh.h
     engine/query/refine/hierarchy_check.h
     engine/query/refine/moving_window.h
     engine/query/refine/page_cache.h

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/crs/ground.h"
 
-#include <cmath>
 #include <optional>
 
 #include <geodesic.h>
@@ -21,17 +20,28 @@ double metres_per_height(const OGRSpatialReference& srs, const std::string& unit
   return srs.IsGeographic() != 0 ? 1.0 : srs.GetLinearUnits();
 }
 
-/// Lengths of one map unit on the ellipsoid, from its radii of curvature: across the meridian for
-/// x, along the meridian for y.
-std::function<MapPoint(MapPoint)> on_ellipsoid(const OGRSpatialReference& srs, double height_unit) {
-  const double a = srs.GetSemiMajor() / height_unit;
-  const double inverse = srs.GetInvFlattening();
-  const double f = inverse > 0 ? 1 / inverse : 0.0;
-  return [a, e2 = f * (2 - f), unit = srs.GetAngularUnits()](MapPoint p) {
-    const double sine = std::sin(p.y * unit);
-    const double w2 = 1 - e2 * sine * sine;
-    const double normal = a / std::sqrt(w2);
-    return MapPoint{unit * normal * std::sqrt(1 - sine * sine), unit * normal * (1 - e2) / w2};
+GroundFacts facts_on(const OGRSpatialReference& srs, double metres_per_height) {
+  GroundFacts facts;
+  facts.geographic = srs.IsGeographic() != 0;
+  facts.semi_major = srs.GetSemiMajor();
+  facts.inverse_flattening = srs.GetInvFlattening();
+  facts.metres_per_height = metres_per_height;
+  if (facts.geographic) {
+    facts.radians_per_map_unit = srs.GetAngularUnits();
+  } else {
+    facts.metres_per_map_unit = srs.GetLinearUnits();
+  }
+  return facts;
+}
+
+GeodesicLength geodesic_of(const GroundFacts& facts) {
+  geod_geodesic ellipsoid;
+  const double inverse = facts.inverse_flattening;
+  geod_init(&ellipsoid, facts.semi_major, inverse > 0 ? 1 / inverse : 0.0);
+  return [ellipsoid](MapPoint a, MapPoint b) {
+    double metres = 0.0;
+    geod_inverse(&ellipsoid, a.y, a.x, b.y, b.x, &metres, nullptr, nullptr);
+    return metres;
   };
 }
 
@@ -49,50 +59,28 @@ std::optional<MapPoint> metres_per_map_unit(const CrsFacts& crs, MapPoint at) {
     const std::optional<double> metres = metres_in(height_unit_named(crs.horizontal_unit));
     return metres ? std::optional<MapPoint>({*metres, *metres}) : std::nullopt;
   }
-  if (srs.IsGeographic() != 0) return on_ellipsoid(srs, 1.0)(at);
+  if (srs.IsGeographic() != 0) return ground_of(facts_on(srs, 1.0), {}).per_map_unit(at);
   if (crs.horizontal_unit == "unknown") return std::nullopt;
   const double metres = srs.GetLinearUnits();
   return MapPoint{metres, metres};
 }
 
-Ground ground_of(const CrsFacts& crs) {
-  Ground ground;
+GroundFacts ground_facts_of(const CrsFacts& crs) {
   OGRSpatialReference srs;
-  const bool known = !crs.wkt.empty() && srs.importFromWkt(crs.wkt.c_str()) == OGRERR_NONE;
-  if (known) {
-    ground.metres_per_height = metres_per_height(srs, crs.vertical_unit);
-    ground.earth_diameter = 2 * srs.GetSemiMajor() / ground.metres_per_height;
+  if (!crs.wkt.empty() && srs.importFromWkt(crs.wkt.c_str()) == OGRERR_NONE) {
+    return facts_on(srs, metres_per_height(srs, crs.vertical_unit));
   }
-  if (known && srs.IsGeographic() != 0) {
-    geod_geodesic ellipsoid;
-    const double inverse = srs.GetInvFlattening();
-    geod_init(&ellipsoid, srs.GetSemiMajor(), inverse > 0 ? 1 / inverse : 0.0);
-    const double degrees = srs.GetAngularUnits() * 180 / M_PI;
-    ground.distance = [ellipsoid, degrees, scale = ground.metres_per_height](MapPoint a,
-                                                                             MapPoint b) {
-      double metres = 0.0;
-      geod_inverse(&ellipsoid, a.y * degrees, a.x * degrees, b.y * degrees, b.x * degrees, &metres,
-                   nullptr, nullptr);
-      return metres / scale;
-    };
-    ground.per_map_unit = on_ellipsoid(srs, ground.metres_per_height);
-    ground.geographic = true;
-    return ground;
+  GroundFacts facts;
+  if (const auto told = metres_in(crs.horizontal_unit); told) {
+    facts.metres_per_map_unit = *told;  // by the source, without a CRS
+    facts.metres_per_height = metres_in(crs.vertical_unit).value_or(*told);
   }
-  double metres_per_map_unit = known ? srs.GetLinearUnits() : 1.0;
-  if (const auto told = metres_in(crs.horizontal_unit); !known && told) {
-    metres_per_map_unit = *told;  // by the source, without a CRS
-    ground.metres_per_height = metres_in(crs.vertical_unit).value_or(*told);
-    ground.earth_diameter /= ground.metres_per_height;
-  }
-  const double scale = metres_per_map_unit / ground.metres_per_height;
-  ground.distance = [scale](MapPoint a, MapPoint b) {
-    const double dx = b.x - a.x;
-    const double dy = b.y - a.y;
-    return scale * std::sqrt(dx * dx + dy * dy);
-  };
-  ground.per_map_unit = [scale](MapPoint) { return MapPoint{scale, scale}; };
-  return ground;
+  return facts;
+}
+
+Ground ground_of(const CrsFacts& crs) {
+  const GroundFacts facts = ground_facts_of(crs);
+  return ground_of(facts, geodesic_of(facts));
 }
 
 }  // namespace ptin

@@ -3,27 +3,14 @@
 // The Earth below a CRS: distances over ground, and its size, in the unit of the heights.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
 #include "engine/crs/crs_facts.h"
+#include "engine/crs/ground_facts.h"
 #include "engine/geometry/affine.h"
 
 namespace ptin {
-
-struct Ground {
-  /// The distance over ground between two positions in map units: along the ellipsoid in a
-  /// geographic CRS, else in the plane.
-  std::function<double(MapPoint, MapPoint)> distance;
-  /// The length over ground, at a position, of one map unit along x and of one along y. In a
-  /// geographic CRS these are lengths on the ellipsoid.
-  std::function<MapPoint(MapPoint)> per_map_unit;
-  /// Twice the semi-major axis, as GDAL takes it, in the unit of the heights.
-  double earth_diameter = 2 * 6378137.0;
-  double metres_per_height = 1.0;
-  bool geographic = false;  ///< Map units are angles.
-};
 
 /// The name of the unit of lengths over ground. It is the unit of the heights. Where nothing tells
 /// that unit, it is the unit of the plane, or "metre" where the plane is in degrees.
@@ -39,5 +26,8 @@ struct Ground {
 ///             unit are taken to be in the unit of the plane, or in metres where the plane is in
 ///             degrees.
 [[nodiscard]] Ground ground_of(const CrsFacts& crs);
+
+/// The numbers of ground_of().
+[[nodiscard]] GroundFacts ground_facts_of(const CrsFacts& crs);
 
 }  // namespace ptin

@@ -28,8 +28,8 @@
 //
 // This header also brings what is done with results: polygons between levels
 // (isoline/isoline_bands.h), lines cut at a window (isoline/isoline_clip.h), isolines of a mesh
-// that grows (isoline/isoline_progressive.h), and the receiver of a stream
-// (stream/stream_reader.h).
+// that grows (isoline/isoline_progressive.h), the receiver of a stream (stream/stream_reader.h), and
+// questions of the mesh that it received (received/received_mesh.h).
 #pragma once
 
 #include <cstdint>
@@ -47,6 +47,7 @@
 #include "engine/query/isoline/isoline_clip.h"
 #include "engine/query/isoline/isoline_progressive.h"
 #include "engine/query/living/tin_parts.h"
+#include "engine/query/received/received_mesh.h"
 #include "engine/query/refine/hierarchy_check.h"
 #include "engine/query/refine/moving_window.h"
 #include "engine/query/refine/refine.h"

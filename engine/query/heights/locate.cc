@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/infinity.h"
+#include "engine/query/heights/located_point.h"
 #include "engine/query/living/triangle_at.h"
 #include "engine/query/refine/bounded_mesh.h"
 #include "engine/query/refine/refinement.h"
@@ -36,16 +37,6 @@ struct Ordered {
   std::uint64_t index;  ///< In the request.
   Spot spot;
 };
-
-/// Turns a triangle so that the corner of least key comes first, however the mesh has it.
-void begin_with_least(std::array<LocatedPoint::Corner, 3>& triangle) {
-  const auto least =
-      std::min_element(triangle.begin(), triangle.end(),
-                       [](const LocatedPoint::Corner& a, const LocatedPoint::Corner& b) {
-                         return key_of(a.position) < key_of(b.position);
-                       });
-  std::rotate(triangle.begin(), least, triangle.end());
-}
 
 class Locating {
  public:
@@ -97,8 +88,6 @@ class Locating {
   template <typename BoundsOf>
   void walk_group(const Tin& tin, std::span<const Ordered> group, const BoundsOf& bounds_of);
   [[nodiscard]] LocatedPoint answer(const TriangleAt& at, Spot spot) const;
-  [[nodiscard]] LocatedPoint answer(const Tin& tin, Spot spot, const Place& place) const;
-  void set_interval(const SurfaceBounds& bounds, LocatedPoint& point) const;
 
   const OpenedTerrain& terrain_;
   const StoreFacts& facts_;
@@ -227,9 +216,9 @@ void Locating::walk_group(const Tin& tin, std::span<const Ordered> group,
     const Place place = find_spot(tin, group[i].spot, near);
     near = place.triangle;
     LocatedPoint& point = result_.points[group[i].index];
-    point = answer(tin, group[i].spot, place);
+    point = located_at(tin, facts_.heights, group[i].spot, place);
     if (point.state == PointState::kSurface) {
-      set_interval(bounds_of(answering_triangle(tin, place)), point);
+      set_interval(bounds_of(answering_triangle(tin, place)), facts_, point);
     }
   }
 }
@@ -254,54 +243,10 @@ LocatedPoint Locating::answer(const TriangleAt& at, Spot spot) const {
     if (detail_.is_asked()) {
       bounds = {std::min(t.deviation, detail_.certificate().deviation), t.heights};
     }
-    set_interval(bounds, point);
+    set_interval(bounds, facts_, point);
   }
   begin_with_least(point.triangle);
   return point;
-}
-
-LocatedPoint Locating::answer(const Tin& tin, Spot spot, const Place& place) const {
-  LocatedPoint point;
-  if (place.lies == Lies::kOutside) {
-    return point;
-  }
-  const TriangleId t = answering_triangle(tin, place);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const VertexId v = tin.triangles[t].v[i];
-    point.triangle[i].position = tin.position(v);
-    if (tin.has_height[v] != 0) {
-      point.triangle[i].height = facts_.heights.height(tin.vertices[v].height);
-    }
-  }
-  point.state =
-      tin.classes[t] == TriangleClass::kSurface ? PointState::kSurface : PointState::kVoid;
-  if (point.state == PointState::kSurface) {
-    const double code = code_at(tin, facts_.heights, footing_of(tin, spot, place));
-    point.height = facts_.heights.height_of_code(code);
-  }
-  begin_with_least(point.triangle);
-  return point;
-}
-
-/// Sets the interval that holds the full surface at a point: the height plus and minus the
-/// triangle's deviation (at least the file's base), widened by the rounding of the height, and cut
-/// to the heights of the full surface below the triangle.
-void Locating::set_interval(const SurfaceBounds& bounds, LocatedPoint& point) const {
-  const double deviation = std::max(bounds.deviation, facts_.base_deviation);
-  if (deviation == 0) {
-    point.height_min = point.height_max = point.height;
-    return;
-  }
-  const double rounding = 16 * std::numeric_limits<double>::epsilon() *
-                          (std::abs(point.height) + std::abs(facts_.heights.offset) + deviation);
-  // The heights below the triangle are stored ones; the source's may be off by the base (rounding,
-  // --max-error).
-  const double lowest =
-      std::max(facts_.heights.height_of_code(bounds.heights.lo), facts_.min_height);
-  const double highest =
-      std::min(facts_.heights.height_of_code(bounds.heights.hi), facts_.max_height);
-  point.height_min = std::max(point.height - deviation - rounding, lowest - facts_.base_deviation);
-  point.height_max = std::min(point.height + deviation + rounding, highest + facts_.base_deviation);
 }
 
 }  // namespace

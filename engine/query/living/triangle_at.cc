@@ -40,13 +40,6 @@ bool is_preferred(const LivingTriangle& a, const LivingTriangle& b) {
   return a.is_void != b.is_void ? !a.is_void : keys_of(a) < keys_of(b);
 }
 
-/// Twice the areas of the triangles of q and the side opposite to each corner.
-std::array<Int128, 3> weights_of(const LivingTriangle& t, Spot q) {
-  return {side(t.corner[1].position, t.corner[2].position, q),
-          side(t.corner[2].position, t.corner[0].position, q),
-          side(t.corner[0].position, t.corner[1].position, q)};
-}
-
 /// Takes a triangle as the answer for a spot that it holds, if it is the better one.
 void offer(const LivingTriangle& t, Spot q, TriangleAt& at) {
   if (at.is_inside) {
@@ -312,23 +305,6 @@ void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::spa
   if (!spots.empty()) {
     Finder(terrain, detail, held, context).find(spots, found);
   }
-}
-
-WeightedCodes codes_in(const LivingTriangle& t, const HeightEncoding& heights, Spot q) {
-  const std::array<Int128, 3> of_corner = weights_of(t, q);
-  std::array<std::size_t, 3> corners{0, 1, 2};  // by key, so that both sides of an edge agree
-  std::sort(corners.begin(), corners.end(), [&](std::size_t a, std::size_t b) {
-    return key_of(t.corner[a].position) < key_of(t.corner[b].position);
-  });
-  WeightedCodes codes;
-  for (const std::size_t i : corners) {
-    if (of_corner[i] != 0) {
-      const auto k = static_cast<std::size_t>(codes.count++);
-      codes.code[k] = heights.code(t.corner[i].height);
-      codes.weight[k] = of_corner[i];
-    }
-  }
-  return codes;
 }
 
 }  // namespace ptin

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "engine/query/living/living_triangle.h"
+#include "engine/query/living/spot_in_triangle.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
@@ -38,10 +39,5 @@ struct TriangleAt {
 /// a triangle holds it within; of many spots in a small region the pages of the region.
 void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
                     std::span<TriangleAt> found, std::uint64_t held, QueryContext& context);
-
-/// The code of the height of a surface triangle at a spot that it holds, the same from both sides
-/// of an edge, as the mean of the codes of its corners (walk/walk.h).
-[[nodiscard]] WeightedCodes codes_in(const LivingTriangle& t, const HeightEncoding& heights,
-                                     Spot q);
 
 }  // namespace ptin

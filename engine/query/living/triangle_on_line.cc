@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "engine/query/living/triangle_at.h"
+#include "engine/query/living/spot_in_triangle.h"
 
 namespace ptin {
 

@@ -8,18 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "engine/query/refine/bounded_surface.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 
 namespace ptin {
-
-/// Bounds of the full surface below one triangle of a refinement.
-struct SurfaceBounds {
-  /// Most vertical distance to the full surface where both are surface, height's unit.
-  double deviation = 0.0;
-  Interval heights;  ///< Codes of the full surface; empty: nothing but void.
-};
 
 /// A mesh that starts as T0 and to which closed sets of records are added, one after the other.
 ///
@@ -28,7 +22,7 @@ struct SurfaceBounds {
 /// triangle is the record of the corner of least rank: a triangle appears with the last of its
 /// corners, and every corner of a fan has a larger rank than the record that splits the fan.
 /// Threads: one owner.
-class BoundedMesh {
+class BoundedMesh final : public BoundedSurface {
  public:
   explicit BoundedMesh(const OpenedTerrain& terrain)
       : BoundedMesh(terrain, Detail(terrain.store())) {}
@@ -37,7 +31,7 @@ class BoundedMesh {
   ///                 `beyond` of refine() names.
   BoundedMesh(const OpenedTerrain& terrain, const Detail& detail);
 
-  [[nodiscard]] const Tin& tin() const noexcept { return refinement_.tin(); }
+  [[nodiscard]] const Tin& tin() const noexcept override { return refinement_.tin(); }
 
   /// Adds the records for which a monotone predicate is true and that are not there yet.
   /// @param beyond  Monotone, or null: a record for which this is true too is added although the
@@ -58,7 +52,7 @@ class BoundedMesh {
                                            QueryContext& context) const;
 
   /// Bounds of the full surface below triangle `t`; infinite for a triangle of T0.
-  [[nodiscard]] SurfaceBounds bounds(TriangleId t) const noexcept;
+  [[nodiscard]] SurfaceBounds bounds(TriangleId t) const noexcept override;
 
   /// Bytes that the mesh holds, the records that were added last included.
   [[nodiscard]] std::uint64_t bytes() const noexcept;

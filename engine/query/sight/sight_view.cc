@@ -17,7 +17,7 @@ bool is_surface(const Tin& tin, TriangleId t) {
 
 }  // namespace
 
-void SightView::look(const BoundedMesh& mesh) {
+void SightView::look(const BoundedSurface& mesh) {
   pieces.clear();
   LineWalk walk(mesh.tin(), p(), q(), start_);
   a.inside = walk.begins_inside();
@@ -50,7 +50,7 @@ void SightView::look(const BoundedMesh& mesh) {
 
 /// Looks at a line that meets the domain in one point alone: an end on the border from where the
 /// line stays outside, or a corner of the domain that the line touches.
-void SightView::set_only_point(const BoundedMesh& mesh, const LineWalk& walk) {
+void SightView::set_only_point(const BoundedSurface& mesh, const LineWalk& walk) {
   for (SightEnd* end : {&a, &b}) {
     if (end->inside) {
       set_end(mesh, walk.entry(), answering(mesh, *end), *end);
@@ -68,11 +68,11 @@ bool SightView::is_settled_at(double share) const noexcept {
   });
 }
 
-TriangleId SightView::answering(const BoundedMesh& mesh, const SightEnd& end) const {
+TriangleId SightView::answering(const BoundedSurface& mesh, const SightEnd& end) const {
   return answering_triangle(mesh.tin(), find_spot(mesh.tin(), &end == &a ? p() : q(), start_));
 }
 
-void SightView::add_piece(const BoundedMesh& mesh, const LinePiece& piece) {
+void SightView::add_piece(const BoundedSurface& mesh, const LinePiece& piece) {
   const Tin& tin = mesh.tin();
   SightPiece view;
   view.from = piece.from.share();
@@ -109,7 +109,7 @@ void SightView::add_piece(const BoundedMesh& mesh, const LinePiece& piece) {
 
 /// Sets what is known of an end. The closed surface counts: an end on a vertex or an edge beside a
 /// void stands on ground.
-void SightView::set_end(const BoundedMesh& mesh, const Crossing& c, TriangleId t,
+void SightView::set_end(const BoundedSurface& mesh, const Crossing& c, TriangleId t,
                         SightEnd& end) const {
   end.surface = is_surface(mesh.tin(), t) || is_surface(mesh.tin(), answering(mesh, end));
   if (!end.surface) {
@@ -122,7 +122,7 @@ void SightView::set_end(const BoundedMesh& mesh, const Crossing& c, TriangleId t
 }
 
 /// Walks once more, and decides in rationals what doubles could not tell.
-void SightView::decide_exactly_all(const BoundedMesh& mesh) {
+void SightView::decide_exactly_all(const BoundedSurface& mesh) {
   const Tin& tin = mesh.tin();
   const bool is_open = std::any_of(pieces.begin(), pieces.end(), [](const SightPiece& p) {
     return p.verdict == PieceVerdict::kUndecided;
@@ -148,7 +148,7 @@ void SightView::decide_exactly_all(const BoundedMesh& mesh) {
 
 /// Looks at a crossing where the line meets the surface in a single point: a vertex whose surface
 /// triangles lie beside the line, or an end on the domain's border.
-void SightView::check_touch(const BoundedMesh& mesh, const Crossing& c) {
+void SightView::check_touch(const BoundedSurface& mesh, const Crossing& c) {
   const Tin& tin = mesh.tin();
   if (!is_settled_at(c.share())) {  // the full TIN may have another class there
     open_touch_ = c.share();

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/geometry/infinity.h"
-#include "engine/query/refine/bounded_mesh.h"
+#include "engine/query/refine/bounded_surface.h"
 #include "engine/query/sight/sight_line.h"
 
 namespace ptin {
@@ -34,7 +34,7 @@ class SightView : public SightLine {
 
   /// Walks the mesh from p to q, fills pieces and ends, and decides each piece: by bounds, and
   /// where these do not tell and no record was left out, exactly. Cost: the triangles on the way.
-  void look(const BoundedMesh& mesh);
+  void look(const BoundedSurface& mesh);
 
   /// A point, as a share of the way, of which records may still change whether it is ground, and
   /// which is not a part of a piece that tells: the one in which the line meets the domain, or one
@@ -44,12 +44,12 @@ class SightView : public SightLine {
   [[nodiscard]] bool is_settled_at(double share) const noexcept;
 
  private:
-  void add_piece(const BoundedMesh& mesh, const LinePiece& piece);
-  void set_only_point(const BoundedMesh& mesh, const LineWalk& walk);
-  void set_end(const BoundedMesh& mesh, const Crossing& c, TriangleId t, SightEnd& end) const;
-  [[nodiscard]] TriangleId answering(const BoundedMesh& mesh, const SightEnd& end) const;
-  void decide_exactly_all(const BoundedMesh& mesh);
-  void check_touch(const BoundedMesh& mesh, const Crossing& c);
+  void add_piece(const BoundedSurface& mesh, const LinePiece& piece);
+  void set_only_point(const BoundedSurface& mesh, const LineWalk& walk);
+  void set_end(const BoundedSurface& mesh, const Crossing& c, TriangleId t, SightEnd& end) const;
+  [[nodiscard]] TriangleId answering(const BoundedSurface& mesh, const SightEnd& end) const;
+  void decide_exactly_all(const BoundedSurface& mesh);
+  void check_touch(const BoundedSurface& mesh, const Crossing& c);
 
   TriangleId start_ = 0;  ///< Where the last look() began; triangles keep their numbers.
   std::optional<double> open_touch_;

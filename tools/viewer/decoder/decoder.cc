@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The engine's StreamReader behind functions of C, for WebAssembly: one reader a module instance. tools/viewer/build
-// compiles it; src/decoder.ts is its only caller.
+// compiles it; src/decoder.ts is its only caller. questions.cc asks the mesh that it holds.
 //
 // Errors: this build has no exceptions to catch, so `throw` ends in __cxa_throw() below. That hands code and text to the
 // host, whose function throws in its own language and so leaves the module for good. After that the host reads what is there
-// (src/decoder.ts says what) and feeds nothing more; a new stream gets a new instance.
+// (src/decoder.ts says what) and feeds nothing more; a new stream gets a new instance. A question that is refused leaves mesh and
+// reader as they were, but what it had of the stack is lost: the host asks nothing that would be.
+#include "tools/viewer/decoder/decoder.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -17,8 +20,6 @@
 
 #include "engine/error.h"
 #include "engine/query/terrain.h"
-
-#define PTIN_EXPORT(name) extern "C" __attribute__((export_name(#name)))
 
 /// Throws in the host. `code`: place in ErrorCode.
 extern "C" __attribute__((import_module("host"), import_name("fail"), noreturn)) void host_fail(
@@ -32,11 +33,6 @@ namespace {
 
 /// What 32 bits of address leave for the mesh and a frame, beside the allocator's own.
 constexpr std::uint64_t kMemoryBytes = std::uint64_t{3} << 30;
-
-ptin::StreamReader& reader() {
-  static ptin::StreamReader the_reader("the stream", {{kMemoryBytes, {}}});
-  return the_reader;
-}
 
 /// Facts in the order in which src/decoder.ts reads them.
 struct PlainFacts {
@@ -53,6 +49,13 @@ std::vector<std::byte>& input() {
 
 }  // namespace
 
+ptin::StreamReader& ptin::viewer::reader() {
+  static ptin::StreamReader the_reader("the stream", {{kMemoryBytes, {}}});
+  return the_reader;
+}
+
+using ptin::viewer::reader;
+
 // NOLINTBEGIN(bugprone-reserved-identifier): the names that the compiler calls.
 extern "C" void* __cxa_allocate_exception(std::size_t bytes) noexcept {
   if (void* memory = std::malloc(bytes)) return memory;
@@ -65,6 +68,13 @@ extern "C" [[noreturn]] void __cxa_throw(void* thrown, std::type_info* type, voi
     fail(error->code(), error->what());
   }
   fail(ptin::ErrorCode::internal, "the decoder failed in a way that it does not know");
+}
+extern "C" [[noreturn]] void __cxa_pure_virtual() { __builtin_trap(); }
+
+/// Debian's divisions of 128 bits (libclang-rt) are compiled to watch their stack by these.
+extern "C" {
+std::uintptr_t __stack_chk_guard = 0x5dec0de5;
+[[noreturn]] void __stack_chk_fail() { __builtin_trap(); }
 }
 // NOLINTEND(bugprone-reserved-identifier)
 

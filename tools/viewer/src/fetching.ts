@@ -4,8 +4,11 @@
 
 /** A failure as a title and a sentence for people. */
 export class Problem extends Error {
-  /** @param limit  The limit of a service that a question went beyond, by its name. */
-  constructor(readonly title: string, message: string, readonly status = 0, readonly limit = '') {
+  /**
+   * @param limit       The limit of a service that a question went beyond, by its name.
+   * @param retryAfter  Seconds after which the service wants to be asked again.
+   */
+  constructor(readonly title: string, message: string, readonly status = 0, readonly limit = '', readonly retryAfter = 0) {
     super(message);
     this.name = 'Problem';
   }
@@ -23,7 +26,7 @@ export async function opened(address: string, init: RequestInit): Promise<Respon
       other
         ? `${new URL(address, self.location.href).host} did not answer, or does not let pages of other hosts read it ` +
           '(its answers need the header Access-Control-Allow-Origin).'
-        : 'The connection to the host broke, or there is none. Reload the page to try again.');
+        : 'The connection to the host broke, or there is none.');
   }
 }
 
@@ -32,11 +35,12 @@ export async function checkAnswer(response: Response): Promise<void> {
   if (response.ok) return;
   const { status } = response;
   const type = response.headers.get('Content-Type') ?? '';
+  const retryAfter = Number(response.headers.get('Retry-After')) || 0;
   if (type.includes('json')) {
     const told = await response.json().catch(() => null) as
       { title?: string; detail?: string; limit?: string } | null;
     if (told?.detail !== undefined) {
-      throw new Problem(told.title ?? `The host answered ${status}`, told.detail, status, told.limit ?? '');
+      throw new Problem(told.title ?? `The host answered ${status}`, told.detail, status, told.limit ?? '', retryAfter);
     }
   }
   const path = new URL(response.url).pathname;
@@ -46,5 +50,5 @@ export async function checkAnswer(response: Response): Promise<void> {
     404: ['There is no such terrain', `The host has no ${path}. Look at the address for a slip.`],
   };
   const [title, message] = said[status] ?? [`The host answered ${status}`, `It could not give out ${path}.`];
-  throw new Problem(title, message, status);
+  throw new Problem(title, message, status, '', retryAfter);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Numbers for people.
+import type { Lengths } from './answers';
 
 /** So many significant digits, without an exponent, with thin spaces between thousands. */
 export function number(value: number, digits = 4): string {
@@ -10,6 +11,14 @@ export function number(value: number, digits = 4): string {
   const [whole, part] = Math.abs(value).toFixed(places).split('.');
   const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, '\u202f') : whole;
   return (value < 0 ? '\u2212' : '') + grouped + (part === undefined ? '' : `.${part}`);
+}
+
+/** As number(), but never below the value: for bounds. */
+export function bound(value: number, digits = 3): string {
+  if (!(value > 0) || !Number.isFinite(value)) return number(value, digits);
+  const step = 10 ** (Math.floor(Math.log10(value)) - digits + 1);
+  const up = Math.ceil(value / step * (1 - 1e-12)) * step;
+  return number(up, digits);
 }
 
 export function count(value: number): string {
@@ -24,13 +33,28 @@ export function bytes(value: number): string {
 
 /** A length given in metres. */
 export function metres(value: number): string {
-  return Math.abs(value) >= 1000 ? `${number(value / 1000, 3)} km` : `${number(value, 3)} m`;
+  return Math.abs(value) >= 1000 ? `${number(value / 1000, 4)} km` : `${number(value, 3)} m`;
+}
+
+/** A length in a unit of which the metres may not be known. */
+export function length(value: number, lengths: Lengths): string {
+  return lengths.metres === null ? `${number(value, 4)} map units` : metres(value * lengths.metres);
+}
+
+function placesFor(uncertainty: number): number {
+  return uncertainty > 0 ? Math.max(0, Math.min(3, 1 - Math.floor(Math.log10(uncertainty)))) : 2;
 }
 
 /** A height with a decimal place that its uncertainty deserves. */
 export function height(value: number, uncertainty: number, sign: string): string {
-  const places = uncertainty > 0 ? Math.max(0, Math.min(3, 1 - Math.floor(Math.log10(uncertainty)))) : 2;
-  return `${value.toFixed(places).replace('-', '\u2212')} ${sign}`;
+  return `${value.toFixed(placesFor(uncertainty)).replace('-', '\u2212')} ${sign}`;
+}
+
+/** The ends of an interval, rounded outwards. */
+export function interval(least: number, most: number, sign: string): [string, string] {
+  const uncertainty = most - least;
+  const unit = 10 ** placesFor(uncertainty);
+  return [height(Math.floor(least * unit) / unit, uncertainty, sign), height(Math.ceil(most * unit) / unit, uncertainty, sign)];
 }
 
 /** A place of the map, with as many decimals as its unit deserves. */

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Where things are: on the grid (whole numbers, exact), on the map (the file's CRS), and in the scene: metres around the
-// middle of the terrain, so that 32 bits of a GPU are enough anywhere on Earth.
+// middle of the terrain, so that 32 bits of a GPU are enough anywhere on Earth. The scene is for pictures: it has one scale for
+// the whole terrain. What the page tells of lengths comes from the engine.
 import type { Facts } from './decoder';
-
-const metresPerUnit: Record<string, number> = {
-  metre: 1, meter: 1, m: 1, kilometre: 1000, centimetre: 0.01, decimetre: 0.1, foot: 0.3048, ft: 0.3048,
-  'US survey foot': 1200 / 3937, us_survey_foot: 1200 / 3937, 'international foot': 0.3048,
-};
-const metresPerDegree = (Math.PI / 180) * 6371008.8;
+import { type Earth, scaleAt } from './earth';
 
 export interface Units {
   horizontal: string;
   height: string;
 }
 
-/** Units as the metadata of a stream tell them; unknown ones are taken for metres, and named so. */
+/** Units as the metadata of a stream tell them. */
 export function unitsOf(metadata: unknown): Units {
   const units = (metadata as { units?: Partial<Units> } | null)?.units;
   return { horizontal: units?.horizontal ?? 'unknown', height: units?.height ?? 'unknown' };
@@ -41,17 +37,23 @@ export class Frame {
   readonly baseHeight: number;
   readonly isDegrees: boolean;
 
-  constructor(readonly facts: Facts, readonly units: Units) {
+  constructor(readonly facts: Facts, readonly units: Units, readonly earth: Earth) {
     const f = facts;
     this.middleX = f.originX + f.stepX * (f.minX + f.maxX) / 2;
     this.middleY = f.originY + f.stepY * (f.minY + f.maxY) / 2;
-    this.isDegrees = units.horizontal === 'degree';
-    const metres = metresPerUnit[units.horizontal] ?? 1;
-    this.scaleY = this.isDegrees ? metresPerDegree : metres;
-    // One scale for the whole terrain: that of its middle parallel.
-    this.scaleX = this.isDegrees ? metresPerDegree * Math.max(0.01, Math.cos(this.middleY * Math.PI / 180)) : metres;
-    this.scaleZ = metresPerUnit[units.height] ?? 1;
+    this.isDegrees = earth.isDegrees;
+    // That of its middle parallel.
+    const [x, y] = scaleAt(earth, this.middleY);
+    this.scaleX = Math.max(x, 0.01 * y);
+    this.scaleY = y;
+    this.scaleZ = earth.metresPerHeight;
     this.baseHeight = f.minHeight <= f.maxHeight ? f.minHeight : 0;
+  }
+
+  /** The whole terrain on the map. */
+  get bounds(): [number, number, number, number] {
+    const { minX, minY, maxX, maxY } = this.facts;
+    return [this.mapOfGridX(minX), this.mapOfGridY(minY), this.mapOfGridX(maxX), this.mapOfGridY(maxY)];
   }
 
   /** Extents of the terrain in the scene. */
@@ -69,11 +71,6 @@ export class Frame {
   gridY(mapY: number): number { return (mapY - this.facts.originY) / this.facts.stepY; }
   mapOfGridX(x: number): number { return this.facts.originX + this.facts.stepX * x; }
   mapOfGridY(y: number): number { return this.facts.originY + this.facts.stepY * y; }
-
-  /** Metres over ground between two places of the map. */
-  metresBetween(a: { x: number; y: number }, b: { x: number; y: number }): number {
-    return Math.hypot((b.x - a.x) * this.scaleX, (b.y - a.y) * this.scaleY);
-  }
 }
 
 const bits = new DataView(new ArrayBuffer(4));

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The tools: what a click asks, and how the answer is written and drawn.
-import { coordinates, count, height as heightText, metres, number } from './format';
+import type { MapPosition, Station } from './answers';
+import { bound, coordinates, height as heightText, interval, length as lengthText, metres, number } from './format';
 import { Frame, signOf } from './frame';
-import type { Answer, FromWorker, MapPosition, Question, ToWorker } from './messages';
+import type { Answer, Certainty, FromWorker, Question, ToWorker } from './messages';
 import { colour, download, hide, part, speak, toast } from './page';
 import { verdictColour } from './panel';
 import { csvOf, drawPlot, heightAlong } from './plot';
 import type { Place, Relief } from './relief';
-import { curvatureDrop, fresnelRadius, type Station } from './walk';
+import { curvatureDrop, fresnelRadius } from './ray';
 
 export type Tool = 'height' | 'profile' | 'sight' | 'viewshed';
 type AnswerOf<K extends Answer['kind']> = Extract<Answer, { kind: K }>;
@@ -50,6 +51,7 @@ export class Inquiry {
     this.write(tool === 'sight' ? 'Line of sight' : 'Viewshed', '', hint);
     hide(false, 'answer', 'sight-form');
     hide(tool !== 'viewshed', 'radius-field');
+    hide(tool === 'viewshed', 'frequency-field');
     hide(true, 'csv', 'plot');
   }
 
@@ -116,7 +118,10 @@ export class Inquiry {
   }
 
   private viewshedAt(at: MapPosition): Question {
-    return { kind: 'viewshed', at, height: this.formValue('observer'), radius: this.formValue('radius') * 1000 };
+    const value = this.formValue;
+    return {
+      kind: 'viewshed', at, observerHeight: value('observer'), targetHeight: value('target'), radius: value('radius') * 1000,
+    };
   }
 
   private readonly formValue = (name: string): number => {
@@ -136,6 +141,7 @@ export class Inquiry {
     hide(false, 'answer');
     hide(answer.kind !== 'sight' && answer.kind !== 'viewshed', 'sight-form');
     hide(answer.kind !== 'viewshed', 'radius-field');
+    hide(answer.kind === 'viewshed', 'frequency-field');
     hide(this.shownProfile === null, 'csv', 'plot');
     if (answer.kind === 'height') this.showHeight(answer, frame);
     if (answer.kind === 'profile') this.showProfile(answer, frame);
@@ -153,23 +159,30 @@ export class Inquiry {
     speak(`${title}: ${text}. ${note}`);
   }
 
+  /** For programs that drive the page: the numbers of the answer as they came. */
+  private tell(numbers: Record<string, string | number | null>): void {
+    const { dataset } = part('answer');
+    for (const key of Object.keys(dataset)) delete dataset[key];
+    for (const [key, value] of Object.entries(numbers)) if (value !== null) dataset[key] = String(value);
+  }
+
   private showHeight(answer: AnswerOf<'height'>, frame: Frame): void {
-    const { located, certificate, at } = answer;
+    const { located, certainty, at } = answer;
     const sign = signOf(frame.units.height);
     const where = coordinates(at.x, at.y, frame.isDegrees);
-    // For programs that drive the page.
-    Object.assign(part('answer').dataset, { x: at.x, y: at.y, height: located.height, deviation: certificate.deviation });
-    if (located.state !== 'surface' || located.height === null) {
+    const { height, least, most } = located;
+    this.tell({ x: at.x, y: at.y, height, least, most, error: certainty.error, deviation: certainty.deviation });
+    if (located.state !== 'surface' || height === null) {
       this.write('Height', located.state === 'void' ? 'No data here' : 'Outside of the terrain', where);
     } else {
-      const d = certificate.deviation;
-      const interval = d === 0 ? 'exact'
-        : `certainly between ${heightText(located.height - d, d, sign)} and ${heightText(located.height + d, d, sign)}`;
-      this.write('Height', heightText(located.height, d, sign), `${interval}\n${where}${triangleNote(answer, frame)}`);
-      this.relief.addMark(this.placeOf(frame, at, located.height), colour('mark'));
+      const isExact = certainty.isExact || least === null || most === null || least === most;
+      const [low, high] = isExact ? ['', ''] : interval(least, most, sign);
+      const told = isExact ? exactly(certainty) : `certainly between ${low} and ${high}`;
+      const cost = answer.cost ? `\n${answer.cost}` : '';
+      this.write('Height', heightText(height, isExact ? 0 : (most - least) / 2, sign), `${told}\n${where}${cost}`);
+      this.relief.addMark(this.placeOf(frame, at, height), colour('mark'));
     }
-    const corners = located.triangle.map((c): Place => this.placeOf(
-      frame, { x: frame.mapOfGridX(c.x), y: frame.mapOfGridY(c.y) }, c.height ?? located.height ?? frame.baseHeight));
+    const corners = located.triangle.map((c): Place => this.placeOf(frame, c, c.height ?? height ?? frame.baseHeight));
     if (corners.length === 3) {
       this.relief.addLine([...corners, corners[0]], colour('mark'));
       this.relief.addBody(corners, [0, 1, 2], colour('mark'));
@@ -178,42 +191,53 @@ export class Inquiry {
 
   private showProfile(answer: AnswerOf<'profile'>, frame: Frame): void {
     const sign = signOf(frame.units.height);
-    const { stations, length, certificate } = answer;
+    const { profile, certainty } = answer;
+    const { stations, length, lengths } = profile;
     const known = stations.flatMap((s) => (s.height === null ? [] : [s.height]));
+    this.tell({
+      length, unit: lengths.unit, metres: lengths.metres === null ? null : length * lengths.metres, deviation: certainty.deviation,
+    });
     if (known.length === 0) {
-      this.write('Profile', 'No data along this line', metres(length));
+      this.write('Profile', 'No data along this line', lengthText(length, lengths));
       hide(true, 'csv', 'plot');
       return;
     }
-    const d = certificate.deviation;
+    const d = certainty.isExact ? 0 : certainty.deviation;
     const low = known.reduce((a, b) => Math.min(a, b)), high = known.reduce((a, b) => Math.max(a, b));
     const climb = climbOf(stations);
-    this.write('Profile', metres(length),
+    this.write('Profile', lengthText(length, lengths),
       `from ${heightText(low, d, sign)} to ${heightText(high, d, sign)}, up ${number(climb.up, 3)} ${sign}, ` +
-      `down ${number(climb.down, 3)} ${sign}\n${certaintyNote(d, sign)}`);
+      `down ${number(climb.down, 3)} ${sign}\n${certaintyNote(certainty, sign)}`);
     this.drawGround(answer, frame, colour('mark'));
     this.plot(answer);
   }
 
   private showSight(answer: AnswerOf<'sight'>, frame: Frame): void {
-    const { sight, request, certificate } = answer;
-    if (sight === null) {
+    const { sight, request, certainty } = answer;
+    const { verdict, clearance, fresnel } = sight;
+    const inMetres = (value: number): number => value * frame.scaleZ;
+    this.tell({
+      verdict, length: sight.length, metres: inMetres(sight.length), clearanceMin: clearance?.min ?? null,
+      clearanceMax: clearance?.max ?? null, fresnel: fresnel?.ratio ?? null,
+    });
+    if (verdict === 'undefined') {
       this.write('Line of sight', 'An end has no ground', 'Choose two places on the surface.');
       hide(true, 'csv', 'plot');
       this.drawGround(answer, frame, colour('soft'));
       return;
     }
-    const tone = { visible: 'good', hidden: 'bad', unsure: 'unsure' }[sight.verdict];
-    const said = { visible: 'Visible', hidden: 'Hidden', unsure: 'Too close to call' }[sight.verdict];
-    const above = sight.clearance >= 0 ? 'clears the ground by' : 'is blocked by';
-    const notes = [`${metres(sight.length)}; the line ${above} ${number(Math.abs(sight.clearance), 3)} m ` +
-      `at ${metres(sight.clearanceAt * sight.length)}`];
-    if (sight.fresnelRatio !== null) {
-      const share = Math.round(100 * sight.fresnelRatio);
-      notes.push(`First Fresnel zone: ${share >= 60 ? 'free enough' : 'obstructed'}, ` +
-        `${Math.max(0, Math.min(100, share))} % free at ${metres(sight.fresnelAt * sight.length)}`);
+    const tone = { visible: 'good', hidden: 'bad', unsure: 'unsure' }[verdict];
+    const said = { visible: 'Visible', hidden: 'Hidden', unsure: 'Too close to call' }[verdict];
+    const notes = [metres(inMetres(sight.length))];
+    if (clearance !== null) {
+      notes[0] += `; the line ${clearanceNote(inMetres(clearance.min), inMetres(clearance.max))} at ${metres(inMetres(clearance.at.distance))}`;
     }
-    notes.push(certaintyNote(certificate.deviation, signOf(frame.units.height)));
+    if (fresnel !== null) {
+      const share = Math.round(100 * fresnel.ratio);
+      notes.push(`First Fresnel zone${certainty.isExact ? '' : ' over the mesh'}: ${share >= 60 ? 'free enough' : 'obstructed'}, ` +
+        `${Math.max(0, Math.min(100, share))} % free at ${metres(inMetres(fresnel.at.distance))}`);
+    }
+    notes.push(certaintyNote(certainty, signOf(frame.units.height)));
     this.write('Line of sight', said, notes.join('\n'), tone);
     this.drawGround(answer, frame, colour('soft'));
     this.drawRay(answer, frame);
@@ -224,7 +248,7 @@ export class Inquiry {
   private async showViewshed(answer: AnswerOf<'viewshed'>, frame: Frame): Promise<void> {
     const { viewshed, at } = answer;
     this.relief.setDrape(await createImageBitmap(viewshed.picture), viewshed.window);
-    this.write('Viewshed', 'Green is seen', `${metres(this.formValue('radius') * 1000)} around ${coordinates(at.x, at.y, frame.isDegrees)}`, 'good');
+    this.write('Viewshed', 'Green is seen', `${metres(answer.radius)} around ${coordinates(at.x, at.y, frame.isDegrees)}`, 'good');
   }
 
   private placeOf(frame: Frame, at: MapPosition, height: number): Place {
@@ -243,32 +267,36 @@ export class Inquiry {
       if (run.length > 1) this.relief.addLine(run, lineColour);
       run = [];
     };
-    const length = frame.metresBetween(answer.from, answer.to);
-    for (const s of answer.stations) {
+    const placeOf = (s: Station): Place => this.placeOf(frame, s, s.height as number);
+    for (const s of answer.profile.stations) {
       if (s.height === null) end();
-      else run.push(this.along(frame, answer, s.distance / length, s.height));
+      else run.push(placeOf(s));
     }
     end();
-    const known = answer.stations.filter((s) => s.height !== null);
-    for (const s of [known[0], known[known.length - 1]]) {
-      if (s !== undefined) this.relief.addMark(this.along(frame, answer, s.distance / length, s.height as number), colour('mark'), 11);
-    }
+    const known = answer.profile.stations.filter((s) => s.height !== null);
+    for (const s of [known[0], known[known.length - 1]]) if (s !== undefined) this.relief.addMark(placeOf(s), colour('mark'), 11);
   }
 
   /** The ray, bent as the Earth is: so it stands to the flat picture as it stands to the ground. */
   private rayHeight(answer: AnswerOf<'sight'>, frame: Frame): (share: number) => number {
-    const s = answer.sight!;
-    return (share) => (s.observerZ + share * (s.targetZ - s.observerZ) + curvatureDrop(s.length, share)) / frame.scaleZ;
+    const { request, sight, profile } = answer;
+    const known = profile.stations.filter((s) => s.height !== null);
+    const from = (known[0]?.height ?? 0) + request.observerHeight / frame.scaleZ;
+    const to = (known[known.length - 1]?.height ?? 0) + request.targetHeight / frame.scaleZ;
+    const diameter = frame.earth.diameter / frame.scaleZ;
+    return (share) => from + share * (to - from) + curvatureDrop(sight.length, share, diameter);
   }
 
   private drawRay(answer: AnswerOf<'sight'>, frame: Frame): void {
     const at = this.rayHeight(answer, frame);
-    const { sight } = answer;
+    const { sight, profile } = answer;
+    if (sight.verdict === 'undefined') return;
     const ray = Array.from({ length: 65 }, (_, i) => this.along(frame, answer, i / 64, at(i / 64)));
-    this.relief.addLine(ray, verdictColour(sight!.verdict));
-    if (sight!.verdict === 'visible') return;
-    const ground = heightAlong(answer.stations, sight!.clearanceAt * sight!.length);
-    if (ground !== null) this.relief.addMark(this.along(frame, answer, sight!.clearanceAt, ground), verdictColour('hidden'), 17);
+    this.relief.addLine(ray, verdictColour(sight.verdict));
+    if (sight.verdict === 'visible' || sight.clearance === null) return;
+    const closest = sight.clearance.at;
+    const ground = heightAlong(profile.stations, closest.distance / sight.length * profile.length);
+    if (ground !== null) this.relief.addMark(this.placeOf(frame, closest, ground), verdictColour('hidden'), 17);
   }
 
   /** The zone as a tube of twelve sides. */
@@ -282,7 +310,7 @@ export class Inquiry {
     const corners: number[] = [];
     for (let i = 0; i <= rings; ++i) {
       const middle = this.along(frame, answer, i / rings, at(i / rings));
-      const radius = fresnelRadius(request.frequency, sight!.length, i / rings);
+      const radius = fresnelRadius(request.frequency, sight.length * frame.scaleZ, i / rings);
       for (let k = 0; k < sides; ++k) {
         const angle = 2 * Math.PI * k / sides;
         const aside = radius * Math.cos(angle);
@@ -291,48 +319,52 @@ export class Inquiry {
         if (i < rings) corners.push(a, b, a + sides, b, b + sides, a + sides);
       }
     }
-    this.relief.addBody(places, corners, verdictColour(sight!.verdict));
+    if (sight.verdict !== 'undefined') this.relief.addBody(places, corners, verdictColour(sight.verdict));
   }
 
   private plot(answer: AnswerOf<'profile'> | AnswerOf<'sight'>): void {
     const frame = this.frame();
     if (frame === null || part('plot').hasAttribute('hidden')) return;
-    const length = frame.metresBetween(answer.from, answer.to);
-    const ray = answer.kind === 'sight' && answer.sight !== null
+    const { profile, certainty } = answer;
+    const ray = answer.kind === 'sight' && answer.sight.verdict !== 'undefined'
       ? {
           at: this.rayHeight(answer, frame), colour: verdictColour(answer.sight.verdict),
           radius: (share: number) => answer.request.frequency > 0
-            ? fresnelRadius(answer.request.frequency, length, share) / frame.scaleZ : 0,
+            ? fresnelRadius(answer.request.frequency, answer.sight.length * frame.scaleZ, share) / frame.scaleZ : 0,
         }
       : undefined;
     drawPlot(part('plot') as unknown as SVGSVGElement, {
-      stations: answer.stations, length, heightSign: signOf(frame.units.height), deviation: answer.certificate.deviation, ray,
+      profile, heightSign: signOf(frame.units.height), deviation: certainty.isExact ? 0 : certainty.deviation, ray,
       onHover: () => undefined,
     });
   }
 
   private saveProfile(): void {
     const { shownProfile: p } = this;
-    const frame = this.frame();
-    if (p === null || frame === null) return;
-    const length = frame.metresBetween(p.from, p.to);
-    download('profile.csv', csvOf(p.stations, length, p.from, p.to, p.certificate.deviation), 'text/csv');
+    if (p === null) return;
+    download('profile.csv', csvOf(p.profile, p.certainty.isExact ? 0 : p.certainty.deviation), 'text/csv');
   }
 }
 
-function certaintyNote(deviation: number, sign: string): string {
-  return deviation === 0 ? 'Exact' : `Heights within \u00b1${number(deviation, 3)} ${sign}`;
+function exactly(certainty: Certainty): string {
+  return certainty.of === 'terrain' ? 'exact, of the full terrain' : 'exact';
 }
 
-function triangleNote(answer: AnswerOf<'height'>, frame: Frame): string {
-  const corners = answer.located.triangle;
-  if (corners.length !== 3) return '';
-  const [a, b, c] = corners.map((p) => ({
-    x: frame.sceneX(frame.mapOfGridX(p.x)), y: frame.sceneY(frame.mapOfGridY(p.y)),
-  }));
-  const area = Math.abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
-  const told = area >= 1e6 ? `${number(area / 1e6, 3)} km\u00b2` : `${area < 100 ? number(area, 3) : count(area)} m\u00b2`;
-  return `\nin a triangle of ${told}${answer.cost ? `\n${answer.cost}` : ''}`;
+function certaintyNote(certainty: Certainty, sign: string): string {
+  if (certainty.isExact) return certainty.of === 'terrain' ? 'Heights exact, of the full terrain' : 'Heights exact';
+  return `Heights within \u00b1${bound(certainty.deviation)} ${sign}` +
+    (certainty.of === 'terrain' ? ' of the source' : ' of the full terrain');
+}
+
+/** Of the line above the ground, from `min` to `max` metres. */
+function clearanceNote(min: number, max: number): string {
+  const told = (a: number, b: number): string => {
+    const [low, high] = [Math.min(a, b), Math.max(a, b)];
+    return number(low, 3) === number(high, 3) ? `${number(low, 3)} m` : `${number(low, 3)} to ${number(high, 3)} m`;
+  };
+  if (min >= 0) return Number.isFinite(max) ? `clears the ground by ${told(min, max)}` : `clears the ground by ${number(min, 3)} m or more`;
+  if (max < 0) return `is blocked by ${told(-max, -min)}`;
+  return `is between ${number(-min, 3)} m below and ${Number.isFinite(max) ? `${number(max, 3)} m` : 'any height'} above the ground`;
 }
 
 function climbOf(stations: readonly Station[]): { up: number; down: number } {

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What the page and its Worker say to each other.
+import type { Located, MapPosition, Profile, Sight, SightRequest } from './answers';
+import type { Certified } from './certified';
 import type { Certificate, Facts } from './decoder';
 import type { DrawnMesh } from './drawn_mesh';
+import type { Earth } from './earth';
 import type { Units } from './frame';
-import type { Located, Sight, SightRequest, Station } from './walk';
-
-export interface MapPosition {
-  x: number;
-  y: number;
-}
 
 /** A part of the terrain, and the error at which it is wanted there, in the height's unit. */
 export interface Wanted {
@@ -36,7 +33,8 @@ export type Question =
   | { kind: 'height'; at: MapPosition }
   | { kind: 'profile'; from: MapPosition; to: MapPosition }
   | { kind: 'sight'; from: MapPosition; to: MapPosition; request: SightRequest }
-  | { kind: 'viewshed'; at: MapPosition; height: number; radius: number };
+  /** Heights above ground and the radius in metres. */
+  | { kind: 'viewshed'; at: MapPosition; observerHeight: number; targetHeight: number; radius: number };
 
 export interface Viewshed {
   /** A picture of what is seen. */
@@ -44,14 +42,20 @@ export interface Viewshed {
   window: [number, number, number, number];
 }
 
+/** Of whose heights: the mesh that is shown, or the full terrain. `isExact`: they are the source's. */
+export interface Certainty extends Certificate {
+  of: 'mesh' | 'terrain';
+  isExact: boolean;
+}
+
 export type Answer =
-  | { kind: 'height'; at: MapPosition; located: Located; certificate: Certificate; cost?: string }
-  | { kind: 'profile'; from: MapPosition; to: MapPosition; stations: Station[]; length: number; certificate: Certificate }
+  | { kind: 'height'; at: MapPosition; located: Located; certainty: Certainty; cost?: string }
+  | { kind: 'profile'; from: MapPosition; to: MapPosition; profile: Profile; certainty: Certainty }
   | {
-      kind: 'sight'; from: MapPosition; to: MapPosition; request: SightRequest; sight: Sight | null; stations: Station[];
-      certificate: Certificate;
+      kind: 'sight'; from: MapPosition; to: MapPosition; request: SightRequest; sight: Sight; profile: Profile;
+      certainty: Certainty;
     }
-  | { kind: 'viewshed'; at: MapPosition; viewshed: Viewshed };
+  | { kind: 'viewshed'; at: MapPosition; radius: number; viewshed: Viewshed };
 
 /** How far loading is. */
 export interface Status {
@@ -62,9 +66,12 @@ export interface Status {
   /** Received, and to come as far as the host says; 0 when it does not. */
   bytes: number;
   bytesInAll: number;
-  certificate: Certificate;
+  /** Of the mesh that was handed over last. */
+  certified: Certified;
   /** `held`: there is more, which the error, the number of vertices or the service keeps away. */
-  state: 'loading' | 'complete' | 'held' | 'cut';
+  state: 'loading' | 'complete' | 'held' | 'cut' | 'damaged';
+  /** Why nothing comes at the moment, though more is asked for. */
+  waitsFor?: string;
   /** Why it is held. */
   heldBy?: 'error' | 'vertices' | 'service';
   isServed: boolean;
@@ -74,11 +81,13 @@ export interface Status {
 }
 
 export type FromWorker =
-  | { kind: 'terrain'; facts: Facts; units: Units; metadata: unknown; name: string }
+  | { kind: 'terrain'; facts: Facts; units: Units; earth: Earth; metadata: unknown; name: string }
   | { kind: 'mesh'; mesh: DrawnMesh; status: Status }
   | { kind: 'edges'; edges: Uint32Array }
   | { kind: 'status'; status: Status }
   | { kind: 'answer'; ticket: number; answer: Answer }
   | { kind: 'refused'; ticket: number; message: string }
+  /** What went wrong before does not any more. */
+  | { kind: 'mended' }
   /** What went wrong, as a sentence; `final`: nothing more will come. */
   | { kind: 'error'; title: string; message: string; final: boolean };

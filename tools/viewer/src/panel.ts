@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The card with settings and facts: reads and writes Settings, shows Status.
-import { bytes, count, number, roundBelow } from './format';
+import type { Certificate } from './decoder';
+import { bound, bytes, count, number, roundBelow } from './format';
 import { Frame, signOf } from './frame';
 import type { Status } from './messages';
 import { colour, input, part } from './page';
@@ -56,18 +57,24 @@ export class Panel {
     return roundBelow(Math.max(this.relief, 1e-3) / 20);
   }
 
-  showStatus(status: Status): void {
-    const sign = this.sign;
-    const { error } = status.certificate;
-    part('certified').textContent = error === 0 ? 'Exact' : `\u00b1${number(error, 3)} ${sign}`;
-    // A service certifies what was asked for: what the camera looks at.
-    const where = status.isServed ? 'where you look' : 'at every sample';
+  /** @param certificate  Of all that is in sight, or `everywhere`. */
+  showStatus(status: Status, certificate: Certificate, everywhere: boolean): void {
+    const { sign } = this;
+    const { error, deviation } = certificate;
+    const isExact = error === 0 && deviation === 0;
+    part('certified').textContent = isExact ? 'Exact' : `\u00b1${bound(error)} ${sign}`;
+    const where = everywhere ? 'at every sample' : 'at every sample in sight';
+    // Clicks tell the same: what a mesh is off between the samples, where there is no other bound.
+    const between = deviation > error ? `, \u00b1${bound(deviation)} ${sign} between` : '';
+    const whole = `certified ${where}${between}`;
+    const waits = status.waitsFor === undefined ? 'still refining' : `waiting: ${status.waitsFor}`;
     part('certified-what').textContent = {
-      loading: `certified ${where}, and still refining`,
-      complete: error === 0 ? 'every sample is met' : `certified ${where}`,
-      held: status.heldBy === 'error' ? `certified ${where}, as asked for`
-        : `certified ${where}; more would be too much for this ${status.heldBy === 'service' ? 'service' : 'device'}`,
-      cut: 'certified at every sample; the rest of the stream did not arrive',
+      loading: isExact ? waits : `${whole}, and ${waits}`,
+      complete: isExact ? 'every sample is met' : whole,
+      held: status.heldBy === 'error' ? `${whole}, as asked for`
+        : `${whole}; more would be too much for this ${status.heldBy === 'service' ? 'service' : 'device'}`,
+      cut: `${whole}; the rest of the stream did not arrive`,
+      damaged: `${whole}; the rest of the stream is damaged`,
     }[status.state];
     part('fact-vertices').textContent = count(status.vertices);
     part('fact-triangles').textContent = count(status.triangles);

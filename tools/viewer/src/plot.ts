@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A profile as a drawing and as CSV.
-import { height as heightText, metres, roundBelow } from './format';
-import type { Station } from './walk';
+import type { Lengths, Profile, Station } from './answers';
+import { height as heightText, length as lengthText, roundBelow } from './format';
 
 const namespace = 'http://www.w3.org/2000/svg';
 
@@ -14,9 +14,7 @@ function element(name: string, attributes: Record<string, string | number>, text
 }
 
 export interface PlotOptions {
-  stations: readonly Station[];
-  /** Metres. */
-  length: number;
+  profile: Profile;
   heightSign: string;
   deviation: number;
   /** A line of sight over the profile: heights at shares of the way, and its Fresnel zone's radius there. */
@@ -29,7 +27,8 @@ const left = 46, right = 22, top = 12, bottom = 24;
 
 /** Draws into `svg`, anew. Heights have the plot's own scale. */
 export function drawPlot(svg: SVGSVGElement, options: PlotOptions): void {
-  const { stations, length, ray } = options;
+  const { ray } = options;
+  const { stations, length, lengths } = options.profile;
   const { width, height } = svg.getBoundingClientRect();
   svg.replaceChildren();
   svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
@@ -42,7 +41,7 @@ export function drawPlot(svg: SVGSVGElement, options: PlotOptions): void {
   const x = (distance: number): number => left + (distance / length) * (width - left - right);
   const y = (value: number): number =>
     height - bottom - ((value - low + slack) / (high - low + 2 * slack)) * (height - top - bottom);
-  drawAxes(svg, { x, y, low, high, length, width, height, sign: options.heightSign });
+  drawAxes(svg, { x, y, low, high, length, lengths, width, height, sign: options.heightSign });
   for (const run of runsOf(stations)) {
     const points = run.map((s) => `${x(s.distance).toFixed(1)},${y(s.height as number).toFixed(1)}`);
     const floor = height - bottom;
@@ -71,8 +70,8 @@ function drawRay(
 }
 
 function drawAxes(svg: SVGSVGElement, a: {
-  x: (d: number) => number; y: (h: number) => number; low: number; high: number; length: number; width: number;
-  height: number; sign: string;
+  x: (d: number) => number; y: (h: number) => number; low: number; high: number; length: number; lengths: Lengths;
+  width: number; height: number; sign: string;
 }): void {
   const heightStep = roundBelow(Math.max(a.high - a.low, 1e-6) / 2.2);
   for (let h = Math.ceil(a.low / heightStep) * heightStep; h <= a.high; h += heightStep) {
@@ -80,11 +79,14 @@ function drawAxes(svg: SVGSVGElement, a: {
       element('line', { class: 'grid', x1: left, x2: a.width - right, y1: a.y(h), y2: a.y(h) }),
       element('text', { x: left - 6, y: a.y(h) + 4, 'text-anchor': 'end' }, `${Number(h.toPrecision(6))}`));
   }
-  const step = roundBelow(a.length / 3);
-  const inKilometres = a.length >= 2000;
-  for (let d = 0; d <= a.length; d += step) {
-    const label = inKilometres ? `${Number((d / 1000).toPrecision(4))} km` : `${Number(d.toPrecision(4))} m`;
-    svg.append(element('text', { x: a.x(d), y: a.height - 7, 'text-anchor': d === 0 ? 'start' : 'middle' }, label));
+  const metre = a.lengths.metres ?? 1;
+  const metres = a.length * metre;
+  const step = roundBelow(metres / 3);
+  const inKilometres = a.lengths.metres !== null && metres >= 2000;
+  for (let d = 0; d <= metres; d += step) {
+    const label = inKilometres ? `${Number((d / 1000).toPrecision(4))} km`
+      : `${Number(d.toPrecision(4))}${a.lengths.metres === null ? '' : ' m'}`;
+    svg.append(element('text', { x: a.x(d / metre), y: a.height - 7, 'text-anchor': d === 0 ? 'start' : 'middle' }, label));
   }
   svg.append(element('text', { x: left - 6, y: a.height - 7, 'text-anchor': 'end' }, a.sign));
 }
@@ -98,15 +100,15 @@ function addCursor(svg: SVGSVGElement, options: PlotOptions, x: (d: number) => n
   svg.onpointermove = (event): void => {
     const box = svg.getBoundingClientRect();
     const share = (event.clientX - box.left - left) / (box.width - left - right);
-    const distance = Math.max(0, Math.min(1, share)) * options.length;
-    const value = heightAlong(options.stations, distance);
+    const distance = Math.max(0, Math.min(1, share)) * options.profile.length;
+    const value = heightAlong(options.profile.stations, distance);
     cursor.setAttribute('visibility', value === null ? 'hidden' : 'visible');
     options.onHover(distance);
     if (value === null) return;
     dot.setAttribute('cx', String(x(distance)));
     dot.setAttribute('cy', String(y(value)));
     label.setAttribute('x', String(Math.max(left + 60, Math.min(box.width - 70, x(distance)))));
-    label.textContent = `${metres(distance)}, ${heightText(value, options.deviation, options.heightSign)}`;
+    label.textContent = `${lengthText(distance, options.profile.lengths)}, ${heightText(value, options.deviation, options.heightSign)}`;
   };
   svg.onpointerleave = (): void => {
     cursor.setAttribute('visibility', 'hidden');
@@ -136,17 +138,13 @@ export function heightAlong(stations: readonly Station[], distance: number): num
   return null;
 }
 
-/** One line a station; a gap is a line without a height. */
-export function csvOf(
-  stations: readonly Station[], length: number, from: { x: number; y: number }, to: { x: number; y: number },
-  deviation: number,
-): string {
-  const lines = ['distance_m,x,y,height,height_min,height_max'];
-  for (const s of stations) {
-    const share = s.distance / length;
-    const place = [s.distance, from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)];
+/** One line a station, with place and distance as they came; a gap is a line without a height. */
+export function csvOf(profile: Profile, deviation: number): string {
+  const { unit } = profile.lengths;
+  const lines = [`distance_${unit === 'metre' ? 'm' : unit.replace(/\W+/g, '_')},x,y,height,height_min,height_max`];
+  for (const s of profile.stations) {
     const heights = s.height === null ? ['', '', ''] : [s.height, s.height - deviation, s.height + deviation];
-    lines.push([...place, ...heights].join(','));
+    lines.push([s.distance, s.x, s.y, ...heights].join(','));
   }
   return lines.join('\n') + '\n';
 }

@@ -7,6 +7,7 @@ import {
   WebGLRenderTarget, WebGLRenderer,
 } from 'three';
 import type { DrawnMesh } from './drawn_mesh';
+import { GroundBelow } from './ground_below';
 import type { Frame } from './frame';
 import { heightStops, rampTexture, slopeStops } from './ramps';
 import {
@@ -48,6 +49,7 @@ export class Relief {
   private readonly pictureSize = new Vector2(1, 1);
   private frame: Frame | null = null;
   private intervalHeight = 0;
+  private ground: GroundBelow | null = null;
   private pending = false;
   /** Called before each picture, for what follows the camera. Returns true when another picture is due. */
   beforeDrawing: (() => boolean) | null = null;
@@ -88,6 +90,7 @@ export class Relief {
   }
 
   setMesh(mesh: DrawnMesh): void {
+    this.ground = new GroundBelow(mesh, Math.max((this.frame?.width ?? 0) / 64, 1e-3));
     for (const geometry of [this.geometry, this.edgeGeometry]) geometry.dispose();
     const positions = new BufferAttribute(mesh.positions, 3);
     this.geometry.setAttribute('position', positions);
@@ -97,6 +100,11 @@ export class Relief {
     this.edgeGeometry.setIndex(null);
     this.edgeGeometry.setDrawRange(0, 0);
     this.draw();
+  }
+
+  /** z of the picture's ground at a place of the scene, without exaggeration; null where there is none. */
+  groundAt(x: number, y: number): number | null {
+    return this.ground?.at(x, y) ?? null;
   }
 
   /** Edges of the mesh that was set last. */

@@ -3,7 +3,8 @@
 // A terrain of a service, as fine as the camera needs it where it looks. Each answer is a stream that goes on from those before
 // it, so only what is missing travels. Detail that is no longer looked at goes away when there is too much of it: then the view
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
-import { Decoder } from './decoder';
+import type { Certified, CertifiedPart } from './certified';
+import { DecodeError, Decoder } from './decoder';
 import { Problem, checkAnswer } from './fetching';
 import type { Frame } from './frame';
 import type { Answer, Question, Wanted } from './messages';
@@ -12,6 +13,8 @@ import type { Collection, Service, Serving } from './service';
 const firstBytes = 64 * 1024;
 const laterBytes = 256 * 1024;
 const leastBytes = 32 * 1024;
+/** Milliseconds before a service that failed is asked again. */
+const firstWait = 1000, longestWait = 20000;
 /** The service takes 64. */
 const mostServings = 60;
 
@@ -21,6 +24,8 @@ export interface ServedEvents {
   /** All that is wanted for now is there. */
   settled(): void;
   failed(error: unknown, final: boolean): void;
+  /** The service answers again. */
+  mended(): void;
 }
 
 /** A decoder with what it was served. */
@@ -28,9 +33,33 @@ class Received {
   readonly decoder: Decoder;
   readonly have: Serving[] = [];
   readonly whole: Wanted[] = [];
+  /** What each serving is certified for, in its window. */
+  private readonly parts: CertifiedPart[] = [];
+  /** The window of the stream that is coming, once it has begun. */
+  private coming: Wanted['window'] | null = null;
   fingerprint = '';
   constructor(module: WebAssembly.Module) {
     this.decoder = new Decoder(module);
+  }
+
+  get certified(): Certified {
+    const now = this.coming === null ? [] : [{ window: this.coming, ...this.decoder.certificate }];
+    return { parts: [...this.parts, ...now], otherwise: this.decoder.certificateByRelief };
+  }
+
+  /** The stream of `window` has begun. */
+  begin(window: Wanted['window']): void {
+    this.coming = window;
+  }
+
+  /** Notes what came of the stream that was asked for, all or a part: it counts for ever. */
+  end(wanted: Wanted): void {
+    if (this.coming === null) return;
+    const { decoder } = this;
+    this.parts.push({ window: this.coming, ...decoder.certificate });
+    this.have.push({ window: wanted.window, error: wanted.error, splits: decoder.splits });
+    this.coming = null;
+    if (!decoder.isComplete) decoder.beginNext();
   }
 
   /** True when all of `wanted` was served at its error, or at a smaller one. */
@@ -64,6 +93,8 @@ export class ServedView {
   private wake: (() => void) | null = null;
   /** Of the next answer: less where the service has not the memory for more. */
   private mostBytes = laterBytes;
+  /** Vertices that the service found too many, nearly. */
+  private mostHeld = Infinity;
   /** The service has not the memory for all that is wanted. */
   private isTooMuch = false;
   bytes = 0;
@@ -79,6 +110,11 @@ export class ServedView {
   }
 
   get decoder(): Decoder { return this.shown.decoder; }
+  /** What is certified of `decoder`. */
+  get certified(): Certified { return this.shown.certified; }
+  /** Why nothing comes at the moment. */
+  waitsFor: string | undefined;
+  private failures = 0;
   get heldBy(): 'service' | 'vertices' | null {
     return this.isTooMuch ? 'service' : this.coarser > 1 ? 'vertices' : null;
   }
@@ -103,7 +139,10 @@ export class ServedView {
   async run(): Promise<void> {
     const { bounds, heights } = this.collection;
     const first: Wanted = { window: bounds, error: Math.max((heights[1] - heights[0]) / 100, 1e-6) };
-    while (!this.received.decoder.hasMesh && !this.isTooMuch) await this.bring(first, firstBytes);
+    while (!this.received.decoder.hasMesh) {
+      await this.bring(first, firstBytes);
+      if (this.isTooMuch && first.error < heights[1] - heights[0]) first.error *= 2;
+    }
     for (;;) {
       const next = this.nextWanted();
       if (next !== undefined) {
@@ -121,10 +160,11 @@ export class ServedView {
 
   async answer(question: Question, frame: Frame): Promise<Answer> {
     switch (question.kind) {
-      case 'height': return this.service.height(question.at, frame);
+      case 'height': return this.service.height(question.at);
       case 'profile': return this.service.profile(question.from, question.to, frame);
       case 'sight': return this.service.sight(question.from, question.to, question.request, frame);
-      case 'viewshed': return this.service.viewshed(question.at, question.height, question.radius, frame);
+      case 'viewshed':
+        return this.service.viewshed(question.at, question.observerHeight, question.targetHeight, question.radius, frame);
     }
   }
 
@@ -145,7 +185,7 @@ export class ServedView {
     this.startAnew();
   }
 
-  /** Asks for a part, once. A failure waits before the next attempt. */
+  /** Asks for a part, once. A failure waits before the next attempt; what came before stays. */
   private async bring(wanted: Wanted, mostBytes: number): Promise<void> {
     const to = this.received;
     if (to.have.length >= mostServings) {
@@ -156,13 +196,26 @@ export class ServedView {
       // A quarter larger, and somewhat finer, so that a small move asks for nothing.
       const window = widened(wanted.window, this.collection.bounds, 1 / 8);
       await this.receive(to, { window, error: Number((0.8 * wanted.error).toPrecision(2)) }, mostBytes);
+      if (this.failures > 0) this.events.mended();
+      this.failures = 0;
+      this.waitsFor = undefined;
     } catch (error) {
       if (this.mends(error, wanted, to)) return;
-      this.events.failed(error, !this.decoder.hasMesh);
-      this.startAnew();
-      await new Promise<void>((resolve) => { setTimeout(resolve, 3000); });
+      if (error instanceof DecodeError) this.startAnew();
+      await this.waitAfter(error);
     }
-    if (to.decoder.hasMesh && to.decoder.mesh.vertexCount > this.mostVertices) this.makeRoom();
+    if (to.decoder.hasMesh && to.decoder.mesh.vertexCount > Math.min(this.mostVertices, this.mostHeld)) this.makeRoom();
+  }
+
+  /** A service that is busy is waited for as it asks; of one that cannot be reached people are told. */
+  private async waitAfter(error: unknown): Promise<void> {
+    const isBusy = error instanceof Problem && (error.status === 503 || error.status === 429);
+    const wait = Math.min(longestWait, firstWait * 2 ** this.failures);
+    this.waitsFor = isBusy ? 'the service is busy' : 'the service does not answer';
+    if (!isBusy || this.failures > 3) this.events.failed(error, false);
+    ++this.failures;
+    this.events.grown();
+    await new Promise<void>((resolve) => { setTimeout(resolve, isBusy ? Math.max(wait, 1000 * error.retryAfter) : wait); });
   }
 
   /** Makes less of what the service refused, so that the next attempt may succeed. */
@@ -174,13 +227,28 @@ export class ServedView {
       return false;
     } else if (error.limit === 'have' || error.limit === 'held_vertices') {
       this.makeRoom();
-    } else if (this.mostBytes > leastBytes) {
+    } else if (error.limit === 'most_stream_bytes' && this.mostBytes > leastBytes) {
       this.mostBytes /= 2;
     } else {
-      to.whole.push(wanted);
-      this.isTooMuch = true;
+      this.askForLess(wanted, to);
     }
     return true;
+  }
+
+  /**
+   * The service has not the memory, or the time, for what was asked. Most of both goes into the mesh that is held already, so that
+   * without what is not looked at any more there may be enough; from then on less is held. Else the part is wanted coarser.
+   */
+  private askForLess(wanted: Wanted, to: Received): void {
+    this.isTooMuch = true;
+    if (!this.isLean && to.decoder.hasMesh) {
+      this.mostHeld = Math.min(this.mostHeld, 0.8 * to.decoder.mesh.vertexCount);
+      this.startAnew();
+      return;
+    }
+    const coarser = { window: wanted.window, error: 2 * wanted.error };
+    to.whole.push(wanted);
+    if (!to.covers(coarser) && coarser.error < this.collection.heights[1] - this.collection.heights[0]) this.wanted.push(coarser);
   }
 
   private async receive(to: Received, wanted: Wanted, mostBytes: number): Promise<void> {
@@ -193,17 +261,22 @@ export class ServedView {
     to.fingerprint = fingerprint;
     this.cost = cost;
     const { decoder } = to;
+    const before = decoder.numbering;
     const reader = response.body.getReader();
-    for (;;) {
-      const { done, value } = await reader.read();
-      if (done) break;
-      this.bytes += value.length;
-      decoder.feed(value);
-      if (to === this.shown) this.events.grown();
+    try {
+      for (;;) {
+        const { done, value } = await reader.read();
+        if (done) break;
+        this.bytes += value.length;
+        decoder.feed(value);
+        if (decoder.numbering !== before) to.begin(wanted.window);
+        if (to === this.shown) this.events.grown();
+      }
+      const isWhole = decoder.isComplete && (decoder.certificate.error <= wanted.error || decoder.splits === 0);
+      if (isWhole) to.whole.push(wanted);
+    } finally {
+      // A connection that broke leaves what came; a stream that is damaged leaves nothing to go on from.
+      to.end(wanted);
     }
-    to.have.push({ window: wanted.window, error: wanted.error, splits: decoder.splits });
-    const isWhole = decoder.isComplete && (decoder.certificate.error <= wanted.error || decoder.splits === 0);
-    if (isWhole) to.whole.push(wanted);
-    if (!decoder.isComplete) decoder.beginNext();
   }
 }

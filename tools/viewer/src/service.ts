@@ -4,8 +4,9 @@
 import { count, number } from './format';
 import type { Frame } from './frame';
 import { Problem, checkAnswer, opened } from './fetching';
-import type { Answer, MapPosition, Viewshed } from './messages';
-import type { Located, PointState, Sight, SightRequest, Station } from './walk';
+import { stationsOf } from './answers';
+import type { MapPosition, PointState, Profile, Sight, SightPoint, SightRequest } from './answers';
+import type { Answer, Certainty, Viewshed } from './messages';
 
 /** What a receiver was served, as `ptin unstream` tells it and `ptin stream --have` takes it. */
 export interface Serving {
@@ -76,42 +77,41 @@ export class Service {
   }
 
   /** The height of the full terrain, whatever is drawn. */
-  async height(at: MapPosition, frame: Frame): Promise<Answer> {
+  async height(at: MapPosition): Promise<Answer> {
     const { json, cost } = await this.asked('position', { coords: `POINT(${at.x} ${at.y})`, crs: 'native', f: 'json' });
     const point = (json.points as Array<Record<string, unknown>>)[0];
     const triangle = (point.triangle as Array<[number, number, number | null]> | null) ?? [];
-    const located: Located = {
-      state: point.state as PointState,
-      height: point.height as number | null,
-      triangle: triangle.map(([x, y, height]) => ({ x: frame.gridX(x), y: frame.gridY(y), height })),
+    return {
+      kind: 'height', at, certainty: certaintyOf(json), cost,
+      located: {
+        state: point.state as PointState, height: point.height as number | null, least: point.height_min as number | null,
+        most: point.height_max as number | null, triangle: triangle.map(([x, y, height]) => ({ x, y, height })),
+      },
     };
-    return { kind: 'height', at, located, certificate: certificateOf(json), cost };
   }
 
   async profile(from: MapPosition, to: MapPosition, frame: Frame): Promise<Answer> {
     const { json } = await this.asked('profile', { coords: lineText(from, to), crs: 'native', f: 'json' });
-    return {
-      kind: 'profile', from, to, stations: stationsIn(json, frame), length: frame.metresBetween(from, to),
-      certificate: certificateOf(json),
-    };
+    return { kind: 'profile', from, to, profile: profileIn(json, frame), certainty: certaintyOf(json) };
   }
 
   async sight(from: MapPosition, to: MapPosition, request: SightRequest, frame: Frame): Promise<Answer> {
     const heights = [request.observerHeight, request.targetHeight].map((metres) => metres / frame.scaleZ).join(',');
     const query: Record<string, unknown> = { coords: lineText(from, to), heights, crs: 'native', f: 'json' };
     if (request.frequency > 0) query.frequency = request.frequency;
-    const [{ json }, profile] = await Promise.all([this.asked('sight', query), this.profile(from, to, frame)]);
-    if (profile.kind !== 'profile') throw new Error('a profile is asked for');
-    const pair = (json.pairs as Array<Record<string, unknown>>)[0];
+    const [{ json }, along] = await Promise.all([
+      this.asked('sight', query), this.asked('profile', { coords: lineText(from, to), crs: 'native', f: 'json' }),
+    ]);
     return {
-      kind: 'sight', from, to, request, stations: profile.stations, sight: sightIn(pair, profile.stations, request, frame),
-      certificate: { error: profile.certificate.error, deviation: Number(pair.certified_deviation ?? 0) },
+      kind: 'sight', from, to, request, profile: profileIn(along.json, frame),
+      sight: sightIn((json.pairs as Json[])[0]), certainty: certaintyOf(json),
     };
   }
 
-  async viewshed(at: MapPosition, height: number, radius: number, frame: Frame): Promise<Answer> {
+  async viewshed(at: MapPosition, observerHeight: number, targetHeight: number, radius: number, frame: Frame): Promise<Answer> {
     const response = await opened(this.address('viewshed', {
-      coords: `POINT(${at.x} ${at.y})`, height: height / frame.scaleZ, radius: radius / frame.scaleZ, crs: 'native', f: 'png',
+      coords: `POINT(${at.x} ${at.y})`, height: observerHeight / frame.scaleZ, target: targetHeight / frame.scaleZ,
+      radius: radius / frame.scaleZ, crs: 'native', f: 'png',
     }), {});
     await checkAnswer(response);
     const window = (response.headers.get('Ptin-Bounds') ?? '').split(',').map(Number);
@@ -119,7 +119,7 @@ export class Service {
       throw new Problem('The viewshed has no place', 'The service did not say where its picture lies.');
     }
     const viewshed: Viewshed = { picture: await response.blob(), window: window as Viewshed['window'] };
-    return { kind: 'viewshed', at, viewshed };
+    return { kind: 'viewshed', at, radius, viewshed };
   }
 
   private address(question: string, query: Record<string, unknown>): string {
@@ -150,39 +150,30 @@ function lineText(from: MapPosition, to: MapPosition): string {
   return `LINESTRING(${from.x} ${from.y}, ${to.x} ${to.y})`;
 }
 
-function certificateOf(json: Json): { error: number; deviation: number } {
-  return { error: Number(json.certified_error ?? 0), deviation: Number(json.certified_deviation ?? 0) };
-}
-
-/** The points of a profile as stations in metres, with a null where the surface is broken. */
-function stationsIn(json: Json, frame: Frame): Station[] {
-  const stations: Station[] = [];
-  for (const p of json.points as Array<{ x: number; y: number; distance: number; height: number | null; state: string }>) {
-    const distance = p.distance * frame.scaleZ;
-    if (p.height !== null) stations.push({ distance, height: p.height });
-    if (p.state !== 'surface') stations.push({ distance, height: null });
-  }
-  while (stations.length !== 0 && stations[stations.length - 1].height === null) stations.pop();
-  return stations;
-}
-
-function sightIn(pair: Json, stations: Station[], request: SightRequest, frame: Frame): Sight | null {
-  const first = stations.find((s) => s.height !== null);
-  const last = [...stations].reverse().find((s) => s.height !== null);
-  if (first === undefined || last === undefined) return null;
-  const metres = (value: unknown): number => Number(value) * frame.scaleZ;
-  const length = metres(pair.length);
-  const clearance = pair.clearance as { distance: number; min: number; max: number; height: number } | null;
-  const fresnel = pair.fresnel as { distance: number; ratio: number } | undefined;
-  const verdict = String(pair.verdict);
+function certaintyOf(json: Json): Certainty {
   return {
-    verdict: verdict === 'visible' || verdict === 'hidden' ? verdict : 'unsure',
-    clearance: clearance === null ? Infinity : metres((clearance.min + clearance.max) / 2),
-    clearanceAt: clearance === null ? 0.5 : metres(clearance.distance) / length,
-    fresnelRatio: fresnel === undefined ? null : fresnel.ratio,
-    fresnelAt: fresnel === undefined ? 0.5 : metres(fresnel.distance) / length,
-    length,
-    observerZ: (first.height as number) * frame.scaleZ + request.observerHeight,
-    targetZ: (last.height as number) * frame.scaleZ + request.targetHeight,
+    of: 'terrain', error: Number(json.certified_error ?? 0), deviation: Number(json.certified_deviation ?? 0),
+    isExact: json.exact === true,
+  };
+}
+
+/** Points and distances as the service has them, in the unit that it names. */
+function profileIn(json: Json, frame: Frame): Profile {
+  const points = json.points as Array<MapPosition & { distance: number; height: number | null; state: PointState }>;
+  const unit = String(json.length_unit ?? 'unknown');
+  return {
+    stations: stationsOf(points), length: points[points.length - 1]?.distance ?? 0,
+    lengths: { unit, metres: unit === 'metre' ? 1 : unit === frame.earth.lengths.unit ? frame.earth.lengths.metres : null },
+  };
+}
+
+function sightIn(pair: Json): Sight {
+  const clearance = pair.clearance as (SightPoint & { min: number; max: number | null }) | null;
+  const fresnel = pair.fresnel as (SightPoint & { ratio: number }) | undefined;
+  const verdicts: Record<string, Sight['verdict']> = { visible: 'visible', hidden: 'hidden', null: 'undefined' };
+  return {
+    verdict: verdicts[String(pair.verdict)] ?? 'unsure', length: Number(pair.length),
+    clearance: clearance === null ? null : { min: clearance.min, max: clearance.max ?? Infinity, at: clearance },
+    fresnel: fresnel === undefined ? null : { ratio: fresnel.ratio, at: fresnel },
   };
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Where the camera stands and what it needs: its controls, the permalink's part, and the detail that its picture shows.
-import { PerspectiveCamera, Vector3 } from 'three';
+import { Box3, Frustum, Matrix4, PerspectiveCamera, Vector3 } from 'three';
 import { MapControls } from 'three/addons/controls/MapControls.js';
+import type { Window } from './certified';
 import type { Frame } from './frame';
 import type { Wanted } from './messages';
 
@@ -108,12 +109,48 @@ export class View {
     };
   }
 
-  /** Follows the controls; true while they still move. Clips the view around the terrain. */
-  update(): boolean {
+  /**
+   * Follows the controls; true while they still move. Clips the view around the terrain.
+   * `groundAt`: the ground at a place of the scene, not exaggerated; null where there is none.
+   */
+  update(groundAt: (x: number, y: number) => number | null, exaggeration: number): boolean {
     this.controls.enableDamping = !this.reducedMotion();
     const moved = this.controls.update();
-    if (this.frame !== null) this.clip(this.frame);
+    if (this.frame !== null) {
+      this.stayAbove(groundAt, exaggeration);
+      this.clip(this.frame);
+    }
     return moved;
+  }
+
+  /** Lifts the camera out of the ground, and over the lowest ground beside the terrain and in voids. */
+  private stayAbove(groundAt: (x: number, y: number) => number | null, exaggeration: number): void {
+    const { position } = this.camera;
+    const least = Math.max(2e-5 * this.controls.maxDistance, 0.02 * position.distanceTo(this.controls.target));
+    if (position.z >= this.frame!.relief * exaggeration + least) return;
+    const ground = (groundAt(position.x, position.y) ?? 0) * exaggeration;
+    if (position.z >= ground + least) return;
+    position.z = ground + least;
+    this.camera.lookAt(this.controls.target);
+  }
+
+  /** Which windows of the map are in the picture, or may be: whatever lies between the least and the greatest height there. */
+  seenWindows(frame: Frame, exaggeration: number): (window: Window) => boolean {
+    const { camera } = this;
+    camera.updateMatrixWorld();
+    const frustum = new Frustum().setFromProjectionMatrix(new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
+    const box = new Box3();
+    const top = frame.relief * exaggeration;
+    return ([west, south, east, north]) => {
+      box.min.set(frame.sceneX(west), frame.sceneY(south), 0);
+      box.max.set(frame.sceneX(east), frame.sceneY(north), top);
+      return frustum.intersectsBox(box);
+    };
+  }
+
+  /** The direction across the picture, on the ground of the scene. */
+  get across(): Vector3 {
+    return new Vector3(1, 0, 0).applyQuaternion(this.camera.quaternion).setZ(0).normalize();
   }
 
   /** Near and far are around the terrain, wherever the camera is. */
@@ -145,6 +182,18 @@ export class View {
   turn(degrees: number): void {
     const back = this.camera.position.clone().sub(this.controls.target);
     back.applyAxisAngle(new Vector3(0, 0, 1), degrees * Math.PI / 180);
+    this.camera.position.copy(this.controls.target).add(back);
+    this.controls.update();
+  }
+
+  /** Degrees: more looks farther towards the horizon. */
+  tilt(degrees: number): void {
+    const back = this.camera.position.clone().sub(this.controls.target);
+    const away = Math.hypot(back.x, back.y), distance = back.length();
+    const now = Math.atan2(away, back.z);
+    const then = Math.max(0.001, Math.min(this.controls.maxPolarAngle, now + degrees * Math.PI / 180));
+    const aside = away > 1e-9 * distance ? Math.sin(then) * distance / away : 0;
+    back.set(back.x * aside, back.y * aside, Math.cos(then) * distance);
     this.camera.position.copy(this.controls.target).add(back);
     this.controls.update();
   }

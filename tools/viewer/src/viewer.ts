@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
+import { type Certified, certifiedWithin } from './certified';
+import type { Certificate } from './decoder';
+import { scaleAt } from './earth';
 import { bytes, coordinates, metres, roundBelow } from './format';
 import { Frame } from './frame';
 import { Inquiry, Tool } from './inquiry';
@@ -29,11 +32,16 @@ class Viewer {
   private readonly inquiry: Inquiry;
   private readonly worker: Worker;
   private frame: Frame | null = null;
-  private status: Status | null = null;
+  /** With what is certified of all that is in sight. */
+  private status: (Status & { certificate: Certificate }) | null = null;
   private isServed: boolean;
   private linkTimer = 0;
   private viewTimer = 0;
   private spokenState = '';
+  /** What is told of went wrong, and may mend by itself. */
+  private isTroubled = false;
+  private placeTimer = 0;
+  private certified: Certified | null = null;
 
   constructor(boot: Boot) {
     const canvas = part<HTMLCanvasElement>('relief');
@@ -71,8 +79,13 @@ class Viewer {
       case 'status': this.show(message.status); break;
       case 'answer':
       case 'refused': this.inquiry.take(message); break;
+      case 'mended':
+        if (this.isTroubled) part('trouble').hidden = true;
+        this.isTroubled = false;
+        break;
       case 'error':
         trouble(message.title, message.message, this.frame !== null);
+        this.isTroubled = true;
         part('progress').classList.add('done');
         if (this.frame === null) part('subtitle').textContent = 'Nothing is shown';
         break;
@@ -80,11 +93,13 @@ class Viewer {
   }
 
   private introduce(message: Extract<FromWorker, { kind: 'terrain' }>): void {
-    const { facts, units } = message;
-    const frame = this.frame = new Frame(facts, units);
+    const { facts, units, earth } = message;
+    const frame = this.frame = new Frame(facts, units, earth);
     this.relief.setFrame(frame);
-    const size = `${metres(frame.width)} \u00d7 ${metres(frame.depth)}`;
-    const unknown = units.height === 'unknown' ? ' \u00b7 unit of heights unknown, taken for metres' : '';
+    const size = earth.size === null ? 'size not known' : `${metres(earth.size[0])} \u00d7 ${metres(earth.size[1])}`;
+    const unknown = units.height !== 'unknown' ? ''
+      : ` \u00b7 unit of heights unknown, taken for ${earth.metresPerHeight === 1 ? 'metres' : 'that of the map'}`;
+    part('scale').hidden = earth.lengths.metres === null;
     this.panel.setFrame(frame, message.name, `${size}${unknown}`);
     const { pose } = fromHash(location.hash);
     const { width, height } = this.relief.canvas.getBoundingClientRect();
@@ -95,13 +110,30 @@ class Viewer {
   }
 
   private show(status: Status): void {
-    this.status = status;
-    this.panel.showStatus(status);
+    this.certified = status.certified;
+    this.status = { ...status, certificate: this.certificate };
+    this.showCertificate();
     if (status.state !== this.spokenState && status.state !== 'loading') {
       performance.mark('ptin-settled');
       speak(`${part('certified').textContent}, ${part('certified-what').textContent}, ${bytes(status.bytes)} received`);
     }
     this.spokenState = status.state;
+  }
+
+  /** Of all that is in sight; before there is a terrain, of nothing. */
+  private get certificate(): Certificate {
+    const { certified, frame } = this;
+    if (certified === null || frame === null) return { error: Infinity, deviation: Infinity };
+    return certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame, this.exaggeration));
+  }
+
+  private showCertificate(): void {
+    const { status, certified, frame } = this;
+    if (status === null || certified === null || frame === null) return;
+    const [west, south, east, north] = frame.bounds;
+    const isEverywhere = certified.parts.some(({ window: w, error }) =>
+      w[0] <= west && w[1] <= south && w[2] >= east && w[3] >= north && error <= status.certificate.error);
+    this.panel.showStatus(status, status.certificate, isEverywhere);
   }
 
   private get exaggeration(): number { return this.panel.settings.exaggeration; }
@@ -132,10 +164,16 @@ class Viewer {
   }
 
   private beforeDrawing(): boolean {
-    const moves = this.view.update();
+    const moves = this.view.update((x, y) => this.relief.groundAt(x, y), this.exaggeration);
     const distance = this.relief.camera.position.distanceTo(this.view.controls.target);
     this.relief.hazeFrom = 1.1 * distance;
     this.showScale(distance);
+    if (this.status !== null) {
+      const { error, deviation } = this.certificate;
+      const before = this.status.certificate;
+      this.status.certificate = { error, deviation };
+      if (error !== before.error || deviation !== before.deviation) this.showCertificate();
+    }
     return moves;
   }
 
@@ -160,10 +198,16 @@ class Viewer {
     }, 250);
   }
 
+  /** How long a line across the picture is where the camera looks: over ground, which the picture stretches away from its middle. */
   private showScale(distance: number): void {
-    if (this.frame === null) return;
+    const { frame, view } = this;
+    if (frame === null || frame.earth.lengths.metres === null) return;
     const { canvas } = this.relief;
-    const metre = 1 / this.view.metresPerPixel(distance, canvas.clientHeight);
+    const target = view.controls.target;
+    const [x, y] = scaleAt(frame.earth, frame.mapY(target.y));
+    const across = view.across;
+    const stretch = Math.hypot(across.x * x / frame.scaleX, across.y * y / frame.scaleY);
+    const metre = 1 / (stretch * view.metresPerPixel(distance, canvas.clientHeight));
     const length = roundBelow(Math.min(130, canvas.clientWidth / 4) / metre);
     const scale = part('scale');
     scale.querySelector('i')!.style.width = `${length * metre}px`;
@@ -194,22 +238,28 @@ class Viewer {
 
   private followPointer(canvas: HTMLCanvasElement): void {
     let pressed: { x: number; y: number } | null = null;
-    let waiting = false;
-    canvas.addEventListener('pointerdown', (e) => { pressed = e.isPrimary && e.button === 0 ? { x: e.clientX, y: e.clientY } : null; });
+    canvas.addEventListener('pointerdown', (e) => {
+      pressed = e.isPrimary && e.button === 0 ? { x: e.clientX, y: e.clientY } : null;
+      canvas.classList.remove('ringed');
+    });
     canvas.addEventListener('pointerup', (e) => {
       const isClick = pressed !== null && Math.hypot(e.clientX - pressed.x, e.clientY - pressed.y) < 5;
       pressed = null;
       if (isClick) this.inquiry.click(this.relief.pick(e.clientX, e.clientY));
     });
+    // A place costs a drawing of everything: it is told where the pointer rests.
     canvas.addEventListener('pointermove', (e) => {
-      if (waiting || e.pointerType === 'touch' || e.buttons !== 0) return;
-      waiting = true;
-      requestAnimationFrame(() => {
-        waiting = false;
-        this.tellPlace(e.clientX, e.clientY);
-      });
+      clearTimeout(this.placeTimer);
+      if (e.pointerType === 'touch' || e.buttons !== 0) return;
+      this.placeTimer = window.setTimeout(() => { this.tellPlace(e.clientX, e.clientY); }, 160);
     });
-    canvas.addEventListener('pointerleave', () => { part('place').textContent = ''; });
+    canvas.addEventListener('pointerleave', () => {
+      clearTimeout(this.placeTimer);
+      part('place').textContent = '';
+    });
+    // A ring shows whom the keys belong to, when one came here by them; shortcuts work without it.
+    canvas.addEventListener('focus', () => { canvas.classList.toggle('ringed', canvas.matches(':focus-visible')); });
+    canvas.addEventListener('blur', () => { canvas.classList.remove('ringed'); });
   }
 
   private tellPlace(x: number, y: number): void {
@@ -239,7 +289,7 @@ class Viewer {
     const target = event.target as HTMLElement;
     if (event.ctrlKey || event.metaKey || event.altKey || part<HTMLDialogElement>('keys').open) return;
     if (target.matches('input[type=number], input[type=text]') && event.key !== 'Escape') return;
-    if (event.key.startsWith('Arrow') && target.matches('input')) return;
+    if (/^(Arrow|Page)/.test(event.key) && target.matches('input')) return;
     if (event.key === 'Enter' && target !== this.relief.canvas) return;
     const action = this.actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (action === undefined) return;
@@ -256,6 +306,8 @@ class Viewer {
     '+': () => { this.view.zoom(0.8); },
     '=': () => { this.view.zoom(0.8); },
     '-': () => { this.view.zoom(1.25); },
+    PageUp: () => { this.view.tilt(-5); },
+    PageDown: () => { this.view.tilt(5); },
     ',': () => { this.view.turn(-10); },
     '.': () => { this.view.turn(10); },
     r: () => { this.home(); },
@@ -323,9 +375,7 @@ function start(boot: Boot): void {
 
 const boot = (window as unknown as { ptinBoot: Boot }).ptinBoot;
 if (location.protocol === 'file:') {
-  trouble('The page needs a web server',
-    'Browsers do not let a page in a folder read the files beside it. In that folder: python3 -m http.server, then open http://localhost:8000.',
-    false);
+  // The page itself has told it (index.html).
 } else if (boot.source === null) {
   welcome(boot);
 } else {

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The Worker: receives, decodes, answers questions about the mesh that is there, and hands the page meshes to draw.
+import type { MapPosition } from './answers';
+import { type Certified, certifiedAt } from './certified';
 import { DecodeError } from './decoder';
 import type { Decoder } from './decoder';
 import { drawnMesh, surfaceEdges } from './drawn_mesh';
+import { type Told, earthOf, toldBy } from './earth';
 import { Problem } from './fetching';
 import { Frame, unitsOf } from './frame';
 import type { Answer, FromWorker, Question, Source, Status, ToWorker, Wanted } from './messages';
 import { StaticStream, openStream } from './static_stream';
 import { Service } from './service';
 import { ServedView } from './served_view';
-import { lineOver, locate, sight, stationsOf } from './walk';
 
 const say = (message: FromWorker, transfer: Transferable[] = []): void =>
   (self as unknown as { postMessage(m: FromWorker, t: Transferable[]): void }).postMessage(message, transfer);
@@ -40,6 +42,9 @@ function tell(error: unknown, final: boolean): void {
 /** Everything about the terrain that is open. */
 class Session {
   private frame: Frame | null = null;
+  private told: Told = toldBy(null);
+  /** What is certified of the mesh that was handed over last. */
+  private drawnCertified: Certified = { parts: [], otherwise: { error: Infinity, deviation: Infinity } };
   private readonly still: StaticStream;
   private served: ServedView | null = null;
   private bytesInAll = 0;
@@ -115,6 +120,7 @@ class Session {
       grown: () => { this.introduce(collection.title); this.draw(false); },
       settled: () => { this.introduce(collection.title); this.draw(true); },
       failed: (error, final) => { tell(error, final); },
+      mended: () => { say({ kind: 'mended' }); },
     });
     this.served.setLimit(this.error);
     await this.served.run();
@@ -170,14 +176,36 @@ class Session {
   /** Tells the page what terrain it is, once. */
   private introduce(name: string): void {
     if (this.frame !== null || !this.current.hasMesh) return;
-    const { facts } = this.current;
+    const decoder = this.current;
+    const { facts } = decoder;
     let metadata: unknown = null;
     try {
-      metadata = JSON.parse(this.current.metadata);
+      metadata = JSON.parse(decoder.metadata);
     } catch { /* Text that is no JSON tells nothing. */ }
     const units = unitsOf(metadata);
-    this.frame = new Frame(facts, units);
-    say({ kind: 'terrain', facts, units, metadata, name });
+    this.told = toldBy(metadata);
+    this.describe(decoder);
+    const earth = earthOf(decoder, this.told, units);
+    this.frame = new Frame(facts, units, earth);
+    say({ kind: 'terrain', facts, units, earth, metadata, name });
+  }
+
+  /** Tells a decoder what the metadata say. */
+  private describe(decoder: Decoder): void {
+    const { error, window, levels, splits } = this.told.request;
+    const isAll = error === undefined && window === undefined && levels === undefined && splits === undefined;
+    decoder.describe(this.told.ground, this.told.freeOfVoids, isAll && decoder.isComplete && this.served === null);
+  }
+
+  /** What is certified of the mesh that is there. */
+  private get certified(): Certified {
+    if (this.served !== null) return this.served.certified;
+    const decoder = this.current;
+    const { window, levels } = this.told.request;
+    // A stream for isolines is certified along these alone.
+    const isKnown = this.frame !== null && levels === undefined;
+    const parts = isKnown ? [{ window: window ?? this.frame!.bounds, ...decoder.certificate }] : [];
+    return { parts, otherwise: decoder.certificateByRelief };
   }
 
   private status(): Status {
@@ -188,8 +216,9 @@ class Session {
     const isCut = !loading && this.served === null && (!d.isComplete || this.cut);
     return {
       vertices: vertexCount, triangles: triangleCount, splits: d.splits, splitsInAll: d.splitsInAll,
-      bytes: this.served?.bytes ?? this.still.kept.bytes, bytesInAll: this.bytesInAll, certificate: d.certificate,
-      state: d.isComplete && this.served === null ? 'complete'
+      bytes: this.served?.bytes ?? this.still.kept.bytes, bytesInAll: this.bytesInAll, certified: this.drawnCertified,
+      waitsFor: this.served?.waitsFor,
+      state: this.failed ? 'damaged' : d.isComplete && this.served === null ? 'complete'
         : held !== null ? 'held' : loading ? 'loading' : isCut ? 'cut' : 'complete',
       heldBy: held ?? undefined, isServed: this.served !== null, requests: this.served?.requests ?? 1, cost: this.served?.cost,
     };
@@ -203,6 +232,7 @@ class Session {
     const due = performance.now() - this.lastDrawn > Math.max(60, 4 * this.drawingTook);
     const changed = this.drawnVertices !== mesh.vertexCount || this.drawnNumbering !== d.numbering ||
       this.drawnOf !== d;
+    if (!changed) this.drawnCertified = this.certified;
     if (!changed || !(now || due)) {
       say({ kind: 'status', status: this.status() });
       return;
@@ -212,6 +242,7 @@ class Session {
     this.drawnVertices = mesh.vertexCount;
     this.drawnNumbering = d.numbering;
     this.drawnOf = d;
+    this.drawnCertified = this.certified;
     say({ kind: 'mesh', mesh: drawn, status: this.status() },
       [drawn.positions.buffer, drawn.normals.buffer, drawn.corners.buffer]);
     if (this.edgesWanted) this.sendEdges(true);
@@ -219,24 +250,42 @@ class Session {
     this.drawingTook = this.lastDrawn - begin;
   }
 
-  /** Answers from the mesh that is there, within its certificate. */
+  /** Answers from the mesh that is there, within its certificate: all numbers are the engine's. */
   private answer(question: Question, frame: Frame): Answer {
     const decoder = this.current;
-    const { certificate, mesh, facts } = decoder;
-    if (question.kind === 'height') {
-      const { at } = question;
-      return { kind: 'height', at, located: locate(mesh, facts, { x: frame.gridX(at.x), y: frame.gridY(at.y) }), certificate };
-    }
+    this.describe(decoder);
     if (question.kind === 'viewshed') {
       throw new Problem('Nobody can be asked', 'A viewshed needs a service; this terrain comes from a file.');
     }
+    const places = question.kind === 'height' ? [question.at] : [question.from, question.to];
+    const certificate = certifiedAt(this.certified, places);
+    const isCertified = certificate.deviation < decoder.certificateByRelief.deviation;
+    const certainty = { ...certificate, of: 'mesh' as const, isExact: isCertified && certificate.deviation === 0 };
+    if (question.kind === 'height') {
+      return { kind: 'height', at: question.at, located: decoder.locate(question.at, isCertified), certainty };
+    }
     const { from, to } = question;
-    const { line, length } = lineOver(mesh, frame, from, to);
-    const stations = stationsOf(line, length);
-    if (question.kind === 'profile') return { kind: 'profile', from, to, stations, length, certificate };
+    this.checkLine(decoder, frame, from, to);
+    const profile = { ...decoder.profile(from, to, isCertified), lengths: frame.earth.lengths };
+    if (question.kind === 'profile') return { kind: 'profile', from, to, profile, certainty };
     const { request } = question;
-    const seen = sight(line, length, frame.scaleZ, request, certificate.deviation * frame.scaleZ);
-    return { kind: 'sight', from, to, request, sight: seen, stations, certificate };
+    const sight = decoder.sight(
+      from, request.observerHeight / frame.scaleZ, to, request.targetHeight / frame.scaleZ, request.frequency, isCertified);
+    return { kind: 'sight', from, to, request, sight, profile, certainty };
+  }
+
+  /** Refuses lines of which the engine cannot tell the length. */
+  private checkLine(decoder: Decoder, frame: Frame, from: MapPosition, to: MapPosition): void {
+    const least = 2 ** -20;
+    if (Math.abs(frame.gridX(from.x) - frame.gridX(to.x)) < least && Math.abs(frame.gridY(from.y) - frame.gridY(to.y)) < least) {
+      throw new Problem('No line', 'Both ends are at one place.');
+    }
+    if (this.told.ground === null && frame.isDegrees) {
+      throw new Problem('No lengths', 'Lengths are not known: this stream was written by a program that did not tell its ellipsoid.');
+    }
+    if (!Number.isFinite(decoder.metresBetween(from, to))) {
+      throw new Problem('No length', 'The length of a line around the Earth is not known here. Take a shorter one.');
+    }
   }
 }
 

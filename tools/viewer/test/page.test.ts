@@ -2,13 +2,13 @@
 //
 // The page in a browser: it opens, refines, answers, and says what is wrong.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
+import { type ChildProcess, spawn } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Browser, BrowserContextOptions, Page, chromium } from 'playwright-core';
 import { host } from './host.mjs';
-import { assets, file, program, ptin, terrain } from './support';
+import { assets, file, hill, made, program, ptin, terrain } from './support';
 
 const site = file('site');
 let browser: Browser;
@@ -240,6 +240,11 @@ test('what is wrong is said in a sentence', async () => {
   assert.match(await text(page, '#certified-what'), /did not arrive/);
   assert.ok(digits(await text(page, '#fact-vertices')) > 10000);
   await page.context().close();
+  const damaged = await opened(`${fast.url}?stream=damaged.ptins`);
+  await damaged.page.waitForSelector('#trouble:not([hidden])');
+  assert.match(await text(damaged.page, '#certified-what'), /certified[^]*damaged/);
+  assert.doesNotMatch(await text(damaged.page, '#certified-what'), /refining/);
+  await damaged.page.context().close();
 });
 
 test('nothing is wider than a phone, and axe finds no serious fault', async () => {
@@ -291,6 +296,7 @@ test('without a stream the page asks for one', async () => {
   const server = await host(bare);
   const { page, faults } = await opened(server.url);
   await page.waitForSelector('#welcome:not([hidden])');
+  assert.ok(await page.isHidden('#scale'));
   await page.setInputFiles('#welcome input[type=file]', file('mountains_257.ptins'));
   await complete(page);
   assert.equal(await text(page, '#title'), 'mountains_257');
@@ -300,18 +306,32 @@ test('without a stream the page asks for one', async () => {
   await server.close();
 });
 
-test('opens a terrain of a service from the page that lists them', async () => {
-  const service = spawn(program, ['serve', `hills=${store}`, '--listen', '127.0.0.1:0'], { stdio: ['ignore', 'pipe', 'ignore'] });
-  try {
-    const address = await new Promise<string>((resolve, reject) => {
-      let said = '';
-      service.on('error', reject);
-      service.stdout!.on('data', (bytes: Buffer) => {
-        said += bytes.toString();
-        const found = /http:\/\/[\d.:]+\//.exec(said);
-        if (found !== null) resolve(found[0]);
-      });
+/** A service of terrains, and its address. */
+async function serving(terrains: string[], port = 0): Promise<{ service: ChildProcess; address: string }> {
+  const service = spawn(program, ['serve', ...terrains, '--listen', `127.0.0.1:${port}`], { stdio: ['ignore', 'pipe', 'ignore'] });
+  const address = await new Promise<string>((resolve, reject) => {
+    let said = '';
+    service.on('error', reject);
+    service.stdout!.on('data', (bytes: Buffer) => {
+      said += bytes.toString();
+      const found = /http:\/\/[\d.:]+\//.exec(said);
+      if (found !== null) resolve(found[0]);
     });
+  });
+  return { service, address };
+}
+
+/** Ends a service, and waits for its end. */
+async function ended(service: ChildProcess): Promise<void> {
+  if (service.exitCode !== null) return;
+  const over = new Promise((resolve) => { service.on('exit', resolve); });
+  service.kill();
+  await over;
+}
+
+test('opens a terrain of a service from the page that lists them', async () => {
+  const { service, address } = await serving([`hills=${store}`]);
+  try {
     const { page, faults } = await opened(address);
     await page.locator('a', { hasText: 'hills' }).click();
     await complete(page);
@@ -319,6 +339,245 @@ test('opens a terrain of a service from the page that lists them', async () => {
     assert.deepEqual(faults, []);
     await page.context().close();
   } finally {
-    service.kill();
+    await ended(service);
+  }
+});
+
+type Told = Record<string, string>;
+const told = (page: Page): Promise<Told> => page.evaluate(() => ({ ...document.getElementById('answer')!.dataset })) as Promise<Told>;
+
+/** A line between two points of the picture, as CSV. */
+async function profile(page: Page, a: [number, number], b: [number, number]): Promise<number[][]> {
+  await page.keyboard.press('p');
+  await page.mouse.click(...a);
+  await page.waitForTimeout(200);
+  await page.mouse.click(...b);
+  await page.waitForSelector('#plot .surface');
+  const [saved] = await Promise.all([page.waitForEvent('download'), page.click('#csv')]);
+  const lines = readFileSync((await saved.path())!, 'utf8').trim().split('\n');
+  return lines.slice(1).map((l) => l.split(',').map((v) => (v === '' ? NaN : Number(v))));
+}
+
+/** Rows of the page's CSV against those of the program: distance, x, y, height. */
+function compareRows(rows: number[][], wanted: number[][], slack: number): void {
+  const known = (all: number[][]): number[][] => all.filter((r) => !Number.isNaN(r[3]));
+  const [here, there] = [known(rows), known(wanted)];
+  assert.equal(here.length, there.length);
+  here.forEach((r, i) => {
+    assert.ok(Math.abs(r[0] - there[i][0]) <= slack, `${r} for ${there[i]}`);
+    assert.deepEqual(r.slice(1, 4), there[i].slice(1, 4));
+  });
+}
+
+function programRows(path: string, rows: number[][]): number[][] {
+  const [first, last] = [rows[0], rows[rows.length - 1]];
+  const line = `LINESTRING(${first[1]} ${first[2]}, ${last[1]} ${last[2]})`;
+  ptin('profile', path, '--line', line, '-o', file('wanted.csv'), '--overwrite');
+  return readFileSync(file('wanted.csv'), 'utf8').trim().split('\n').slice(1).map((l) => l.split(',').slice(0, 4).map((v) => (v === '' ? NaN : Number(v))));
+}
+
+for (const name of ['degrees', 'feet', 'voids'] as const) {
+  test(`served: lengths, rows and lines of sight are the program's: ${name}`, async () => {
+    const path = made(name).store;
+    const { service, address } = await serving([`t=${path}`]);
+    try {
+      const { page, faults } = await opened(`${address}viewer/index.html?collection=t`);
+      await complete(page);
+      const rows = await profile(page, [520, 300], [800, 430]);
+      const wanted = programRows(path, rows);
+      compareRows(rows, wanted, 0);
+      const length = wanted[wanted.length - 1][0];
+      assert.equal(Number((await told(page)).metres), length);
+      assert.match(await text(page, '#answer-note'), /exact, of the full terrain/);
+      await page.keyboard.press('s');
+      await page.mouse.click(520, 300);
+      await page.waitForTimeout(200);
+      await page.mouse.click(800, 430);
+      await page.waitForFunction(() => /Visible|Hidden/.test(document.getElementById('answer-text')!.textContent!));
+      const at = rows[0].slice(1, 3), to = rows[rows.length - 1].slice(1, 3);
+      const eye = name === 'feet' ? String(2 / (1200 / 3937)) : '2';
+      const sight = JSON.parse(ptin('sight', path, String(at[0]), String(at[1]), eye, String(to[0]), String(to[1]), eye, '--json')) as
+        { verdict: string; length: number; clearance: { min: number } };
+      const here = await told(page);
+      assert.equal(here.verdict, sight.verdict);
+      assert.ok(Math.abs(Number(here.length) - sight.length) < 1e-6);
+      assert.ok(Math.abs(Number(here.clearanceMin) - sight.clearance.min) < 1e-6);
+      assert.ok(Math.abs(Number(here.metres) - length) < 1e-3 * (name === 'feet' ? 1 : 1));
+      assert.deepEqual(faults, []);
+      await page.context().close();
+    } finally {
+      await ended(service);
+    }
+  });
+
+  test(`of a stream lengths and rows are the program's: ${name}`, async () => {
+    const { store: path, stream } = made(name);
+    cpSync(stream, join(site, `${name}.ptins`));
+    const { page, faults } = await opened(`${fast.url}?stream=${name}.ptins`);
+    await complete(page);
+    const rows = await profile(page, [520, 300], [800, 430]);
+    compareRows(rows, programRows(path, rows), name === 'degrees' ? 1e-4 : 0);
+    assert.match(await text(page, '#answer-note'), /Heights exact/);
+    assert.deepEqual(faults, []);
+    await page.context().close();
+  });
+}
+
+test('what is certified holds for all that is in sight, wherever the camera looks', async () => {
+  const path = made('degrees').store;
+  const { service, address } = await serving([`t=${path}`]);
+  try {
+    for (const hash of ['', '#at=88.4,27.4,900,60000,30,76', '#at=87,26,900,25000,200,20', '#at=90,29,900,9000,340,80']) {
+      const { page } = await opened(`${address}viewer/index.html?collection=t${hash}`);
+      await complete(page);
+      await page.waitForTimeout(500);
+      await complete(page);
+      const drawn = await page.evaluate(() => {
+        type Numbers = ArrayLike<number>;
+        const { ptinViewer: v } = window as unknown as { ptinViewer: {
+          status: { certificate: { error: number } }; frame: { middleX: number; middleY: number; scaleX: number; scaleY: number; baseHeight: number; scaleZ: number };
+          relief: { geometry: { attributes: { position: { array: Numbers } }; index: { array: Numbers } };
+            camera: { projectionMatrix: { clone(): { multiply(m: unknown): { elements: number[] } } }; matrixWorldInverse: unknown } };
+        } };
+        const { middleX, middleY, scaleX, scaleY, baseHeight, scaleZ } = v.frame;
+        return {
+          certified: v.status.certificate.error, frame: { middleX, middleY, scaleX, scaleY, baseHeight, scaleZ },
+          positions: Array.from(v.relief.geometry.attributes.position.array), corners: Array.from(v.relief.geometry.index.array),
+          seen: v.relief.camera.projectionMatrix.clone().multiply(v.relief.camera.matrixWorldInverse).elements,
+        };
+      });
+      const { samples, worst } = worstInSight(drawn);
+      assert.ok(samples > 20, `${samples} samples in sight of ${hash}`);
+      assert.ok(worst <= drawn.certified + 0.06, `${worst} in sight, ${drawn.certified} certified: ${hash}`);
+      assert.match(await text(page, '#certified'), /Exact|\u00b1[\d.\u202f]+ m/);
+      await page.context().close();
+    }
+  } finally {
+    await ended(service);
+  }
+});
+
+interface Drawn {
+  frame: { middleX: number; middleY: number; scaleX: number; scaleY: number; baseHeight: number; scaleZ: number };
+  positions: number[];
+  corners: number[];
+  seen: number[];
+}
+
+/** The largest error of the drawn mesh at the samples of made('degrees') that are in the picture, whatever hides them. */
+function worstInSight({ frame: f, positions: p, corners, seen: e }: Drawn): { samples: number; worst: number } {
+  const mapX = (v: number): number => f.middleX + p[3 * v] / f.scaleX, mapY = (v: number): number => f.middleY + p[3 * v + 1] / f.scaleY;
+  const step = 0.04, west = 86.02, north = 25 + 121 * step - step / 2;
+  const done = new Set<number>();
+  let samples = 0, worst = 0;
+  for (let t = 0; t < corners.length; t += 3) {
+    const [a, b, c] = corners.slice(t, t + 3);
+    const xs = [a, b, c].map((v) => (mapX(v) - west) / step), ys = [a, b, c].map((v) => (north - mapY(v)) / step);
+    const zs = [a, b, c].map((v) => f.baseHeight + p[3 * v + 2] / f.scaleZ);
+    const area = (xs[1] - xs[0]) * (ys[2] - ys[0]) - (xs[2] - xs[0]) * (ys[1] - ys[0]);
+    for (let r = Math.ceil(Math.min(...ys) - 1e-3); r <= Math.max(...ys) + 1e-3; ++r) {
+      for (let q = Math.ceil(Math.min(...xs) - 1e-3); q <= Math.max(...xs) + 1e-3; ++q) {
+        const u = ((q - xs[0]) * (ys[2] - ys[0]) - (xs[2] - xs[0]) * (r - ys[0])) / area;
+        const v = ((xs[1] - xs[0]) * (r - ys[0]) - (q - xs[0]) * (ys[1] - ys[0])) / area;
+        if (u < -1e-3 || v < -1e-3 || u + v > 1.001 || done.has(1000 * r + q)) continue;
+        done.add(1000 * r + q);
+        const h = zs[0] + u * (zs[1] - zs[0]) + v * (zs[2] - zs[0]);
+        const x = (west + q * step - f.middleX) * f.scaleX, y = (north - r * step - f.middleY) * f.scaleY, z = (h - f.baseHeight) * f.scaleZ;
+        const w = e[3] * x + e[7] * y + e[11] * z + e[15];
+        const across = (e[0] * x + e[4] * y + e[8] * z + e[12]) / w, up = (e[1] * x + e[5] * y + e[9] * z + e[13]) / w;
+        if (w <= 0 || Math.abs(across) > 1 || Math.abs(up) > 1) continue;
+        ++samples;
+        worst = Math.max(worst, Math.abs(h - Number(hill(r, q).toFixed(1))));
+      }
+    }
+  }
+  return { samples, worst };
+}
+
+test('the camera stays above the ground', async () => {
+  const { page } = await opened(fast.url);
+  await complete(page);
+  await page.mouse.move(640, 380);
+  const above = (): Promise<number> => page.evaluate(() => {
+    const { relief } = (window as unknown as { ptinViewer: { relief: {
+      camera: { position: { x: number; y: number; z: number } }; groundAt(x: number, y: number): number | null;
+    } } }).ptinViewer;
+    const { x, y, z } = relief.camera.position;
+    return z - (relief.groundAt(x, y) ?? 0);
+  });
+  for (let i = 0; i < 40; ++i) await page.mouse.wheel(0, -240);
+  await rested(page);
+  for (let i = 0; i < 20; ++i) {
+    await page.keyboard.press('PageDown');
+    await page.keyboard.press('ArrowUp');
+  }
+  await rested(page);
+  assert.ok(await above() > 0);
+  await page.mouse.down({ button: 'right' });
+  await page.mouse.move(640, 100, { steps: 5 });
+  await page.mouse.up({ button: 'right' });
+  await rested(page);
+  assert.ok(await above() > 0);
+  await page.context().close();
+});
+
+test('from a folder the page says that it needs a host', async () => {
+  const page = await (await browser.newContext(wide)).newPage();
+  await page.goto(`file://${site}/index.html`);
+  await page.waitForSelector('#trouble:not([hidden])');
+  assert.match(await text(page, '#trouble'), /needs a web server[^]*http\.server/);
+  assert.doesNotMatch(await text(page, '#subtitle'), /Loading/);
+  await page.context().close();
+});
+
+test('keys tilt, leave no ring, and the pointer costs nothing while it moves', async () => {
+  const { page } = await opened(fast.url);
+  await complete(page);
+  const tilt = (): Promise<number> => page.evaluate(() =>
+    (window as unknown as { ptinViewer: { view: { current(exaggeration: number): { tilt: number } } } }).ptinViewer.view.current(1).tilt);
+  await page.mouse.click(640, 380);
+  await page.keyboard.press('PageDown');
+  const low = await tilt();
+  await page.keyboard.press('PageUp');
+  assert.ok(Math.abs(low - await tilt() - 5) < 0.1);
+  assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById('relief')!).boxShadow), 'none');
+  assert.notEqual(await text(page, '#scale'), '');
+  await page.evaluate(() => {
+    const w = window as unknown as { picks: number; ptinViewer: { relief: { pick(x: number, y: number): unknown } } };
+    const { relief } = w.ptinViewer;
+    const pick = relief.pick.bind(relief);
+    w.picks = 0;
+    document.getElementById('place')!.textContent = '';
+    relief.pick = (x, y) => { ++w.picks; return pick(x, y); };
+    // As a pointer that moves without a rest.
+    for (let i = 0; i < 15; ++i) {
+      const move = { clientX: 500 + 10 * i, clientY: 380, pointerType: 'mouse', bubbles: true };
+      document.getElementById('relief')!.dispatchEvent(new PointerEvent('pointermove', move));
+    }
+  });
+  await page.waitForFunction(() => document.getElementById('place')!.textContent !== '');
+  assert.equal(await page.evaluate(() => (window as unknown as { picks: number }).picks), 1);
+  await page.context().close();
+});
+
+test('after a service was away the page goes on by itself', async () => {
+  const first = await serving([`hills=${store}`]);
+  const port = Number(new URL(first.address).port);
+  const { page } = await opened(`${first.address}viewer/index.html?collection=hills`);
+  await complete(page);
+  await ended(first.service);
+  await page.mouse.move(640, 380);
+  for (let i = 0; i < 6; ++i) await page.mouse.wheel(0, -240);
+  await page.waitForSelector('#trouble:not([hidden])');
+  assert.match(await text(page, '#certified-what'), /does not answer/);
+  const again = await serving([`hills=${store}`], port);
+  try {
+    await page.waitForSelector('#trouble[hidden]', { state: 'attached', timeout: 30000 });
+    await complete(page);
+    await page.mouse.click(640, 380);
+    await page.waitForSelector('#answer:not([hidden])');
+    await page.context().close();
+  } finally {
+    await ended(again.service);
   }
 });

@@ -4,8 +4,10 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { type CertifiedPart, type Window, certifiedAt, certifiedWithin } from '../src/certified';
 import { drawnMesh, surfaceEdges } from '../src/drawn_mesh';
-import { bytes, coordinates, count, height, metres, number, roundBelow } from '../src/format';
+import { earthOf, scaleAt, toldBy } from '../src/earth';
+import { bound, bytes, coordinates, count, height, interval, length, metres, number, roundBelow } from '../src/format';
 import { Frame, unitsOf } from '../src/frame';
 import { defaults, fromHash, toHash } from '../src/permalink';
 import { csvOf, heightAlong, runsOf } from '../src/plot';
@@ -20,12 +22,46 @@ test('numbers', () => {
   assert.equal(count(1234567), '1\u202f234\u202f567');
   assert.equal(bytes(1289341), '1.29 MB');
   assert.equal(metres(950), '950 m');
-  assert.equal(metres(12345), '12.3 km');
+  assert.equal(metres(12346), '12.35 km');
   assert.equal(height(907.123, 13.3, 'm'), '907 m');
   assert.equal(height(907.123, 0, 'm'), '907.12 m');
   assert.equal(coordinates(-118.25, -34.5, true), '34.50000° S  118.25000° W');
   assert.equal(roundBelow(730), 500);
   assert.equal(roundBelow(0.2), 0.2);
+});
+
+test('a bound is never told smaller, nor an interval narrower, than it is', () => {
+  assert.equal(bound(0.8501), '0.851');
+  assert.equal(bound(0.85), '0.850');
+  assert.equal(bound(12341), '12\u202f400');
+  assert.equal(bound(0), '0');
+  assert.deepEqual(interval(907.11, 913.66, 'm'), ['907.1 m', '913.7 m']);
+  assert.deepEqual(interval(-0.016, 0.009, 'ft'), ['\u22120.016 ft', '0.009 ft']);
+});
+
+test('a length of no known unit is told in map units', () => {
+  assert.equal(length(2500, { unit: 'foot', metres: 0.3048 }), '762 m');
+  assert.equal(length(2500, { unit: 'unknown', metres: null }), '2500 map units');
+});
+
+test('what is certified in sight is the worst of it, and of a place the best that is known', () => {
+  const part = (window: Window, error: number): CertifiedPart => ({ window, error, deviation: 3 * error });
+  const bounds: Window = [0, 0, 100, 100];
+  const certified = {
+    parts: [part(bounds, 20), part([0, 0, 50, 50], 5), part([10, 10, 30.000000000001, 30], 1), part([30, 10, 40, 30], 1)],
+    otherwise: { error: 900, deviation: 900 },
+  };
+  const sees = (view: Window) => (w: Window): boolean => w[0] < view[2] && w[2] > view[0] && w[1] < view[3] && w[3] > view[1];
+  const within = (...view: [number, number, number, number]): number => certifiedWithin(certified, bounds, sees(view)).error;
+  assert.equal(within(12, 12, 28, 28), 1);
+  assert.equal(within(12, 12, 38, 28), 1, 'two windows cover it together');
+  assert.equal(within(12, 12, 42, 28), 5);
+  assert.equal(within(5, 5, 60, 20), 20);
+  assert.equal(certifiedWithin(certified, bounds, sees([12, 12, 42, 28])).deviation, 15);
+  assert.equal(certifiedWithin(certified, bounds, () => false).error, 20, 'nothing in sight: all of it');
+  assert.equal(certifiedWithin({ ...certified, parts: certified.parts.slice(1) }, bounds, sees([60, 60, 70, 70])).error, 900);
+  assert.equal(certifiedAt(certified, [{ x: 20, y: 20 }, { x: 35, y: 20 }]).error, 5, 'a line needs one window');
+  assert.equal(certifiedAt(certified, [{ x: 20, y: 20 }]).error, 1);
 });
 
 test('a permalink brings back what it was made of', () => {
@@ -37,12 +73,14 @@ test('a permalink brings back what it was made of', () => {
   assert.deepEqual(fromHash('#at=1,2,x&shading=no&exaggeration=99&interval=-3'), { pose: null, settings: defaults });
 });
 
-test('a profile as CSV, with its gaps', () => {
-  const stations = [{ distance: 0, height: 5 }, { distance: 10, height: 7 }, { distance: 10, height: null },
-    { distance: 15, height: 6 }, { distance: 20, height: 8 }];
-  assert.equal(csvOf(stations, 20, { x: 0, y: 0 }, { x: 20, y: 10 }, 0.5),
-    'distance_m,x,y,height,height_min,height_max\n0,0,0,5,4.5,5.5\n10,10,5,7,6.5,7.5\n10,10,5,,,\n' +
+test('a profile as CSV, with its gaps, as its points came', () => {
+  const stations = [{ distance: 0, x: 0, y: 0, height: 5 }, { distance: 10, x: 11, y: 5, height: 7 },
+    { distance: 10, x: 11, y: 5, height: null }, { distance: 15, x: 15, y: 7.5, height: 6 }, { distance: 20, x: 20, y: 10, height: 8 }];
+  const profile = { stations, length: 20, lengths: { unit: 'metre', metres: 1 } };
+  assert.equal(csvOf(profile, 0.5),
+    'distance_m,x,y,height,height_min,height_max\n0,0,0,5,4.5,5.5\n10,11,5,7,6.5,7.5\n10,11,5,,,\n' +
     '15,15,7.5,6,5.5,6.5\n20,20,10,8,7.5,8.5\n');
+  assert.match(csvOf({ ...profile, lengths: { unit: 'US survey foot', metres: 0.3048 } }, 0), /^distance_US_survey_foot,x/);
   assert.equal(runsOf(stations).length, 2);
   assert.equal(heightAlong(stations, 5), 6);
   assert.equal(heightAlong(stations, 12), null);
@@ -67,16 +105,29 @@ test('a window grows by a quarter, within the terrain', () => {
   assert.deepEqual(widened([10, 10, 18, 26], [0, 0, 100, 27], 1 / 8), [9, 8, 19, 27]);
 });
 
-test('degrees are as long as they are at the middle of the terrain', () => {
+test('the picture has the scale of its middle parallel, and feet are feet', () => {
   const facts = {
     originX: 10, originY: 59, stepX: 1, stepY: 1, heightIsFloat: false, heightStep: 1, heightOffset: 0, minX: 0, minY: 0, maxX: 1,
     maxY: 2, minHeight: 0, maxHeight: 100, baseError: 0, baseDeviation: 0,
   };
-  const frame = new Frame(facts, { horizontal: 'degree', height: 'foot' });
-  assert.ok(Math.abs(frame.depth - 222390) < 10);
-  assert.ok(Math.abs(frame.width / frame.depth - 0.25) < 1e-3);
+  const earth = {
+    isDegrees: true, lengths: { unit: 'metre', metres: 1 }, metresPerHeight: 0.3048, diameter: 12756274, size: null,
+    scales: [{ y: 59, x: 57000, perY: 111400 }, { y: 61, x: 54000, perY: 111420 }],
+  };
+  assert.deepEqual(scaleAt(earth, 60), [55500, 111410]);
+  assert.deepEqual(scaleAt(earth, 58), [57000, 111400]);
+  const frame = new Frame(facts, { horizontal: 'degree', height: 'foot' }, earth);
+  assert.equal(frame.depth, 222820);
+  assert.equal(frame.width, 55500);
   assert.ok(Math.abs(frame.relief - 30.48) < 1e-9);
   assert.equal(frame.mapX(frame.sceneX(10.25)), 10.25);
+  assert.deepEqual(frame.bounds, [10, 59, 11, 61]);
+});
+
+test('metadata that tell no ground, or nonsense, tell nothing', () => {
+  assert.equal(toldBy(null).ground, null);
+  assert.equal(toldBy({ ground: { geographic: true, semi_major: -1, metres_per_height: 1, radians_per_map_unit: 1 } }).ground, null);
+  assert.equal(toldBy({ free_of_voids: true }).freeOfVoids, true);
 });
 
 test('what an answer cost, in words', () => {
@@ -118,7 +169,8 @@ test('refinement stops at a number of vertices', () => {
 test('what is drawn has upward normals, every edge once, and no void triangle', () => {
   const decoder = decoded(decoderModule(), readFileSync(terrain('coast_257', '--error', '5').stream));
   const { mesh, facts } = decoder;
-  const drawn = drawnMesh(mesh, new Frame(facts, unitsOf(JSON.parse(decoder.metadata))));
+  const metadata: unknown = JSON.parse(decoder.metadata);
+  const drawn = drawnMesh(mesh, new Frame(facts, unitsOf(metadata), earthOf(decoder, toldBy(null), unitsOf(metadata))));
   const surface = mesh.classes.reduce((n, c) => n + (c === 0 ? 1 : 0), 0);
   assert.equal(drawn.corners.length, 3 * surface);
   for (const v of drawn.corners) assert.ok(drawn.normals[4 * v + 2] > 0);

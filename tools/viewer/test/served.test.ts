@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { certifiedAt } from '../src/certified';
 import { Problem } from '../src/fetching';
 import type { Wanted } from '../src/messages';
 import type { Collection, Service, Serving, StreamAnswer } from '../src/service';
@@ -39,7 +40,7 @@ function served(mostVertices: number, refuses: (asked: Asked, mostBytes: number)
     },
   };
   const view = new ServedView(service as unknown as Service, collection, decoderModule(), mostVertices, {
-    grown: () => undefined, settled: () => { wake?.(); }, failed: (error) => { faults.push(error); },
+    grown: () => undefined, settled: () => { wake?.(); }, failed: (error) => { faults.push(error); }, mended: () => { faults.push('mended'); },
   });
   const settled = (): Promise<void> => new Promise((resolve) => { wake = resolve; });
   return { view, asked, faults, settled };
@@ -51,15 +52,47 @@ const middle: Wanted['window'] = [
 ];
 const near: Wanted[] = [{ window: bounds, error: 20 }, { window: middle, error: 1 }];
 
-test('a service that is busy at first is asked again', async () => {
+test('a service that is busy is asked again when it wants to be, and nobody is troubled', async () => {
   const { view, asked, faults, settled } = served(1e6, () => {
     if (asked.length === 1) throw new Problem('The service is busy', 'Come again later.', 503);
   });
   void view.run();
   await settled();
   assert.equal(asked.length, 2);
-  assert.equal(faults.length, 1);
+  assert.deepEqual(faults, ['mended']);
   assert.ok(view.decoder.hasMesh);
+});
+
+test('a service that cannot be reached for a while is told of, asked again, and what was there stays', async () => {
+  let down = false;
+  const { view, asked, faults, settled } = served(1e6, () => {
+    if (down) throw new Problem('The terrain cannot be reached', 'The connection to the host broke.');
+  });
+  void view.run();
+  await settled();
+  const before = asked.length, vertices = view.decoder.mesh.vertexCount;
+  down = true;
+  view.setView(near);
+  setTimeout(() => { down = false; }, 500);
+  await settled();
+  assert.ok(faults[0] instanceof Problem);
+  assert.deepEqual(faults.slice(1), ['mended']);
+  assert.ok(asked.slice(before).every((a) => a.have.length > 0), 'it goes on from what there is');
+  assert.ok(view.decoder.mesh.vertexCount > vertices);
+});
+
+test('each window keeps what it is certified for, however fine the last one is', async () => {
+  const { view, settled } = served(1e6);
+  void view.run();
+  await settled();
+  view.setView(near);
+  await settled();
+  assert.ok(view.decoder.certificate.error <= 1, 'of the last window');
+  const told = (at: { x: number; y: number }): number => certifiedAt(view.certified, [at]).error;
+  const inside = { x: (middle[0] + middle[2]) / 2, y: (middle[1] + middle[3]) / 2 };
+  const aside = { x: bounds[0] + 1, y: bounds[1] + 1 };
+  assert.ok(told(inside) <= 1);
+  assert.ok(told(aside) > 1 && told(aside) <= 20);
 });
 
 test('detail comes where the camera looks, once', async () => {

@@ -2,7 +2,7 @@
 //
 // What several tests need: the program, streams of small terrains, the decoder, meshes that the program wrote.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { Decoder, Facts, MeshView, triangleWords, vertexWords } from '../src/decoder';
@@ -81,4 +81,28 @@ export function trianglesOfPly(path: string): string[] {
     all.push(told([1, 5, 9].map((offset) => corners[bytes.readUInt32LE(at + offset)])));
   }
   return all.sort();
+}
+
+/** Metres of the hills of made(). */
+export function hill(row: number, column: number): number {
+  return 600 + 500 * Math.sin(row / 9) * Math.cos(column / 11) + 60 * Math.sin(row * 1.7 + column * 2.3);
+}
+
+/** A terrain of hills from a small text grid, built once, and its stream: over degrees of five parallels; with heights in feet over metres; with voids. */
+export function made(name: 'degrees' | 'feet' | 'voids', ...options: string[]): { store: string; stream: string } {
+  const size = 121;
+  const isDegrees = name === 'degrees';
+  const height = (row: number, column: number): string => {
+    if (name === 'voids' && Math.hypot(row - 40, column - 70) < 18) return '-9999';
+    return (name === 'feet' ? hill(row, column) / 0.3048 : hill(row, column)).toFixed(1);
+  };
+  const rows = Array.from({ length: size }, (_, r) => Array.from({ length: size }, (_, c) => height(r, c)).join(' '));
+  const corner = isDegrees ? [86, 25] : [400000, 5000000];
+  writeFileSync(file(`${name}.asc`), [`ncols ${size}`, `nrows ${size}`, `xllcorner ${corner[0]}`, `yllcorner ${corner[1]}`,
+    `cellsize ${isDegrees ? 0.04 : 50}`, 'NODATA_value -9999', ...rows].join('\n') + '\n');
+  const crs = { degrees: 'EPSG:4326', feet: 'EPSG:32632+6360', voids: 'EPSG:32632' }[name];
+  const store = file(`${name}.ptin`), stream = file(`${name}.ptins`);
+  ptin('build', file(`${name}.asc`), '--a-srs', crs, '-q', '-o', store, '--overwrite');
+  ptin('stream', store, ...options, '-o', stream, '--overwrite');
+  return { store, stream };
 }

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Answers of the engine, as its WebAssembly and the service give them. Nothing here is computed by the page.
+
+export interface MapPosition {
+  x: number;
+  y: number;
+}
+
+export type PointState = 'surface' | 'void' | 'outside';
+
+/** A corner of a triangle, on the map. */
+export interface Corner extends MapPosition {
+  /** In the height's unit; null where the vertex has none. */
+  height: number | null;
+}
+
+export interface Located {
+  state: PointState;
+  /** Null unless the state is surface; the full terrain's lies from `least` to `most`. */
+  height: number | null;
+  least: number | null;
+  most: number | null;
+  /** Empty outside. */
+  triangle: Corner[];
+}
+
+/** The unit of distances along a profile. */
+export interface Lengths {
+  unit: string;
+  /** Null: nobody knows. */
+  metres: number | null;
+}
+
+/** A point of a profile; between two the surface is straight. Null: a gap begins. */
+export interface Station extends MapPosition {
+  distance: number;
+  height: number | null;
+}
+
+export interface Profile {
+  stations: Station[];
+  length: number;
+  lengths: Lengths;
+}
+
+export interface SightRequest {
+  /** Above ground, in metres. */
+  observerHeight: number;
+  targetHeight: number;
+  /** In hertz; 0: no Fresnel zone. */
+  frequency: number;
+}
+
+/** A point of a line of sight; distance and height in the height's unit. */
+export interface SightPoint extends MapPosition {
+  distance: number;
+  height: number;
+}
+
+/** What is between the two ends, in the height's unit. */
+export interface Sight {
+  /** `unsure`: what is left out could turn the answer; `undefined`: an end has no ground. */
+  verdict: 'visible' | 'hidden' | 'unsure' | 'undefined';
+  length: number;
+  /** Of the line above the ground, where it is least: from and to; null where there is no ground below it. */
+  clearance: { min: number; max: number; at: SightPoint } | null;
+  /** Least clearance in radii of the first Fresnel zone; null without a frequency, or where it is not known. */
+  fresnel: { ratio: number; at: SightPoint } | null;
+}
+
+/** A gap is a point without a height; one at the end tells nothing. */
+export function stationsOf(points: ReadonlyArray<MapPosition & { distance: number; height: number | null; state: PointState }>): Station[] {
+  const stations: Station[] = [];
+  for (const { distance, x, y, height, state } of points) {
+    if (height !== null) stations.push({ distance, x, y, height });
+    if (state !== 'surface') stations.push({ distance, x, y, height: null });
+  }
+  while (stations.length !== 0 && stations[stations.length - 1].height === null) stations.pop();
+  return stations;
+}

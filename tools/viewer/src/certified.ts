@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What is certified of all that is in sight: certificates of streams hold in the windows that were asked for.
+import type { Certificate } from './decoder';
+
+export type Window = readonly [number, number, number, number];
+
+/** What holds within a window of the map, closed. */
+export interface CertifiedPart extends Certificate {
+  window: Window;
+}
+
+/** What is certified of a mesh: of a place the least of the parts that hold it, elsewhere `otherwise`. */
+export interface Certified {
+  parts: CertifiedPart[];
+  /** Of the whole terrain. */
+  otherwise: Certificate;
+}
+
+function holds(outer: Window, inner: Window): boolean {
+  return outer[0] <= inner[0] && outer[1] <= inner[1] && outer[2] >= inner[2] && outer[3] >= inner[3];
+}
+
+function cuts(parts: readonly CertifiedPart[], bounds: Window, axis: 0 | 1): number[] {
+  const low = bounds[axis], high = bounds[axis + 2];
+  // What is thinner is the rounding of one edge that two windows have.
+  const least = 1e-9 * (high - low);
+  const made = [low];
+  for (const v of parts.flatMap((p) => [p.window[axis], p.window[axis + 2]]).sort((a, b) => a - b)) {
+    if (v > made[made.length - 1] + least && v < high - least) made.push(v);
+  }
+  return [...made, high];
+}
+
+/**
+ * The certificate that holds in every part of `bounds` that `isSeen`, which may take what is not seen for seen but never the
+ * other way round. Where nothing is seen it is that of all of `bounds`. Cost: the square of the number of parts, and with each as
+ * many as there are parts.
+ */
+export function certifiedWithin(certified: Certified, bounds: Window, isSeen: (window: Window) => boolean): Certificate {
+  const parts = certified.parts.filter((p, i, all) => !all.some((q, k) =>
+    k !== i && holds(q.window, p.window) && q.error <= p.error && q.deviation <= p.deviation && (k < i || !holds(p.window, q.window))));
+  const xs = cuts(parts, bounds, 0), ys = cuts(parts, bounds, 1);
+  const seen: Certificate = { error: -1, deviation: -1 }, all: Certificate = { error: -1, deviation: -1 };
+  for (let i = 1; i < xs.length; ++i) {
+    for (let k = 1; k < ys.length; ++k) {
+      const cell: Window = [xs[i - 1], ys[k - 1], xs[i], ys[k]];
+      const here: Certificate = { ...certified.otherwise };
+      const x = (cell[0] + cell[2]) / 2, y = (cell[1] + cell[3]) / 2;
+      for (const part of parts) {
+        if (!holds(part.window, [x, y, x, y])) continue;
+        here.error = Math.min(here.error, part.error);
+        here.deviation = Math.min(here.deviation, part.deviation);
+      }
+      worsen(all, here);
+      const isWorse = here.error > seen.error || here.deviation > seen.deviation;
+      if (isWorse && isSeen(cell)) worsen(seen, here);
+    }
+  }
+  if (seen.error >= 0) return seen;
+  return all.error >= 0 ? all : certified.otherwise;
+}
+
+function worsen(most: Certificate, by: Certificate): void {
+  most.error = Math.max(most.error, by.error);
+  most.deviation = Math.max(most.deviation, by.deviation);
+}
+
+/** The certificate at both ends of a line, and so all along it: windows are convex. */
+export function certifiedAt(certified: Certified, places: ReadonlyArray<{ x: number; y: number }>): Certificate {
+  const least: Certificate = { ...certified.otherwise };
+  for (const part of certified.parts) {
+    const [west, south, east, north] = part.window;
+    if (!places.every((p) => p.x >= west && p.x <= east && p.y >= south && p.y <= north)) continue;
+    least.error = Math.min(least.error, part.error);
+    least.deviation = Math.min(least.deviation, part.deviation);
+  }
+  return least;
+}

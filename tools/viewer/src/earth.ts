@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The Earth below the terrain, as the engine tells it from what a stream says of its CRS.
+import type { Lengths, MapPosition } from './answers';
+import type { Decoder } from './decoder';
+import type { Units } from './frame';
+
+/** As the engine's GroundFacts: what metadata of a stream hold under `ground`. */
+export interface GroundFacts {
+  geographic: boolean;
+  semi_major: number;
+  inverse_flattening: number;
+  radians_per_map_unit: number;
+  metres_per_map_unit: number;
+  metres_per_height: number;
+}
+
+/** What the stream was asked for: there its certificate holds. */
+export interface Request {
+  window?: [number, number, number, number];
+  error?: number;
+  levels?: number[];
+  splits?: number;
+}
+
+export interface Told {
+  /** Null: written by a program that did not tell it. */
+  ground: GroundFacts | null;
+  freeOfVoids: boolean;
+  request: Request;
+}
+
+/** What metadata tell; text that is none tells nothing. */
+export function toldBy(metadata: unknown): Told {
+  const all = (metadata ?? {}) as { ground?: Partial<GroundFacts>; free_of_voids?: unknown; request?: Request };
+  const g = all.ground;
+  const isLength = (value: unknown): value is number => typeof value === 'number' && value > 0 && Number.isFinite(value);
+  const known = g !== undefined && isLength(g.semi_major) && isLength(g.metres_per_height) &&
+    isLength(g.geographic === true ? g.radians_per_map_unit : g.metres_per_map_unit);
+  return {
+    ground: !known ? null : {
+      geographic: g.geographic === true, semi_major: g.semi_major as number, inverse_flattening: Number(g.inverse_flattening) || 0,
+      radians_per_map_unit: g.radians_per_map_unit ?? 0, metres_per_map_unit: g.metres_per_map_unit ?? 1,
+      metres_per_height: g.metres_per_height as number,
+    },
+    freeOfVoids: all.free_of_voids === true,
+    request: all.request ?? {},
+  };
+}
+
+export interface Earth {
+  isDegrees: boolean;
+  lengths: Lengths;
+  metresPerHeight: number;
+  /** Metres; 0: not known. */
+  diameter: number;
+  /** Metres of a map unit along x and along y, at parallels from south to north. */
+  scales: Array<{ y: number; x: number; perY: number }>;
+  /** Of the terrain along its middle parallel and its middle meridian, metres; null: not known. */
+  size: [number, number] | null;
+}
+
+/** Rough, for pictures of streams that do not tell their ellipsoid: no number is made of it. */
+const roughDegree = 111195;
+const parallels = 64;
+
+/** The Earth below what `decoder` holds, to which `told` was described. */
+export function earthOf(decoder: Decoder, told: Told, units: Units): Earth {
+  const { facts } = decoder;
+  const { ground } = told;
+  const isDegrees = ground?.geographic ?? units.horizontal === 'degree';
+  const x = (share: number): number => facts.originX + facts.stepX * (facts.minX + share * (facts.maxX - facts.minX));
+  const y = (share: number): number => facts.originY + facts.stepY * (facts.minY + share * (facts.maxY - facts.minY));
+  const isUnknown = ground === null || (!isDegrees && units.horizontal === 'unknown');
+  const scaleAt = (at: MapPosition): [number, number] => {
+    if (ground !== null) return decoder.metresPerMapUnit(at);
+    return isDegrees ? [roughDegree * Math.max(0.01, Math.cos(at.y * Math.PI / 180)), roughDegree] : [1, 1];
+  };
+  const between = (a: MapPosition, b: MapPosition): number => (isUnknown ? NaN : decoder.metresBetween(a, b));
+  const size: [number, number] = [
+    between({ x: x(0), y: y(0.5) }, { x: x(1), y: y(0.5) }), between({ x: x(0.5), y: y(0) }, { x: x(0.5), y: y(1) }),
+  ];
+  return {
+    isDegrees,
+    lengths: isDegrees ? { unit: 'metre', metres: 1 } : { unit: units.horizontal, metres: isUnknown ? null : ground.metres_per_map_unit },
+    metresPerHeight: ground?.metres_per_height ?? 1,
+    diameter: 2 * (ground?.semi_major ?? 0),
+    scales: Array.from({ length: parallels + 1 }, (_, i) => {
+      const at = { x: x(0.5), y: y(i / parallels) };
+      const [alongX, alongY] = scaleAt(at);
+      return { y: at.y, x: alongX, perY: alongY };
+    }),
+    size: size.every(Number.isFinite) ? size : null,
+  };
+}
+
+/** Metres of a map unit along x and along y at a parallel of the terrain. */
+export function scaleAt(earth: Earth, y: number): [number, number] {
+  const { scales } = earth;
+  const last = scales.length - 1;
+  const span = scales[last].y - scales[0].y;
+  const place = span > 0 ? Math.max(0, Math.min(last, last * (y - scales[0].y) / span)) : 0;
+  const a = scales[Math.floor(place)], b = scales[Math.min(last, Math.floor(place) + 1)];
+  const part = place - Math.floor(place);
+  return [a.x + part * (b.x - a.x), a.perY + part * (b.perY - a.perY)];
+}

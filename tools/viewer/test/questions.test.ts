@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The engine's answers in WebAssembly about the mesh that is shown, against the program's of the same mesh: on a plane in metres, over
+// degrees of several parallels, with heights in feet over metres, with voids.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { test } from 'node:test';
+import type { MapPosition } from '../src/answers';
+import { Decoder } from '../src/decoder';
+import { type Earth, type Told, earthOf, toldBy } from '../src/earth';
+import { unitsOf } from '../src/frame';
+import { decoded, decoderModule, file, made, ptin, terrain } from './support';
+
+const error = '5';
+
+interface Shown {
+  store: string;
+  decoder: Decoder;
+  told: Told;
+  earth: Earth;
+  /** A place of the terrain, and a little beyond. */
+  place: (i: number) => MapPosition;
+}
+
+function shown(store: string, streamed: string): Shown {
+  const decoder = decoded(decoderModule(), readFileSync(streamed));
+  const metadata: unknown = JSON.parse(decoder.metadata);
+  const told = toldBy(metadata);
+  decoder.describe(told.ground, told.freeOfVoids, false);
+  const { facts } = decoder;
+  const share = (n: number): number => (n * 0.6180339887498949) % 1;
+  const x = facts.originX + facts.stepX * facts.minX, y = facts.originY + facts.stepY * facts.minY;
+  const width = facts.stepX * (facts.maxX - facts.minX), depth = facts.stepY * (facts.maxY - facts.minY);
+  return {
+    store, decoder, told, earth: earthOf(decoder, told, unitsOf(metadata)),
+    place: (i) => ({
+      x: Number((x + (1.02 * share(i) - 0.01) * width).toPrecision(9)), y: Number((y + (1.02 * share(i * 7.31) - 0.01) * depth).toPrecision(9)),
+    }),
+  };
+}
+
+const plane = terrain('mountains_257', '--error', error);
+const terrains: Array<[string, () => Shown]> = [
+  ['metres', () => shown(plane.store, plane.stream)],
+  ...(['degrees', 'feet', 'voids'] as const).map((name): [string, () => Shown] => [name, () => {
+    const { store, stream } = made(name, '--error', error);
+    return shown(store, stream);
+  }]),
+];
+
+for (const [name, of] of terrains) {
+  const t = of();
+  const { decoder, store, place } = t;
+  const line = (a: MapPosition, b: MapPosition): string => `LINESTRING(${a.x} ${a.y}, ${b.x} ${b.y})`;
+
+  test(`heights are those of locate at the same error: ${name}`, () => {
+    const places = Array.from({ length: 60 }, (_, i) => place(i));
+    writeFileSync(file('places.csv'), `x,y\n${places.map((at) => `${at.x},${at.y}\n`).join('')}`);
+    const locateAll = (...options: string[]) =>
+      (JSON.parse(ptin('locate', store, '--points', file('places.csv'), ...options, '--json')) as
+        { points: Array<{ state: string; height: number | null }> }).points;
+    const told = locateAll('--error', error), exact = locateAll();
+    let surface = 0;
+    for (const [i, at] of places.entries()) {
+      const here = decoder.locate(at, true);
+      assert.equal(here.state, told[i].state);
+      assert.equal(here.height, told[i].height);
+      const full = exact[i].height;
+      if (here.height === null || full === null) continue;
+      ++surface;
+      assert.ok((here.least as number) <= full && full <= (here.most as number), 'the full terrain is in the interval');
+      assert.equal(here.triangle.length, 3);
+      const far = decoder.locate(at, false);
+      assert.ok((far.least as number) <= (here.least as number), 'without a certificate it is as wide as the relief');
+    }
+    assert.ok(surface > 20);
+  });
+
+  test(`profiles are those of the program, point by point: ${name}`, () => {
+    for (let i = 0; i < 12; ++i) {
+      const a = place(2 * i), b = place(2 * i + 1);
+      const told = (JSON.parse(ptin('profile', store, '--line', line(a, b), '--error', error, '--json')) as
+        { points: Array<MapPosition & { distance: number; height: number | null }> }).points;
+      const { stations, length } = decoder.profile(a, b, true);
+      const last = told[told.length - 1].distance;
+      // On the ellipsoid both formulas agree to a tenth of a millimetre.
+      const slack = t.earth.isDegrees ? 1e-4 : 0;
+      assert.ok(Math.abs(length - last) <= slack, `${length} for ${last}`);
+      const heights = stations.filter((s) => s.height !== null), wanted = told.filter((p) => p.height !== null);
+      assert.equal(heights.length, wanted.length);
+      for (const [k, p] of wanted.entries()) {
+        const s = heights[k];
+        assert.deepEqual([s.x, s.y, s.height], [p.x, p.y, p.height]);
+        assert.ok(Math.abs(s.distance - p.distance) <= slack);
+      }
+    }
+  });
+
+  test(`lines of sight never contradict the program's: ${name}`, () => {
+    let decided = 0;
+    for (let i = 0; i < 25; ++i) {
+      const a = place(3 * i + 1), b = place(3 * i + 2);
+      const told = JSON.parse(ptin(
+        'sight', store, String(a.x), String(a.y), '40', String(b.x), String(b.y), '60', '--frequency', '450MHz', '--json')) as
+        { verdict: string; length: number; clearance: { min: number; max: number } | null };
+      const here = decoder.sight(a, 40, b, 60, 450e6, true);
+      assert.ok(Math.abs(here.length - told.length) <= 1e-3, `${here.length} for ${told.length}`);
+      if (here.verdict === 'unsure') continue;
+      if (here.verdict === 'undefined') {
+        assert.ok(!['visible', 'hidden'].includes(told.verdict), told.verdict);
+        continue;
+      }
+      ++decided;
+      assert.equal(here.verdict, told.verdict);
+      if (here.clearance === null || told.clearance === null) continue;
+      assert.ok(here.clearance.min <= told.clearance.max + 1e-9 && here.clearance.max >= told.clearance.min - 1e-9);
+    }
+    // Where there are voids, what is left out may be one at any place.
+    assert.ok(name === 'voids' || decided > 3, `${decided} are decided`);
+  });
+
+  test(`the size of the terrain is that of the program's lines: ${name}`, () => {
+    const { facts } = decoder;
+    const x = (grid: number): number => facts.originX + facts.stepX * grid, y = (grid: number): number => facts.originY + facts.stepY * grid;
+    const middle = (facts.minY + facts.maxY) / 2;
+    const across = line({ x: x(facts.minX), y: y(middle) }, { x: x(facts.maxX), y: y(middle) });
+    const told = JSON.parse(ptin('profile', store, '--line', across, '--json')) as { points: Array<{ distance: number }> };
+    const length = told.points[told.points.length - 1].distance;
+    assert.ok(Math.abs((t.earth.size as [number, number])[0] - length) < 1e-3);
+  });
+}
+
+test('without metadata on the ground no length is known', () => {
+  const t = terrains[1][1]();
+  const earth = earthOf(t.decoder, { ground: null, freeOfVoids: false, request: {} }, { horizontal: 'degree', height: 'metre' });
+  assert.equal(earth.size, null);
+});
+
+test('a line around the Earth has no length here', () => {
+  const t = terrains[1][1]();
+  assert.ok(Number.isNaN(t.decoder.metresBetween({ x: 0, y: 10 }, { x: 179, y: -10 })));
+  assert.ok(Math.abs(t.decoder.metresBetween({ x: 170, y: -17 }, { x: -170, y: -16 }) - 2137231.521266) < 1e-3, 'across the date line');
+});
