@@ -161,7 +161,7 @@ TEST(TaskSchedule, TakesUpWhatWasDoneElsewhereInAnyOrder) {
   for (const int left_out : {0, 0, 3, 40}) {
     const InterruptibleBuild of(SourceKind::kRaster);
     const std::string note =
-        begin_parts({of.input()}, of.output(), of.options(), InterruptibleBuild::resources());
+        begin_parts({of.input()}, of.output(), of.options(), InterruptibleBuild::resources()).note;
     std::vector<TaskResults> told(5);
     {
       BuildWorker worker({of.input()}, of.options(), InterruptibleBuild::resources(), note);
@@ -200,7 +200,7 @@ TEST(AwaitFile, WaitsForAFileThatShowsLateAndNotForever) {
 TEST(BuildWorker, WaitsForInputsThatShowLate) {
   const InterruptibleBuild of(SourceKind::kRaster);
   BuildResources resources = InterruptibleBuild::resources();
-  const std::string note = begin_parts({of.input()}, of.output(), of.options(), resources);
+  const std::string note = begin_parts({of.input()}, of.output(), of.options(), resources).note;
   for (const bool is_patient : {true, false}) {
     resources.patience = std::chrono::milliseconds(is_patient ? 300000 : 0);
     BuildWorker worker({of.input()}, of.options(), resources, note);
@@ -234,7 +234,7 @@ TEST(BuildWorker, SaysThatItDoesNotSeeTheFoldersOfTheBuild) {
   const oracle::ScratchFolder tmp;
   BuildResources resources = InterruptibleBuild::resources();
   resources.tmp = tmp.path().string();
-  const std::string note = begin_parts({of.input()}, of.output(), of.options(), resources);
+  const std::string note = begin_parts({of.input()}, of.output(), of.options(), resources).note;
   std::filesystem::rename(note_in(note).temporary, note_in(note).temporary + "-elsewhere");
   try {
     const BuildWorker worker({of.input()}, of.options(), resources, note);
