@@ -16,6 +16,7 @@ set(public_headers
     engine/construct/grid/source_disk.h
     engine/construct/grid/source_options.h
     engine/construct/grid/source_point.h
+    engine/construct/grid/source_warning.h
     engine/construct/tasks/stage_progress.h
     engine/construct/hierarchy/tile_bytes.h
     engine/construct/memory_plan.h

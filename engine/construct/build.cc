@@ -34,6 +34,7 @@ void build_raster(Job& job) {
       job.inputs, job.source_options(),
       [&](const SourceStage& stage, StageWorker& worker) { return job.run_stage(stage, worker); });
   job.report.source_samples = source.valid_samples();
+  job.report.warnings = source.warnings();
   job.report.void_samples = source.void_samples();
   job.report.height_rounding = source.frame().height_rounding;
   job.report.vertices =

@@ -12,6 +12,7 @@
 #include "engine/construct/build_observer.h"
 #include "engine/construct/build_options.h"
 #include "engine/construct/build_plan.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/scratch/workspace.h"
 
 namespace ptin {
@@ -47,6 +48,7 @@ struct BuildReport {
   /// By their class, place or nodata, withheld, or without a height; TINs: in no triangle.
   std::uint64_t left_out_points = 0;
   std::vector<std::string> empty_inputs;  ///< Points: files without any, not even one left out.
+  SourceWarnings warnings;                ///< Of the inputs and the lines beside them.
   std::uint64_t left_out_triangles = 0;   ///< TINs: hidden, or with a corner of no height.
   std::uint64_t void_triangles = 0;       ///< TINs: of the full TIN, between surface and hull.
   std::uint64_t merged_points = 0;        ///< Points less the positions that they fell on.

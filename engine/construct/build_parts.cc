@@ -331,13 +331,13 @@ void do_tasks(const std::vector<std::string>& inputs, const BuildOptions& option
 
 }  // namespace
 
-std::string begin_parts(const std::vector<std::string>& inputs, const std::string& output,
-                        const BuildOptions& options, const BuildResources& resources) {
+BegunParts begin_parts(const std::vector<std::string>& inputs, const std::string& output,
+                       const BuildOptions& options, const BuildResources& resources) {
   NoteTaker taker;
   BuildResources to_note = resources;
   to_note.driver = &taker;
-  build(inputs, output, options, to_note);
-  return taker.note();
+  BuildReport report = build(inputs, output, options, to_note);
+  return {taker.note(), std::move(report.warnings)};
 }
 
 void do_part(const std::vector<std::string>& inputs, const BuildOptions& options,

@@ -22,12 +22,17 @@ namespace ptin {
 
 enum class PartsPhase : std::uint8_t { kCollapse, kJoin, kTighten };
 
+/// What a build in parts begins with.
+struct BegunParts {
+  std::string note;         ///< That each job is given, one line of text.
+  SourceWarnings warnings;  ///< As BuildReport::warnings.
+};
+
 /// Reads the source (points and TINs are sorted) and leaves the folder of the build for the jobs.
-/// @return  The note that each job is given, one line of text.
 /// @throws Error as build()
-[[nodiscard]] std::string begin_parts(const std::vector<std::string>& inputs,
-                                      const std::string& output, const BuildOptions& options,
-                                      const BuildResources& resources);
+[[nodiscard]] BegunParts begin_parts(const std::vector<std::string>& inputs,
+                                     const std::string& output, const BuildOptions& options,
+                                     const BuildResources& resources);
 
 /// One job. Of the join there is part 0 alone.
 /// @param resources  `memory_bytes`, `threads`, `patience`, `files`, `stop` and `observer` count.

@@ -102,6 +102,7 @@ void report_counts(const Job& job, const PointBuckets& points, BuildReport& repo
   for (const std::uint64_t input : points.empty_inputs()) {
     report.empty_inputs.push_back(job.inputs[input]);
   }
+  report.warnings.join(points.warnings());
   report.source_samples = report.vertices = points.size();
   report.left_out_points = points.counts().left_out_points;
   report.merged_points = points.counts().merged_points;
@@ -126,6 +127,7 @@ void build_points(Job& job) {
   const GdalCacheLimit cache(job.memory.gdal_cache);
   const nlohmann::json began_with = fingerprint(job);  // before the first look into the inputs
   job.lines = read_source_lines(line_choice_of(job.options), job.memory.lines, job.resources.stop);
+  job.report.warnings.join(job.lines.warnings);
   plan_before_reading(job, [&](const PointCount& count) { return disk_of(job, count); });
   if (job.resources.dry_run) {
     return;

@@ -41,6 +41,7 @@ TinTriangles sorted_triangles(Job& job, Workspace& workspace, ArrayFileFacts& in
 
 void report_counts(BuildReport& report, const TinTriangles& triangles) {
   const TinCounts& counts = triangles.counts();
+  report.warnings.join(triangles.warnings());
   report.source_samples = report.vertices = counts.vertices;
   report.left_out_points = counts.unused_vertices;
   report.left_out_triangles = counts.left_out_triangles;

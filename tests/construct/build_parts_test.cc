@@ -31,7 +31,7 @@ class InParts {
   InParts(const InterruptibleBuild& of, int parts)
       : of_(of),
         parts_(parts),
-        note_(begin_parts({of.input()}, of.output(), of.options(), resources())) {}
+        note_(begin_parts({of.input()}, of.output(), of.options(), resources()).note) {}
 
   [[nodiscard]] BuildResources resources() {
     BuildResources r = InterruptibleBuild::resources();
@@ -56,7 +56,7 @@ class InParts {
   void plan_again() {
     BuildResources r = resources();
     r.unfinished = Unfinished::kResume;
-    note_ = begin_parts({of_.input()}, of_.output(), of_.options(), r);
+    note_ = begin_parts({of_.input()}, of_.output(), of_.options(), r).note;
   }
   void publish() { publish_parts({of_.input()}, of_.output(), of_.options(), resources(), parts_); }
   void rest_gives_the_same_bytes() {

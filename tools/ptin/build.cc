@@ -23,6 +23,7 @@
 #include "tools/ptin/build_cluster.h"
 #include "tools/ptin/build_command.h"
 #include "tools/ptin/build_show.h"
+#include "tools/ptin/build_warnings.h"
 #include "tools/ptin/error_stats.h"
 #include "tools/ptin/parts_plan.h"
 #include "tools/ptin/query_options.h"
@@ -53,42 +54,6 @@ void check_command(BuildCommand& command) {
 /// How far merging moved a height, in steps between heights.
 double height_steps(const BuildReport& r) {
   return ratio(r.largest_shift_height, r.height_quantum);
-}
-
-/// Points with heights far apart are hardly repeated ones: a mean of them may lie where no ground
-/// is. Whoever named the rule knows that.
-void warn_of_merging(const BuildCommand& command, const BuildReport& r, const Context& context) {
-  constexpr double kManySteps = 100.0;
-  if (command.options.duplicates || height_steps(r) <= kManySteps || context.json || context.quiet)
-    return;
-  std::fprintf(stderr,
-               "ptin: warning: %s fell together with others, at heights up to %s (%s steps of %s) "
-               "away from the mean that was taken; --duplicates min, max or first takes one of "
-               "them, and of LAS --returns last leaves what lies near the ground\n",
-               counted(r.merged_points, "point").c_str(),
-               short_number(r.largest_shift_height).c_str(), short_number(height_steps(r)).c_str(),
-               short_number(r.height_quantum).c_str());
-}
-
-/// A file without points is mostly one that was not written, or not sent, to its end.
-void warn_of_empty_inputs(const BuildReport& r, const Context& context) {
-  if (r.empty_inputs.empty() || context.json || context.quiet) return;
-  const std::size_t others = r.empty_inputs.size() - 1;
-  std::fprintf(stderr, "ptin: warning: there is no point in %s%s; is all of the source there?\n",
-               r.empty_inputs.front().c_str(),
-               others == 0 ? "" : (", nor in " + counted(others, "other file")).c_str());
-}
-
-/// Nothing can be asked of a terrain that is void everywhere.
-void warn_of_no_surface(const BuildCommand& command, const BuildReport& r, const Context& context) {
-  if (r.source_samples > r.lone_samples || context.json || context.quiet) return;
-  const std::string why = r.source_samples == 0 ? "no sample of the source has a height"
-                                                : "no sample with a height has a triangle";
-  std::fprintf(
-      stderr,
-      "ptin: warning: %s has no surface, all of it is void: %s; look at the source, and at "
-      "--nodata, --max-edge and --boundary\n",
-      command.output.c_str(), why.c_str());
 }
 
 /// Where flat parts are this much of a file, it says how to leave them out.
@@ -198,14 +163,15 @@ void print_report(const BuildCommand& command, const BuildReport& r, const FlatR
 
 /// The report, in text or JSON.
 void tell(const BuildCommand& command, const BuildReport& report, const Context& context) {
-  warn_of_merging(command, report, context);
-  warn_of_empty_inputs(report, context);
-  warn_of_no_surface(command, report, context);
+  const SourceWarnings warnings = build_warnings(command, report);
+  print_warnings(warnings, context);
   if (!context.json && context.quiet) return;
   const FlatRecords flat =
       flat_records(*StoreFile::open(output_target(command.output), PageAccess::kPread));
   if (context.json) {
-    print_json(report_json(command, report, flat));
+    nlohmann::json json = report_json(command, report, flat);
+    json["warnings"] = warnings_json(warnings);
+    print_json(json);
   } else {
     print_report(command, report, flat);
   }
@@ -251,10 +217,12 @@ int work_in_cluster(BuildCommand& command, const Context& context, BuildCluster&
 /// Reads the source, and writes the plan for those who do the rest.
 int plan_in_parts(const BuildCommand& command, const BuildResources& resources,
                   const Context& context, BuildShow& show) {
-  write_parts_plan(command, context.arguments, resources);
+  const SourceWarnings warnings = write_parts_plan(command, context.arguments, resources);
   show.finish();
+  print_warnings(warnings, context);
   if (context.json) {
-    print_json({{"plan", command.plan}, {"parts", command.parts}});
+    print_json(
+        {{"plan", command.plan}, {"parts", command.parts}, {"warnings", warnings_json(warnings)}});
   } else if (!context.quiet) {
     const std::string plan = shell_word(command.plan);
     const int last = command.parts - 1;
@@ -264,6 +232,17 @@ int plan_in_parts(const BuildCommand& command, const BuildResources& resources,
         "  ptin build-part %s tighten N     for N from 0 to %d\n  ptin build-part %s publish\n",
         command.plan.c_str(), command.parts, plan.c_str(), last, plan.c_str(), plan.c_str(), last,
         plan.c_str());
+  }
+  return kExitDone;
+}
+
+/// What a dry run came to; its plan is printed in words as soon as it is made.
+int tell_plan(const BuildReport& report, const Context& context, const BuildShow& show) {
+  print_warnings(report.warnings, context);
+  if (context.json) {
+    nlohmann::json json = show.plan_json();
+    json["warnings"] = warnings_json(report.warnings);
+    print_json(json);
   }
   return kExitDone;
 }
@@ -293,12 +272,12 @@ int run_build(BuildCommand& command, const Context& context) {
     if (cluster) resources.driver = cluster->driver();
     report = build(command.inputs, output_target(command.output), command.options, resources);
     show.finish();
+    if (command.dry_run) return tell_plan(report, context, show);
   }
   if (!report.left_behind.empty()) {
     std::fprintf(stderr, "ptin build: the output is complete; what is left behind: %s\n",
                  report.left_behind.c_str());
   }
-  if (command.dry_run) return kExitDone;
   try {
     tell(command, report, context);
   } catch (const std::bad_alloc&) {

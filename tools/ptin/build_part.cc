@@ -14,6 +14,7 @@
 #include "tools/freed_memory.h"
 #include "tools/output/output_file.h"
 #include "tools/ptin/build_show.h"
+#include "tools/ptin/build_warnings.h"
 #include "tools/ptin/command.h"
 #include "tools/ptin/parts_plan.h"
 #include "tools/ptin/query_options.h"
@@ -36,7 +37,8 @@ int publish(const PartsPlan& plan, const BuildResources& resources, const Contex
   if (context.json) {
     print_json({{"output", plan.command.output},
                 {"records", report.records},
-                {"bytes", report.file_bytes}});
+                {"bytes", report.file_bytes},
+                {"warnings", warnings_json(report.warnings)}});
   } else if (!context.quiet) {
     std::printf("%s: %s, %s records\n", plan.command.output.c_str(),
                 human_bytes(report.file_bytes).c_str(), grouped(report.records).c_str());

@@ -15,7 +15,7 @@ namespace ptin::tools {
 
 namespace {
 
-nlohmann::json plan_json(const BuildPlan& p) {
+nlohmann::json json_of(const BuildPlan& p) {
   return {{"tile", p.tile_side},
           {"tiles", p.leaves},
           {"levels", p.levels},
@@ -69,9 +69,8 @@ BuildShow::BuildShow(const BuildCommand& command, const Context& context)
 void BuildShow::plan(const BuildPlan& plan) {
   finish();
   keep_freed_memory(plan);
-  if (command_.dry_run && context_.json) {
-    print_json(plan_json(plan));
-  } else if (!context_.quiet) {
+  plan_ = json_of(plan);
+  if (!context_.quiet && !(command_.dry_run && context_.json)) {
     print_plan(plan);
   }
 }

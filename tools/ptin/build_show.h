@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/construct/build.h"
 #include "tools/progress.h"
 #include "tools/progress_fd.h"
@@ -27,6 +29,8 @@ class BuildShow final : public BuildObserver {
   void progress(const StageProgress& progress) override;
   void give_back_memory() override;
   void finish();
+  /// The last plan, as --dry-run and --json print it; null before there is one.
+  [[nodiscard]] const nlohmann::json& plan_json() const noexcept { return plan_; }
 
  private:
   [[nodiscard]] std::string detail() const;
@@ -43,6 +47,7 @@ class BuildShow final : public BuildObserver {
   std::uint64_t first_ = 0, most_memory_ = 0;
   double seconds_ = 0.0;
   ProgressFacts facts_;
+  nlohmann::json plan_;
 };
 
 /// What a build may take, by its options.

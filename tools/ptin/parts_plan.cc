@@ -15,18 +15,20 @@
 
 namespace ptin::tools {
 
-void write_parts_plan(const BuildCommand& command, const std::vector<std::string>& arguments,
-                      const BuildResources& resources) {
-  const std::string note =
+SourceWarnings write_parts_plan(const BuildCommand& command,
+                                const std::vector<std::string>& arguments,
+                                const BuildResources& resources) {
+  const BegunParts begun =
       begin_parts(command.inputs, output_target(command.output), command.options, resources);
   const nlohmann::json plan = {{"ptin_parts", PTIN_VERSION},
                                {"folder", std::filesystem::current_path().string()},
                                {"arguments", arguments},
                                {"parts", command.parts},
-                               {"note", nlohmann::json::parse(note)}};
+                               {"note", nlohmann::json::parse(begun.note)}};
   OutputFile file(command.plan, command.overwrite);
   file.write(plan.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   file.publish();
+  return begun.warnings;
 }
 
 PartsPlan read_parts_plan(const std::string& path) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/source_warning.h"
 #include "tools/ptin/build_command.h"
 
 namespace ptin::tools {
@@ -19,9 +20,11 @@ struct PartsPlan {
 
 /// Begins a build in parts, and writes its plan.
 /// @param arguments  Of `ptin build`, as they were given.
+/// @return  What reading the source gave to be warned of.
 /// @throws Error as begin_parts(); io_error, resource_exhausted
-void write_parts_plan(const BuildCommand& command, const std::vector<std::string>& arguments,
-                      const BuildResources& resources);
+SourceWarnings write_parts_plan(const BuildCommand& command,
+                                const std::vector<std::string>& arguments,
+                                const BuildResources& resources);
 
 /// @throws Error not_found, io_error; invalid_argument  the file is no plan, or one of another version
 ///     of the program

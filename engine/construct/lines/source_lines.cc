@@ -50,6 +50,7 @@ SourceLines read_source_lines(const LineChoice& choice, std::uint64_t most_bytes
     const LineFileCrs file = read_line_file(
         path, wish, [&](const std::vector<SourcePoint>& line) { keeper.take(line, to); }, stop);
     lines.files.push_back({path, file.crs, file.units});
+    lines.warnings.join(file.warnings);
     lines.rings_are_flat = lines.rings_are_flat || file.is_flat;
   };
   for (const std::string& path : choice.breaklines) {

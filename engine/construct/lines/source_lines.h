@@ -12,6 +12,7 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/grid/source_warning.h"
 
 namespace ptin {
 
@@ -45,6 +46,7 @@ struct SourceLines {
   /// (delaunay/boundary_drape.h).
   bool rings_are_flat = false;
   std::vector<LineFileFacts> files;
+  SourceWarnings warnings;                       ///< Of all files.
   std::uint64_t most_vertices = UINT32_MAX - 1;  ///< What there is memory for.
 
   [[nodiscard]] bool is_empty() const noexcept {

@@ -6,6 +6,7 @@
 
 #include "engine/construct/grid/frame_file.h"
 #include "engine/construct/grid/point_sorter.h"
+#include "engine/construct/grid/warnings_file.h"
 #include "engine/construct/lines/edges_file.h"
 #include "engine/construct/points/packed_bucket.h"
 #include "engine/construct/points/point_buckets.h"
@@ -46,6 +47,7 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
   file.put(std::span(&kept, 1));
   put_frame(file, index_.frame);
   file.put(index_.empty_inputs);
+  put_warnings(file, index_.warnings);
   file.put(index_.hull.corners());
   file.put(index_.ranges);
   file.put(boxes_.boxes());
@@ -67,6 +69,7 @@ PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
   result.bucket_points = kept.bucket_points;
   result.codes_are_whole = kept.codes_are_whole != 0;
   result.empty_inputs = file.take_copy<std::uint64_t>();
+  result.warnings = take_warnings(file);
   result.hull = ConvexHull(file.take_copy<GridPoint>());
   result.ranges = file.take_copy<Range>();
   result.boxes = file.take_copy<GridBox>();

@@ -12,6 +12,7 @@
 
 #include "engine/construct/grid/source_disk.h"
 #include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/lines/fixed_edges.h"
 #include "engine/construct/scratch/array_file.h"
@@ -56,6 +57,7 @@ class PointBuckets {
     TerrainFrame frame;
     PointCounts counts;
     std::vector<std::uint64_t> empty_inputs;  ///< The numbers of those that have no point at all.
+    SourceWarnings warnings;                  ///< Of reading them.
     ConvexHull hull;
     std::uint64_t size = 0;           ///< Distinct positions.
     std::uint64_t bucket_points = 0;  ///< Of a bucket that is not the last one of its range.
@@ -93,6 +95,7 @@ class PointBuckets {
   [[nodiscard]] const std::vector<std::uint64_t>& empty_inputs() const noexcept {
     return index_.empty_inputs;
   }
+  [[nodiscard]] const SourceWarnings& warnings() const noexcept { return index_.warnings; }
   [[nodiscard]] const ConvexHull& hull() const noexcept { return index_.hull; }
   /// The edges of breaklines and of the boundary. Their vertices are among the points.
   [[nodiscard]] const FixedEdges& fixed_edges() const noexcept { return index_.fixed; }

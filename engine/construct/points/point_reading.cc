@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/warnings_file.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/open_points.h"
 #include "engine/construct/points/point_spool.h"
@@ -116,6 +117,7 @@ void put(ArrayFileWriter& file, const PortionRead& read) {
        {&source.crs, &source.vertical_crs, &source.units.plane, &source.units.heights}) {
     file.put_text(*text);
   }
+  put_warnings(file, read.warnings);
   file.put(read.samples);
 }
 
@@ -135,6 +137,7 @@ PortionRead take_portion_read(ArrayFileReader& file) {
                             &read.source.units.heights}) {
     *text = file.take_text();
   }
+  read.warnings = take_warnings(file);
   read.samples = file.take_copy<SampledPoint>();
   return read;
 }
@@ -182,6 +185,7 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   result.left_out = stream->left_out();
   result.largest_shift = stream->largest_shift();
   result.rows = stream->rows();
+  result.warnings = stream->warnings();
   writer.finish();
   result.samples = sample.points();
   result.sample_step = sample.step();
@@ -303,6 +307,7 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     reading.scan.add(read.extent);
     seen += read.seen;
     reading.left_out += read.left_out;
+    reading.warnings.join(read.warnings);
     reading.largest_shift = std::max(reading.largest_shift, read.largest_shift);
     if (read.extent.points > 0) {
       reading.spools.push_back({p.number, read.extent.points});

@@ -16,6 +16,7 @@
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/source_stage.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/points/point_files.h"
 #include "engine/construct/points/point_portions.h"
 #include "engine/construct/read/point_part.h"
@@ -51,6 +52,7 @@ struct PortionRead {
   std::uint64_t left_out = 0;  ///< As PointStream::left_out().
   double largest_shift = 0.0;  ///< As PointStream::largest_shift().
   std::optional<RowsOfPart> rows;
+  SourceWarnings warnings;  ///< As PointStream::warnings().
   std::vector<SampledPoint> samples;
   std::uint64_t sample_step = 1;
 };
@@ -109,6 +111,7 @@ struct PointReading {
   double largest_shift = 0.0;  ///< The largest PointStream::largest_shift(), CRS units.
   std::uint64_t left_out = 0;
   std::vector<std::uint64_t> empty_inputs{};  ///< The numbers of those that have no point at all.
+  SourceWarnings warnings{};                  ///< Of all portions.
   struct Spool {
     std::uint64_t number = 0;
     std::uint64_t points = 0;

@@ -122,6 +122,14 @@ std::string RasterMosaic::context() const {
              : parts_[0].part.path() + " and " + std::to_string(parts_.size() - 1) + " more";
 }
 
+SourceWarnings RasterMosaic::warnings() const {
+  SourceWarnings all;
+  for (const PlacedPart& p : parts_) {
+    all.join(p.part.warnings());
+  }
+  return all;
+}
+
 /// Gives each part its place on the common grid, whose origin is the south-western corner of all.
 void RasterMosaic::place() {
   const AffineMap map = parts_[0].part.shape().map;

@@ -48,6 +48,8 @@ class RasterMosaic {
   [[nodiscard]] std::int64_t height() const noexcept { return height_; }  ///< Samples in y.
   /// What the first file says of itself: type, scale, offset, blocks and unit are those of all.
   [[nodiscard]] const RasterShape& first() const noexcept { return parts_[0].part.shape(); }
+  /// Those of all files, in their order.
+  [[nodiscard]] SourceWarnings warnings() const;
   /// The files, for errors.
   [[nodiscard]] std::string context() const;
 

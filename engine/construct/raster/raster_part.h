@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/tile/tile_tree.h"
 
@@ -55,6 +56,8 @@ class RasterPart {
   RasterPart& operator=(RasterPart&&) noexcept;
 
   [[nodiscard]] const RasterShape& shape() const noexcept { return shape_; }
+  /// What there is to be warned of that the file declares.
+  [[nodiscard]] const SourceWarnings& warnings() const noexcept { return warnings_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
   /// Closes the file until the next read(): a mosaic may have more files than a process may have
@@ -79,6 +82,7 @@ class RasterPart {
   std::optional<double> nodata_override_;
   std::optional<double> nodata_;  ///< The nodata value in force, compared with raw values.
   RasterShape shape_;
+  SourceWarnings warnings_;
   std::unique_ptr<Bands> bands_;
 };
 

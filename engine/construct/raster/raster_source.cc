@@ -24,6 +24,7 @@ struct RasterSource::Impl {
   TerrainFrame frame;
   std::int64_t width = 0, height = 0;
   std::uint64_t valid_samples = 0;
+  SourceWarnings warnings;
   RawType raw = RawType::kInt32;
   double scale = 1.0, offset = 0.0;
 
@@ -90,6 +91,7 @@ RasterSource RasterSource::open(const std::vector<std::string>& paths, const Sou
   const HeightFit fit = scan.join(run(scan.stage(), scan));
   set_heights(impl->frame, fit);
   impl->valid_samples = fit.count;
+  impl->warnings = impl->mosaic.warnings();
   return RasterSource(std::move(impl));
 }
 
@@ -178,6 +180,8 @@ const TerrainFrame& RasterSource::frame() const noexcept { return impl_->frame; 
 std::int64_t RasterSource::width() const noexcept { return impl_->width; }
 std::int64_t RasterSource::height() const noexcept { return impl_->height; }
 std::uint64_t RasterSource::valid_samples() const noexcept { return impl_->valid_samples; }
+const SourceWarnings& RasterSource::warnings() const noexcept { return impl_->warnings; }
+
 std::uint64_t RasterSource::void_samples() const noexcept {
   return static_cast<std::uint64_t>(width()) * static_cast<std::uint64_t>(height()) -
          valid_samples();

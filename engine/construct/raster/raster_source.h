@@ -11,6 +11,7 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_stage.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/array_file.h"
 
@@ -76,6 +77,8 @@ class RasterSource {
   [[nodiscard]] std::int64_t height() const noexcept;  ///< Samples in y, at least 2.
   [[nodiscard]] std::uint64_t valid_samples() const noexcept;
   [[nodiscard]] std::uint64_t void_samples() const noexcept;
+  /// What the files declare, and open() found, that there is to be warned of.
+  [[nodiscard]] const SourceWarnings& warnings() const noexcept;
 
   /// Reads the window of `w` x `h` samples whose south-western one is (x0, y0): row-major, row 0 in
   /// the south. `heights` is 0 where `valid` is 0. REQUIRES: the window lies inside the terrain;

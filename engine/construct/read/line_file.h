@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/layer_choice.h"
 
 namespace ptin {
@@ -26,6 +27,7 @@ struct LineFileCrs {
   DeclaredUnits units;  ///< As PointStreamFacts::units.
   /// Some polygon has no heights: then z means nothing of any of them.
   bool is_flat = false;
+  SourceWarnings warnings;
 };
 
 /// True where the name tells LandXML: .xml or .landxml, in any case.

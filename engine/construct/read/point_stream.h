@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/point_part.h"
 
 namespace ptin {
@@ -52,6 +53,9 @@ class PointStream {
   /// Of a part of a text, when it has been read to its end: what tells whether the text is one of
   /// points. Other streams have nothing to tell.
   [[nodiscard]] virtual std::optional<RowsOfPart> rows() const { return std::nullopt; }
+  /// What there is to be warned of so far. Each part of a file tells what lies in it, and those that
+  /// are about the file as a whole (SourceWarning::count is 0) may be told by every part.
+  [[nodiscard]] virtual SourceWarnings warnings() const { return {}; }
   /// Progress so far, in a unit of the stream's own: points, features or bytes.
   [[nodiscard]] virtual std::uint64_t done() const noexcept = 0;
   /// The progress at the end, in the unit of done(); 0 where it is unknown.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/byte_reader.h"
 #include "engine/construct/read/point_stream.h"
 
@@ -43,6 +44,7 @@ struct TinFileFacts {
   DeclaredUnits units;
   std::uint64_t vertices = 0, triangles = 0;
   std::uint64_t hidden_triangles = 0;  ///< Marked invisible (LandXML): left out.
+  SourceWarnings warnings;
 };
 
 /// What a reader is told: which surface to read, when to stop, and to whom to report.

@@ -59,6 +59,7 @@ class TinReceiver {
     facts_.crs = std::move(crs);
     facts_.vertical_crs = std::move(vertical_crs);
   }
+  void warn(SourceWarning warning) { facts_.warnings.add(std::move(warning)); }
   void set_units(DeclaredUnits units) { facts_.units = std::move(units); }
   [[nodiscard]] std::uint64_t vertices() const noexcept { return facts_.vertices; }
   /// To be called at the end of the file.

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "engine/construct/grid/frame_file.h"
+#include "engine/construct/grid/warnings_file.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/tin/tin_source.h"
 
@@ -44,6 +45,7 @@ ArrayFileFacts TinTriangles::save(FileLayer& files, const std::string& index) {
   ArrayFileWriter file(files, index);
   file.put(std::span(&kept, 1));
   put_frame(file, frame_);
+  put_warnings(file, warnings_);
   file.put(hull_.corners());
   for (const std::vector<std::uint64_t>* checksums :
        {&surface_->checksums(), &voids_->checksums(), &places_->checksums()}) {
@@ -61,6 +63,7 @@ TinTriangles TinTriangles::load(FileLayer& files, const std::string& kept_as,
   tin.counts_ = kept.counts;
   tin.codes_are_whole_ = kept.codes_are_whole != 0;
   tin.frame_ = take_frame(file);
+  tin.warnings_ = take_warnings(file);
   tin.hull_ = ConvexHull(file.take_copy<GridPoint>());
   const std::array<std::string, 3> names = kept_files(kept_as);
   tin.surface_ = taken_up<GridTriangle>(files, names[0], kept.records[0], file);

@@ -233,6 +233,7 @@ TinOnGrid GridReader::read() {
   tin_.crs = named_->facts.crs;
   tin_.vertical_crs = named_->facts.vertical_crs;
   tin_.units = named_->facts.units;
+  tin_.warnings = named_->facts.warnings;
   tin_.left_out_triangles = named_->facts.hidden_triangles + named_->left_out_triangles;
   tin_.unused_vertices = named_->unused_vertices;
   report(1);

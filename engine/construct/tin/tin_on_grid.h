@@ -16,6 +16,7 @@
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/external_sorter.h"
 #include "engine/construct/scratch/record_file.h"
@@ -70,6 +71,7 @@ struct TinOnGrid {
   PointGrid grid;
   std::string crs, vertical_crs;
   DeclaredUnits units;
+  SourceWarnings warnings;
   HeightFit heights;
   std::unique_ptr<TriangleSorter> triangles;  ///< The way round that they have in the file.
   /// Distinct positions of the vertices of triangles, along the curve.

@@ -223,6 +223,7 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   require_latitudes(to.frame_, tin.grid.north - tin.grid.south, path);
   set_heights(to.frame_, tin.heights);
   to.codes_are_whole_ = tin.grid.whole;
+  to.warnings_ = std::move(tin.warnings);
   to.counts_.left_out_triangles = tin.left_out_triangles;
   to.counts_.unused_vertices = tin.unused_vertices;
   to.counts_.merged_vertices = tin.merged_vertices;

@@ -14,6 +14,7 @@
 
 #include "engine/construct/grid/source_disk.h"
 #include "engine/construct/grid/source_options.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/scratch/external_sorter.h"
@@ -90,6 +91,7 @@ class TinTriangles {
 
   [[nodiscard]] const TerrainFrame& frame() const noexcept { return frame_; }
   [[nodiscard]] const TinCounts& counts() const noexcept { return counts_; }
+  [[nodiscard]] const SourceWarnings& warnings() const noexcept { return warnings_; }
   [[nodiscard]] const ConvexHull& hull() const noexcept { return hull_; }
 
   /// Part `i` of `n`. The vertices are cut along the curve into n pieces of equally many; the part
@@ -118,6 +120,7 @@ class TinTriangles {
 
   TerrainFrame frame_;
   TinCounts counts_;
+  SourceWarnings warnings_;
   ConvexHull hull_;
   bool codes_are_whole_ = false;
   std::unique_ptr<RecordFile<GridTriangle>> surface_, voids_;

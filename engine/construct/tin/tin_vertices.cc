@@ -50,6 +50,7 @@ TinVertices::TinVertices(const std::string& path, const PointChoice& choice,
   facts_.crs = tin.facts.crs;
   facts_.vertical_crs = tin.facts.vertical_crs;
   facts_.units = tin.facts.units;
+  warnings_ = tin.facts.warnings;
   left_out_ = tin.unused_vertices;
   vertices_ = std::make_unique<const Vertices>(std::move(tin.vertices));
   TinDigits digits;

@@ -42,6 +42,7 @@ class TinVertices final : public PointStream {
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
   [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
   [[nodiscard]] double largest_shift() const noexcept override { return largest_shift_; }
+  [[nodiscard]] SourceWarnings warnings() const override { return warnings_; }
   [[nodiscard]] std::uint64_t done() const noexcept override { return next_; }
   [[nodiscard]] std::uint64_t total() const noexcept override;
 
@@ -53,6 +54,7 @@ class TinVertices final : public PointStream {
   double largest_shift_ = 0.0;
   std::uint64_t next_ = 0;
   std::uint64_t left_out_ = 0;
+  SourceWarnings warnings_;
 };
 
 }  // namespace ptin
