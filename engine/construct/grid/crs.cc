@@ -9,18 +9,24 @@
 #include <ogr_spatialref.h>
 
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/grid/vertical_part.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
 
 namespace ptin {
 namespace {
 
+/// Reads any text that GDAL understands. False for others.
+bool read(const std::string& text, OGRSpatialReference& srs) {
+  const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+  return srs.SetFromUserInput(text.c_str(), options) == OGRERR_NONE;
+}
+
 /// Reads any text that GDAL understands. `role` names it in the error.
 OGRSpatialReference parse(const std::string& text, const char* role) {
   const GdalSession session;
   OGRSpatialReference srs;
-  const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
-  if (srs.SetFromUserInput(text.c_str(), options) != OGRERR_NONE) {
+  if (!read(text, srs)) {
     throw Error(ErrorCode::invalid_argument,
                 session.explain(std::string("the ") + role + " '" + text.substr(0, 80) +
                                 "' is not one that GDAL understands; give a code such as "
@@ -43,41 +49,29 @@ std::string to_wkt2(const OGRSpatialReference& srs) {
   return wkt;
 }
 
-std::string unit_of_metres(double metres) {
-  const auto is = [&](double m) { return std::abs(metres - m) <= 1e-9 * m; };
-  if (is(1.0)) {
-    return "metre";
-  }
-  if (is(0.3048)) {
-    return "foot";
-  }
-  if (is(1200.0 / 3937.0)) {
-    return "US survey foot";
-  }
-  return "unknown";
-}
-
 std::string or_unknown(const char* name) {
   return name == nullptr || *name == '\0' ? "unknown" : name;
 }
 
 /// The unit of heights of a CRS that has a vertical part.
 std::string vertical_unit(const OGRSpatialReference& srs) {
-  const char* name = nullptr;
   if (srs.IsCompound()) {
-    srs.GetTargetLinearUnits("COMPD_CS|VERT_CS", &name);
-    return or_unknown(name);
+    return vertical_unit_of(srs).name;
   }
   double metres = 0.0;
   OGRAxisOrientation orientation = OAO_Other;
   if (srs.GetAxis(nullptr, 2, &orientation, &metres) == nullptr) {
     return "unknown";
   }
-  return unit_of_metres(metres);
+  return unit_called("", metres);
+}
+
+bool is_horizontal(const OGRSpatialReference& srs) {
+  return srs.IsGeographic() || srs.IsProjected() || srs.IsLocal();
 }
 
 void check_horizontal(const OGRSpatialReference& srs, const char* role) {
-  if (srs.IsGeographic() || srs.IsProjected() || srs.IsLocal()) {
+  if (is_horizontal(srs)) {
     return;
   }
   const char* kind = srs.IsVertical() ? "a vertical CRS alone" : "neither geographic nor projected";
@@ -112,17 +106,26 @@ OGRSpatialReference with_vertical(OGRSpatialReference horizontal, const std::str
   return compound;
 }
 
-Crs describe(const OGRSpatialReference& srs) {
+Crs describe(OGRSpatialReference srs) {
   Crs crs;
+  if (srs.IsCompound() && is_vertical_unnamed(srs)) {
+    // It tells a unit alone. Where that has a name which tells its length, the name is enough.
+    const LengthUnit unit = vertical_unit_of(srs);
+    if (metres_in(unit.name)) {
+      crs.vertical_unit = unit.name;
+      srs.StripVertical();
+    }
+  }
   crs.wkt = to_wkt2(srs);
   crs.geographic = srs.IsGeographic() != 0;
   const char* name = nullptr;
   if (crs.geographic) {
     srs.GetAngularUnits(&name);
+    crs.horizontal_unit = or_unknown(name);
   } else {
-    srs.GetLinearUnits(&name);
+    const double metres = srs.GetLinearUnits(&name);
+    crs.horizontal_unit = unit_called(name == nullptr ? "" : name, metres);
   }
-  crs.horizontal_unit = or_unknown(name);
   crs.vertical_known = srs.IsCompound() != 0 || srs.GetAxesCount() == 3;
   if (crs.vertical_known) {
     crs.vertical_unit = vertical_unit(srs);
@@ -148,6 +151,18 @@ Crs resolve_crs(const std::string& declared, const std::string& a_srs,
   const GdalSession session;
   check_horizontal(srs, role);
   return describe(vertical_crs.empty() ? srs : with_vertical(srs, vertical_crs));
+}
+
+bool is_crs(const std::string& text) {
+  const GdalSession session;
+  OGRSpatialReference srs;
+  return !text.empty() && read(text, srs) && is_horizontal(srs);
+}
+
+bool is_vertical_crs(const std::string& text) {
+  const GdalSession session;
+  OGRSpatialReference srs;
+  return !text.empty() && read(text, srs) && srs.IsVertical() && !srs.IsCompound();
 }
 
 bool is_same_crs(const std::string& wkt_a, const std::string& wkt_b) {

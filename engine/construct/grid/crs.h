@@ -35,6 +35,12 @@ struct Crs {
 [[nodiscard]] Crs resolve_crs(const std::string& declared, const std::string& a_srs,
                               const std::string& vertical_crs);
 
+/// True when GDAL understands a text as a CRS that a terrain may have: geographic, projected or local.
+/// Cost: as resolve_crs().
+[[nodiscard]] bool is_crs(const std::string& text);
+/// True when GDAL understands a text as a vertical CRS and nothing else.  Cost: as resolve_crs().
+[[nodiscard]] bool is_vertical_crs(const std::string& text);
+
 /// True when two texts name the same CRS, or both are empty. The order of the axes of a geographic
 /// CRS does not matter.
 /// @throws Error invalid_argument  GDAL does not understand a text

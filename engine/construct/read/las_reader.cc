@@ -7,7 +7,9 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/las_crs.h"
 #include "engine/construct/read/las_file.h"
+#include "engine/construct/read/las_records.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -77,7 +79,7 @@ LasReader::LasReader(std::string path, const PointChoice& choice, const PointPar
   header_ = read_las_header(*file_);
   read_ = begin_ = std::min(part.begin, header_.points);
   end_ = std::clamp(part.end, begin_, header_.points);
-  facts_.crs = read_las_crs(*file_);
+  read_declarations();
   for (const int c : choice.classes) {
     if (c < 0 || c > 255) {
       throw Error(ErrorCode::invalid_argument,
@@ -92,6 +94,24 @@ LasReader::LasReader(std::string path, const PointChoice& choice, const PointPar
 }
 
 LasReader::~LasReader() = default;
+
+/// Reads what the records declare, and warns of a header that does not fit its file.
+void LasReader::read_declarations() {
+  const LasRecords records = read_las_records(*file_, header_);
+  DeclaredCrs declared = crs_of_records(records, header_.crs_is_wkt);
+  facts_.crs = std::move(declared.crs);
+  facts_.vertical_crs = std::move(declared.vertical_crs);
+  facts_.units = std::move(declared.units);
+  warn(records.warnings);
+  warn(declared.warnings);
+}
+
+void LasReader::warn(const std::vector<SourceWarning>& warnings) {
+  for (SourceWarning warning : warnings) {
+    warning.file = path_;
+    warnings_.add(std::move(warning));
+  }
+}
 
 /// True for an echo that is wanted. Formats 0 to 5 hold its number and how many its pulse has in
 /// three bits each, formats 6 to 10 in four; numbers count from 1, and 0 says nothing.

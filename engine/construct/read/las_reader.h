@@ -14,6 +14,7 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/point_stream.h"
 
 namespace ptin {
@@ -25,8 +26,16 @@ struct LasHeader {
   std::uint32_t record_bytes = 0;  ///< A point; beyond what its format needs are extra bytes.
   std::uint64_t first_point = 0;   ///< Byte offset.
   std::uint64_t points = 0;
+  std::uint64_t legacy_points = 0;  ///< 1.4: what the header says to readers of older versions.
+  std::uint64_t header_bytes = 0;   ///< Where the variable length records begin.
+  std::uint32_t records = 0;        ///< Those before the points.
+  std::uint64_t first_extended = 0;    ///< Byte offset of those behind the points (1.4).
+  std::uint32_t extended_records = 0;  ///< How many.
+  bool crs_is_wkt = false;             ///< Bit 4 of the global encoding.
+  bool returns_are_made_up = false;    ///< Bit 3: return numbers were not measured.
   std::array<double, 3> scale{};   ///< Lengths of a step in x, y and z, > 0.
   std::array<double, 3> offset{};  ///< Coordinates of step 0.
+  std::array<double, 3> low{}, high{};  ///< The box of all points, withheld ones included.
 };
 
 /// A LAS file as a stream of points. Left out are points that are marked as withheld, and points of
@@ -35,8 +44,7 @@ struct LasHeader {
 /// LAS coordinates are whole numbers of steps (`scale`) from an offset. Where the steps of x and y
 /// are powers of ten, and their offsets whole numbers of steps, points are exact decimals and
 /// facts() declares their digits. Otherwise facts() declares a lattice: the smaller of the two
-/// steps as its unit, and the offsets. The CRS is that of read_las_crs() (read/las_file.h); text
-/// that GDAL does not understand is an error when the CRS is resolved, not here.
+/// steps as its unit, and the offsets. The CRS is that of crs_of_records() (read/las_crs.h).
 class LasReader final : public PointStream {
  public:
   /// @throws Error  not_found, io_error    the file cannot be opened or read
@@ -72,6 +80,8 @@ class LasReader final : public PointStream {
   };
   [[nodiscard]] Axis make_axis(std::size_t i, bool powers_of_ten_only) const;
   void set_lattice();
+  void read_declarations();
+  void warn(const std::vector<SourceWarning>& warnings);
   [[nodiscard]] bool is_wanted_return(const unsigned char* record) const;
   [[nodiscard]] bool wanted(const unsigned char* record) const;
 
@@ -79,6 +89,7 @@ class LasReader final : public PointStream {
   std::unique_ptr<File> file_;
   LasHeader header_;
   PointStreamFacts facts_;
+  SourceWarnings warnings_;
   std::array<Axis, 3> axes_;
   std::bitset<256> classes_;  ///< Those that are kept.
   ReturnChoice returns_ = ReturnChoice::kAll;
