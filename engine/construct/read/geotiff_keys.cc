@@ -76,9 +76,8 @@ Bytes directory_of(const std::vector<Entry>& entries) {
 
 /// The value of a key that is a code; 0 where it is not there.
 std::uint16_t code_of(const std::vector<Entry>& entries, Key key) {
-  const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) {
-    return e[0] == key && e[1] == 0;
-  });
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& e) { return e[0] == key && e[1] == 0; });
   return found == entries.end() ? kUndefined : (*found)[3];
 }
 
@@ -174,7 +173,8 @@ class KeyReader {
 
   /// The same with any CRS in plan, which GDAL wants to have before it looks at heights.
   [[nodiscard]] OGRSpatialReference crs_of_vertical(std::vector<Entry> entries) const {
-    entries.insert(entries.begin(), {Entry{kModelType, 0, 1, 1}, Entry{kProjectedCrs, 0, 1, 32631}});
+    entries.insert(entries.begin(),
+                   {Entry{kModelType, 0, 1, 1}, Entry{kProjectedCrs, 0, 1, 32631}});
     return crs(entries);
   }
 
@@ -243,9 +243,8 @@ void add_vertical(const std::vector<Entry>& entries, const KeyReader& reader,
     return;
   }
   std::vector<Entry> vertical;
-  std::copy_if(entries.begin(), entries.end(), std::back_inserter(vertical), [&](const Entry& e) {
-    return is_vertical(e) && (unit || e[0] != kVerticalUnits);
-  });
+  std::copy_if(entries.begin(), entries.end(), std::back_inserter(vertical),
+               [&](const Entry& e) { return is_vertical(e) && (unit || e[0] != kVerticalUnits); });
   const OGRSpatialReference both = reader.crs_of_vertical(std::move(vertical));
   if (both.GetAxesCount() == 3 && both.IsCompound() == 0) {
     add_ellipsoidal(plane, unit, declared);
@@ -287,7 +286,8 @@ DeclaredCrs crs_of_keys(const GeoTiffKeys& keys) {
   const GdalSession session;
   const KeyReader reader(keys);
   std::vector<Entry> horizontal;
-  std::remove_copy_if(entries->begin(), entries->end(), std::back_inserter(horizontal), is_vertical);
+  std::remove_copy_if(entries->begin(), entries->end(), std::back_inserter(horizontal),
+                      is_vertical);
   const bool has_plane = code_of(horizontal, kModelType) != kUndefined ||
                          code_of(horizontal, kGeodeticCrs) != kUndefined ||
                          code_of(horizontal, kProjectedCrs) != kUndefined;

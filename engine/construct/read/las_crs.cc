@@ -79,11 +79,11 @@ DeclaredCrs crs_of_records(const LasRecords& records, bool is_wkt) {
     if (!is_understood(second)) {
       return text;
     }
-    second.warnings.push_back({"crs_contradiction",
-                               "its CRS as " + name +
-                                   ", which its header says is the one, is not understood; that as " +
-                                   other + " is taken",
-                               ""});
+    second.warnings.push_back(
+        {"crs_contradiction",
+         "its CRS as " + name + ", which its header says is the one, is not understood; that as " +
+             other + " is taken",
+         ""});
     return second;
   }
   if (!is_understood(second) || first.crs.empty() || second.crs.empty()) {

@@ -155,6 +155,9 @@ LasHeader read_las_header(const LasFile& file) {
   const auto encoding = las_value<std::uint16_t>(bytes, 6);
   h.crs_is_wkt = (encoding & 0x10) != 0;
   h.returns_are_made_up = (encoding & 0x08) != 0;
+  if (h.minor_version >= 3 && (encoding & 0x02) != 0) {
+    h.first_waveform = las_value<std::uint64_t>(bytes, 227);
+  }
   if (h.minor_version >= 4) {
     h.first_extended = las_value<std::uint64_t>(bytes, 235);
     h.extended_records = las_value<std::uint32_t>(bytes, 243);

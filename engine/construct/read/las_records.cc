@@ -75,8 +75,8 @@ std::uint64_t walk(const LasFile& file, const RecordPlace& place, LasRecords& re
     }
     file.read(at, head);
     at += head_bytes;
-    const std::uint64_t bytes = place.extended ? las_value<std::uint64_t>(head, 20)
-                                               : las_value<std::uint16_t>(head, 20);
+    const std::uint64_t bytes =
+        place.extended ? las_value<std::uint64_t>(head, 20) : las_value<std::uint16_t>(head, 20);
     if (bytes > place.end - at) {
       return i;
     }
