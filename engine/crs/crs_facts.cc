@@ -4,9 +4,11 @@
 #include <memory>
 
 #include <cpl_conv.h>
+#include <cpl_error.h>
 #include <nlohmann/json.hpp>
 #include <ogr_spatialref.h>
 
+#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -31,8 +33,8 @@ void add_vertical(const OGRSpatialReference& srs, CrsFacts& facts) {
   facts.vertical_name = compound ? text_or_empty(srs.GetAttrValue("VERT_CS")) : facts.name;
   facts.vertical_code = compound ? code_of(srs, "VERT_CS") : facts.code;
   const char* unit = nullptr;
-  srs.GetTargetLinearUnits(compound ? "VERT_CS" : nullptr, &unit);
-  facts.vertical_unit = unit == nullptr ? "unknown" : unit;
+  const double metres = srs.GetTargetLinearUnits(compound ? "VERT_CS" : nullptr, &unit);
+  facts.vertical_unit = unit_called(text_or_empty(unit), metres);
 }
 
 }  // namespace
@@ -41,6 +43,7 @@ CrsFacts crs_facts(const std::string& wkt) {
   CrsFacts facts;
   facts.wkt = wkt;
   if (wkt.empty()) return facts;
+  const CPLErrorHandlerPusher silent(CPLQuietErrorHandler);
   OGRSpatialReference srs;
   if (srs.importFromWkt(wkt.c_str()) != OGRERR_NONE) return facts;
   facts.geographic = srs.IsGeographic() != 0;
@@ -48,13 +51,14 @@ CrsFacts crs_facts(const std::string& wkt) {
   facts.name = text_or_empty(srs.GetAttrValue(node));
   facts.code = code_of(srs, srs.IsCompound() != 0 ? node : nullptr);
   const char* unit = nullptr;
-  facts.geographic ? srs.GetAngularUnits(&unit) : srs.GetLinearUnits(&unit);
-  if (unit != nullptr) facts.horizontal_unit = unit;
+  const double size = facts.geographic ? srs.GetAngularUnits(&unit) : srs.GetLinearUnits(&unit);
+  if (unit != nullptr) facts.horizontal_unit = facts.geographic ? unit : unit_called(unit, size);
   add_vertical(srs, facts);
   return facts;
 }
 
 bool is_same_plane(const CrsFacts& a, const CrsFacts& b) {
+  const CPLErrorHandlerPusher silent(CPLQuietErrorHandler);
   OGRSpatialReference of_a, of_b;
   const bool is_known = !a.wkt.empty() && !b.wkt.empty() &&
                         of_a.importFromWkt(a.wkt.c_str()) == OGRERR_NONE &&

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace ptin {
 
@@ -56,6 +57,14 @@ std::optional<double> metres_in(std::string_view unit) noexcept {
     }
   }
   return std::nullopt;
+}
+
+std::string unit_called(const std::string& name, double metres) {
+  constexpr double kAlike = 1e-9;  // the two feet differ by 2e-6
+  const auto known = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& unit) {
+    return std::abs(metres - unit.metres) <= kAlike * unit.metres;
+  });
+  return known == kUnits.end() ? height_unit_named(name) : std::string(known->name);
 }
 
 }  // namespace ptin

@@ -14,6 +14,7 @@
 #include <gdal.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/proj_messages.h"
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
 #include "tools/output/standard_output.h"
@@ -349,6 +350,7 @@ int run_program(int argc, const char* const* argv, Context& context) {
   prepare_for_refused_memory();
   try {
     CPLSetErrorHandler(CPLQuietErrorHandler);
+    silence_proj();
     GDALAllRegister();
     if (argc > 2) context.arguments.assign(argv + 2, argv + argc);
     return run_command_line(argc, argv, context);

@@ -2,7 +2,10 @@
 //
 // Points for `verify --against`.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/points/open_points.h"
@@ -18,19 +21,6 @@ namespace ptin::tools {
 
 namespace {
 
-/// Where a position lies on the grid of a terrain. A step that was chosen counts from 0, not from the
-/// grid's origin: that decides where a position in the middle between two grid points goes.
-MapPoint grid_point_of(MapPoint p, const StoreFacts& facts, const SampleChoices& choices) {
-  const AffineMap& map = facts.map;
-  if (choices.resolution) {
-    const double step = *choices.resolution;
-    return {std::round(p.x / step) - std::round(map.origin_x / step),
-            std::round(p.y / step) - std::round(map.origin_y / step)};
-  }
-  const MapPoint grid = map.to_grid(p);
-  return {std::round(grid.x), std::round(grid.y)};
-}
-
 bool is_left_out(const std::array<double, 3>& p, const SampleChoices& choices) {
   if (choices.nodata && p[2] == *choices.nodata) return true;
   const auto& box = choices.asked_bbox;
@@ -42,6 +32,61 @@ bool is_left_out(const std::array<double, 3>& p, const SampleChoices& choices) {
 bool is_text(const std::string& path) {
   return point_format_of(path, {}) == PointFormat::kText ||
          kind_of_input(path, {}) == InputKind::kRaster;
+}
+
+/// `step` as the number of digits after the point, where it is such a power of ten.
+std::optional<int> decimals_of(double step) {
+  for (int decimals = 0; decimals <= 17; ++decimals) {
+    if (step == 1.0 / std::pow(10.0, decimals)) return decimals;
+  }
+  return std::nullopt;
+}
+
+/// A coordinate rounded to digits after the point, half away from zero, in units of the last one;
+/// by its digits, since in the middle of two steps a double lies on one side of it by chance.
+double rounded_digits(double value, int decimals) {
+  std::array<char, 400> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), std::abs(value),
+                                 std::chars_format::fixed)
+                       .ptr;
+  const std::string digits(text.data(), end);
+  const std::size_t point = std::min(digits.find('.'), digits.size());
+  double whole = 0.0;
+  const auto digit = [&](std::size_t i) { return i < digits.size() ? digits[i] - '0' : 0; };
+  for (std::size_t i = 0; i < point; ++i) whole = whole * 10 + digit(i);
+  const auto behind = static_cast<std::size_t>(decimals);
+  for (std::size_t i = 1; i <= behind; ++i) whole = whole * 10 + digit(point + i);
+  whole += digit(point + behind + 1) >= 5 ? 1.0 : 0.0;
+  return value < 0.0 ? -whole : whole;
+}
+
+/// The grid step of a coordinate that lies `steps` from the origin. Where the grid is one of decimals,
+/// digits beyond them were dropped.
+double step_of(double value, double steps, double origin, double step) {
+  constexpr double kUnsure = 0.07;  // a double is off by a sixteenth of a step at most
+  const bool is_in_middle = std::abs(std::abs(steps - std::round(steps)) - 0.5) < kUnsure;
+  if (!is_in_middle) return std::round(steps);
+  const std::optional<int> decimals = decimals_of(step);
+  if (!decimals) return std::round(steps);
+  const double first = rounded_digits(origin, *decimals);
+  constexpr double kOneOfThem = 1e-3;  // else the origin is no such decimal
+  if (std::abs(origin / step - first) > kOneOfThem * std::max(1.0, std::abs(first) * 1e-10))
+    return std::round(steps);
+  return rounded_digits(value, *decimals) - first;
+}
+
+/// Where a position lies on the grid of a terrain. A step that was chosen counts from 0, not from the
+/// grid's origin: that decides where a position in the middle between two grid points goes.
+MapPoint grid_point_of(MapPoint p, const StoreFacts& facts, const SampleChoices& choices) {
+  const AffineMap& map = facts.map;
+  if (choices.resolution) {
+    const double step = *choices.resolution;
+    return {std::round(p.x / step) - std::round(map.origin_x / step),
+            std::round(p.y / step) - std::round(map.origin_y / step)};
+  }
+  const MapPoint grid = map.to_grid(p);
+  return {step_of(p.x, grid.x, map.origin_x, map.step_x),
+          step_of(p.y, grid.y, map.origin_y, map.step_y)};
 }
 
 class PointSamples final : public SourceSamples {

@@ -4,29 +4,39 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include <cpl_conv.h>
 #include <ogr_spatialref.h>
 
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/grid/vertical_part.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
 
 namespace ptin {
 namespace {
 
+/// Reads any text that GDAL understands. False for others.
+bool read(const std::string& text, OGRSpatialReference& srs) {
+  const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+  if (srs.SetFromUserInput(text.c_str(), options) != OGRERR_NONE) {
+    return false;
+  }
+  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return true;
+}
+
 /// Reads any text that GDAL understands. `role` names it in the error.
 OGRSpatialReference parse(const std::string& text, const char* role) {
   const GdalSession session;
   OGRSpatialReference srs;
-  const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
-  if (srs.SetFromUserInput(text.c_str(), options) != OGRERR_NONE) {
+  if (!read(text, srs)) {
     throw Error(ErrorCode::invalid_argument,
                 session.explain(std::string("the ") + role + " '" + text.substr(0, 80) +
                                 "' is not one that GDAL understands; give a code such as "
                                 "EPSG:32611, WKT or PROJJSON"));
   }
-  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return srs;
 }
 
@@ -43,41 +53,29 @@ std::string to_wkt2(const OGRSpatialReference& srs) {
   return wkt;
 }
 
-std::string unit_of_metres(double metres) {
-  const auto is = [&](double m) { return std::abs(metres - m) <= 1e-9 * m; };
-  if (is(1.0)) {
-    return "metre";
-  }
-  if (is(0.3048)) {
-    return "foot";
-  }
-  if (is(1200.0 / 3937.0)) {
-    return "US survey foot";
-  }
-  return "unknown";
-}
-
 std::string or_unknown(const char* name) {
   return name == nullptr || *name == '\0' ? "unknown" : name;
 }
 
 /// The unit of heights of a CRS that has a vertical part.
 std::string vertical_unit(const OGRSpatialReference& srs) {
-  const char* name = nullptr;
   if (srs.IsCompound()) {
-    srs.GetTargetLinearUnits("COMPD_CS|VERT_CS", &name);
-    return or_unknown(name);
+    return vertical_unit_of(srs).name;
   }
   double metres = 0.0;
   OGRAxisOrientation orientation = OAO_Other;
   if (srs.GetAxis(nullptr, 2, &orientation, &metres) == nullptr) {
     return "unknown";
   }
-  return unit_of_metres(metres);
+  return unit_called("", metres);
+}
+
+bool is_horizontal(const OGRSpatialReference& srs) {
+  return srs.IsGeographic() || srs.IsProjected() || srs.IsLocal();
 }
 
 void check_horizontal(const OGRSpatialReference& srs, const char* role) {
-  if (srs.IsGeographic() || srs.IsProjected() || srs.IsLocal()) {
+  if (is_horizontal(srs)) {
     return;
   }
   const char* kind = srs.IsVertical() ? "a vertical CRS alone" : "neither geographic nor projected";
@@ -125,17 +123,26 @@ void require_upwards(const OGRSpatialReference& srs) {
   }
 }
 
-Crs describe(const OGRSpatialReference& srs) {
+Crs describe(OGRSpatialReference srs) {
   Crs crs;
+  if (srs.IsCompound() && is_vertical_unnamed(srs)) {
+    // It tells a unit alone. Where that has a name which tells its length, the name is enough.
+    const LengthUnit unit = vertical_unit_of(srs);
+    if (metres_in(unit.name)) {
+      crs.vertical_unit = unit.name;
+      srs.StripVertical();
+    }
+  }
   crs.wkt = to_wkt2(srs);
   crs.geographic = srs.IsGeographic() != 0;
   const char* name = nullptr;
   if (crs.geographic) {
     srs.GetAngularUnits(&name);
+    crs.horizontal_unit = or_unknown(name);
   } else {
-    srs.GetLinearUnits(&name);
+    const double metres = srs.GetLinearUnits(&name);
+    crs.horizontal_unit = unit_called(name == nullptr ? "" : name, metres);
   }
-  crs.horizontal_unit = or_unknown(name);
   crs.vertical_known = srs.IsCompound() != 0 || srs.GetAxesCount() == 3;
   if (crs.vertical_known) {
     require_upwards(srs);
@@ -144,7 +151,99 @@ Crs describe(const OGRSpatialReference& srs) {
   return crs;
 }
 
+/// What a source declares of its CRS, with what is not understood taken out and warned of.
+class OwnCrs {
+ public:
+  OwnCrs(DeclaredTexts declared, const std::string& file, SourceWarnings& warnings)
+      : declared_(std::move(declared)), file_(file), warnings_(warnings) {
+    if (is_vertical_crs(declared_.crs)) {
+      declared_.vertical_crs = std::exchange(declared_.crs, "");
+    }
+    drop_unknown(declared_.crs, "CRS", "name it by --a-srs");
+    drop_unknown(declared_.vertical_crs, "vertical CRS", "name it by --vertical-crs");
+  }
+
+  /// @param vertical_crs  What the caller puts in the place of the vertical part; "" for nothing.
+  [[nodiscard]] Crs resolve(const std::string& vertical_crs) {
+    if (!vertical_crs.empty() || declared_.vertical_crs.empty() || !declared_.crs.empty()) {
+      return resolve_crs(declared_.crs, "",
+                         vertical_crs.empty() ? declared_.vertical_crs : vertical_crs);
+    }
+    // A compound CRS tells what a vertical one is: any other part in plan does.
+    const Crs with_any_plane = resolve_crs("EPSG:32631", "", declared_.vertical_crs);
+    warn("crs_vertical_alone",
+         "it names the vertical CRS " + quoted(declared_.vertical_crs) +
+             " and no horizontal one; the unit of its heights is kept, and the terrain has no CRS; "
+             "name both by --a-srs and --vertical-crs");
+    Crs crs;
+    crs.vertical_unit = with_any_plane.vertical_unit;
+    return crs;
+  }
+
+ private:
+  static std::string quoted(const std::string& text) { return "'" + text.substr(0, 80) + "'"; }
+  void warn(const char* kind, std::string message) {
+    warnings_.add({kind, std::move(message), file_});
+  }
+  void drop_unknown(std::string& text, const std::string& what, const std::string& cure) {
+    const GdalSession session;
+    OGRSpatialReference srs;
+    if (!text.empty() && !read(text, srs)) {
+      warn("crs_not_understood", "its " + what + ", " + quoted(text) +
+                                     ", is not one that GDAL understands; the terrain is without "
+                                     "it; " +
+                                     cure);
+      text.clear();
+    }
+  }
+
+  DeclaredTexts declared_;
+  const std::string& file_;
+  SourceWarnings& warnings_;
+};
+
+/// Warns of axes that point elsewhere than those of a terrain.
+void warn_of_axes(const Crs& crs, const std::string& file, SourceWarnings& warnings) {
+  const GdalSession session;
+  OGRSpatialReference srs;
+  if (crs.wkt.empty() || !read(crs.wkt, srs)) {
+    return;
+  }
+  const auto direction = [&](int axis) {
+    OGRAxisOrientation found = OAO_Other;
+    return srs.GetAxis(nullptr, axis, &found) == nullptr ? OAO_Other : found;
+  };
+  const OGRAxisOrientation x = direction(0), y = direction(1);
+  // Both axes of a polar CRS may point to the south, along two meridians.
+  const bool is_south = (x == OAO_South) != (y == OAO_South);
+  if (x == OAO_West || y == OAO_West || is_south) {
+    warnings.add(
+        {"crs_axes",
+         "its CRS counts to the west or to the south; x and y are taken as they are, as if "
+         "they grew to the east and to the north, so directions (aspect, hillshade, "
+         "'northernmost') are of the numbers, not of the ground",
+         file});
+  }
+  if (crs.vertical_known && direction(2) == OAO_Down) {
+    warnings.add({"crs_depths",
+                  "its vertical CRS counts downwards; heights are taken as they are, so what is "
+                  "highest in the terrain is deepest on the ground; change the signs to build it "
+                  "upright",
+                  file});
+  }
+}
+
 }  // namespace
+
+Crs resolve_source_crs(const DeclaredTexts& declared, const SourceOptions& options,
+                       const std::string& file, SourceWarnings& warnings) try {
+  Crs crs = options.a_srs.empty() ? OwnCrs(declared, file, warnings).resolve(options.vertical_crs)
+                                  : resolve_crs("", options.a_srs, options.vertical_crs);
+  warn_of_axes(crs, file, warnings);
+  return crs;
+} catch (const Error& e) {
+  throw Error(e.code(), e.message(), e.context().empty() ? file : e.context());
+}
 
 Crs resolve_crs(const std::string& declared, const std::string& a_srs,
                 const std::string& vertical_crs) {
@@ -164,6 +263,18 @@ Crs resolve_crs(const std::string& declared, const std::string& a_srs,
   return describe(vertical_crs.empty() ? srs : with_vertical(srs, vertical_crs));
 }
 
+bool is_crs(const std::string& text) {
+  const GdalSession session;
+  OGRSpatialReference srs;
+  return !text.empty() && read(text, srs) && is_horizontal(srs);
+}
+
+bool is_vertical_crs(const std::string& text) {
+  const GdalSession session;
+  OGRSpatialReference srs;
+  return !text.empty() && read(text, srs) && srs.IsVertical() && !srs.IsCompound();
+}
+
 bool is_same_crs(const std::string& wkt_a, const std::string& wkt_b) {
   if (wkt_a == wkt_b) {
     return true;
@@ -171,8 +282,11 @@ bool is_same_crs(const std::string& wkt_a, const std::string& wkt_b) {
   if (wkt_a.empty() || wkt_b.empty()) {
     return false;
   }
-  const OGRSpatialReference a = parse(wkt_a, "CRS"), b = parse(wkt_b, "CRS");
   const GdalSession session;
+  OGRSpatialReference a, b;
+  if (!read(wkt_a, a) || !read(wkt_b, b)) {
+    return false;
+  }
   const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
                                  "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
   return a.IsSame(&b, options) != 0;
@@ -185,8 +299,11 @@ bool is_same_in_plan(const std::string& wkt_a, const std::string& wkt_b) {
   if (wkt_a.empty() || wkt_b.empty()) {
     return false;
   }
-  OGRSpatialReference a = parse(wkt_a, "CRS"), b = parse(wkt_b, "CRS");
   const GdalSession session;
+  OGRSpatialReference a, b;
+  if (!read(wkt_a, a) || !read(wkt_b, b)) {
+    return false;
+  }
   a.StripVertical();
   b.StripVertical();
   const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
@@ -234,12 +351,40 @@ void require_latitudes(const TerrainFrame& frame, std::int64_t rows, const std::
   if (frame.horizontal_unit != "degree" || (south >= -kMost && north <= kMost)) {
     return;
   }
-  char text[160];
+  char text[240];
   std::snprintf(text, sizeof text,
                 "y from %.10g to %.10g are no latitudes, but the CRS has degrees; name the CRS of "
-                "these coordinates by --a-srs",
+                "these coordinates by --a-srs, or exchange x and y where y is the longitude (text: "
+                "--columns)",
                 south, north);
   throw Error(ErrorCode::invalid_argument, text, context);
+}
+
+void require_longitudes(const TerrainFrame& frame, std::int64_t columns, bool is_split,
+                        const std::string& context) {
+  if (!frame.geographic || frame.horizontal_unit != "degree") {
+    return;
+  }
+  const double west = frame.map.to_map(0.0, 0.0).x;
+  const double east = frame.map.to_map(static_cast<double>(columns), 0.0).x;
+  char text[320];
+  if (west < -360.0 || east > 540.0) {
+    std::snprintf(
+        text, sizeof text,
+        "x from %.10g to %.10g are no longitudes, but the CRS has degrees; name the CRS of "
+        "these coordinates by --a-srs",
+        west, east);
+    throw Error(ErrorCode::invalid_argument, text, context);
+  }
+  if (is_split) {
+    std::snprintf(
+        text, sizeof text,
+        "longitudes from %.10g to %.10g, with half of the world empty between them: this "
+        "lies on both sides of the 180th meridian, and the terrain would reach around the "
+        "world; add 360 to the longitudes below 0",
+        west, east);
+    throw Error(ErrorCode::invalid_argument, text, context);
+  }
 }
 
 GroundMetric::GroundMetric(const TerrainFrame& frame) : map_(frame.map) {

@@ -7,10 +7,18 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 
 namespace ptin {
+
+/// The texts by which a source declares its CRS; "" for none.
+struct DeclaredTexts {
+  std::string crs;           ///< Anything that GDAL understands.
+  std::string vertical_crs;  ///< Likewise, where it is apart from `crs`.
+};
 
 /// A horizontal or compound CRS, or none.
 struct Crs {
@@ -35,13 +43,27 @@ struct Crs {
 [[nodiscard]] Crs resolve_crs(const std::string& declared, const std::string& a_srs,
                               const std::string& vertical_crs);
 
+/// The CRS of a source, as resolve_crs(); but what the source itself declares is warned of where GDAL
+/// does not understand it, and the terrain has no CRS then. A vertical CRS without a horizontal one
+/// tells the unit of the heights, and is warned of. So is a CRS whose axes point to the west or to the
+/// south, or that counts heights downwards: coordinates and heights are taken as they are.
+/// @param file          The path of the source, for warnings and errors.
+/// @throws Error invalid_argument  as resolve_crs(), of the options; `declared` is geocentric
+[[nodiscard]] Crs resolve_source_crs(const DeclaredTexts& declared, const SourceOptions& options,
+                                     const std::string& file, SourceWarnings& warnings);
+
+/// True when GDAL understands a text as a CRS that a terrain may have: geographic, projected or local.
+/// Cost: as resolve_crs().
+[[nodiscard]] bool is_crs(const std::string& text);
+/// True when GDAL understands a text as a vertical CRS and nothing else.  Cost: as resolve_crs().
+[[nodiscard]] bool is_vertical_crs(const std::string& text);
+
 /// True when two texts name the same CRS, or both are empty. The order of the axes of a geographic
-/// CRS does not matter.
-/// @throws Error invalid_argument  GDAL does not understand a text
+/// CRS does not matter. A text that GDAL does not understand is the same as itself alone.
 [[nodiscard]] bool is_same_crs(const std::string& wkt_a, const std::string& wkt_b);
 
-/// True when two texts name CRSs that are the same in plan, whatever their vertical parts.
-/// @throws Error invalid_argument  GDAL does not understand a text
+/// True when two texts name CRSs that are the same in plan, whatever their vertical parts. A text that
+/// GDAL does not understand is the same as itself alone.
 [[nodiscard]] bool is_same_in_plan(const std::string& wkt_a, const std::string& wkt_b);
 
 /// Sets those fields of `frame` that describe the CRS.
@@ -61,6 +83,15 @@ void set_units(TerrainFrame& frame, const DeclaredUnits& units, bool is_own,
 /// @param context  The path of the source, for the error.
 /// @throws Error invalid_argument  as above
 void require_latitudes(const TerrainFrame& frame, std::int64_t rows, const std::string& context);
+
+/// Refuses longitudes that are none, and terrains that lie on both sides of the 180th meridian and
+/// would reach around the world between them; in a CRS of degrees.
+/// @param columns   Grid steps from the westernmost to the easternmost sample.
+/// @param is_split  As PointGrid.
+/// @param context   The path of the source, for the error.
+/// @throws Error invalid_argument  as above
+void require_longitudes(const TerrainFrame& frame, std::int64_t columns, bool is_split,
+                        const std::string& context);
 
 /// The lengths on the ground of one grid step in x and of one in y, in the unit of GroundMetric.
 struct GroundStep {

@@ -6,6 +6,8 @@
 #include <cpl_error.h>
 #include <gdal.h>
 
+#include "engine/crs/proj_messages.h"
+
 namespace ptin {
 
 struct GdalSessionAccess {
@@ -26,7 +28,10 @@ void CPL_STDCALL collect(CPLErr severity, CPLErrorNum, const char* text) {
 GdalSession::GdalSession() {
   CPLPushErrorHandlerEx(&collect, this);
   static std::once_flag registered;
-  std::call_once(registered, [] { GDALAllRegister(); });
+  std::call_once(registered, [] {
+    silence_proj();
+    GDALAllRegister();
+  });
 }
 
 GdalSession::~GdalSession() { CPLPopErrorHandler(); }

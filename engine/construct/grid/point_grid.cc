@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "engine/construct/grid/grid_precision.h"
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
@@ -87,6 +88,28 @@ void PointExtent::join(const PointExtent& other) noexcept {
   y.join(other.y);
   z.join(other.z);
   points += other.points;
+  far.join(other.far);
+  longitudes.join(other.longitudes);
+}
+
+void UnitsTaken::join(const UnitsTaken& other) noexcept {
+  for (std::size_t i = 0; i < bits_.size(); ++i) {
+    bits_[i] |= other.bits_[i];
+  }
+}
+
+bool UnitsTaken::are_split() const noexcept {
+  constexpr std::size_t kHalf = 180;
+  std::size_t first = bits_.size() * 64, last = 0, longest = 0;
+  for (std::size_t unit = 0; unit < bits_.size() * 64; ++unit) {
+    if ((bits_[unit / 64] >> (unit % 64) & 1U) == 0) {
+      continue;
+    }
+    longest = first > unit ? 0 : std::max(longest, unit - last - 1);
+    first = std::min(first, unit);
+    last = unit;
+  }
+  return last > first + kHalf && longest >= kHalf;
 }
 
 std::int64_t DecimalRange::lowest(const StepCounter& counter) const noexcept {
@@ -112,7 +135,7 @@ std::int64_t DecimalRange::highest(const StepCounter& counter) const noexcept {
 }
 
 double PointGrid::shift(const SourcePoint& p) const noexcept {
-  if (x.is_exact() && y.is_exact()) {
+  if (x.is_exact() && y.is_exact() && !drops_digits) {
     return 0.0;
   }
   const double dx = x.shift(p.x), dy = y.shift(p.y);
@@ -161,28 +184,53 @@ bool PointGridScan::lines_are_elsewhere() const noexcept {
   return apart(extent_.x, line_x_) || apart(extent_.y, line_y_);
 }
 
+void PointGridScan::set_bounds(PointGrid& grid) const {
+  grid.west = std::min(extent_.x.lowest(grid.x), line_x_.lowest(grid.x));
+  grid.south = std::min(extent_.y.lowest(grid.y), line_y_.lowest(grid.y));
+  grid.east = std::max(extent_.x.highest(grid.x), line_x_.highest(grid.x));
+  grid.north = std::max(extent_.y.highest(grid.y), line_y_.highest(grid.y));
+}
+
+/// Sets the bounds; true when positions are grid points, and doubles tell the steps apart.
+bool PointGridScan::fits(PointGrid& grid) const {
+  set_bounds(grid);
+  const auto is_fine = [](std::int64_t low, std::int64_t high, const StepCounter& steps) {
+    const double a = static_cast<double>(low), b = static_cast<double>(high);
+    const double farthest =
+        std::max(std::abs(steps.coordinate(low)), std::abs(steps.coordinate(high)));
+    return b - a <= kGridMax && farthest / steps.unit() <= kMostStepsFromZero;
+  };
+  return is_fine(grid.west, grid.east, grid.x) && is_fine(grid.south, grid.north, grid.y);
+}
+
 void PointGridScan::choose_steps(PointGrid& grid) const {
   if (resolution_) {
     grid.x = grid.y = StepCounter(*resolution_, 0.0);
-  } else if (lattice_) {
+    set_bounds(grid);
+    return;
+  }
+  if (lattice_) {
     grid.x = StepCounter(lattice_->unit, lattice_->origin_x);
     grid.y = StepCounter(lattice_->unit, lattice_->origin_y);
-  } else {
-    const int of_lines =
-        std::min(most_line_decimals_, std::max(line_x_.decimals(), line_y_.decimals()));
-    grid.x = grid.y = StepCounter(
-        std::max({plan_decimals_, extent_.x.decimals(), extent_.y.decimals(), of_lines}));
+    if (fits(grid)) {
+      return;
+    }
+  }
+  const int of_lines =
+      std::min(most_line_decimals_, std::max(line_x_.decimals(), line_y_.decimals()));
+  int decimals = std::max({plan_decimals_, extent_.x.decimals(), extent_.y.decimals(), of_lines});
+  grid.x = grid.y = StepCounter(decimals);
+  while (!fits(grid) && decimals > 0) {
+    grid.x = grid.y = StepCounter(--decimals);
+    grid.drops_digits = true;
   }
 }
 
 PointGrid PointGridScan::grid() const {
   PointGrid grid;
   choose_steps(grid);
-  grid.west = std::min(extent_.x.lowest(grid.x), line_x_.lowest(grid.x));
-  grid.south = std::min(extent_.y.lowest(grid.y), line_y_.lowest(grid.y));
+  grid.is_split = extent_.longitudes.are_split();
   // Differences of numbers up to 2^62 fit; as doubles they are near enough for a limit of 2^30.
-  grid.east = std::max(extent_.x.highest(grid.x), line_x_.highest(grid.x));
-  grid.north = std::max(extent_.y.highest(grid.y), line_y_.highest(grid.y));
   const double width = static_cast<double>(grid.east) - static_cast<double>(grid.west);
   const double height = static_cast<double>(grid.north) - static_cast<double>(grid.south);
   check_extent(std::max(width, height) * grid.x.unit(), grid.x.unit(), context_);

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "engine/construct/grid/far_points.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/terrain_frame.h"
@@ -78,6 +79,9 @@ struct PointGrid {
   std::int64_t east = 0, north = 0;  ///< Steps of the largest x and y.
   StepCounter heights;               ///< Turns heights into codes, where `whole`.
   bool whole = false;  ///< Heights are codes: whole steps of a power of ten, which fit int32.
+  bool drops_digits = false;  ///< Of x and y, which then move to the nearest step.
+  /// The points take more than 180 units from west to east, and as many on end are empty.
+  bool is_split = false;
 
   /// REQUIRES: `p` is one of the points from which the grid was found.
 
@@ -101,16 +105,39 @@ struct PointGrid {
   [[nodiscard]] AffineMap map() const noexcept;
 };
 
+/// Which whole units from -360 to 540 hold a value. A plain value.
+class UnitsTaken {
+ public:
+  void add(double value) noexcept {
+    if (value >= kFirst && value < kLast) {
+      const auto unit = static_cast<std::size_t>(value - kFirst);
+      bits_[unit / 64] |= std::uint64_t{1} << (unit % 64);
+    }
+  }
+  void join(const UnitsTaken& other) noexcept;
+  /// True when values lie more than 180 units apart, and at least 180 units on end hold none.
+  [[nodiscard]] bool are_split() const noexcept;
+
+ private:
+  static constexpr double kFirst = -360.0, kLast = 540.0;
+  std::array<std::uint64_t, 15> bits_{};
+};
+
 /// What is known of many points together. A plain value.
 struct PointExtent {
   DecimalRange x, y, z;
   std::uint64_t points = 0;
+  FarPoints far;
+  UnitsTaken longitudes;  ///< Should the CRS have degrees.
 
   void add(const SourcePoint& p) noexcept {
     ++points;
     x.add(p.x);
     y.add(p.y);
     z.add(p.z);
+    const double east = to_double(p.x);
+    far.add(east, to_double(p.y), to_double(p.z));
+    longitudes.add(east);
   }
   /// Adds what another one has seen.
   void join(const PointExtent& other) noexcept;
@@ -134,14 +161,22 @@ class PointGridScan {
   /// point, or seven in degrees; more are kept where points have more.
   void add_line_vertex(const SourcePoint& v, bool has_height, bool degrees) noexcept;
   [[nodiscard]] std::uint64_t points() const noexcept { return extent_.points; }
+  /// Of points that lie far from all others.
+  [[nodiscard]] SourceWarnings warnings() const {
+    return extent_.far.warnings(extent_.points, context_);
+  }
   /// True when the boxes of all points and of all vertices of lines so far have nothing in common.
   [[nodiscard]] bool lines_are_elsewhere() const noexcept;
+  /// Digits that 2^30 steps do not keep, or doubles do not, are dropped, and so is a lattice.
   /// REQUIRES: there are points.
-  /// @throws Error invalid_argument  an extent of more than 2^30 steps
+  /// @throws Error invalid_argument  an extent of more than 2^30 steps of the chosen resolution, or of
+  ///                                 one unit
   [[nodiscard]] PointGrid grid() const;
 
  private:
   void choose_steps(PointGrid& grid) const;
+  void set_bounds(PointGrid& grid) const;
+  [[nodiscard]] bool fits(PointGrid& grid) const;
 
   std::optional<double> resolution_;
   std::string context_;

@@ -251,7 +251,8 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Poi
              file.path);
     }
   }
-  const bool degrees = resolve_crs(reading.crs, options.a_srs, "").geographic;
+  const std::string crs = is_crs(reading.crs) ? reading.crs : "";
+  const bool degrees = resolve_crs(crs, options.a_srs, "").geographic;
   for (const LineSet* set : {&lines.breaklines, &lines.rings}) {
     const bool is_flat = set == &lines.rings && lines.rings_are_flat;
     for (std::size_t i = 0; i < set->vertices.size(); ++i) {
@@ -272,6 +273,17 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Poi
         "another CRS, or belong to another terrain",
         lines.files.front().path);
   }
+}
+
+/// The warnings but for those of a CRS in whose place the caller puts another one.
+SourceWarnings that_count(const SourceWarnings& all, const SourceOptions& options) {
+  SourceWarnings some;
+  for (const SourceWarning& w : all.all()) {
+    if (options.a_srs.empty() || !w.kind.starts_with("crs_")) {
+      some.add(w);
+    }
+  }
+  return some;
 }
 
 /// Every step-th of the samples of a portion; their weight grows by as much.
@@ -307,7 +319,7 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     reading.scan.add(read.extent);
     seen += read.seen;
     reading.left_out += read.left_out;
-    reading.warnings.join(read.warnings);
+    reading.warnings.join(that_count(read.warnings, options));
     reading.largest_shift = std::max(reading.largest_shift, read.largest_shift);
     if (read.extent.points > 0) {
       reading.spools.push_back({p.number, read.extent.points});

@@ -148,14 +148,16 @@ std::vector<SpooledPortion> PointSource::read_all() {
 PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
   const std::string context = inputs_.empty() ? "" : inputs_[0];
   PointBuckets::Index index;
-  set_crs(index.frame, resolve_crs(reading_->crs, options_.a_srs,
-                                   options_.vertical_crs.empty() ? reading_->vertical_crs
-                                                                 : options_.vertical_crs));
+  index.warnings = reading_->warnings;
+  set_crs(index.frame, resolve_source_crs({reading_->crs, reading_->vertical_crs}, options_,
+                                          reading_->crs_path, index.warnings));
   set_units(index.frame, reading_->units, options_.a_srs.empty(), context);
   index.frame.map = grid.map();
   require_resolvable(index.frame.map, grid.east - grid.west, grid.north - grid.south,
                      "give a coarser --resolution", context);
   require_latitudes(index.frame, grid.north - grid.south, context);
+  require_longitudes(index.frame, grid.east - grid.west, grid.is_split, context);
+  index.warnings.join(reading_->scan.warnings());
   index.counts.source_points = reading_->scan.points();
   index.counts.left_out_points = reading_->left_out;
   index.empty_inputs = reading_->empty_inputs;

@@ -94,158 +94,6 @@ std::uint64_t point_count(const Bytes& header, int minor) {
   return count == 0 ? legacy : count;
 }
 
-// ---------------------------------------------------------------------------------------------------
-// The CRS.
-
-struct CrsRecords {
-  std::string wkt;
-  Bytes keys, doubles, text;
-};
-
-/// Reads the content of a record if it declares the CRS: as WKT (2112), or as GeoTIFF keys (34735)
-/// with their doubles (34736) and text (34737).
-/// @param head       The header of the record.
-/// @param at, bytes  Where its content lies in the file.
-void take_record(const LasFile& file, std::span<const unsigned char> head, std::uint64_t at,
-                 std::uint64_t bytes, CrsRecords& crs) {
-  if (at > file.bytes() || bytes > file.bytes() - at) {
-    refuse_las(file,
-               "a record before or behind the points reaches beyond the end of the file; it is "
-               "damaged or cut off");
-  }
-  const char* user = reinterpret_cast<const char*>(head.data()) + 2;
-  if (std::string(user, strnlen(user, 16)) != "LASF_Projection" || bytes > kMostCrsBytes) {
-    return;
-  }
-  Bytes content(bytes);
-  file.read(at, content);
-  switch (las_value<std::uint16_t>(head, 18)) {
-    case 2112:
-      crs.wkt.assign(content.begin(), std::find(content.begin(), content.end(), '\0'));
-      break;
-    case 34735:
-      crs.keys = std::move(content);
-      break;
-    case 34736:
-      crs.doubles = std::move(content);
-      break;
-    case 34737:
-      crs.text = std::move(content);
-      break;
-    default:
-      break;
-  }
-}
-
-/// Walks `count` records from byte `at` on. Extended records have lengths of 64 bits.
-void walk_records(const LasFile& file, std::uint64_t at, std::uint64_t count, bool extended,
-                  CrsRecords& crs) {
-  const std::size_t head_bytes = extended ? 60 : 54;
-  Bytes head(head_bytes);
-  for (std::uint64_t i = 0; i < std::min(count, kMostRecords); ++i) {
-    if (at > file.bytes() || head_bytes > file.bytes() - at) {
-      refuse_las(file, "the header says " + std::to_string(count) +
-                           " records beside the points and " + std::to_string(i) +
-                           " are there; the file is damaged or cut off");
-    }
-    file.read(at, head);
-    at += head_bytes;
-    const std::uint64_t bytes =
-        extended ? las_value<std::uint64_t>(head, 20) : las_value<std::uint16_t>(head, 20);
-    take_record(file, head, at, bytes, crs);
-    at += bytes;
-  }
-}
-
-/// A TIFF of one pixel that holds the GeoTIFF keys of a LAS file: GDAL opens it, and so tells what
-/// the keys mean.
-class KeyTiff {
- public:
-  explicit KeyTiff(const CrsRecords& crs) {
-    add(256, 3, 1, 1);
-    add(257, 3, 1, 1);
-    add(258, 3, 1, 8);
-    add(259, 3, 1, 1);
-    add(262, 3, 1, 1);
-    add(273, 4, 1, 8);  // the pixel: a byte of padding in the header
-    add(277, 3, 1, 1);
-    add(278, 3, 1, 1);
-    add(279, 4, 1, 1);
-    add(34735, 3, crs.keys.size() / 2, crs.keys);
-    if (!crs.doubles.empty()) {
-      add(34736, 12, crs.doubles.size() / 8, crs.doubles);
-    }
-    if (!crs.text.empty()) {
-      add(34737, 2, crs.text.size(), crs.text);
-    }
-  }
-
-  [[nodiscard]] Bytes bytes() const {
-    Bytes file = {'I', 'I', 42, 0, 16, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-    const std::size_t data_begin = 16 + 2 + entries_.size() * 12 + 4;
-    put(file, entries_.size(), 2);
-    Bytes data;
-    for (const Entry& e : entries_) {
-      put(file, e.tag, 2);
-      put(file, e.type, 2);
-      put(file, e.count, 4);
-      if (e.data.size() <= 4) {
-        Bytes value = e.data;
-        value.resize(4);
-        file.insert(file.end(), value.begin(), value.end());
-      } else {
-        data.resize((data.size() + 7) / 8 * 8);
-        put(file, data_begin + data.size(), 4);
-        data.insert(data.end(), e.data.begin(), e.data.end());
-      }
-    }
-    put(file, 0, 4);
-    file.insert(file.end(), data.begin(), data.end());
-    return file;
-  }
-
- private:
-  struct Entry {
-    std::uint64_t tag, type, count;
-    Bytes data;
-  };
-  static void put(Bytes& to, std::uint64_t value, int bytes) {
-    for (int i = 0; i < bytes; ++i) {
-      to.push_back(static_cast<unsigned char>(value >> (8 * i)));
-    }
-  }
-  void add(std::uint64_t tag, std::uint64_t type, std::uint64_t count, const Bytes& data) {
-    entries_.push_back({tag, type, count, data});
-  }
-  void add(std::uint64_t tag, std::uint64_t type, std::uint64_t count, std::uint64_t value) {
-    Bytes data;
-    put(data, value, 4);
-    entries_.push_back({tag, type, count, data});
-  }
-  std::vector<Entry> entries_;
-};
-
-std::string wkt_of_keys(const LasFile& file, const CrsRecords& crs) {
-  if (crs.keys.size() < 8 ||
-      crs.keys.size() < 8 + std::size_t{las_value<std::uint16_t>(crs.keys, 6)} * 8) {
-    refuse_las(file, "its GeoTIFF keys are cut off; name the CRS with --a-srs instead");
-  }
-  Bytes tiff = KeyTiff(crs).bytes();
-  const GdalSession session;
-  static constexpr const char* kDriver[] = {"GTiff", nullptr};
-  char name[64];
-  std::snprintf(name, sizeof name, "/vsimem/ptin_las_keys_%p.tif", static_cast<void*>(&tiff));
-  VSIFCloseL(VSIFileFromMemBuffer(name, tiff.data(), tiff.size(), FALSE));
-  std::string wkt;
-  {
-    const GDALDatasetUniquePtr data(
-        GDALDataset::Open(name, GDAL_OF_RASTER | GDAL_OF_READONLY, kDriver));
-    wkt = data == nullptr ? "" : data->GetProjectionRef();
-  }
-  VSIUnlink(name);
-  return wkt;
-}
-
 }  // namespace
 
 LasFile::LasFile(std::string path) : path_(std::move(path)) {
@@ -301,30 +149,30 @@ LasHeader read_las_header(const LasFile& file) {
   h.first_point = las_value<std::uint32_t>(bytes, 96);
   h.record_bytes = las_value<std::uint16_t>(bytes, 105);
   h.points = point_count(bytes, h.minor_version);
+  h.header_bytes = header_bytes;
+  h.records = las_value<std::uint32_t>(bytes, 100);
+  h.legacy_points = las_value<std::uint32_t>(bytes, 107);
+  const auto encoding = las_value<std::uint16_t>(bytes, 6);
+  h.crs_is_wkt = (encoding & 0x10) != 0;
+  h.returns_are_made_up = (encoding & 0x08) != 0;
+  if (h.minor_version >= 3 && (encoding & 0x02) != 0) {
+    h.first_waveform = las_value<std::uint64_t>(bytes, 227);
+  }
+  if (h.minor_version >= 4) {
+    h.first_extended = las_value<std::uint64_t>(bytes, 235);
+    h.extended_records = las_value<std::uint32_t>(bytes, 243);
+  }
   check_format(file, h, bytes[104]);
   h.point_format = bytes[104];
   for (std::size_t i = 0; i < 3; ++i) {
     h.scale[i] = las_value<double>(bytes, 131 + 8 * i);
     h.offset[i] = las_value<double>(bytes, 155 + 8 * i);
+    h.high[i] = las_value<double>(bytes, 179 + 16 * i);
+    h.low[i] = las_value<double>(bytes, 187 + 16 * i);
   }
   check_lattice(file, h);
   check_points(file, h, header_bytes);
   return h;
-}
-
-std::string read_las_crs(const LasFile& file) {
-  Bytes bytes(375);
-  const auto there = static_cast<std::size_t>(std::min<std::uint64_t>(file.bytes(), bytes.size()));
-  file.read(0, std::span(bytes).first(there));
-  CrsRecords crs;
-  walk_records(file, las_value<std::uint16_t>(bytes, 94), las_value<std::uint32_t>(bytes, 100),
-               false, crs);
-  if (bytes[25] >= 4) {
-    walk_records(file, las_value<std::uint64_t>(bytes, 235), las_value<std::uint32_t>(bytes, 243),
-                 true, crs);
-  }
-  const bool wkt_first = (las_value<std::uint16_t>(bytes, 6) & 0x10) != 0 || crs.keys.empty();
-  return wkt_first && !crs.wkt.empty() ? crs.wkt : (crs.keys.empty() ? "" : wkt_of_keys(file, crs));
 }
 
 }  // namespace ptin

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The bytes of a LAS file before its points: header, variable length records, CRS.
+// The bytes of a LAS file, and its header. Its records are in read/las_crs.h.
 #pragma once
 
 #include <bit>
@@ -49,12 +49,5 @@ class LasFile {
 /// Reads the header, and checks it against itself and the size of the file.
 /// @throws Error as LasReader
 [[nodiscard]] LasHeader read_las_header(const LasFile& file);
-
-/// The CRS that the variable length records declare, the extended ones included: their WKT text
-/// where the header says so or there are no GeoTIFF keys, else the WKT that GDAL makes of the keys;
-/// "" where there is neither, and for keys that GDAL does not understand.
-/// @throws Error invalid_argument  a record reaches beyond the file; keys that are cut off
-///               io_error          the file cannot be read
-[[nodiscard]] std::string read_las_crs(const LasFile& file);
 
 }  // namespace ptin

@@ -7,7 +7,9 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/las_crs.h"
 #include "engine/construct/read/las_file.h"
+#include "engine/construct/read/las_records.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -77,7 +79,7 @@ LasReader::LasReader(std::string path, const PointChoice& choice, const PointPar
   header_ = read_las_header(*file_);
   read_ = begin_ = std::min(part.begin, header_.points);
   end_ = std::clamp(part.end, begin_, header_.points);
-  facts_.crs = read_las_crs(*file_);
+  read_declarations();
   for (const int c : choice.classes) {
     if (c < 0 || c > 255) {
       throw Error(ErrorCode::invalid_argument,
@@ -88,10 +90,113 @@ LasReader::LasReader(std::string path, const PointChoice& choice, const PointPar
   if (choice.classes.empty()) {
     classes_.set();
   }
+  names_classes_ = !choice.classes.empty();
+  has_box_ = header_.low != header_.high;  // else nobody filled it in
+  for (std::size_t i = 0; i < 3; ++i) {
+    low_[i] = (header_.low[i] - header_.offset[i]) / header_.scale[i] - 1.0;
+    high_[i] = (header_.high[i] - header_.offset[i]) / header_.scale[i] + 1.0;
+  }
   set_lattice();
 }
 
 LasReader::~LasReader() = default;
+
+/// Reads what the records declare, and warns of a header that does not fit its file.
+void LasReader::read_declarations() {
+  const LasRecords records = read_las_records(*file_, header_);
+  DeclaredCrs declared = crs_of_records(records, header_.crs_is_wkt);
+  facts_.crs = std::move(declared.crs);
+  facts_.vertical_crs = std::move(declared.vertical_crs);
+  facts_.units = std::move(declared.units);
+  warn(records.warnings);
+  warn(declared.warnings);
+  if (records.has_math_transform) {
+    warn("las_math_transform",
+         "it declares a transformation of its coordinates (record 2111), which is not applied");
+  }
+  if (header_.returns_are_made_up && returns_ != ReturnChoice::kAll) {
+    warn("las_returns",
+         "its header says that return numbers were not measured; --returns goes by them all the "
+         "same");
+  }
+  check_counts();
+}
+
+/// Warns of a header that counts otherwise than the file holds.
+void LasReader::check_counts() {
+  if (header_.minor_version >= 4 && header_.legacy_points != 0 &&
+      header_.legacy_points != header_.points) {
+    warn("las_counts", "its header counts " + std::to_string(header_.points) + " points, and " +
+                           std::to_string(header_.legacy_points) +
+                           " for programs of older versions; the former are read");
+  }
+  const std::uint64_t points_end = header_.first_point + header_.points * header_.record_bytes;
+  std::uint64_t end = file_->bytes();
+  for (const std::uint64_t begin :
+       {header_.extended_records > 0 ? header_.first_extended : 0, header_.first_waveform}) {
+    end = begin >= points_end ? std::min(end, begin) : end;
+  }
+  if (end >= points_end + header_.record_bytes) {
+    warn("las_counts", "behind the " + std::to_string(header_.points) +
+                           " points that its header counts there is room for " +
+                           std::to_string((end - points_end) / header_.record_bytes) +
+                           " more, which are not read; was it written to its end?");
+  }
+}
+
+void LasReader::warn(const char* kind, std::string message, std::uint64_t count) {
+  warnings_.add({kind, std::move(message), path_, "", 0, count});
+}
+
+SourceWarnings LasReader::warnings() const {
+  SourceWarnings all = warnings_;
+  const auto add = [&](const char* kind, const char* message, std::uint64_t count) {
+    if (count > 0) {
+      all.add({kind, message, path_, "", 0, count});
+    }
+  };
+  add("las_noise",
+      "a point is of class 7 or 18, noise, and is built from all the same; --class names those to "
+      "be kept",
+      noise_);
+  add("las_box",
+      "a point lies outside of the box that the header says all points are in; it is "
+      "taken",
+      out_of_box_);
+  add("las_returns",
+      "the number of an echo is 0 or more than its pulse has; it counts as the last "
+      "one, and 0 as the first one, too",
+      odd_returns_);
+  return all;
+}
+
+/// Counts what there is to be warned of in a point that is handed out.
+void LasReader::look_at(const unsigned char* record) {
+  const bool is_old = header_.point_format < 6;
+  const int cls = is_old ? record[15] & 0x1f : record[16];
+  noise_ += !names_classes_ && (cls == 7 || (cls == 18 && !is_old)) ? 1 : 0;
+  if (returns_ != ReturnChoice::kAll) {
+    const int number = record[14] & (is_old ? 0x07 : 0x0f);
+    const int count = is_old ? (record[14] >> 3) & 0x07 : record[14] >> 4;
+    odd_returns_ += number == 0 || number > count ? 1 : 0;
+  }
+  if (has_box_) {
+    const std::span<const unsigned char> bytes(record, 12);
+    bool is_out = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto steps = static_cast<double>(las_value<std::int32_t>(bytes, 4 * i));
+      is_out = is_out || steps < low_[i] || steps > high_[i];
+    }
+    out_of_box_ += is_out ? 1 : 0;
+  }
+}
+
+void LasReader::warn(const std::vector<SourceWarning>& warnings) {
+  for (SourceWarning warning : warnings) {
+    warning.file = path_;
+    warnings_.add(std::move(warning));
+  }
+}
 
 /// True for an echo that is wanted. Formats 0 to 5 hold its number and how many its pulse has in
 /// three bits each, formats 6 to 10 in four; numbers count from 1, and 0 says nothing.
@@ -135,6 +240,7 @@ bool LasReader::next(std::vector<SourcePoint>& batch) {
         ++left_out_;
         continue;
       }
+      look_at(record);
       const std::span<const unsigned char> bytes(record, 12);
       batch.push_back({axes_[0].decimal(las_value<std::int32_t>(bytes, 0)),
                        axes_[1].decimal(las_value<std::int32_t>(bytes, 4)),

@@ -14,6 +14,7 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/point_stream.h"
 
 namespace ptin {
@@ -25,8 +26,17 @@ struct LasHeader {
   std::uint32_t record_bytes = 0;  ///< A point; beyond what its format needs are extra bytes.
   std::uint64_t first_point = 0;   ///< Byte offset.
   std::uint64_t points = 0;
-  std::array<double, 3> scale{};   ///< Lengths of a step in x, y and z, > 0.
-  std::array<double, 3> offset{};  ///< Coordinates of step 0.
+  std::uint64_t legacy_points = 0;      ///< 1.4: what the header says to readers of older versions.
+  std::uint64_t header_bytes = 0;       ///< Where the variable length records begin.
+  std::uint32_t records = 0;            ///< Those before the points.
+  std::uint64_t first_extended = 0;     ///< Byte offset of those behind the points (1.4).
+  std::uint32_t extended_records = 0;   ///< How many.
+  std::uint64_t first_waveform = 0;     ///< Byte offset of waveforms in the file (1.3); 0: none.
+  bool crs_is_wkt = false;              ///< Bit 4 of the global encoding.
+  bool returns_are_made_up = false;     ///< Bit 3: return numbers were not measured.
+  std::array<double, 3> scale{};        ///< Lengths of a step in x, y and z, > 0.
+  std::array<double, 3> offset{};       ///< Coordinates of step 0.
+  std::array<double, 3> low{}, high{};  ///< The box of all points, withheld ones included.
 };
 
 /// A LAS file as a stream of points. Left out are points that are marked as withheld, and points of
@@ -35,8 +45,7 @@ struct LasHeader {
 /// LAS coordinates are whole numbers of steps (`scale`) from an offset. Where the steps of x and y
 /// are powers of ten, and their offsets whole numbers of steps, points are exact decimals and
 /// facts() declares their digits. Otherwise facts() declares a lattice: the smaller of the two
-/// steps as its unit, and the offsets. The CRS is that of read_las_crs() (read/las_file.h); text
-/// that GDAL does not understand is an error when the CRS is resolved, not here.
+/// steps as its unit, and the offsets. The CRS is that of crs_of_records() (read/las_crs.h).
 class LasReader final : public PointStream {
  public:
   /// @throws Error  not_found, io_error    the file cannot be opened or read
@@ -54,6 +63,7 @@ class LasReader final : public PointStream {
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
   [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
+  [[nodiscard]] SourceWarnings warnings() const override;
   [[nodiscard]] std::uint64_t done() const noexcept override { return read_ - begin_; }
   [[nodiscard]] std::uint64_t total() const noexcept override { return end_ - begin_; }
 
@@ -72,6 +82,11 @@ class LasReader final : public PointStream {
   };
   [[nodiscard]] Axis make_axis(std::size_t i, bool powers_of_ten_only) const;
   void set_lattice();
+  void read_declarations();
+  void warn(const std::vector<SourceWarning>& warnings);
+  void warn(const char* kind, std::string message, std::uint64_t count = 0);
+  void check_counts();
+  void look_at(const unsigned char* record);
   [[nodiscard]] bool is_wanted_return(const unsigned char* record) const;
   [[nodiscard]] bool wanted(const unsigned char* record) const;
 
@@ -79,6 +94,7 @@ class LasReader final : public PointStream {
   std::unique_ptr<File> file_;
   LasHeader header_;
   PointStreamFacts facts_;
+  SourceWarnings warnings_;
   std::array<Axis, 3> axes_;
   std::bitset<256> classes_;  ///< Those that are kept.
   ReturnChoice returns_ = ReturnChoice::kAll;
@@ -86,6 +102,10 @@ class LasReader final : public PointStream {
   std::uint64_t begin_ = 0, end_ = 0;  ///< The records of the part.
   std::uint64_t read_ = 0;             ///< The next record.
   std::uint64_t left_out_ = 0;
+  bool has_box_ = false, names_classes_ = false;
+  /// Steps of the header's box, one more on each side.
+  std::array<double, 3> low_{}, high_{};
+  std::uint64_t noise_ = 0, out_of_box_ = 0, odd_returns_ = 0;  ///< Points that were handed out.
 };
 
 }  // namespace ptin

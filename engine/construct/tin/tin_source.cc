@@ -205,15 +205,13 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   }
   TinOnGrid tin = read_on_grid(path, {options, memory, stop, progress});
   TinTriangles to;
-  // --a-srs replaces the CRS of the source together with its vertical part.
-  const bool keeps_vertical = options.a_srs.empty() && options.vertical_crs.empty();
-  set_crs(to.frame_, resolve_crs(tin.crs, options.a_srs,
-                                 keeps_vertical ? tin.vertical_crs : options.vertical_crs));
+  set_crs(to.frame_, resolve_source_crs({tin.crs, tin.vertical_crs}, options, path, tin.warnings));
   set_units(to.frame_, tin.units, options.a_srs.empty(), path);
   to.frame_.map = tin.grid.map();
   require_resolvable(to.frame_.map, tin.grid.east - tin.grid.west, tin.grid.north - tin.grid.south,
                      "give a coarser --resolution", path);
   require_latitudes(to.frame_, tin.grid.north - tin.grid.south, path);
+  require_longitudes(to.frame_, tin.grid.east - tin.grid.west, tin.grid.is_split, path);
   set_heights(to.frame_, tin.heights);
   to.codes_are_whole_ = tin.grid.whole;
   to.warnings_ = std::move(tin.warnings);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// GeoTIFF keys outside of a TIFF, as LAS holds them: what they say of the CRS and of units.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/construct/grid/source_point.h"
+#include "engine/construct/grid/source_warning.h"
+
+namespace ptin {
+
+/// The contents of the tags GeoKeyDirectory, GeoDoubleParams and GeoAsciiParams, as they are.
+struct GeoTiffKeys {
+  std::vector<unsigned char> directory, doubles, text;
+};
+
+/// A CRS and units, as a source declares them.
+struct DeclaredCrs {
+  std::string crs;           ///< Anything that GDAL understands; "" for none.
+  std::string vertical_crs;  ///< Likewise, where it is apart from `crs`.
+  DeclaredUnits units;       ///< Beside these.
+  /// About what is not understood or contradicts itself; they name no file. Kinds that begin with
+  /// "crs_" mean nothing where the caller puts another CRS in the place of this one.
+  std::vector<SourceWarning> warnings;
+};
+
+/// What GeoTIFF keys declare, which libgeotiff and GDAL know; but that VerticalUnits decides about
+/// the heights' unit, whatever unit the vertical CRS has that stands beside it: programs name NAVD88
+/// by the code of its metres, and feet by that key.
+/// @throws nothing of its own; keys that are cut off are warned of
+/// Cost: some milliseconds.
+[[nodiscard]] DeclaredCrs crs_of_keys(const GeoTiffKeys& keys);
+
+}  // namespace ptin
