@@ -26,6 +26,7 @@ using testing::ReadMesh;
 using testing::run_ptin;
 using testing::test_data;
 using testing::TestFolder;
+using testing::write_file;
 
 TEST(Cli, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(run_ptin({"--help"}).status, 0);

@@ -248,7 +248,7 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   IsolineRequest request;
   request.levels = levels_of(options.levels, terrain.store().facts(), options.terrain.file);
-  if (const auto region = region_of(options.region, terrain.store().facts(), crs.wkt)) {
+  if (const auto region = region_of(options.region, terrain.store().facts(), crs).region) {
     request.window = std::get<Window>(*region);
   }
   request.detail = detail_of(options.detail);

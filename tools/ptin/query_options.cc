@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "engine/construct/process_limits.h"
 #include "engine/error.h"
@@ -100,22 +101,41 @@ void add_region_options(CLI::App& app, RegionOptions& options, RegionKinds kinds
       ->excludes(polygon);
 }
 
-std::optional<Region> region_of(const RegionOptions& options, const StoreFacts& facts,
-                                const std::string& crs_wkt) {
-  std::optional<Region> region;
+AskedRegion region_of(const RegionOptions& options, const StoreFacts& facts, const CrsFacts& crs) {
+  AskedRegion asked;
+  std::optional<Region>& region = asked.region;
   const char* option = "--window";
   if (!options.window.empty()) {
     region = window_of(options.window, option);
   } else if (!options.polygon.empty()) {
     option = "--polygon";
-    region = read_polygon(options.polygon, crs_wkt);
+    AskedPolygon polygon = read_polygon(options.polygon, plane_of(facts, crs));
+    region = std::move(polygon.polygon);
+    asked.transformed = std::move(polygon.transformed);
   } else if (!options.point.empty()) {
     option = "--point";
     check_finite(options.point, option);
     region = MapPoint{options.point[0], options.point[1]};
   }
   if (region) check_on_terrain(*region, facts, option);
-  return region;
+  return asked;
+}
+
+nlohmann::json transformed_json(const std::optional<Transformed>& transformed) {
+  if (!transformed) return nullptr;
+  return {{"from", transformed->from}, {"bent_at_most", transformed->bent_at_most}};
+}
+
+void tell_transformed(const std::optional<Transformed>& transformed, const std::string& what,
+                      const CrsFacts& crs, const Context& context) {
+  if (!transformed || context.quiet || context.json) return;
+  const std::string unit = crs.horizontal_unit == "unknown" ? "map unit" : crs.horizontal_unit;
+  std::fprintf(
+      stderr,
+      "%s, straight in %s, went into the terrain's CRS with sides that are off by %s %s at "
+      "most\n",
+      what.c_str(), printable(transformed->from).c_str(),
+      short_number(transformed->bent_at_most).c_str(), unit.c_str());
 }
 
 void add_curvature_option(CLI::App& app, double& coefficient) {

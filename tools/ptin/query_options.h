@@ -12,9 +12,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 #include "tools/ptin/command.h"
 #include "tools/region/on_terrain.h"
+#include "tools/region/straight_sides.h"
 
 namespace ptin::tools {
 
@@ -46,10 +48,22 @@ enum class RegionKinds : std::uint8_t { kWindow, kWithInside, kAll };
 /// @param kinds  A window alone, a window or a polygon, or a point too.
 void add_region_options(CLI::App& app, RegionOptions& options,
                         RegionKinds kinds = RegionKinds::kAll);
+/// A region, and what was done to it where it came from another CRS.
+struct AskedRegion {
+  std::optional<Region> region;  ///< None: everywhere.
+  std::optional<Transformed> transformed;
+};
 /// The region that was asked for, which meets the box of the terrain's samples.
 /// @throws Error as window_of, read_polygon and check_on_terrain
-[[nodiscard]] std::optional<Region> region_of(const RegionOptions& options, const StoreFacts& facts,
-                                              const std::string& crs_wkt);
+[[nodiscard]] AskedRegion region_of(const RegionOptions& options, const StoreFacts& facts,
+                                    const CrsFacts& crs);
+
+/// The object `transformed` of an answer; null where nothing was.
+[[nodiscard]] nlohmann::json transformed_json(const std::optional<Transformed>& transformed);
+/// Says on stderr what was transformed, and what bound holds. Silent with -q and --json.
+/// @param what  "the lines", "the polygon".
+void tell_transformed(const std::optional<Transformed>& transformed, const std::string& what,
+                      const CrsFacts& crs, const Context& context);
 
 /// Declares --curvature, of subcommands that look over the ground (engine/query/sight/curvature.h).
 void add_curvature_option(CLI::App& app, double& coefficient);

@@ -55,10 +55,10 @@ struct SightOptions {
   AnswerOptions answer;
 };
 
-Asked<SightPair> pairs_of(const SightOptions& options, const std::string& crs_wkt) {
-  if (!options.pairs.empty()) return read_pairs(options.pairs, options.choice, crs_wkt);
+Asked<SightPair> pairs_of(const SightOptions& options, const TerrainPlane& plane) {
+  if (!options.pairs.empty()) return read_pairs(options.pairs, options.choice, plane);
   const std::vector<double>& n = options.pair;
-  return {{{{n[0], n[1]}, n[2], {n[3], n[4]}, n[5]}}, {}};
+  return {{{{n[0], n[1]}, n[2], {n[3], n[4]}, n[5]}}, {}, {}};
 }
 
 /// The frequency in hertz that a text names, as 5.8GHz, 5800MHz or 5.8e9; large and small letters
@@ -271,7 +271,7 @@ int run_sight(const SightOptions& options, const Context& context) {
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const Asked<SightPair> asked = pairs_of(options, crs.wkt);
+  const Asked<SightPair> asked = pairs_of(options, plane_of(terrain.store().facts(), crs));
   warn_of_empty_input(asked.all.empty(), options.pairs, "pair", context);
   const SightRequest request = request_of(options, ground_of(crs), context);
   SightAnswers answers(options, asked, context, crs);

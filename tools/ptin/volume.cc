@@ -84,11 +84,11 @@ void check_comparable(const CrsFacts& file, const CrsFacts& other, const VolumeO
   }
 }
 
-VolumeRequest request_of(const VolumeOptions& options, const Terrain& terrain, const CrsFacts& crs,
-                         const Context& context) {
+VolumeRequest request_of(const VolumeOptions& options, const CrsFacts& crs,
+                         const std::optional<Region>& region, const Context& context) {
   VolumeRequest request;
   request.level = options.level.value_or(0.0);
-  request.region = region_of(options.region, terrain.store().facts(), crs.wkt);
+  request.region = region;
   request.detail = detail_of(options.detail);
   const Ground ground = ground_of(crs);
   request.ground = {ground.per_map_unit, !ground.geographic};
@@ -108,7 +108,8 @@ nlohmann::json interval_json(const CertifiedVolume& v) {
 }
 
 void print_answer(const VolumeResult& result, const VolumeOptions& options, const Terrain& terrain,
-                  const Terrain* other, const CrsFacts& crs) {
+                  const Terrain* other, const CrsFacts& crs,
+                  const std::optional<Transformed>& transformed) {
   nlohmann::json units = units_json(crs);
   units["ground"] = unit_of_ground(crs);
   nlohmann::json answer = {
@@ -130,6 +131,7 @@ void print_answer(const VolumeResult& result, const VolumeOptions& options, cons
       {"certified_deviation", result.certificate.deviation},
       {"border_moved_at_most", border_move_json(terrain.store(), result.certificate.error)},
       {"exact", result.exact},
+      {"transformed", transformed_json(transformed)},
       {"units", units},
       {"cost", cost_json(result.cost)}};
   if (other != nullptr) {
@@ -197,7 +199,9 @@ int run_volume(const VolumeOptions& options, const Context& context) {
     check_comparable(crs, crs_of_other, options, context);
     other_height_scale = height_scale(crs, crs_of_other, options, context);
   }
-  VolumeRequest request = request_of(options, terrain, crs, context);
+  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs);
+  tell_transformed(asked.transformed, "the polygon", crs, context);
+  VolumeRequest request = request_of(options, crs, asked.region, context);
   request.other = other ? &*other : nullptr;
   request.other_height_scale = other_height_scale;
   const VolumeResult result = terrain.volume(request);
@@ -208,7 +212,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
          context);
   }
   if (context.json) {
-    print_answer(result, options, terrain, other ? &*other : nullptr, crs);
+    print_answer(result, options, terrain, other ? &*other : nullptr, crs, asked.transformed);
   } else {
     print_text(result, options, crs);
   }

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "tools/http/problem.h"
+#include "tools/region/straight_sides.h"
 #include "tools/serve/wkt_places.h"
 
 namespace ptin::serve {
@@ -15,12 +16,12 @@ namespace {
 using Lines = std::vector<std::vector<MapPoint>>;
 
 /// The lines of `coords`, in the terrain's CRS.
-Lines lines_of(const Asked& asked, const Places& places) {
+Lines lines_of(const Asked& asked, const Places& places, const tools::SideTarget& sides) {
   Lines lines = lines_of_wkt(asked.question.needed("coords"), "coords");
   std::size_t positions = 0;
   for (const std::vector<MapPoint>& line : lines) positions += line.size();
   check_count(positions, asked.options.question.points, "positions", "points", "coords");
-  for (std::vector<MapPoint>& line : lines) places.to_terrain(line);
+  for (std::vector<MapPoint>& line : lines) line = places.line_to_terrain(line, sides, "coords");
   return lines;
 }
 
@@ -61,7 +62,9 @@ double station_step_of(const Asked& asked, double length) {
 
 AlongLines walk_lines(const Asked& asked, const Places& places) {
   const Collection& collection = *asked.collection;
-  const Lines lines = lines_of(asked, places);
+  tools::SideTarget sides = tools::side_target(asked.terrain().store().facts(), false);
+  sides.most_points = asked.options.question.vertices;
+  const Lines lines = lines_of(asked, places, sides);
   const double length = length_of(lines, collection);
   if (length == 0) throw http::Problem(400, "no line has a length").at("coords");
   ProfileRequest request;
@@ -70,6 +73,7 @@ AlongLines walk_lines(const Asked& asked, const Places& places) {
   request.detail = detail_of(asked);
   request.limits = engine_limits(asked);
   AlongLines along;
+  if (!places.is_native()) along.bent_at_most = sides.most_bend;
   along.length_unit = collection.ground.geographic ? "metre" : collection.crs.horizontal_unit;
   along.profile = asked.terrain().profile(lines, request);
   check_count(along.profile.points.size(), asked.options.question.vertices, "points of the profile",

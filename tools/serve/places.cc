@@ -10,6 +10,7 @@
 
 #include <ogr_spatialref.h>
 
+#include "engine/error.h"
 #include "tools/http/problem.h"
 #include "tools/tiles/curve_range.h"
 
@@ -259,6 +260,21 @@ void Places::to_terrain(std::span<MapPoint> places, std::string_view parameter) 
 MapPoint Places::to_terrain(MapPoint place, std::string_view parameter) const {
   to_terrain({&place, 1}, parameter);
   return place;
+}
+
+std::vector<MapPoint> Places::line_to_terrain(std::span<const MapPoint> line,
+                                              tools::SideTarget sides,
+                                              std::string_view parameter) const {
+  if (is_native()) return {line.begin(), line.end()};
+  sides.turns = turns_;
+  sides.bounds = bounds_;
+  sides.source_turns = client_turns_;
+  try {
+    return tools::transformed_sides(line, tools::places_by(*inside_->ways->there), sides);
+  } catch (const Error& e) {
+    http::Problem problem(e.code() == ErrorCode::resource_exhausted ? 413 : 400, e.message());
+    throw std::move(problem).at(std::string(parameter));
+  }
 }
 
 void Places::from_terrain(std::span<MapPoint> places) const {

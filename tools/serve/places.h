@@ -8,9 +8,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
+#include "tools/region/straight_sides.h"
 
 namespace ptin::serve {
 
@@ -35,6 +37,13 @@ class Places {
   /// @throws http::Problem 400  no position of the terrain's CRS; names the first one
   void to_terrain(std::span<MapPoint> places, std::string_view parameter = "coords") const;
   [[nodiscard]] MapPoint to_terrain(MapPoint place, std::string_view parameter = "coords") const;
+  /// A line of straight sides in the client's CRS, with the places between its corners that keep it
+  /// so in the terrain's. Of degrees a side goes the shorter way around.
+  /// @param sides  Tells how near, and how many places at most; what turns is known here.
+  /// @throws http::Problem 400, 413  as tools::transformed_sides()
+  [[nodiscard]] std::vector<MapPoint> line_to_terrain(std::span<const MapPoint> line,
+                                                      tools::SideTarget sides,
+                                                      std::string_view parameter) const;
   /// Positions that have none in the client's CRS become NaN. Of degrees the first one is from -180
   /// to 180, and the others go on from it: a line across the antimeridian does not jump.
   void from_terrain(std::span<MapPoint> places) const;
