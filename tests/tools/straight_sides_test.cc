@@ -105,7 +105,7 @@ TEST(StraightSides, FindBendsThatTheMiddleDoesNotShow) {
     for (MapPoint& p : places) p.y += 5 * std::sin(2 * 3.14159265358979323846 * p.x / 250);
   };
   SideTarget target;
-  target.most_bend = 0.05;
+  target.most_bend = 0.04;
   const Path path = transformed_sides(Path{{0, 0}, {1000, 0}}, wave, target);
   double worst = 0.0;
   for (int i = 0; i <= 10'000; ++i) {

@@ -128,6 +128,7 @@ int run_locate(const LocateOptions& options, const Context& context) {
           ? Asked<MapPoint>{{{options.point[0], options.point[1]}}, {}, {}}
           : read_points(options.points, options.choice, plane_of(terrain.store().facts(), crs));
   warn_of_empty_input(asked.all.empty(), options.points, "point", context);
+  warn_of_outside(asked.all, "point", terrain.store().facts(), crs, context);
   LocateRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin profile: heights along a line, as CSV, a layer or a plot.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -250,6 +251,14 @@ int run_profile(const ProfileOptions& options, const Context& context) {
     };
   }
   ProfileResult result = terrain.profile(lines, request);
+  const auto is_outside = [](const ProfilePoint& p) { return p.state == PointState::kOutside; };
+  if (std::all_of(result.points.begin(), result.points.end(), is_outside)) {
+    std::vector<MapPoint> corners;
+    for (const auto& corners_of_line : lines) {
+      corners.insert(corners.end(), corners_of_line.begin(), corners_of_line.end());
+    }
+    warn_of_outside(corners, "corner of the lines", terrain.store().facts(), crs, context);
+  }
   if (result.skipped_lines > 0 && !context.json && !context.quiet) {
     std::fprintf(stderr, "%s of %s: no length, skipped\n", grouped(result.skipped_lines).c_str(),
                  counted(lines.size(), "line").c_str());

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,8 +66,14 @@ struct AskedRegion {
 void tell_transformed(const std::optional<Transformed>& transformed, const std::string& what,
                       const CrsFacts& crs, const Context& context);
 
-/// Declares --curvature, of subcommands that look over the ground (engine/query/sight/curvature.h).
+/// Declares --curvature and --refraction, of subcommands that look over the ground (engine/query/sight/curvature.h).
 void add_curvature_option(CLI::App& app, double& coefficient);
+
+/// Writes a warning to stderr where all places lie outside of the box of the terrain's samples, with
+/// what may have been meant. Silent with -q and --json.
+/// @param what  One of them, as "point".
+void warn_of_outside(std::span<const MapPoint> places, const std::string& what,
+                     const StoreFacts& facts, const CrsFacts& crs, const Context& context);
 
 /// --error and --vertices, of which at most one may be given: the level of detail.
 struct DetailOptions {
@@ -99,11 +106,9 @@ struct LevelOptions {
 void add_level_options(CLI::App& app, LevelOptions& options, const std::string& level_help,
                        const std::string& interval_help);
 /// The heights that were given, or the multiples of the interval, counted from the base, that lie
-/// within the heights of the terrain.
-/// @param file  Named in errors.
-/// @throws Error invalid_argument  no multiple lies there
-[[nodiscard]] std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts,
-                                            const std::string& file);
+/// within the heights of the terrain; the next one above where none does.
+/// @throws Error as levels_at()
+[[nodiscard]] std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts);
 
 /// Declares --memory SIZE.
 void add_memory_option(CLI::App& app, std::string& memory);

@@ -140,11 +140,13 @@ nlohmann::json json_of(const SightResult& r) {
 /// The numbers of an answer, as columns of CSV and attributes of a layer, in the order of kNumbers.
 constexpr std::array kNumbers = {
     "length",        "obstruction_x",      "obstruction_y", "obstruction_distance", "clearance_min",
-    "clearance_max", "clearance_distance", "void_length",   "fresnel_ratio"};
+    "clearance_max", "clearance_distance", "void_length",   "fresnel_ratio",        "fresnel_x",
+    "fresnel_y",     "fresnel_distance",   "fresnel_height"};
 std::array<double, kNumbers.size()> numbers_of(const SightResult& r) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const SightPoint none{{kNone, kNone}, kNone, kNone, kNone};
   const SightPoint& at = r.obstruction ? *r.obstruction : none;
+  const SightPoint& zone = r.fresnel_at ? *r.fresnel_at : none;
   return {r.length,
           at.position.x,
           at.position.y,
@@ -153,7 +155,11 @@ std::array<double, kNumbers.size()> numbers_of(const SightResult& r) {
           r.clearance_max,
           r.clearance_at ? r.clearance_at->distance : kNone,
           r.void_length,
-          r.fresnel_ratio.value_or(kNone)};
+          r.fresnel_ratio.value_or(kNone),
+          zone.position.x,
+          zone.position.y,
+          zone.distance,
+          zone.height};
 }
 
 /// What a plot shows of a pair, beside its answer: the ground below it, and how high its ends are.
@@ -273,6 +279,9 @@ int run_sight(const SightOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<SightPair> asked = pairs_of(options, plane_of(terrain.store().facts(), crs));
   warn_of_empty_input(asked.all.empty(), options.pairs, "pair", context);
+  std::vector<MapPoint> ends;
+  for (const SightPair& pair : asked.all) ends.insert(ends.end(), {pair.a, pair.b});
+  warn_of_outside(ends, "end", terrain.store().facts(), crs, context);
   const SightRequest request = request_of(options, ground_of(crs), context);
   SightAnswers answers(options, asked, context, crs);
   if (answers.are_plotted()) require_panels(asked.all.size(), "pairs", options.answer.output);

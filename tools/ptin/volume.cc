@@ -144,38 +144,33 @@ void print_answer(const VolumeResult& result, const VolumeOptions& options, cons
   print_json(answer);
 }
 
-/// Ten digits: more than that is seldom known of a terrain, and JSON has them.
-std::string ten_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value == 0 ? 0.0 : value);
-  return text;
-}
-
 void print_text(const VolumeResult& result, const VolumeOptions& options, const CrsFacts& crs) {
   const std::string unit = unit_of_ground(crs);
-  const std::string known = unit == "unknown" ? "unit" : unit;
-  const auto volume = [&](const char* name, const CertifiedVolume& v) {
-    std::printf("%-5s %s cubic %s", name, ten_digits(v.value).c_str(), known.c_str());
+  const std::string known = plural_of(unit == "unknown" ? "unit" : unit);
+  const std::string than = options.against.empty() ? "the level" : options.against;
+  const std::string& here = options.terrain.file;
+  const auto volume = [&](const char* name, const CertifiedVolume& v, const std::string& where) {
+    std::printf("%-5s %s cubic %s", name, grouped_number(v.value).c_str(), known.c_str());
     if (!result.exact) {
-      std::printf(", the source's between %s and %s", ten_digits(v.low).c_str(),
-                  ten_digits(v.high).c_str());
+      std::printf(", the source's between %s and %s", grouped_number(v.low).c_str(),
+                  grouped_number(v.high).c_str());
     }
-    std::printf("\n");
+    std::printf("%s\n", where.c_str());
   };
-  volume("cut", result.cut);
-  volume("fill", result.fill);
-  volume("net", result.net);
+  volume("cut", result.cut, ": " + here + " is above " + than + ", material to take away");
+  volume("fill", result.fill, ": " + here + " is below " + than + ", material to bring");
+  volume("net", result.net, ": cut less fill");
   std::printf("area  %s square %s: cut %s, fill %s; void %s\n",
-              ten_digits(result.surface_area).c_str(), known.c_str(),
-              ten_digits(result.cut_area).c_str(), ten_digits(result.fill_area).c_str(),
-              ten_digits(result.void_area).c_str());
+              grouped_number(result.surface_area).c_str(), known.c_str(),
+              grouped_number(result.cut_area).c_str(), grouped_number(result.fill_area).c_str(),
+              grouped_number(result.void_area).c_str());
   if (!options.against.empty()) {
     std::printf("      surface in %s alone %s, in %s alone %s\n", options.terrain.file.c_str(),
-                ten_digits(result.only_here_area).c_str(), options.against.c_str(),
-                ten_digits(result.only_other_area).c_str());
+                grouped_number(result.only_here_area).c_str(), options.against.c_str(),
+                grouped_number(result.only_other_area).c_str());
   }
   if (std::isfinite(result.mean_difference)) {
-    std::printf("mean  %s %s\n", ten_digits(result.mean_difference).c_str(), known.c_str());
+    std::printf("mean  %s %s\n", grouped_number(result.mean_difference).c_str(), known.c_str());
   }
 }
 
