@@ -171,6 +171,19 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   question({"highest", store, "-k", "2"});
   question({"volume", store, "--level", "90"});
   question({"volume", store, "--against", store, "--error", "2"});
+  const auto in_degrees = [&](const std::string& name, const std::string& shape) {
+    tools::testing::write_file(file(name),
+                               R"({"type":"Feature","properties":{},"geometry":)" + shape + "}");
+    return file(name);
+  };
+  const std::string path = "[-116.998,36.137],[-116.992,36.137],[-116.992,36.142]";
+  const std::string area = in_degrees(
+      "area.geojson", R"({"type":"Polygon","coordinates":[[)" + path + ",[-116.998,36.137]]]}");
+  question({"volume", store, "--level", "90", "--polygon", area});
+  question({"export", store, "-o", file("part.ply"), "-q", "--polygon", area});
+  question({"refine", store, "--polygon", area, "--cut", "-o", file("part.obj")});
+  question({"profile", store, "--line",
+            in_degrees("way.geojson", R"({"type":"LineString","coordinates":[)" + path + "]}")});
   question({"viewshed", store, "500500", "3999500", "2", "--radius", "300", "-o", file("a.tif")});
   question({"viewshed", store, "500500", "3999500", "2", "--radius", "300", "-o", file("a.gpkg")});
   question({"export", store, "-o", file("c.ply"), "-q"});

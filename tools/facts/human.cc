@@ -23,6 +23,23 @@ std::string counted(std::uint64_t n, const std::string& one, const std::string& 
   return grouped(n) + " " + (n == 1 ? one : plural.empty() ? one + "s" : plural);
 }
 
+std::string grouped_number(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.10g", value == 0 ? 0.0 : value);
+  std::string text = digits;
+  if (!std::isfinite(value) || text.find('e') != std::string::npos) return text;
+  const std::size_t first = text.starts_with('-') ? 1 : 0;
+  std::size_t at = std::min(text.find('.'), text.size());
+  for (; at > first + 3; at -= 3) text.insert(at - 3, ",");
+  return text;
+}
+
+std::string plural_of(const std::string& unit) {
+  constexpr std::string_view kFoot = "foot";
+  if (unit.ends_with(kFoot)) return unit.substr(0, unit.size() - kFoot.size()) + "feet";
+  return unit + "s";
+}
+
 std::string human_bytes(std::uint64_t bytes) {
   if (bytes < 1024) return std::to_string(bytes).append(" bytes");
   const char* const units[] = {"KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};

@@ -14,6 +14,10 @@ namespace ptin::tools {
 /// "1 page", "1,234 pages". `plural` is needed where it is not `one` with an s.
 [[nodiscard]] std::string counted(std::uint64_t n, const std::string& one,
                                   const std::string& plural = {});
+/// Ten significant digits, in groups of three before the point: "83,780,376.2".
+[[nodiscard]] std::string grouped_number(double value);
+/// Several of a unit: "metres", "US survey feet".
+[[nodiscard]] std::string plural_of(const std::string& unit);
 /// Bytes as "3.2 MiB"; below 1024 "512 bytes".
 [[nodiscard]] std::string human_bytes(std::uint64_t bytes);
 /// Seconds as "12 s", "3 min", "1.5 h".

@@ -186,10 +186,10 @@ Exported export_triangles(TinParts& parts, const ExportFormat& format, const Sin
 }
 
 /// The pixels that were asked for.
-PixelGrid grid_of(const ExportOptions& options, const StoreFile& store, const CrsFacts& crs) {
+PixelGrid grid_of(const ExportOptions& options, const std::optional<Region>& region,
+                  const StoreFile& store, const CrsFacts& crs) {
   std::optional<Window> window;
-  if (const auto region = region_of(options.region, store.facts(), crs.wkt))
-    window = std::get<Window>(*region);
+  if (region) window = std::get<Window>(*region);
   const std::array<double, 2> size = options.pixel_size.empty()
                                          ? own_pixel_size(store)
                                          : pixel_size_of(pixel_sides_of(options.pixel_size), crs,
@@ -213,10 +213,10 @@ Exported export_pixels(TinParts& parts, const PixelGrid& grid, const RasterTarge
 /// The samples of what was exported that the level of detail moved across the border of voids.
 /// None where nothing bounds how far the border moved, or the ground around it does not fit the memory.
 std::optional<ClassChanges> changes_of(const TinParts& parts, const ExportOptions& options,
-                                       const CrsFacts& crs) {
+                                       const std::optional<Region>& region) {
   const StoreFile& store = parts.terrain().store();
   ClassChangesRequest request;
-  request.region = region_of(options.region, store.facts(), crs.wkt);
+  request.region = region;
   request.detail = detail_of(options.detail);
   request.reach = border_reach(store, parts.detail().certificate().error);
   request.limits = parts.request().limits;
@@ -230,10 +230,9 @@ std::optional<ClassChanges> changes_of(const TinParts& parts, const ExportOption
 }
 
 PartRequest request_of(const ExportOptions& options, const ExportFormat& format,
-                       const StoreFile& store, const Context& context) {
+                       const std::optional<Region>& region, const Context& context) {
   PartRequest request;
-  if (format.make_sink != nullptr)
-    request.region = region_of(options.region, store.facts(), crs_facts(store).wkt);
+  if (format.make_sink != nullptr) request.region = region;
   request.detail = detail_of(options.detail);
   request.limits.memory_bytes = memory_of(options).part;
   request.limits.stop = context.stop;
@@ -283,10 +282,13 @@ RasterTarget raster_target(const ExportFormat& format, const ExportOptions& opti
 Exported export_as(const ExportFormat& format, const ExportOptions& options, const Terrain& terrain,
                    const Context& context) {
   const StoreFile& store = terrain.store();
+  const CrsFacts crs = crs_facts(store);
+  const AskedRegion asked = region_of(options.region, store.facts(), crs);
+  tell_transformed(asked.transformed, "the polygon", crs, context);
   const bool is_raster = format.make_sink == nullptr;
   std::optional<PixelGrid> grid;
-  if (is_raster) grid.emplace(grid_of(options, store, crs_facts(store)));
-  TinParts parts = terrain.parts(request_of(options, format, store, context));
+  if (is_raster) grid.emplace(grid_of(options, asked.region, store, crs));
+  TinParts parts = terrain.parts(request_of(options, format, asked.region, context));
   Progress progress(Progress::style_for(context.quiet, stderr));
   const Report report = [&](double done) {
     constexpr double kSteps = 10'000.0;
@@ -294,7 +296,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   };
   report(0.0);
   // Before anything is published: what may fail for want of memory must leave nothing behind.
-  const std::optional<ClassChanges> changes = changes_of(parts, options, crs_facts(store));
+  const std::optional<ClassChanges> changes = changes_of(parts, options, asked.region);
   const std::uint64_t lone_samples = source_count(store, "lone_samples");
   Exported made;
   if (is_raster) {
@@ -315,6 +317,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   }
   made.output = options.output;
   made.format = format.name;
+  made.transformed = asked.transformed;
   made.is_raster = is_raster;
   made.what = options.content.what;
   if (made.what == "slope") made.slope_unit = slope_unit_of(options.content);

@@ -6,6 +6,7 @@
 #include "engine/crs/crs_facts.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
+#include "tools/ptin/query_options.h"
 #include "tools/region/mesh_crs.h"
 
 namespace ptin::tools {
@@ -54,6 +55,7 @@ nlohmann::json json_of(const Exported& made, const StoreFile& store) {
       {"samples_made_surface", made.changes ? nlohmann::json(made.changes->to_surface) : nullptr},
       {"lone_samples", made.lone_samples},
       {"exact", certificate.complete && store.facts().base_error == 0 && made.rounding == 0},
+      {"transformed", transformed_json(made.transformed)},
       {"units", units_json(crs_facts(store))},
       {"bytes", made.bytes},
       {"seconds", made.seconds}};

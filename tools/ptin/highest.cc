@@ -53,7 +53,7 @@ int run_highest(const HighestOptions& options, const Context& context) {
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   HighestRequest request;
-  if (const auto region = region_of(options.region, terrain.store().facts(), crs.wkt)) {
+  if (const auto region = region_of(options.region, terrain.store().facts(), crs).region) {
     request.window = std::get<Window>(*region);
   }
   request.lowest = options.lowest;

@@ -247,8 +247,8 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   IsolineRequest request;
-  request.levels = levels_of(options.levels, terrain.store().facts(), options.terrain.file);
-  if (const auto region = region_of(options.region, terrain.store().facts(), crs.wkt)) {
+  request.levels = levels_of(options.levels, terrain.store().facts());
+  if (const auto region = region_of(options.region, terrain.store().facts(), crs).region) {
     request.window = std::get<Window>(*region);
   }
   request.detail = detail_of(options.detail);

@@ -123,10 +123,12 @@ int run_locate(const LocateOptions& options, const Context& context) {
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const Asked<MapPoint> asked = options.points.empty()
-                                    ? Asked<MapPoint>{{{options.point[0], options.point[1]}}, {}}
-                                    : read_points(options.points, options.choice, crs.wkt);
+  const Asked<MapPoint> asked =
+      options.points.empty()
+          ? Asked<MapPoint>{{{options.point[0], options.point[1]}}, {}, {}}
+          : read_points(options.points, options.choice, plane_of(terrain.store().facts(), crs));
   warn_of_empty_input(asked.all.empty(), options.points, "point", context);
+  warn_of_outside(asked.all, "point", terrain.store().facts(), crs, context);
   LocateRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);

@@ -227,7 +227,7 @@ void add_input_options(CLI::App& app, InputChoice& choice, CLI::Option* source,
 }
 
 Asked<MapPoint> read_points(const std::string& path, const InputChoice& choice,
-                            const std::string& crs_wkt) {
+                            const TerrainPlane& plane) {
   if (is_text(path, choice)) {
     return read_text<MapPoint>(path, kPoint, choice, [](std::span<const double> n) {
       return MapPoint{n[0], n[1]};
@@ -236,7 +236,7 @@ Asked<MapPoint> read_points(const std::string& path, const InputChoice& choice,
   refuse_columns(path, choice);
   Asked<MapPoint> asked;
   FeatureIds ids(choice.id, path);
-  for_each_feature(path, {LayerKind::kPoints, choice.layer}, crs_wkt, [&](const OGRFeature& f) {
+  const auto add_feature = [&](const OGRFeature& f) {
     const std::size_t before = asked.all.size();
     const auto add = [&](const OGRGeometry& part) {
       if (wkbFlatten(part.getGeometryType()) != wkbPoint) refuse_feature(f, "is no point", path);
@@ -249,12 +249,13 @@ Asked<MapPoint> read_points(const std::string& path, const InputChoice& choice,
     if (f.GetGeometryRef() != nullptr) for_each_part(*f.GetGeometryRef(), add);
     if (asked.all.size() == before) refuse_feature(f, "is no point", path);
     ids.note(f, asked);
-  });
+  };
+  for_each_feature(path, {LayerKind::kPoints, choice.layer}, plane, add_feature);
   return asked;
 }
 
 Asked<SightPair> read_pairs(const std::string& path, const InputChoice& choice,
-                            const std::string& crs_wkt) {
+                            const TerrainPlane& plane) {
   if (is_text(path, choice)) {
     return read_text<SightPair>(path, kPair, choice, [](std::span<const double> n) {
       return SightPair{{n[0], n[1]}, n[2], {n[3], n[4]}, n[5]};
@@ -264,7 +265,7 @@ Asked<SightPair> read_pairs(const std::string& path, const InputChoice& choice,
   Asked<SightPair> asked;
   FeatureIds ids(choice.id, path);
   EndHeights end_heights;
-  for_each_feature(path, {LayerKind::kLines, choice.layer}, crs_wkt, [&](const OGRFeature& f) {
+  const auto add_feature = [&](const OGRFeature& f) {
     const auto add = [&](const OGRGeometry& part) {
       if (wkbFlatten(part.getGeometryType()) != wkbLineString ||
           part.toLineString()->getNumPoints() != 2) {
@@ -279,7 +280,10 @@ Asked<SightPair> read_pairs(const std::string& path, const InputChoice& choice,
     };
     if (f.GetGeometryRef() != nullptr) for_each_part(*f.GetGeometryRef(), add);
     ids.note(f, asked);
-  });
+  };
+  // A line of sight is straight in the terrain's CRS, wherever its ends come from.
+  for_each_feature(path, {LayerKind::kLines, choice.layer}, plane.with_corners_alone(),
+                   add_feature);
   return asked;
 }
 
@@ -293,14 +297,14 @@ void warn_of_empty_input(bool is_empty, const std::string& path, const std::stri
 }
 
 Asked<std::vector<MapPoint>> read_lines(const std::string& text, const InputChoice& choice,
-                                        const std::string& crs_wkt) {
+                                        const TerrainPlane& plane) {
   Asked<std::vector<MapPoint>> asked;
   FeatureIds ids(choice.id, text);
   const GeometrySource source{text,
                               {"LINESTRING", "MULTILINESTRING"},
                               "LINESTRING(x y, x y)",
                               {LayerKind::kLines, choice.layer}};
-  read_geometries(source, crs_wkt, [&](const OGRGeometry& geometry, const OGRFeature* feature) {
+  const auto add = [&](const OGRGeometry& geometry, const OGRFeature* feature) {
     add_lines(geometry, asked.all);
     if (feature != nullptr) {
       ids.note(*feature, asked);
@@ -308,7 +312,8 @@ Asked<std::vector<MapPoint>> read_lines(const std::string& text, const InputChoi
       throw Error(ErrorCode::invalid_argument,
                   "WKT has neither layers nor attributes; leave --layer and --id out");
     }
-  });
+  };
+  asked.transformed = read_geometries(source, plane, add);
   if (asked.all.empty()) {
     const std::string where = text.size() > 64 ? text.substr(0, 64) + "..." : text;
     throw Error(ErrorCode::invalid_argument, "holds no line", where);

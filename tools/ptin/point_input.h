@@ -3,12 +3,14 @@
 // Points, pairs and lines as callers give them: text, or a vector layer.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/geometry/affine.h"
 #include "engine/query/terrain.h"
 #include "tools/ptin/command.h"
+#include "tools/region/vector_input.h"
 
 namespace ptin::tools {
 
@@ -28,7 +30,8 @@ void add_input_options(CLI::App& app, InputChoice& choice, CLI::Option* source,
 template <typename T>
 struct Asked {
   std::vector<T> all;
-  std::vector<std::string> ids;  ///< Beside `all`; empty where the input tells none.
+  std::vector<std::string> ids;            ///< Beside `all`; empty where the input tells none.
+  std::optional<Transformed> transformed;  ///< Of lines: what was done to their sides.
 };
 
 /// Reads points from text (engine/construct/read/text_rows.h; "-" is standard input) or from a
@@ -39,14 +42,14 @@ struct Asked {
 ///               finite number where a coordinate belongs; another geometry; a choice that means
 ///               nothing for the input
 [[nodiscard]] Asked<MapPoint> read_points(const std::string& path, const InputChoice& choice,
-                                          const std::string& crs_wkt);
+                                          const TerrainPlane& plane);
 
 /// Reads pairs of points as read_points(): in text x, y and height above ground of the one end,
 /// then of the other; in a layer lines from one end to the other, whose heights are in attributes
 /// named h1 and h2 (or as columns are), else their z.
 /// @throws Error as read_points()
 [[nodiscard]] Asked<SightPair> read_pairs(const std::string& path, const InputChoice& choice,
-                                          const std::string& crs_wkt);
+                                          const TerrainPlane& plane);
 
 /// Writes a warning to stderr where an input held nothing, so that the answer is empty. Silent with
 /// -q and --json.
@@ -59,6 +62,6 @@ void warn_of_empty_input(bool is_empty, const std::string& path, const std::stri
 /// @throws Error not_found, invalid_argument
 [[nodiscard]] Asked<std::vector<MapPoint>> read_lines(const std::string& text,
                                                       const InputChoice& choice,
-                                                      const std::string& crs_wkt);
+                                                      const TerrainPlane& plane);
 
 }  // namespace ptin::tools

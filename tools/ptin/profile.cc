@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin profile: heights along a line, as CSV, a layer or a plot.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -195,8 +196,9 @@ void write_profile(const ProfileOptions& options, bool json, const ProfileResult
 }
 
 nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& result,
-                         const std::vector<std::string>& ids, const StoreFile& store,
+                         const Asked<std::vector<MapPoint>>& asked, const StoreFile& store,
                          const CrsFacts& crs) {
+  const std::vector<std::string>& ids = asked.ids;
   nlohmann::json units = units_json(crs);
   units["length"] = unit_of_lengths(crs);
   nlohmann::json answer = {
@@ -208,6 +210,7 @@ nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& res
       {"certified_deviation", result.certified_deviation},
       {"border_moved_at_most", border_move_json(store, result.certified_error)},
       {"exact", result.exact},
+      {"transformed", transformed_json(asked.transformed)},
       {"units", units},
       {"cost", cost_json(result.cost)},
       {"points", nlohmann::json::array()}};
@@ -234,7 +237,9 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const Asked<std::vector<MapPoint>> asked = read_lines(options.line, options.choice, crs.wkt);
+  const Asked<std::vector<MapPoint>> asked =
+      read_lines(options.line, options.choice, plane_of(terrain.store().facts(), crs));
+  tell_transformed(asked.transformed, "the lines", crs, context);
   const std::vector<std::vector<MapPoint>>& lines = asked.all;
   ProfileRequest request;
   request.detail = detail_of(options.detail);
@@ -246,6 +251,14 @@ int run_profile(const ProfileOptions& options, const Context& context) {
     };
   }
   ProfileResult result = terrain.profile(lines, request);
+  const auto is_outside = [](const ProfilePoint& p) { return p.state == PointState::kOutside; };
+  if (std::all_of(result.points.begin(), result.points.end(), is_outside)) {
+    std::vector<MapPoint> corners;
+    for (const auto& corners_of_line : lines) {
+      corners.insert(corners.end(), corners_of_line.begin(), corners_of_line.end());
+    }
+    warn_of_outside(corners, "corner of the lines", terrain.store().facts(), crs, context);
+  }
   if (result.skipped_lines > 0 && !context.json && !context.quiet) {
     std::fprintf(stderr, "%s of %s: no length, skipped\n", grouped(result.skipped_lines).c_str(),
                  counted(lines.size(), "line").c_str());
@@ -254,7 +267,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
     std::erase_if(result.points, [](const ProfilePoint& p) { return !p.is_station; });
   }
   write_profile(options, context.json, result, asked.ids, crs);
-  if (context.json) print_json(answer_of(options, result, asked.ids, terrain.store(), crs));
+  if (context.json) print_json(answer_of(options, result, asked, terrain.store(), crs));
   return kExitDone;
 }
 

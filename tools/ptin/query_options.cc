@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "engine/construct/process_limits.h"
 #include "engine/error.h"
@@ -13,6 +14,7 @@
 #include "storage/spatialindex_rtree.h"
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
+#include "tools/facts/quantity.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/source_counts.h"
 #include "tools/region/on_terrain.h"
@@ -100,30 +102,95 @@ void add_region_options(CLI::App& app, RegionOptions& options, RegionKinds kinds
       ->excludes(polygon);
 }
 
-std::optional<Region> region_of(const RegionOptions& options, const StoreFacts& facts,
-                                const std::string& crs_wkt) {
-  std::optional<Region> region;
+AskedRegion region_of(const RegionOptions& options, const StoreFacts& facts, const CrsFacts& crs) {
+  AskedRegion asked;
+  std::optional<Region>& region = asked.region;
   const char* option = "--window";
   if (!options.window.empty()) {
     region = window_of(options.window, option);
   } else if (!options.polygon.empty()) {
     option = "--polygon";
-    region = read_polygon(options.polygon, crs_wkt);
+    AskedPolygon polygon = read_polygon(options.polygon, plane_of(facts, crs));
+    region = std::move(polygon.polygon);
+    asked.transformed = std::move(polygon.transformed);
   } else if (!options.point.empty()) {
     option = "--point";
     check_finite(options.point, option);
     region = MapPoint{options.point[0], options.point[1]};
   }
   if (region) check_on_terrain(*region, facts, option);
-  return region;
+  return asked;
 }
 
+nlohmann::json transformed_json(const std::optional<Transformed>& transformed) {
+  if (!transformed) return nullptr;
+  return {{"from", transformed->from}, {"bent_at_most", transformed->bent_at_most}};
+}
+
+void tell_transformed(const std::optional<Transformed>& transformed, const std::string& what,
+                      const CrsFacts& crs, const Context& context) {
+  if (!transformed || context.quiet || context.json) return;
+  const std::string unit = crs.horizontal_unit == "unknown" ? "map unit" : crs.horizontal_unit;
+  std::fprintf(
+      stderr,
+      "%s, straight in %s, went into the terrain's CRS with sides that are off by %s %s at "
+      "most\n",
+      what.c_str(), printable(transformed->from).c_str(),
+      short_number(transformed->bent_at_most).c_str(), unit.c_str());
+}
+
+void warn_of_outside(std::span<const MapPoint> places, const std::string& what,
+                     const StoreFacts& facts, const CrsFacts& crs, const Context& context) {
+  if (context.quiet || context.json) return;
+  const std::optional<std::string> why = why_all_miss(places, facts, crs);
+  if (!why) return;
+  std::fprintf(stderr, "ptin: warning: no %s lies on the terrain, which has %s\n", what.c_str(),
+               why->c_str());
+}
+
+namespace {
+
+/// The coefficient of curvature for a radius of the Earth that is so many times as long: "4/3",
+/// "1.333".
+/// @throws Error invalid_argument  no number above 0, nor two with a stroke between them
+double coefficient_of_factor(const std::string& text) {
+  const std::size_t stroke = text.find('/');
+  const auto number_of = [](const std::string& part) {
+    const std::optional<Quantity> q = quantity_of(part);
+    return q && q->unit.empty() ? q->number : -1.0;
+  };
+  const double over = number_of(text.substr(0, stroke));
+  const double under = stroke == std::string::npos ? 1.0 : number_of(text.substr(stroke + 1));
+  const double coefficient = under / over;
+  if (over > 0 && under > 0 && std::isfinite(coefficient)) return coefficient;
+  refuse("\"" + text + "\" is no factor of the Earth's radius; expected a number above 0, as 4/3",
+         "--refraction");
+}
+
+}  // namespace
+
 void add_curvature_option(CLI::App& app, double& coefficient) {
-  app.add_option("--curvature", coefficient,
-                 "The Earth's curvature less refraction: GDAL's coefficient; 0 is a flat Earth")
-      ->check(numbers(NumberRange::kNotNegative, "from 0 (a flat Earth) to 1 (no refraction)"))
-      ->type_name("C")
-      ->capture_default_str();
+  const auto is_at_most_one = [](const std::string& text) {
+    double number = 0.0;
+    if (!CLI::detail::lexical_cast(text, number) || !(number > 1)) return std::string();
+    return "must be from 0 (a flat Earth) to 1 (no refraction); " + text +
+           " is none. An Earth of so many times its radius is --refraction " + text;
+  };
+  auto* curvature =
+      app.add_option("--curvature", coefficient,
+                     "The Earth's curvature less refraction: GDAL's coefficient; 0 is a flat "
+                     "Earth, 1 one without refraction, 0.75 the 4/3 Earth of radio")
+          ->check(numbers(NumberRange::kNotNegative, "from 0 (a flat Earth) to 1 (no refraction)"))
+          ->check(CLI::Validator(is_at_most_one, ""))
+          ->type_name("C")
+          ->capture_default_str();
+  app.add_option_function<std::string>(
+         "--refraction",
+         [&coefficient](const std::string& text) { coefficient = coefficient_of_factor(text); },
+         "Instead: how many times as long the Earth's radius is taken for refraction, as 4/3, "
+         "which is usual for radio links (--curvature 0.75)")
+      ->type_name("K")
+      ->excludes(curvature);
 }
 
 void add_detail_options(CLI::App& app, DetailOptions& options, const std::string& error_help,
@@ -176,22 +243,17 @@ void add_level_options(CLI::App& app, LevelOptions& options, const std::string& 
       ->needs(interval);
 }
 
-std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts,
-                              const std::string& file) {
+std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts) {
   if (!options.interval) return options.levels;
-  if (facts.min_height > facts.max_height) {
-    throw Error(ErrorCode::invalid_argument,
-                "no multiple of the interval lies within the heights of the terrain: it has none, "
-                "all of it is void",
-                file);
-  }
+  if (facts.min_height > facts.max_height) return {options.base};
   std::vector<double> levels =
       levels_at(*options.interval, options.base, facts.min_height, facts.max_height);
-  if (!levels.empty()) return levels;
-  throw Error(ErrorCode::invalid_argument,
-              "no multiple of the interval lies within the heights of the terrain; give a smaller "
-              "--interval, or --base",
-              file);
+  // The answer is empty then, as it is with a --level that nothing crosses.
+  if (levels.empty()) {
+    const double steps = std::ceil((facts.max_height - options.base) / *options.interval);
+    levels.push_back(options.base + steps * *options.interval);
+  }
+  return levels;
 }
 
 void add_memory_option(CLI::App& app, std::string& memory) {

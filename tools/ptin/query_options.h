@@ -7,14 +7,17 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 #include "tools/ptin/command.h"
 #include "tools/region/on_terrain.h"
+#include "tools/region/straight_sides.h"
 
 namespace ptin::tools {
 
@@ -46,13 +49,31 @@ enum class RegionKinds : std::uint8_t { kWindow, kWithInside, kAll };
 /// @param kinds  A window alone, a window or a polygon, or a point too.
 void add_region_options(CLI::App& app, RegionOptions& options,
                         RegionKinds kinds = RegionKinds::kAll);
+/// A region, and what was done to it where it came from another CRS.
+struct AskedRegion {
+  std::optional<Region> region;  ///< None: everywhere.
+  std::optional<Transformed> transformed;
+};
 /// The region that was asked for, which meets the box of the terrain's samples.
 /// @throws Error as window_of, read_polygon and check_on_terrain
-[[nodiscard]] std::optional<Region> region_of(const RegionOptions& options, const StoreFacts& facts,
-                                              const std::string& crs_wkt);
+[[nodiscard]] AskedRegion region_of(const RegionOptions& options, const StoreFacts& facts,
+                                    const CrsFacts& crs);
 
-/// Declares --curvature, of subcommands that look over the ground (engine/query/sight/curvature.h).
+/// The object `transformed` of an answer; null where nothing was.
+[[nodiscard]] nlohmann::json transformed_json(const std::optional<Transformed>& transformed);
+/// Says on stderr what was transformed, and what bound holds. Silent with -q and --json.
+/// @param what  "the lines", "the polygon".
+void tell_transformed(const std::optional<Transformed>& transformed, const std::string& what,
+                      const CrsFacts& crs, const Context& context);
+
+/// Declares --curvature and --refraction, of subcommands that look over the ground (engine/query/sight/curvature.h).
 void add_curvature_option(CLI::App& app, double& coefficient);
+
+/// Writes a warning to stderr where all places lie outside of the box of the terrain's samples, with
+/// what may have been meant. Silent with -q and --json.
+/// @param what  One of them, as "point".
+void warn_of_outside(std::span<const MapPoint> places, const std::string& what,
+                     const StoreFacts& facts, const CrsFacts& crs, const Context& context);
 
 /// --error and --vertices, of which at most one may be given: the level of detail.
 struct DetailOptions {
@@ -85,11 +106,9 @@ struct LevelOptions {
 void add_level_options(CLI::App& app, LevelOptions& options, const std::string& level_help,
                        const std::string& interval_help);
 /// The heights that were given, or the multiples of the interval, counted from the base, that lie
-/// within the heights of the terrain.
-/// @param file  Named in errors.
-/// @throws Error invalid_argument  no multiple lies there
-[[nodiscard]] std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts,
-                                            const std::string& file);
+/// within the heights of the terrain; the next one above where none does.
+/// @throws Error as levels_at()
+[[nodiscard]] std::vector<double> levels_of(const LevelOptions& options, const StoreFacts& facts);
 
 /// Declares --memory SIZE.
 void add_memory_option(CLI::App& app, std::string& memory);

@@ -54,7 +54,8 @@ void check_options(const RefineOptions& options) {
 
 /// @param mesh  As it is written.
 nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
-                         const StoreFile& store, const CrsFacts& crs) {
+                         const std::optional<Transformed>& transformed, const StoreFile& store,
+                         const CrsFacts& crs) {
   nlohmann::json answer = {
       {"output", options.output},
       {"vertices", refined.vertices},
@@ -66,6 +67,7 @@ nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined
       {"certified_deviation", refined.certified_deviation},
       {"border_moved_at_most", border_move_json(store, refined.certified_error)},
       {"exact", refined.exact},
+      {"transformed", transformed_json(transformed)},
       {"units", units_json(crs)},
       {"cost", cost_json(refined.cost)}};
   if (has_frame(options.output)) answer["local_frame"] = frame_json(mesh.frame);
@@ -142,7 +144,9 @@ int run_refine(const RefineOptions& options, const Context& context) {
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request;
-  request.region = region_of(options.region, terrain.store().facts(), crs.wkt);
+  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs);
+  tell_transformed(asked.transformed, "the polygon", crs, context);
+  request.region = asked.region;
   request.detail = detail_of(options.detail);
   request.triangles = options.triangles;
   request.form = options.clip ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
@@ -163,7 +167,7 @@ int run_refine(const RefineOptions& options, const Context& context) {
                  options.output.c_str());
   }
   if (context.json) {
-    print_json(answer_of(options, refined, written, terrain.store(), crs));
+    print_json(answer_of(options, refined, written, asked.transformed, terrain.store(), crs));
   } else if (!context.quiet) {
     print_written(options, refined, mesh, terrain.store());
     if (options.model.base) {

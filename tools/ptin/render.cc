@@ -143,7 +143,7 @@ int run_render(const RenderOptions& options, const Context& context) {
   warn_of_terrain(terrain.store(), options.error, context);
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
-  const std::optional<Region> region = region_of(options.region, store.facts(), crs.wkt);
+  const std::optional<Region> region = region_of(options.region, store.facts(), crs).region;
   const Window whole = whole_window(store.facts());
   const Window window = region ? std::get<Window>(*region) : whole;
   const View view = view_of(options, window, crs);

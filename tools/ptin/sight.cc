@@ -55,10 +55,10 @@ struct SightOptions {
   AnswerOptions answer;
 };
 
-Asked<SightPair> pairs_of(const SightOptions& options, const std::string& crs_wkt) {
-  if (!options.pairs.empty()) return read_pairs(options.pairs, options.choice, crs_wkt);
+Asked<SightPair> pairs_of(const SightOptions& options, const TerrainPlane& plane) {
+  if (!options.pairs.empty()) return read_pairs(options.pairs, options.choice, plane);
   const std::vector<double>& n = options.pair;
-  return {{{{n[0], n[1]}, n[2], {n[3], n[4]}, n[5]}}, {}};
+  return {{{{n[0], n[1]}, n[2], {n[3], n[4]}, n[5]}}, {}, {}};
 }
 
 /// The frequency in hertz that a text names, as 5.8GHz, 5800MHz or 5.8e9; large and small letters
@@ -140,11 +140,13 @@ nlohmann::json json_of(const SightResult& r) {
 /// The numbers of an answer, as columns of CSV and attributes of a layer, in the order of kNumbers.
 constexpr std::array kNumbers = {
     "length",        "obstruction_x",      "obstruction_y", "obstruction_distance", "clearance_min",
-    "clearance_max", "clearance_distance", "void_length",   "fresnel_ratio"};
+    "clearance_max", "clearance_distance", "void_length",   "fresnel_ratio",        "fresnel_x",
+    "fresnel_y",     "fresnel_distance",   "fresnel_height"};
 std::array<double, kNumbers.size()> numbers_of(const SightResult& r) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const SightPoint none{{kNone, kNone}, kNone, kNone, kNone};
   const SightPoint& at = r.obstruction ? *r.obstruction : none;
+  const SightPoint& zone = r.fresnel_at ? *r.fresnel_at : none;
   return {r.length,
           at.position.x,
           at.position.y,
@@ -153,7 +155,11 @@ std::array<double, kNumbers.size()> numbers_of(const SightResult& r) {
           r.clearance_max,
           r.clearance_at ? r.clearance_at->distance : kNone,
           r.void_length,
-          r.fresnel_ratio.value_or(kNone)};
+          r.fresnel_ratio.value_or(kNone),
+          zone.position.x,
+          zone.position.y,
+          zone.distance,
+          zone.height};
 }
 
 /// What a plot shows of a pair, beside its answer: the ground below it, and how high its ends are.
@@ -271,8 +277,11 @@ int run_sight(const SightOptions& options, const Context& context) {
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const Asked<SightPair> asked = pairs_of(options, crs.wkt);
+  const Asked<SightPair> asked = pairs_of(options, plane_of(terrain.store().facts(), crs));
   warn_of_empty_input(asked.all.empty(), options.pairs, "pair", context);
+  std::vector<MapPoint> ends;
+  for (const SightPair& pair : asked.all) ends.insert(ends.end(), {pair.a, pair.b});
+  warn_of_outside(ends, "end", terrain.store().facts(), crs, context);
   const SightRequest request = request_of(options, ground_of(crs), context);
   SightAnswers answers(options, asked, context, crs);
   if (answers.are_plotted()) require_panels(asked.all.size(), "pairs", options.answer.output);

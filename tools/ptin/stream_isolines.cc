@@ -62,7 +62,7 @@ void StreamIsolines::begin(const StreamReader& reader) {
   if (window_) {
     check_on_terrain(*window_, facts, "--window");
   }
-  const std::vector<double> levels = levels_of(options_.levels, facts, {});
+  const std::vector<double> levels = levels_of(options_.levels, facts);
   isolines_.emplace(reader.tin(), LevelSet(levels, facts.heights), facts.heights, facts.map,
                     context_);
   if (!output_.empty()) {

@@ -84,11 +84,11 @@ void check_comparable(const CrsFacts& file, const CrsFacts& other, const VolumeO
   }
 }
 
-VolumeRequest request_of(const VolumeOptions& options, const Terrain& terrain, const CrsFacts& crs,
-                         const Context& context) {
+VolumeRequest request_of(const VolumeOptions& options, const CrsFacts& crs,
+                         const std::optional<Region>& region, const Context& context) {
   VolumeRequest request;
   request.level = options.level.value_or(0.0);
-  request.region = region_of(options.region, terrain.store().facts(), crs.wkt);
+  request.region = region;
   request.detail = detail_of(options.detail);
   const Ground ground = ground_of(crs);
   request.ground = {ground.per_map_unit, !ground.geographic};
@@ -108,7 +108,8 @@ nlohmann::json interval_json(const CertifiedVolume& v) {
 }
 
 void print_answer(const VolumeResult& result, const VolumeOptions& options, const Terrain& terrain,
-                  const Terrain* other, const CrsFacts& crs) {
+                  const Terrain* other, const CrsFacts& crs,
+                  const std::optional<Transformed>& transformed) {
   nlohmann::json units = units_json(crs);
   units["ground"] = unit_of_ground(crs);
   nlohmann::json answer = {
@@ -130,6 +131,7 @@ void print_answer(const VolumeResult& result, const VolumeOptions& options, cons
       {"certified_deviation", result.certificate.deviation},
       {"border_moved_at_most", border_move_json(terrain.store(), result.certificate.error)},
       {"exact", result.exact},
+      {"transformed", transformed_json(transformed)},
       {"units", units},
       {"cost", cost_json(result.cost)}};
   if (other != nullptr) {
@@ -142,38 +144,33 @@ void print_answer(const VolumeResult& result, const VolumeOptions& options, cons
   print_json(answer);
 }
 
-/// Ten digits: more than that is seldom known of a terrain, and JSON has them.
-std::string ten_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value == 0 ? 0.0 : value);
-  return text;
-}
-
 void print_text(const VolumeResult& result, const VolumeOptions& options, const CrsFacts& crs) {
   const std::string unit = unit_of_ground(crs);
-  const std::string known = unit == "unknown" ? "unit" : unit;
-  const auto volume = [&](const char* name, const CertifiedVolume& v) {
-    std::printf("%-5s %s cubic %s", name, ten_digits(v.value).c_str(), known.c_str());
+  const std::string known = plural_of(unit == "unknown" ? "unit" : unit);
+  const std::string than = options.against.empty() ? "the level" : options.against;
+  const std::string& here = options.terrain.file;
+  const auto volume = [&](const char* name, const CertifiedVolume& v, const std::string& where) {
+    std::printf("%-5s %s cubic %s", name, grouped_number(v.value).c_str(), known.c_str());
     if (!result.exact) {
-      std::printf(", the source's between %s and %s", ten_digits(v.low).c_str(),
-                  ten_digits(v.high).c_str());
+      std::printf(", the source's between %s and %s", grouped_number(v.low).c_str(),
+                  grouped_number(v.high).c_str());
     }
-    std::printf("\n");
+    std::printf("%s\n", where.c_str());
   };
-  volume("cut", result.cut);
-  volume("fill", result.fill);
-  volume("net", result.net);
+  volume("cut", result.cut, ": " + here + " is above " + than + ", material to take away");
+  volume("fill", result.fill, ": " + here + " is below " + than + ", material to bring");
+  volume("net", result.net, ": cut less fill");
   std::printf("area  %s square %s: cut %s, fill %s; void %s\n",
-              ten_digits(result.surface_area).c_str(), known.c_str(),
-              ten_digits(result.cut_area).c_str(), ten_digits(result.fill_area).c_str(),
-              ten_digits(result.void_area).c_str());
+              grouped_number(result.surface_area).c_str(), known.c_str(),
+              grouped_number(result.cut_area).c_str(), grouped_number(result.fill_area).c_str(),
+              grouped_number(result.void_area).c_str());
   if (!options.against.empty()) {
     std::printf("      surface in %s alone %s, in %s alone %s\n", options.terrain.file.c_str(),
-                ten_digits(result.only_here_area).c_str(), options.against.c_str(),
-                ten_digits(result.only_other_area).c_str());
+                grouped_number(result.only_here_area).c_str(), options.against.c_str(),
+                grouped_number(result.only_other_area).c_str());
   }
   if (std::isfinite(result.mean_difference)) {
-    std::printf("mean  %s %s\n", ten_digits(result.mean_difference).c_str(), known.c_str());
+    std::printf("mean  %s %s\n", grouped_number(result.mean_difference).c_str(), known.c_str());
   }
 }
 
@@ -197,7 +194,9 @@ int run_volume(const VolumeOptions& options, const Context& context) {
     check_comparable(crs, crs_of_other, options, context);
     other_height_scale = height_scale(crs, crs_of_other, options, context);
   }
-  VolumeRequest request = request_of(options, terrain, crs, context);
+  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs);
+  tell_transformed(asked.transformed, "the polygon", crs, context);
+  VolumeRequest request = request_of(options, crs, asked.region, context);
   request.other = other ? &*other : nullptr;
   request.other_height_scale = other_height_scale;
   const VolumeResult result = terrain.volume(request);
@@ -208,7 +207,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
          context);
   }
   if (context.json) {
-    print_answer(result, options, terrain, other ? &*other : nullptr, crs);
+    print_answer(result, options, terrain, other ? &*other : nullptr, crs, asked.transformed);
   } else {
     print_text(result, options, crs);
   }

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/region/on_terrain.h"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
+#include <ogr_spatialref.h>
+
 #include "engine/error.h"
 #include "tools/formats/number_text.h"
+#include "tools/region/straight_sides.h"
 
 namespace ptin::tools {
 
@@ -40,7 +45,63 @@ std::string bounds_text(const StoreFacts& facts) {
   return text;
 }
 
+/// Whether one of the places lies in the box.
+bool holds_any(const Window& box, std::span<const MapPoint> places) {
+  return std::any_of(places.begin(), places.end(), [&](const MapPoint& p) {
+    return p.x >= box.min_x && p.x <= box.max_x && p.y >= box.min_y && p.y <= box.max_y;
+  });
+}
+
+std::vector<MapPoint> exchanged(std::span<const MapPoint> places) {
+  std::vector<MapPoint> other;
+  for (const MapPoint& p : places) other.push_back({p.y, p.x});
+  return other;
+}
+
+/// Longitudes and latitudes in the terrain's CRS; empty where that is not known.
+std::vector<MapPoint> from_degrees(std::vector<MapPoint> places, const CrsFacts& crs) {
+  OGRSpatialReference degrees, terrain;
+  if (crs.wkt.empty() || degrees.importFromEPSG(4326) != OGRERR_NONE ||
+      terrain.importFromWkt(crs.wkt.c_str()) != OGRERR_NONE) {
+    return {};
+  }
+  std::erase_if(places,
+                [](const MapPoint& p) { return std::abs(p.x) > 360 || std::abs(p.y) > 90; });
+  for (OGRSpatialReference* plane : {&degrees, &terrain}) {
+    plane->DemoteTo2D(nullptr);
+    plane->StripVertical();
+    plane->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  }
+  const std::unique_ptr<OGRCoordinateTransformation> way(
+      OGRCreateCoordinateTransformation(&degrees, &terrain));
+  if (!way) return {};
+  places_by (*way)(places);
+  return places;
+}
+
 }  // namespace
+
+std::optional<std::string> why_all_miss(std::span<const MapPoint> places, const StoreFacts& facts,
+                                        const CrsFacts& crs) {
+  const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
+  const MapPoint high = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
+  // Rounding may have moved a place on the border.
+  const double slack_x = 1e-9 * (high.x - low.x), slack_y = 1e-9 * (high.y - low.y);
+  const Window box{low.x - slack_x, low.y - slack_y, high.x + slack_x, high.y + slack_y};
+  if (places.empty() || holds_any(box, places)) return std::nullopt;
+  std::string why = bounds_text(facts);
+  const std::vector<MapPoint> other = exchanged(places);
+  if (holds_any(box, other)) {
+    why += "; with x and y exchanged some would: give x before y";
+  } else if (holds_any(box, from_degrees({places.begin(), places.end()}, crs))) {
+    why += "; as longitude and latitude some would: give them in " + crs.name +
+           ", or as a layer with its CRS";
+  } else if (holds_any(box, from_degrees(other, crs))) {
+    why += "; as latitude and longitude some would: give them in " + crs.name +
+           ", x before y, or as a layer with its CRS";
+  }
+  return why;
+}
 
 void check_on_terrain(const Region& region, const StoreFacts& facts, const std::string& option) {
   if (meets(region, facts)) return;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Regions that miss the terrain.
+// Regions and places that miss the terrain.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 
 namespace ptin::tools {
@@ -17,6 +20,12 @@ namespace ptin::tools {
 ///                                 them if x and y changed places; as GridRegion
 /// Cost: linear in the region's corners.
 void check_on_terrain(const Region& region, const StoreFacts& facts, const std::string& option);
+
+/// Why places miss the box of the terrain's samples, as the end of a sentence: its bounds, and whether
+/// some would lie there with x and y exchanged, or taken as longitude and latitude. None where one
+/// of them lies there, and where there are no places.
+[[nodiscard]] std::optional<std::string> why_all_miss(std::span<const MapPoint> places,
+                                                      const StoreFacts& facts, const CrsFacts& crs);
 
 /// The window of four numbers.
 /// @param option  Gave the numbers; named in errors.

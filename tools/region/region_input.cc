@@ -65,19 +65,21 @@ Polygon united(const std::vector<std::unique_ptr<OGRMultiPolygon>>& features,
 
 }  // namespace
 
-Polygon read_polygon(const std::string& text, const std::string& crs_wkt) {
+AskedPolygon read_polygon(const std::string& text, const TerrainPlane& plane) {
+  AskedPolygon asked;
   std::vector<std::unique_ptr<OGRMultiPolygon>> features;
   const GeometrySource source{
       text,
       {"POLYGON", "MULTIPOLYGON"},
       "POLYGON((x y, x y, x y, x y))",
       {LayerKind::kAreas, "", "take one out by 'ogr2ogr ONE.gpkg FILE LAYER'"}};
-  read_geometries(source, crs_wkt, [&](const OGRGeometry& geometry, const OGRFeature*) {
+  const auto add = [&](const OGRGeometry& geometry, const OGRFeature*) {
     auto feature = std::make_unique<OGRMultiPolygon>();
     for_each_polygon(geometry, [&](const OGRPolygon& p) { feature->addGeometry(&p); });
     if (!feature->IsEmpty()) features.push_back(std::move(feature));
-  });
-  Polygon polygon;
+  };
+  asked.transformed = read_geometries(source, plane, add);
+  Polygon& polygon = asked.polygon;
   if (features.size() == 1) {
     polygon = rings_of(*features.front());
   } else if (!features.empty()) {
@@ -87,7 +89,7 @@ Polygon read_polygon(const std::string& text, const std::string& crs_wkt) {
     const std::string where = text.size() > 64 ? text.substr(0, 64) + "..." : text;
     throw Error(ErrorCode::invalid_argument, "holds no polygon", where);
   }
-  return polygon;
+  return asked;
 }
 
 }  // namespace ptin::tools

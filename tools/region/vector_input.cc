@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -62,6 +63,64 @@ Transformation transformation(OGRLayer& layer, const std::string& crs_wkt,
                 path);
   }
   return made;
+}
+
+/// Brings the points, lines and rings of a geometry into another CRS.
+class IntoTerrain : public OGRDefaultGeometryVisitor {
+ public:
+  IntoTerrain(OGRCoordinateTransformation& way, const SideTarget& sides)
+      : transform_(places_by(way)), sides_(sides) {}
+  using OGRDefaultGeometryVisitor::visit;
+
+  void visit(OGRPoint* point) override {
+    if (point->IsEmpty() != 0) return;
+    const MapPoint at{point->getX(), point->getY()};
+    const MapPoint there = transformed_sides({&at, 1}, transform_, sides_).front();
+    point->setX(there.x);
+    point->setY(there.y);
+  }
+
+  void visit(OGRLineString* line) override {
+    std::vector<MapPoint> path;
+    for (int i = 0; i < line->getNumPoints(); ++i) path.push_back({line->getX(i), line->getY(i)});
+    const std::vector<MapPoint> there = transformed_sides(path, transform_, sides_);
+    // Corners keep a height of their own where nothing stands between them.
+    if (there.size() != path.size()) {
+      line->set3D(FALSE);
+      line->setNumPoints(static_cast<int>(there.size()));
+    }
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      line->setPoint(static_cast<int>(i), there[i].x, there[i].y);
+    }
+  }
+
+ private:
+  PlaceTransform transform_;
+  const SideTarget& sides_;
+};
+
+/// The same for the geometry of a feature. Arcs become chords in their own CRS before.
+void bring_into_terrain(OGRFeature& feature, OGRCoordinateTransformation& way,
+                        const SideTarget& sides, const std::string& path) {
+  if (feature.GetGeometryRef() == nullptr) return;
+  if (feature.GetGeometryRef()->hasCurveGeometry() != 0) {
+    feature.SetGeometryDirectly(feature.GetGeometryRef()->getLinearGeometry());
+  }
+  IntoTerrain visitor(way, sides);
+  try {
+    feature.GetGeometryRef()->accept(&visitor);
+  } catch (const Error& e) {
+    throw Error(e.code(),
+                "feature " + std::to_string(feature.GetFID()) + ": " + e.message() +
+                    "; give it in that CRS",
+                path);
+  }
+}
+
+/// Whether x of a CRS is a longitude in degrees.
+bool has_degrees(const OGRSpatialReference& crs) {
+  constexpr double kDegree = 3.14159265358979323846 / 180, kSame = 1e-12;
+  return crs.IsGeographic() != 0 && std::abs(crs.GetAngularUnits() - kDegree) < kSame;
 }
 
 /// The first bytes of a file, enough to tell WKT from other things.
@@ -134,8 +193,20 @@ bool begins_as_wkt(const std::string& text, const std::vector<std::string>& word
   return std::any_of(words.begin(), words.end(), opens);
 }
 
-void for_each_feature(const std::string& path, const LayerWish& wish, const std::string& crs_wkt,
-                      const std::function<void(const OGRFeature&)>& visit) {
+TerrainPlane TerrainPlane::with_corners_alone() const {
+  TerrainPlane plane = *this;
+  plane.sides.most_bend = HUGE_VAL;
+  return plane;
+}
+
+TerrainPlane plane_of(const StoreFacts& facts, const CrsFacts& crs) {
+  return {crs.wkt,
+          side_target(facts, crs.geographic && crs.horizontal_unit == "degree" ? 360.0 : 0.0)};
+}
+
+std::optional<Transformed> for_each_feature(const std::string& path, const LayerWish& wish,
+                                            const TerrainPlane& plane,
+                                            const std::function<void(const OGRFeature&)>& visit) {
   if (!exists(path)) throw Error(ErrorCode::not_found, "no such file", path);
   const std::unique_ptr<GDALDataset> data(GDALDataset::Open(
       path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
@@ -145,31 +216,30 @@ void for_each_feature(const std::string& path, const LayerWish& wish, const std:
                 "neither text that is understood here nor a vector file that GDAL reads", path);
   }
   OGRLayer& layer = choose_layer(*data, wish, path);
-  const Transformation transform = transformation(layer, crs_wkt, path);
+  const Transformation transform = transformation(layer, plane.crs_wkt, path);
+  SideTarget sides = plane.sides;
+  sides.source_turns = transform && has_degrees(*layer.GetSpatialRef());
   CPLErrorReset();
   layer.ResetReading();
   while (const std::unique_ptr<OGRFeature> feature{layer.GetNextFeature()}) {
-    OGRGeometry* geometry = feature->GetGeometryRef();
-    if (geometry != nullptr && transform && geometry->transform(transform.get()) != OGRERR_NONE) {
-      throw Error(ErrorCode::invalid_argument,
-                  "feature " + std::to_string(feature->GetFID()) +
-                      " cannot be transformed to the terrain's CRS; give it in that CRS",
-                  path);
-    }
+    if (transform) bring_into_terrain(*feature, *transform, sides, path);
     visit(*feature);
   }
   if (CPLGetLastErrorType() >= CE_Failure) {
     throw Error(ErrorCode::invalid_argument,
                 std::string("cannot be read to its end: ") + CPLGetLastErrorMsg(), path);
   }
+  if (!transform) return std::nullopt;
+  return Transformed{layer.GetSpatialRef()->GetName(), plane.sides.most_bend};
 }
 
-void read_geometries(const GeometrySource& source, const std::string& crs_wkt,
-                     const std::function<void(const OGRGeometry&, const OGRFeature*)>& visit) {
+std::optional<Transformed> read_geometries(
+    const GeometrySource& source, const TerrainPlane& plane,
+    const std::function<void(const OGRGeometry&, const OGRFeature*)>& visit) {
   const std::string& text = source.text;
   if (begins_as_wkt(text, source.words) && !exists(text)) {  // A file may be "Polygon (1).gpkg".
     visit(*wkt_or_refuse(text, source.example, ""), nullptr);
-    return;
+    return std::nullopt;
   }
   if (!exists(text)) {
     throw Error(ErrorCode::not_found,
@@ -184,9 +254,9 @@ void read_geometries(const GeometrySource& source, const std::string& crs_wkt,
   if (begins_as_wkt(start, source.words)) {
     start.append(std::istreambuf_iterator<char>(in), {});
     visit(*wkt_or_refuse(start, source.example, text), nullptr);
-    return;
+    return std::nullopt;
   }
-  for_each_feature(text, source.layer, crs_wkt, [&](const OGRFeature& feature) {
+  return for_each_feature(text, source.layer, plane, [&](const OGRFeature& feature) {
     if (feature.GetGeometryRef() != nullptr) visit(*feature.GetGeometryRef(), &feature);
   });
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "tools/http/problem.h"
+#include "tools/region/straight_sides.h"
 #include "tools/serve/wkt_places.h"
 
 namespace ptin::serve {
@@ -25,14 +26,15 @@ struct LinesThere {
   std::vector<std::uint32_t> number;
 };
 
-LinesThere lines_of(const Asked& asked, const Places& places) {
+/// The lines of `coords`.
+LinesThere lines_of(const Asked& asked, const Places& places, const tools::SideTarget& sides) {
   Lines lines = lines_of_wkt(asked.question.needed("coords"), "coords");
   std::size_t positions = 0;
   for (const std::vector<MapPoint>& line : lines) positions += line.size();
   check_count(positions, asked.options.question.points, "positions", "points", "coords");
   LinesThere there;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    for (std::vector<MapPoint>& line : places.line_to_terrain(std::move(lines[i]))) {
+    for (std::vector<MapPoint>& line : places.line_to_terrain(std::move(lines[i]), sides)) {
       there.lines.push_back(std::move(line));
       there.number.push_back(static_cast<std::uint32_t>(i));
     }
@@ -93,7 +95,9 @@ double station_step_of(const Asked& asked, double length) {
 
 AlongLines walk_lines(const Asked& asked, const Places& places) {
   const Collection& collection = *asked.collection;
-  const LinesThere there = lines_of(asked, places);
+  tools::SideTarget sides = tools::side_target(asked.terrain().store().facts(), 0.0);
+  sides.most_points = asked.options.question.vertices;
+  const LinesThere there = lines_of(asked, places, sides);
   const double length = length_of(there, collection);
   if (length == 0) throw http::Problem(400, "no line has a length").at("coords");
   ProfileRequest request;
@@ -102,6 +106,7 @@ AlongLines walk_lines(const Asked& asked, const Places& places) {
   request.detail = detail_of(asked);
   request.limits = engine_limits(asked);
   AlongLines along;
+  if (!places.is_native()) along.bent_at_most = sides.most_bend;
   along.length_unit = collection.ground.geographic ? "metre" : collection.crs.horizontal_unit;
   along.profile = asked.terrain().profile(there.lines, request);
   if (there.number.back() + 1 < there.number.size()) {

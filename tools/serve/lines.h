@@ -16,6 +16,9 @@ struct AlongLines {
   ProfileResult profile;
   std::vector<MapPoint> client;  ///< For each point of the profile.
   std::string length_unit;       ///< Of distances: that of the map, in degrees metres.
+  /// How far a side, straight in the client's CRS, is from the line that was walked; map units, 0
+  /// where nothing was transformed.
+  double bent_at_most = 0.0;
 };
 
 /// Reads `coords`, `crs`, `stations`, `error` and `vertices`, and walks the lines.

@@ -9,6 +9,7 @@
 
 #include <ogr_spatialref.h>
 
+#include "engine/error.h"
 #include "tools/http/problem.h"
 #include "tools/serve/transformations.h"
 #include "tools/tiles/curve_range.h"
@@ -267,18 +268,22 @@ MapPoint Places::to_terrain(MapPoint place, std::string_view parameter) const {
 }
 
 std::vector<std::vector<MapPoint>> Places::line_to_terrain(std::vector<MapPoint> line,
+                                                           tools::SideTarget sides,
                                                            std::string_view parameter) const {
   if (is_native() || line.empty()) return {std::move(line)};
-  transform_to_terrain(line, parameter);
-  if (turn_ == 0) return {std::move(line)};
-  double low = line[0].x, high = line[0].x;
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    line[i].x += turns_towards(line[i].x, line[i - 1].x, turn_);
-    low = std::min(low, line[i].x);
-    high = std::max(high, line[i].x);
+  sides.turn = turn_;
+  sides.source_turns = client_turns_;
+  try {
+    line = tools::transformed_sides(line, tools::places_by(*inside_->ways->there), sides);
+  } catch (const Error& e) {
+    http::Problem problem(e.code() == ErrorCode::resource_exhausted ? 413 : 400, e.message());
+    throw std::move(problem).at(std::string(parameter));
   }
+  if (turn_ == 0) return {std::move(line)};
+  const auto [low, high] = std::minmax_element(
+      line.begin(), line.end(), [](const MapPoint& a, const MapPoint& b) { return a.x < b.x; });
   std::vector<std::vector<MapPoint>> lines;
-  for (const double shift : shifts_onto_terrain(low, high)) {
+  for (const double shift : shifts_onto_terrain(low->x, high->x)) {
     lines.push_back(line);
     for (MapPoint& p : lines.back()) p.x += shift;
   }

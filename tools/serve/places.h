@@ -12,6 +12,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
+#include "tools/region/straight_sides.h"
 
 namespace ptin::serve {
 
@@ -36,13 +37,16 @@ class Places {
   /// @throws http::Problem 400  no position of the terrain's CRS; names the first one
   void to_terrain(std::span<MapPoint> places, std::string_view parameter = "coords") const;
   [[nodiscard]] MapPoint to_terrain(MapPoint place, std::string_view parameter = "coords") const;
-  /// A line, whose every vertex is reached from the one before it the shorter way around the Earth;
-  /// in `native` as the numbers say. Its vertices alone are transformed. Where it leaves a terrain
-  /// that goes around the whole Earth at one end and enters it at the other, it is given once for
-  /// each, a turn apart, and is_in_turn_of_terrain() tells which part of which counts.
-  /// @throws as to_terrain()
+  /// A line of straight sides in the client's CRS, with the places between its corners that keep it so
+  /// in the terrain's; every side goes the shorter way around the Earth, in `native` as the numbers
+  /// say. Where it leaves a terrain that goes around the whole Earth at one end and enters it at the
+  /// other, it is given once for each, a turn apart, and is_in_turn_of_terrain() tells which part of
+  /// which counts.
+  /// @param sides  Tells how near, and how many places at most; what turns is known here.
+  /// @throws http::Problem 400, 413  as tools::transformed_sides()
   [[nodiscard]] std::vector<std::vector<MapPoint>> line_to_terrain(
-      std::vector<MapPoint> line, std::string_view parameter = "coords") const;
+      std::vector<MapPoint> line, tools::SideTarget sides,
+      std::string_view parameter = "coords") const;
   /// Whether an x of the terrain's CRS lies within half a turn of its middle.
   [[nodiscard]] bool is_in_turn_of_terrain(double x) const noexcept;
   /// Takes each longitude of the client to within half a turn of the one before it, the first one of

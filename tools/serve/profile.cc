@@ -61,8 +61,10 @@ std::string csv_of(const AlongLines& along, const Asked& asked) {
 }
 
 Json certainty_of(const AlongLines& along, const Asked& asked) {
-  return certainty_json(asked, along.profile.certified_error, along.profile.certified_deviation,
-                        along.profile.exact);
+  Json certainty = certainty_json(asked, along.profile.certified_error,
+                                  along.profile.certified_deviation, along.profile.exact);
+  certainty["bent_at_most"] = along.bent_at_most;
+  return certainty;
 }
 
 std::string json_of(const AlongLines& along, const Asked& asked) {

@@ -3,6 +3,7 @@
 // Lines of sight: one pair, or a thousand.
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -130,8 +131,10 @@ std::vector<SightPair> pairs_of(const Asked& asked, const Places& places) {
   std::vector<SightPair> pairs = q.has("pairs") ? pairs_of_json(q, most) : pairs_of_coords(q);
   check_count(pairs.size(), most, "pairs", "pairs", "coords");
   const char* parameter = q.has("pairs") ? "pairs" : "coords";
+  tools::SideTarget ends_alone;  // A line of sight is straight in the terrain's CRS.
+  ends_alone.most_bend = std::numeric_limits<double>::infinity();
   for (SightPair& pair : pairs) {
-    const auto lines = places.line_to_terrain({pair.a, pair.b}, parameter);
+    const auto lines = places.line_to_terrain({pair.a, pair.b}, ends_alone, parameter);
     if (lines.size() > 1) {
       throw Problem(400,
                     "a line of sight crosses the longitude at which this terrain begins and ends; "
