@@ -23,8 +23,12 @@ struct Target {
 
 /// Takes the target of a request apart. A plus sign in the query is a blank.
 /// @throws Problem 400  no path from the root; a percent sign without two hexadecimal digits; a
-///                      zero byte, a line break, or bytes that are no UTF-8
+///                      zero byte, a line break, or bytes that are no UTF-8; more than 256
+///                      parameters
 [[nodiscard]] Target parse_target(std::string_view target);
+
+/// The fields of a form (application/x-www-form-urlencoded).  @throws Problem 400 as parse_target()
+[[nodiscard]] Parameters parse_form(std::string_view form);
 
 /// A value of a query, of a form or of a path, decoded.  @throws Problem 400 as parse_target()
 [[nodiscard]] std::string decode_percent(std::string_view text, bool plus_is_blank);

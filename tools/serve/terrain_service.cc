@@ -297,7 +297,10 @@ Response TerrainService::unchanged(std::string etag, std::string cache_control, 
 
 Response TerrainService::answer_endpoint(const Request& request, const Match& found) {
   const std::shared_ptr<const Collection> collection = collection_of(found);
-  const Question question(request, found.endpoint->parameters);
+  JsonBounds bounds;
+  bounds.memory_bytes = options_.question.question_memory / 8;
+  bounds.stop = request.stop;
+  const Question question(request, found.endpoint->parameters, bounds);
   // What a collection answers to a GET is the same until its file is replaced.
   if (!is_get(request) || !collection) return compute(request, found, collection, question);
   const std::string etag = http::etag_of(key_of(request, found, collection.get(), question));
