@@ -12,89 +12,10 @@
 
 #include "engine/error.h"
 #include "tests/tools/http_client.h"
-#include "tools/http/problem.h"
-#include "tools/http/server.h"
+#include "tests/tools/made_service.h"
 
 namespace ptin::tools::testing {
 namespace {
-
-using http::GivenUp;
-using http::Limits;
-using http::Problem;
-using http::Request;
-using http::Response;
-using std::chrono::milliseconds;
-
-Response text(std::string body) {
-  Response response;
-  response.content_type = "text/plain";
-  response.body = std::move(body);
-  return response;
-}
-
-/// Answers /echo with the body, /wait when it is released or stopped, /large with many bytes, /quick
-/// beside the queue.
-class MadeService : public http::Service {
- public:
-  bool is_quick(const Request& request) const override {
-    return !request.path.empty() && request.path[0] == "quick";
-  }
-  Response answer_quickly(const Request&) override { return text("quick"); }
-  Response answer(const Request& request) override {
-    const std::string what = request.path.empty() ? "" : request.path[0];
-    if (what == "echo") return text(request.method + " " + request.body);
-    if (what == "large") return text(std::string(std::size_t{64} << 20, 'x'));
-    if (what == "fault") throw std::runtime_error("a fault");
-    if (what == "wait") wait(request);
-    return text("answer");
-  }
-  Response failure(const Request&, std::exception_ptr thrown, GivenUp why) noexcept override {
-    last_given_up = why;
-    try {
-      std::rethrow_exception(thrown);
-    } catch (const Problem& problem) {
-      return problem.response();
-    } catch (const Error& error) {
-      return Problem(error.code() == ErrorCode::cancelled ? 503 : 500, error.message()).response();
-    } catch (...) {
-      return Problem(500, "fault").response();
-    }
-  }
-  void finish(const Request&, Response& response) override { response.add("X-Made", "yes"); }
-  void note(const http::Served& served) noexcept override {
-    ++noted;
-    if (served.response == nullptr) ++hung_up;
-    if (!served.is_whole) ++cut;
-  }
-
-  std::atomic<bool> is_released{false};
-  std::atomic<int> waiting{0}, stopped{0}, noted{0}, hung_up{0}, cut{0};
-  std::atomic<GivenUp> last_given_up{GivenUp::kNot};
-
- private:
-  void wait(const Request& request) {
-    ++waiting;
-    while (!is_released && !request.stop.stop_requested()) {
-      std::this_thread::sleep_for(milliseconds(1));
-    }
-    --waiting;
-    if (!request.stop.stop_requested()) return;
-    ++stopped;
-    throw Error(ErrorCode::cancelled, "stopped");
-  }
-};
-
-Limits small_limits() {
-  Limits limits;
-  limits.threads = 2;
-  limits.waiting = 1;
-  limits.connections = 8;
-  limits.reading = milliseconds(200);
-  limits.computing = milliseconds(5000);
-  limits.writing = milliseconds(300);
-  limits.idle = milliseconds(2000);
-  return limits;
-}
 
 TEST(HttpServerConcurrency, AnswersOneAfterTheOther) {
   MadeService service;
@@ -163,31 +84,6 @@ TEST(HttpServerConcurrency, RefusesBodiesWhoseEndIsNotCertain) {
     EXPECT_GE(answer->status, 400) << head;
     EXPECT_FALSE(client.receive()) << head;
   }
-}
-
-TEST(HttpServerConcurrency, HoldsNoMoreBodiesThanItHasMemoryFor) {
-  MadeService service;
-  http::Limits limits = small_limits();
-  limits.memory_bytes = 1;
-  limits.body_bytes = 1000;
-  limits.reading = milliseconds(5000);
-  RunningServer running(limits, service);
-  std::vector<std::unique_ptr<HttpClient>> slow;
-  for (int i = 0; i < 4; ++i) {
-    slow.push_back(std::make_unique<HttpClient>(running.address()));
-    slow.back()->send("POST /echo HTTP/1.1\r\nHost: a\r\nContent-Length: 1000\r\n\r\nx");
-  }
-  EXPECT_TRUE(comes_true([&] {
-    HttpClient client(running.address());
-    return client.ask("POST", "/echo", "", std::string(900, 'y')).status == 503;
-  }));
-  HttpClient client(running.address());
-  EXPECT_EQ(client.get("/nothing").status, 200);
-  slow.clear();
-  EXPECT_TRUE(comes_true([&] {
-    HttpClient again(running.address());
-    return again.ask("POST", "/echo", "", std::string(900, 'y')).status == 200;
-  }));
 }
 
 TEST(HttpServerConcurrency, SeesAHangUpBehindBytesThatWait) {
@@ -328,24 +224,6 @@ TEST(HttpServerConcurrency, QueuesNoMoreThanItSays) {
   EXPECT_EQ(answer.header("retry-after"), "1");
   service.is_released = true;
   for (const auto& client : clients) EXPECT_EQ(client->receive()->body, "answer");
-}
-
-TEST(HttpServerConcurrency, TakesNoMoreConnectionsThanItSays) {
-  MadeService service;
-  Limits limits = small_limits();
-  limits.reading = milliseconds(3000);
-  RunningServer running(limits, service);
-  std::vector<std::unique_ptr<HttpClient>> clients;
-  for (std::size_t i = 0; i < limits.connections; ++i) {
-    clients.push_back(std::make_unique<HttpClient>(running.address()));
-    EXPECT_EQ(clients.back()->get("/nothing").status, 200);
-  }
-  HttpClient refused(running.address());
-  const auto answer = refused.receive();
-  ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->status, 503);
-  EXPECT_EQ(answer->json()["limit"], "connections");
-  EXPECT_EQ(clients.front()->get("/nothing").status, 200);
 }
 
 TEST(HttpServerConcurrency, LetsGoOfAClientThatDoesNotRead) {

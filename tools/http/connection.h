@@ -10,21 +10,19 @@
 #include <optional>
 #include <stop_token>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/string_body.hpp>
 
+#include "tools/http/admission.h"
+#include "tools/http/growing_body.h"
 #include "tools/http/limits.h"
-#include "tools/http/memory_budget.h"
 #include "tools/http/problem.h"
 #include "tools/http/service.h"
 #include "tools/http/turns.h"
-#include "tools/http/worker_pool.h"
 
 namespace ptin::http {
 
@@ -32,19 +30,24 @@ namespace ptin::http {
 struct ConnectionHost {
   const Limits& limits;
   Service& service;
-  WorkerPool& pool;
-  /// Of bodies that arrive or are answered.
-  std::shared_ptr<MemoryBudget> bodies;
+  Admission& admission;
   Turns& turns;  ///< Of answers that take more than one piece.
   std::uint64_t next_request = 1;
-  bool drains = false;  ///< No request is taken any more.
+  std::uint64_t body_bytes = 0;  ///< Lent to bodies that arrive or are answered.
+  std::uint64_t most_body_bytes = 0;
+  /// Of all bodies that wait for memory one goes on beyond their share: else many that have a part of
+  /// theirs might wait for each other.
+  const void* first_body = nullptr;
+  bool drains = false;  ///< No question is taken any more.
 };
 
 /// Reads a request, has it answered, writes the answer, and begins again. Everything runs on the
-/// one thread of the executor but the computing of answers. A connection keeps itself alive while
-/// it waits for something.
+/// one thread of the executor but the computing of answers and the reading of files. A connection
+/// keeps itself alive while it waits for something.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// @param closed  Called once, on the executor's thread, when the connection is over.
   Connection(boost::asio::ip::tcp::socket socket, ConnectionHost& host,
              std::function<void(Connection*)> closed);
@@ -52,17 +55,23 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  void start();
-  /// Closes the connection when it waits for a request, or else after the answer at hand.
-  void drain();
+  /// @param is_extra  One more than the server takes: it is answered what is quick, and told that
+  ///                  there are too many, and closed.
+  void start(bool is_extra);
+  /// The connection ends when it waits for a request, or else after the answer at hand.
+  void finish();
   /// Closes the connection now; a question that it asked is stopped.
   void abort();
-  /// Writes a refusal and closes: of a server that has too many connections.
-  void turn_away(const Problem& problem);
+
+  /// Since when it waits for the whole head of a request; none: it does something else.
+  [[nodiscard]] std::optional<Clock::time_point> waits_since() const;
+  /// The share of who connects.
+  [[nodiscard]] const std::string& peer() const noexcept { return peer_share_; }
+  [[nodiscard]] bool is_of_proxy() const noexcept { return is_of_proxy_; }
+  [[nodiscard]] bool is_extra() const noexcept { return is_extra_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
+  using Parser = boost::beast::http::request_parser<GrowingBody>;
   using Status = boost::system::error_code;
   enum class State { kIdle, kReading, kComputing, kWriting, kLingering, kClosed };
 
@@ -70,18 +79,28 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void read_head();
   void take_head(const Status& status);
   [[nodiscard]] std::optional<Problem> problem_of_framing() const;
-  void make_room_for_body();
+  [[nodiscard]] std::shared_ptr<Request> request_of_head();
+  void check_head();
+  void refuse_before_body();
+  void begin_body();
+  [[nodiscard]] bool make_room_for_body();
   void read_body();
+  void wait_for_memory();
   void take_body(const Status& status);
-  void take_request(const std::shared_ptr<Request>& request);
+  void give_back_body();
   void refuse_reading(const Status& status);
   void refuse(const Problem& problem);
   [[nodiscard]] Problem problem_of_head(const Status& status) const;
 
   void compute();
+  /// On a thread for computing.
+  void answer(const std::shared_ptr<Request>& request, const std::shared_ptr<Response>& kept,
+              Clock::time_point asked);
+  void look_at_the_time();
   void watch_for_hang_up();
   void look_for_hang_up();
   void give_up(GivenUp why);
+  void refuse_ticket(const Problem& problem);
   void take_answer(std::uint64_t request, Response response, double queued, double computed);
 
   /// @param then_close  The answer is the last one of the connection.
@@ -89,7 +108,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void write_next(Status status, std::size_t bytes);
   void write_piece();
   void wait_for_room();
-  void write_long_piece();
+  void read_long_piece();
+  void write_long_piece(const std::vector<char>& piece);
   void end_of_answer(bool is_whole);
   void linger();
   void drop_what_comes();
@@ -97,20 +117,30 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// Calls `then` after `time`, unless set_deadline() or clear_deadline() is called before.
   void set_deadline(std::chrono::milliseconds time, std::function<void()> then);
   void clear_deadline();
+  void withdraw_ticket();
   void close();
 
   boost::asio::ip::tcp::socket socket_;
   ConnectionHost& host_;
   std::function<void(Connection*)> closed_;
+  boost::asio::ip::address peer_;
+  std::string peer_share_;
+  bool is_of_proxy_ = false, is_extra_ = false;
   boost::asio::steady_timer timer_;
-  boost::asio::steady_timer look_;  ///< For a hang-up behind bytes that wait.
+  boost::asio::steady_timer look_;  ///< For a hang-up behind bytes that wait, and for memory.
   std::uint64_t deadline_ = 0;      ///< Number of the deadline in force.
   bool late_ = false;               ///< The deadline of reading passed.
+  bool is_short_ = false;           ///< There was no memory for the body when it passed.
   State state_ = State::kIdle;
+  bool has_head_ = false;
+  Clock::time_point waits_since_;
   boost::beast::flat_buffer buffer_;
   std::optional<Parser> parser_;
-  std::shared_ptr<const Request> request_;
+  std::shared_ptr<Request> request_;
+  std::optional<Response> refusal_;  ///< Known from the head; the body is dropped first.
   std::shared_ptr<MemoryBudget::Lease> body_room_;
+  std::shared_ptr<Ticket> ticket_;
+  Clock::time_point asked_;
   std::stop_source stop_;
   GivenUp given_up_ = GivenUp::kNot;
   bool keeps_ = false;  ///< Another request may follow.

@@ -6,6 +6,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
+
+#include "tools/http/client_address.h"
 
 namespace ptin::http {
 
@@ -14,18 +17,27 @@ struct Limits {
   std::size_t request_line_bytes = std::size_t{32} << 10;  ///< Beyond: 414.
   std::size_t header_bytes = std::size_t{8} << 10;         ///< Of all header lines. Beyond: 431.
   std::size_t body_bytes = std::size_t{1} << 20;           ///< Beyond: 413.
-  std::size_t connections = 1024;                          ///< Beyond: 503.
-  std::size_t waiting = 64;  ///< Requests that wait for a thread. Beyond: 503.
-  std::size_t threads = 1;   ///< Requests that are computed at once.
-  std::uint64_t memory_bytes = std::uint64_t{192} << 20;  ///< Of all questions. Beyond: 503.
+  /// Beyond, the longest idle one closes; where none is idle: 503. A client may have three quarters
+  /// of them, and of the last quarter those that have less than an eighth of all.
+  std::size_t connections = 1024;
+  std::size_t waiting = 64;  ///< Questions that wait in each lane. Beyond: 503.
+  std::size_t threads = 1;   ///< Questions of each lane that are computed at once.
+  /// Of bodies, questions and answers. Where there is none at the moment, they wait.
+  std::uint64_t memory_bytes = std::uint64_t{192} << 20;
 
   // Absolute: no byte that arrives makes them longer.
   std::chrono::milliseconds reading{5000};     ///< The head, and again the body. Beyond: 408.
-  std::chrono::milliseconds computing{10000};  ///< From the end of the request on. Beyond: 503.
+  std::chrono::milliseconds queueing{10000};   ///< Until a question's turn comes. Beyond: 503.
+  std::chrono::milliseconds computing{10000};  ///< From its turn on. Beyond: 503.
   std::chrono::milliseconds writing{10000};    ///< Of each 64 KiB. Beyond: the connection closes.
   /// A client takes an answer that memory is held for at this rate at least, beside `writing`.
   std::uint64_t least_bytes_a_second = std::uint64_t{32} << 10;
   std::chrono::milliseconds idle{15000};  ///< Between two requests.
+  /// How long a server that ends still listens, so that whoever sends clients to it learns of it.
+  std::chrono::milliseconds draining{0};
+
+  /// Proxies that are believed what they say of their clients.
+  std::vector<Network> trusted_proxies;
 };
 
 }  // namespace ptin::http

@@ -10,6 +10,8 @@ namespace ptin::http {
 
 namespace {
 
+constexpr std::size_t kMostParameters = 256;
+
 int hex_digit(char c) noexcept {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -41,21 +43,6 @@ bool is_plain_utf8(std::string_view text) noexcept {
   return true;
 }
 
-Parameters parse_parameters(std::string_view query) {
-  Parameters parameters;
-  while (!query.empty()) {
-    const std::size_t end = std::min(query.find('&'), query.size());
-    const std::string_view pair = query.substr(0, end);
-    query.remove_prefix(std::min(end + 1, query.size()));
-    if (pair.empty()) continue;
-    const std::size_t equals = std::min(pair.find('='), pair.size());
-    const std::string_view value = pair.substr(std::min(equals + 1, pair.size()));
-    parameters.emplace_back(decode_percent(pair.substr(0, equals), true),
-                            decode_percent(value, true));
-  }
-  return parameters;
-}
-
 }  // namespace
 
 std::string decode_percent(std::string_view text, bool plus_is_blank) {
@@ -80,6 +67,25 @@ std::string decode_percent(std::string_view text, bool plus_is_blank) {
   return decoded;
 }
 
+Parameters parse_form(std::string_view query) {
+  Parameters parameters;
+  while (!query.empty()) {
+    const std::size_t end = std::min(query.find('&'), query.size());
+    const std::string_view pair = query.substr(0, end);
+    query.remove_prefix(std::min(end + 1, query.size()));
+    if (pair.empty()) continue;
+    if (parameters.size() >= kMostParameters) {
+      throw Problem(400, "more than " + std::to_string(kMostParameters) +
+                             " parameters are given; no question has so many");
+    }
+    const std::size_t equals = std::min(pair.find('='), pair.size());
+    const std::string_view value = pair.substr(std::min(equals + 1, pair.size()));
+    parameters.emplace_back(decode_percent(pair.substr(0, equals), true),
+                            decode_percent(value, true));
+  }
+  return parameters;
+}
+
 Target parse_target(std::string_view target) {
   // A client of a proxy names the whole URL.
   for (const std::string_view scheme : {"http://", "https://"}) {
@@ -100,7 +106,7 @@ Target parse_target(std::string_view target) {
     if (end + 1 == path.size()) parsed.path.emplace_back();
     path.remove_prefix(std::min(end + 1, path.size()));
   }
-  parsed.parameters = parse_parameters(target.substr(std::min(mark + 1, target.size())));
+  parsed.parameters = parse_form(target.substr(std::min(mark + 1, target.size())));
   return parsed;
 }
 

@@ -4,12 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "tools/http/memory_budget.h"
 
 namespace ptin::http {
 
@@ -23,8 +26,12 @@ struct Target {
 
 /// Takes the target of a request apart. A plus sign in the query is a blank.
 /// @throws Problem 400  no path from the root; a percent sign without two hexadecimal digits; a
-///                      zero byte, a line break, or bytes that are no UTF-8
+///                      zero byte, a line break, or bytes that are no UTF-8; more than 256
+///                      parameters
 [[nodiscard]] Target parse_target(std::string_view target);
+
+/// The fields of a form (application/x-www-form-urlencoded).  @throws Problem 400 as parse_target()
+[[nodiscard]] Parameters parse_form(std::string_view form);
 
 /// A value of a query, of a form or of a path, decoded.  @throws Problem 400 as parse_target()
 [[nodiscard]] std::string decode_percent(std::string_view text, bool plus_is_blank);
@@ -38,7 +45,11 @@ struct Request {
   Parameters parameters;
   std::vector<std::pair<std::string, std::string>> headers;  ///< Names in lower case.
   std::string body;
-  std::string remote;    ///< Address of the client.
+  std::string remote;      ///< Address of the client, from a trusted proxy where there is one.
+  std::string share;       ///< Under this name the client has its share.
+  bool is_secure = false;  ///< A trusted proxy says that the client speaks HTTPS.
+  /// What was lent before the request is answered; gone once it was.
+  std::shared_ptr<MemoryBudget::Lease> memory;
   std::stop_token stop;  ///< Fires when nobody waits for the answer any more.
 
   /// The header of this name (in lower case); the first one, where there are several.

@@ -17,7 +17,7 @@ namespace ptin::http {
 /// Bytes that are read while they are written: a part of a file that need not fit into memory.
 struct LongBody {
   std::uint64_t bytes = 0;
-  /// Fills `into` with the bytes from `offset` on. An exception closes the connection, so that a
+  /// Called on a thread that may wait for a disk. Fills `into` with the bytes from `offset` on. An exception closes the connection, so that a
   /// client sees that something is missing.
   std::function<void(std::uint64_t offset, std::span<char> into)> read;
 };
@@ -30,7 +30,7 @@ struct Response {
   std::string body;
   /// Bytes that outlive the server, sent instead of `body` where there are any.
   std::string_view lasting_body;
-  std::unique_ptr<LongBody> long_body;  ///< Sent instead of both where it is not null.
+  std::shared_ptr<LongBody> long_body;  ///< Sent instead of both where it is not null.
   /// Is let go once the last byte is written: the memory that was reserved for the answer.
   std::shared_ptr<void> held;
 

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdint>
 #include <new>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -15,9 +16,9 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "engine/error.h"
+#include "tools/http/admission.h"
 #include "tools/http/connection.h"
 #include "tools/http/turns.h"
-#include "tools/http/worker_pool.h"
 
 namespace ptin::http {
 
@@ -26,8 +27,14 @@ namespace {
 using boost::asio::ip::tcp;
 using Status = boost::system::error_code;
 
-/// How long nothing is accepted after the system refused a connection: it has no descriptors left.
-constexpr std::chrono::milliseconds kPause{100};
+/// How long nothing is accepted after the system refused a connection, and none could be closed.
+constexpr std::chrono::milliseconds kPause{20};
+/// Connections beyond the limit: they are answered what is quick, or told that there are too many.
+constexpr std::size_t kMostExtra = 16;
+
+Admission::Sizes sizes_of(const Limits& limits) {
+  return {limits.threads, limits.waiting, limits.memory_bytes};
+}
 
 tcp::endpoint endpoint_of(const std::string& address) {
   const std::size_t colon = address.rfind(':');
@@ -54,14 +61,14 @@ tcp::endpoint endpoint_of(const std::string& address) {
 struct Server::Inside {
   Inside(const std::string& address, const Limits& limits_given, Service& service)
       : limits(limits_given),
-        host{limits, service, pool,
-             std::make_shared<MemoryBudget>(std::max<std::uint64_t>(
-                 limits.memory_bytes / 6, std::uint64_t{4} * limits.body_bytes)),
-             turns},
+        host{limits, service, admission, turns},
         turns(io.get_executor()),
         acceptor(io),
         pause(io),
-        pool(limits.threads, limits.waiting) {
+        admission(sizes_of(limits), [&service] { service.rest(); }) {
+    // A sixth of the memory, but room for some bodies at least.
+    host.most_body_bytes =
+        std::max<std::uint64_t>(limits.memory_bytes / 6, std::uint64_t{4} * limits.body_bytes);
     const tcp::endpoint endpoint = endpoint_of(address);
     Status status;
     acceptor.open(endpoint.protocol(), status);
@@ -71,10 +78,18 @@ struct Server::Inside {
     if (status) throw system_error(status.value(), "cannot listen on", address);
   }
 
+  ~Inside() {
+    for (const auto& connection : all()) connection->abort();
+  }
+  Inside(const Inside&) = delete;
+  Inside& operator=(const Inside&) = delete;
+
   void accept() {
     acceptor.async_accept([this](const Status& status, tcp::socket socket) {
       if (!acceptor.is_open()) return;
       if (status) {
+        // Without a descriptor for it: that of one who waits for nothing is taken.
+        if (close_a_waiting_one([](const Connection&) { return true; })) return accept();
         pause.expires_after(kPause);
         pause.async_wait([this](const Status& stopped) {
           if (!stopped) accept();
@@ -93,29 +108,83 @@ struct Server::Inside {
   void take(tcp::socket socket) {
     Status ignored;
     socket.set_option(tcp::no_delay(true), ignored);
-    const bool is_full = connections.size() >= limits.connections;
-    // Those that are turned away are held for a moment too; beyond a few of them the door shuts.
-    if (connections.size() >= limits.connections + 16) return;
-    const auto made = std::make_shared<Connection>(std::move(socket), host, [this](Connection* c) {
-      connections.erase(c);
-      if (host.drains && connections.empty()) io.stop();
-    });
+    const auto made =
+        std::make_shared<Connection>(std::move(socket), host, [this](Connection* c) { forget(c); });
+    const bool is_extra = !has_room_for(*made);
+    if (is_extra && extras >= kMostExtra) {
+      close_a_waiting_one([](const Connection& one) { return one.is_extra(); });
+      if (extras >= kMostExtra) return;
+    }
     connections[made.get()] = made;
-    if (!is_full) return made->start();
-    made->turn_away(Problem(503, "the server has as many connections as it takes; come again later")
-                        .beyond("connections")
-                        .retry_after(1));
+    is_extra ? ++extras : ++of_peer[made->peer()];
+    made->start(is_extra);
+  }
+
+  void forget(Connection* connection) {
+    if (connections.erase(connection) == 0) return;
+    if (connection->is_extra()) {
+      --extras;
+    } else if (const auto peer = of_peer.find(connection->peer());
+               peer != of_peer.end() && --peer->second == 0) {
+      of_peer.erase(peer);
+    }
+    if (is_ending && connections.empty()) io.stop();
+  }
+
+  /// Whether a connection is one of those that the server takes; where there are many, the longest
+  /// idle one is closed for it.
+  bool has_room_for(const Connection& made) {
+    const auto peer = of_peer.find(made.peer());
+    const std::size_t own = peer == of_peer.end() ? 0 : peer->second;
+    const std::size_t now = connections.size() - extras;
+    const bool is_last_quarter = now >= limits.connections - limits.connections / 4;
+    const bool has_its_share =
+        !made.is_of_proxy() && is_last_quarter && own >= limits.connections / 8;
+    if (now < limits.connections && !has_its_share) return true;
+    if (has_its_share) {
+      return close_a_waiting_one(
+          [&](const Connection& one) { return !one.is_extra() && one.peer() == made.peer(); });
+    }
+    return close_a_waiting_one([](const Connection& one) { return !one.is_extra(); });
+  }
+
+  /// Closes, of those that may be closed and wait for a request, the one that has waited longest
+  /// among the connections of the client that has most.
+  template <class MayBe>
+  bool close_a_waiting_one(const MayBe& may_be) {
+    std::shared_ptr<Connection> chosen;
+    std::size_t most = 0;
+    for (const auto& connection : all()) {
+      const auto since = connection->waits_since();
+      if (!since || !may_be(*connection)) continue;
+      const auto peer = of_peer.find(connection->peer());
+      const std::size_t has = peer == of_peer.end() ? 0 : peer->second;
+      if (chosen && (has < most || (has == most && *since >= *chosen->waits_since()))) continue;
+      chosen = connection;
+      most = has;
+    }
+    if (chosen) chosen->abort();
+    return chosen != nullptr;
   }
 
   void drain() {
-    if (host.drains) return;
+    if (is_ending) return;
+    if (host.drains || limits.draining.count() == 0) return end();
     host.drains = true;
+    until_end.expires_after(limits.draining);
+    until_end.async_wait([this](const Status& stopped) {
+      if (!stopped) end();
+    });
+  }
+
+  void end() {
+    host.drains = is_ending = true;
     Status ignored;
     acceptor.close(ignored);
-    for (const auto& connection : all()) connection->drain();
+    for (const auto& connection : all()) connection->finish();
     if (connections.empty()) return io.stop();
-    pause.expires_after(limits.computing + limits.writing);
-    pause.async_wait([this](const Status& stopped) {
+    until_end.expires_after(limits.queueing + limits.computing + limits.writing);
+    until_end.async_wait([this](const Status& stopped) {
       if (stopped) return;
       for (const auto& connection : all()) connection->abort();
       io.stop();
@@ -135,12 +204,16 @@ struct Server::Inside {
   // connections that the context lets go use what stands above it.
   Limits limits;
   std::unordered_map<Connection*, std::weak_ptr<Connection>> connections;
+  std::unordered_map<std::string, std::size_t> of_peer;  ///< Connections, but for those beyond.
+  std::size_t extras = 0;
+  bool is_ending = false;
   ConnectionHost host;
   boost::asio::io_context io{1};
   Turns turns;  // Those that wait in it are connections, whose sockets are the context's.
   tcp::acceptor acceptor;
   boost::asio::steady_timer pause;
-  WorkerPool pool;
+  boost::asio::steady_timer until_end{io};
+  Admission admission;
 };
 
 Server::Server(const std::string& address, const Limits& limits, Service& service)
@@ -171,7 +244,8 @@ void Server::drain() {
 }
 
 ServerLoad Server::load() const {
-  return {inside_->connections.size(), inside_->pool.waiting(), inside_->pool.running()};
+  return {inside_->connections.size(), inside_->admission.waiting(), inside_->admission.running(),
+          inside_->admission.memory()->lent()};
 }
 
 }  // namespace ptin::http

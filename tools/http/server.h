@@ -17,6 +17,7 @@ namespace ptin::http {
 /// What a server does now.
 struct ServerLoad {
   std::size_t connections = 0, waiting = 0, computing = 0;
+  std::uint64_t memory_bytes = 0;  ///< Lent to bodies, questions and answers.
 };
 
 class Server {
@@ -37,11 +38,13 @@ class Server {
   /// answered, or was given up.
   void run();
 
-  /// Takes no further connection and no further request; what is at hand is finished, within the
-  /// limits of computing and writing. May be called from any thread, not from a signal handler.
+  /// Takes no further question. New connections are told so for the time of `draining`, then none is
+  /// taken; what is at hand is finished, within the limits of queueing, computing and writing. Called
+  /// again, it takes no connection from then on. May be
+  /// called from any thread, not from a signal handler.
   void drain();
 
-  /// Only for the service, on the thread of connections.
+  /// The number of connections is for the thread of connections alone.
   [[nodiscard]] ServerLoad load() const;
 
  private:

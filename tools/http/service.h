@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <exception>
 
+#include "tools/http/admission.h"
 #include "tools/http/request.h"
 #include "tools/http/response.h"
 
@@ -13,6 +14,12 @@ namespace ptin::http {
 
 /// Why nobody waits for an answer any more.
 enum class GivenUp : std::uint8_t { kNot, kDeadline, kHungUp };
+
+/// What a question takes before it works.
+struct Needs {
+  Lane lane = Lane::kPoint;
+  std::uint64_t memory = 0;  ///< Bytes; request.memory has them when it is answered.
+};
 
 /// What became of a request: for the log and for counts.
 struct Served {
@@ -23,14 +30,19 @@ struct Served {
   bool is_whole = false;            ///< All of the answer was taken by the system.
 };
 
-/// Answers requests. Threads: answer() may be called on several at once; the server calls all other
+/// Answers requests. Threads: answer() and rest() may be called on several at once; the server calls all other
 /// functions on the thread of its connections, which they must not block.
 class Service {
  public:
   virtual ~Service() = default;
 
-  /// Whether the request goes to answer_quickly(), beside the queue and its limits.
+  /// Whether the request goes to answer_quickly(), beside all lanes and their limits.
   [[nodiscard]] virtual bool is_quick(const Request& request) const = 0;
+  /// Looks at the head of a request before its body is read: throws a Problem where it is refused
+  /// whatever its body says.
+  virtual void check(const Request& head) const = 0;
+  /// What the request, now with its body, takes.
+  [[nodiscard]] virtual Needs needs(const Request& request) const = 0;
   /// May throw as answer().
   [[nodiscard]] virtual Response answer_quickly(const Request& request) = 0;
   /// Called on one of the threads for computing. May throw a Problem, or anything else, which
@@ -42,6 +54,9 @@ class Service {
                                          GivenUp why) noexcept = 0;
   /// Looks at every answer before it is written: adds headers that all have.
   virtual void finish(const Request& request, Response& response) = 0;
+  /// Called on one of the threads for computing, some time after the last long question: the time to
+  /// give memory back.
+  virtual void rest() noexcept {}
   /// Told once for every request.
   virtual void note(const Served& served) noexcept = 0;
 };

@@ -7,7 +7,6 @@
 #include <deque>
 #include <functional>
 #include <utility>
-#include <vector>
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/post.hpp>
@@ -32,11 +31,6 @@ class Turns {
     waiting_.push_back(std::move(piece));
     if (!is_going_) go_on();
   }
-  /// Memory for the piece whose turn it is, kPieceBytes.
-  [[nodiscard]] std::vector<char>& room() {
-    room_.resize(kPieceBytes);
-    return room_;
-  }
 
  private:
   void go_on() {
@@ -54,7 +48,6 @@ class Turns {
   boost::asio::any_io_executor executor_;
   std::deque<std::function<void()>> waiting_;
   bool is_going_ = false;
-  std::vector<char> room_;
 };
 
 }  // namespace ptin::http

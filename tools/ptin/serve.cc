@@ -2,6 +2,7 @@
 //
 // ptin serve: questions over HTTP.
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -19,6 +20,8 @@
 #include "engine/remote/remote_file.h"
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
+#include "tools/facts/human.h"
+#include "tools/http/descriptors.h"
 #include "tools/http/server.h"
 #include "tools/ptin/query_options.h"
 #include "tools/serve/config_file.h"
@@ -33,9 +36,9 @@ namespace {
 
 struct ServeCommand {
   std::vector<std::string> files;
-  std::optional<std::string> listen, cors, token_file;
+  std::optional<std::string> listen, cors, token_file, metrics;
   std::string config, memory;
-  std::vector<std::string> limits;
+  std::vector<std::string> limits, trusted_proxies;
   std::optional<std::uint64_t> threads;
   bool offers_files = false;
 };
@@ -51,15 +54,26 @@ serve::ServedFile served_file(const std::string& text) {
   return {std::filesystem::path(text).stem().string(), text};
 }
 
-serve::ServeOptions options_of(const ServeCommand& command) {
+serve::ServeOptions program_defaults() {
   serve::ServeOptions options;
-  options.http.threads = static_cast<std::size_t>(thread_count(0));
+  options.http.draining = std::chrono::milliseconds(1000);
   options.version = PTIN_VERSION;
+  return options;
+}
+
+serve::ServeOptions options_of(const ServeCommand& command) {
+  serve::ServeOptions options = program_defaults();
+  options.http.threads = static_cast<std::size_t>(thread_count(0));
+  options.http.memory_bytes = 0;  // Until somebody says how much.
   if (!command.config.empty()) serve::read_config(command.config, options);
   for (const std::string& file : command.files) options.files.push_back(served_file(file));
   if (options.files.empty()) refuse("no file is given: name files, or --config with [collections]");
   if (command.listen) options.listen = *command.listen;
   if (command.cors) options.cors_origin = serve::checked_origin(*command.cors, "--cors");
+  if (command.metrics) options.metrics = serve::metrics_for(*command.metrics, "--metrics");
+  for (const std::string& proxy : command.trusted_proxies) {
+    serve::add_trusted_proxies(proxy, options);
+  }
   if (command.token_file) options.token = serve::read_token(*command.token_file);
   if (command.threads) options.http.threads = static_cast<std::size_t>(*command.threads);
   if (command.offers_files) options.offers_files = true;
@@ -69,6 +83,7 @@ serve::ServeOptions options_of(const ServeCommand& command) {
     if (equals == std::string::npos) refuse("expected NAME=VALUE, as points=1000", "--limit");
     serve::set_limit(options, limit.substr(0, equals), limit.substr(equals + 1));
   }
+  if (options.http.memory_bytes == 0) options.http.memory_bytes = serve::default_memory(options);
   if (options.question.question_memory > options.http.memory_bytes) {
     refuse("one question may take " + std::to_string(options.question.question_memory) +
            " bytes, and all together " + std::to_string(options.http.memory_bytes) +
@@ -77,19 +92,42 @@ serve::ServeOptions options_of(const ServeCommand& command) {
   return options;
 }
 
+/// As many connections as there are descriptors for.
+void fit_connections(serve::ServeOptions& options) {
+  const std::size_t descriptors = http::raise_descriptor_limit();
+  const std::size_t each = options.offers_files ? 2 : 1;
+  options.http.connections = std::min(
+      options.http.connections, http::connections_for(descriptors, http::open_descriptors(), each));
+}
+
+std::string sizes_text(const serve::ServeOptions& options) {
+  const http::Limits& limits = options.http;
+  return counted(limits.threads, "thread") + " for points, and " +
+         counted(limits.threads + 1, "thread") +
+         " for tiles and sweeps, of which neither has more than " + std::to_string(limits.threads) +
+         "; " + human_bytes(limits.memory_bytes) + " of memory, " +
+         human_bytes(options.question.question_memory) + " a question; " +
+         counted(limits.connections, "connection");
+}
+
 int run_serve(const ServeCommand& command, const Context& context) {
   // Each thread would else keep memory of its own that no other one gets.
   ::mallopt(M_ARENA_MAX, 2);
+  // Large blocks go back to the system as soon as they are freed.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  ::mallopt(M_TRIM_THRESHOLD, 4 << 20);
   install_sigbus_guard();  // A file that is cut short fails questions, not the service.
-  const serve::ServeOptions options = options_of(command);
+  serve::ServeOptions options = options_of(command);
   std::signal(SIGPIPE, SIG_IGN);  // Of whoever read the log and left.
   serve::LogWriter log(STDERR_FILENO);
   serve::TerrainService service(options, [&log](const std::string& line) { log.add(line); });
+  fit_connections(options);
   http::Server server(options.listen, options.http, service);
   service.watch(&server);
   if (!context.quiet) {
-    std::printf("http://%s/ answers from %zu file%s; SIGTERM ends it\n", server.address().c_str(),
-                options.files.size(), options.files.size() == 1 ? "" : "s");
+    std::printf("http://%s/ answers from %zu file%s; SIGTERM ends it\n%s\n",
+                server.address().c_str(), options.files.size(),
+                options.files.size() == 1 ? "" : "s", sizes_text(options).c_str());
     std::fflush(stdout);
   }
   const std::stop_callback drains(context.stop, [&] {
@@ -103,7 +141,7 @@ int run_serve(const ServeCommand& command, const Context& context) {
 
 std::string limits_help() {
   std::string help = "A limit, as points=1000; may be given often. A refusal names it:";
-  const serve::ServeOptions defaults;
+  const serve::ServeOptions defaults = program_defaults();
   for (const serve::LimitFact& limit : serve::limit_table()) {
     help.append("\n  ").append(limit.name).append("=").append(std::to_string(limit.get(defaults)));
     if (!limit.unit.empty()) help.append(" ").append(limit.unit);
@@ -120,20 +158,30 @@ Action declare_serve(CLI::App& app, Context& context) {
   app.add_option("--listen", command->listen, "Where to listen; 127.0.0.1:8080 without it")
       ->type_name("ADDRESS:PORT");
   app.add_option("--config", command->config,
-                 "TOML: listen, threads, cors, token_file, files, [collections], [limits]; options "
-                 "win over it")
+                 "TOML: listen, threads, cors, token_file, files, metrics, trusted_proxies, "
+                 "[collections], [limits]; options win over it")
       ->type_name("FILE");
-  app.add_option("--threads", command->threads, "Questions that are computed at once")
+  app.add_option("--threads", command->threads,
+                 "Questions of each lane (points, tiles, sweeps) that are computed at once")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--memory", command->memory, "Memory of all questions at once; 192M without it")
+  app.add_option(
+         "--memory", command->memory,
+         "Memory of all bodies, questions and answers; as much as fills all threads without it")
       ->type_name("SIZE");
   app.add_option("--limit", command->limits, limits_help())->type_name("NAME=VALUE");
   app.add_option("--cors", command->cors, "Web pages of this origin may ask; * for all")
       ->type_name("ORIGIN");
   app.add_option("--token-file", command->token_file,
-                 "Questions need the token of its first line, as Authorization: Bearer TOKEN")
+                 "Questions need the token of its first line, as Authorization: Bearer TOKEN, or "
+                 "once as ?token=TOKEN in a browser")
       ->type_name("FILE");
+  app.add_option("--metrics", command->metrics,
+                 "Who reads /metrics: open, token, closed; without it whoever may ask questions")
+      ->type_name("WHO");
+  app.add_option("--trusted-proxy", command->trusted_proxies,
+                 "A proxy that is believed its X-Forwarded-For and -Proto; may be given often")
+      ->type_name("ADDRESS[/BITS]");
   app.add_flag("--files", command->offers_files, "Give out the files themselves, by ranges");
   return [command, &context] { return run_serve(*command, context); };
 }

@@ -104,6 +104,21 @@ std::shared_ptr<const Collection> Catalogue::find(const std::string& id) const {
   return found == entries_.end() ? nullptr : current(id, *found->second);
 }
 
+std::vector<std::string> Catalogue::damaged() const {
+  std::vector<std::string> names;
+  for (const auto& [id, entry] : entries_) {
+    if (entry->is_damaged) names.push_back(id);
+  }
+  return names;
+}
+
+void Catalogue::check_whole(const std::string& id) const {
+  const auto found = entries_.find(id);
+  if (found == entries_.end() || !found->second->is_damaged) return;
+  throw Error(ErrorCode::corruption, "the file was written over while it was served",
+              found->second->path);
+}
+
 std::vector<std::shared_ptr<const Collection>> Catalogue::all() const {
   std::vector<std::shared_ptr<const Collection>> all;
   for (const auto& [id, entry] : entries_) all.push_back(current(id, *entry));
@@ -116,6 +131,7 @@ std::shared_ptr<const Collection> Catalogue::current(const std::string& id, Entr
   const FileIdentity seen = now.value_or(FileIdentity{});
   if (now && seen == entry.open->identity && !was_replaced(entry.open->terrain.store())) {
     entry.is_stale = false;
+    entry.is_damaged = false;
     return entry.open;
   }
   const bool is_known = entry.is_stale && seen == entry.refused;
@@ -130,9 +146,13 @@ std::shared_ptr<const Collection> Catalogue::current(const std::string& id, Entr
   try {
     entry.open = std::make_shared<Collection>(id, entry.path);
     entry.is_stale = false;
+    entry.is_damaged = false;
   } catch (const std::exception& error) {
     if (is_damaged(error) && !is_remote(entry.path))
       entry.next_try = std::chrono::steady_clock::time_point::max();
+    // What took its place leaves the old one whole; what was written into it does not.
+    entry.is_damaged =
+        seen.device == entry.open->identity.device && seen.inode == entry.open->identity.inode;
     if (is_known) return entry.open;
     warn_(id, std::string("the file that took its place cannot be opened: ") + error.what());
   }

@@ -3,6 +3,7 @@
 // The files that a service answers from, each under a name. No path ever comes from a client.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -63,6 +64,12 @@ class Catalogue {
   /// The collection of this name, null when there is none. Looks whether the file was replaced, and
   /// then opens the new one; while that one cannot be opened, the old one goes on answering.
   [[nodiscard]] std::shared_ptr<const Collection> find(const std::string& id) const;
+  /// Whether there is one of this name; nothing is opened, and no file is looked at.
+  [[nodiscard]] bool has(const std::string& id) const { return entries_.count(id) != 0; }
+  /// Those whose open file was written over in place and is no terrain any more, by name.
+  [[nodiscard]] std::vector<std::string> damaged() const;
+  /// @throws Error corruption  the collection is one of those
+  void check_whole(const std::string& id) const;
   /// All, by name.
   [[nodiscard]] std::vector<std::shared_ptr<const Collection>> all() const;
 
@@ -73,6 +80,7 @@ class Catalogue {
     std::shared_ptr<const Collection> open;
     FileIdentity refused;  ///< That could not be opened.
     bool is_stale = false;
+    std::atomic<bool> is_damaged = false;  ///< Read without the mutex.
     /// What is damaged is not tried again; what may be a matter of the moment is, from then on.
     std::chrono::steady_clock::time_point next_try;
   };

@@ -48,6 +48,10 @@ void take_setting(const std::string& name, const std::string& value, const std::
   } else if (name == "files") {
     if (value != "true" && value != "false") refuse("files is neither true nor false", path);
     options.offers_files = value == "true";
+  } else if (name == "metrics") {
+    options.metrics = metrics_for(value, path);
+  } else if (name == "trusted_proxies") {
+    add_trusted_proxies(value, options);
   } else if (name == "threads") {
     const auto [end, status] =
         std::from_chars(value.data(), value.data() + value.size(), options.http.threads);
@@ -56,10 +60,11 @@ void take_setting(const std::string& name, const std::string& value, const std::
       refuse("threads is no whole number from 1 to " + std::to_string(kMostThreads), path);
     }
   } else {
-    refuse("\"" + name +
-               "\" means nothing here; there are listen, threads, cors, token_file, files, and the "
-               "tables [collections] and [limits]",
-           path);
+    refuse(
+        "\"" + name +
+            "\" means nothing here; there are listen, threads, cors, token_file, files, metrics, "
+            "trusted_proxies, and the tables [collections] and [limits]",
+        path);
   }
 }
 
@@ -94,6 +99,25 @@ std::string checked_origin(const std::string& origin, const std::string& where) 
       "an origin of web pages holds no blank and no control character; expected * or one as "
       "https://example.org",
       where);
+}
+
+MetricsFor metrics_for(const std::string& word, const std::string& where) {
+  if (word == "open") return MetricsFor::kAll;
+  if (word == "token") return MetricsFor::kToken;
+  if (word == "closed") return MetricsFor::kNobody;
+  refuse("\"" + word + "\" is not who may read the metrics; expected open, token or closed", where);
+}
+
+void add_trusted_proxies(const std::string& list, ServeOptions& options) {
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string one = list.substr(begin, end - begin);
+    const std::size_t first = one.find_first_not_of(' ');
+    const std::size_t last = one.find_last_not_of(' ');
+    options.http.trusted_proxies.push_back(http::parse_network(
+        first == std::string::npos ? one : one.substr(first, last + 1 - first)));
+    begin = end + 1;
+  }
 }
 
 std::string read_token(const std::string& path) {

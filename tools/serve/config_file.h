@@ -10,7 +10,7 @@
 namespace ptin::serve {
 
 /// Reads a configuration into `options`: `listen`, `threads`, `cors`, `token_file`, `files` (true or
-/// false), a table [collections] of NAME = "FILE", where a name that is no path from the root counts
+/// false), `metrics`, `trusted_proxies` (addresses between commas), a table [collections] of NAME = "FILE", where a name that is no path from the root counts
 /// from the folder of the configuration, and a table [limits].
 /// @throws Error not_found, io_error
 ///               invalid_argument  no TOML; a name that means nothing here (named, with those that
@@ -21,6 +21,13 @@ void read_config(const std::string& path, ServeOptions& options);
 /// @param where  Gave it, for the error.
 /// @throws Error invalid_argument  it holds a blank or a control character
 [[nodiscard]] std::string checked_origin(const std::string& origin, const std::string& where);
+
+/// Who may read the metrics: "open", "token" or "closed".
+/// @throws Error invalid_argument
+[[nodiscard]] MetricsFor metrics_for(const std::string& word, const std::string& where);
+
+/// Adds proxies, as ADDRESS or ADDRESS/BITS between commas.  @throws Error invalid_argument
+void add_trusted_proxies(const std::string& list, ServeOptions& options);
 
 /// The token that a file holds: its first line, without blanks behind it.
 /// @throws Error not_found, io_error; invalid_argument  it is empty, or others may read the file

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "tools/http/memory_budget.h"
+#include "tools/http/admission.h"
 #include "tools/http/problem.h"
 #include "tools/http/request.h"
 #include "tools/http/response.h"
@@ -33,7 +33,7 @@ struct Asked {
   [[nodiscard]] const StoreFacts& facts() const { return collection->terrain.store().facts(); }
 };
 
-/// How much of the budget a question reserves before it works.
+/// How much memory is lent to a question before it works.
 enum class Reserves : std::uint8_t { kNothing, kQuarter, kAll };  // of question_memory
 
 struct Endpoint {
@@ -43,6 +43,7 @@ struct Endpoint {
   std::string_view about;
   std::span<const ParameterFact> parameters;
   std::string_view media;  ///< Types of the answer, between blanks.
+  http::Lane lane;
   Reserves reserves;
   /// May throw http::Problem, or Error as the engine.
   http::Response (*answer)(const Asked& asked);

@@ -59,6 +59,7 @@ http::Response answer_file(const Asked& asked) {
   if (!now) throw Problem(404, "the file is gone; questions are answered from what was open");
   const auto file = std::make_shared<Descriptor>(store.path());
   if (now != asked.collection->identity || identity_of(store.path()) != now) {
+    asked.catalogue.check_whole(asked.collection->id);
     throw Problem(409, "the file was replaced at this moment; ask again").retry_after(1);
   }
   const std::string etag = "\"" + asked.collection->fingerprint + "\"";

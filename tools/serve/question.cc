@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "tools/http/problem.h"
@@ -17,33 +16,6 @@ using http::Problem;
 
 Problem bad(std::string_view name, const std::string& what) {
   return Problem(400, what).at(std::string(name));
-}
-
-http::Parameters members_of(const nlohmann::json& object) {
-  if (!object.is_object()) {
-    throw Problem(400, "the body is no JSON object; send the parameters as its members");
-  }
-  http::Parameters members;
-  for (const auto& [name, value] : object.items()) {
-    members.emplace_back(name, value.is_string() ? value.get<std::string>() : value.dump());
-  }
-  return members;
-}
-
-http::Parameters fields_of(const std::string& form) {
-  return http::parse_target("/?" + form).parameters;
-}
-
-/// The parameters that a body holds.
-http::Parameters parameters_of_body(const http::Request& request) {
-  if (request.body.empty()) return {};
-  std::string_view type = request.header("content-type").value_or("application/json");
-  type = trimmed(type.substr(0, type.find(';')));
-  if (type == "application/json") return members_of(json_of_client(request.body, "body"));
-  if (type == "application/x-www-form-urlencoded") return fields_of(request.body);
-  throw Problem(415,
-                "the body is of a type that is not read here; send application/json or "
-                "application/x-www-form-urlencoded");
 }
 
 std::string list_of(std::span<const ParameterFact> facts) {
@@ -72,34 +44,11 @@ std::optional<double> number_of(std::string_view text) {
   return number;
 }
 
-nlohmann::json json_of_client(std::string_view text, std::string_view name, int most_deep) {
-  using Event = nlohmann::json::parse_event_t;
-  // The parser is recursive in nothing, but what it makes is taken apart recursively.
-  bool is_too_deep = false;
-  std::vector<std::set<std::string>> names;  // Of the members of the objects that are open.
-  std::string twice;
-  const auto watch = [&](int depth, Event event, nlohmann::json& parsed) {
-    is_too_deep = is_too_deep || depth > most_deep;
-    if (is_too_deep) return false;
-    if (event == Event::object_start) names.emplace_back();
-    if (event == Event::object_end) names.pop_back();
-    if (event == Event::key && !names.back().insert(parsed.get<std::string>()).second) {
-      twice = parsed.get<std::string>();
-    }
-    return true;
-  };
-  nlohmann::json json = nlohmann::json::parse(text.begin(), text.end(), watch, false);
-  if (is_too_deep) {
-    throw bad(name, "the JSON is deeper than " + std::to_string(most_deep) + " levels");
-  }
-  if (json.is_discarded()) throw bad(name, "this is no JSON");
-  if (!twice.empty()) throw bad(name, "the member " + twice + " of the JSON is given twice");
-  return json;
-}
-
-Question::Question(const http::Request& request, std::span<const ParameterFact> facts) {
-  for (const auto& [name, value] : request.parameters) take(name, value, facts);
-  for (auto& [name, value] : parameters_of_body(request)) take(name, std::move(value), facts);
+Question::Question(const http::Request& request, std::span<const ParameterFact> facts,
+                   const JsonBounds& bounds)
+    : bounds_(bounds) {
+  for (const auto& [name, value] : request.parameters) take(name, {value}, facts);
+  if (!request.body.empty()) take_body(request, facts);
   for (const ParameterFact& fact : facts) {
     if (fact.is_required && !has(fact.name)) {
       throw bad(fact.name, "the parameter " + std::string(fact.name) +
@@ -109,25 +58,58 @@ Question::Question(const http::Request& request, std::span<const ParameterFact> 
   }
 }
 
-void Question::take(std::string name, std::string value, std::span<const ParameterFact> facts) {
+void Question::take_body(const http::Request& request, std::span<const ParameterFact> facts) {
+  std::string_view type = request.header("content-type").value_or("application/json");
+  type = trimmed(type.substr(0, type.find(';')));
+  if (type == "application/x-www-form-urlencoded") {
+    for (auto& [name, value] : http::parse_form(request.body)) {
+      take(std::move(name), {std::move(value)}, facts);
+    }
+    return;
+  }
+  if (type != "application/json") {
+    throw Problem(415,
+                  "the body is of a type that is not read here; send application/json or "
+                  "application/x-www-form-urlencoded");
+  }
+  nlohmann::json body = json_of_client(request.body, "body", bounds_);
+  if (!body.is_object()) {
+    throw Problem(400, "the body is no JSON object; send the parameters as its members");
+  }
+  for (auto& [name, value] : body.items()) {
+    if (value.is_string()) {
+      take(name, {std::move(value.get_ref<std::string&>())}, facts);
+    } else {
+      std::string text = value.dump();
+      take(name, {std::move(text), std::move(value)}, facts);
+    }
+  }
+}
+
+void Question::take(std::string name, Value value, std::span<const ParameterFact> facts) {
   const bool is_known = std::any_of(facts.begin(), facts.end(),
                                     [&](const ParameterFact& fact) { return fact.name == name; });
   if (!is_known) {
-    throw Problem(
-        400, "no parameter of this question is called \"" + name + "\"; it has " + list_of(facts))
-        .at(name);
+    throw Problem(400, "no parameter of this question is called \"" + http::shown(name) +
+                           "\"; it has " + list_of(facts))
+        .at(http::shown(name));
   }
   if (!values_.emplace(name, std::move(value)).second) {
     throw Problem(400, "the parameter " + name + " is given twice").at(name);
   }
 }
 
-bool Question::has(std::string_view name) const { return values_.find(name) != values_.end(); }
+const Question::Value* Question::find(std::string_view name) const {
+  const auto found = values_.find(name);
+  return found == values_.end() ? nullptr : &found->second;
+}
+
+bool Question::has(std::string_view name) const { return find(name) != nullptr; }
 
 const std::string& Question::text(std::string_view name) const {
   static const std::string kNothing;
-  const auto found = values_.find(name);
-  return found == values_.end() ? kNothing : found->second;
+  const Value* const value = find(name);
+  return value == nullptr ? kNothing : value->text;
 }
 
 const std::string& Question::needed(std::string_view name) const {
@@ -138,7 +120,7 @@ const std::string& Question::needed(std::string_view name) const {
 std::optional<double> Question::number(std::string_view name) const {
   if (!has(name)) return std::nullopt;
   const std::optional<double> number = number_of(text(name));
-  if (!number) throw bad(name, "\"" + text(name) + "\" is no finite number");
+  if (!number) throw bad(name, "\"" + http::shown(text(name)) + "\" is no finite number");
   return number;
 }
 
@@ -152,7 +134,7 @@ std::optional<std::uint64_t> Question::count(std::string_view name) const {
   std::uint64_t count = 0;
   const auto [end, status] = std::from_chars(given.data(), given.data() + given.size(), count);
   if (status != std::errc() || end != given.data() + given.size()) {
-    throw bad(name, "\"" + text(name) + "\" is no whole number of at least 0");
+    throw bad(name, "\"" + http::shown(text(name)) + "\" is no whole number of at least 0");
   }
   return count;
 }
@@ -161,7 +143,7 @@ bool Question::flag(std::string_view name) const {
   const std::string& given = text(name);
   if (given.empty() || given == "false" || given == "0") return false;
   if (given == "true" || given == "1") return true;
-  throw bad(name, "\"" + given + "\" is neither true nor false");
+  throw bad(name, "\"" + http::shown(given) + "\" is neither true nor false");
 }
 
 std::vector<double> Question::numbers(std::string_view name) const {
@@ -172,7 +154,7 @@ std::vector<double> Question::numbers(std::string_view name) const {
     const std::size_t end = std::min(given.find(','), given.size());
     const std::optional<double> number = number_of(given.substr(0, end));
     if (!number) {
-      throw bad(name, "\"" + std::string(given.substr(0, end)) +
+      throw bad(name, "\"" + http::shown(given.substr(0, end)) +
                           "\" is no finite number; expected numbers between commas");
     }
     numbers.push_back(*number);
@@ -189,11 +171,13 @@ std::string_view Question::choice(std::string_view name,
   if (found != known.end()) return *found;
   std::string list;
   for (const std::string_view one : known) list.append(list.empty() ? "" : ", ").append(one);
-  throw bad(name, "\"" + given + "\" is not offered; expected one of " + list);
+  throw bad(name, "\"" + http::shown(given) + "\" is not offered; expected one of " + list);
 }
 
 nlohmann::json Question::json(std::string_view name) const {
-  return has(name) ? json_of_client(text(name), name) : nlohmann::json();
+  const Value* const value = find(name);
+  if (value == nullptr) return {};
+  return value->json.is_discarded() ? json_of_client(value->text, name, bounds_) : value->json;
 }
 
 DetailRequest Question::detail() const {
@@ -231,7 +215,7 @@ std::string Question::canonical() const {
   std::string text;
   for (const auto& [name, value] : values_) {
     text.append(std::to_string(name.size())).append(":").append(name);
-    text.append(std::to_string(value.size())).append("=").append(value);
+    text.append(std::to_string(value.text.size())).append("=").append(value.text);
   }
   return text;
 }

@@ -16,6 +16,7 @@
 
 #include "engine/query/terrain.h"
 #include "tools/http/request.h"
+#include "tools/serve/client_json.h"
 
 namespace ptin::serve {
 
@@ -33,10 +34,13 @@ class Question {
  public:
   /// Takes the query of the URL and, of a POST, the members of a JSON object, or the fields of a
   /// form, in its body. A member that is no text is kept as JSON.
+  /// @param bounds  Of all JSON in it.
   /// @throws http::Problem 400  a name that `facts` does not have (lists those that are), or that
   ///                            comes twice; a body that is no object, or deeper than 16
+  ///                       413  as json_of_client()
   ///                       415  a body of another type
-  Question(const http::Request& request, std::span<const ParameterFact> facts);
+  Question(const http::Request& request, std::span<const ParameterFact> facts,
+           const JsonBounds& bounds = {});
 
   [[nodiscard]] bool has(std::string_view name) const;
   /// The text; empty where it was not given.
@@ -69,9 +73,17 @@ class Question {
   [[nodiscard]] std::string canonical() const;
 
  private:
-  void take(std::string name, std::string value, std::span<const ParameterFact> facts);
+  /// A parameter as text, and as JSON where it came so.
+  struct Value {
+    std::string text;
+    nlohmann::json json = nlohmann::json::value_t::discarded;
+  };
+  void take(std::string name, Value value, std::span<const ParameterFact> facts);
+  void take_body(const http::Request& request, std::span<const ParameterFact> facts);
+  [[nodiscard]] const Value* find(std::string_view name) const;
 
-  std::map<std::string, std::string, std::less<>> values_;
+  JsonBounds bounds_;
+  std::map<std::string, Value, std::less<>> values_;
 };
 
 /// Without blanks before and behind.
@@ -79,11 +91,5 @@ class Question {
 
 /// A finite number and nothing else, as a client writes it.
 [[nodiscard]] std::optional<double> number_of(std::string_view text);
-
-/// JSON that a client sent.
-/// @param most_deep  Of objects and arrays within each other.
-/// @throws http::Problem 400  no JSON, or deeper; an object with two members of one name
-[[nodiscard]] nlohmann::json json_of_client(std::string_view text, std::string_view name,
-                                            int most_deep = 16);
 
 }  // namespace ptin::serve

@@ -31,16 +31,33 @@ struct QuestionLimits {
   std::uint64_t question_memory = std::uint64_t{64} << 20;   ///< Of one question.
 };
 
+/// Who may read /metrics.
+enum class MetricsFor : std::uint8_t {
+  kDefault,  ///< Those with the token where there is one, or else everybody.
+  kAll,
+  kToken,
+  kNobody
+};
+
 struct ServeOptions {
   std::vector<ServedFile> files;
   std::string listen = "127.0.0.1:8080";
-  http::Limits http;
+  http::Limits http;  ///< Of its memory see default_memory().
   QuestionLimits question;
   std::uint64_t cache_bytes = std::uint64_t{32} << 20;  ///< Answers that are kept.
   std::string token;                                    ///< Empty: no question needs one.
   std::string cors_origin;  ///< Of pages that may read answers; "*" for all; empty: none.
   bool offers_files = false;
+  MetricsFor metrics = MetricsFor::kDefault;
   std::string version;  ///< Of the program; part of every ETag.
 };
+
+/// The memory with which every lane can be full: sweeps and tiles with all of a question's, points
+/// with a quarter, and a sixth of it all for bodies, and answers that are written.
+[[nodiscard]] inline std::uint64_t default_memory(const ServeOptions& options) noexcept {
+  const std::uint64_t threads = options.http.threads, one = options.question.question_memory;
+  const std::uint64_t lanes = (threads + 1) * one + threads * (one / 4);
+  return lanes + lanes / 5 + (std::uint64_t{16} << 20);
+}
 
 }  // namespace ptin::serve

@@ -36,14 +36,16 @@ std::vector<tools::Serving> held_servings(const Asked& asked) {
         .at(q.has("have") ? "have" : "fingerprint");
   }
   if (!q.has("have")) return {};
-  static_cast<void>(q.json("have"));  // Its depth is looked at.
+  const nlohmann::json have = q.json("have");  // Its depth and its size are looked at.
+  if (have.is_array()) {
+    check_count(have.size(), asked.options.question.have, "servings", "have", "have");
+  }
   std::vector<tools::Serving> servings;
   try {
     servings = tools::servings_of(q.text("have"));
   } catch (const Error& error) {
     throw Problem(400, error.message()).at("have");
   }
-  check_count(servings.size(), asked.options.question.have, "servings", "have", "have");
   return servings;
 }
 

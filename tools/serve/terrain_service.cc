@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <ctime>
 #include <utility>
 
+#include <malloc.h>
+
 #include "engine/error.h"
 #include "tools/error_status.h"
+#include "tools/facts/human.h"
 #include "tools/http/etag.h"
 #include "tools/http/gzip.h"
 #include "tools/http/list_header.h"
@@ -57,17 +59,26 @@ bool fits(std::string_view pattern, const std::vector<std::string>& path, std::s
   return at == path.size();
 }
 
+std::uint64_t memory_of(Reserves reserves, const QuestionLimits& limits) {
+  switch (reserves) {
+    case Reserves::kNothing:
+      return 0;
+    case Reserves::kQuarter:
+      return limits.question_memory / 4;
+    case Reserves::kAll:
+      break;
+  }
+  return limits.question_memory;
+}
+
+[[noreturn]] void throw_no_collection() {
+  throw Problem(404, "there is no collection of this name; /collections lists them").at("id");
+}
+
 /// What a client may ask a path for.
 std::string methods_of(const Endpoint* endpoint) {
   return endpoint != nullptr && endpoint->takes_post ? "GET, HEAD, POST, OPTIONS"
                                                      : "GET, HEAD, OPTIONS";
-}
-
-bool is_bearer(std::string_view scheme) {
-  constexpr std::string_view kBearer = "bearer ";
-  return std::equal(
-      scheme.begin(), scheme.end(), kBearer.begin(), kBearer.end(),
-      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
 }
 
 /// Whether the header Accept chooses between several types.
@@ -92,22 +103,20 @@ void add_vary(Response& response, const std::string& header) {
   response.add("Vary", header);
 }
 
-/// In a time that does not tell how many bytes were right.
-bool is_same_secret(std::string_view given, std::string_view secret) {
-  unsigned difference = given.size() == secret.size() ? 0U : 1U;
-  for (std::size_t i = 0; i < secret.size(); ++i) {
-    const char c = given.empty() ? '\0' : given[i % given.size()];
-    difference |= static_cast<unsigned char>(c ^ secret[i]);
-  }
-  return difference == 0;
-}
-
 bool packs_well(std::string_view type) {
   for (const std::string_view known :
        {"json", "text/", "xml", "javascript", "wasm", "quantized-mesh", "gltf-binary", "ply"}) {
     if (type.find(known) != std::string_view::npos) return true;
   }
   return false;
+}
+
+Response plain_text(unsigned status, std::string text) {
+  Response response;
+  response.status = status;
+  response.content_type = "text/plain; charset=utf-8";
+  response.body = std::move(text);
+  return response;
 }
 
 std::string now_text() {
@@ -142,6 +151,7 @@ void pack(bool takes_gzip, Response& response) {
 
 TerrainService::TerrainService(ServeOptions options, LogLine log)
     : options_(std::move(options)),
+      access_(options_.token, options_.metrics),
       log_(std::move(log)),
       catalogue_(
           options_.files,
@@ -150,7 +160,6 @@ TerrainService::TerrainService(ServeOptions options, LogLine log)
             this->log(
                 {{"time", now_text()}, {"event", "file"}, {"collection", id}, {"detail", what}});
           }),
-      budget_(std::make_shared<http::MemoryBudget>(options_.http.memory_bytes)),
       cache_(options_.cache_bytes) {
   metrics_.declare_counter("ptin_requests_total", "Requests answered, by question and status.");
   metrics_.declare_counter("ptin_hung_up_total", "Clients that left before their answer.");
@@ -159,40 +168,40 @@ TerrainService::TerrainService(ServeOptions options, LogLine log)
                            "Questions that failed because a file is damaged or cannot be read.");
   metrics_.declare_counter("ptin_stale_files_total",
                            "Times that a file was gone, or its successor could not be opened.");
-  metrics_.declare_seconds("ptin_queue_seconds", "Time that a question waited for a thread.");
+  metrics_.declare_seconds("ptin_queue_seconds", "Time that a question waited for its turn.");
   metrics_.declare_seconds("ptin_compute_seconds", "Time that a question was computed.");
   metrics_.declare_gauge("ptin_connections", "Connections open.");
-  metrics_.declare_gauge("ptin_waiting", "Questions that wait for a thread.");
+  metrics_.declare_gauge("ptin_waiting", "Questions that wait for their turn.");
   metrics_.declare_gauge("ptin_computing", "Questions being computed.");
   metrics_.declare_gauge("ptin_cache_bytes", "Answers that are kept.");
-  metrics_.declare_gauge("ptin_memory_reserved_bytes", "Memory reserved by questions and answers.");
+  metrics_.declare_gauge("ptin_memory_reserved_bytes",
+                         "Memory lent to bodies, questions and answers.");
 }
 
 bool TerrainService::is_quick(const Request& request) const {
-  if (request.method == "OPTIONS") return true;
+  if (request.method == "OPTIONS" || access_.is_login(request)) return true;
   return request.path.size() == 1 &&
          std::find(kQuick.begin(), kQuick.end(), request.path[0]) != kQuick.end();
 }
 
 Response TerrainService::answer_quickly(const Request& request) {
   if (request.method == "OPTIONS") return options_of(request);
+  if (access_.is_login(request)) return access_.login(request);
   if (!is_get(request)) {
     throw Problem(405, "only GET and HEAD are answered here").allow(methods_of(nullptr));
   }
   if (request.path[0] == "readyz") return ready();
-  if (request.path[0] == "metrics") return metrics_text();
-  Response alive;
-  alive.content_type = "text/plain; charset=utf-8";
-  alive.body = "alive\n";
-  return alive;
+  if (request.path[0] == "metrics") {
+    access_.check_metrics(request);
+    return metrics_text();
+  }
+  return plain_text(200, "alive\n");
 }
 
 Response TerrainService::ready() const {
-  Response response;
-  response.content_type = "text/plain; charset=utf-8";
-  response.status = drains_ ? 503 : 200;
-  response.body = drains_ ? "draining\n" : "ready\n";
-  return response;
+  std::string says = drains_ ? "draining\n" : "";
+  for (const std::string& id : catalogue_.damaged()) says += "damaged: " + id + "\n";
+  return says.empty() ? plain_text(200, "ready\n") : plain_text(503, std::move(says));
 }
 
 Response TerrainService::metrics_text() {
@@ -201,9 +210,9 @@ Response TerrainService::metrics_text() {
     metrics_.set("ptin_connections", "", static_cast<double>(load.connections));
     metrics_.set("ptin_waiting", "", static_cast<double>(load.waiting));
     metrics_.set("ptin_computing", "", static_cast<double>(load.computing));
+    metrics_.set("ptin_memory_reserved_bytes", "", static_cast<double>(load.memory_bytes));
   }
   metrics_.set("ptin_cache_bytes", "", static_cast<double>(cache_.bytes()));
-  metrics_.set("ptin_memory_reserved_bytes", "", static_cast<double>(budget_->lent()));
   Response response;
   response.content_type = "text/plain; version=0.0.4; charset=utf-8";
   response.body = metrics_.text();
@@ -220,29 +229,40 @@ TerrainService::Match TerrainService::match(const Request& request) const {
   return {};
 }
 
-void TerrainService::authorize(const Request& request) const {
-  if (options_.token.empty()) return;
-  constexpr std::size_t kScheme = 7;  // Of "Bearer " before the token.
-  const std::string_view given = request.header("authorization").value_or("");
-  if (is_bearer(given.substr(0, kScheme)) &&
-      is_same_secret(given.substr(kScheme), options_.token)) {
-    return;
-  }
-  throw Problem(401, "this service wants a token; send it as Authorization: Bearer TOKEN");
-}
-
-Response TerrainService::answer(const Request& request) {
-  authorize(request);
-  const Match found = match(request);
+void TerrainService::check(const Request& head) const {
+  access_.check(head);
+  const Match found = match(head);
   if (found.endpoint == nullptr) {
     throw Problem(404, "there is nothing under this path; / and /api list what there is");
   }
-  if (!is_get(request) && !(found.endpoint->takes_post && request.method == "POST")) {
-    throw Problem(405, found.endpoint->takes_post ? "only GET, HEAD and POST are answered here"
-                                                  : "only GET and HEAD are answered here")
-        .allow(methods_of(found.endpoint));
+  if (!is_get(head) && !(found.endpoint->takes_post && head.method == "POST")) {
+    const std::string methods = methods_of(found.endpoint);
+    throw Problem(405, "only " + methods + " are answered here").allow(methods);
   }
-  return answer_endpoint(request, found);
+  if (!found.id.empty() && !catalogue_.has(found.id)) throw_no_collection();
+}
+
+/// What is cheap in all but its size goes with what is dearer: a long body is long to read, and
+/// the most important vertices of a terrain are looked for.
+http::Needs TerrainService::needs(const Request& request) const {
+  constexpr std::size_t kShortBody = std::size_t{16} << 10;
+  const Match found = match(request);
+  if (found.endpoint == nullptr) return {};
+  http::Needs needs{found.endpoint->lane, memory_of(found.endpoint->reserves, options_.question)};
+  const bool asks_for_vertices =
+      std::any_of(request.parameters.begin(), request.parameters.end(),
+                  [](const auto& parameter) { return parameter.first == "vertices"; }) ||
+      request.body.find("vertices") != std::string::npos;
+  if (needs.lane == http::Lane::kPoint && (request.body.size() > kShortBody || asks_for_vertices)) {
+    needs.lane = http::Lane::kTile;
+  }
+  return needs;
+}
+
+void TerrainService::rest() noexcept { ::malloc_trim(0); }
+
+Response TerrainService::answer(const Request& request) {
+  return answer_endpoint(request, match(request));
 }
 
 /// What an answer depends on: the file, the question, and what the client takes.
@@ -258,20 +278,7 @@ std::shared_ptr<const Collection> TerrainService::collection_of(const Match& fou
   if (found.id.empty()) return nullptr;
   std::shared_ptr<const Collection> collection = catalogue_.find(found.id);
   if (collection) return collection;
-  throw Problem(404, "there is no collection of this name; /collections lists them").at("id");
-}
-
-std::shared_ptr<http::MemoryBudget::Lease> TerrainService::lend(Reserves reserves) const {
-  std::uint64_t bytes = options_.question.question_memory;
-  if (reserves == Reserves::kQuarter) bytes /= 4;
-  if (reserves == Reserves::kNothing) bytes = 0;
-  std::shared_ptr<http::MemoryBudget::Lease> lease = budget_->lend(bytes);
-  if (lease) return lease;
-  throw Problem(503,
-                "the questions at hand take all memory that the service has for them; come "
-                "again later")
-      .beyond("memory_bytes")
-      .retry_after(1);
+  throw_no_collection();
 }
 
 /// An address that names the version of its answers never gets other bytes.
@@ -295,7 +302,10 @@ Response TerrainService::unchanged(std::string etag, std::string cache_control, 
 
 Response TerrainService::answer_endpoint(const Request& request, const Match& found) {
   const std::shared_ptr<const Collection> collection = collection_of(found);
-  const Question question(request, found.endpoint->parameters);
+  JsonBounds bounds;
+  bounds.memory_bytes = memory_of(found.endpoint->reserves, options_.question) / 2;
+  bounds.stop = request.stop;
+  const Question question(request, found.endpoint->parameters, bounds);
   // What a collection answers to a GET is the same until its file is replaced.
   if (!is_get(request) || !collection) return compute(request, found, collection, question);
   const std::string etag = http::etag_of(key_of(request, found, collection.get(), question));
@@ -330,20 +340,20 @@ Response TerrainService::answer_endpoint(const Request& request, const Match& fo
 Response TerrainService::compute(const Request& request, const Match& found,
                                  const std::shared_ptr<const Collection>& collection,
                                  const Question& question) {
-  const auto lease = lend(found.endpoint->reserves);
+  const auto lease = request.memory;
   const Asked asked{request,
                     question,
                     options_,
                     catalogue_,
                     collection,
                     found.rest,
-                    {lease->bytes(), request.stop}};
+                    {lease ? lease->bytes() : 0, request.stop}};
   Response response = found.endpoint->answer(asked);
   if (response.held || response.long_body) return response;
   if (!is_get(request) || !collection) {
     pack(http::takes_gzip(request.header("accept-encoding").value_or("")), response);
   }
-  lease->shrink_to(response.body.capacity());
+  if (lease) lease->shrink_to(response.body.capacity());
   response.held = lease;
   return response;
 }
@@ -369,8 +379,12 @@ Response TerrainService::failed(const Request& request, const Error& error, http
       return Problem(400, error.message()).response();
     case ErrorCode::resource_exhausted:
       return Problem(413,
-                     "the answer takes more memory than the service gives a question; ask for "
-                     "less: a smaller window, or a larger error")
+                     "the answer takes more memory than the service gives a question of this "
+                     "kind, " +
+                         tools::human_bytes(
+                             memory_of(match(request).endpoint->reserves, options_.question)) +
+                         "; ask for less: a smaller window, or a larger error. Whoever runs the "
+                         "service gives more with --limit question_memory=SIZE")
           .beyond("question_memory")
           .response();
     case ErrorCode::cancelled:
@@ -464,7 +478,7 @@ void TerrainService::note(const http::Served& served) noexcept {
                                    {"id", request.id},
                                    {"remote", request.remote},
                                    {"method", request.method},
-                                   {"target", request.target},
+                                   {"target", target_for_log(request)},
                                    {"question", question},
                                    {"status", status},
                                    {"bytes", served.bytes_written},

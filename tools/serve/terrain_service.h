@@ -9,10 +9,10 @@
 #include <mutex>
 #include <string>
 
-#include "tools/http/memory_budget.h"
 #include "tools/http/metrics.h"
 #include "tools/http/server.h"
 #include "tools/http/service.h"
+#include "tools/serve/access.h"
 #include "tools/serve/answer_cache.h"
 #include "tools/serve/catalogue.h"
 #include "tools/serve/endpoint.h"
@@ -29,12 +29,16 @@ class TerrainService : public http::Service {
   TerrainService(ServeOptions options, LogLine log);
 
   [[nodiscard]] bool is_quick(const http::Request& request) const override;
+  void check(const http::Request& head) const override;
+  [[nodiscard]] http::Needs needs(const http::Request& request) const override;
   [[nodiscard]] http::Response answer_quickly(const http::Request& request) override;
   [[nodiscard]] http::Response answer(const http::Request& request) override;
   [[nodiscard]] http::Response failure(const http::Request& request, std::exception_ptr thrown,
                                        http::GivenUp why) noexcept override;
   void finish(const http::Request& request, http::Response& response) override;
   void note(const http::Served& served) noexcept override;
+  /// Gives the memory that was freed back to the system.
+  void rest() noexcept override;
 
   /// What load() is asked of; null while there is none.
   void watch(const http::Server* server) noexcept { server_ = server; }
@@ -48,7 +52,6 @@ class TerrainService : public http::Service {
     std::string rest;
   };
   [[nodiscard]] Match match(const http::Request& request) const;
-  void authorize(const http::Request& request) const;
   [[nodiscard]] http::Response answer_endpoint(const http::Request& request, const Match& match);
   [[nodiscard]] http::Response compute(const http::Request& request, const Match& found,
                                        const std::shared_ptr<const Collection>& collection,
@@ -61,7 +64,6 @@ class TerrainService : public http::Service {
   [[nodiscard]] std::string key_of(const http::Request& request, const Match& found,
                                    const Collection* collection, const Question& question) const;
   [[nodiscard]] std::shared_ptr<const Collection> collection_of(const Match& found) const;
-  [[nodiscard]] std::shared_ptr<http::MemoryBudget::Lease> lend(Reserves reserves) const;
   [[nodiscard]] http::Response ready() const;
   [[nodiscard]] http::Response metrics_text();
   [[nodiscard]] http::Response options_of(const http::Request& request) const;
@@ -74,10 +76,10 @@ class TerrainService : public http::Service {
   void log(const nlohmann::ordered_json& line) const noexcept;
 
   ServeOptions options_;
+  Access access_;
   LogLine log_;
   mutable http::Metrics metrics_;
   Catalogue catalogue_;
-  std::shared_ptr<http::MemoryBudget> budget_;
   AnswerCache cache_;
   const http::Server* server_ = nullptr;
   std::atomic<bool> drains_ = false;  ///< Set on the thread of signals.

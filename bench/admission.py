@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How late cheap questions of `ptin serve` are beside dear ones, hostile bodies and idle connections.
+
+usage: bench/admission.py PTIN FILE [--threads N] [--seconds S] [--only NAME ...]
+
+Starts the service on FILE over loopback for each row. Other clients come from 127.0.0.2 and on, as the client that is measured
+comes from 127.0.0.1: 40 heights a second, each by a new connection, its time counted from when it was due, and /healthz eight
+times a second. A row has statuses, percentiles in milliseconds, and memory without the file's pages: at the start, at most, and
+two seconds after the others are gone.
+"""
+import argparse
+import collections
+import json
+import re
+import resource
+import signal
+import socket
+import subprocess
+import threading
+import time
+
+
+class Service:
+    def __init__(self, ptin, file, threads, descriptors=None):
+        def fewer():
+            if descriptors:
+                resource.setrlimit(resource.RLIMIT_NOFILE, (descriptors, descriptors))
+        self.process = subprocess.Popen([ptin, "serve", f"dem={file}", "--listen", "127.0.0.1:0", "--threads", str(threads)],
+                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, preexec_fn=fewer)
+        self.port = int(re.search(r"http://[0-9.]+:(\d+)", self.process.stdout.readline()).group(1))
+
+    def connect(self, client):
+        made = socket.socket()
+        made.settimeout(60)
+        made.bind((f"127.0.0.{client + 1}", 0))
+        made.connect(("127.0.0.1", self.port))
+        return made
+
+    def ask(self, target, client=0, body=None):
+        with self.connect(client) as made:
+            head = f"{'GET' if body is None else 'POST'} {target} HTTP/1.1\r\nHost: a\r\nConnection: close\r\n"
+            if body is not None:
+                head += f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n"
+            made.sendall(head.encode() + b"\r\n" + (body or b""))
+            first = b""
+            while data := made.recv(1 << 18):
+                first = first or data
+            return int(first.split(b" ")[1]) if first else 0
+
+    def memory(self):
+        with open(f"/proc/{self.process.pid}/status") as lines:
+            kib = dict(re.findall(r"(RssAnon|RssShmem):\s+(\d+) kB", lines.read()))
+        return sum(map(int, kib.values())) / 1024
+
+    def end(self):
+        self.process.send_signal(signal.SIGTERM)
+        self.process.wait()
+
+
+def guarded(act):
+    try:
+        return act()
+    except OSError as error:
+        return type(error).__name__
+
+
+def repeat(service, stop, counts, client, target, body=None):
+    i = 0
+    while not stop.is_set():
+        counts[guarded(lambda: service.ask(target.replace("@", str(client * 1000 + i % 1000)), client, body))] += 1
+        i += 1
+
+
+def others(number, target, body=None):
+    """So many clients that ask the same again and again, from 50 addresses at most."""
+    def start(service, stop, counts):
+        for k in range(number):
+            threading.Thread(target=repeat, daemon=True,
+                             args=(service, stop, counts, 1 + k % 50, target, body and body(k))).start()
+    return start
+
+
+def idle(number):
+    def start(service, stop, counts):
+        held = [guarded(lambda: service.connect(1)) for _ in range(number)]
+        counts["connections"] += sum(isinstance(one, socket.socket) for one in held)
+        threading.Thread(target=lambda: (stop.wait(), [one.close() for one in held if isinstance(one, socket.socket)]),
+                         daemon=True).start()
+    return start
+
+
+SHAPES = [b'{"pairs":[' + b"{}," * 349000 + b"1]}", b'{"pairs":[' + b"[]," * 349000 + b"1]}", b"[" * 1000000,
+          b'{"pairs":[' + b'{"":0},' * 140000 + b"1]}", b'{"a":"' + b"\\u00e9" * 170000 + b'"}', b'{"a":' + b"1" * 1000000 + b"}",
+          b"{" + b",".join(b'"k%d":0' % i for i in range(90000)) + b"}"]
+SHEDS = "/collections/dem/viewshed?coords={}&radius=20000&height=@"
+STREAM = "/collections/dem/stream?error=0.@&max_bytes=4000000"
+SIGHT = "/collections/dem/sight"
+
+
+def rows(middle):
+    shed = SHEDS.format(middle)
+    hostile = [(f"{n} hostile bodies", others(n, SIGHT, lambda k: SHAPES[k % len(SHAPES)])) for n in (2, 20)]
+    return ([("nothing", None)] + [(f"{n} streams", others(n, STREAM)) for n in (1, 2, 8, 80)] +
+            [(f"{n} viewsheds", others(n, shed)) for n in (1, 2, 8, 80)] + hostile +
+            [("1024 idle connections", idle(1024)), ("300 descriptors, 600 idle", idle(600))])
+
+
+def measure(service, place, seconds, start):
+    stop, counts = threading.Event(), collections.Counter()
+    before = most = service.memory()
+    if start:
+        start(service, stop, counts)
+        time.sleep(0.5)
+    found = {"heights": [], "healthz": []}
+
+    def one(kind, target, due):
+        status = guarded(lambda: service.ask(target))
+        found[kind].append((1e3 * (time.monotonic() - due), status))
+
+    begin, asked = time.monotonic(), []
+    for i in range(40 * seconds):
+        due = begin + i / 40
+        time.sleep(max(0, due - time.monotonic()))
+        jobs = [("heights", place)] + ([("healthz", "/healthz")] if i % 5 == 0 else [])
+        for kind, target in jobs:
+            asked.append(threading.Thread(target=one, args=(kind, target, due)))
+            asked[-1].start()
+        most = max(most, service.memory())
+    for job in asked:
+        job.join()
+    stop.set()
+    time.sleep(12 if start else 2)  # What was asked ends.
+    return found, counts, (before, most, service.memory())
+
+
+def table_row(name, found, counts, memory):
+    cells = [name]
+    for kind in ("heights", "healthz"):
+        times = sorted(t for t, _ in found[kind])
+        statuses = collections.Counter(s for _, s in found[kind])
+        cells.append(" ".join(f"{n} x {s}" for s, n in sorted(statuses.items(), key=str)))
+        cells.append(" / ".join(f"{times[min(len(times) - 1, int(len(times) * q))]:.0f}" for q in (0.5, 0.99, 1)))
+    cells.append(" ".join(f"{n} x {s}" for s, n in sorted(counts.items(), key=str)))
+    cells.append(" / ".join(f"{m:.0f}" for m in memory))
+    return "| " + " | ".join(cells) + " |"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("ptin")
+    parser.add_argument("file")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--seconds", type=int, default=5)
+    parser.add_argument("--only", nargs="*")
+    options = parser.parse_args()
+    facts = json.loads(subprocess.run([options.ptin, "info", options.file, "--json"], capture_output=True, check=True).stdout)
+    west, south, east, north = facts["bounds"] if isinstance(facts["bounds"], list) else [
+        facts["bounds"][k] for k in ("min_x", "min_y", "max_x", "max_y")]
+    middle = f"POINT({(west + east) / 2}%20{(south + north) / 2})&crs=native"
+    place = f"/collections/dem/position?coords={middle}"
+    print("| beside | heights | 50 % / 99 % / most, ms | healthz | 50 % / 99 % / most, ms | what the others got | "
+          "MiB before / most / after |\n|---|---|---|---|---|---|---|")
+    for name, start in rows(middle):
+        if options.only and name not in options.only:
+            continue
+        service = Service(options.ptin, options.file, options.threads, 300 if "descriptors" in name else None)
+        service.ask(place)
+        print(table_row(name, *measure(service, place, options.seconds, start)), flush=True)
+        service.end()
+
+
+if __name__ == "__main__":
+    main()
