@@ -8,7 +8,7 @@ namespace ptin {
 namespace {
 
 /// No height is as large as this.
-constexpr double kHuge = 1e15;
+constexpr double kAlwaysSuspect = 1e15;
 /// All but the huge ones, which are two kinds more.
 constexpr std::array<double, RasterSuspects::kKinds - 2> kValues = {
     -9999,         -99999,        -999999,      -32768, -32767, 32767,
@@ -28,7 +28,7 @@ std::optional<std::size_t> RasterSuspects::kind_of(double value) noexcept {
   if (std::abs(value) < kLeast) {
     return std::nullopt;
   }
-  if (std::abs(value) >= kHuge) {
+  if (std::abs(value) >= kAlwaysSuspect) {
     return value < 0 ? kValues.size() : kValues.size() + 1;
   }
   const auto* const found = std::find(kValues.begin(), kValues.end(), value);

@@ -20,8 +20,6 @@ using Bytes = std::vector<unsigned char>;
 
 constexpr std::size_t kHeaderBytes[] = {227, 227, 227, 235, 375};  // by minor version
 constexpr std::uint32_t kFormatBytes[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-constexpr std::uint64_t kMostRecords = 65536;  // variable length records that are looked at
-constexpr std::uint64_t kMostCrsBytes = std::uint64_t{1} << 24;
 
 [[noreturn]] void refuse_las(const LasFile& file, const std::string& sentence) {
   throw Error(ErrorCode::invalid_argument, sentence, file.path());
