@@ -34,7 +34,6 @@ constexpr int kMostUnsentBytes = 128 << 10;
 constexpr std::size_t kFirstBodyBytes = std::size_t{4} << 10;
 /// A body of so many bytes is read to its end though the request is refused: the connection goes on.
 constexpr std::uint64_t kMostDroppedBody = std::uint64_t{64} << 10;
-constexpr milliseconds kBetweenLooks{25};
 
 std::string lower(std::string_view text) {
   std::string low(text);

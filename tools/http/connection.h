@@ -75,6 +75,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   using Status = boost::system::error_code;
   enum class State { kIdle, kReading, kComputing, kWriting, kLingering, kClosed };
 
+  /// Between two looks whether there is memory again, or a client hung up.
+  static constexpr std::chrono::milliseconds kBetweenLooks{25};
+
   void wait_for_request(std::chrono::milliseconds most);
   void read_head();
   void take_head(const Status& status);

@@ -15,7 +15,7 @@ namespace ptin::serve {
 
 namespace {
 
-constexpr const char* kCrs84 = "OGC:CRS84";
+constexpr const char* kLonLat = "OGC:CRS84";
 constexpr std::size_t kMostKept = 64;
 /// Taken for one transformation until it is known how long it took.
 constexpr MakingTime::Seconds kAhead{0.25};
@@ -118,7 +118,7 @@ std::optional<Made> made_by_others(const Kept::Key& key) {
   Shared& all = shared();
   const std::lock_guard lock(all.mutex);
   if (const Made* made = all.kept.find(key)) return copy_of(*made);
-  if (key.first == kCrs84) return std::nullopt;
+  if (key.first == kLonLat) return std::nullopt;
   if (const auto wait = all.time.take(MakingTime::Clock::now()); wait.count() > 0)
     throw_beyond(wait);
   return std::nullopt;
@@ -129,7 +129,7 @@ Made make_for_all(const Kept::Key& key) {
   Made made = make(key.first, key.second);
   Shared& all = shared();
   const std::lock_guard lock(all.mutex);
-  if (key.first != kCrs84) all.time.settle(MakingTime::Clock::now() - begun);
+  if (key.first != kLonLat) all.time.settle(MakingTime::Clock::now() - begun);
   all.kept.keep(key, copy_of(made));
   return made;
 }

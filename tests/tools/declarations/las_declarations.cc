@@ -79,7 +79,7 @@ const char* const kHeights =
     "VERT_CS[\"site heights\",VERT_DATUM[\"bench mark\",2005],UNIT[\"foot\",0.3048],"
     "AXIS[\"Up\",UP]]";
 
-std::vector<Declaration> of_crs() {
+std::vector<Declaration> of_las_crs() {
   return {
       of_records("las.crs_wkt", {}, {{2112, "EPSG:32617"}}),
       of_records("las.crs_keys", {}, {utm_with({})}),
@@ -160,7 +160,7 @@ std::vector<Declaration> of_points() {
 }  // namespace
 
 std::vector<Declaration> las_declarations() {
-  std::vector<Declaration> all = of_crs();
+  std::vector<Declaration> all = of_las_crs();
   for (const auto& some : {of_header(), of_points()})
     all.insert(all.end(), some.begin(), some.end());
   return all;

@@ -19,12 +19,12 @@ using Arguments = std::vector<std::string>;
 
 constexpr const char* kPlace = "<GeoTransform>500000, 30, 0, 4000000, 0, -30</GeoTransform>";
 constexpr const char* kDegrees = "<GeoTransform>7, 0.01, 0, 46, 0, -0.01</GeoTransform>";
-constexpr const char* kUtm = "<SRS>EPSG:32611</SRS>";
+constexpr const char* kUtmSrs = "<SRS>EPSG:32611</SRS>";
 
 /// The parts of a VRT over base.tif, which holds hills of a type, but for (5, 5).
 struct Vrt {
   std::string place = kPlace;
-  std::string crs = kUtm;
+  std::string crs = kUtmSrs;
   std::string of_file{};
   std::string type = "Float32";
   std::string of_band{};
@@ -236,7 +236,7 @@ std::vector<Declaration> of_place() {
   };
 }
 
-std::vector<Declaration> of_crs() {
+std::vector<Declaration> of_raster_crs() {
   return {
       of_vrt("raster.crs", [](Vrt& v) { v.crs = "<SRS>EPSG:26911</SRS>"; }),
       of_vrt("raster.crs.local",
@@ -273,7 +273,7 @@ std::vector<Declaration> of_crs() {
 std::vector<Declaration> raster_declarations() {
   GDALAllRegister();
   std::vector<Declaration> all = of_validity();
-  for (const std::vector<Declaration>& more : {of_heights(), of_place(), of_crs()}) {
+  for (const std::vector<Declaration>& more : {of_heights(), of_place(), of_raster_crs()}) {
     all.insert(all.end(), more.begin(), more.end());
   }
   return all;
