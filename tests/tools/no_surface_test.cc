@@ -21,14 +21,14 @@ using testing::run_ptin;
 using testing::spawn_ptin_reading;
 using testing::TestFolder;
 
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 constexpr const char* kNoSurface = "has no surface, all of it is void";
 
 class NoSurface : public ::testing::Test {
  protected:
   /// Builds a raster of 20 x 20 pixels of 30 m, void but for these pixels; returns what build said.
-  Outcome build(const std::vector<std::array<int, 2>>& pixels, const Words& more = {}) {
+  Outcome build(const std::vector<std::array<int, 2>>& pixels, const Arguments& more = {}) {
     testing::RasterRecipe recipe;
     recipe.width = recipe.height = 20;
     recipe.nodata = -9999.0;
@@ -38,14 +38,14 @@ class NoSurface : public ::testing::Test {
       return has_height ? 100.0 + column : -9999.0;
     };
     testing::make_raster(file("r.tif"), recipe);
-    Words words = {"build", file("r.tif"), "-o", store(), "--overwrite"};
+    Arguments words = {"build", file("r.tif"), "-o", store(), "--overwrite"};
     words.insert(words.end(), more.begin(), more.end());
     return run_ptin(words);
   }
   [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
   [[nodiscard]] std::string store() const { return file("r.ptin"); }
   /// What stderr says of a command that is done.
-  static std::string warned(const Words& words) {
+  static std::string warned(const Arguments& words) {
     const Outcome outcome = run_ptin(words);
     EXPECT_EQ(outcome.status, 0) << words[0] << outcome.err;
     return outcome.err;
@@ -67,7 +67,7 @@ TEST_F(NoSurface, BuildAndEveryQuestionWarn) {
     EXPECT_TRUE(has(built.err, pixels.empty() ? "no sample of the source has a height"
                                               : "no sample with a height has a triangle"));
     EXPECT_TRUE(has(built.err, "--nodata")) << "what to look at";
-    const Words questions[] = {
+    const Arguments questions[] = {
         {"export", store(), "-o", file("a.tif"), "--overwrite"},
         {"export", store(), "-o", file("a.ply"), "--overwrite"},
         {"volume", store(), "--level", "5"},
@@ -77,7 +77,7 @@ TEST_F(NoSurface, BuildAndEveryQuestionWarn) {
         {"locate", store(), "500100", "3999800"},
         {"isoline", store(), "--level", "5", "-o", file("a.gpkg"), "--overwrite"},
         {"stream", store(), "-o", file("a.pts"), "--overwrite"}};
-    for (Words words : questions) {
+    for (Arguments words : questions) {
       EXPECT_TRUE(has(warned(words), "ptin: warning: " + store() + " " + kNoSurface)) << words[0];
       words.emplace_back("-q");
       EXPECT_EQ(warned(words), "") << words[0];
@@ -97,8 +97,8 @@ TEST_F(NoSurface, OneTriangleIsASurface) {
 
 TEST_F(NoSurface, AWindowOfVoidIsSaid) {
   build({{5, 5}, {6, 5}, {5, 6}});
-  const Words window = {"--window", "500330", "3999450", "500500", "3999600"};
-  const auto ask = [&](Words words) {
+  const Arguments window = {"--window", "500330", "3999450", "500500", "3999600"};
+  const auto ask = [&](Arguments words) {
     words.insert(words.end(), window.begin(), window.end());
     return warned(words);
   };
