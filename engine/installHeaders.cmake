@@ -42,6 +42,7 @@ set(public_headers
     engine/crs/ground.h
     engine/crs/ground_facts.h
     engine/crs/height_unit.h
+    engine/crs/proj_messages.h
     engine/error.h
     engine/geometry/affine.h
     engine/geometry/box.h

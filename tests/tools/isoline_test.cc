@@ -213,7 +213,6 @@ TEST(IsolineProgram, RefusesWhatCannotBeAnswered) {
   refused({"--interval", "-5"}, 2, "interval");
   refused({"--interval", "5", "--max-lines", "-1"}, 2, "count");
   refused({"--interval", "0.0000001"}, 2, "levels");
-  refused({"--interval", "100000", "--base", "99000"}, 2, "--interval");
   refused({"--level", "1000", "--error", "-1"}, 2, "--error");
   refused({"--interval", "10", "--max-lines", "3"}, 7, "isolines, more than the limit of 3");
   refused({"--interval", "10", "--memory", "100K"}, 7, "KiB");

@@ -128,7 +128,8 @@ TEST_F(RasterValidity, TheLargestFloatsAreNoHeightsAndTheMessageNamesTheWayOut) 
   for (const double odd : {double{FLT_MAX}, -double{FLT_MAX}}) {
     for (const std::string type : {"Float32", "Float64"}) {
       make_base(type, odd);
-      const Outcome refused = run_ptin({"build", folder_.file("base.tif"), "-o", store_, "-q"});
+      const Outcome refused =
+          run_ptin({"build", folder_.file("base.tif"), "-o", store_, "-q", "--overwrite"});
       EXPECT_EQ(refused.status, 2);
       EXPECT_NE(refused.err.find("column 5, row 5"), std::string::npos) << refused.err;
       const std::size_t option = refused.err.find("--nodata ");

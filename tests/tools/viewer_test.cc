@@ -112,7 +112,7 @@ TEST(ViewerPage, TheFilesAreSmallEnoughToOpenQuickly) {
     EXPECT_FALSE(file.content.empty()) << file.name;
     bytes += file.content.size();
     if (file.name == "decoder.wasm") {
-      EXPECT_LT(file.content.size(), 150'000U);
+      EXPECT_LT(file.content.size(), 180'000U);  // With the questions of a stream; 76 KB packed.
       EXPECT_TRUE(file.content.starts_with(std::string_view("\0asm", 4)));
     }
   }

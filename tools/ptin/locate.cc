@@ -128,12 +128,12 @@ int run_locate(const LocateOptions& options, const Context& context) {
           ? Asked<MapPoint>{{{options.point[0], options.point[1]}}, {}, {}}
           : read_points(options.points, options.choice, plane_of(terrain.store().facts(), crs));
   warn_of_empty_input(asked.all.empty(), options.points, "point", context);
-  warn_of_outside(asked.all, "point", terrain.store().facts(), crs, context);
   LocateRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
   request.by = options.by;
   const LocateResult result = terrain.locate(asked.all, request);
+  warn_of_outside(asked.all, "point", terrain.store().facts(), crs, context);
   if (form == AnswerForm::kLayer) write_layer(options.answer, asked, result, crs);
   if (form == AnswerForm::kCsv || !context.json) {
     write_csv(options.answer, form, context.json, csv_of(asked, result));

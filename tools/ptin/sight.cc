@@ -279,9 +279,6 @@ int run_sight(const SightOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<SightPair> asked = pairs_of(options, plane_of(terrain.store().facts(), crs));
   warn_of_empty_input(asked.all.empty(), options.pairs, "pair", context);
-  std::vector<MapPoint> ends;
-  for (const SightPair& pair : asked.all) ends.insert(ends.end(), {pair.a, pair.b});
-  warn_of_outside(ends, "end", terrain.store().facts(), crs, context);
   const SightRequest request = request_of(options, ground_of(crs), context);
   SightAnswers answers(options, asked, context, crs);
   if (answers.are_plotted()) require_panels(asked.all.size(), "pairs", options.answer.output);
@@ -294,6 +291,9 @@ int run_sight(const SightOptions& options, const Context& context) {
     answers.are_plotted() ? answers.add_plotted(result, plotted(terrain, request, pair, unit))
                           : answers.add(result);
   }
+  std::vector<MapPoint> ends;
+  for (const SightPair& pair : asked.all) ends.insert(ends.end(), {pair.a, pair.b});
+  warn_of_outside(ends, "end", terrain.store().facts(), crs, context);
   const nlohmann::json all = answers.finish(request, {unit, unit});
   if (!context.json) return kExitDone;
   nlohmann::json units = units_json(crs);

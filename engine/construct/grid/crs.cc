@@ -224,13 +224,6 @@ void warn_of_axes(const Crs& crs, const std::string& file, SourceWarnings& warni
          "'northernmost') are of the numbers, not of the ground",
          file});
   }
-  if (crs.vertical_known && direction(2) == OAO_Down) {
-    warnings.add({"crs_depths",
-                  "its vertical CRS counts downwards; heights are taken as they are, so what is "
-                  "highest in the terrain is deepest on the ground; change the signs to build it "
-                  "upright",
-                  file});
-  }
 }
 
 }  // namespace

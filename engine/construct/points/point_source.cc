@@ -161,7 +161,6 @@ PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
   index.counts.source_points = reading_->scan.points();
   index.counts.left_out_points = reading_->left_out;
   index.empty_inputs = reading_->empty_inputs;
-  index.warnings = reading_->warnings;
   if (are_axes_exchanged(index.frame, grid.east - grid.west, grid.north - grid.south)) {
     index.warnings.add(
         {.kind = "exchanged_axes",

@@ -25,8 +25,14 @@ class FaultReport {
     text_ += (text_.empty() ? "" : "; ") + std::to_string(fault.count) + " " +
              (fault.count == 1 ? one : many) + place;
   }
-  void throw_if_any() const {
+  /// @param turned_in_source  As in TinFaults. They tell where a surface is folded.
+  void throw_if_any(std::uint64_t turned_in_source) {
     if (!text_.empty()) {
+      if (turned_in_source > 0) {
+        text_ += "; " + std::to_string(turned_in_source) +
+                 (turned_in_source == 1 ? " triangle is" : " triangles are") +
+                 " turned over beside the others";
+      }
       throw Error(ErrorCode::invalid_argument,
                   "these triangles are no terrain: " + text_ +
                       "; mend the file, or let --repair triangulate its points anew",
@@ -53,7 +59,7 @@ void TinFaults::refuse(const AffineMap& map, const std::string& path) const {
              "vertices lie inside of an edge (T-junctions)");
   report.add(crossings, "pair of border edges crosses", "pairs of border edges cross");
   report.add(covered, "piece is covered more than once", "pieces are covered more than once");
-  report.throw_if_any();
+  report.throw_if_any(turned_in_source);
 }
 
 }  // namespace ptin

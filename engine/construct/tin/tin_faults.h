@@ -37,8 +37,10 @@ struct TinFault {
 
 /// Everything that can be wrong with triangles.
 struct TinFaults {
-  TinFault no_area;       ///< Triangles whose corners lie on one line or coincide.
-  TinFault turned_over;   ///< Triangles that the grid turned over, beyond mending.
+  TinFault no_area;      ///< Triangles whose corners lie on one line or coincide.
+  TinFault turned_over;  ///< Triangles that the grid turned over, beyond mending.
+  /// Triangles of the source that go another way round than most. No fault by themselves.
+  std::uint64_t turned_in_source = 0;
   TinFault heights;       ///< Positions with several heights.
   TinFault shared_edges;  ///< Edges that more than one triangle has on the same side.
   TinFault t_junctions;   ///< Vertices inside of an edge of the border.

@@ -93,9 +93,12 @@ TEST(PointSource, SnapsNegativeCoordinatesLikeOthers) {
   EXPECT_EQ(set.positions, (Positions{{0, 0}, {0, 3}, {3, 3}}));
 }
 
-TEST(PointSource, NamesAResolutionWhereTheExtentIsBeyondTheGrid) {
-  expect_source_refused("0 0 0\n1000000 0 0\n0 0.0001 0\n", "such as 0.001");
-  expect_source_refused("0 0 0\n123456789012345678 0 0\n0 1e-18 0\n", "2^30");
+TEST(PointSource, DropsTheDigitsThatTheGridDoesNotKeep) {
+  const PointSet set = read("0 0 0\n1000000 0 0\n0 0.0001 0\n0 5 0\n");
+  EXPECT_EQ(set.frame.map.step_x, 0.001);
+  EXPECT_EQ(set.positions.size(), 3U);
+  EXPECT_EQ(set.largest_shift_plan, 0.0001);
+  expect_source_refused("0 0 0\n123456789012345678 0 0\n0 1e-18 0\n", "distinct points");
   SourceOptions options;
   options.resolution = 0.001;
   EXPECT_EQ(read("0 0 0\n1000000 0 0\n0 0.0001 0\n0 5 0", options).positions.size(), 3U);
