@@ -13,26 +13,25 @@ namespace ptin::serve {
 namespace {
 
 using http::Problem;
-using nlohmann::json;
 
 /// Builds the value while the text is read. Every event adds to the end of what is open, so no event
 /// looks at what came before it but for the name of a member.
-class Builder : public json::json_sax_t {
+class Builder : public nlohmann::json::json_sax_t {
  public:
   Builder(std::string_view name, const JsonBounds& bounds)
       : name_(name), bounds_(bounds), values_left_(bounds.memory_bytes / kBytesOfValue) {}
 
   bool null() override { return place(nullptr); }
   bool boolean(bool value) override { return place(value); }
-  bool number_integer(json::number_integer_t value) override { return place(value); }
-  bool number_unsigned(json::number_unsigned_t value) override { return place(value); }
-  bool number_float(json::number_float_t value, const std::string&) override {
+  bool number_integer(nlohmann::json::number_integer_t value) override { return place(value); }
+  bool number_unsigned(nlohmann::json::number_unsigned_t value) override { return place(value); }
+  bool number_float(nlohmann::json::number_float_t value, const std::string&) override {
     return place(value);
   }
   bool string(std::string& value) override { return place(std::move(value)); }
-  bool binary(json::binary_t&) override { return false; }  // Which no text holds.
-  bool start_object(std::size_t) override { return open(json::object()); }
-  bool start_array(std::size_t) override { return open(json::array()); }
+  bool binary(nlohmann::json::binary_t&) override { return false; }  // Which no text holds.
+  bool start_object(std::size_t) override { return open(nlohmann::json::object()); }
+  bool start_array(std::size_t) override { return open(nlohmann::json::array()); }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
 
@@ -44,14 +43,14 @@ class Builder : public json::json_sax_t {
     member_ = std::move(name);
     return true;
   }
-  bool parse_error(std::size_t, const std::string&, const json::exception&) override {
+  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override {
     throw Problem(400, "this is no JSON").at(name_);
   }
 
-  [[nodiscard]] json take() { return std::move(root_); }
+  [[nodiscard]] nlohmann::json take() { return std::move(root_); }
 
  private:
-  json& add(json value) {
+  nlohmann::json& add(nlohmann::json value) {
     constexpr std::uint64_t kBetweenLooks = 4096;
     if (values_left_-- == 0) {
       throw Problem(413,
@@ -64,16 +63,16 @@ class Builder : public json::json_sax_t {
     }
     if (values_left_ % kBetweenLooks == 0) stop_if_asked(bounds_.stop, "reading the JSON");
     if (open_.empty()) return root_ = std::move(value);
-    json& parent = *open_.back();
+    nlohmann::json& parent = *open_.back();
     if (parent.is_object()) return parent[member_] = std::move(value);
     parent.push_back(std::move(value));
     return parent.back();
   }
-  bool place(json value) {
+  bool place(nlohmann::json value) {
     add(std::move(value));
     return true;
   }
-  bool open(json value) {
+  bool open(nlohmann::json value) {
     if (open_.size() >= static_cast<std::size_t>(bounds_.most_deep)) {
       throw Problem(400, "the JSON is deeper than " + std::to_string(bounds_.most_deep) + " levels")
           .at(name_);
@@ -89,16 +88,18 @@ class Builder : public json::json_sax_t {
   std::string name_;
   const JsonBounds& bounds_;
   std::uint64_t values_left_;
-  json root_;
-  std::vector<json*> open_;  ///< Of an array only the last value is open, so that none moves.
+  nlohmann::json root_;
+  std::vector<nlohmann::json*>
+      open_;  ///< Of an array only the last value is open, so that none moves.
   std::string member_;
 };
 
 }  // namespace
 
-json json_of_client(std::string_view text, std::string_view name, const JsonBounds& bounds) {
+nlohmann::json json_of_client(std::string_view text, std::string_view name,
+                              const JsonBounds& bounds) {
   Builder builder(name, bounds);
-  if (!json::sax_parse(text.begin(), text.end(), &builder)) {
+  if (!nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) {
     throw Problem(400, "this is no JSON").at(std::string(name));
   }
   return builder.take();

@@ -253,7 +253,6 @@ void GridReader::assemble() {
   corners_.reset();
   tin_.turned_triangles = orientations.minority();
   tin_.faults = orientations.take();
-  tin_.faults.turned_in_source = tin_.turned_triangles;
 }
 
 /// Writes the distinct positions along the curve, finds the height encoding, and counts positions

@@ -239,6 +239,7 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   TinFaults faults;
   faults.no_area = tin.faults.no_area;
   faults.heights = tin.heights_differ;
+  faults.turned_in_source = tin.turned_triangles;
   const PointOrder order(tin.grid.largest());
   const std::array<std::string, 3> names =
       keep_as.empty() ? std::array<std::string, 3>() : kept_files(keep_as);
