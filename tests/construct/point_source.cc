@@ -144,7 +144,8 @@ PointSet read_points(const std::vector<std::string>& paths, const SourceOptions&
   }
   const PointReading raw = join_portions(paths, options, files, portions);
   const PointGrid grid = grid_with_lines(raw, options);
-  set_crs(set.frame, resolve_crs(raw.crs, options.a_srs, options.vertical_crs));
+  SourceWarnings ignored;
+  set_crs(set.frame, resolve_source_crs({raw.crs, ""}, options, "", ignored));
   set.frame.map = grid.map();
   set.left_out_points = raw.left_out;
   add_points(spooled(files, raw), grid, options.merge, set);

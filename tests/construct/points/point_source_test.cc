@@ -98,7 +98,7 @@ TEST(PointSource, DropsTheDigitsThatTheGridDoesNotKeep) {
   EXPECT_EQ(set.frame.map.step_x, 0.001);
   EXPECT_EQ(set.positions.size(), 3U);
   EXPECT_EQ(set.largest_shift_plan, 0.0001);
-  expect_source_refused("0 0 0\n123456789012345678 0 0\n0 1e-18 0\n", "distinct points");
+  expect_source_refused("0 0 0\n123456789012345678 0 0\n0 1e-18 0\n", "2^30");
   SourceOptions options;
   options.resolution = 0.001;
   EXPECT_EQ(read("0 0 0\n1000000 0 0\n0 0.0001 0\n0 5 0", options).positions.size(), 3U);
