@@ -57,10 +57,10 @@ std::string dxf_variable(const std::string& text, const std::string& name) {
 }
 
 TEST_F(StatedUnits, DrawingsStateTheUnitOfThePlane) {
-  struct Case {
+  struct Drawing {
     const char *crs, *insunits, *measurement;
   };
-  for (const Case& c : std::vector<Case>{{"EPSG:32611", "6", "1"},
+  for (const Drawing& c : std::vector<Drawing>{{"EPSG:32611", "6", "1"},
                                          {"EPSG:2225", "21", "0"},    // US survey feet
                                          {"EPSG:2222", "2", "0"}}) {  // feet
     SCOPED_TRACE(c.crs);
