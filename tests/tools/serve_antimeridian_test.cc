@@ -156,12 +156,14 @@ TEST_F(ServeAntimeridian, LaysGridsOverPolygonsTheShorterWay) {
   for (std::size_t column = 0; column < 4; ++column) {
     EXPECT_EQ(states[5 + column], column < 3 ? 0 : 2) << column;
   }
-  for (const json& feature : get("west/" + grid + "&f=geojson").json()["features"]) {
+  const json of_layer = get("west/" + grid + "&f=geojson").json();
+  for (const json& feature : of_layer["features"]) {
     EXPECT_LE(std::abs(feature["geometry"]["coordinates"][0].get<double>()), 180.0);
   }
-  for (const json& state : get("globe/area?resolution-x=5&resolution-y=3&coords=" +
-                               encoded("POLYGON((170 0,-170 0,-170 10,170 10,170 0))"))
-                               .json()["ranges"]["state"]["values"]) {
+  const json of_globe = get("globe/area?resolution-x=5&resolution-y=3&coords=" +
+                            encoded("POLYGON((170 0,-170 0,-170 10,170 10,170 0))"))
+                            .json();
+  for (const json& state : of_globe["ranges"]["state"]["values"]) {
     EXPECT_TRUE(state == 0 || state == 2 || state == 3);
   }
 }
