@@ -61,8 +61,8 @@ TEST_F(StatedUnits, DrawingsStateTheUnitOfThePlane) {
     const char *crs, *insunits, *measurement;
   };
   for (const Drawing& c : std::vector<Drawing>{{"EPSG:32611", "6", "1"},
-                                         {"EPSG:2225", "21", "0"},    // US survey feet
-                                         {"EPSG:2222", "2", "0"}}) {  // feet
+                                               {"EPSG:2225", "21", "0"},    // US survey feet
+                                               {"EPSG:2222", "2", "0"}}) {  // feet
     SCOPED_TRACE(c.crs);
     build(c.crs);
     for (const std::string& path : {written("isoline", "l.dxf", {"--interval", "20"}),
