@@ -2,6 +2,7 @@
 #include "tools/http/server.h"
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cstdint>
 #include <new>
@@ -116,12 +117,14 @@ struct Server::Inside {
       if (extras >= kMostExtra) return;
     }
     connections[made.get()] = made;
+    open = connections.size();
     is_extra ? ++extras : ++of_peer[made->peer()];
     made->start(is_extra);
   }
 
   void forget(Connection* connection) {
     if (connections.erase(connection) == 0) return;
+    open = connections.size();
     if (connection->is_extra()) {
       --extras;
     } else if (const auto peer = of_peer.find(connection->peer());
@@ -204,6 +207,7 @@ struct Server::Inside {
   // connections that the context lets go use what stands above it.
   Limits limits;
   std::unordered_map<Connection*, std::weak_ptr<Connection>> connections;
+  std::atomic<std::size_t> open{0};                      ///< Of these; other threads ask.
   std::unordered_map<std::string, std::size_t> of_peer;  ///< Connections, but for those beyond.
   std::size_t extras = 0;
   bool is_ending = false;
@@ -244,7 +248,7 @@ void Server::drain() {
 }
 
 ServerLoad Server::load() const {
-  return {inside_->connections.size(), inside_->admission.waiting(), inside_->admission.running(),
+  return {inside_->open, inside_->admission.waiting(), inside_->admission.running(),
           inside_->admission.memory()->lent()};
 }
 

@@ -44,7 +44,7 @@ class Server {
   /// called from any thread, not from a signal handler.
   void drain();
 
-  /// The number of connections is for the thread of connections alone.
+  /// Threads: any.
   [[nodiscard]] ServerLoad load() const;
 
  private:
