@@ -34,8 +34,7 @@ function tell(error: unknown, final: boolean): void {
     corruption: 'The stream is damaged', invalid_argument: 'This is not a stream',
     unsupported_version: 'The stream is newer than this viewer', resource_exhausted: 'There is no memory left',
   };
-  const noStream = error.code === 'corruption' && /no stream of ptin/.test(error.message);
-  const title = noStream ? 'This is not a stream' : titles[error.code] ?? 'The stream cannot be decoded';
+  const title = titles[error.code] ?? 'The stream cannot be decoded';
   say({ kind: 'error', title, message: error.message, final });
 }
 
