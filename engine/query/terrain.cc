@@ -57,6 +57,11 @@ VolumeResult Terrain::volume(const VolumeRequest& request) const {
   return ptin::volume(*this, request);
 }
 
+std::vector<VolumeResult> Terrain::volumes(const VolumeRequest& request,
+                                           std::span<const double> levels) const {
+  return ptin::volumes(*this, request, levels);
+}
+
 StreamSummary Terrain::stream(const StreamRequest& request, const ByteSink& sink) const {
   return write_stream(*this, request, sink);
 }

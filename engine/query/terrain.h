@@ -15,7 +15,7 @@
 // | is a line of sight free    | sight           | SightRequest        | sight/sight.h            |
 // | the same of many pairs     | sight_lines     | SightRequest        | sight/sight.h            |
 // | what an observer sees      | viewshed        | ViewshedRequest     | sight/viewshed.h         |
-// | volumes, cut and fill      | volume          | VolumeRequest       | volume/volume.h          |
+// | volumes, cut and fill      | volume, volumes | VolumeRequest       | volume/volume.h          |
 // | contours                   | isolines        | IsolineRequest      | isoline/isoline.h        |
 // | the file, coarse to fine   | stream          | StreamRequest       | stream/stream_writer.h   |
 // | do the records fit         | check_hierarchy | HierarchyRequest    | refine/hierarchy_check.h |
@@ -122,6 +122,9 @@ class Terrain : public OpenedTerrain {
 
   /// Cut, fill and net volume over or under a level, or between two terrains.
   [[nodiscard]] VolumeResult volume(const VolumeRequest& request) const;
+  /// The same over or under several levels, in one pass.
+  [[nodiscard]] std::vector<VolumeResult> volumes(const VolumeRequest& request,
+                                                  std::span<const double> levels) const;
 
   /// Sends T0 and then splits, the most important ones first. StreamReader (stream/stream_reader.h)
   /// receives them.

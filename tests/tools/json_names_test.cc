@@ -182,7 +182,8 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   const std::string path = "[-116.998,36.137],[-116.992,36.137],[-116.992,36.142]";
   const std::string area = in_degrees(
       "area.geojson", R"({"type":"Polygon","coordinates":[[)" + path + ",[-116.998,36.137]]]}");
-  question({"volume", store, "--level", "90", "--polygon", area});
+  question({"volume", store, "--level", "90", "--polygon", area, "-o", file("stages.csv")});
+  question({"volume", store, "--level", "80", "90"});
   question({"export", store, "-o", file("part.ply"), "-q", "--polygon", area});
   question({"refine", store, "--polygon", area, "--cut", "-o", file("part.obj")});
   question({"profile", store, "--line",

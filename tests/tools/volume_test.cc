@@ -48,6 +48,24 @@ class VolumeProgram : public ::testing::Test {
   TestFolder folder_;
 };
 
+TEST_F(VolumeProgram, MeasuresSeveralLevelsInOneAnswer) {
+  const std::string plane = store("plane", recipe([](int column, int) { return double(column); }));
+  const json all = ask({plane, "--interval", "8"});
+  ASSERT_EQ(all.at("levels").size(), 5u);  // 0, 8, 16, 24, 32
+  for (const json& level : all.at("levels")) {
+    json one = ask({plane, "--level", level.at("level").dump()});
+    for (const auto& [name, value] : level.items()) EXPECT_EQ(one.at(name), value) << name;
+  }
+  const testing::Outcome table = testing::run_ptin({"volume", plane, "--level", "8", "16"});
+  EXPECT_EQ(testing::lines_in(table.out), 3u) << table.out;
+  EXPECT_TRUE(table.out.starts_with("level,cut,cut_low,cut_high,fill,")) << table.out;
+  const std::string file = plane + ".csv";
+  testing::expect_done({"volume", plane, "--level", "8", "16", "-o", file, "-q"});
+  EXPECT_EQ(testing::read_file(file), table.out);
+  EXPECT_EQ(testing::run_ptin({"volume", plane, "--interval", "0.0001"}).status, 2);
+  EXPECT_EQ(testing::run_ptin({"volume", plane, "--level", "8", "-o", "-"}).status, 2);
+}
+
 /// Right-angled prisms and a pyramid, whose volumes are known.
 TEST_F(VolumeProgram, MeasuresAPlaneAndAPyramid) {
   const std::string plane = store("plane", recipe([](int column, int) { return double(column); }));

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
@@ -15,7 +17,9 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
+#include "tools/formats/csv_text.h"
+#include "tools/formats/number_text.h"
+#include "tools/ptin/answer_output.h"
 #include "tools/ptin/query_options.h"
 #include "tools/ptin/source_counts.h"
 #include "tools/thread_count.h"
@@ -26,12 +30,13 @@ namespace {
 
 struct VolumeOptions {
   TerrainOptions terrain;
-  std::optional<double> level;
+  LevelOptions levels;
   std::string against;
   RegionOptions region;
   DetailOptions detail;
   int threads = 0;
   std::string memory;
+  AnswerOptions answer;
 };
 
 void warn(const std::string& what, const Context& context) {
@@ -87,7 +92,6 @@ void check_comparable(const CrsFacts& file, const CrsFacts& other, const VolumeO
 VolumeRequest request_of(const VolumeOptions& options, const CrsFacts& crs,
                          const std::optional<Region>& region, const Context& context) {
   VolumeRequest request;
-  request.level = options.level.value_or(0.0);
   request.region = region;
   request.detail = detail_of(options.detail);
   const Ground ground = ground_of(crs);
@@ -107,25 +111,30 @@ nlohmann::json interval_json(const CertifiedVolume& v) {
   return {{"volume", v.value}, {"low", v.low}, {"high", v.high}};
 }
 
-void print_answer(const VolumeResult& result, const VolumeOptions& options, const Terrain& terrain,
-                  const Terrain* other, const CrsFacts& crs,
-                  const std::optional<Transformed>& transformed) {
+/// What a level, or the other terrain, comes to.
+nlohmann::json volumes_json(const VolumeResult& result) {
+  return {{"cut", interval_json(result.cut)},
+          {"fill", interval_json(result.fill)},
+          {"net", interval_json(result.net)},
+          {"rounding", result.rounding},
+          {"mean_difference", number_or_null(result.mean_difference)},
+          {"area",
+           {{"surface", result.surface_area},
+            {"cut", result.cut_area},
+            {"fill", result.fill_area},
+            {"void", result.void_area},
+            {"only_file", result.only_here_area},
+            {"only_against", result.only_other_area}}}};
+}
+
+void print_answer(std::span<const VolumeResult> results, std::span<const double> levels,
+                  const VolumeOptions& options, const Terrain& terrain, const Terrain* other,
+                  const CrsFacts& crs, const std::optional<Transformed>& transformed) {
+  const VolumeResult& result = results.front();
   nlohmann::json units = units_json(crs);
   units["ground"] = unit_of_ground(crs);
   nlohmann::json answer = {
-      {"level", options.level ? nlohmann::json(*options.level) : nlohmann::json()},
-      {"cut", interval_json(result.cut)},
-      {"fill", interval_json(result.fill)},
-      {"net", interval_json(result.net)},
-      {"rounding", result.rounding},
-      {"mean_difference", number_or_null(result.mean_difference)},
-      {"area",
-       {{"surface", result.surface_area},
-        {"cut", result.cut_area},
-        {"fill", result.fill_area},
-        {"void", result.void_area},
-        {"only_file", result.only_here_area},
-        {"only_against", result.only_other_area}}},
+      {"output", output_json(options.answer)},
       {"against", nullptr},
       {"certified_error", result.certificate.error},
       {"certified_deviation", result.certificate.deviation},
@@ -134,6 +143,15 @@ void print_answer(const VolumeResult& result, const VolumeOptions& options, cons
       {"transformed", transformed_json(transformed)},
       {"units", units},
       {"cost", cost_json(result.cost)}};
+  if (levels.size() > 1) {
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      answer["levels"].push_back(volumes_json(results[i]));
+      answer["levels"].back()["level"] = levels[i];
+    }
+  } else {
+    answer.update(volumes_json(result));
+    answer["level"] = other == nullptr ? nlohmann::json(levels[0]) : nlohmann::json();
+  }
   if (other != nullptr) {
     const Certificate& c = result.other_certificate;
     answer["against"] = {{"file", options.against},
@@ -142,6 +160,38 @@ void print_answer(const VolumeResult& result, const VolumeOptions& options, cons
                          {"border_moved_at_most", border_move_json(other->store(), c.error)}};
   }
   print_json(answer);
+}
+
+/// A row for each level: a stage-storage curve.
+std::string csv_of(std::span<const VolumeResult> results, std::span<const double> levels) {
+  std::string text =
+      "level,cut,cut_low,cut_high,fill,fill_low,fill_high,net,net_low,net_high,"
+      "surface_area,cut_area,fill_area,void_area\n";
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const VolumeResult& r = results[i];
+    append_number(text, levels[i]);
+    for (const CertifiedVolume* v : {&r.cut, &r.fill, &r.net}) {
+      for (const double number : {v->value, v->low, v->high}) append_csv_number(text, number);
+    }
+    for (const double area : {r.surface_area, r.cut_area, r.fill_area, r.void_area}) {
+      append_csv_number(text, area);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+/// The levels that are asked for: none where another terrain stands in their place.
+std::vector<double> levels_asked(const VolumeOptions& options, const StoreFacts& facts) {
+  constexpr std::size_t kMost = 10'000;
+  std::vector<double> levels =
+      options.levels.given() ? levels_of(options.levels, facts) : std::vector<double>{0.0};
+  if (levels.size() > kMost) {
+    refuse("there are " + grouped(levels.size()) + " levels, more than " + grouped(kMost) +
+               "; give a larger --interval",
+           "--interval");
+  }
+  return levels;
 }
 
 void print_text(const VolumeResult& result, const VolumeOptions& options, const CrsFacts& crs) {
@@ -175,9 +225,16 @@ void print_text(const VolumeResult& result, const VolumeOptions& options, const 
 }
 
 int run_volume(const VolumeOptions& options, const Context& context) {
-  if (options.level.has_value() != options.against.empty()) {
+  if (options.levels.given() != options.against.empty()) {
     throw Error(ErrorCode::invalid_argument,
-                "a volume is measured against --level H or --against OTHER; give one of them");
+                "a volume is measured against --level H..., --interval D or --against OTHER; give "
+                "one of them");
+  }
+  const AnswerForm form = form_of(options.answer, context.json);
+  if (form == AnswerForm::kLayer) refuse("volumes are a table; write .csv", options.answer.output);
+  if (form == AnswerForm::kCsv && !options.against.empty()) {
+    refuse("a table has a row for each level, and another terrain has none; leave -o out",
+           options.answer.output);
   }
   check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain, context);
@@ -199,16 +256,23 @@ int run_volume(const VolumeOptions& options, const Context& context) {
   VolumeRequest request = request_of(options, crs, asked.region, context);
   request.other = other ? &*other : nullptr;
   request.other_height_scale = other_height_scale;
-  const VolumeResult result = terrain.volume(request);
+  const std::vector<double> levels = levels_asked(options, terrain.store().facts());
+  if (!other) request.level = levels.front();
+  const std::vector<VolumeResult> results = terrain.volumes(
+      request, other ? std::span<const double>{&request.level, 1} : std::span(levels));
+  const VolumeResult& result = results.front();
   if (result.surface_area == 0 && has_surface(terrain.store())) {
     warn("no surface lies in the region" +
              (other ? ", or none of both terrains at one place" : std::string()) +
              ": all volumes are 0; ask for another --window or --polygon",
          context);
   }
+  const bool is_table = results.size() > 1 || form == AnswerForm::kCsv;
+  if (is_table) write_csv(options.answer, form, context.json, csv_of(results, levels));
   if (context.json) {
-    print_answer(result, options, terrain, other ? &*other : nullptr, crs, asked.transformed);
-  } else {
+    print_answer(results, levels, options, terrain, other ? &*other : nullptr, crs,
+                 asked.transformed);
+  } else if (!is_table) {
     print_text(result, options, crs);
   }
   return kExitDone;
@@ -219,17 +283,20 @@ int run_volume(const VolumeOptions& options, const Context& context) {
 Action declare_volume(CLI::App& app, Context& context) {
   const auto options = std::make_shared<VolumeOptions>();
   add_terrain_options(app, options->terrain, false);
-  auto* level = app.add_option("--level", options->level, "A height, in the height's unit");
-  level->check(numbers(NumberRange::kFinite, "in the height's unit"))->type_name("H");
+  add_level_options(app, options->levels,
+                    "Heights, in the height's unit; of several the answer is a table",
+                    "Every multiple of D, from the base");
   app.add_option("--against", options->against,
                  "A second .ptin file, on any grid, in the same CRS; cut is where FILE is above it")
       ->type_name("OTHER")
-      ->excludes(level);
+      ->excludes(app.get_option("--level"))
+      ->excludes(app.get_option("--interval"));
   add_region_options(app, options->region, RegionKinds::kWithInside);
   add_detail_options(app, options->detail, ", of either file; volumes come with intervals",
                      "Measure the TINs of the N most important vertices; volumes come with "
                      "intervals");
   add_memory_option(app, options->memory);
+  add_answer_options(app, options->answer);
   app.add_option(
          "--threads", options->threads,
          "Threads (default: one a processor that affinity and cgroups leave this process);\n"

@@ -16,10 +16,15 @@ namespace {
 /// Far beyond any height, and far from where sums would overflow.
 constexpr double kLargest = 1e100;
 
-void check(const VolumeRequest& request) {
-  if (!(std::abs(request.level) <= kLargest)) {
+void check(const VolumeRequest& request, std::span<const double> levels) {
+  const auto is_level = [](double level) { return std::abs(level) <= kLargest; };
+  if (levels.empty() || !std::all_of(levels.begin(), levels.end(), is_level)) {
     throw Error(ErrorCode::invalid_argument,
                 "the level of a volume must be a finite number, no larger than 1e100");
+  }
+  if (levels.size() > 1 && request.other != nullptr) {
+    throw Error(ErrorCode::invalid_argument,
+                "several levels are asked for beside another terrain, which stands in their place");
   }
   const double scale = request.other_height_scale;
   if (!(scale >= 1 / kLargest && scale <= kLargest)) {
@@ -30,9 +35,9 @@ void check(const VolumeRequest& request) {
 
 /// What the difference can be anywhere in the sources; empty where there is no surface.
 Interval possible_differences(const VolumeSide& side, const VolumeSide* other,
-                              const VolumeRequest& request) {
+                              const VolumeRequest& request, double level) {
   const Interval a = source_heights(side.facts());
-  if (other == nullptr) return {a.lo - request.level, a.hi - request.level};
+  if (other == nullptr) return {a.lo - level, a.hi - level};
   const Interval b = source_heights(other->facts());
   if (is_empty(a) || is_empty(b)) return {};
   return {a.lo - request.other_height_scale * b.hi, a.hi - request.other_height_scale * b.lo};
@@ -68,8 +73,8 @@ void certify(const VolumeSums& sums, const Interval& possible, double unsure,
 
 /// What is left of `area` beside `part` of it; what rounding alone can have left is nothing.
 double beside(const VolumeTotals& own, const VolumeTotals& shared) {
-  const double left = own.sums.surface_area.value() - shared.sums.surface_area.value();
-  const double rounding = own.sums.area_rounding.value() + shared.sums.area_rounding.value();
+  const double left = own.sums[0].surface_area.value() - shared.sums[0].surface_area.value();
+  const double rounding = own.sums[0].area_rounding.value() + shared.sums[0].area_rounding.value();
   return left <= rounding ? 0.0 : left;
 }
 
@@ -94,37 +99,58 @@ double unsure_area(const VolumeSide& side, const BorderLength& border) {
 
 class Measuring {
  public:
-  Measuring(const OpenedTerrain& terrain, const VolumeRequest& request)
+  Measuring(const OpenedTerrain& terrain, const VolumeRequest& request,
+            std::span<const double> levels)
       : request_(request),
+        levels_(levels),
         context_(request.limits, terrain.store().path()),
         side_(terrain, request, context_) {
     if (request.other != nullptr) other_.emplace(*request.other, request, context_);
   }
 
-  VolumeResult run() {
+  std::vector<VolumeResult> run() {
     result_.certificate = side_.detail.certificate();
     result_.border_move = side_.border_move;
     result_.exact = side_.detail.is_exact(side_.facts());
+    std::vector<VolumeResult> results;
     if (other_) {
       measure_overlay();
+      results.push_back(result_);
     } else {
-      const VolumeTotals totals = volume_above_level(side_, request_.level, request_);
-      answer(totals, unsure_area(side_, totals.border));
+      results = measure_levels();
     }
     side_.terrain.store().pages().check_unchanged();
-    result_.cost.add_counts(context_.cost);
-    return std::move(result_);
+    for (VolumeResult& result : results) result.cost.add_counts(context_.cost);
+    return results;
   }
 
  private:
+  std::vector<VolumeResult> measure_levels() {
+    // Each thread has sums of its own, and those from before the tile at hand.
+    const auto threads = static_cast<std::uint64_t>(std::max(request_.threads, 1));
+    if (levels_.size() > 1) {
+      context_.admit(levels_.size() *
+                     (2 * (threads + 1) * sizeof(VolumeSums) + sizeof(VolumeResult)));
+    }
+    const VolumeTotals totals = volume_above_levels(side_, levels_, request_);
+    const double unsure = unsure_area(side_, totals.border);
+    std::vector<VolumeResult> results(levels_.size(), result_);
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      answer(totals, i, levels_[i], unsure, results[i]);
+    }
+    return results;
+  }
+
   void measure_overlay() {
-    const VolumeTotals here = volume_above_level(side_, 0.0, request_);
-    const VolumeTotals there = volume_above_level(*other_, 0.0, request_);
+    constexpr double kZero[] = {0.0};
+    const VolumeTotals here = volume_above_levels(side_, kZero, request_);
+    const VolumeTotals there = volume_above_levels(*other_, kZero, request_);
     const VolumeTotals shared = volume_of_overlay(side_, *other_, request_);
     result_.other_certificate = other_->detail.certificate();
     result_.border_move = std::max(result_.border_move, other_->border_move);
     result_.exact = result_.exact && other_->detail.is_exact(other_->facts());
-    answer(shared, unsure_area(side_, here.border) + unsure_area(*other_, there.border));
+    answer(shared, 0, 0.0, unsure_area(side_, here.border) + unsure_area(*other_, there.border),
+           result_);
     result_.only_here_area = beside(here, shared);
     result_.only_other_area = beside(there, shared);
     for (const VolumeTotals* part : {&here, &there}) {
@@ -134,17 +160,20 @@ class Measuring {
     other_->terrain.store().pages().check_unchanged();
   }
 
-  void answer(const VolumeTotals& totals, double unsure) {
-    fill_in(totals.sums, result_);
-    const double all = result_.surface_area + result_.void_area;
-    const double most = std::min(unsure, all * (1 + 1e-9) + totals.sums.area_rounding.value());
-    certify(totals.sums, possible_differences(side_, other_ ? &*other_ : nullptr, request_), most,
-            result_);
-    result_.cost.add_counts(totals.cost);
-    result_.tiles += totals.tiles;
+  void answer(const VolumeTotals& totals, std::size_t which, double level, double unsure,
+              VolumeResult& result) {
+    const VolumeSums& sums = totals.sums[which];
+    fill_in(sums, result);
+    const double all = result.surface_area + result.void_area;
+    const double most = std::min(unsure, all * (1 + 1e-9) + sums.area_rounding.value());
+    certify(sums, possible_differences(side_, other_ ? &*other_ : nullptr, request_, level), most,
+            result);
+    result.cost.add_counts(totals.cost);
+    result.tiles += totals.tiles;
   }
 
   const VolumeRequest& request_;
+  std::span<const double> levels_;
   QueryContext context_;
   VolumeSide side_;
   std::optional<VolumeSide> other_;
@@ -154,12 +183,18 @@ class Measuring {
 }  // namespace
 
 VolumeResult volume(const OpenedTerrain& terrain, const VolumeRequest& request) {
+  return volumes(terrain, request, {&request.level, 1}).front();
+}
+
+std::vector<VolumeResult> volumes(const OpenedTerrain& terrain, const VolumeRequest& request,
+                                  std::span<const double> levels) {
   const auto start = std::chrono::steady_clock::now();
-  check(request);
-  VolumeResult result = Measuring(terrain, request).run();
-  result.cost.seconds =
+  check(request, levels);
+  std::vector<VolumeResult> results = Measuring(terrain, request, levels).run();
+  const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  for (VolumeResult& result : results) result.cost.seconds = seconds;
+  return results;
 }
 
 }  // namespace ptin

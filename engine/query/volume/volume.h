@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/certificate.h"
@@ -79,5 +81,15 @@ struct VolumeResult {
 /// that meet several tiles are read for each of them. The overlay takes O(n log n). Memory: a page
 /// for a level where no border matters; else what a tile keeps.
 [[nodiscard]] VolumeResult volume(const OpenedTerrain& terrain, const VolumeRequest& request);
+
+/// The volumes of several levels, in their order: each bit for bit what volume() gives for it, all of
+/// them from one pass over the triangles, whose cost each result tells. `request.level` is not looked
+/// at.
+/// @throws Error as volume(); invalid_argument  no level; another terrain besides
+///               resource_exhausted  the sums of so many levels do not fit the memory
+/// Cost: as volume(), with the sums of each triangle once a level. Memory: a KiB a level and thread.
+[[nodiscard]] std::vector<VolumeResult> volumes(const OpenedTerrain& terrain,
+                                                const VolumeRequest& request,
+                                                std::span<const double> levels);
 
 }  // namespace ptin

@@ -108,15 +108,15 @@ double shift_of(const VolumeSide& side) {
   return 8 * std::numeric_limits<double>::epsilon() * farthest;
 }
 
-/// Counts the triangles of a terrain against a level, as they are read.
+/// Counts the triangles of a terrain against levels, as they are read.
 class LevelWorker final : public TileWorker, private LivingVisitor {
  public:
   /// @param is_alone  No other thread waits for halves of a tile.
-  LevelWorker(const Walk& walk, std::uint64_t limit, const VolumeSide& side, double level,
-              bool is_alone)
+  LevelWorker(const Walk& walk, std::uint64_t limit, const VolumeSide& side,
+              std::span<const double> levels, bool is_alone)
       : TileWorker(walk, limit, side.terrain),
         side_(side),
-        level_(level),
+        levels_(levels),
         is_alone_(is_alone),
         reader_(side.terrain, side.detail),
         border_(side.border_scope()) {}
@@ -162,28 +162,33 @@ class LevelWorker final : public TileWorker, private LivingVisitor {
   }
 
   void count_triangle(const LivingTriangle& t) {
-    const LinearHeight above = above_level(t, side_.facts().heights, level_);
-    const ConvexPiece whole(above.corners[0], above.corners[1], above.corners[2]);
-    if (!side_.cutter) {
-      count_piece(t, above, whole);
-      return;
-    }
     parts_.clear();
-    side_.cutter->cut(whole, parts_);
-    for (const ConvexPiece& part : parts_) count_piece(t, above, part);
+    const ConvexPiece whole(position_of(t.corner[0].position), position_of(t.corner[1].position),
+                            position_of(t.corner[2].position));
+    if (side_.cutter) {
+      side_.cutter->cut(whole, parts_);
+    } else {
+      parts_.push_back(whole);
+    }
+    for (std::size_t i = 0; i < levels_.size() && !parts_.empty(); ++i) {
+      const LinearHeight above = above_level(t, side_.facts().heights, levels_[i]);
+      for (const ConvexPiece& part : parts_)
+        count_piece(t, above, part, levels_[i], totals.sums[i]);
+    }
   }
 
-  void count_piece(const LivingTriangle& t, const LinearHeight& above, const ConvexPiece& piece) {
+  void count_piece(const LivingTriangle& t, const LinearHeight& above, const ConvexPiece& piece,
+                   double level, VolumeSums& sums) {
     if (t.is_void) {
       const Interval heights = side_.is_exact ? Interval{} : side_.heights(t);
-      totals.sums.add_void(side_.plane, piece, {heights.lo - level_, heights.hi - level_});
+      sums.add_void(side_.plane, piece, {heights.lo - level, heights.hi - level});
       return;
     }
     const double shift = side_.cutter ? shift_of(side_) : 0.0;
     const double noise =
-        above.noise(0.0) + std::numeric_limits<double>::epsilon() * std::abs(level_);
-    totals.sums.add_surface(side_.plane, piece, values_at(piece, above),
-                            {side_.deviation(t), noise, shift});
+        above.noise(0.0) + std::numeric_limits<double>::epsilon() * std::abs(level);
+    sums.add_surface(side_.plane, piece, values_at(piece, above),
+                     {side_.deviation(t), noise, shift});
   }
 
   std::span<const double> values_at(const ConvexPiece& piece, const LinearHeight& above) {
@@ -193,7 +198,7 @@ class LevelWorker final : public TileWorker, private LivingVisitor {
   }
 
   const VolumeSide& side_;
-  double level_;
+  std::span<const double> levels_;
   bool is_alone_;
   LivingReader reader_;
   std::optional<BorderScope> border_;
@@ -281,7 +286,7 @@ class OverlayWorker final : public TileWorker, private LivingVisitor {
     for (const ConvexPiece& part : parts_) {
       values_.clear();
       for (const MapPoint p : part.corners()) values_.push_back(here.height.at(p) - there.at(p));
-      totals.sums.add_surface(side_.plane, part, values_, {deviation, noise, shift_});
+      totals.sums[0].add_surface(side_.plane, part, values_, {deviation, noise, shift_});
     }
   }
 
@@ -292,7 +297,7 @@ class OverlayWorker final : public TileWorker, private LivingVisitor {
       if (!is_empty(a) && !is_empty(b)) possible = {a.lo - scale_ * b.hi, a.hi - scale_ * b.lo};
     }
     for (const ConvexPiece& part : parts_) {
-      totals.sums.add_void(side_.plane, part, possible);
+      totals.sums[0].add_void(side_.plane, part, possible);
     }
   }
 
@@ -335,14 +340,15 @@ class StarsInBox final : public StarPredicate {
 };
 
 /// The sums of a walk: bounds of all that can be added to them.
-VolumeTotals totals_for(const VolumeSide& side, double most_height) {
+VolumeTotals totals_for(const VolumeSide& side, std::vector<double> most_heights) {
   const GridBox& b = side.facts().bounds;
   const double area = side.plane.area_at_most(b);
   const double longest =
       is_empty(b) ? 0.0
                   : side.plane.length_at_most({double{1} * b.min_x, double{1} * b.min_y},
                                               {double{1} * b.max_x, double{1} * b.max_y});
-  return {kSlack * area, kSlack * most_height, longest};
+  for (double& most : most_heights) most *= kSlack;
+  return {kSlack * area, most_heights, longest};
 }
 
 }  // namespace
@@ -402,26 +408,28 @@ Interval source_heights(const StoreFacts& facts) noexcept {
 }
 
 void VolumeTotals::add(const VolumeTotals& other) {
-  sums.add(other.sums);
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(other.sums[i]);
   border.length.add(other.border.length);
   border.parts += other.border.parts;
   cost.add_counts(other.cost);
   tiles += other.tiles;
 }
 
-VolumeTotals volume_above_level(const VolumeSide& side, double level,
-                                const VolumeRequest& request) {
+VolumeTotals volume_above_levels(const VolumeSide& side, std::span<const double> levels,
+                                 const VolumeRequest& request) {
   const Interval all = source_heights(side.facts());
-  const double most =
-      is_empty(all)
-          ? 0.0
-          : std::max({std::abs(all.lo - level), std::abs(all.hi - level), all.hi - all.lo});
+  std::vector<double> most;
+  for (const double level : levels) {
+    most.push_back(is_empty(all) ? 0.0
+                                 : std::max({std::abs(all.lo - level), std::abs(all.hi - level),
+                                             all.hi - all.lo}));
+  }
   const VolumeTotals empty = totals_for(side, most);
   const Walk walk{request, side.facts().bounds, empty};
   // A level that cuts between records of one error keeps triangles until the tile has been read.
   const bool is_alone = threads_within(request) == 1 && side.detail.is_by_error();
   return walk_tiles(walk, [&](std::uint64_t limit) {
-    return std::make_unique<LevelWorker>(walk, limit, side, level, is_alone);
+    return std::make_unique<LevelWorker>(walk, limit, side, levels, is_alone);
   });
 }
 
@@ -433,7 +441,7 @@ VolumeTotals volume_of_overlay(const VolumeSide& side, const VolumeSide& other,
     const Interval all = source_heights(*facts);
     if (!is_empty(all)) most += 2 * scale * std::max(std::abs(all.lo), std::abs(all.hi));
   }
-  const VolumeTotals empty = totals_for(side, most);
+  const VolumeTotals empty = totals_for(side, {most});
   const Walk walk{request, side.facts().bounds, empty};
   return walk_tiles(walk, [&](std::uint64_t limit) {
     return std::make_unique<OverlayWorker>(walk, limit, side, other);

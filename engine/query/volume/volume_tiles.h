@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "engine/query/living/living_place.h"
 #include "engine/query/select/accounting.h"
@@ -52,20 +54,24 @@ struct VolumeSide {
 
 /// What a walk over tiles adds up. Threads: one owner.
 struct VolumeTotals {
-  VolumeTotals(double most_area, double most_height, double longest_edge)
-      : sums(most_area, most_height), border{FixedSum(std::ldexp(longest_edge, 36)), 0} {}
+  /// @param most_heights  Of each of the sums.
+  VolumeTotals(double most_area, std::span<const double> most_heights, double longest_edge)
+      : border{FixedSum(std::ldexp(longest_edge, 36)), 0} {
+    for (const double most : most_heights) sums.emplace_back(most_area, most);
+  }
   void add(const VolumeTotals& other);
 
-  VolumeSums sums;
+  std::vector<VolumeSums> sums;  ///< One a level; of an overlay one.
   BorderLength border;
   QueryCost cost;
   std::uint64_t tiles = 0;
 };
 
-/// The triangles of one terrain, each in the tile that holds its corner of smallest key, against a
-/// level; with the length of its border. @throws Error as volume()
-[[nodiscard]] VolumeTotals volume_above_level(const VolumeSide& side, double level,
-                                              const VolumeRequest& request);
+/// The triangles of one terrain, each in the tile that holds its corner of smallest key, against
+/// levels; with the length of its border. @throws Error as volume()
+[[nodiscard]] VolumeTotals volume_above_levels(const VolumeSide& side,
+                                               std::span<const double> levels,
+                                               const VolumeRequest& request);
 
 /// The overlay of two terrains: each pair of triangles in the tile that holds the lowest corner of
 /// what they share. Borders are not looked at. @throws Error as volume()

@@ -243,6 +243,29 @@ TEST(Volume, IsTheSameForAnyMemoryTilesAndThreads) {
   }
 }
 
+TEST(Volume, OfSeveralLevelsIsThatOfEachByItself) {
+  const Terrain& coast = reference::built_terrain("coast_257.tif");
+  VolumeRequest request = built_request(coast);
+  request.threads = 2;
+  for (const bool in_part : {false, true}) {
+    if (in_part) {
+      request.detail.tolerance = 1.0;
+      request.region = Polygon{{{at(coast, 0.1, 0.05), at(coast, 0.95, 0.3), at(coast, 0.4, 0.9)}}};
+    }
+    std::vector<double> levels;
+    for (int i = 0; i < 12; ++i) levels.push_back(-5.0 + 7.3 * i);
+    const std::vector<VolumeResult> all = volumes(coast, request, levels);
+    ASSERT_EQ(all.size(), levels.size());
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      request.level = levels[i];
+      EXPECT_EQ(bits_of(all[i]), bits_of(volume(coast, request))) << levels[i];
+    }
+  }
+  EXPECT_THROW(static_cast<void>(volumes(coast, request, {})), Error);
+  request.other = &coast;
+  EXPECT_THROW(static_cast<void>(volumes(coast, request, std::vector<double>{1.0, 2.0})), Error);
+}
+
 TEST(Volume, OfTwoHalvesIsThatOfTheWhole) {
   const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   VolumeRequest request = built_request(terrain);
