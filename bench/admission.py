@@ -7,7 +7,8 @@ usage: bench/admission.py PTIN FILE [--threads N] [--seconds S] [--only NAME ...
 Starts the service on FILE over loopback for each row. Other clients come from 127.0.0.2 and on, as the client that is measured
 comes from 127.0.0.1: 40 heights a second, each by a new connection, its time counted from when it was due, and /healthz eight
 times a second. A row has statuses, percentiles in milliseconds, and memory without the file's pages: at the start, at most, and
-two seconds after the others are gone.
+twelve seconds after the others asked for the last time. A row whose others were not answered what they are there for tests nothing:
+the status is 1 then.
 """
 import argparse
 import collections
@@ -17,6 +18,7 @@ import resource
 import signal
 import socket
 import subprocess
+import sys
 import threading
 import time
 
@@ -65,19 +67,19 @@ def guarded(act):
         return type(error).__name__
 
 
-def repeat(service, stop, counts, client, target, body=None):
+def repeat(service, stop, counts, k, target, body):
+    """Asks from one of 50 addresses; no two questions are alike, which would be answered from memory."""
     i = 0
     while not stop.is_set():
-        counts[guarded(lambda: service.ask(target.replace("@", str(client * 1000 + i % 1000)), client, body))] += 1
+        counts[guarded(lambda: service.ask(target.replace("@", f"{k:02}{i:06}"), 1 + k % 50, body))] += 1
         i += 1
 
 
 def others(number, target, body=None):
-    """So many clients that ask the same again and again, from 50 addresses at most."""
+    """So many clients that ask again and again."""
     def start(service, stop, counts):
         for k in range(number):
-            threading.Thread(target=repeat, daemon=True,
-                             args=(service, stop, counts, 1 + k % 50, target, body and body(k))).start()
+            threading.Thread(target=repeat, daemon=True, args=(service, stop, counts, k, target, body and body(k))).start()
     return start
 
 
@@ -93,17 +95,27 @@ def idle(number):
 SHAPES = [b'{"pairs":[' + b"{}," * 349000 + b"1]}", b'{"pairs":[' + b"[]," * 349000 + b"1]}", b"[" * 1000000,
           b'{"pairs":[' + b'{"":0},' * 140000 + b"1]}", b'{"a":"' + b"\\u00e9" * 170000 + b'"}', b'{"a":' + b"1" * 1000000 + b"}",
           b"{" + b",".join(b'"k%d":0' % i for i in range(90000)) + b"}"]
-SHEDS = "/collections/dem/viewshed?coords={}&radius=20000&height=@"
+SHED = "/collections/dem/viewshed?coords={}&radius={}&height=2.@"
 STREAM = "/collections/dem/stream?error=0.@&max_bytes=4000000"
 SIGHT = "/collections/dem/sight"
 
 
-def rows(middle):
-    shed = SHEDS.format(middle)
-    hostile = [(f"{n} hostile bodies", others(n, SIGHT, lambda k: SHAPES[k % len(SHAPES)])) for n in (2, 20)]
-    return ([("nothing", None)] + [(f"{n} streams", others(n, STREAM)) for n in (1, 2, 8, 80)] +
-            [(f"{n} viewsheds", others(n, shed)) for n in (1, 2, 8, 80)] + hostile +
-            [("1024 idle connections", idle(1024)), ("300 descriptors, 600 idle", idle(600))])
+def rows(shed):
+    """Each with what the others are to be told at least once, and may be told beside it."""
+    hostile = [(f"{n} hostile bodies", others(n, SIGHT, lambda k: SHAPES[k % len(SHAPES)]), {413}, {400, 503}) for n in (2, 20)]
+    return ([("nothing", None, set(), set())] + [(f"{n} streams", others(n, STREAM), {200}, {503}) for n in (1, 2, 8, 80)] +
+            [(f"{n} viewsheds", others(n, shed), {200}, {503}) for n in (1, 2, 8, 80)] + hostile +
+            [("1024 idle connections", idle(1024), {"connections"}, set()),
+             ("300 descriptors, 600 idle", idle(600), {"connections"}, set())])
+
+
+def answered_viewshed(service, middle):
+    """The widest one that the service answers."""
+    for radius in (20000, 10000, 5000, 2000, 1000):
+        shed = SHED.format(middle, radius)
+        if service.ask(shed.replace("@", "0")) == 200:
+            return radius, shed
+    sys.exit("no viewshed of this terrain is answered")
 
 
 def measure(service, place, seconds, start):
@@ -159,15 +171,25 @@ def main():
         facts["bounds"][k] for k in ("min_x", "min_y", "max_x", "max_y")]
     middle = f"POINT({(west + east) / 2}%20{(south + north) / 2})&crs=native"
     place = f"/collections/dem/position?coords={middle}"
+    service = Service(options.ptin, options.file, options.threads)
+    radius, shed = answered_viewshed(service, middle)
+    service.end()
+    print(f"Viewsheds have a radius of {radius}.\n")
     print("| beside | heights | 50 % / 99 % / most, ms | healthz | 50 % / 99 % / most, ms | what the others got | "
           "MiB before / most / after |\n|---|---|---|---|---|---|---|")
-    for name, start in rows(middle):
+    failed = []
+    for name, start, needed, allowed in rows(shed):
         if options.only and name not in options.only:
             continue
         service = Service(options.ptin, options.file, options.threads, 300 if "descriptors" in name else None)
         service.ask(place)
-        print(table_row(name, *measure(service, place, options.seconds, start)), flush=True)
+        found, counts, memory = measure(service, place, options.seconds, start)
+        print(table_row(name, found, counts, memory), flush=True)
+        if not needed <= set(counts) <= needed | allowed:
+            failed.append(name)
         service.end()
+    if failed:
+        sys.exit(f"not answered what they are there for: the others of {', '.join(failed)}")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 namespace ptin::serve {
 namespace {
@@ -77,6 +78,17 @@ TEST(AnswerCache, KeepsNothingThatTakesAnUndueShare) {
   EXPECT_EQ(made.body.size(), 2000U);
   EXPECT_FALSE(cache.find("a"));
   EXPECT_EQ(cache.bytes(), 0U);
+}
+
+/// A text that grew, or was packed, has room for more than it holds.
+TEST(AnswerCache, KeepsNoRoomBesideTheBytes) {
+  constexpr std::size_t kBody = 3000;
+  AnswerCache cache(1 << 20);
+  http::Response made = answer(std::string(kBody, 'a'));
+  made.body.reserve(50 * kBody);
+  cache.keep("a", made);
+  ASSERT_EQ(made.lasting_body.size(), kBody);
+  EXPECT_LE(::malloc_usable_size(const_cast<char*>(made.lasting_body.data())), kBody + 100);
 }
 
 TEST(AnswerCache, BytesOutliveTheCache) {

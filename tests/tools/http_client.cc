@@ -96,15 +96,16 @@ std::optional<HttpAnswer> HttpClient::receive(bool has_body) {
   return answer;
 }
 
-bool HttpClient::is_closed_within(std::chrono::milliseconds time) {
-  const auto until = std::chrono::steady_clock::now() + time;
-  while (true) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-        until - std::chrono::steady_clock::now());
-    if (left.count() <= 0 || !is_readable(fd_, left)) return false;
-    char bytes[4096];
+bool HttpClient::is_closed() {
+  char bytes[4096];
+  while (is_readable(fd_, kPatience)) {
     if (::recv(fd_, bytes, sizeof bytes, 0) <= 0) return true;
   }
+  return false;
+}
+
+bool HttpClient::is_readable_within(std::chrono::milliseconds time) const {
+  return is_readable(fd_, time);
 }
 
 HttpAnswer HttpClient::ask(const std::string& method, const std::string& target,
@@ -124,6 +125,18 @@ bool comes_true(const std::function<bool()>& is_so) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;
+}
+
+HttpAnswer first_answer(const std::string& address, int status, const std::string& request) {
+  HttpAnswer wanted;
+  static_cast<void>(comes_true([&] {
+    HttpClient client(address);
+    client.send(request);
+    const auto answer = client.receive();
+    if (answer && answer->status == status) wanted = *answer;
+    return wanted.status == status;
+  }));
+  return wanted;
 }
 
 }  // namespace ptin::tools::testing

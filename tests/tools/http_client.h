@@ -43,8 +43,10 @@ class HttpClient {
   void send(std::string_view bytes);
   /// The next answer; none where the server closes first, or sends nothing for two minutes.
   [[nodiscard]] std::optional<HttpAnswer> receive(bool has_body = true);
-  /// Whether the server closed, within the time.
-  [[nodiscard]] bool is_closed_within(std::chrono::milliseconds time);
+  /// Waits until the server closes; false where it does not within two minutes.
+  [[nodiscard]] bool is_closed();
+  /// Whether there is something to receive by then.
+  [[nodiscard]] bool is_readable_within(std::chrono::milliseconds time) const;
   void close();
   /// Takes as little as the system allows into its own buffer.
   void shrink_receiving();
@@ -87,5 +89,11 @@ class RunningServer {
 
 /// Waits until `is_so`, for two minutes at most.
 [[nodiscard]] bool comes_true(const std::function<bool()>& is_so);
+
+/// The first answer of this status to a request that is sent again and again, each time by a new
+/// connection: where a deadline is short, a busy machine may miss it sooner than the test means.
+/// None within two minutes: an empty one.
+[[nodiscard]] HttpAnswer first_answer(const std::string& address, int status,
+                                      const std::string& request);
 
 }  // namespace ptin::tools::testing

@@ -29,7 +29,7 @@ TEST(HttpServerConcurrency, AnswersOneAfterTheOther) {
     EXPECT_EQ(answer.header("connection"), "keep-alive");
   }
   EXPECT_EQ(client.get("/echo", "Connection: close\r\n").header("connection"), "close");
-  EXPECT_TRUE(client.is_closed_within(milliseconds(5000)));
+  EXPECT_TRUE(client.is_closed());
   EXPECT_TRUE(comes_true([&] { return service.noted == 4; }));
 }
 
@@ -127,7 +127,7 @@ TEST(HttpServerConcurrency, RefusesWhatIsTooLarge) {
     EXPECT_EQ(answer->status, one.status) << answer->body;
     EXPECT_EQ(answer->json()["limit"], one.limit);
     EXPECT_EQ(answer->header("content-type"), "application/problem+json");
-    EXPECT_TRUE(client.is_closed_within(milliseconds(5000)));
+    EXPECT_TRUE(client.is_closed());
   }
 }
 
@@ -164,22 +164,28 @@ TEST(HttpServerConcurrency, RefusesWhatIsNoHttp) {
 
 TEST(HttpServerConcurrency, DoesNotWaitForSlowRequests) {
   MadeService service;
-  RunningServer running(small_limits(), service);
-  HttpClient head(running.address());
-  head.send("GET /echo HT");
-  for (int i = 0; i < 20; ++i) {  // Each byte in time makes the whole no longer.
-    std::this_thread::sleep_for(milliseconds(20));
-    head.send("T");
-  }
-  const auto late = head.receive();
-  ASSERT_TRUE(late);
-  EXPECT_EQ(late->status, 408);
-  EXPECT_EQ(late->json()["limit"], "reading");
-  HttpClient body(running.address());
-  body.send("POST /echo HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\nab");
-  EXPECT_EQ(body.receive()->status, 408);
+  Limits limits = small_limits();
+  limits.reading = milliseconds(200);
+  RunningServer running(limits, service);
+  const HttpAnswer late = first_answer(running.address(), 408, "GET /echo HT");
+  EXPECT_EQ(late.json()["limit"], "reading");
+  const std::string body = "POST /echo HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\nab";
+  EXPECT_EQ(first_answer(running.address(), 408, body).json()["limit"], "reading");
   HttpClient silent(running.address());
-  EXPECT_TRUE(silent.is_closed_within(milliseconds(5000)));
+  EXPECT_TRUE(silent.is_closed());
+}
+
+/// Each byte in time makes the whole no longer.
+TEST(HttpServerConcurrency, DoesNotWaitForAHeadThatNeverEnds) {
+  MadeService service;
+  Limits limits = small_limits();
+  limits.reading = milliseconds(200);
+  RunningServer running(limits, service);
+  HttpClient head(running.address());
+  EXPECT_TRUE(comes_true([&] {
+    head.send("G");
+    return head.is_readable_within(milliseconds(20));
+  }));
 }
 
 TEST(HttpServerConcurrency, StopsAQuestionWhoseClientLeft) {
@@ -203,7 +209,7 @@ TEST(HttpServerConcurrency, StopsAQuestionThatTakesTooLong) {
   HttpClient client(running.address());
   EXPECT_EQ(client.get("/wait").status, 503);
   EXPECT_EQ(service.last_given_up, GivenUp::kDeadline);
-  EXPECT_EQ(client.get("/nothing").status, 200);
+  EXPECT_TRUE(comes_true([&] { return client.get("/nothing").status == 200; }));
 }
 
 TEST(HttpServerConcurrency, QueuesNoMoreThanItSays) {
@@ -230,7 +236,9 @@ TEST(HttpServerConcurrency, QueuesNoMoreThanItSays) {
 
 TEST(HttpServerConcurrency, LetsGoOfAClientThatDoesNotRead) {
   MadeService service;
-  RunningServer running(small_limits(), service);
+  Limits limits = small_limits();
+  limits.writing = milliseconds(300);
+  RunningServer running(limits, service);
   HttpClient client(running.address());
   client.shrink_receiving();
   client.send("GET /large HTTP/1.1\r\nHost: a\r\n\r\n");
@@ -240,12 +248,11 @@ TEST(HttpServerConcurrency, LetsGoOfAClientThatDoesNotRead) {
 }
 
 TEST(HttpServerConcurrency, SendsLargeAnswersWhole) {
+  const std::string whole(std::size_t{64} << 20, 'x');
   MadeService service;
-  Limits limits = small_limits();
-  limits.writing = milliseconds(10000);  // Where others work too, a client may have to wait.
-  RunningServer running(limits, service);
+  RunningServer running(small_limits(), service);
   HttpClient client(running.address());
-  EXPECT_EQ(client.get("/large").body, std::string(std::size_t{64} << 20, 'x'));
+  EXPECT_TRUE(client.get("/large").body == whole);  // Not to be printed.
 }
 
 TEST(HttpServerConcurrency, AnswersFaultsAndGoesOn) {
@@ -265,7 +272,7 @@ TEST(HttpServerConcurrency, FinishesWhatIsAtHandWhenItDrains) {
   busy.send("GET /wait HTTP/1.1\r\nHost: a\r\n\r\n");
   ASSERT_TRUE(comes_true([&] { return service.waiting == 1; }));
   running.server().drain();
-  EXPECT_TRUE(idle.is_closed_within(milliseconds(5000)));
+  EXPECT_TRUE(idle.is_closed());
   EXPECT_THROW(HttpClient(running.address()).get("/nothing"), std::runtime_error);
   service.is_released = true;
   const auto last = busy.receive();

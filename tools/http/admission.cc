@@ -88,6 +88,12 @@ class Line {
     return true;
   }
 
+  /// The next ticket of a client; null: it has none.
+  [[nodiscard]] std::shared_ptr<const Ticket> first_of(const std::string& client) const {
+    const auto own = tickets_.find(client);
+    return own == tickets_.end() ? nullptr : own->second.front();
+  }
+
   /// The last ticket of the client that has most, where that is more than `client` would have.
   std::shared_ptr<Ticket> displace_for(const std::string& client) {
     const auto own = tickets_.find(client);
@@ -128,6 +134,17 @@ struct Admission::Shared {
       return ticket;
     }
     return nullptr;
+  }
+  /// What a ticket that stands in its line lacks. Behind one of its own client's that lacks memory it
+  /// lacks memory too.
+  [[nodiscard]] WaitsFor lack_of(const Ticket& ticket) const {
+    const std::size_t i = index_of(ticket.lane);
+    const std::size_t of_long = running[index_of(Lane::kTile)] + running[index_of(Lane::kSweep)];
+    const bool is_thread_free = running[i] < width(ticket.lane, sizes) &&
+                                (!is_long(ticket.lane) || of_long <= sizes.threads);
+    const auto first = lines[i].first_of(ticket.client);
+    const bool lacks_memory = is_thread_free && first && !memory->has(first->memory, first->client);
+    return lacks_memory ? WaitsFor::kMemory : WaitsFor::kTurn;
   }
   [[nodiscard]] bool is_at_rest() const {
     return running == std::array<std::size_t, kLanes>{} &&
@@ -211,9 +228,11 @@ bool Admission::add(std::shared_ptr<Ticket> ticket) {
   return true;
 }
 
-bool Admission::withdraw(const Ticket& ticket) {
+std::optional<WaitsFor> Admission::withdraw(const Ticket& ticket) {
   const std::lock_guard lock(shared_->mutex);
-  return shared_->lines[index_of(ticket.lane)].withdraw(ticket);
+  const WaitsFor lack = shared_->lack_of(ticket);
+  if (!shared_->lines[index_of(ticket.lane)].withdraw(ticket)) return std::nullopt;
+  return lack;
 }
 
 const std::shared_ptr<MemoryBudget>& Admission::memory() const noexcept { return shared_->memory; }

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -29,6 +30,12 @@ enum class Lane : std::uint8_t {
 };
 inline constexpr std::size_t kLanes = 4;
 [[nodiscard]] const char* name_of(Lane lane) noexcept;
+
+/// What a task lacks that has not begun.
+enum class WaitsFor : std::uint8_t {
+  kTurn,   ///< A thread: others are before it.
+  kMemory  ///< There are threads that have nothing to do.
+};
 
 /// One task on its way. Made by whoever waits for it.
 struct Ticket {
@@ -74,8 +81,9 @@ class Admission {
   /// of the client that has most is displaced.
   /// @return False: the lane is full.
   [[nodiscard]] bool add(std::shared_ptr<Ticket> ticket);
-  /// Takes a ticket back that still waits.  @return False: it has begun, or was never taken.
-  bool withdraw(const Ticket& ticket);
+  /// Takes a ticket back that still waits.
+  /// @return What it waited for to the last; none: it has begun, or was never taken.
+  std::optional<WaitsFor> withdraw(const Ticket& ticket);
 
   [[nodiscard]] const std::shared_ptr<MemoryBudget>& memory() const noexcept;
   /// Questions that wait, and that are computed; pieces of files are none.

@@ -23,6 +23,22 @@ double seconds_between(std::chrono::steady_clock::time_point from,
   return std::chrono::duration<double>(to - from).count();
 }
 
+/// Whose time ran out before it began. The limit is the one that is to be raised so that more begin.
+Problem problem_of_waiting(WaitsFor lack, const Limits& limits) {
+  const std::string waited =
+      "the question waited " + std::to_string(limits.queueing.count()) + " ms for ";
+  if (lack == WaitsFor::kTurn) {
+    return Problem(503, waited + "its turn behind others; come again later")
+        .beyond("queueing")
+        .retry_after(1);
+  }
+  return Problem(503, waited + "memory: too little of the " + std::to_string(limits.memory_bytes) +
+                          " bytes for all questions came back from those before it; come again "
+                          "later")
+      .beyond("memory_bytes")
+      .retry_after(1);
+}
+
 }  // namespace
 
 void Connection::compute() {
@@ -94,13 +110,11 @@ void Connection::look_at_the_time() {
                         [this] { look_at_the_time(); });
   }
   if (has_begun) return give_up(GivenUp::kDeadline);
-  if (!host_.admission.withdraw(*ticket_)) {  // It has begun by now.
+  const auto lack = host_.admission.withdraw(*ticket_);
+  if (!lack) {  // It has begun by now.
     return set_deadline(milliseconds(1), [this] { look_at_the_time(); });
   }
-  refuse_ticket(Problem(503, "the question waited " + std::to_string(limits.queueing.count()) +
-                                 " ms for its turn behind others; come again later")
-                    .beyond("queueing")
-                    .retry_after(1));
+  refuse_ticket(problem_of_waiting(*lack, limits));
 }
 
 /// Answers in the place of a ticket that will not run.

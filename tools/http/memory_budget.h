@@ -59,6 +59,13 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
     return lease->grow_to(bytes) ? lease : nullptr;
   }
 
+  /// Whether lend() would lend it now.
+  [[nodiscard]] bool has(std::uint64_t bytes, const std::string& client = {}) const {
+    const std::lock_guard lock(mutex_);
+    const auto held = held_.find(client);
+    return bytes <= bytes_ - lent_ && (held == held_.end() || is_within_share(held->second));
+  }
+
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
   [[nodiscard]] std::uint64_t lent() const {
     const std::lock_guard lock(mutex_);
@@ -66,12 +73,14 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   }
 
  private:
+  /// With the mutex.
+  [[nodiscard]] bool is_within_share(std::uint64_t held) const { return held <= bytes_ - lent_; }
   bool take(const std::string& client, std::uint64_t bytes, bool is_beyond_share) {
     const std::lock_guard lock(mutex_);
     if (bytes > bytes_ - lent_) return false;
     if (!client.empty()) {
       std::uint64_t& held = held_[client];
-      if (held > bytes_ - lent_ && !is_beyond_share) return false;
+      if (!is_within_share(held) && !is_beyond_share) return false;
       held += bytes;
     }
     lent_ += bytes;

@@ -33,6 +33,8 @@ void AnswerCache::keep(const std::string& key, http::Response& response) {
   std::uint64_t bytes = kBesideBytes + key.size() + response.body.size();
   for (const auto& [name, value] : response.headers) bytes += name.size() + value.size();
   if (bytes > most_bytes_ / kLargestShare) return;
+  // A text that grew has up to twice its bytes, one that was packed as many as it had before.
+  response.body.shrink_to_fit();
   const std::lock_guard lock(mutex_);
   if (places_.count(key) != 0) return;  // Two asked at once.
   auto room = room_->lend(bytes);

@@ -50,7 +50,7 @@ constexpr auto kLimits = std::to_array<LimitFact>({
      PTIN_LIMIT(cache_bytes)},
     {"reading", "time for the head of a request to arrive, and for its body (408)", "ms", 1, kAny,
      PTIN_TIME(http.reading)},
-    {"queueing", "time that a question waits for its turn (503)", "ms", 1, kAny,
+    {"queueing", "time that a question waits for its turn and for memory (503)", "ms", 1, kAny,
      PTIN_TIME(http.queueing)},
     {"computing", "time that a question is computed (503)", "ms", 1, kAny,
      PTIN_TIME(http.computing)},
